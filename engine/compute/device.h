@@ -1,0 +1,120 @@
+// Device: runs kernels, on the CPU (oneTBB), in OpenGL compute shaders or in OpenCL. Everything a step needs is handed to it.
+//
+// Threading: a Device and its Buffers belong to the thread that made them (gl: to the thread whose context is current).
+// Calls are in order: a dispatch sees what earlier dispatches and writes did. Nothing but read() and finish() waits for the GPU.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/result.h"
+
+namespace rivulet {
+
+enum class Backend { cpu, gl, cl };
+const char* backendName(Backend backend);  // "cpu", "gl", "cl"
+
+class Device;
+
+// Memory on a Device. Move-only; must not outlive its Device.
+class Buffer {
+  public:
+    Buffer() = default;
+    Buffer(Device& device, uint64_t handle, size_t bytes) : device_(&device), handle_(handle), bytes_(bytes) {}
+    Buffer(Buffer&& other) noexcept { swap(other); }
+    Buffer& operator=(Buffer&& other) noexcept {
+        Buffer taken(std::move(other));
+        swap(taken);
+        return *this;
+    }
+    Buffer(const Buffer&) = delete;
+    Buffer& operator=(const Buffer&) = delete;
+    ~Buffer();
+    void swap(Buffer& other) noexcept {
+        std::swap(device_, other.device_);
+        std::swap(handle_, other.handle_);
+        std::swap(bytes_, other.bytes_);
+    }
+    uint64_t handle() const { return handle_; }  // cpu: the address; gl: the buffer's name; cl: the cl_mem
+    size_t bytes() const { return bytes_; }
+    explicit operator bool() const { return device_ != nullptr; }
+
+  private:
+    Device* device_ = nullptr;
+    uint64_t handle_ = 0;
+    size_t bytes_ = 0;
+};
+
+struct Define {
+    std::string name, value;
+};
+
+struct Kernel {
+    uint32_t index = UINT32_MAX;  // into the device's own list
+};
+
+struct DeviceInfo {
+    std::string name;         // "Intel(R) Xeon(R) Processor, 2 threads, avx512"
+    std::string driver;       // "" on the cpu
+    bool software = false;    // a GPU API that runs on the CPU: llvmpipe, PoCL
+    size_t maxBufferBytes = SIZE_MAX;
+};
+
+// Time spent in all dispatches of one kernel since takeTimes() was last called. GPU figures come some frames late.
+struct PassTime {
+    std::string name;
+    double ms = 0;
+    int calls = 0;
+};
+
+class Device {
+  public:
+    virtual ~Device() = default;
+    virtual Backend backend() const = 0;
+    virtual const DeviceInfo& info() const = 0;
+
+    // `path` as "fluid/wcsph_density" (shaders/fluid/wcsph_density.kernel). The same path and defines give the same Kernel.
+    virtual Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) = 0;
+    Result<Kernel> kernel(std::string_view path) { return kernel(path, {}); }
+
+    // Contents are zero. 0 bytes give a valid Buffer of 0 bytes.
+    virtual Result<Buffer> allocate(size_t bytes) = 0;
+    virtual void release(uint64_t handle, size_t bytes) = 0;  // Buffer's destructor calls it
+    virtual void write(Buffer& to, std::span<const std::byte> bytes, size_t offset = 0) = 0;
+    virtual void read(const Buffer& from, std::span<std::byte> bytes, size_t offset = 0) = 0;  // waits
+    virtual void fill(Buffer& to, uint32_t word) = 0;
+    virtual void copy(const Buffer& from, Buffer& to, size_t bytes) = 0;
+
+    // Hands a copy of the first `bytes` of `from`, as they are now, to `then` during some later poll(), without waiting. On the cpu: at once.
+    virtual void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) = 0;
+    virtual void poll() = 0;
+
+    // buffers[k] is binding k + 1 of the kernel's ARGS; binding 0 is the parameter block. 0 threads: nothing happens.
+    virtual void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) = 0;
+    template <class P>
+    void run(Kernel kernel, const P& params, std::initializer_list<const Buffer*> buffers, uint32_t threads) {
+        static_assert(sizeof(P) % 16 == 0, "a parameter block's size must be a multiple of 16");
+        dispatch(kernel, std::as_bytes(std::span(&params, 1)), std::span(buffers.begin(), buffers.size()), threads);
+    }
+    virtual void finish() = 0;
+    virtual std::vector<PassTime> takeTimes() = 0;
+    virtual size_t bytesAllocated() const = 0;
+
+    template <class T>
+    void writeAll(Buffer& to, std::span<const T> items) { write(to, std::as_bytes(items)); }
+    template <class T>
+    std::vector<T> readAll(const Buffer& from, size_t count) {
+        std::vector<T> items(count);
+        read(from, std::as_writable_bytes(std::span(items)));
+        return items;
+    }
+};
+
+}  // namespace rivulet

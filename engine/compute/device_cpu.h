@@ -1,0 +1,72 @@
+// Device cpu: kernels compiled as C++ for several instruction sets, run over chunks by oneTBB.
+#pragma once
+
+#include <memory>
+
+#include "engine/compute/device.h"
+
+namespace rivulet {
+
+enum class Isa { generic, avx2, avx512 };
+const char* isaName(Isa isa);
+Isa bestIsa();  // what this machine runs
+
+// One compiled kernel. `defines` as "A=1;B=2", sorted by name, empty for none.
+using CpuKernelFn = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
+struct CpuKernelRow {
+    const char* path;     // "fluid/wcsph_density"
+    const char* defines;
+    Isa isa;
+    CpuKernelFn run;
+    uint32_t grain;       // threads a chunk
+};
+
+struct CpuOptions {
+    int threads = 0;  // 0: all cores
+    Isa isa = bestIsa();
+};
+
+class CpuDevice;
+std::unique_ptr<CpuDevice> makeCpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& options = {});
+
+class CpuDevice final : public Device {
+  public:
+    CpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& options);
+    ~CpuDevice() override;
+    Backend backend() const override { return Backend::cpu; }
+    const DeviceInfo& info() const override { return info_; }
+    using Device::kernel;
+    Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
+    Result<Buffer> allocate(size_t bytes) override;
+    void release(uint64_t handle, size_t bytes) override;
+    void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override;
+    void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override;
+    void fill(Buffer& to, uint32_t word) override;
+    void copy(const Buffer& from, Buffer& to, size_t bytes) override;
+    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) override;
+    void poll() override {}
+    void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) override;
+    void finish() override {}
+    std::vector<PassTime> takeTimes() override;
+    size_t bytesAllocated() const override { return bytesAllocated_; }
+
+    Isa isa() const { return isa_; }
+    int threads() const;
+    // Calls body(begin, end) over chunks of [0, count), chunks in any order on any thread. For native passes (sorting, lists).
+    void parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body);
+    // Adds `ms` to the times of a native pass, so that takeTimes() reports it beside the kernels.
+    void addTime(std::string_view name, double ms);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+    DeviceInfo info_;
+    Isa isa_;
+    size_t bytesAllocated_ = 0;
+};
+
+// The memory behind a cpu Buffer.
+template <class T>
+T* hostPointer(const Buffer& buffer) { return reinterpret_cast<T*>(static_cast<uintptr_t>(buffer.handle())); }
+
+}  // namespace rivulet

@@ -1,0 +1,23 @@
+# Writes OUT, a C++ file with every file under ROOT/shaders as a string (cmake -DROOT=... -DOUT=... -P embed_shaders.cmake).
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/shaders/*)
+list(SORT files)
+set(rows "")
+foreach(file ${files})
+    file(READ ${ROOT}/${file} text)
+    # A raw string may not exceed what compilers accept: pieces of 8000 characters.
+    string(LENGTH "${text}" length)
+    set(pieces "")
+    set(at 0)
+    while(at LESS length)
+        string(SUBSTRING "${text}" ${at} 8000 piece)
+        string(APPEND pieces "R\"~~~(${piece})~~~\"\n")
+        math(EXPR at "${at} + 8000")
+    endwhile()
+    if(pieces STREQUAL "")
+        set(pieces "\"\"")
+    endif()
+    string(APPEND rows "    {\"${file}\",\n${pieces}},\n")
+endforeach()
+file(WRITE ${OUT}.new "#include \"engine/compute/embedded_shaders.h\"\nnamespace rivulet {\nstatic const EmbeddedShader kRows[] = {\n${rows}};\n"
+    "std::span<const EmbeddedShader> embeddedShaders() { return kRows; }\n}  // namespace rivulet\n")
+file(RENAME ${OUT}.new ${OUT})

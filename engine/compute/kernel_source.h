@@ -1,0 +1,41 @@
+// A kernel's text: includes flattened, defines in front, line numbers kept, so that an error names the file it comes from.
+// Read from disk in a developer build (hot reload), embedded in an installed one.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "engine/core/result.h"
+
+namespace rivulet {
+
+enum class Dialect { glsl, openclC };
+
+struct KernelSource {
+    std::string text;                // with #line directives
+    std::vector<std::string> files;  // GLSL's #line names files by number: an index into this
+};
+
+// Finds shader files by path from the project's root ("shaders/common/lang.h").
+class ShaderFiles {
+  public:
+    // Empty `root`: the embedded copies only; else files under root come first.
+    explicit ShaderFiles(std::string root = {});
+    static ShaderFiles developer();  // RIVULET_SHADERS from the environment, else the source tree the build came from if it is still there, else embedded
+    Result<std::string> load(std::string_view path) const;
+    // `path` e.g. "shaders/fluid/reorder.kernel". Each include is taken once. `header` goes before everything (e.g. "#version 450 core\n").
+    Result<KernelSource> flatten(std::string_view path, std::span<const Define> defines, Dialect dialect, std::string_view header = {}) const;
+
+  private:
+    std::string root_;
+};
+
+// Rewrites "3(12)" or "3:12" (file number, line) of a GLSL log into "shaders/fluid/sph.h:12".
+std::string readableLog(std::string_view log, const KernelSource& source);
+
+}  // namespace rivulet

@@ -1,0 +1,33 @@
+// Params from and to JSON, strictly: an unknown key, a wrong type or a value out of range is an Error with file, line, column,
+// JSON path and the nearest valid name. Bounded in time and memory: files above 64 MiB and nesting above 64 are refused.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "engine/core/params.h"
+#include "engine/core/result.h"
+
+namespace rivulet {
+
+using VisitFn = std::function<void(ParamVisitor&)>;  // [&](ParamVisitor& v) { scene.visit(v); }
+
+// Reads `text` (named `file` in errors) into the struct behind `visit`. On an Error the struct may be partly changed: read into a copy.
+Status readJson(std::string_view text, std::string_view file, const VisitFn& visit);
+Status readJsonFile(const std::string& path, const VisitFn& visit);
+
+// Everything, or only what differs from `defaults` (a visit over a default-constructed struct; null = everything). Ends in a newline.
+std::string writeJson(const VisitFn& visit, const VisitFn* defaults = nullptr);
+
+// "path.to.param=value", lists by index: "colliders.0.friction=0.2"; an index one past the end appends an item.
+Status setParam(std::string_view assignment, const VisitFn& visit);
+
+// The generated reference: a markdown table of every path, unit, range, default and doc. What docs/parameters.md holds.
+std::string describeParams(const VisitFn& visit);
+
+// Writes a whole file by temporary name and rename, so that nothing is ever half-written. The Error says why (disk full, not writable).
+Status writeFileAtomic(const std::string& path, std::string_view bytes);
+Result<std::string> readFile(const std::string& path, size_t maxBytes = size_t{1} << 30);
+
+}  // namespace rivulet

@@ -1,0 +1,80 @@
+// Params: a plain struct with one `visit(ParamVisitor&)`. Name, unit, range, default and doc of a value are written there, once;
+// JSON in and out, ImGui sliders, --set, the generated reference and the record of a run all come from it.
+//
+//     struct CameraParams {
+//         float fieldOfView = 45;
+//         vec3 target{0};
+//         void visit(ParamVisitor& v) {
+//             v.value({"fieldOfView", "deg", "vertical angle of view", 5, 120}, fieldOfView);
+//             v.value({"target", "m", "the point looked at", -1e4, 1e4}, target);
+//         }
+//     };
+//
+// The default is what a default-constructed struct holds. A list is a vector of such structs; a group is a nested struct.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/math.h"
+
+namespace rivulet {
+
+// Range is inclusive and in `unit`, for each component; a value outside is an error, never clamped.
+struct ParamInfo {
+    const char* name;
+    const char* unit = "";  // "" = no dimension
+    const char* doc = "";   // one phrase, lower case, no full stop
+    double min = -1e30;
+    double max = 1e30;
+    bool logarithmic = false;  // the slider's scale
+    bool fixed = false;        // takes effect only when the world is created anew (the panel says so)
+};
+
+class ParamVisitor {
+  public:
+    virtual ~ParamVisitor() = default;
+    virtual void value(const ParamInfo& info, float& v) = 0;
+    virtual void value(const ParamInfo& info, int& v) = 0;
+    virtual void value(const ParamInfo& info, bool& v) = 0;
+    virtual void value(const ParamInfo& info, std::string& v) = 0;
+    virtual void value(const ParamInfo& info, vec3& v) = 0;
+    virtual void colour(const ParamInfo& info, vec3& v) = 0;  // linear RGB
+    virtual void choice(const ParamInfo& info, std::string& v, std::span<const std::string> names) = 0;
+
+    template <class P>
+    void group(const ParamInfo& info, P& params) {
+        if (!beginGroup(info)) return;
+        params.visit(*this);
+        endGroup();
+    }
+    template <class P>
+    void list(const ParamInfo& info, std::vector<P>& items) {
+        size_t count = beginList(info, items.size());
+        items.resize(count);
+        for (size_t i = 0; i < count; ++i) {
+            beginItem(i);
+            items[i].visit(*this);
+            endItem();
+        }
+        if (documentsItems() && items.empty()) {  // a reference describes an item even where the default list is empty
+            P item;
+            beginItem(0);
+            item.visit(*this);
+            endItem();
+        }
+        endList();
+    }
+
+  protected:
+    virtual bool beginGroup(const ParamInfo& info) = 0;                     // false: skip it, endGroup is not called
+    virtual void endGroup() = 0;
+    virtual size_t beginList(const ParamInfo& info, size_t current) = 0;    // returns the wanted length
+    virtual void beginItem(size_t index) = 0;
+    virtual void endItem() = 0;
+    virtual void endList() = 0;
+    virtual bool documentsItems() const { return false; }
+};
+
+}  // namespace rivulet

@@ -1,0 +1,21 @@
+// FluidView: what a fluid renderer draws: particles as OpenGL buffers, whichever Device simulated them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "engine/core/math.h"
+
+namespace rivulet {
+
+struct FluidView {
+    unsigned position = 0;   // GL buffer name, vec4: xyz m, w = density / rest density
+    unsigned velocity = 0;   // GL buffer name, vec4: xyz m/s
+    unsigned id = 0;         // GL buffer name, uint
+    uint32_t count = 0;
+    float radius = 0.01F;    // m, of a drawn sphere
+    float spacing = 0.02F;   // m
+};
+
+}  // namespace rivulet

@@ -1,0 +1,48 @@
+// The "fluid" section of a scene: what a FluidWorld is made from. SI units.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/core/params.h"
+
+namespace rivulet {
+
+// A box of particles at rest spacing, present at t = 0.
+struct BlockParams {
+    vec3 min{0.0F}, max{0.0F};
+    vec3 velocity{0.0F};
+    void visit(ParamVisitor& v);
+};
+
+struct BoxParams {
+    vec3 min{0.0F}, max{1.0F};
+    float restitution = 0.0F;
+    void visit(ParamVisitor& v);
+};
+
+struct CollisionParams {
+    float friction = 0.0F;     // Coulomb, of mesh colliders and walls
+    float restitution = 0.0F;  // of mesh colliders
+    void visit(ParamVisitor& v);
+};
+
+struct FluidParams {
+    std::string method = "wcsph";   // a row of methods()
+    float spacing = 0.02F;          // m
+    float supportSpacings = 2.0F;   // h = this * spacing
+    float restDensity = 1000.0F;    // kg/m^3
+    float viscosity = 1.0e-6F;      // m^2/s, kinematic
+    float artificialViscosity = 0.02F;
+    float soundSpeed = 0.0F;        // m/s; 0 = ten times the fastest speed the scene can fall to
+    float stiffness = 20.0F;        // thesis mode: k of (4), m^2/s^2
+    vec3 gravity{0.0F, -9.81F, 0.0F};
+    float cfl = 0.4F;               // dt <= cfl * hs / (c0 + v)
+    int maxSubsteps = 64;           // a frame
+    BoxParams box;
+    CollisionParams collision;
+    std::vector<BlockParams> blocks;
+    void visit(ParamVisitor& v);
+};
+
+}  // namespace rivulet

@@ -1,0 +1,75 @@
+// lang.h: the only file that knows which compiler reads a kernel: C++ (8 particles in 8 lanes), OpenCL C 1.2 or GLSL 4.5.
+// `real`, `real3` hold what belongs to the particle at hand: a float on a GPU, 8 floats, one lane a particle, on the CPU.
+// ARGS(RO, RW) is a kernel's interface, a row RO|RW(binding, BlockName, type, name) a buffer, unit and meaning in a comment;
+// bindings count from 1. BUFFERS follows it; functions that read a buffer come after BUFFERS and take GLOBAL(type, name).
+#if defined(__cplusplus)
+#include "shaders/common/lang_cpp.h"
+#elif defined(__OPENCL_C_VERSION__)
+typedef float2 vec2; typedef float3 vec3; typedef float4 vec4; typedef int3 ivec3; typedef uint4 uvec4;
+typedef float real; typedef float3 real3;
+#define vec3(...) ((float3)(__VA_ARGS__))
+#define vec4(...) ((float4)(__VA_ARGS__))
+#define ivec3(...) ((int3)(__VA_ARGS__))
+#define TO_IVEC3(v) convert_int3(v)
+#define TO_VEC3(v) convert_float3(v)
+#define TO_INT(x) ((int)(x))
+#define TO_UINT(x) ((uint)(x))
+#define TO_FLOAT(x) ((float)(x))
+#define FLOAT_BITS(f) as_uint(f)
+#define BITS_FLOAT(u) as_float(u)
+#define ATOMIC_ADD(x, v) atomic_add(&(x), v)
+#define ATOMIC_MIN(x, v) atomic_min(&(x), v)
+#define ATOMIC_OR(x, v) atomic_or(&(x), v)
+#define FN static inline
+#define STRUCT(n) typedef struct n n; struct n
+#define GLOBAL(T, n) __global const T* n,
+#define PASS(n) n,
+#define RO(b, N, T, n) , __global const T* restrict n
+#define RW(b, N, T, n) , __global T* restrict n
+#define BUFFERS(P)
+#define SHARED_OUT(T, n, count)                      /* GLSL declares work-group memory outside the kernel ... */
+#define SHARED_IN(T, n, count) __local T n[count];   /* ... OpenCL inside it */
+#define KERNEL(name, P) __kernel void name(__constant P* params_ ARGS(RO, RW))
+#define PARAMS (*params_)
+#define THREAD_ID ((uint)get_global_id(0))
+#define LOCAL_ID ((uint)get_local_id(0))
+#define GROUP_ID ((uint)get_group_id(0))
+#define BARRIER barrier(CLK_LOCAL_MEM_FENCE)
+#else  // GLSL. LOCAL_SIZE comes from the device.
+#define real float
+#define real3 vec3
+#define TO_IVEC3(v) ivec3(v)
+#define TO_VEC3(v) vec3(v)
+#define TO_INT(x) int(x)
+#define TO_UINT(x) uint(x)
+#define TO_FLOAT(x) float(x)
+#define FLOAT_BITS(f) floatBitsToUint(f)
+#define BITS_FLOAT(u) uintBitsToFloat(u)
+#define ATOMIC_ADD(x, v) atomicAdd(x, v)
+#define ATOMIC_MIN(x, v) atomicMin(x, v)
+#define ATOMIC_OR(x, v) atomicOr(x, v)
+#define FN
+#define STRUCT(n) struct n
+#define GLOBAL(T, n)
+#define PASS(n)
+#define RO(b, N, T, n) layout(std430, binding = b) readonly buffer N { T n[]; };
+#define RW(b, N, T, n) layout(std430, binding = b) buffer N { T n[]; };
+#define BUFFERS(P) layout(local_size_x = LOCAL_SIZE) in; layout(std140, binding = 0) uniform ParamBlock { P params_; }; ARGS(RO, RW)
+#define SHARED_OUT(T, n, count) shared T n[count];
+#define SHARED_IN(T, n, count)
+#define KERNEL(name, P) void main()
+#define PARAMS params_
+#define THREAD_ID gl_GlobalInvocationID.x
+#define LOCAL_ID gl_LocalInvocationID.x
+#define GROUP_ID gl_WorkGroupID.x
+#define BARRIER barrier()
+#endif
+#if !defined(__cplusplus)  // what a lane is on a GPU: the particle itself
+#define SELECT(condition, a, b) ((condition) ? (a) : (b))
+#define LOAD(b, i) b[i]
+#define LOAD3(b, i) b[i].xyz
+#define LOADW(b, i) b[i].w
+#define STORE(b, i, v) b[i] = (v)
+#define STORE4(b, i, v, w) b[i] = vec4(v, w)
+#define max0(x) max(x, 0.0f)
+#endif

@@ -1,0 +1,198 @@
+// lang_cpp.h: what lang.h means to a C++ compiler. Two readers: the host, which wants the layout of shared structs (glm vectors), and a
+// kernel unit (RIVULET_KERNEL_UNIT), compiled once an instruction set inside its own namespace, where `real` is 8 lanes.
+#if !defined(RIVULET_KERNEL_UNIT)
+
+#pragma once
+#include "engine/core/math.h"
+#define FN inline
+#define STRUCT(n) struct n
+namespace rivulet { using uint = unsigned; }
+
+#else
+
+#pragma once
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+namespace rivulet::RIVULET_KERNEL_UNIT {
+
+#define INLINE inline __attribute__((always_inline))
+
+using uint = unsigned;
+struct vec2 { float x, y; };
+struct vec3 {
+    float x, y, z;
+    vec3() = default;
+    INLINE vec3(float s) : x(s), y(s), z(s) {}
+    INLINE vec3(float ax, float ay, float az) : x(ax), y(ay), z(az) {}
+};
+struct alignas(16) vec4 {
+    union { struct { float x, y, z, w; }; struct { vec3 xyz; }; };
+    vec4() = default;
+    INLINE vec4(float ax, float ay, float az, float aw) : x(ax), y(ay), z(az), w(aw) {}
+    INLINE vec4(const vec3& v, float aw) : x(v.x), y(v.y), z(v.z), w(aw) {}
+};
+struct ivec3 {
+    int x, y, z;
+    ivec3() = default;
+    INLINE ivec3(int s) : x(s), y(s), z(s) {}
+    INLINE ivec3(int ax, int ay, int az) : x(ax), y(ay), z(az) {}
+};
+#define RIVULET_VEC_OP(op)                                                                                       \
+    INLINE vec3 operator op(const vec3& a, const vec3& b) { return vec3(a.x op b.x, a.y op b.y, a.z op b.z); }   \
+    INLINE vec3 operator op(const vec3& a, float b) { return vec3(a.x op b, a.y op b, a.z op b); }               \
+    INLINE vec3 operator op(float a, const vec3& b) { return vec3(a op b.x, a op b.y, a op b.z); }
+RIVULET_VEC_OP(+) RIVULET_VEC_OP(-) RIVULET_VEC_OP(*) RIVULET_VEC_OP(/)
+#undef RIVULET_VEC_OP
+INLINE vec3 operator-(const vec3& a) { return vec3(-a.x, -a.y, -a.z); }
+INLINE vec3& operator+=(vec3& a, const vec3& b) { return a = a + b; }
+INLINE vec3& operator-=(vec3& a, const vec3& b) { return a = a - b; }
+INLINE vec3& operator*=(vec3& a, float b) { return a = a * b; }
+INLINE ivec3 operator+(const ivec3& a, const ivec3& b) { return ivec3(a.x + b.x, a.y + b.y, a.z + b.z); }
+INLINE ivec3 operator-(const ivec3& a, const ivec3& b) { return ivec3(a.x - b.x, a.y - b.y, a.z - b.z); }
+
+INLINE float min(float a, float b) { return b < a ? b : a; }
+INLINE float max(float a, float b) { return a < b ? b : a; }
+INLINE int min(int a, int b) { return b < a ? b : a; }
+INLINE int max(int a, int b) { return a < b ? b : a; }
+INLINE uint min(uint a, uint b) { return b < a ? b : a; }
+INLINE uint max(uint a, uint b) { return a < b ? b : a; }
+INLINE float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
+INLINE int clamp(int x, int lo, int hi) { return min(max(x, lo), hi); }
+INLINE float sqrt(float x) { return __builtin_sqrtf(x); }
+INLINE float abs(float x) { return __builtin_fabsf(x); }
+INLINE float floor(float x) { return __builtin_floorf(x); }
+INLINE float dot(const vec3& a, const vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+INLINE float length(const vec3& a) { return sqrt(dot(a, a)); }
+INLINE vec3 cross(const vec3& a, const vec3& b) { return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
+INLINE vec3 min(const vec3& a, const vec3& b) { return vec3(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)); }
+INLINE vec3 max(const vec3& a, const vec3& b) { return vec3(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)); }
+INLINE vec3 floor(const vec3& a) { return vec3(floor(a.x), floor(a.y), floor(a.z)); }
+INLINE vec3 abs(const vec3& a) { return vec3(abs(a.x), abs(a.y), abs(a.z)); }
+INLINE float mix(float a, float b, float t) { return a + (b - a) * t; }
+INLINE ivec3 TO_IVEC3(const vec3& v) { return ivec3(static_cast<int>(v.x), static_cast<int>(v.y), static_cast<int>(v.z)); }
+INLINE vec3 TO_VEC3(const ivec3& v) { return vec3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)); }
+INLINE uint FLOAT_BITS(float f) { uint u; memcpy(&u, &f, 4); return u; }
+INLINE float BITS_FLOAT(uint u) { float f; memcpy(&f, &u, 4); return f; }
+#define TO_INT(x) static_cast<int>(x)
+#define TO_UINT(x) static_cast<unsigned>(x)
+#define TO_FLOAT(x) static_cast<float>(x)
+
+// ---- eight lanes ----
+typedef float Lanes __attribute__((vector_size(32)));
+typedef int LaneMask __attribute__((vector_size(32)));
+struct real {
+    Lanes v;
+    real() = default;
+    INLINE real(float s) : v{s, s, s, s, s, s, s, s} {}
+    INLINE real(Lanes l) : v(l) {}
+};
+INLINE real operator+(real a, real b) { return a.v + b.v; }
+INLINE real operator-(real a, real b) { return a.v - b.v; }
+INLINE real operator*(real a, real b) { return a.v * b.v; }
+INLINE real operator/(real a, real b) { return a.v / b.v; }
+INLINE real operator-(real a) { return -a.v; }
+INLINE real& operator+=(real& a, real b) { a.v += b.v; return a; }
+INLINE real& operator-=(real& a, real b) { a.v -= b.v; return a; }
+INLINE real& operator*=(real& a, real b) { a.v *= b.v; return a; }
+INLINE LaneMask operator<(real a, real b) { return a.v < b.v; }
+INLINE LaneMask operator>(real a, real b) { return a.v > b.v; }
+INLINE LaneMask operator<=(real a, real b) { return a.v <= b.v; }
+INLINE LaneMask operator>=(real a, real b) { return a.v >= b.v; }
+#if defined(__AVX__)
+INLINE real max(real a, real b) { return real(static_cast<Lanes>(_mm256_max_ps(a.v, b.v))); }  // a NaN in a gives b
+INLINE real min(real a, real b) { return real(static_cast<Lanes>(_mm256_min_ps(a.v, b.v))); }
+INLINE real sqrt(real a) { return real(static_cast<Lanes>(_mm256_sqrt_ps(a.v))); }
+INLINE bool anyLane(LaneMask m) { return _mm256_movemask_ps(reinterpret_cast<__m256>(m)) != 0; }
+INLINE real select(LaneMask m, real a, real b) { return real(static_cast<Lanes>(_mm256_blendv_ps(b.v, a.v, reinterpret_cast<__m256>(m)))); }
+#else
+INLINE real perLane(real a, float (*f)(float)) { for (int k = 0; k < 8; ++k) a.v[k] = f(a.v[k]); return a; }
+INLINE real max(real a, real b) { for (int k = 0; k < 8; ++k) a.v[k] = a.v[k] > b.v[k] ? a.v[k] : b.v[k]; return a; }
+INLINE real min(real a, real b) { for (int k = 0; k < 8; ++k) a.v[k] = a.v[k] < b.v[k] ? a.v[k] : b.v[k]; return a; }
+INLINE real sqrt(real a) { for (int k = 0; k < 8; ++k) a.v[k] = __builtin_sqrtf(a.v[k]); return a; }
+INLINE bool anyLane(LaneMask m) { int any = 0; for (int k = 0; k < 8; ++k) any |= m[k]; return any != 0; }
+INLINE real select(LaneMask m, real a, real b) { for (int k = 0; k < 8; ++k) a.v[k] = m[k] ? a.v[k] : b.v[k]; return a; }
+#endif
+INLINE real max0(real a) { return max(a, real(0.0f)); }
+INLINE float max0(float a) { return a > 0.0f ? a : 0.0f; }
+INLINE float select(bool c, float a, float b) { return c ? a : b; }
+#define SELECT(condition, a, b) select(condition, a, b)
+
+struct real3 {
+    real x, y, z;
+    real3() = default;
+    INLINE real3(real ax, real ay, real az) : x(ax), y(ay), z(az) {}
+    INLINE real3(const vec3& v) : x(v.x), y(v.y), z(v.z) {}
+};
+INLINE real3 operator+(const real3& a, const real3& b) { return real3(a.x + b.x, a.y + b.y, a.z + b.z); }
+INLINE real3 operator-(const real3& a, const real3& b) { return real3(a.x - b.x, a.y - b.y, a.z - b.z); }
+INLINE real3 operator*(const real3& a, real b) { return real3(a.x * b, a.y * b, a.z * b); }
+INLINE real3 operator*(real a, const real3& b) { return b * a; }
+INLINE real3 operator*(const real3& a, float b) { return a * real(b); }
+INLINE real3 operator*(float a, const real3& b) { return b * real(a); }
+INLINE real3 operator*(const vec3& a, real b) { return real3(a.x * b, a.y * b, a.z * b); }
+INLINE real3 operator-(const real3& a) { return real3(-a.x, -a.y, -a.z); }
+INLINE real3& operator+=(real3& a, const real3& b) { return a = a + b; }
+INLINE real3& operator-=(real3& a, const real3& b) { return a = a - b; }
+INLINE real dot(const real3& a, const real3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// A group: up to 8 consecutive particles of one row of cells. Lanes beyond `lanes` repeat the last particle and are never stored.
+struct Group { uint first, lanes, listBegin, listCount; };
+struct NeighborLists { const Group* groups; uint* list; };
+INLINE float LOAD(const float* b, uint j) { return b[j]; }
+INLINE uint LOAD(const uint* b, uint j) { return b[j]; }
+INLINE vec4 LOAD(const vec4* b, uint j) { return b[j]; }
+INLINE vec3 LOAD3(const vec4* b, uint j) { return b[j].xyz; }
+INLINE float LOADW(const vec4* b, uint j) { return b[j].w; }
+INLINE uint laneOf(const Group& g, uint k) { return g.first + (k < g.lanes ? k : g.lanes - 1); }
+INLINE real LOAD(const float* b, const Group& g) { real r; for (uint k = 0; k < 8; ++k) r.v[k] = b[laneOf(g, k)]; return r; }
+INLINE real3 LOAD3(const vec4* b, const Group& g) {
+    real3 r;
+    for (uint k = 0; k < 8; ++k) { const vec4& a = b[laneOf(g, k)]; r.x.v[k] = a.x; r.y.v[k] = a.y; r.z.v[k] = a.z; }
+    return r;
+}
+INLINE real LOADW(const vec4* b, const Group& g) { real r; for (uint k = 0; k < 8; ++k) r.v[k] = b[laneOf(g, k)].w; return r; }
+INLINE void STORE(float* b, const Group& g, real v) { for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = v.v[k]; }
+INLINE void STORE4(vec4* b, const Group& g, const real3& v, real w) {
+    for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = vec4(v.x.v[k], v.y.v[k], v.z.v[k], w.v[k]);
+}
+INLINE void STORE4(vec4* b, uint i, const vec3& v, float w) { b[i] = vec4(v, w); }
+template <class T> INLINE void STORE(T* b, uint i, const T& v) { b[i] = v; }
+
+#define FN INLINE
+#define STRUCT(n) struct n
+#define GLOBAL(T, n) const T* n,
+#define PASS(n) n,
+#define RO(b, N, T, n) , const T* __restrict n
+#define RW(b, N, T, n) , T* __restrict n
+#define RO_CAST(b, N, T, n) , static_cast<const T*>(buffers_[(b) - 1])
+#define RW_CAST(b, N, T, n) , static_cast<T*>(buffers_[(b) - 1])
+#define BUFFERS(P)
+#define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
+#define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
+#define KERNEL(name, P)                                                                                            \
+    static INLINE void name##_one(const uint tid_, const P& params_ ARGS(RO, RW));                                 \
+    void name(uint32_t begin_, uint32_t end_, const void* p_, void* const* buffers_) {                             \
+        const P& params_ = *static_cast<const P*>(p_);                                                             \
+        for (uint32_t t_ = begin_; t_ < end_; ++t_) name##_one(t_, params_ ARGS(RO_CAST, RW_CAST));                \
+    }                                                                                                              \
+    static INLINE void name##_one(const uint tid_, const P& params_ ARGS(RO, RW))
+#define PARAMS params_
+#define THREAD_ID tid_
+
+// Neighbours on the CPU: the group's list, built by fluid/sim/neighbor_grid.cpp.
+#define NEIGHBOR_TYPE NeighborLists
+#define SELF(i) const Group& i = neighbors->groups[THREAD_ID]
+#define FOR_NEIGHBORS(i, xi, j) { const uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
+#define END_NEIGHBORS }}
+// The first sweep of a step may drop what no lane needs: KEEP_IF inside FOR_NEIGHBORS_TRIM.
+#define FOR_NEIGHBORS_TRIM(i, xi, j) { uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; uint kept_ = 0; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
+#define KEEP_IF(condition, j) list_[kept_] = j; kept_ += anyLane(condition) ? 1u : 0u
+#define END_NEIGHBORS_TRIM } const_cast<Group&>(neighbors->groups[THREAD_ID]).listCount = kept_; }
+
+}  // namespace rivulet::RIVULET_KERNEL_UNIT
+#endif

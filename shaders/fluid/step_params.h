@@ -1,0 +1,36 @@
+// What every kernel of a step knows. Layout shared by C++, GLSL (std140) and OpenCL: scalars and vec4 only, size % 16 == 0.
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+#pragma once
+#include "shaders/common/lang.h"
+namespace rivulet {
+#endif
+STRUCT(StepParams) {
+    vec4  gravity;         // m/s^2, w unused
+    vec4  gridOrigin;      // m, the low corner of the padded grid's cell (0,0,0); w = 1 / cell edge (1/m)
+    vec4  boxMin;          // m, the walls; w = 1 if there are walls, else 0
+    vec4  boxMax;          // m
+    int   cellsX;          // padded: one empty cell on every side
+    int   cellsY;
+    int   cellsZ;
+    uint  cellCount;       // cellsX * cellsY * cellsZ; cellStart[cellCount] = particles inside the grid
+    uint  count;           // particles, frozen ones (outside the grid, NaN) last
+    float h;               // m, support radius = cell edge
+    float invH;            // 1/m
+    float dt;              // s
+    float mass;            // kg
+    float restDensity;     // kg/m^3
+    float kernelK;         // density kernel's factor: Wendland C2 21/(2 pi h^3); thesis poly6 315/(64 pi h^9)
+    float gradientK;       // gradient's factor: Wendland C2 -210/(pi h^5); thesis spiky -45/(pi h^6)
+    float stiffness;       // Tait: c0^2 rho0 / 7 (Pa). Thesis (4): k (m^2/s^2)
+    float viscosity;       // m^2/s, kinematic
+    float artificial;      // alpha c0 hs, m^2/s: Monaghan's artificial viscosity (approaching pairs only)
+    float contact;         // m, a particle's centre keeps this far from walls
+    float restitution;     // 0..1, of the box walls
+    float spacing;         // m
+    float maxSpeed;        // m/s, above which the step would tunnel: speeds are limited to it and counted
+    uint  planeCount;      // of the array of collider planes
+};
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+static_assert(sizeof(StepParams) % 16 == 0);
+}  // namespace rivulet
+#endif

@@ -1,0 +1,90 @@
+// A scene: one JSON file, every key with a default, so that the smallest scene is a few lines. +Y up, metres.
+// Demos, golden images, physics cases, benches and fuzz seeds are all scenes.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/params.h"
+#include "engine/core/result.h"
+#include "fluid/sim/fluid_params.h"
+
+namespace rivulet {
+
+// A solid that does not move. "mesh": a file, scaled, turned, moved. "plane": water on the side the normal points to.
+struct ColliderParams {
+    std::string shape = "mesh";       // mesh | plane
+    std::string mesh;                 // path: as given, beside the scene file, in RIVULET_ASSETS (a list of folders), in assets/
+    int resolution = 128;             // voxels along the mesh's longest side
+    vec3 position{0.0F};              // m; plane: a point on it
+    vec3 rotation{0.0F};              // deg, about x, then y, then z
+    float scale = 1.0F;
+    float fitSize = 0.0F;             // m; > 0: scaled so that the longest side has this length, and its bounds' centre put at `position`
+    vec3 normal{0.0F, 1.0F, 0.0F};    // plane
+    vec3 colour{0.72F, 0.71F, 0.69F}; // linear
+    float roughness = 0.6F;
+    bool visible = true;
+    void visit(ParamVisitor& v);
+};
+
+struct CameraParams {
+    vec3 position{1.6F, 1.1F, 2.2F};  // m
+    vec3 target{0.5F, 0.35F, 0.5F};   // m
+    float fieldOfView = 40.0F;        // deg, vertical
+    void visit(ParamVisitor& v);
+};
+
+struct LightParams {
+    vec3 direction{0.4F, 0.8F, 0.45F};  // towards the light
+    vec3 colour{1.0F, 0.96F, 0.9F};     // linear
+    float intensity = 3.0F;
+    void visit(ParamVisitor& v);
+};
+
+struct BackgroundParams {
+    vec3 horizon{0.80F, 0.84F, 0.88F};  // linear
+    vec3 zenith{0.30F, 0.42F, 0.58F};
+    vec3 floor{0.42F, 0.40F, 0.38F};    // the ground plane's colour
+    float floorHeight = 0.0F;           // m
+    bool showFloor = true;
+    bool showBox = true;                // edges of the fluid's box
+    void visit(ParamVisitor& v);
+};
+
+// How the fluid is drawn.
+struct FluidLookParams {
+    std::string renderer = "screen_space";  // a row of renderers(): points | screen_space
+    std::string colourBy = "speed";         // points: speed | density | id
+    float radiusSpacings = 0.6F;            // drawn radius = this * spacing
+    float smoothing = 2.5F;                 // reach of the smoothing, in drawn radii
+    vec3 absorption{4.5F, 1.1F, 0.5F};      // 1/m, Beer-Lambert per channel
+    float refractiveIndex = 1.333F;
+    void visit(ParamVisitor& v);
+};
+
+struct SceneFile {
+    std::string name = "unnamed";
+    std::string doc;
+    float duration = 5.0F;                  // s
+    FluidParams fluid;
+    std::vector<ColliderParams> colliders;
+    FluidLookParams look;
+    CameraParams camera;
+    LightParams light;
+    BackgroundParams background;
+    std::string folder;                     // of the file it came from; not a Param
+    void visit(ParamVisitor& v);
+};
+
+// `assignments`: each --set, in order. Error: as readJson and setParam say.
+Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments);
+
+// Where an asset is: `path` as given, beside the scene, in RIVULET_ASSETS, in the source tree's or the installed assets/. Error: every place looked at.
+Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder);
+
+// Every scene file found in the places that findAsset searches under scenes/, with its name and doc.
+struct SceneListing { std::string path, name, doc; };
+std::vector<SceneListing> listScenes();
+
+}  // namespace rivulet

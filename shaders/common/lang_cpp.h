@@ -27,11 +27,11 @@ struct vec2 { float x, y; };
 struct vec3 {
     float x, y, z;
     vec3() = default;
-    INLINE vec3(float s) : x(s), y(s), z(s) {}
+    INLINE explicit vec3(float s) : x(s), y(s), z(s) {}
     INLINE vec3(float ax, float ay, float az) : x(ax), y(ay), z(az) {}
 };
 struct alignas(16) vec4 {
-    union { struct { float x, y, z, w; }; struct { vec3 xyz; }; };
+    union { struct { float x, y, z, w; }; vec3 xyz; };
     vec4() = default;
     INLINE vec4(float ax, float ay, float az, float aw) : x(ax), y(ay), z(az), w(aw) {}
     INLINE vec4(const vec3& v, float aw) : x(v.x), y(v.y), z(v.z), w(aw) {}
@@ -39,7 +39,7 @@ struct alignas(16) vec4 {
 struct ivec3 {
     int x, y, z;
     ivec3() = default;
-    INLINE ivec3(int s) : x(s), y(s), z(s) {}
+    INLINE explicit ivec3(int s) : x(s), y(s), z(s) {}
     INLINE ivec3(int ax, int ay, int az) : x(ax), y(ay), z(az) {}
 };
 #define RIVULET_VEC_OP(op)                                                                                       \

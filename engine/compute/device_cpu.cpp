@@ -1,0 +1,183 @@
+#include "engine/compute/device_cpu.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <new>
+
+namespace rivulet {
+
+const char* isaName(Isa isa) {
+    switch (isa) {
+        case Isa::generic: return "generic";
+        case Isa::avx2: return "avx2";
+        case Isa::avx512: return "avx512";
+    }
+    return "generic";
+}
+
+Isa bestIsa() {
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512bw"))
+        return Isa::avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return Isa::avx2;
+#endif
+    return Isa::generic;
+}
+
+namespace {
+
+std::string processorName() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.rfind("model name", 0) == 0) {
+            size_t colon = line.find(": ");
+            if (colon != std::string::npos) return line.substr(colon + 2);
+        }
+    return "CPU";
+}
+
+std::string joinDefines(std::span<const Define> defines) {
+    std::vector<std::string> parts;
+    for (const Define& d : defines) parts.push_back(d.name + "=" + d.value);
+    std::sort(parts.begin(), parts.end());
+    std::string all;
+    for (const std::string& part : parts) all += (all.empty() ? "" : ";") + part;
+    return all;
+}
+
+// A cache line, and the widest vector.
+constexpr size_t kAlignment = 64;
+
+}  // namespace
+
+struct CpuDevice::Impl {
+    std::vector<CpuKernelRow> rows;
+    std::vector<CpuKernelRow> kernels;  // those asked for; Kernel::index counts here
+    tbb::task_arena arena;
+    std::vector<PassTime> times;
+    std::vector<void*> bindings;
+
+    PassTime& timeOf(std::string_view name) {
+        for (PassTime& t : times)
+            if (t.name == name) return t;
+        return times.emplace_back(PassTime{std::string(name), 0, 0});
+    }
+};
+
+std::unique_ptr<CpuDevice> makeCpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& options) {
+    return std::make_unique<CpuDevice>(rows, options);
+}
+
+CpuDevice::CpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& options) : impl_(std::make_unique<Impl>()), isa_(options.isa) {
+    impl_->rows.assign(rows.begin(), rows.end());
+    impl_->arena.initialize(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+    info_.name = fmt::format("{}, {} thread{}, {}", processorName(), threads(), threads() == 1 ? "" : "s", isaName(isa_));
+}
+
+CpuDevice::~CpuDevice() = default;
+
+int CpuDevice::threads() const { return impl_->arena.max_concurrency(); }
+
+Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> defines) {
+    std::string wanted = joinDefines(defines);
+    // The best instruction set this device may use that the kernel was compiled for.
+    const CpuKernelRow* best = nullptr;
+    for (const CpuKernelRow& row : impl_->rows)
+        if (path == row.path && wanted == row.defines && row.isa <= isa_ && (best == nullptr || row.isa > best->isa)) best = &row;
+    if (best == nullptr)
+        return failed(fmt::format("the kernel {} with defines '{}' was not compiled for the CPU: add it to fluid/sim/kernels", path, wanted));
+    for (uint32_t i = 0; i < impl_->kernels.size(); ++i)
+        if (impl_->kernels[i].run == best->run) return Kernel{i};
+    impl_->kernels.push_back(*best);
+    return Kernel{static_cast<uint32_t>(impl_->kernels.size() - 1)};
+}
+
+Result<Buffer> CpuDevice::allocate(size_t bytes) {
+    size_t padded = (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment;
+    void* memory = std::aligned_alloc(kAlignment, padded);
+    if (memory == nullptr) return failed(fmt::format("out of memory: {} MiB were asked for; use fewer particles or coarser voxels", bytes >> 20U));
+    std::memset(memory, 0, padded);
+    bytesAllocated_ += bytes;
+    return Buffer(*this, reinterpret_cast<uintptr_t>(memory), bytes);
+}
+
+void CpuDevice::release(uint64_t handle, size_t bytes) {
+    std::free(reinterpret_cast<void*>(static_cast<uintptr_t>(handle)));
+    bytesAllocated_ -= bytes;
+}
+
+void CpuDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {
+    ASSERT(offset + bytes.size() <= to.bytes(), "write inside the buffer");
+    if (!bytes.empty()) std::memcpy(hostPointer<std::byte>(to) + offset, bytes.data(), bytes.size());
+}
+
+void CpuDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offset) {
+    ASSERT(offset + bytes.size() <= from.bytes(), "read inside the buffer");
+    if (!bytes.empty()) std::memcpy(bytes.data(), hostPointer<std::byte>(from) + offset, bytes.size());
+}
+
+void CpuDevice::fill(Buffer& to, uint32_t word) {
+    uint32_t* words = hostPointer<uint32_t>(to);
+    std::fill(words, words + to.bytes() / 4, word);
+}
+
+void CpuDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
+    ASSERT(bytes <= from.bytes() && bytes <= to.bytes(), "copy inside both buffers");
+    if (bytes > 0) std::memcpy(hostPointer<std::byte>(to), hostPointer<std::byte>(from), bytes);
+}
+
+void CpuDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
+    ASSERT(bytes <= from.bytes(), "read inside the buffer");
+    then(std::span(hostPointer<const std::byte>(from), bytes));
+}
+
+void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {
+    if (count == 0) return;
+    if (count <= grain || threads() == 1) {
+        body(0, count);
+        return;
+    }
+    impl_->arena.execute([&] {
+        tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain), [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); },
+                          tbb::simple_partitioner());
+    });
+}
+
+void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
+    ASSERT(kernel.index < impl_->kernels.size(), "ask this device for the kernel before dispatching it");
+    if (threads == 0) return;
+    auto start = std::chrono::steady_clock::now();
+    const CpuKernelRow& row = impl_->kernels[kernel.index];
+    impl_->bindings.clear();
+    for (const Buffer* b : buffers) impl_->bindings.push_back(b != nullptr ? hostPointer<void>(*b) : nullptr);
+    void* const* bindings = impl_->bindings.data();
+    parallelFor(threads, row.grain, [&](size_t begin, size_t end) {
+        row.run(static_cast<uint32_t>(begin), static_cast<uint32_t>(end), params.data(), bindings);
+    });
+    addTime(row.path, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+}
+
+void CpuDevice::addTime(std::string_view name, double ms) {
+    PassTime& time = impl_->timeOf(name);
+    time.ms += ms;
+    ++time.calls;
+}
+
+std::vector<PassTime> CpuDevice::takeTimes() {
+    std::vector<PassTime> taken = impl_->times;
+    for (PassTime& t : impl_->times) t = PassTime{t.name, 0, 0};
+    std::erase_if(taken, [](const PassTime& t) { return t.calls == 0; });
+    return taken;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,35 @@
+#include "fluid/sim/cpu_kernels.h"
+
+#include "fluid/sim/kernels/kernel_rows.h"
+
+#if defined(RIVULET_HAS_GENERIC)
+RIVULET_KERNEL_FAMILIES(kernels_generic)
+#endif
+#if defined(RIVULET_HAS_AVX2)
+RIVULET_KERNEL_FAMILIES(kernels_avx2)
+#endif
+#if defined(RIVULET_HAS_AVX512)
+RIVULET_KERNEL_FAMILIES(kernels_avx512)
+#endif
+
+namespace rivulet {
+
+std::vector<CpuKernelRow> cpuKernels() {
+    std::vector<CpuKernelRow> all;
+    auto add = [&all](std::span<const CpuKernelRow> rows) { all.insert(all.end(), rows.begin(), rows.end()); };
+#if defined(RIVULET_HAS_GENERIC)
+    add(kernels_generic::gridRows());
+    add(kernels_generic::wcsphRows());
+#endif
+#if defined(RIVULET_HAS_AVX2)
+    add(kernels_avx2::gridRows());
+    add(kernels_avx2::wcsphRows());
+#endif
+#if defined(RIVULET_HAS_AVX512)
+    add(kernels_avx512::gridRows());
+    add(kernels_avx512::wcsphRows());
+#endif
+    return all;
+}
+
+}  // namespace rivulet

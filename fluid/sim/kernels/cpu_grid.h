@@ -1,0 +1,51 @@
+// The CPU's own neighbour structures: a stable counting sort, groups of 8 particles, a neighbour list for each group.
+// These passes have no GPU twin (a GPU sorts by atomics and sweeps rows), so they are plain C++, compiled once an instruction set.
+//
+// Cells are h wide in y and z and h / 2 in x: the sort along a row is then fine enough that 8 consecutive particles lie close together.
+#pragma once
+
+#include <cstdint>
+
+namespace rivulet {
+
+struct Float4 {
+    float x, y, z, w;
+};
+
+// 8 lanes of one row of cells. Same layout as Group in shaders/common/lang_cpp.h.
+struct CpuGroup {
+    uint32_t first, lanes, listBegin, listCount;
+};
+// What binding 1 of a pair kernel points to. Same layout as NeighborLists in lang_cpp.h.
+struct CpuNeighborLists {
+    const CpuGroup* groups;
+    uint32_t* list;
+};
+
+struct CpuGridJob {
+    float originX, originY, originZ;
+    float h, invH;
+    int cellsX, cellsY, cellsZ;  // padded cells of edge h, as in StepParams; the sort has 2 * cellsX along x
+    uint32_t count;              // particles
+    uint32_t chunks;             // of the two-histogram sort
+    uint32_t groupCount;
+    uint32_t listCapacity;       // entries
+    // Input (unsorted) and output (sorted).
+    const Float4 *position, *velocity;
+    const uint32_t* id;
+    Float4 *positionOut, *velocityOut;
+    uint32_t* idOut;
+    float *x, *y, *z;            // sorted positions again, one array each; 8 beyond the end may be read
+    uint32_t* cell;              // of each unsorted particle
+    uint32_t* histogram;         // chunks * (cells + 1)
+    uint32_t* segmentSum;        // kScanSegments
+    uint32_t* cellStart;         // cells + 2: [cells] = particles inside, [cells + 1] = all
+    CpuGroup* groups;
+    uint32_t* list;
+    uint32_t* listCursor;        // entries taken; above listCapacity: the lists did not fit
+    uint32_t cells() const { return static_cast<uint32_t>(2 * cellsX) * static_cast<uint32_t>(cellsY) * static_cast<uint32_t>(cellsZ); }
+};
+inline constexpr uint32_t kScanSegments = 16;
+inline constexpr uint32_t kListRegion = 8192;  // entries a chunk of groups takes from the list at once
+
+}  // namespace rivulet

@@ -1,0 +1,22 @@
+// The kernels as C++: each unit of this folder is compiled once an instruction set, inside a namespace of that name, so that no inline
+// function compiled for one processor is linked into another's.
+#pragma once
+
+#include <span>
+
+#include "engine/compute/device_cpu.h"
+
+#define RIVULET_KERNEL_FAMILIES(isa)                          \
+    namespace rivulet::isa {                                  \
+    std::span<const CpuKernelRow> gridRows();                 \
+    std::span<const CpuKernelRow> wcsphRows();                \
+    }
+#if defined(RIVULET_KERNEL_UNIT)
+#define RIVULET_ISA_OF_kernels_generic Isa::generic
+#define RIVULET_ISA_OF_kernels_avx2 Isa::avx2
+#define RIVULET_ISA_OF_kernels_avx512 Isa::avx512
+#define RIVULET_PASTE2(a, b) a##b
+#define RIVULET_PASTE(a, b) RIVULET_PASTE2(a, b)
+#define RIVULET_UNIT_ISA RIVULET_PASTE(RIVULET_ISA_OF_, RIVULET_KERNEL_UNIT)
+RIVULET_KERNEL_FAMILIES(RIVULET_KERNEL_UNIT)
+#endif

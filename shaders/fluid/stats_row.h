@@ -1,0 +1,22 @@
+// One thread's partial sums of fluid/stats.kernel.
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+#pragma once
+#include "shaders/common/lang.h"
+namespace rivulet {
+#endif
+#define STATS_THREADS 1024u
+STRUCT(StatsRow) {
+    vec4  centre;       // sum of positions (m), w = particles counted
+    float compression;  // sum of max(rho / rho0 - 1, 0)
+    float worst;        // its maximum
+    float speed2Sum;    // m^2/s^2
+    float speed2Max;    // m^2/s^2
+    float limited;      // particles whose speed was limited in the last step
+    float nans;         // of the lost ones: NaN or infinite
+    float pad0;
+    float pad1;
+};
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+static_assert(sizeof(StatsRow) == 48);
+}  // namespace rivulet
+#endif

@@ -38,7 +38,7 @@ struct FluidParams {
     float stiffness = 20.0F;        // thesis mode: k of (4), m^2/s^2
     vec3 gravity{0.0F, -9.81F, 0.0F};
     float cfl = 0.4F;               // dt <= cfl * hs / (c0 + v)
-    int maxSubsteps = 64;           // a frame
+    int maxSubsteps = 1000;          // a frame
     BoxParams box;
     CollisionParams collision;
     std::vector<BlockParams> blocks;

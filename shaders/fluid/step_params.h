@@ -29,6 +29,10 @@ STRUCT(StepParams) {
     float spacing;         // m
     float maxSpeed;        // m/s, above which the step would tunnel: speeds are limited to it and counted
     uint  planeCount;      // of the array of collider planes
+    float wallOffset;      // m, added to a wall's distance in the density: a lattice half a spacing off a wall is then at rest density
+    float padding0;
+    float padding1;
+    float padding2;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StepParams) % 16 == 0);

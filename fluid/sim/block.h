@@ -1,0 +1,20 @@
+// A block of particles: the cubic lattice that fills a box at rest spacing.
+#pragma once
+
+#include <vector>
+
+#include "fluid/sim/fluid_params.h"
+
+namespace rivulet {
+
+struct NewParticle {
+    vec3 position;  // m
+    vec3 velocity;  // m/s
+};
+
+// How many particles a block holds, without making them: a block too large for memory is refused before it is built.
+double blockCount(const BlockParams& block, float spacing);
+// Appends the lattice, centred in the block, x fastest. An empty or inverted block adds nothing.
+void fillBlock(const BlockParams& block, float spacing, std::vector<NewParticle>& to);
+
+}  // namespace rivulet

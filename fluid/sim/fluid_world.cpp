@@ -1,0 +1,284 @@
+#include "fluid/sim/fluid_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/sim/block.h"
+#include "fluid/sim/method.h"
+#include "fluid/sim/neighbor_grid.h"
+#include "fluid/sim/particles.h"
+#include "shaders/fluid/stats_row.h"
+
+namespace rivulet {
+
+namespace {
+
+// Above this a device's memory is surely exceeded; said before anything is allocated.
+constexpr double kMostParticles = 64.0e6;
+// GPU figures come this many frames late at most: speeds may have grown by gravity since.
+constexpr double kLateFrames = 3;
+
+}  // namespace
+
+struct FluidWorld::Impl {
+    Device* device = nullptr;
+    FluidParams params;
+    Log log;
+    std::unique_ptr<Method> method;
+    std::unique_ptr<NeighborGrid> grid;
+    Particles particles;
+    std::vector<NewParticle> start;
+    Buffer planes, statsRows;
+    Kernel boundary, integrate, stats;
+    std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
+    StepParams step{};
+    vec3 gravity{0.0F};
+    double time = 0;
+    uint64_t frame = 0;
+    double dtMin = 0, dtMax = 0;
+
+    Status prepare();
+    void writeStart();
+    float fastestFall() const;
+    double stepLimit(double frameSeconds) const;
+    void say(const std::string& sentence);
+    void substep(double dt);
+    void gatherStats(int substeps);
+};
+
+FluidWorld::FluidWorld() : impl_(std::make_unique<Impl>()) {}
+FluidWorld::~FluidWorld() = default;
+const FluidParams& FluidWorld::params() const { return impl_->params; }
+const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
+double FluidWorld::time() const { return impl_->time; }
+Device& FluidWorld::device() const { return *impl_->device; }
+
+// The speed water of this scene reaches by falling from its highest block to the far side of the box, with what it starts with.
+float FluidWorld::Impl::fastestFall() const {
+    const float g = glm::length(gravity);
+    float fastest = 0.0F;
+    for (const BlockParams& b : params.blocks) {
+        float fall = 0.0F;
+        if (g > 0.0F) {
+            const vec3 down = gravity / g;
+            for (int k = 0; k < 3; ++k) fall += std::abs(down[k]) * (down[k] < 0 ? b.max[k] - params.box.min[k] : params.box.max[k] - b.min[k]);
+        }
+        fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
+    }
+    // Still water without gravity has no speed of its own: the length it could be pushed over in a tenth of a second.
+    return std::max(fastest, 10.0F * params.spacing);
+}
+
+Status FluidWorld::Impl::prepare() {
+    const MethodRow* row = methods().find(params.method);
+    if (row == nullptr) return badInput(fmt::format("fluid.method '{}' is not known", params.method));
+    const float h = params.supportSpacings * params.spacing;
+    double wanted = 0;
+    for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
+    if (wanted > kMostParticles)
+        return badInput(fmt::format("fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
+                                    params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
+    for (const BlockParams& b : params.blocks) fillBlock(b, params.spacing, start);
+
+    const std::pair<Kernel*, const char*> kernels[] = {{&boundary, "fluid/boundary"}, {&integrate, "fluid/integrate"}, {&stats, "fluid/stats"}};
+    for (auto [kernel, path] : kernels) {
+        Result<Kernel> found = device->kernel(path);
+        if (!found) return found.error();
+        *kernel = *found;
+    }
+    Result<std::unique_ptr<Method>> made = row->make(*device);
+    if (!made) return made.error();
+    method = std::move(*made);
+
+    const uint32_t count = static_cast<uint32_t>(start.size());
+    Result<NeighborGrid> newGrid = NeighborGrid::create(*device, Bounds{params.box.min, params.box.max}, h, count);
+    if (!newGrid) return newGrid.error();
+    grid = std::make_unique<NeighborGrid>(std::move(*newGrid));
+    Result<Particles> newParticles = Particles::create(*device, count);
+    if (!newParticles) return newParticles.error();
+    particles = std::move(*newParticles);
+    Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
+    if (!rows) return rows.error();
+    statsRows = std::move(*rows);
+    Result<Buffer> planeBuffer = device->allocate(sizeof(vec4));
+    if (!planeBuffer) return planeBuffer.error();
+    planes = std::move(*planeBuffer);
+    if (count == 0) log.notice("the scene has no particles");
+    writeStart();
+    return ok();
+}
+
+void FluidWorld::Impl::writeStart() {
+    std::vector<vec4> position, velocity;
+    std::vector<uint32_t> id;
+    position.reserve(start.size());
+    velocity.reserve(start.size());
+    id.reserve(start.size());
+    for (const NewParticle& p : start) {
+        position.emplace_back(p.position, 1.0F);
+        velocity.emplace_back(p.velocity, 0.0F);
+        id.push_back(static_cast<uint32_t>(id.size()));
+    }
+    device->writeAll<vec4>(particles.positionNext, position);
+    device->writeAll<vec4>(particles.velocityNext, velocity);
+    device->writeAll<uint32_t>(particles.id, id);
+    time = 0;
+    frame = 0;
+    dtMin = dtMax = 0;
+    figures = std::make_shared<FluidStats>();
+    figures->particles = particles.count;
+}
+
+void FluidWorld::Impl::say(const std::string& sentence) {
+    if (std::find(figures->limited.begin(), figures->limited.end(), sentence) != figures->limited.end()) return;
+    figures->limited.push_back(sentence);
+    log.notice(sentence);
+}
+
+// The largest stable step: acoustic CFL, viscous and body-force limits (Monaghan 1992, with the constants of Morris et al. 1997).
+double FluidWorld::Impl::stepLimit(double frameSeconds) const {
+    const double hs = 0.5 * step.h, g = glm::length(gravity);
+    const double c0 = method->soundSpeed(params, fastestFall());
+    const double fastest = figures->maxSpeed + g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
+    double dt = params.cfl * hs / (c0 + fastest);
+    const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
+    if (nu > 0) dt = std::min(dt, 0.125 * hs * hs / nu);
+    if (g > 0) dt = std::min(dt, 0.25 * std::sqrt(hs / g));
+    return dt;
+}
+
+void FluidWorld::Impl::substep(double dt) {
+    step.dt = static_cast<float>(dt);
+    step.maxSpeed = static_cast<float>(params.spacing / dt);
+    if (Status built = grid->build(step, particles); !built) {
+        say(built.error().message);
+        return;
+    }
+    if (method->wallsInDensity())
+        device->run(boundary, step, {&grid->cellStart(), &particles.position, &planes, &particles.boundary}, particles.count);
+    StepContext context{*device, step, *grid, particles};
+    method->step(context);
+    device->run(integrate, step,
+                {&grid->cellStart(), &particles.position, &particles.velocity, &particles.acceleration, &particles.density, &planes,
+                 &particles.positionNext, &particles.velocityNext},
+                particles.count);
+}
+
+void FluidWorld::step(const FluidInputs& inputs, double seconds) {
+    Impl& w = *impl_;
+    w.device->poll();
+    if (!(seconds > 0)) return;
+    ++w.frame;
+    if (w.particles.count == 0) {
+        w.time += seconds;
+        return;
+    }
+    w.gravity = inputs.gravity;
+    const FluidParams& p = w.params;
+    StepParams& s = w.step;
+    s = StepParams{};
+    s.gravity = vec4(inputs.gravity, 0.0F);
+    s.boxMin = vec4(p.box.min, 1.0F);
+    s.boxMax = vec4(p.box.max, 0.0F);
+    s.count = w.particles.count;
+    s.h = p.supportSpacings * p.spacing;
+    s.invH = 1.0F / s.h;
+    s.mass = p.restDensity * p.spacing * p.spacing * p.spacing;
+    s.restDensity = p.restDensity;
+    s.viscosity = p.viscosity;
+    s.contact = 0.5F * p.spacing;
+    s.restitution = p.box.restitution;
+    s.spacing = p.spacing;
+    w.grid->fill(s);
+    w.method->fill(p, w.method->soundSpeed(p, w.fastestFall()), s);
+
+    const double limit = w.stepLimit(seconds);
+    int substeps = static_cast<int>(std::min(std::ceil(seconds / limit - 1e-6), 1.0e9));
+    substeps = std::max(substeps, 1);
+    double dt = seconds / substeps;
+    if (substeps > p.maxSubsteps) {
+        substeps = p.maxSubsteps;
+        dt = limit;
+        w.say(fmt::format("a frame needed more than fluid.maxSubsteps = {} steps: simulated time runs slower than asked", p.maxSubsteps));
+    }
+    for (int k = 0; k < substeps; ++k) w.substep(dt);
+    w.time += dt * substeps;
+    w.dtMin = w.dtMin == 0 ? dt : std::min(w.dtMin, dt);
+    w.dtMax = std::max(w.dtMax, dt);
+    w.gatherStats(substeps);
+}
+
+void FluidWorld::Impl::gatherStats(int substeps) {
+    device->run(stats, step, {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows}, STATS_THREADS);
+    const FluidStats now{.frame = frame, .time = time, .particles = particles.count, .substeps = substeps, .dtMin = dtMin, .dtMax = dtMax, .limited = {}};
+    device->readLater(statsRows, STATS_THREADS * sizeof(StatsRow),
+                      [now, into = figures, mass = double{step.mass}, g = gravity, this](std::span<const std::byte> bytes) {
+                          const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
+                          FluidStats f = now;
+                          double centre[3] = {0, 0, 0}, inside = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, fastest2 = 0;
+                          for (uint32_t k = 0; k < STATS_THREADS; ++k) {
+                              for (int axis = 0; axis < 3; ++axis) centre[axis] += double{rows[k].centre[axis]};
+                              inside += double{rows[k].centre.w};
+                              compression += double{rows[k].compression};
+                              speed2 += double{rows[k].speed2Sum};
+                              limited += double{rows[k].limited};
+                              nan += double{rows[k].nans};
+                              f.maxCompression = std::max(f.maxCompression, double{rows[k].worst});
+                              fastest2 = std::max(fastest2, double{rows[k].speed2Max});
+                          }
+                          f.lost = now.particles - static_cast<uint32_t>(inside);
+                          f.nan = static_cast<uint32_t>(nan);
+                          f.speedLimited = static_cast<uint32_t>(limited);
+                          f.maxSpeed = std::sqrt(fastest2);
+                          f.kinetic = 0.5 * mass * speed2;
+                          if (inside > 0) {
+                              f.avgCompression = compression / inside;
+                              for (int axis = 0; axis < 3; ++axis) {
+                                  f.centreOfMass[axis] = centre[axis] / inside;
+                                  f.potential -= mass * double{g[axis]} * centre[axis];
+                              }
+                          }
+                          f.limited = std::move(into->limited);
+                          *into = std::move(f);
+                          if (into != figures) return;  // the world was reset meanwhile
+                          if (into->lost > 0) say("particles left the grid or became NaN: they are frozen and counted as lost");
+                          if (into->speedLimited > 0) say("the fastest particles were slowed to one spacing a step");
+                      });
+}
+
+void FluidWorld::reset() { impl_->writeStart(); }
+
+void FluidWorld::setParams(const FluidParams& params) {
+    FluidParams next = params;
+    // What sizes arrays or picks kernels stays as it was made.
+    const FluidParams& old = impl_->params;
+    next.method = old.method;
+    next.spacing = old.spacing;
+    next.supportSpacings = old.supportSpacings;
+    next.box.min = old.box.min;
+    next.box.max = old.box.max;
+    next.blocks = old.blocks;
+    impl_->params = next;
+}
+
+ParticleView FluidWorld::particles() const {
+    const Impl& w = *impl_;
+    return {&w.particles.positionNext, &w.particles.velocityNext, &w.particles.id, w.particles.count, w.params.spacing,
+            w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
+}
+
+Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const VoxelField* field, Log log) {
+    (void)field;
+    std::unique_ptr<FluidWorld> world(new FluidWorld());
+    Impl& w = *world->impl_;
+    w.device = &device;
+    w.params = params;
+    w.log = std::move(log);
+    w.gravity = params.gravity;
+    if (Status s = w.prepare(); !s) return s.error();
+    return world;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,226 @@
+#include "fluid/sim/neighbor_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/compute/device_cpu.h"
+#include "fluid/sim/kernels/cpu_grid.h"
+
+namespace rivulet {
+
+namespace {
+
+// Cells above this would take more memory than the particles of any scene that fits one device.
+constexpr double kMostCells = 64.0e6;
+constexpr uint32_t kBlock = 1024;  // items a work group scans: 256 threads x 4
+
+// Takes the first Error of several allocations.
+struct Allocator {
+    Device& device;
+    Status status = ok();
+    Buffer operator()(size_t bytes) {
+        if (!status) return {};
+        Result<Buffer> buffer = device.allocate(bytes);
+        if (!buffer) {
+            status = buffer.error();
+            return {};
+        }
+        return std::move(*buffer);
+    }
+};
+
+}  // namespace
+
+struct NeighborGrid::Impl {
+    Device* device = nullptr;
+    vec3 origin{0.0F};
+    float h = 0;
+    ivec3 cells{0};  // padded
+    uint32_t count = 0;
+    Buffer cellStart, cellOf;
+
+    // CPU
+    uint32_t chunks = 1;
+    uint32_t groupCount = 0;
+    uint32_t listCapacity = 0;
+    Buffer x, y, z, histogram, segmentSum, groups, list, listCursor, lists;
+    Kernel sortCount, sortSegments, sortOffsets, sortScatter, neighborList;
+
+    // GPU
+    Buffer cellCounts, rank, order, blockSum;
+    Kernel cellCount, scanReduce, scanBlocks, scanApply, cellScatter, cellSort, reorder;
+
+    bool onCpu() const { return device->backend() == Backend::cpu; }
+    uint32_t coarseCells() const { return static_cast<uint32_t>(cells.x) * static_cast<uint32_t>(cells.y) * static_cast<uint32_t>(cells.z); }
+    uint32_t sortedCells() const { return onCpu() ? 2 * coarseCells() : coarseCells(); }
+    Status allocate();
+    Status findKernels();
+    CpuGridJob job(Particles& p) const;
+    Status buildCpu(Particles& p);
+    void buildGroups();
+    void buildGpu(const StepParams& params, Particles& p);
+};
+
+Status NeighborGrid::Impl::allocate() {
+    Allocator take{*device};
+    const size_t sorted = sortedCells();
+    cellStart = take((sorted + 2) * sizeof(uint32_t));
+    cellOf = take(count * sizeof(uint32_t));
+    if (onCpu()) {
+        chunks = static_cast<uint32_t>(std::clamp(static_cast<CpuDevice*>(device)->threads(), 1, 16));
+        for (Buffer* b : {&x, &y, &z}) *b = take((count + 8) * sizeof(float));
+        histogram = take(chunks * (sorted + 1) * sizeof(uint32_t));
+        segmentSum = take(kScanSegments * sizeof(uint32_t));
+        // A row's last group may be short: at most one such a row.
+        groups = take((count / 8 + std::min<size_t>(count, static_cast<size_t>(cells.y) * static_cast<size_t>(cells.z)) + 1) * sizeof(CpuGroup));
+        listCursor = take(sizeof(uint32_t));
+        lists = take(sizeof(CpuNeighborLists));
+        listCapacity = count * 14 + 64 * kListRegion / 8;
+        list = take(size_t{listCapacity} * sizeof(uint32_t));
+    } else {
+        cellCounts = take((sorted + 2) * sizeof(uint32_t));
+        rank = take(count * sizeof(uint32_t));
+        order = take(count * sizeof(uint32_t));
+        blockSum = take(((sorted + 2) / kBlock + 1) * sizeof(uint32_t));
+    }
+    return take.status;
+}
+
+Status NeighborGrid::Impl::findKernels() {
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+        std::vector<Define> defines;
+    };
+    std::vector<Wanted> wanted;
+    if (onCpu())
+        wanted = {{&sortCount, "fluid/cpu_sort_count", {}},     {&sortSegments, "fluid/cpu_sort_segments", {}},
+                  {&sortOffsets, "fluid/cpu_sort_offsets", {}}, {&sortScatter, "fluid/cpu_sort_scatter", {}},
+                  {&neighborList, "fluid/cpu_neighbor_list", {}}};
+    for (Wanted& w : wanted) {
+        Result<Kernel> found = device->kernel(w.path, w.defines);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    return ok();
+}
+
+CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
+    CpuGridJob j{};
+    j.originX = origin.x;
+    j.originY = origin.y;
+    j.originZ = origin.z;
+    j.h = h;
+    j.invH = 1.0F / h;
+    j.cellsX = cells.x;
+    j.cellsY = cells.y;
+    j.cellsZ = cells.z;
+    j.count = count;
+    j.chunks = chunks;
+    j.groupCount = groupCount;
+    j.listCapacity = listCapacity;
+    j.position = hostPointer<Float4>(p.positionNext);
+    j.velocity = hostPointer<Float4>(p.velocityNext);
+    j.id = hostPointer<uint32_t>(p.id);
+    j.positionOut = hostPointer<Float4>(p.position);
+    j.velocityOut = hostPointer<Float4>(p.velocity);
+    j.idOut = hostPointer<uint32_t>(p.idNext);
+    j.x = hostPointer<float>(x);
+    j.y = hostPointer<float>(y);
+    j.z = hostPointer<float>(z);
+    j.cell = hostPointer<uint32_t>(cellOf);
+    j.histogram = hostPointer<uint32_t>(histogram);
+    j.segmentSum = hostPointer<uint32_t>(segmentSum);
+    j.cellStart = hostPointer<uint32_t>(cellStart);
+    j.groups = hostPointer<CpuGroup>(groups);
+    j.list = hostPointer<uint32_t>(list);
+    j.listCursor = hostPointer<uint32_t>(listCursor);
+    return j;
+}
+
+// Groups of up to 8 consecutive particles that do not cross the end of a row.
+void NeighborGrid::Impl::buildGroups() {
+    const uint32_t* start = hostPointer<uint32_t>(cellStart);
+    CpuGroup* group = hostPointer<CpuGroup>(groups);
+    const size_t rowLength = 2 * static_cast<size_t>(cells.x), rows = static_cast<size_t>(cells.y) * static_cast<size_t>(cells.z);
+    groupCount = 0;
+    for (size_t row = 0; row < rows; ++row) {
+        const uint32_t end = start[(row + 1) * rowLength];
+        for (uint32_t first = start[row * rowLength]; first < end; first += 8) group[groupCount++] = {first, std::min(8U, end - first), 0, 0};
+    }
+}
+
+Status NeighborGrid::Impl::buildCpu(Particles& p) {
+    CpuDevice& cpu = *static_cast<CpuDevice*>(device);
+    auto run = [&](Kernel k, const CpuGridJob& j, uint32_t threads) { cpu.dispatch(k, std::as_bytes(std::span(&j, 1)), {}, threads); };
+    CpuGridJob j = job(p);
+    run(sortCount, j, chunks);
+    run(sortSegments, j, kScanSegments);
+    run(sortOffsets, j, kScanSegments);
+    run(sortScatter, j, chunks);
+    p.id.swap(p.idNext);
+    buildGroups();
+    while (true) {
+        *hostPointer<uint32_t>(listCursor) = 0;
+        j = job(p);
+        run(neighborList, j, groupCount);
+        const uint32_t taken = *hostPointer<uint32_t>(listCursor);
+        if (taken <= listCapacity) break;
+        if (taken > UINT32_MAX / 2) return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
+        listCapacity = taken + taken / 4;
+        Result<Buffer> larger = device->allocate(size_t{listCapacity} * sizeof(uint32_t));
+        if (!larger) return larger.error();
+        list = std::move(*larger);
+    }
+    *hostPointer<CpuNeighborLists>(lists) = {hostPointer<CpuGroup>(groups), hostPointer<uint32_t>(list)};
+    return ok();
+}
+
+void NeighborGrid::Impl::buildGpu(const StepParams&, Particles&) {}
+
+Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count) {
+    ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");
+    auto impl = std::make_unique<Impl>();
+    impl->device = &device;
+    impl->h = h;
+    impl->count = count;
+    // One empty cell on every side: rows need no bounds checks.
+    impl->origin = inside.min - vec3(h);
+    const vec3 size = inside.size() / h;
+    const double cells = (std::ceil(double{size.x}) + 3) * (std::ceil(double{size.y}) + 3) * (std::ceil(double{size.z}) + 3);
+    if (cells > kMostCells)
+        return badInput(fmt::format("the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
+                                    inside.size().x, inside.size().y, inside.size().z, cells, h, h / 2 * std::cbrt(cells / kMostCells)));
+    // The last interior cell may be cut by the bounds; a wall's own coordinate still lies inside.
+    impl->cells = ivec3(static_cast<int>(std::floor(size.x)) + 3, static_cast<int>(std::floor(size.y)) + 3, static_cast<int>(std::floor(size.z)) + 3);
+    if (Status s = impl->findKernels(); !s) return s.error();
+    if (Status s = impl->allocate(); !s) return s.error();
+    return NeighborGrid(std::move(impl));
+}
+
+NeighborGrid::NeighborGrid(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+NeighborGrid::NeighborGrid(NeighborGrid&&) noexcept = default;
+NeighborGrid& NeighborGrid::operator=(NeighborGrid&&) noexcept = default;
+NeighborGrid::~NeighborGrid() = default;
+
+void NeighborGrid::fill(StepParams& params) const {
+    params.gridOrigin = vec4(impl_->origin, 1.0F / impl_->h);
+    params.cellsX = impl_->cells.x;
+    params.cellsY = impl_->cells.y;
+    params.cellsZ = impl_->cells.z;
+    params.cellCount = impl_->sortedCells();
+}
+
+Status NeighborGrid::build(const StepParams& params, Particles& particles) {
+    if (impl_->onCpu()) return impl_->buildCpu(particles);
+    impl_->buildGpu(params, particles);
+    return ok();
+}
+
+const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }
+const Buffer& NeighborGrid::cellStart() const { return impl_->cellStart; }
+uint32_t NeighborGrid::pairThreads() const { return impl_->onCpu() ? impl_->groupCount : impl_->count; }
+
+}  // namespace rivulet

@@ -149,16 +149,42 @@ INLINE vec4 LOAD(const vec4* b, uint j) { return b[j]; }
 INLINE vec3 LOAD3(const vec4* b, uint j) { return b[j].xyz; }
 INLINE float LOADW(const vec4* b, uint j) { return b[j].w; }
 INLINE uint laneOf(const Group& g, uint k) { return g.first + (k < g.lanes ? k : g.lanes - 1); }
-INLINE real LOAD(const float* b, const Group& g) { real r; for (uint k = 0; k < 8; ++k) r.v[k] = b[laneOf(g, k)]; return r; }
-INLINE real3 LOAD3(const vec4* b, const Group& g) {
-    real3 r;
-    for (uint k = 0; k < 8; ++k) { const vec4& a = b[laneOf(g, k)]; r.x.v[k] = a.x; r.y.v[k] = a.y; r.z.v[k] = a.z; }
+INLINE real LOAD(const float* b, const Group& g) {
+    real r;
+    if (g.lanes == 8) { memcpy(&r.v, b + g.first, sizeof r.v); return r; }
+    for (uint k = 0; k < 8; ++k) r.v[k] = b[laneOf(g, k)];
     return r;
 }
-INLINE real LOADW(const vec4* b, const Group& g) { real r; for (uint k = 0; k < 8; ++k) r.v[k] = b[laneOf(g, k)].w; return r; }
-INLINE void STORE(float* b, const Group& g, real v) { for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = v.v[k]; }
+struct real4 { real3 xyz; real w; };
+INLINE real4 loadLanes(const vec4* b, const Group& g) {
+    real4 r;
+#if defined(__AVX__)
+    const float* p[8];
+    for (uint k = 0; k < 8; ++k) p[k] = &b[laneOf(g, k)].x;
+    const __m256 l0 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(p[0])), _mm_load_ps(p[4]), 1);
+    const __m256 l1 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(p[1])), _mm_load_ps(p[5]), 1);
+    const __m256 l2 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(p[2])), _mm_load_ps(p[6]), 1);
+    const __m256 l3 = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(p[3])), _mm_load_ps(p[7]), 1);
+    const __m256 xy01 = _mm256_unpacklo_ps(l0, l1), zw01 = _mm256_unpackhi_ps(l0, l1), xy23 = _mm256_unpacklo_ps(l2, l3), zw23 = _mm256_unpackhi_ps(l2, l3);
+    r.xyz.x.v = static_cast<Lanes>(_mm256_shuffle_ps(xy01, xy23, 0x44));
+    r.xyz.y.v = static_cast<Lanes>(_mm256_shuffle_ps(xy01, xy23, 0xEE));
+    r.xyz.z.v = static_cast<Lanes>(_mm256_shuffle_ps(zw01, zw23, 0x44));
+    r.w.v = static_cast<Lanes>(_mm256_shuffle_ps(zw01, zw23, 0xEE));
+#else
+    for (uint k = 0; k < 8; ++k) { const vec4& a = b[laneOf(g, k)]; r.xyz.x.v[k] = a.x; r.xyz.y.v[k] = a.y; r.xyz.z.v[k] = a.z; r.w.v[k] = a.w; }
+#endif
+    return r;
+}
+INLINE real3 LOAD3(const vec4* b, const Group& g) { return loadLanes(b, g).xyz; }
+INLINE real LOADW(const vec4* b, const Group& g) { return loadLanes(b, g).w; }
+INLINE void STORE(float* b, const Group& g, real v) {
+    if (g.lanes == 8) { memcpy(b + g.first, &v.v, sizeof v.v); return; }
+    for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = v.v[k];
+}
 INLINE void STORE4(vec4* b, const Group& g, const real3& v, real w) {
-    for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = vec4(v.x.v[k], v.y.v[k], v.z.v[k], w.v[k]);
+    float x[8], y[8], z[8], ws[8];
+    memcpy(x, &v.x.v, 32); memcpy(y, &v.y.v, 32); memcpy(z, &v.z.v, 32); memcpy(ws, &w.v, 32);
+    for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = vec4(x[k], y[k], z[k], ws[k]);
 }
 INLINE void STORE4(vec4* b, uint i, const vec3& v, float w) { b[i] = vec4(v, w); }
 template <class T> INLINE void STORE(T* b, uint i, const T& v) { b[i] = v; }
@@ -189,10 +215,5 @@ template <class T> INLINE void STORE(T* b, uint i, const T& v) { b[i] = v; }
 #define SELF(i) const Group& i = neighbors->groups[THREAD_ID]
 #define FOR_NEIGHBORS(i, xi, j) { const uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
 #define END_NEIGHBORS }}
-// The first sweep of a step may drop what no lane needs: KEEP_IF inside FOR_NEIGHBORS_TRIM.
-#define FOR_NEIGHBORS_TRIM(i, xi, j) { uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; uint kept_ = 0; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
-#define KEEP_IF(condition, j) list_[kept_] = j; kept_ += anyLane(condition) ? 1u : 0u
-#define END_NEIGHBORS_TRIM } const_cast<Group&>(neighbors->groups[THREAD_ID]).listCount = kept_; }
-
 }  // namespace rivulet::RIVULET_KERNEL_UNIT
 #endif

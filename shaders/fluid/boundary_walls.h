@@ -7,7 +7,8 @@ STRUCT(WallShare) {
 FN WallShare noWall() { WallShare s; s.open = vec4(0.0f, 0.0f, 0.0f, 1.0f); return s; }
 // `n`: unit normal into the fluid; `d` m; beyond h nothing changes, behind the wall the share stays one half.
 FN WallShare addWall(WallShare sum, vec3 n, float d, float invH) {
-    float s = clamp(1.0f - d * invH, 0.0f, 1.0f);
+    float s = min(1.0f - d * invH, 1.0f);
+    if (!(s > 0.0f)) return sum;
     float s2 = s * s;
     float s5 = s2 * s2 * s;
     float f = s5 * s * (3.5f - 4.5f * s + 1.5f * s2);

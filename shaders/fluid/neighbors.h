@@ -11,7 +11,4 @@
           uint end_ = neighbors[cell_ + 2];                                                                          \
           for (uint j = neighbors[cell_ - 1]; j < end_; ++j) {
 #define END_NEIGHBORS }}}
-#define FOR_NEIGHBORS_TRIM(i, xi, j) FOR_NEIGHBORS(i, xi, j)
-#define KEEP_IF(condition, j)
-#define END_NEIGHBORS_TRIM END_NEIGHBORS
 #endif

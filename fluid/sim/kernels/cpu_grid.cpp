@@ -130,15 +130,11 @@ INLINE real load8(const float* p) {
 }
 
 INLINE float minLane(const real& r) {
-    float m = r.v[0];
-    for (int k = 1; k < 8; ++k) m = r.v[k] < m ? r.v[k] : m;
-    return m;
+    const real a = min(r, real(__builtin_shufflevector(r.v, r.v, 4, 5, 6, 7, 0, 1, 2, 3)));
+    const real b = min(a, real(__builtin_shufflevector(a.v, a.v, 2, 3, 0, 1, 6, 7, 4, 5)));
+    return b.v[0] < b.v[1] ? b.v[0] : b.v[1];
 }
-INLINE float maxLane(const real& r) {
-    float m = r.v[0];
-    for (int k = 1; k < 8; ++k) m = r.v[k] > m ? r.v[k] : m;
-    return m;
-}
+INLINE float maxLane(const real& r) { return -minLane(-r); }
 
 // One thread a group: every particle within h of the box around the group's particles. The first sweep drops what no lane needs.
 void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*) {
@@ -148,13 +144,13 @@ void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*
     uint32_t at = 0, regionEnd = 0;
     for (uint32_t g = begin; g < end; ++g) {
         CpuGroup& group = job.groups[g];
-        const uint32_t last = group.lanes - 1;
-        real px, py, pz;
-        for (uint32_t k = 0; k < 8; ++k) {
-            const uint32_t i = group.first + (k < last ? k : last);
-            px.v[k] = job.x[i];
-            py.v[k] = job.y[i];
-            pz.v[k] = job.z[i];
+        real px = load8(job.x + group.first), py = load8(job.y + group.first), pz = load8(job.z + group.first);
+        if (group.lanes < 8) {
+            const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
+            const LaneMask used = lane < static_cast<int>(group.lanes);
+            px = select(used, px, real(px.v[0]));
+            py = select(used, py, real(py.v[0]));
+            pz = select(used, pz, real(pz.v[0]));
         }
         const float loX = minLane(px), hiX = maxLane(px), loY = minLane(py), hiY = maxLane(py), loZ = minLane(pz), hiZ = maxLane(pz);
         const int cy = static_cast<int>((py.v[0] - job.originY) * job.invH), cz = static_cast<int>((pz.v[0] - job.originZ) * job.invH);

@@ -1,0 +1,167 @@
+#include "engine/core/param_value.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+
+#include "engine/core/table.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr double kUnlimited = 1e30;  // ParamInfo's default range
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kSpace = " \t\r\n";
+    const size_t first = text.find_first_not_of(kSpace);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+// from_chars: no locale, the nearest representable number, and nothing may follow it.
+template <class T>
+bool parseNumber(std::string_view text, T& v) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+    return error == std::errc{} && end == text.data() + text.size();
+}
+
+std::string mustBe(std::string_view text, std::string_view what) { return fmt::format("is {}, must be {}", excerpt(text), what); }
+
+// "a number", "a whole number between 1 and 64 m"
+std::string wanted(const ParamInfo& info, std::string_view kind) {
+    std::string range = rangeText(info);
+    if (range.empty()) return std::string(kind);
+    if (*info.unit) range += fmt::format(" {}", info.unit);
+    return kind.empty() ? range : fmt::format("{} {}", kind, range);
+}
+
+// NaN is in no range. T's own limits hold where the ParamInfo sets none.
+template <class T>
+bool inRange(const ParamInfo& info, double v) {
+    return v >= info.min && v <= info.max && v >= std::numeric_limits<T>::lowest() && v <= std::numeric_limits<T>::max();
+}
+
+std::string outOfRange(const ParamInfo& info, std::string_view text, std::string_view kind, std::string_view suffix = "") {
+    const std::string shown = fmt::format("{}{}{}", excerpt(text), *info.unit ? " " : "", info.unit);
+    return fmt::format("is {}, must be {}{}", shown, wanted(info, kind), suffix);
+}
+
+bool splitInThree(std::string_view text, std::array<std::string_view, 3>& parts) {
+    if (text.starts_with('[') && text.ends_with(']')) text = text.substr(1, text.size() - 2);
+    for (size_t i = 0; i < 2; ++i) {
+        const size_t comma = text.find(',');
+        if (comma == std::string_view::npos) return false;
+        parts[i] = trimmed(text.substr(0, comma));
+        text.remove_prefix(comma + 1);
+    }
+    parts[2] = trimmed(text);
+    return true;
+}
+
+// The nearest float; what is too small for one goes through the double.
+float nearestFloat(std::string_view text, double wide) {
+    float v = 0;
+    return parseNumber(text, v) ? v : static_cast<float>(wide);
+}
+
+}  // namespace
+
+std::string assignValue(const ParamInfo& info, std::string_view text, float& v) {
+    text = trimmed(text);
+    double wide = 0;
+    if (!parseNumber(text, wide)) return mustBe(text, wanted(info, "a number"));
+    if (!inRange<float>(info, wide)) return outOfRange(info, text, std::isfinite(wide) ? "" : "a number");
+    v = nearestFloat(text, wide);
+    return "";
+}
+
+std::string assignValue(const ParamInfo& info, std::string_view text, int& v) {
+    text = trimmed(text);
+    double wide = 0;
+    if (!parseNumber(text, wide)) return mustBe(text, wanted(info, "a whole number"));
+    if (!inRange<int>(info, wide) || wide != std::floor(wide)) return outOfRange(info, text, "a whole number");
+    v = static_cast<int>(wide);
+    return "";
+}
+
+std::string assignValue(const ParamInfo&, std::string_view text, bool& v) {
+    text = trimmed(text);
+    if (text != "true" && text != "false") return mustBe(text, "true or false");
+    v = text == "true";
+    return "";
+}
+
+std::string assignValue(const ParamInfo&, std::string_view text, std::string& v) {
+    v = text;
+    return "";
+}
+
+std::string assignValue(const ParamInfo& info, std::string_view text, vec3& v) {
+    text = trimmed(text);
+    std::array<std::string_view, 3> parts;
+    vec3 read{0.0F};
+    if (!splitInThree(text, parts)) return mustBe(text, wanted(info, "three numbers [x, y, z], each"));
+    for (int i = 0; i < 3; ++i) {
+        const std::string_view part = parts[static_cast<size_t>(i)];
+        double wide = 0;
+        if (!parseNumber(part, wide)) return mustBe(text, wanted(info, "three numbers [x, y, z], each"));
+        if (!inRange<float>(info, wide)) return outOfRange(info, text, "", " in each component");
+        read[i] = nearestFloat(part, wide);
+    }
+    v = read;
+    return "";
+}
+
+std::string assignChoice(std::string_view text, std::string& v, std::span<const std::string> names) {
+    for (const std::string& name : names)
+        if (text == name) {
+            v = name;
+            return "";
+        }
+    const std::string near = nearestName(text, names);
+    const std::string complaint = fmt::format("is \"{}\", must be one of {}", excerpt(text), joined(names));
+    return near.empty() ? complaint : fmt::format("{}; did you mean {}?", complaint, near);
+}
+
+std::string valueText(float v) { return std::isfinite(v) ? fmt::format("{}", v) : "null"; }
+std::string valueText(int v) { return fmt::format("{}", v); }
+std::string valueText(bool v) { return v ? "true" : "false"; }
+std::string valueText(const vec3& v) { return fmt::format("[{}, {}, {}]", valueText(v.x), valueText(v.y), valueText(v.z)); }
+
+std::string valueText(const std::string& v) {
+    std::string quoted = "\"";
+    for (char c : v) {
+        if (c == '"' || c == '\\')
+            quoted += {'\\', c};
+        else if (c == '\n')
+            quoted += "\\n";
+        else if (static_cast<unsigned char>(c) < 0x20)
+            quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            quoted += c;
+    }
+    return quoted + '"';
+}
+
+std::string rangeText(const ParamInfo& info) {
+    const bool below = info.min > -kUnlimited;
+    const bool above = info.max < kUnlimited;
+    if (below && above) return fmt::format("between {} and {}", info.min, info.max);
+    if (below) return fmt::format("at least {}", info.min);
+    if (above) return fmt::format("at most {}", info.max);
+    return "";
+}
+
+std::string excerpt(std::string_view text) {
+    constexpr size_t kLongest = 60;
+    std::string line(text.substr(0, kLongest));
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    return text.size() > kLongest ? line + "..." : line;
+}
+
+std::string joined(std::span<const std::string> names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+}  // namespace rivulet

@@ -6,24 +6,53 @@
 #include "engine/core/mesh_view.h"
 #include "engine/core/result.h"
 #include "fluid/voxel/voxel_grid.h"
+#include "shaders/voxel/field_params.h"
 
 namespace rivulet {
 
 // Distance is sampled at grid points p = origin + voxel * (x, y, z), 0 <= x <= size.x and so on: (size + 1) points an axis, x fastest.
 struct VoxelField {
-    VoxelGrid surface;             // voxels that a triangle passes through
+    VoxelGrid surface;             // voxels that a triangle passes through, touching counts
     std::vector<float> distance;   // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
     float band = 0;                // m
     bool empty() const { return surface.count() == 0; }
+    size_t bytes() const { return surface.bits.size() + distance.size() * sizeof(float); }
+    // A lower bound (m) of the distance from `p` to the mesh, at most sqrt(3) voxels below it and never above `band`: distance changes
+    // by no more than one moves, whichever side of the mesh one is on. May be negative near the mesh. A particle may be
+    // born at `p` if clearance(p) >= contact.
+    float clearance(const vec3& p) const;
 };
 
 struct VoxelFieldOptions {
-    int resolution = 128;   // voxels along the longest side of the meshes' bounds
-    float band = 0;         // m, at least this wide
+    int resolution = 128;   // voxels along the longest side of the meshes' bounds, 2..2048
+    float band = 0;         // m, at least this wide (and at least kBandVoxels voxels)
     float padding = 0;      // m, around the bounds: at least the band, so that whoever comes near is inside the grid
+    size_t memoryLimit = size_t{1} << 30U;  // bytes the field may take
 };
 
-// `meshes` in world space (m). Error: no triangle, NaN or infinite vertices (with how many), out of memory (with how much it needs).
+// The narrowest useful band: contact at 1.74 voxels, room to see it coming, and what a lower bound from one sample gives away.
+inline constexpr float kBandVoxels = 5.0F;
+
+// In voxels, a little over sqrt(3). Let p be a point whose voxel a triangle touches: all 8 samples around p are within sqrt(3)
+// voxels of that triangle, so the interpolated distance at p is too. Who keeps 1.74 is hence in no set voxel; and all 8 samples
+// around him lie on his own side of the mesh, so that the unsigned distance is as smooth there as a signed one.
+inline constexpr float kContactVoxels = 1.74F;
+
+// `meshes` in world space (m). Error: no triangle, an index out of range, NaN or infinite vertices (with how many), meshes of no
+// extent or too far from the origin for floats, a resolution outside 2..2048, too much memory (with how much, and what resolution fits).
+// The same bits and distances for any number of threads.
 Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options);
+
+// How particles meet the field.
+struct FieldContact {
+    float spacing = 0;        // m, rest distance of particles
+    float friction = 0;       // Coulomb coefficient
+    float restitution = 0;    // 0..1
+    float restSpeed = 0;      // m/s, slower approaches do not bounce; 2 |gravity| dt is a good value
+    uint32_t countIndex = 0;  // of the buffer whose element [countIndex] is the number of active particles
+};
+
+// The parameter block of shaders/fluid/collide.kernel.
+FieldParams fieldParams(const VoxelField& field, const FieldContact& contact);
 
 }  // namespace rivulet

@@ -1,0 +1,74 @@
+// The static field as a kernel reads it: interpolated distance and its gradient, surface bits. Include after BUFFERS.
+// Points are in metres, cell coordinates in voxels from the grid's low corner.
+STRUCT(FieldSample) {
+    vec3  gradient;  // of the trilinear interpolant: away from the mesh, length 1 by a lone wall, shorter where walls meet
+    float distance;  // m, at most the band
+};
+
+FN vec3 toCells(FieldParams f, vec3 p) {
+    return (p - f.origin.xyz) * f.origin.w;
+}
+
+// Beyond the grid the border's value holds, which is the band's: the grid is padded by at least that much.
+FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
+    vec3 g = toCells(f, p);
+    g = vec3(clamp(g.x, 0.0f, TO_FLOAT(f.sizeX)), clamp(g.y, 0.0f, TO_FLOAT(f.sizeY)), clamp(g.z, 0.0f, TO_FLOAT(f.sizeZ)));
+    int cx = min(TO_INT(g.x), f.sizeX - 1);
+    int cy = min(TO_INT(g.y), f.sizeY - 1);
+    int cz = min(TO_INT(g.z), f.sizeZ - 1);
+    float x = g.x - TO_FLOAT(cx);
+    float y = g.y - TO_FLOAT(cy);
+    float z = g.z - TO_FLOAT(cz);
+    uint row = TO_UINT(f.sizeX) + 1u;
+    uint slab = row * (TO_UINT(f.sizeY) + 1u);
+    uint at = TO_UINT(cz) * slab + TO_UINT(cy) * row + TO_UINT(cx);
+    float d000 = bandDistance[at];
+    float d100 = bandDistance[at + 1u];
+    float d010 = bandDistance[at + row];
+    float d110 = bandDistance[at + row + 1u];
+    float d001 = bandDistance[at + slab];
+    float d101 = bandDistance[at + slab + 1u];
+    float d011 = bandDistance[at + slab + row];
+    float d111 = bandDistance[at + slab + row + 1u];
+    float e00 = d000 + (d100 - d000) * x;
+    float e10 = d010 + (d110 - d010) * x;
+    float e01 = d001 + (d101 - d001) * x;
+    float e11 = d011 + (d111 - d011) * x;
+    float low = e00 + (e10 - e00) * y;
+    float high = e01 + (e11 - e01) * y;
+    float alongX0 = (d100 - d000) + ((d110 - d010) - (d100 - d000)) * y;
+    float alongX1 = (d101 - d001) + ((d111 - d011) - (d101 - d001)) * y;
+    FieldSample s;
+    s.distance = low + (high - low) * z;
+    s.gradient = vec3(alongX0 + (alongX1 - alongX0) * z, (e10 - e00) + ((e11 - e01) - (e10 - e00)) * z, high - low) * f.origin.w;
+    return s;
+}
+
+// Unit length towards larger distance; zero where the field says nothing (far away, or midway between two walls).
+FN vec3 fieldNormal(FieldSample s) {
+    float slope = length(s.gradient);
+    return slope > 0.1f ? s.gradient * (1.0f / slope) : vec3(0.0f, 0.0f, 0.0f);
+}
+
+// True if nothing on the way from `a` to `b` can come within contact of the mesh: one look. Distance changes by no more than
+// one moves, so the nearest grid point's value, less the way to it, bounds it from below all along.
+FN bool farFromField(GLOBAL(float, bandDistance) FieldParams f, vec3 a, vec3 b) {
+    vec3 ga = toCells(f, a);
+    vec3 gb = toCells(f, b);
+    vec3 size = vec3(TO_FLOAT(f.sizeX), TO_FLOAT(f.sizeY), TO_FLOAT(f.sizeZ));
+    if (max(ga.x, gb.x) < 0.0f || max(ga.y, gb.y) < 0.0f || max(ga.z, gb.z) < 0.0f) return true;
+    if (min(ga.x, gb.x) > size.x || min(ga.y, gb.y) > size.y || min(ga.z, gb.z) > size.z) return true;
+    vec3 g = vec3(clamp(ga.x, 0.0f, size.x), clamp(ga.y, 0.0f, size.y), clamp(ga.z, 0.0f, size.z));
+    vec3 nearest = floor(g + vec3(0.5f, 0.5f, 0.5f));
+    uint row = TO_UINT(f.sizeX) + 1u;
+    uint slab = row * (TO_UINT(f.sizeY) + 1u);
+    float there = bandDistance[TO_UINT(nearest.z) * slab + TO_UINT(nearest.y) * row + TO_UINT(nearest.x)];
+    return there - length(g - nearest) * f.voxel > length(b - a) + f.contact;
+}
+
+// Voxels outside the grid are not set.
+FN bool voxelSet(GLOBAL(uint, surfaceBits) FieldParams f, int x, int y, int z) {
+    if (x < 0 || y < 0 || z < 0 || x >= f.sizeX || y >= f.sizeY || z >= f.sizeZ) return false;
+    uint k = (TO_UINT(z) * TO_UINT(f.sizeY) + TO_UINT(y)) * TO_UINT(f.sizeX) + TO_UINT(x);
+    return ((surfaceBits[k >> 5u] >> (k & 31u)) & 1u) != 0u;
+}

@@ -1,0 +1,25 @@
+// The static field as kernels see it. Layout shared by C++, GLSL (std140) and OpenCL: scalars and vec4 only, size % 16 == 0.
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+#pragma once
+#include "shaders/common/lang.h"
+namespace rivulet {
+#endif
+STRUCT(FieldParams) {
+    vec4  origin;        // m, the low corner of voxel (0,0,0); w = 1 / voxel (1/m)
+    int   sizeX;         // voxels along each axis; the distance band has one more point an axis
+    int   sizeY;
+    int   sizeZ;
+    uint  countIndex;    // cellStart[countIndex] is the number of active particles
+    float voxel;         // m, edge
+    float band;          // m, distances are exact below it and equal to it beyond
+    float contact;       // m, centres keep this far from the mesh: max(spacing / 2, kContactVoxels * voxel)
+    float friction;      // Coulomb coefficient, >= 0
+    float restitution;   // 0..1
+    float restSpeed;     // m/s, a slower approach does not bounce: what lies still stays still
+    float nudge;         // voxels, rounding's reach: a voxel nearer than this to a point counts as touched
+    float unused;
+};
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+static_assert(sizeof(FieldParams) % 16 == 0);
+}  // namespace rivulet
+#endif

@@ -1,1 +1,70 @@
-int main() { return 0; }
+// rivulet: one program over one library; a file per verb.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "demos/rivulet/cli.h"
+#include "demos/rivulet/interrupt.h"
+
+namespace rivulet {
+
+Table<Verb> verbs() {
+    static const Verb rows[] = {
+        {"run", "run a scene: in a window, or headless to video, pictures and figures", runVerb},
+        {"list", "list scenes, methods, renderers, devices, parameters", listVerb},
+        {"info", "what this machine offers, what --backend auto would choose and why", infoVerb},
+        {"bench", "measure speed and memory", benchVerb},
+    };
+    return {rows};
+}
+
+namespace {
+
+void printHelp(FILE* to) {
+    fmt::print(to, "rivulet {}: real-time water for OpenGL\n\nusage: rivulet VERB [arguments]\n\n", RIVULET_VERSION);
+    for (const Verb& verb : verbs().rows) fmt::print(to, "  {:<8}{}\n", verb.name, verb.doc);
+    fmt::print(to, "\n'rivulet VERB --help' says what a verb takes.\n");
+}
+
+int dispatch(const Arguments& words) {
+    if (words.empty()) {
+        printHelp(stderr);
+        return kBadUse;
+    }
+    if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
+        printHelp(stdout);
+        return kDone;
+    }
+    if (words[0] == "--version") {
+        fmt::print("rivulet {}\n", RIVULET_VERSION);
+        return kDone;
+    }
+    const Verb* verb = verbs().find(words[0]);
+    if (verb == nullptr) {
+        std::vector<std::string> names = verbs().names();
+        return report(checkWord("verb", words[0], names).error());
+    }
+    return verb->run({words.begin() + 1, words.end()});
+}
+
+}  // namespace
+}  // namespace rivulet
+
+int main(int argc, char** argv) {
+    rivulet::installInterrupts();
+    try {
+        int code = rivulet::dispatch({argv + std::min(argc, 1), argv + argc});
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            code = rivulet::report(rivulet::failed(fmt::format("the output could not be written: {}", std::strerror(errno))));
+        return code;
+    } catch (const std::bad_alloc&) {
+        return rivulet::report(rivulet::failed("there is not enough memory for this"));
+    } catch (const std::exception& error) {  // what a library of others throws, and no one nearer could say better
+        return rivulet::report(rivulet::failed(error.what()));
+    }
+}

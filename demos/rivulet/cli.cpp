@@ -1,0 +1,93 @@
+#include "demos/rivulet/cli.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cctype>
+#include <cstdio>
+
+namespace rivulet {
+
+int report(const Error& error) {
+    fmt::print(stderr, "rivulet: {}\n", error.message);
+    return error.fault == Fault::badInput ? kBadUse : kFailed;
+}
+
+Status checkWord(std::string_view what, std::string_view word, std::span<const std::string> names) {
+    if (std::find(names.begin(), names.end(), word) != names.end()) return ok();
+    std::string near = nearestName(word, names);
+    if (!near.empty()) return badInput(fmt::format("unknown {} '{}'; did you mean '{}'?", what, word, near));
+    return badInput(fmt::format("unknown {} '{}'; there are: {}", what, word, fmt::join(names, ", ")));
+}
+
+namespace {
+
+// CLI11's message as the rest of a sentence.
+std::string sentence(std::string text) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
+    for (char& c : text)
+        if (c == '\n') c = ' ';
+    return text;
+}
+
+Status checkExtras(const CLI::App& app) {
+    std::vector<std::string> extras = app.remaining();
+    if (extras.empty()) return ok();
+    auto dashed = std::find_if(extras.begin(), extras.end(), [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    if (dashed == extras.end()) return badInput(fmt::format("one argument too many: '{}'", extras.front()));
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    }
+    return checkWord("option", dashed->substr(0, dashed->find('=')), names);
+}
+
+}  // namespace
+
+std::optional<int> parse(CLI::App& app, const Arguments& arguments) {
+    app.allow_extras();  // judged here, with the nearest option named
+    auto refuse = [&app](const std::string& why) { return report(badInput(fmt::format("{} (see '{} --help')", why, app.get_name()))); };
+    try {
+        app.parse(Arguments(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        fmt::print("{}", app.help());
+        return kDone;
+    } catch (const CLI::ParseError& error) {
+        // An unknown option swallows nothing, so what CLI11 misses may only be a consequence of it.
+        Status extras = checkExtras(app);
+        return refuse(extras ? sentence(error.what()) : extras.error().message);
+    }
+    if (Status extras = checkExtras(app); !extras) return refuse(extras.error().message);
+    return std::nullopt;
+}
+
+Result<std::pair<int, int>> parseSize(const std::string& text) {
+    int width = 0, height = 0, end = 0;
+    bool plain = !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) != 0;
+    if (!plain || text.size() > 11 || std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) != 2 ||
+        static_cast<size_t>(end) != text.size() || width < 1 || height < 1 || width > 16384 || height > 16384)
+        return badInput(fmt::format("--size takes WIDTHxHEIGHT in pixels, each 1 to 16384, as in 1280x720; it was '{}'", text));
+    return std::pair(width, height);
+}
+
+Progress::Progress(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+    if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::show(double share, std::string_view beside) {
+    auto now = std::chrono::steady_clock::now();
+    if (!terminal_ || (drawn_ && now - last_ < std::chrono::milliseconds(100))) return;
+    last_ = now;
+    drawn_ = true;
+    constexpr int kCells = 32;
+    share = std::clamp(share, 0.0, 1.0);
+    int filled = static_cast<int>(share * kCells);
+    fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} %  {}", what_, "", filled, "", kCells - filled, 100 * share, beside);
+    std::fflush(stderr);
+}
+
+}  // namespace rivulet

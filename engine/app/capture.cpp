@@ -1,0 +1,213 @@
+#include "engine/app/capture.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stb_image_write.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "engine/core/json.h"
+
+namespace rivulet {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string reason(int number) { return std::generic_category().message(number); }
+
+bool isOrdinaryTarget(const std::string& path) {
+    std::error_code error;
+    fs::file_status status = fs::status(path, error);
+    return !fs::exists(status) || fs::is_regular_file(status);
+}
+
+// Beside the target, so that the rename stays on one file system; with the target's ending, which tells ffmpeg the container.
+std::string hiddenNameBeside(const std::string& path) {
+    fs::path target(path);
+    return (target.parent_path() / fmt::format(".rivulet-{}-{}", getpid(), target.filename().string())).string();
+}
+
+}  // namespace
+
+Status writePng(const std::string& path, std::span<const uint8_t> rgba, int width, int height) {
+    size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
+    ASSERT(width > 0 && height > 0 && rgba.size() == 4 * pixels, "writePng takes 4 bytes a pixel, at least one pixel");
+    std::vector<uint8_t> rgb(3 * pixels);
+    for (size_t i = 0; i < pixels; ++i) std::memcpy(&rgb[3 * i], &rgba[4 * i], 3);
+    std::string bytes;
+    auto append = [](void* to, void* data, int size) {
+        static_cast<std::string*>(to)->append(static_cast<char*>(data), static_cast<size_t>(size));
+    };
+    if (stbi_write_png_to_func(append, &bytes, width, height, 3, rgb.data(), 3 * width) == 0)
+        return failed(fmt::format("the picture {} could not be encoded: out of memory", path));
+    return writeFileAtomic(path, bytes);
+}
+
+Status makeFolder(const std::string& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (!error && !fs::is_directory(path, error) && !error) error = std::make_error_code(std::errc::not_a_directory);
+    if (error) return failed(fmt::format("the folder {} cannot be made: {}", path, error.message()));
+    return ok();
+}
+
+Status checkWritable(const std::string& path) {
+    bool ordinary = isOrdinaryTarget(path);
+    std::string probe = ordinary ? hiddenNameBeside(path) : path;
+    int file = ::open(probe.c_str(), O_WRONLY | O_CLOEXEC | (ordinary ? O_CREAT | O_EXCL : 0), 0666);
+    if (file < 0) return failed(fmt::format("{} cannot be written: {}", path, reason(errno)));
+    ::close(file);
+    if (ordinary) ::unlink(probe.c_str());
+    return ok();
+}
+
+struct VideoWriter::Impl {
+    std::string path, temporary;  // temporary is empty when the target is written directly
+    size_t frameBytes = 0;
+    uint64_t frames = 0;
+    int input = -1;     // our end of ffmpeg's standard input: a socket, since send() can be told not to raise SIGPIPE
+    int messages = -1;  // ffmpeg's standard error, an unlinked file
+    pid_t child = -1;
+    std::string broken;  // why, once something failed
+
+    ~Impl() {
+        if (input >= 0) ::close(input);
+        if (child > 0) {
+            ::kill(child, SIGKILL);
+            wait();
+        }
+        if (messages >= 0) ::close(messages);
+        if (!temporary.empty()) ::unlink(temporary.c_str());
+    }
+
+    // ffmpeg's exit status; -1 when a signal ended it.
+    int wait() {
+        int status = 0;
+        while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+        }
+        child = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+    // What ffmpeg said last: the line that names the cause.
+    std::string lastMessage() const {
+        std::string text(4096, '\0');
+        off_t end = ::lseek(messages, 0, SEEK_END);
+        off_t from = std::max<off_t>(0, end - static_cast<off_t>(text.size()));
+        ssize_t got = ::pread(messages, text.data(), text.size(), from);
+        text.resize(got > 0 ? static_cast<size_t>(got) : 0);
+        if (text.find("No space left on device") != std::string::npos) return "no space left on device";
+        while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+        size_t line = text.find_last_of("\r\n");
+        if (line != std::string::npos) text.erase(0, line + 1);
+        return text.empty() ? "ffmpeg ended without saying why" : text;
+    }
+
+    Error failure() {
+        if (broken.empty()) broken = fmt::format("the video {} could not be written: {}", path, lastMessage());
+        return failed(broken);
+    }
+};
+
+VideoWriter::VideoWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
+VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
+VideoWriter::~VideoWriter() = default;
+
+Result<VideoWriter> VideoWriter::open(const std::string& path, int width, int height, int framesPerSecond) {
+    ASSERT(width > 0 && height > 0 && framesPerSecond > 0, "a video has a size and a frame rate");
+    Status writable = checkWritable(path);
+    if (!writable) return writable.error();
+    auto impl = std::make_unique<Impl>();
+    impl->path = path;
+    if (isOrdinaryTarget(path)) impl->temporary = hiddenNameBeside(path);
+    impl->frameBytes = 4 * static_cast<size_t>(width) * static_cast<size_t>(height);
+
+    int ends[2];
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return failed(fmt::format("no pipe to ffmpeg: {}", reason(errno)));
+    impl->input = ends[0];
+    std::string log = (fs::temp_directory_path() / "rivulet-ffmpeg-XXXXXX").string();
+    impl->messages = ::mkostemp(log.data(), O_CLOEXEC);
+    if (impl->messages < 0) {
+        ::close(ends[1]);
+        return failed(fmt::format("ffmpeg's messages cannot be kept in {}: {}", log, reason(errno)));
+    }
+    ::unlink(log.c_str());
+
+    std::string size = fmt::format("{}x{}", width, height), rate = std::to_string(framesPerSecond);
+    std::string target = impl->temporary.empty() ? path : impl->temporary;
+    if (target.starts_with('-')) target = "./" + target;
+    std::vector<const char*> words = {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo", "-pixel_format",
+                                      "rgba", "-video_size", size.c_str(), "-framerate", rate.c_str(), "-i", "pipe:0", "-an",
+                                      // H.264 with 4:2:0 colour, which every player reads, needs even sides
+                                      "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18",
+                                      "-pix_fmt", "yuv420p", "-movflags", "+faststart"};
+    if (impl->temporary.empty()) words.insert(words.end(), {"-f", "matroska"});  // a device: it has no ending, and may not seek
+    words.insert(words.end(), {target.c_str(), nullptr});
+
+    posix_spawn_file_actions_t files;
+    posix_spawnattr_t attributes;
+    posix_spawn_file_actions_init(&files);
+    posix_spawnattr_init(&attributes);
+    posix_spawn_file_actions_adddup2(&files, ends[1], STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&files, impl->messages, STDERR_FILENO);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    int error = posix_spawnp(&impl->child, "ffmpeg", &files, &attributes, const_cast<char* const*>(words.data()), environ);
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+    ::close(ends[1]);
+    if (error != 0) {
+        impl->child = -1;
+        return failed(error == ENOENT ? std::string("a video needs ffmpeg, which is not installed (Debian package: ffmpeg)")
+                                      : fmt::format("ffmpeg could not be started: {}", reason(error)));
+    }
+    return VideoWriter(std::move(impl));
+}
+
+Status VideoWriter::add(std::span<const uint8_t> rgba) {
+    ASSERT(impl_ && impl_->input >= 0, "a VideoWriter takes frames until close()");
+    ASSERT(rgba.size() == impl_->frameBytes, "a frame has the size given to open()");
+    if (!impl_->broken.empty()) return impl_->failure();
+    for (size_t done = 0; done < rgba.size();) {
+        ssize_t sent = ::send(impl_->input, rgba.data() + done, rgba.size() - done, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0) {
+            impl_->wait();  // it closed its end: it is ending, and says why
+            return impl_->failure();
+        }
+        done += static_cast<size_t>(sent);
+    }
+    ++impl_->frames;
+    return ok();
+}
+
+Status VideoWriter::close() {
+    ASSERT(impl_ && impl_->input >= 0, "close() a VideoWriter once");
+    ::close(impl_->input);
+    impl_->input = -1;
+    if (impl_->child > 0) {
+        bool empty = impl_->frames == 0;
+        int status = impl_->wait();
+        if (empty) return ok();
+        if (status != 0) return impl_->failure();
+    }
+    if (!impl_->broken.empty()) return impl_->failure();
+    if (!impl_->temporary.empty() && ::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0)
+        return failed(fmt::format("the video {} could not be written: {}", impl_->path, reason(errno)));
+    impl_->temporary.clear();
+    return ok();
+}
+
+}  // namespace rivulet

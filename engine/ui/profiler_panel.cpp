@@ -1,0 +1,143 @@
+#include "engine/ui/profiler_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rivulet {
+
+namespace {
+
+constexpr int kMeanFrames = 30;
+
+// Hues apart by the golden ratio: neighbours in the list never look alike.
+ImU32 hueOf(size_t index) {
+    float hue = std::fmod(0.55F + 0.618034F * static_cast<float>(index), 1.0F);
+    return ImColor::HSV(hue, 0.55F, 0.90F);
+}
+
+}  // namespace
+
+float ProfilerPanel::Line::mean(int at) const {
+    float sum = 0;
+    for (int k = 1; k <= kMeanFrames; ++k) sum += ms[static_cast<size_t>((at - k + kFrames) % kFrames)];
+    return sum / kMeanFrames;
+}
+
+ProfilerPanel::Line& ProfilerPanel::line(std::string_view side, std::string_view name) {
+    auto found = std::find_if(lines_.begin(), lines_.end(), [&](const Line& l) { return l.side == side && l.name == name; });
+    if (found != lines_.end()) return *found;
+    Line fresh;
+    fresh.side = side;
+    fresh.name = name;
+    // A side's passes stay together, so that the graph stacks them side by side.
+    auto after = std::find_if(lines_.rbegin(), lines_.rend(), [&](const Line& l) { return l.side == side; });
+    return *lines_.insert(after == lines_.rend() ? lines_.end() : after.base(), std::move(fresh));
+}
+
+void ProfilerPanel::add(std::string_view side, std::span<const PassTime> passes) {
+    for (const PassTime& pass : passes) line(side, pass.name).ms[static_cast<size_t>(at_)] += static_cast<float>(pass.ms);
+}
+
+void ProfilerPanel::endFrame(double frameMs) {
+    frame_[static_cast<size_t>(at_)] = static_cast<float>(frameMs);
+    at_ = (at_ + 1) % kFrames;
+    frame_[static_cast<size_t>(at_)] = 0;
+    for (Line& l : lines_) l.ms[static_cast<size_t>(at_)] = 0;
+}
+
+void ProfilerPanel::clear() {
+    lines_.clear();
+    std::fill(frame_.begin(), frame_.end(), 0.0F);
+}
+
+double ProfilerPanel::mean(std::string_view side) const {
+    double sum = 0;
+    for (const Line& l : lines_)
+        if (l.side == side) sum += static_cast<double>(l.mean(at_));
+    return sum;
+}
+
+void ProfilerPanel::draw() {
+    drawGraph();
+    drawTable();
+}
+
+// Passes stacked from the bottom, one column of colour a frame, newest at the right; the frame's whole time as a line above.
+void ProfilerPanel::drawGraph() const {
+    ImVec2 size(ImGui::GetContentRegionAvail().x, 110);
+    ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + size.x, low.y + size.y);
+    ImGui::Dummy(size);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
+
+    float top = 1;
+    for (int k = 0; k < kFrames; ++k) {
+        float stack = 0;
+        for (const Line& l : lines_) stack += l.ms[static_cast<size_t>(k)];
+        top = std::max({top, stack, frame_[static_cast<size_t>(k)]});
+    }
+    top = std::exp2(std::ceil(std::log2(top) * 2) / 2);  // steps of sqrt(2), so that the scale does not tremble
+
+    list->PushClipRect(low, high, true);
+    float width = size.x / kFrames;
+    auto height = [&](float ms) { return high.y - size.y * ms / top; };
+    for (int k = 1; k < kFrames; ++k) {
+        size_t from = static_cast<size_t>((at_ + k) % kFrames);
+        float x = low.x + width * static_cast<float>(k - 1), stack = 0;
+        for (size_t i = 0; i < lines_.size(); ++i) {
+            float ms = lines_[i].ms[from];
+            if (ms > 0) list->AddRectFilled(ImVec2(x, height(stack + ms)), ImVec2(x + width + 0.5F, height(stack)), hueOf(i));
+            stack += ms;
+        }
+        if (k > 1) {
+            size_t before = static_cast<size_t>((at_ + k - 1) % kFrames);
+            list->AddLine(ImVec2(x - 0.5F * width, height(frame_[before])), ImVec2(x + 0.5F * width, height(frame_[from])),
+                          IM_COL32(235, 240, 245, 160));
+        }
+    }
+    for (float ms : {1000.0F / 60, 1000.0F / 30})
+        if (ms < top) {
+            list->AddLine(ImVec2(low.x, height(ms)), ImVec2(high.x, height(ms)), IM_COL32(255, 255, 255, 40));
+            list->AddText(ImVec2(low.x + 4, height(ms) + 1), IM_COL32(255, 255, 255, 110), fmt::format("{:.1f} ms", ms).c_str());
+        }
+    list->PopClipRect();
+}
+
+void ProfilerPanel::drawTable() const {
+    if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_SizingStretchProp)) return;
+    ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch, 3);
+    ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthFixed, 56);
+    ImGui::TableSetupColumn("share", ImGuiTableColumnFlags_WidthStretch, 2);
+    double all = 1e-6;
+    for (const Line& l : lines_) all += static_cast<double>(l.mean(at_));
+    std::string side;
+    for (size_t i = 0; i < lines_.size(); ++i) {
+        const Line& l = lines_[i];
+        if (l.side != side) {
+            side = l.side;
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(side.c_str());
+            ImGui::TableNextColumn();
+            ImGui::Text("%7.2f", mean(side));
+        }
+        double ms = static_cast<double>(l.mean(at_));
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::Indent(8);
+        ImGui::TextColored(ImColor(hueOf(i)), "%s", l.name.c_str());
+        ImGui::Unindent(8);
+        ImGui::TableNextColumn();
+        ImGui::Text("%7.2f", ms);
+        ImGui::TableNextColumn();
+        ImVec2 at = ImGui::GetCursorScreenPos();
+        float width = ImGui::GetContentRegionAvail().x * static_cast<float>(ms / all), tall = ImGui::GetTextLineHeight();
+        ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x, at.y + 3), ImVec2(at.x + width, at.y + tall - 2), hueOf(i), 2);
+    }
+    ImGui::EndTable();
+}
+
+}  // namespace rivulet

@@ -1,0 +1,246 @@
+#include "fluid/bridge/run_stats.h"
+
+#include <fmt/format.h>
+#include <json/json.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace rivulet {
+
+Spread spreadOf(std::vector<double> values) {
+    Spread spread;
+    spread.count = values.size();
+    if (values.empty()) return spread;
+    std::sort(values.begin(), values.end());
+    size_t n = values.size();
+    spread.min = values.front();
+    spread.max = values.back();
+    spread.median = n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+    spread.p95 = values[std::min(n - 1, (n * 95 + 99) / 100 - 1)];  // the nearest rank
+    return spread;
+}
+
+HostParticles readParticles(const FluidWorld& world) {
+    ParticleView view = world.particles();
+    HostParticles host;
+    if (view.count == 0) return host;
+    Device& device = world.device();
+    host.position = device.readAll<vec4>(*view.position, view.count);
+    host.velocity = device.readAll<vec4>(*view.velocity, view.count);
+    host.id = device.readAll<uint32_t>(*view.id, view.count);
+    return host;
+}
+
+std::optional<double> bulkFront(std::span<const vec4> positions, const BoxParams& box, float spacing) {
+    // The floor in squares of half a spacing: a particle covers the two by two nearest to it, a slab is four squares wide.
+    double square = 0.5 * static_cast<double>(spacing);
+    vec3 size = box.max - box.min;
+    if (!(square > 0) || !(size.x > 0) || !(size.z > 0)) return std::nullopt;
+    constexpr int kSlab = 4;
+    auto along = static_cast<int64_t>(std::ceil(static_cast<double>(size.x) / square / kSlab - 1e-6)) * kSlab;
+    auto across = static_cast<int64_t>(std::max(1.0, std::round(static_cast<double>(size.z) / square)));
+    constexpr int64_t kMostSquares = 1 << 28;
+    if (along > kMostSquares || across > kMostSquares || along * across > kMostSquares) return std::nullopt;
+    std::vector<bool> covered(static_cast<size_t>(along * across));
+    for (const vec4& p : positions) {
+        if (!isFinite(vec3(p)) || p.y >= box.min.y + 2 * spacing) continue;
+        double x = std::round(static_cast<double>(p.x - box.min.x) / square), z = std::round(static_cast<double>(p.z - box.min.z) / square);
+        if (x < 0 || z < 0 || x > static_cast<double>(along) || z > static_cast<double>(across)) continue;
+        auto column = static_cast<int64_t>(x), row = static_cast<int64_t>(z);
+        for (int64_t i = std::max<int64_t>(column - 1, 0); i <= std::min(column, along - 1); ++i)
+            for (int64_t k = std::max<int64_t>(row - 1, 0); k <= std::min(row, across - 1); ++k)
+                covered[static_cast<size_t>(i * across + k)] = true;
+    }
+    std::vector<double> share(static_cast<size_t>(along / kSlab));
+    for (size_t slab = 0; slab < share.size(); ++slab) {
+        auto from = covered.begin() + static_cast<int64_t>(slab) * kSlab * across;
+        share[slab] = static_cast<double>(std::count(from, from + kSlab * across, true)) / static_cast<double>(kSlab * across);
+    }
+    constexpr double kWet = 0.25;
+    for (size_t slab = share.size(); slab-- > 0;) {
+        if (share[slab] < kWet) continue;
+        double next = slab + 1 < share.size() ? share[slab + 1] : kWet;
+        double between = share[slab] > next ? (share[slab] - kWet) / (share[slab] - next) : 0;
+        if (slab + 1 == share.size()) between = 0.5;  // it has reached the far wall
+        return static_cast<double>(box.min.x) + (static_cast<double>(slab) + 0.5 + between) * kSlab * square;
+    }
+    return std::nullopt;
+}
+
+bool inSetVoxel(const VoxelGrid& surface, const vec4& p) {
+    if (surface.count() == 0 || !isFinite(vec3(p))) return false;
+    int64_t cell[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        double c =
+            std::floor((static_cast<double>(p[axis]) - static_cast<double>(surface.origin[axis])) / static_cast<double>(surface.voxel));
+        if (!(c >= 0 && c < surface.size[axis])) return false;
+        cell[axis] = static_cast<int64_t>(c);
+    }
+    auto bit = static_cast<size_t>((cell[2] * surface.size.y + cell[1]) * surface.size.x + cell[0]);
+    return ((surface.bits[bit / 8] >> (bit % 8)) & 1U) != 0;
+}
+
+RunRecorder::RunRecorder(FluidWorld& world, const VoxelField* field, bool readBack)
+    : world_(&world), field_(field), readBack_(readBack), lastFrame_(world.stats().frame), penetrated_(world.particles().count) {}
+
+void RunRecorder::frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> renderPasses) {
+    simulate_.push_back(simulateMs);
+    if (renderMs > 0) render_.push_back(renderMs);
+    frame_.push_back(frameMs);
+    wallMs_ += frameMs;
+    for (const PassTime& pass : world_->device().takeTimes()) passes_[pass.name].push_back(pass.ms);
+    for (const PassTime& pass : renderPasses) passes_["render: " + pass.name].push_back(pass.ms);
+    const FluidStats& stats = world_->stats();
+    if (stats.frame != lastFrame_) {
+        lastFrame_ = stats.frame;
+        substeps_ += static_cast<uint64_t>(stats.substeps);
+    }
+    if (!readBack_) return;
+
+    HostParticles now = readParticles(*world_);
+    double sum = 0;
+    size_t counted = 0;
+    for (size_t i = 0; i < now.position.size(); ++i) {
+        const vec4& p = now.position[i];
+        if (!isFinite(vec3(p)) || !std::isfinite(p.w)) continue;
+        double compression = std::max(static_cast<double>(p.w) - 1, 0.0);
+        sum += compression;
+        ++counted;
+        maxCompression_ = std::max(maxCompression_, compression);
+        if (field_ != nullptr && now.id[i] < penetrated_.size() && inSetVoxel(field_->surface, p)) penetrated_[now.id[i]] = true;
+    }
+    if (counted > 0) {
+        compressionSum_ += sum / static_cast<double>(counted);
+        ++compressionFrames_;
+    }
+}
+
+RunStats RunRecorder::finish(std::string scene) {
+    FluidWorld& world = *world_;
+    world.device().finish();
+    world.device().poll();
+    HostParticles now = readParticles(world);
+    const FluidStats& late = world.stats();
+    const FluidParams& params = world.params();
+    double mass = static_cast<double>(world.particles().mass);
+
+    RunStats stats;
+    stats.scene = std::move(scene);
+    stats.machine = machineName();
+    const DeviceInfo& device = world.device().info();
+    stats.device = device.driver.empty() ? device.name : fmt::format("{}, {}", device.name, device.driver);
+    stats.backend = backendName(world.device().backend());
+    stats.method = params.method;
+    stats.particles = world.particles().count;
+    stats.frames = frame_.size();
+    stats.seconds = world.time();
+    stats.wallSeconds = wallMs_ * 1e-3;
+    stats.simulateMs = spreadOf(simulate_);
+    stats.renderMs = spreadOf(render_);
+    stats.frameMs = spreadOf(frame_);
+    for (const auto& [name, ms] : passes_) stats.passes[name] = spreadOf(ms);
+
+    dvec3 sum(0.0);
+    size_t counted = 0;
+    for (size_t i = 0; i < now.position.size(); ++i) {
+        vec3 p(now.position[i]), v(now.velocity[i]);
+        if (!isFinite(p) || !isFinite(v)) continue;
+        sum += dvec3(p);
+        stats.kinetic += 0.5 * mass * glm::dot(dvec3(v), dvec3(v));
+        stats.potential -= mass * glm::dot(dvec3(params.gravity), dvec3(p));
+        ++counted;
+    }
+    if (counted > 0) stats.centreOfMass = sum / static_cast<double>(counted);
+    stats.avgCompression = compressionFrames_ > 0 ? compressionSum_ / static_cast<double>(compressionFrames_) : late.avgCompression;
+    stats.maxCompression = readBack_ ? maxCompression_ : late.maxCompression;
+    stats.front = bulkFront(now.position, params.box, world.particles().spacing);
+    stats.volume = mass * stats.particles / static_cast<double>(params.restDensity);
+    stats.lost = late.lost;
+    stats.nan = late.nan;
+    stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));
+    stats.substeps = substeps_;
+    stats.dtMin = late.dtMin;
+    stats.dtMax = late.dtMax;
+    stats.limited = late.limited;
+    return stats;
+}
+
+namespace {
+
+Json::Value jsonOf(const Spread& spread) {
+    Json::Value v(Json::objectValue);
+    v["min"] = spread.min;
+    v["median"] = spread.median;
+    v["p95"] = spread.p95;
+    return v;
+}
+
+}  // namespace
+
+std::string writeRunStats(const RunStats& stats) {
+    Json::Value v(Json::objectValue);
+    v["version"] = RIVULET_VERSION;
+    v["scene"] = stats.scene;
+    v["machine"] = stats.machine;
+    v["device"] = stats.device;
+    v["backend"] = stats.backend;
+    v["method"] = stats.method;
+    v["particles"] = stats.particles;
+    v["frames"] = Json::UInt64(stats.frames);
+    v["seconds"] = stats.seconds;
+    v["wallSeconds"] = stats.wallSeconds;
+    v["simulateMs"] = jsonOf(stats.simulateMs);
+    v["renderMs"] = jsonOf(stats.renderMs);
+    v["frameMs"] = jsonOf(stats.frameMs);
+    v["passes"] = Json::Value(Json::objectValue);
+    for (const auto& [name, spread] : stats.passes) v["passes"][name] = jsonOf(spread);
+    v["density"]["avgCompression"] = stats.avgCompression;
+    v["density"]["maxCompression"] = stats.maxCompression;
+    v["energy"]["kinetic"] = stats.kinetic;
+    v["energy"]["potential"] = stats.potential;
+    v["centreOfMass"] = Json::Value();
+    if (stats.centreOfMass) {
+        v["centreOfMass"] = Json::Value(Json::arrayValue);
+        for (int axis = 0; axis < 3; ++axis) v["centreOfMass"].append((*stats.centreOfMass)[axis]);
+    }
+    v["front"] = stats.front ? Json::Value(*stats.front) : Json::Value();
+    v["volume"] = stats.volume;
+    v["lost"] = stats.lost;
+    v["penetrations"] = stats.penetrations;
+    v["nan"] = stats.nan;
+    v["substeps"] = Json::UInt64(stats.substeps);
+    v["dt"]["min"] = stats.dtMin;
+    v["dt"]["max"] = stats.dtMax;
+    v["limited"] = Json::Value(Json::arrayValue);
+    for (const std::string& sentence : stats.limited) v["limited"].append(sentence);
+
+    Json::StreamWriterBuilder builder;
+    builder["indentation"] = "  ";
+    builder["precision"] = 9;
+    builder["useSpecialFloats"] = false;
+    return Json::writeString(builder, v) + "\n";
+}
+
+std::string machineName() {
+    auto valueAfter = [](const char* file, std::string_view key, char separator) {
+        std::ifstream stream(file);
+        std::string line;
+        while (std::getline(stream, line)) {
+            if (!line.starts_with(key)) continue;
+            size_t from = line.find_first_not_of(" \t\"", line.find(separator) + 1);
+            if (from == std::string::npos) return std::string();
+            size_t to = line.find_last_not_of(" \t\"");
+            return line.substr(from, to - from + 1);
+        }
+        return std::string();
+    };
+    std::string processor = valueAfter("/proc/cpuinfo", "model name", ':');
+    std::string system = valueAfter("/etc/os-release", "PRETTY_NAME", '=');
+    if (processor.empty()) processor = "unknown processor";
+    return fmt::format("{}, {} threads{}{}", processor, std::thread::hardware_concurrency(), system.empty() ? "" : ", ", system);
+}
+
+}  // namespace rivulet

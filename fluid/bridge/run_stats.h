@@ -1,0 +1,81 @@
+// The record of a run: times, density, where the water is, and what went wrong; what --stats writes. Figures of the particles are taken on
+// the host from their positions, not from the world's own sums: late figures of a GPU and the code that collides have no say in them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet {
+
+// ms, over the frames.
+struct Spread {
+    double min = 0, median = 0, p95 = 0, max = 0;
+    size_t count = 0;
+};
+Spread spreadOf(std::vector<double> values);
+
+// Particles read back from a Device.
+struct HostParticles {
+    std::vector<vec4> position, velocity;  // as in ParticleView
+    std::vector<uint32_t> id;
+};
+HostParticles readParticles(const FluidWorld& world);
+
+// The bulk front along +x, m: where the covered share of the floor, in slabs of 2 spacings, last crosses 25 %, interpolated between the
+// slabs' centres. A particle less than 2 spacings above the floor covers a square of one spacing. Nothing where no slab is covered that
+// far.
+std::optional<double> bulkFront(std::span<const vec4> positions, const BoxParams& box, float spacing);
+
+// Whether a point lies in a set voxel, from the bits alone. NaN and points outside the grid: no.
+bool inSetVoxel(const VoxelGrid& surface, const vec4& p);
+
+struct RunStats {
+    std::string scene, machine, device, backend, method;
+    uint32_t particles = 0;
+    uint64_t frames = 0;
+    double seconds = 0, wallSeconds = 0;  // simulated; on the wall, of all the frames
+    Spread simulateMs, renderMs, frameMs;
+    std::map<std::string, Spread> passes;           // ms a frame
+    double avgCompression = 0, maxCompression = 0;  // fractions; mean over particles and time, largest ever
+    double kinetic = 0, potential = 0;              // J
+    std::optional<dvec3> centreOfMass;              // m; nothing without particles
+    std::optional<double> front;                    // m
+    double volume = 0;                              // m^3, of all particles at rest density
+    uint32_t lost = 0, penetrations = 0, nan = 0;
+    uint64_t substeps = 0;
+    double dtMin = 0, dtMax = 0;  // s
+    std::vector<std::string> limited;
+};
+std::string writeRunStats(const RunStats& stats);  // one JSON object, ends in a newline
+
+// Gathers a run frame by frame.
+class RunRecorder {
+  public:
+    // `readBack`: reads the particles after each frame, for compression and penetrations; costs time that is not counted as simulation.
+    RunRecorder(FluidWorld& world, const VoxelField* field, bool readBack);
+    void frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> renderPasses);
+    // Reads the particles once more for what holds at the end.
+    RunStats finish(std::string scene);
+
+  private:
+    FluidWorld* world_;
+    const VoxelField* field_;
+    bool readBack_;
+    std::vector<double> simulate_, render_, frame_;
+    std::map<std::string, std::vector<double>> passes_;
+    double compressionSum_ = 0, maxCompression_ = 0, wallMs_ = 0;
+    uint64_t compressionFrames_ = 0, substeps_ = 0, lastFrame_ = 0;
+    std::vector<bool> penetrated_;  // by id
+};
+
+// The processor, its threads and the system: "Intel(R) Xeon(R) ... , 2 threads, Debian GNU/Linux 12 (bookworm)".
+std::string machineName();
+
+}  // namespace rivulet

@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything, runs the tests; exits as ctest does.
+#   bash tests/run.sh [arguments of ctest]             e.g. -L physics, -R include
+set -u
+. "$(dirname "${BASH_SOURCE[0]}")/../third_party/setup.sh"
+install_packages run test || exit 1
+build -DRIVULET_TESTS=ON
+exec ctest --test-dir "$root/build/release" --parallel 2 --output-on-failure "$@"

@@ -1,0 +1,236 @@
+// `rivulet run` headless: what it leaves behind, what it says, and how it ends when things go wrong.
+#include <gtest/gtest.h>
+#include <json/json.h>
+#include <signal.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/unit/program_runner.h"
+
+namespace rivulet::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+Json::Value readJson(const fs::path& path) {
+    std::ifstream stream(path);
+    Json::Value value;
+    std::string errors;
+    EXPECT_TRUE(Json::parseFromStream(Json::CharReaderBuilder(), stream, &value, &errors)) << path << ": " << errors;
+    return value;
+}
+
+// The video's frame count and size, as ffprobe counts them by decoding every frame; "" when the file is no video.
+std::string probe(const fs::path& video) {
+    return runCommand({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v", "-show_entries",
+                       "stream=nb_read_frames,width,height", "-of", "csv=p=0", video.string()})
+        .out;
+}
+
+RunOptions in(const Scratch& scratch) {
+    RunOptions options;
+    options.folder = scratch.path();
+    return options;
+}
+
+TEST(ProgramRun, HeadlessLeavesVideoPicturesAndFigures) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    Outcome outcome = runProgram({"run", scene, "--size", "161x91", "--seconds", "0.2"}, in(scratch));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("out/small.mp4"), std::string::npos) << "the last line says where: " << outcome.out;
+    EXPECT_EQ(linesIn(outcome.out), 1U) << outcome.out;
+    EXPECT_EQ(probe(scratch.path() / "out/small.mp4"), "162,92,12\n") << "even sides, 60 frames a second";
+    size_t pictures = 0;
+    for (const std::string& name : scratch.contents()) pictures += name.ends_with(".png") ? 1 : 0;
+    EXPECT_EQ(pictures, 6U);
+    Json::Value stats = readJson(scratch.path() / "out/stats.json");
+    EXPECT_EQ(stats["frames"].asInt(), 12);
+    EXPECT_GT(stats["renderMs"]["median"].asDouble(), 0);
+}
+
+TEST(ProgramRun, StatsHoldWhatTheyMust) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    Outcome outcome =
+        runProgram({"run", scene, "--headless", "--no-render", "--backend", "cpu", "--frames", "6", "--stats", "s.json"}, in(scratch));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    Json::Value stats = readJson(scratch.path() / "s.json");
+    for (const char* key :
+         {"version",     "scene",      "machine",      "device",  "backend",  "method",  "particles", "frames",       "seconds",
+          "wallSeconds", "simulateMs", "renderMs",     "frameMs", "passes",   "density", "energy",    "centreOfMass", "front",
+          "volume",      "lost",       "penetrations", "nan",     "substeps", "dt",      "limited"})
+        EXPECT_TRUE(stats.isMember(key)) << key;
+    for (const char* group : {"simulateMs", "renderMs", "frameMs"})
+        for (const char* key : {"min", "median", "p95"}) EXPECT_TRUE(stats[group].isMember(key)) << group << "." << key;
+    EXPECT_EQ(stats["backend"].asString(), "cpu");
+    EXPECT_EQ(stats["frames"].asInt(), 6);
+    EXPECT_NEAR(stats["seconds"].asDouble(), 0.1, 1e-6);
+    EXPECT_GT(stats["passes"].size(), 0U);
+    EXPECT_LE(stats["simulateMs"]["min"].asDouble(), stats["simulateMs"]["median"].asDouble());
+    EXPECT_LE(stats["simulateMs"]["median"].asDouble(), stats["simulateMs"]["p95"].asDouble());
+    EXPECT_EQ(stats["lost"].asInt(), 0);
+    EXPECT_EQ(stats["nan"].asInt(), 0);
+    EXPECT_EQ(stats["penetrations"].asInt(), 0);
+
+    // The block of 0.15 x 0.15 x 0.1 m falls freely for 0.1 s from its rest: g t^2 / 2.
+    double volume = 0.15 * 0.15 * 0.1, spacing = 0.02;
+    EXPECT_NEAR(stats["particles"].asDouble() * spacing * spacing * spacing, volume, 0.25 * volume);
+    EXPECT_NEAR(stats["volume"].asDouble(), stats["particles"].asDouble() * spacing * spacing * spacing, 1e-6);
+    EXPECT_NEAR(stats["centreOfMass"][0].asDouble(), 0.125, 0.011);
+    EXPECT_NEAR(stats["centreOfMass"][1].asDouble(), 0.125 - 0.5 * 9.81 * 0.01, 0.012);
+    double mass = 1000 * stats["volume"].asDouble();
+    EXPECT_NEAR(stats["energy"]["kinetic"].asDouble(), 0.5 * mass * 0.981 * 0.981, 0.05 * 0.5 * mass * 0.981 * 0.981);
+    EXPECT_NEAR(stats["energy"]["potential"].asDouble(), mass * 9.81 * stats["centreOfMass"][1].asDouble(), 1e-3);
+    EXPECT_LT(stats["density"]["avgCompression"].asDouble(), 0.01);
+}
+
+TEST(ProgramRun, WithoutPicturesItWritesFiguresAlone) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    Outcome outcome =
+        runProgram({"run", scene, "--headless", "--no-render", "--backend", "cpu", "--frames", "1", "--out", "here"}, in(scratch));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(scratch.contents(), (std::vector<std::string>{"here", "here/stats.json", "small.json"}));
+}
+
+// No error: said, and gone on with.
+TEST(ProgramRun, NoneOneAndCoincidentParticles) {
+    Scratch scratch;
+    auto sceneOf = [&](const std::string& blocks) {
+        return scratch.file("few.json",
+                            R"({"name": "few", "fluid": {"spacing": 0.02, "box": {"min": [0, 0, 0], "max": [0.4, 0.4, 0.4]}, "blocks": [)" +
+                                blocks + "]}}");
+    };
+    std::string one = R"({"min": [0.1, 0.1, 0.1], "max": [0.12, 0.12, 0.12]})";
+    auto run = [&](const std::string& blocks) {
+        return runProgram({"run", sceneOf(blocks), "--headless", "--no-render", "--backend", "cpu", "--frames", "30", "--stats", "s.json"},
+                          in(scratch));
+    };
+    Outcome none = run("");
+    EXPECT_EQ(none.code, 0) << none.err;
+    EXPECT_NE(none.err.find("particle"), std::string::npos) << "0 particles are said: " << none.err;
+    Json::Value stats = readJson(scratch.path() / "s.json");
+    EXPECT_EQ(stats["particles"].asInt(), 0);
+    EXPECT_TRUE(stats["front"].isNull());
+
+    Outcome single = run(one);
+    EXPECT_EQ(single.code, 0) << single.err;
+    stats = readJson(scratch.path() / "s.json");
+    EXPECT_EQ(stats["particles"].asInt(), 1);
+    EXPECT_EQ(stats["nan"].asInt(), 0);
+
+    Outcome twins = run(one + ", " + one);
+    EXPECT_EQ(twins.code, 0) << twins.err;
+    stats = readJson(scratch.path() / "s.json");
+    EXPECT_EQ(stats["particles"].asInt(), 2);
+    EXPECT_EQ(stats["nan"].asInt(), 0);
+    EXPECT_EQ(stats["lost"].asInt(), 0);
+}
+
+TEST(ProgramRun, CtrlCWhileAVideoIsWrittenClosesIt) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    RunOptions options = in(scratch);
+    auto start = std::chrono::steady_clock::now();
+    bool sent = false;
+    options.whileRunning = [&](pid_t) {
+        // The pictures of the first frame stand once the loop runs.
+        bool running = fs::exists(scratch.path() / "out") && !fs::is_empty(scratch.path() / "out");
+        for (const std::string& name : scratch.contents()) running = running && (name.find("0000.png") != std::string::npos || true);
+        if (sent || !running || std::chrono::steady_clock::now() - start < std::chrono::seconds(2)) return 0;
+        sent = true;
+        return SIGINT;
+    };
+    Outcome outcome = runProgram({"run", scene, "--headless", "--size", "160x90", "--seconds", "600"}, options);
+    EXPECT_EQ(outcome.code, 130) << outcome.err;
+    std::string seen = probe(scratch.path() / "out/small.mp4");
+    EXPECT_TRUE(seen.starts_with("160,90,")) << "no valid video: " << seen;
+    EXPECT_GT(std::atoi(seen.substr(7).c_str()), 0) << seen;
+    EXPECT_TRUE(fs::exists(scratch.path() / "out/stats.json"));
+    for (const std::string& name : scratch.contents()) EXPECT_EQ(name.find(".rivulet-"), std::string::npos) << "left behind: " << name;
+}
+
+// Exit 1, one sentence, nothing half-written.
+void expectFailure(const Outcome& outcome, const std::string& mentions) {
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(mentions), std::string::npos) << "'" << mentions << "' is not in: " << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("rivulet: ")) << outcome.err;
+}
+
+TEST(ProgramRun, OutputThatCannotBeWrittenIsAFailure) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    std::string blocker = scratch.file("blocker", "a file, not a folder");
+    std::vector<std::string> before = scratch.contents();
+    std::vector<std::string> base = {"run", scene, "--headless", "--size", "64x48", "--frames", "3"};
+    auto with = [&](std::vector<std::string> more) {
+        std::vector<std::string> words = base;
+        words.insert(words.end(), more.begin(), more.end());
+        return runProgram(words, in(scratch));
+    };
+    expectFailure(with({"--out", "blocker/below"}), "blocker");
+    expectFailure(with({"--out", "/proc/rivulet"}), "/proc");
+    expectFailure(with({"--no-render", "--stats", "/dev/full"}), "/dev/full");
+    expectFailure(with({"--no-render", "--stats", "blocker/s.json"}), "blocker/s.json");
+    EXPECT_EQ(scratch.contents(), before);
+    expectFailure(with({"--out", "o", "--video", "/dev/full"}), "/dev/full");
+    expectFailure(with({"--out", "o", "--video", "nowhere/x.mp4"}), "nowhere/x.mp4");
+    for (const std::string& name : scratch.contents()) {
+        EXPECT_FALSE(name.ends_with(".mp4")) << name;
+        EXPECT_EQ(name.find(".rivulet-"), std::string::npos) << "left behind: " << name;
+    }
+    EXPECT_TRUE(fs::is_character_file("/dev/full")) << "a device must not be replaced by a file";
+}
+
+TEST(ProgramRun, WithoutFfmpegAVideoIsAFailureThatNamesThePackage) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    RunOptions options = in(scratch);
+    options.environment["PATH"] = scratch.path().string();
+    expectFailure(runProgram({"run", scene, "--headless", "--size", "64x48", "--frames", "1"}, options), "ffmpeg");
+}
+
+TEST(ProgramRun, NoOpenGlWhereAPictureWasAskedForIsAFailure) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    RunOptions options = in(scratch);
+    options.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/nonexistent.json";
+    options.environment["EGL_PLATFORM"] = "none";
+    Outcome outcome = runProgram({"run", scene, "--headless", "--size", "64x48", "--frames", "1"}, options);
+    expectFailure(outcome, "OpenGL");
+    Outcome without = runProgram({"run", scene, "--headless", "--no-render", "--frames", "1", "--stats", "s.json"}, options);
+    EXPECT_EQ(without.code, 0) << without.err;
+    EXPECT_EQ(readJson(scratch.path() / "s.json")["backend"].asString(), "cpu");
+}
+
+TEST(ProgramRun, AForcedBackendThatIsAbsentIsSaidAndTheCpuRuns) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    RunOptions options = in(scratch);
+    options.environment["OCL_ICD_VENDORS"] = "/nonexistent";
+    Outcome outcome =
+        runProgram({"run", scene, "--headless", "--no-render", "--backend", "cl", "--frames", "2", "--stats", "s.json"}, options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("OpenCL"), std::string::npos) << outcome.err;
+    EXPECT_EQ(readJson(scratch.path() / "s.json")["backend"].asString(), "cpu");
+}
+
+TEST(ProgramRun, SetChangesAParameter) {
+    Scratch scratch;
+    std::string scene = scratch.file("small.json", smallScene());
+    auto height = [&](const std::string& gravity) {
+        Outcome outcome = runProgram({"run", scene, "--headless", "--no-render", "--backend", "cpu", "--frames", "6", "--stats", "s.json",
+                                      "--set", "fluid.gravity=[0," + gravity + ",0]", "--set", "name=other"},
+                                     in(scratch));
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        Json::Value stats = readJson(scratch.path() / "s.json");
+        EXPECT_EQ(stats["scene"].asString(), "other");
+        return stats["centreOfMass"][1].asDouble();
+    };
+    EXPECT_NEAR(height("0") - height("-4"), 0.5 * 4 * 0.01, 0.002);
+}
+
+}  // namespace
+}  // namespace rivulet::testing

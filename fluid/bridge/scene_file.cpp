@@ -1,0 +1,195 @@
+#include "fluid/bridge/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "engine/core/json.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFar = 1.0e5;  // m
+constexpr bool kLog = true, kLinear = false;
+constexpr bool kFixed = true;
+
+std::string shown(const vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+
+bool inside(const vec3& p, const BoxParams& box) { return glm::clamp(p, box.min, box.max) == p; }
+
+// "", or what makes no sense together; a single value's range was checked when it was read.
+std::string contradiction(const SceneFile& scene) {
+    const BoxParams& box = scene.fluid.box;
+    if (!glm::all(glm::lessThan(box.min, box.max)))
+        return fmt::format("fluid.box.min {} must lie below fluid.box.max {} on every axis", shown(box.min), shown(box.max));
+    for (size_t i = 0; i < scene.fluid.blocks.size(); ++i) {
+        const BlockParams& block = scene.fluid.blocks[i];
+        if (!glm::all(glm::lessThanEqual(block.min, block.max)))
+            return fmt::format("fluid.blocks[{}].min {} must not lie above its max {}", i, shown(block.min), shown(block.max));
+        if (!inside(block.min, box) || !inside(block.max, box))
+            return fmt::format("fluid.blocks[{}] from {} to {} reaches out of fluid.box from {} to {}", i, shown(block.min),
+                               shown(block.max), shown(box.min), shown(box.max));
+    }
+    for (size_t i = 0; i < scene.colliders.size(); ++i) {
+        const ColliderParams& collider = scene.colliders[i];
+        if (collider.shape == "mesh" && collider.mesh.empty())
+            return fmt::format("colliders[{}].mesh is empty: name a mesh file, or make its shape a plane", i);
+        if (collider.shape == "plane" && glm::length(collider.normal) < 1.0e-6F)
+            return fmt::format("colliders[{}].normal is {}, must have a length", i, shown(collider.normal));
+    }
+    const vec3 sight = scene.camera.target - scene.camera.position;
+    if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must not be where the camera is", shown(scene.camera.target));
+    if (glm::length(scene.light.direction) < 1.0e-6F)
+        return fmt::format("light.direction is {}, must have a length", shown(scene.light.direction));
+    return "";
+}
+
+// Folders that hold what the program brings along, the user's own first.
+std::vector<fs::path> assetFolders() {
+    std::vector<fs::path> folders;
+    if (const char* listed = std::getenv("RIVULET_ASSETS")) {
+        std::string_view rest = listed;
+        while (!rest.empty()) {
+            const size_t colon = std::min(rest.find(':'), rest.size());
+            if (colon > 0) folders.emplace_back(rest.substr(0, colon));
+            rest.remove_prefix(std::min(colon + 1, rest.size()));
+        }
+    }
+    folders.emplace_back(fs::path(RIVULET_SOURCE_DIR) / "assets");
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    if (!error) folders.push_back(program.parent_path().parent_path() / "share/rivulet/assets");
+    return folders;
+}
+
+bool isFile(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(path, error) && !fs::is_directory(path, error);
+}
+
+VisitFn visiting(SceneFile& scene) {
+    return [&scene](ParamVisitor& v) { scene.visit(v); };
+}
+
+}  // namespace
+
+void ColliderParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> shapes = {"mesh", "plane"};
+    v.choice({.name = "shape", .doc = "a mesh from a file, or a plane with fluid on the side of its normal", .fixed = kFixed}, shape,
+             shapes);
+    v.value({.name = "mesh", .doc = "mesh file: as given, beside the scene, in RIVULET_ASSETS, in assets/", .fixed = kFixed}, mesh);
+    v.value({"resolution", "", "voxels along the mesh's longest side", 4, 1024, kLog, kFixed}, resolution);
+    v.value({"position", "m", "where the mesh's origin goes (with fitSize: its middle); of a plane: a point on it", -kFar, kFar, kLinear,
+             kFixed},
+            position);
+    v.value({"rotation", "deg", "of a mesh, about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
+    v.value({"scale", "", "of a mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
+    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to, instead of scale; 0 = scale holds", 0, kFar, kLog, kFixed},
+            fitSize);
+    v.value({"normal", "", "of a plane, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, normal);
+    v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
+    v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
+    v.value({.name = "visible", .doc = "whether it is drawn; it is solid either way"}, visible);
+}
+
+void CameraParams::visit(ParamVisitor& v) {
+    v.value({"position", "m", "where the eye is", -kFar, kFar}, position);
+    v.value({"target", "m", "the point looked at", -kFar, kFar}, target);
+    v.value({"fieldOfView", "deg", "vertical angle of view", 5, 120}, fieldOfView);
+}
+
+void LightParams::visit(ParamVisitor& v) {
+    v.value({"direction", "", "towards the light, of any length", -1.0e6, 1.0e6}, direction);
+    v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
+    v.value({"intensity", "", "factor on the colour", 0, 100}, intensity);
+}
+
+void BackgroundParams::visit(ParamVisitor& v) {
+    v.colour({"horizon", "", "linear colour of the sky at eye level", 0, 10}, horizon);
+    v.colour({"zenith", "", "linear colour of the sky overhead", 0, 10}, zenith);
+    v.colour({"floor", "", "linear colour of the ground", 0, 1}, floor);
+    v.value({"floorHeight", "m", "height of the ground", -kFar, kFar}, floorHeight);
+    v.value({.name = "showFloor", .doc = "whether the ground is drawn"}, showFloor);
+    v.value({.name = "showBox", .doc = "whether the edges of the fluid's box are drawn"}, showBox);
+}
+
+void FluidLookParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> renderers = {"points", "screen_space"};
+    static const std::vector<std::string> colourings = {"speed", "density", "id"};
+    v.choice({.name = "renderer", .doc = "particles as points, or a water surface found on the screen"}, renderer, renderers);
+    v.choice({.name = "colourBy", .doc = "what the colour of points shows"}, colourBy, colourings);
+    v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
+    v.value({"smoothing", "", "reach of the surface's smoothing, in drawn radii; 0 = none", 0, 20}, smoothing);
+    v.value({"absorption", "1/m", "how fast red, green and blue fade in the fluid (Beer-Lambert)", 0, 1000}, absorption);
+    v.value({"refractiveIndex", "", "of the fluid; water 1.333", 1, 3}, refractiveIndex);
+}
+
+void SceneFile::visit(ParamVisitor& v) {
+    v.value({.name = "name", .doc = "what outputs are called after"}, name);
+    v.value({.name = "doc", .doc = "one sentence on what is to be seen"}, doc);
+    v.value({"duration", "s", "simulated time of a run that is given no other", 0, 3600}, duration);
+    v.group({.name = "fluid", .doc = "what flows, and how it is simulated"}, fluid);
+    v.list({.name = "colliders", .doc = "solids that do not move", .fixed = kFixed}, colliders);
+    v.group({.name = "look", .doc = "how the fluid is drawn"}, look);
+    v.group({.name = "camera", .doc = "where the picture is taken from"}, camera);
+    v.group({.name = "light", .doc = "the sun"}, light);
+    v.group({.name = "background", .doc = "sky and ground"}, background);
+}
+
+Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments) {
+    Result<std::string> file = findAsset(path, "");
+    if (!file) return file.error();
+    SceneFile scene;
+    const VisitFn visit = visiting(scene);
+    if (Status read = readJsonFile(*file, visit); !read) return read.error();
+    for (const std::string& assignment : assignments)
+        if (Status set = setParam(assignment, visit); !set) return badInput("--set " + assignment + ": " + set.error().message);
+    if (const std::string wrong = contradiction(scene); !wrong.empty()) return badInput(*file + ": " + wrong);
+    scene.folder = fs::path(*file).parent_path().string();
+    return scene;
+}
+
+Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder) {
+    std::vector<fs::path> places = {path};
+    if (fs::path(path).is_relative()) {
+        if (!sceneFolder.empty()) places.push_back(fs::path(sceneFolder) / path);
+        for (const fs::path& folder : assetFolders()) places.push_back(folder / path);
+    }
+    for (const fs::path& place : places)
+        if (isFile(place)) return place.string();
+    std::error_code error;
+    if (fs::is_directory(path, error)) return badInput(fmt::format("{} is a folder, not a file", path));
+    if (places.size() == 1) return badInput(fmt::format("{} does not exist", path));
+    std::vector<std::string> looked;
+    for (const fs::path& place : places) looked.push_back(place.string());
+    return badInput(fmt::format("{} does not exist; looked at {}", path, fmt::join(looked, ", ")));
+}
+
+std::vector<SceneListing> listScenes() {
+    std::vector<fs::path> folders = {"."};
+    for (const fs::path& folder : assetFolders()) folders.push_back(folder);
+    std::vector<SceneListing> listings;
+    std::set<fs::path> seen;  // one folder may be reached in several ways
+    for (const fs::path& folder : folders) {
+        std::error_code error;
+        for (fs::directory_iterator at(folder / "scenes", error), end; !error && at != end; at.increment(error)) {
+            std::error_code ignored;
+            if (at->path().extension() != ".json" || !isFile(at->path()) || !seen.insert(fs::weakly_canonical(at->path(), ignored)).second)
+                continue;
+            SceneFile scene;
+            const Status read = readJsonFile(at->path().string(), visiting(scene));
+            listings.push_back(
+                {at->path().string(), read ? scene.name : at->path().stem().string(), read ? scene.doc : read.error().message});
+        }
+    }
+    std::sort(listings.begin(), listings.end(), [](const SceneListing& a, const SceneListing& b) { return a.path < b.path; });
+    return listings;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,55 @@
+#include "fluid/sim/fluid_params.h"
+
+#include "fluid/sim/method.h"
+
+namespace rivulet {
+
+namespace {
+constexpr double kFar = 1.0e5;                // m; beyond this float32 no longer tells millimetres apart
+constexpr double kFast = 1.0e3;               // m/s
+constexpr bool kLog = true, kLinear = false;  // the slider's scale
+constexpr bool kFixed = true;                 // until the scene is loaded anew
+}  // namespace
+
+void BlockParams::visit(ParamVisitor& v) {
+    v.value({"min", "m", "low corner", -kFar, kFar, kLinear, kFixed}, min);
+    v.value({"max", "m", "high corner", -kFar, kFar, kLinear, kFixed}, max);
+    v.value({"velocity", "m/s", "at the start", -kFast, kFast, kLinear, kFixed}, velocity);
+}
+
+void BoxParams::visit(ParamVisitor& v) {
+    v.value({"min", "m", "low corner", -kFar, kFar, kLinear, kFixed}, min);
+    v.value({"max", "m", "high corner", -kFar, kFar, kLinear, kFixed}, max);
+    v.value({"restitution", "", "share of the speed into a wall that comes back: 0 = stays, 1 = bounces", 0, 1}, restitution);
+}
+
+void CollisionParams::visit(ParamVisitor& v) {
+    v.value({"friction", "", "Coulomb friction of walls and meshes: 0 = slips", 0, 10}, friction);
+    v.value({"restitution", "", "share of the speed into a mesh that comes back: 0 = stays, 1 = bounces", 0, 1}, restitution);
+}
+
+void FluidParams::visit(ParamVisitor& v) {
+    const std::vector<std::string> names = methods().names();
+    v.choice({.name = "method", .doc = "how pressure is found; rivulet list says what each is", .fixed = kFixed}, method, names);
+    v.value({"spacing", "m", "distance between particles at rest: halving it makes eight times as many", 0.0005, 1, kLog, kFixed}, spacing);
+    v.value(
+        {"supportSpacings", "", "reach of a particle (support radius), in spacings: more is smoother and slower", 1.5, 4, kLinear, kFixed},
+        supportSpacings);
+    v.value({"restDensity", "kg/m^3", "density at rest; water 1000", 1, 20000, kLog}, restDensity);
+    v.value({"viscosity", "m^2/s", "kinematic viscosity; water 1e-6, honey about 5e-3", 0, 10, kLog}, viscosity);
+    v.value({"artificialViscosity", "", "damping between particles that approach (Monaghan's alpha): 0.02 keeps a free surface calm", 0, 1},
+            artificialViscosity);
+    v.value(
+        {"soundSpeed", "m/s", "speed of sound of the weakly compressible methods; 0 = ten times the fastest fall in the scene", 0, 3000},
+        soundSpeed);
+    v.value({"stiffness", "m^2/s^2", "k of the thesis's pressure k (density - rest density); method wcsph_thesis alone", 0.01, 1.0e6, kLog},
+            stiffness);
+    v.value({"gravity", "m/s^2", "acceleration of everything", -1000, 1000}, gravity);
+    v.value({"cfl", "", "a step's length, as a share of the time that sound takes across a smoothing length", 0.01, 4, kLog}, cfl);
+    v.value({"maxSubsteps", "", "steps in one frame at most; beyond that simulated time slows down", 1, 100000, kLog}, maxSubsteps);
+    v.group({.name = "box", .doc = "walls around the fluid; what leaves them is lost"}, box);
+    v.group({.name = "collision", .doc = "how fluid meets what is solid"}, collision);
+    v.list({.name = "blocks", .doc = "boxes of fluid that are there at the start", .fixed = kFixed}, blocks);
+}
+
+}  // namespace rivulet

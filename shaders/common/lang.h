@@ -7,9 +7,12 @@
 #elif defined(__OPENCL_C_VERSION__)
 typedef float2 vec2; typedef float3 vec3; typedef float4 vec4; typedef int3 ivec3; typedef uint4 uvec4;
 typedef float real; typedef float3 real3;
+#define vec2(...) ((float2)(__VA_ARGS__))
 #define vec3(...) ((float3)(__VA_ARGS__))
+#define real3(...) ((float3)(__VA_ARGS__))
 #define vec4(...) ((float4)(__VA_ARGS__))
 #define ivec3(...) ((int3)(__VA_ARGS__))
+#define abs(x) fabs(x)  /* of floats only, in every kernel */
 #define TO_IVEC3(v) convert_int3(v)
 #define TO_VEC3(v) convert_float3(v)
 #define TO_INT(x) ((int)(x))
@@ -29,13 +32,13 @@ typedef float real; typedef float3 real3;
 #define BUFFERS(P)
 #define SHARED_OUT(T, n, count)                      /* GLSL declares work-group memory outside the kernel ... */
 #define SHARED_IN(T, n, count) __local T n[count];   /* ... OpenCL inside it */
-#define KERNEL(name, P) __kernel void name(__constant P* params_ ARGS(RO, RW))
+#define KERNEL(name, P) __kernel __attribute__((reqd_work_group_size(LOCAL_SIZE, 1, 1))) void name(__constant P* params_ ARGS(RO, RW))
 #define PARAMS (*params_)
 #define THREAD_ID ((uint)get_global_id(0))
 #define LOCAL_ID ((uint)get_local_id(0))
 #define GROUP_ID ((uint)get_group_id(0))
 #define BARRIER barrier(CLK_LOCAL_MEM_FENCE)
-#else  // GLSL. LOCAL_SIZE comes from the device.
+#else  // GLSL. LOCAL_SIZE comes from the device, here and in OpenCL.
 #define real float
 #define real3 vec3
 #define TO_IVEC3(v) ivec3(v)
@@ -62,7 +65,7 @@ typedef float real; typedef float3 real3;
 #define THREAD_ID gl_GlobalInvocationID.x
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID gl_WorkGroupID.x
-#define BARRIER barrier()
+#define BARRIER { memoryBarrierShared(); barrier(); }
 #endif
 #if !defined(__cplusplus)  // what a lane is on a GPU: the particle itself
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))

@@ -7,6 +7,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/sim/kernels/cpu_grid.h"
+#include "shaders/fluid/scan_params.h"
 
 namespace rivulet {
 
@@ -14,7 +15,6 @@ namespace {
 
 // Cells above this would take more memory than the particles of any scene that fits one device.
 constexpr double kMostCells = 64.0e6;
-constexpr uint32_t kBlock = 1024;  // items a work group scans: 256 threads x 4
 
 // Takes the first Error of several allocations.
 struct Allocator {
@@ -83,7 +83,7 @@ Status NeighborGrid::Impl::allocate() {
         cellCounts = take((sorted + 2) * sizeof(uint32_t));
         rank = take(count * sizeof(uint32_t));
         order = take(count * sizeof(uint32_t));
-        blockSum = take(((sorted + 2) / kBlock + 1) * sizeof(uint32_t));
+        blockSum = take(((sorted + 2) / SCAN_BLOCK + 1) * sizeof(uint32_t));
     }
     return take.status;
 }
@@ -99,6 +99,13 @@ Status NeighborGrid::Impl::findKernels() {
         wanted = {{&sortCount, "fluid/cpu_sort_count", {}},     {&sortSegments, "fluid/cpu_sort_segments", {}},
                   {&sortOffsets, "fluid/cpu_sort_offsets", {}}, {&sortScatter, "fluid/cpu_sort_scatter", {}},
                   {&neighborList, "fluid/cpu_neighbor_list", {}}};
+    else {
+        const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
+        wanted = {{&cellCount, "fluid/cell_count", {}},         {&scanReduce, "fluid/scan_reduce", scanSize},
+                  {&scanBlocks, "fluid/scan_blocks", scanSize}, {&scanApply, "fluid/scan_apply", scanSize},
+                  {&cellScatter, "fluid/cell_scatter", {}},     {&cellSort, "fluid/cell_sort", {}},
+                  {&reorder, "fluid/reorder", {}}};
+    }
     for (Wanted& w : wanted) {
         Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();
@@ -178,7 +185,18 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
     return ok();
 }
 
-void NeighborGrid::Impl::buildGpu(const StepParams&, Particles&) {}
+void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
+    device->fill(cellCounts, 0);
+    device->run(cellCount, params, {&p.positionNext, &cellCounts, &cellOf, &rank}, count);
+    const ScanParams scan{sortedCells() + 2, (sortedCells() + 2 + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
+    device->run(scanReduce, scan, {&cellCounts, &blockSum}, scan.blocks * SCAN_THREADS);
+    device->run(scanBlocks, scan, {&blockSum}, SCAN_THREADS);
+    device->run(scanApply, scan, {&cellCounts, &blockSum, &cellStart}, scan.blocks * SCAN_THREADS);
+    device->run(cellScatter, params, {&cellStart, &cellOf, &rank, &order}, count);
+    device->run(cellSort, params, {&cellStart, &cellOf, &p.id, &order, &rank}, count);  // the ranks are used up: their place holds the order
+    device->run(reorder, params, {&rank, &p.positionNext, &p.velocityNext, &p.id, &p.position, &p.velocity, &p.idNext}, count);
+    p.id.swap(p.idNext);
+}
 
 Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count) {
     ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");

@@ -12,6 +12,7 @@ typedef float real; typedef float3 real3;
 #define real3(...) ((float3)(__VA_ARGS__))
 #define vec4(...) ((float4)(__VA_ARGS__))
 #define ivec3(...) ((int3)(__VA_ARGS__))
+#undef abs
 #define abs(x) fabs(x)  /* of floats only, in every kernel */
 #define TO_IVEC3(v) convert_int3(v)
 #define TO_VEC3(v) convert_float3(v)

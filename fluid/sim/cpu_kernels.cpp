@@ -19,14 +19,17 @@ std::vector<CpuKernelRow> cpuKernels() {
     auto add = [&all](std::span<const CpuKernelRow> rows) { all.insert(all.end(), rows.begin(), rows.end()); };
 #if defined(RIVULET_HAS_GENERIC)
     add(kernels_generic::gridRows());
+    add(kernels_generic::particleRows());
     add(kernels_generic::wcsphRows());
 #endif
 #if defined(RIVULET_HAS_AVX2)
     add(kernels_avx2::gridRows());
+    add(kernels_avx2::particleRows());
     add(kernels_avx2::wcsphRows());
 #endif
 #if defined(RIVULET_HAS_AVX512)
     add(kernels_avx512::gridRows());
+    add(kernels_avx512::particleRows());
     add(kernels_avx512::wcsphRows());
 #endif
     return all;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "fluid/sim/block.h"
 #include "fluid/sim/method.h"
@@ -31,15 +32,21 @@ struct FluidWorld::Impl {
     Particles particles;
     std::vector<NewParticle> start;
     Buffer planes, statsRows;
-    Kernel boundary, integrate, stats;
+    std::vector<PlaneSolid> planeSolids;
+    Kernel boundary, integrate, collide, stats;
+    const VoxelField* field = nullptr;  // null: no mesh in the scene, and no pass for one
+    Buffer fieldBlock, fieldBits, fieldDistance;
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};
     vec3 gravity{0.0F};
     double time = 0;
     uint64_t frame = 0;
     double dtMin = 0, dtMax = 0;
+    float fieldBlockDt = 0;  // fieldBlock was written for this step length
 
     Status prepare();
+    Status uploadField();
+    void fillStart();
     void writeStart();
     float fastestFall() const;
     double stepLimit(double frameSeconds) const;
@@ -80,13 +87,22 @@ Status FluidWorld::Impl::prepare() {
     if (wanted > kMostParticles)
         return badInput(fmt::format("fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
                                     params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
-    for (const BlockParams& b : params.blocks) fillBlock(b, params.spacing, start);
+    fillStart();
 
-    const std::pair<Kernel*, const char*> kernels[] = {{&boundary, "fluid/boundary"}, {&integrate, "fluid/integrate"}, {&stats, "fluid/stats"}};
-    for (auto [kernel, path] : kernels) {
-        Result<Kernel> found = device->kernel(path);
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+        std::vector<Define> defines;
+    };
+    std::vector<Wanted> kernels = {{&integrate, "fluid/integrate", {}}, {&stats, "fluid/stats", {}}, {&boundary, "fluid/boundary", {}}};
+    if (field != nullptr) {
+        kernels[2].defines = {{"FIELD", "1"}};
+        kernels.push_back({&collide, "fluid/collide", {}});
+    }
+    for (const Wanted& w : kernels) {
+        Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();
-        *kernel = *found;
+        *w.kernel = *found;
     }
     Result<std::unique_ptr<Method>> made = row->make(*device);
     if (!made) return made.error();
@@ -102,11 +118,46 @@ Status FluidWorld::Impl::prepare() {
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
     if (!rows) return rows.error();
     statsRows = std::move(*rows);
-    Result<Buffer> planeBuffer = device->allocate(sizeof(vec4));
+    std::vector<vec4> planeList;
+    for (const PlaneSolid& p : planeSolids) {
+        const vec3 n = glm::normalize(p.normal);
+        planeList.emplace_back(n, -glm::dot(n, p.position));
+    }
+    Result<Buffer> planeBuffer = device->allocate(std::max<size_t>(planeList.size(), 1) * sizeof(vec4));
     if (!planeBuffer) return planeBuffer.error();
     planes = std::move(*planeBuffer);
+    device->writeAll<vec4>(planes, planeList);
+    if (field != nullptr)
+        if (Status s = uploadField(); !s) return s.error();
     if (count == 0) log.notice("the scene has no particles");
     writeStart();
+    return ok();
+}
+
+// The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
+void FluidWorld::Impl::fillStart() {
+    for (const BlockParams& b : params.blocks) fillBlock(b, params.spacing, start);
+    const float contact = field != nullptr ? fieldParams(*field, FieldContact{.spacing = params.spacing}).contact : 0.0F;
+    const size_t left = std::erase_if(start, [&](const NewParticle& p) {
+        for (const PlaneSolid& plane : planeSolids)
+            if (glm::dot(glm::normalize(plane.normal), p.position - plane.position) < 0.5F * params.spacing) return true;
+        return field != nullptr && field->clearance(p.position) < contact;
+    });
+    if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
+}
+
+Status FluidWorld::Impl::uploadField() {
+    const std::tuple<Buffer*, const void*, size_t> parts[] = {
+        {&fieldBlock, nullptr, sizeof(FieldParams)},
+        {&fieldBits, field->surface.bits.data(), field->surface.bits.size()},
+        {&fieldDistance, field->distance.data(), field->distance.size() * sizeof(float)},
+    };
+    for (auto [buffer, data, bytes] : parts) {
+        Result<Buffer> made = device->allocate(bytes);
+        if (!made) return made.error();
+        *buffer = std::move(*made);
+        if (data != nullptr) device->write(*buffer, std::span(static_cast<const std::byte*>(data), bytes));
+    }
     return ok();
 }
 
@@ -156,14 +207,31 @@ void FluidWorld::Impl::substep(double dt) {
         say(built.error().message);
         return;
     }
-    if (method->wallsInDensity())
-        device->run(boundary, step, {&grid->cellStart(), &particles.position, &planes, &particles.boundary}, particles.count);
+    FieldParams block{};
+    if (field != nullptr) {
+        block = fieldParams(*field, FieldContact{.spacing = params.spacing,
+                                                 .friction = params.collision.friction,
+                                                 .restitution = params.collision.restitution,
+                                                 .restSpeed = 2.0F * glm::length(gravity) * step.dt,
+                                                 .countIndex = step.cellCount});
+        if (fieldBlockDt != step.dt) device->write(fieldBlock, std::as_bytes(std::span(&block, 1)));
+        fieldBlockDt = step.dt;
+    }
+    if (method->wallsInDensity()) {
+        if (field != nullptr)
+            device->run(boundary, step, {&grid->cellStart(), &particles.position, &planes, &particles.boundary, &fieldBlock, &fieldDistance}, particles.count);
+        else
+            device->run(boundary, step, {&grid->cellStart(), &particles.position, &planes, &particles.boundary}, particles.count);
+    }
     StepContext context{*device, step, *grid, particles};
     method->step(context);
     device->run(integrate, step,
                 {&grid->cellStart(), &particles.position, &particles.velocity, &particles.acceleration, &particles.density, &planes,
                  &particles.positionNext, &particles.velocityNext},
                 particles.count);
+    if (field != nullptr)
+        device->run(collide, block, {&particles.position, &particles.positionNext, &particles.velocityNext, &grid->cellStart(), &fieldBits, &fieldDistance},
+                    particles.count);
 }
 
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
@@ -190,7 +258,9 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     s.viscosity = p.viscosity;
     s.contact = 0.5F * p.spacing;
     s.restitution = p.box.restitution;
+    s.friction = p.collision.friction;
     s.spacing = p.spacing;
+    s.planeCount = static_cast<uint32_t>(w.planeSolids.size());
     w.grid->fill(s);
     w.method->fill(p, w.method->soundSpeed(p, w.fastestFall()), s);
 
@@ -269,12 +339,15 @@ ParticleView FluidWorld::particles() const {
             w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
 }
 
-Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const VoxelField* field, Log log) {
-    (void)field;
+Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const StaticSolids& solids, Log log) {
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
+    w.field = solids.field != nullptr && !solids.field->empty() ? solids.field : nullptr;
+    w.planeSolids = solids.planes;
+    for (const PlaneSolid& p : w.planeSolids)
+        if (!(glm::length(p.normal) > 0.0F)) return badInput("a plane's normal is zero: give it a direction");
     w.log = std::move(log);
     w.gravity = params.gravity;
     if (Status s = w.prepare(); !s) return s.error();

@@ -7,8 +7,8 @@
 #include "engine/core/log.h"
 #include "engine/core/result.h"
 #include "fluid/sim/fluid_params.h"
+#include "fluid/sim/solids.h"
 #include "fluid/sim/stats.h"
-#include "fluid/voxel/voxel_field.h"
 
 namespace rivulet {
 
@@ -29,8 +29,8 @@ struct FluidInputs {
 
 class FluidWorld {
   public:
-    // `field`: the static mesh colliders, baked; empty = none. Error: a value that makes no sense together with another, out of memory.
-    static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const VoxelField* field, Log log);
+    // Error: a value that makes no sense together with another, out of memory. `device` must outlive the world.
+    static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const StaticSolids& solids, Log log);
     ~FluidWorld();
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;

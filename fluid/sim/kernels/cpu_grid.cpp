@@ -200,16 +200,6 @@ void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*
     }
 }
 
-namespace boundary_unit {
-#include "shaders/fluid/boundary.kernel"
-}
-namespace integrate_unit {
-#include "shaders/fluid/integrate.kernel"
-}
-namespace stats_unit {
-#include "shaders/fluid/stats.kernel"
-}
-
 }  // namespace
 
 std::span<const CpuKernelRow> gridRows() {
@@ -219,9 +209,6 @@ std::span<const CpuKernelRow> gridRows() {
         {"fluid/cpu_sort_offsets", "", RIVULET_UNIT_ISA, sortOffsets, 1},
         {"fluid/cpu_sort_scatter", "", RIVULET_UNIT_ISA, sortScatter, 1},
         {"fluid/cpu_neighbor_list", "", RIVULET_UNIT_ISA, neighborList, 64},
-        {"fluid/boundary", "", RIVULET_UNIT_ISA, boundary_unit::boundary, 1024},
-        {"fluid/integrate", "", RIVULET_UNIT_ISA, integrate_unit::integrate, 1024},
-        {"fluid/stats", "", RIVULET_UNIT_ISA, stats_unit::stats, 128},
     };
     return rows;
 }

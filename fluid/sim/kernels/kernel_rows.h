@@ -9,6 +9,7 @@
 #define RIVULET_KERNEL_FAMILIES(isa)                          \
     namespace rivulet::isa {                                  \
     std::span<const CpuKernelRow> gridRows();                 \
+    std::span<const CpuKernelRow> particleRows();             \
     std::span<const CpuKernelRow> wcsphRows();                \
     }
 #if defined(RIVULET_KERNEL_UNIT)

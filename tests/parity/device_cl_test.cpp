@@ -1,0 +1,268 @@
+// Device cl on whatever OpenCL this machine has; and what is said where there is none.
+#include "engine/compute/device_cl.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+namespace rivulet {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FactorParams {
+    uint32_t count;
+    float factor;
+    float pad0, pad1;
+};
+
+constexpr const char* kScale = R"(#include "shaders/common/lang.h"
+STRUCT(FactorParams) { uint count; float factor; float pad0; float pad1; };
+#undef ARGS
+#define ARGS(RO, RW) \
+    RO(1, In, float, in_) \
+    RW(2, Out, float, out_)
+BUFFERS(FactorParams)
+KERNEL(scale, FactorParams)
+{
+    uint i = THREAD_ID;
+    if (i >= PARAMS.count) return;
+    out_[i] = in_[i] * PARAMS.factor + TO_FLOAT(OFFSET);
+}
+)";
+
+class ClDeviceTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        root_ = fs::temp_directory_path() / (std::string("rivulet_cl_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::create_directories(root_ / "shaders/test");
+        file("scale", kScale);
+        Result<std::unique_ptr<Device>> made =
+            makeClDevice(ShaderFiles(root_.string()), Log{[this](LogLevel, std::string_view text) { said_ += text; }});
+        if (!made) GTEST_SKIP() << made.error().message;
+        device_ = std::move(*made);
+    }
+    void TearDown() override {
+        EXPECT_EQ(said_, "");
+        if (device_) {
+            EXPECT_EQ(device_->bytesAllocated(), 0U) << "every Buffer gives its memory back";
+        }
+        device_.reset();
+        std::error_code ignored;
+        fs::remove_all(root_, ignored);
+    }
+    void file(const std::string& name, const std::string& text) const {
+        std::ofstream(root_ / "shaders/test" / (name + ".kernel")) << text;
+    }
+    Kernel scaleBy(const char* offset) {
+        const Define defines[] = {{"OFFSET", offset}};
+        const auto kernel = device_->kernel("test/scale", defines);
+        EXPECT_TRUE(kernel) << (kernel ? "" : kernel.error().message);
+        return kernel ? *kernel : Kernel{};
+    }
+    Buffer floats(const std::vector<float>& values) {
+        Buffer buffer = std::move(*device_->allocate(values.size() * sizeof(float)));
+        device_->writeAll(buffer, std::span<const float>(values));
+        return buffer;
+    }
+    fs::path root_;
+    std::string said_;
+    std::unique_ptr<Device> device_;
+};
+
+TEST_F(ClDeviceTest, saysWhatItIs) {
+    EXPECT_EQ(device_->backend(), Backend::cl);
+    EXPECT_FALSE(device_->info().name.empty());
+    EXPECT_NE(device_->info().driver.find("OpenCL"), std::string::npos);
+    EXPECT_GE(device_->info().maxBufferBytes, size_t{64} << 20U);
+    const std::vector<std::string> all = describeClDevices();
+    ASSERT_FALSE(all.empty());
+    EXPECT_NE(all[0].find(device_->info().name), std::string::npos);
+}
+
+TEST_F(ClDeviceTest, memoryIsZeroAndHoldsWhatIsWritten) {
+    Buffer buffer = std::move(*device_->allocate(40));
+    EXPECT_EQ(buffer.bytes(), 40U);
+    EXPECT_EQ(device_->bytesAllocated(), 40U);
+    EXPECT_EQ(device_->readAll<uint32_t>(buffer, 10), std::vector<uint32_t>(10, 0));
+    const uint32_t words[] = {1, 2, 3};
+    device_->write(buffer, std::as_bytes(std::span(words)), 8);
+    EXPECT_EQ(device_->readAll<uint32_t>(buffer, 6), (std::vector<uint32_t>{0, 0, 1, 2, 3, 0}));
+    uint32_t one = 0;
+    device_->read(buffer, std::as_writable_bytes(std::span(&one, 1)), 12);
+    EXPECT_EQ(one, 2U);
+    Buffer other = std::move(*device_->allocate(20));
+    device_->fill(other, 0xA5A5A5A5U);
+    device_->copy(other, buffer, 12);
+    EXPECT_EQ(device_->readAll<uint32_t>(buffer, 4), (std::vector<uint32_t>{0xA5A5A5A5U, 0xA5A5A5A5U, 0xA5A5A5A5U, 2}));
+}
+
+TEST_F(ClDeviceTest, emptyBuffersAndEmptyWorkAreNoErrors) {
+    const auto made = device_->allocate(0);
+    ASSERT_TRUE(made);
+    Buffer none = std::move(*device_->allocate(0));
+    EXPECT_TRUE(static_cast<bool>(none));
+    EXPECT_EQ(none.bytes(), 0U);
+    device_->fill(none, 7);
+    device_->write(none, {});
+    EXPECT_TRUE(device_->readAll<float>(none, 0).empty());
+    Buffer some = floats({1});
+    device_->copy(none, some, 0);
+    device_->run(scaleBy("0"), FactorParams{0, 2, 0, 0}, {&none, &none}, 0);
+    bool called = false;
+    device_->readLater(none, 0, [&](std::span<const std::byte> bytes) { called = bytes.empty(); });
+    device_->finish();
+    device_->poll();
+    EXPECT_TRUE(called);
+}
+
+TEST_F(ClDeviceTest, tooLargeABufferIsAnErrorWithSizes) {
+    const auto made = device_->allocate(device_->info().maxBufferBytes + 1);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().fault, Fault::failed);
+    EXPECT_NE(made.error().message.find(std::to_string(device_->info().maxBufferBytes >> 20U) + " MiB"), std::string::npos)
+        << made.error().message;
+    EXPECT_EQ(device_->bytesAllocated(), 0U);
+}
+
+TEST_F(ClDeviceTest, samePathAndDefinesGiveTheSameKernel) {
+    const Define ab[] = {{"OFFSET", "1"}, {"UNUSED", "2"}};
+    const Define ba[] = {{"UNUSED", "2"}, {"OFFSET", "1"}};
+    EXPECT_EQ(device_->kernel("test/scale", ab)->index, device_->kernel("test/scale", ba)->index);
+    EXPECT_EQ(scaleBy("1").index, scaleBy("1").index);
+    EXPECT_NE(scaleBy("1").index, scaleBy("2").index);
+}
+
+TEST_F(ClDeviceTest, dispatchesSeeWhatCameBeforeAndTheirOwnParameters) {
+    // More parameter blocks than the device keeps, a thread count that fills no work group, and nothing waits in between.
+    const uint32_t count = 1001;
+    std::vector<float> expected(count);
+    std::iota(expected.begin(), expected.end(), 0.0F);
+    Buffer a = floats(expected), b = std::move(*device_->allocate(count * sizeof(float)));
+    const Kernel plusOne = scaleBy("1"), plusTwo = scaleBy("2");
+    for (int k = 0; k < 200; ++k) {
+        const float factor = 1.0F + 0.0001F * static_cast<float>(k % 77);
+        const FactorParams params{count - (k == 100 ? 500 : 0), factor, 0, 0};
+        device_->run(k % 2 ? plusOne : plusTwo, params, {&a, &b}, count);
+        std::swap(a, b);
+        if (k % 50 == 0) {
+            const std::vector<float> some(10, static_cast<float>(k));
+            device_->writeAll(a, std::span<const float>(some));
+        }
+    }
+    // The same, in order, on the host. Where the kernel stopped early (k = 100) the other buffer's older values stay.
+    std::vector<float> x(count), y(count, 0.0F);
+    std::iota(x.begin(), x.end(), 0.0F);
+    for (int k = 0; k < 200; ++k) {
+        const float factor = 1.0F + 0.0001F * static_cast<float>(k % 77);
+        for (uint32_t i = 0; i < count - (k == 100 ? 500 : 0); ++i) y[i] = x[i] * factor + (k % 2 ? 1.0F : 2.0F);
+        std::swap(x, y);
+        if (k % 50 == 0) std::fill(x.begin(), x.begin() + 10, static_cast<float>(k));
+    }
+    const std::vector<float> got = device_->readAll<float>(a, count);
+    for (uint32_t i = 0; i < count; ++i) ASSERT_NEAR(got[i], x[i], 1.0e-4F * std::abs(x[i])) << i;  // OpenCL may fuse the two operations
+}
+
+TEST_F(ClDeviceTest, threadsBeyondTheCountWriteNothing) {
+    Buffer in = floats(std::vector<float>(70, 1.0F)), out = floats(std::vector<float>(128, -1.0F));
+    device_->run(scaleBy("0"), FactorParams{70, 3, 0, 0}, {&in, &out}, 70);
+    const std::vector<float> got = device_->readAll<float>(out, 128);
+    for (uint32_t i = 0; i < 128; ++i) EXPECT_EQ(got[i], i < 70 ? 3.0F : -1.0F) << i;
+}
+
+TEST_F(ClDeviceTest, readLaterDeliversTheValuesOfItsTimeInOrder) {
+    Buffer in = floats({1, 2, 3}), out = std::move(*device_->allocate(12));
+    std::vector<float> delivered;
+    for (int k = 1; k <= 5; ++k) {
+        device_->run(scaleBy("0"), FactorParams{3, static_cast<float>(k), 0, 0}, {&in, &out}, 3);
+        device_->readLater(out, 8, [&](std::span<const std::byte> bytes) {
+            ASSERT_EQ(bytes.size(), 8U);
+            float two[2];
+            std::memcpy(two, bytes.data(), 8);
+            delivered.push_back(two[1]);
+            if (delivered.size() == 1) device_->readLater(out, 4, [&](std::span<const std::byte>) { delivered.push_back(-1); });
+        });
+        EXPECT_TRUE(delivered.empty()) << "only poll() delivers";
+    }
+    device_->finish();
+    EXPECT_TRUE(delivered.empty()) << "only poll() delivers";
+    device_->poll();
+    EXPECT_EQ(delivered, (std::vector<float>{2, 4, 6, 8, 10}));
+    device_->finish();
+    device_->poll();
+    EXPECT_EQ(delivered.size(), 6U);
+    device_->readLater(out, 4, [&](std::span<const std::byte>) { ADD_FAILURE() << "a device that ends delivers nothing"; });
+}
+
+TEST_F(ClDeviceTest, timesAreSummedByKernelOnce) {
+    Buffer in = floats(std::vector<float>(100000, 1.0F)), out = std::move(*device_->allocate(400000));
+    for (int k = 0; k < 3; ++k) device_->run(scaleBy("0"), FactorParams{100000, 2, 0, 0}, {&in, &out}, 100000);
+    device_->finish();
+    const std::vector<PassTime> times = device_->takeTimes();
+    ASSERT_EQ(times.size(), 1U);
+    EXPECT_EQ(times[0].name, "test/scale");
+    EXPECT_EQ(times[0].calls, 3);
+    EXPECT_GT(times[0].ms, 0);
+    EXPECT_TRUE(device_->takeTimes().empty());
+}
+
+TEST_F(ClDeviceTest, compileErrorsNameTheFileAndLineTheyComeFrom) {
+    std::ofstream(root_ / "shaders/test/part.h") << "// one\nFN float broken(float x) { return x + undeclared; }\n";
+    file("bad",
+         "#include \"shaders/common/lang.h\"\nSTRUCT(P) { vec4 a; };\n#undef ARGS\n#define ARGS(RO, RW) RW(1, Out, float, "
+         "out_)\nBUFFERS(P)\n"
+         "#include \"shaders/test/part.h\"\nKERNEL(bad, P)\n{\n    out_[0] = broken(1.0f);\n}\n");
+    const auto kernel = device_->kernel("test/bad");
+    ASSERT_FALSE(kernel);
+    EXPECT_NE(kernel.error().message.find("shaders/test/part.h:2"), std::string::npos) << kernel.error().message;
+    EXPECT_NE(kernel.error().message.find("undeclared"), std::string::npos) << kernel.error().message;
+
+    file("other", std::string(kScale));
+    const Define offset[] = {{"OFFSET", "0"}};
+    const auto misnamed = device_->kernel("test/other", offset);
+    ASSERT_FALSE(misnamed);
+    EXPECT_NE(misnamed.error().message.find("KERNEL(other"), std::string::npos) << misnamed.error().message;
+    EXPECT_FALSE(device_->kernel("test/none"));
+}
+
+TEST_F(ClDeviceTest, workGroupsLargerThanTheDeviceAllowsAreRefused) {
+    const Define defines[] = {{"LOCAL_SIZE", "65536"}, {"OFFSET", "0"}};
+    EXPECT_FALSE(device_->kernel("test/scale", defines));
+}
+
+TEST_F(ClDeviceTest, aDispatchThatDoesNotFitItsKernelIsAProgrammersMistake) {
+    testing::FLAGS_gtest_death_test_style = "threadsafe";
+    const Kernel scale = scaleBy("0");
+    const Buffer one = floats({1});
+    EXPECT_DEATH(device_->run(scale, FactorParams{}, {&one}, 1), "hand a buffer for every row");
+    EXPECT_DEATH(device_->run(Kernel{}, FactorParams{}, {&one, &one}, 1), "ask this device for the kernel");
+}
+
+// Each in a process of its own: the OpenCL loader looks for drivers once.
+TEST(ClDeviceDeathTest, withoutADriverThereIsAPlainSentence) {
+    testing::FLAGS_gtest_death_test_style = "threadsafe";
+    const fs::path folder = fs::temp_directory_path() / "rivulet_no_opencl";
+    fs::create_directories(folder / "empty");
+    fs::create_directories(folder / "broken");
+    std::ofstream(folder / "broken/gone.icd") << "/nowhere/libgone.so\n";
+    std::ofstream(folder / "broken/odd.icd") << "libm.so.6\n";  // a library that is no driver
+    std::ofstream(folder / "broken/blank.icd") << "";
+    for (const char* name : {"empty", "broken", "missing"})
+        EXPECT_EXIT(
+            {
+                setenv("OCL_ICD_VENDORS", (folder / name).c_str(), 1);
+                const auto made = makeClDevice(ShaderFiles::developer());
+                std::fprintf(stderr, "%s", made ? "a device" : made.error().message.c_str());
+                std::exit(!made && made.error().fault == Fault::failed && describeClDevices().empty() ? 0 : 1);
+            },
+            testing::ExitedWithCode(0), "no working OpenCL driver.*--backend cpu")
+            << name;
+    fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace rivulet

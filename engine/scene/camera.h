@@ -1,0 +1,35 @@
+// Cameras from plain numbers: a look-at, and the orbit controls that move it.
+#pragma once
+
+#include "engine/core/math.h"
+
+namespace rivulet {
+
+struct Camera {
+    vec3 position{1.6F, 1.1F, 2.2F};  // m, world
+    vec3 target{0.0F};                // m, world
+    float fieldOfView = 40.0F;        // deg, vertical
+    float nearPlane = 0.01F;          // m
+    float farPlane = 100.0F;          // m
+
+    mat4 view() const;                             // world -> view; +Y is up, unless it looks straight up or down
+    mat4 projection(float widthOverHeight) const;  // view -> clip, depth -1..1
+
+    // Planes as tight around `bounds` (world, m) as the camera's place allows, with room for the floor around them.
+    void setPlanes(const Bounds& bounds);
+};
+
+// The same camera as yaw, pitch and distance about a target. Angles in deg; yaw 0 looks from +z, 90 from +x.
+struct OrbitCamera {
+    vec3 target{0.0F};
+    float yaw = 0.0F, pitch = 20.0F, distance = 2.0F;
+
+    static OrbitCamera from(const Camera& camera);
+    void orbit(float yawDegrees, float pitchDegrees);                            // pitch stays within -89..89
+    void pan(float right, float up);                                             // in distances: 1 = as far as the camera is away
+    void zoom(float steps);                                                      // a step is 10 %; positive comes nearer
+    void frame(const Bounds& bounds, float fieldOfView, float widthOverHeight);  // all of `bounds` in view; the angles stay
+    void apply(Camera& camera) const;                                            // position and target
+};
+
+}  // namespace rivulet

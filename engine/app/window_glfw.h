@@ -1,0 +1,45 @@
+// WindowGlfw: a window with an OpenGL 4.5 core context.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/app/input_events.h"
+#include "engine/core/result.h"
+
+struct GLFWwindow;
+
+namespace rivulet {
+
+// On the main thread only; its context is current on it. ImGui_ImplGlfw_InitForOpenGL(handle(), true) chains to this window's callbacks.
+class WindowGlfw {
+  public:
+    struct Options {
+        std::string title = "rivulet";
+        int width = 1280, height = 720;
+        bool visible = true;
+        bool vsync = true;
+        bool debug = false;  // drivers say more, and are slower
+    };
+    // Error (failed): no display, no OpenGL 4.5; says which. Loads the GL functions (glad).
+    static Result<WindowGlfw> create(const Options& options);
+    WindowGlfw(WindowGlfw&&) noexcept;
+    WindowGlfw& operator=(WindowGlfw&&) noexcept;
+    ~WindowGlfw();
+
+    // Waits for nothing; what happened since the last call.
+    InputEvents poll();
+    void swap();  // shows what was drawn into framebuffer 0
+    void setTitle(const std::string& title);
+    void resize(int width, int height);  // window coordinates
+    GLFWwindow* handle() const;
+    bool software() const;  // GL runs on the CPU
+    const std::string& renderer() const;
+
+  private:
+    struct Impl;
+    explicit WindowGlfw(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rivulet

@@ -1,0 +1,61 @@
+// Buffer: GPU memory of a fixed size.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/gpu/gl_object.h"
+
+namespace rivulet::gpu {
+
+// mapped: the host sees the memory all the time (persistent, coherent); who writes while the GPU reads must fence (device_gl does).
+enum class BufferKind { plain, mapped };
+
+class Buffer {
+  public:
+    Buffer() = default;
+    // Contents are zero. 0 bytes give a valid buffer of 0 bytes. Error (failed): out of memory; says how much was asked for.
+    static Result<Buffer> create(size_t bytes, BufferKind kind = BufferKind::plain);
+    template <class T>
+    static Result<Buffer> from(std::span<const T> items) {
+        return fromBytes(std::as_bytes(items));
+    }
+    template <class T>
+    static Result<Buffer> from(const std::vector<T>& items) {
+        return fromBytes(std::as_bytes(std::span(items)));
+    }
+
+    GLuint name() const { return name_.name(); }
+    size_t bytes() const { return bytes_; }
+    explicit operator bool() const { return static_cast<bool>(name_); }
+
+    // In order with other GL commands; write never waits for the GPU, read does.
+    void write(std::span<const std::byte> bytes, size_t offset = 0);
+    void read(std::span<std::byte> bytes, size_t offset = 0) const;
+    void fill(uint32_t word);
+    template <class T>
+    void writeAll(std::span<const T> items) {
+        write(std::as_bytes(items));
+    }
+    template <class T>
+    std::vector<T> readAll(size_t count) const {
+        std::vector<T> items(count);
+        read(std::as_writable_bytes(std::span(items)));
+        return items;
+    }
+    std::span<std::byte> mapped() const { return {mapped_, mapped_ ? bytes_ : 0}; }  // empty unless BufferKind::mapped
+
+    // `target`: GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER.
+    void bind(GLenum target, GLuint binding) const { glBindBufferBase(target, binding, name()); }
+
+  private:
+    static Result<Buffer> fromBytes(std::span<const std::byte> bytes);
+    BufferName name_;
+    size_t bytes_ = 0;
+    std::byte* mapped_ = nullptr;
+};
+
+}  // namespace rivulet::gpu

@@ -1,0 +1,43 @@
+// Framebuffer: textures to draw into. Passes of a frame graph rarely need one: PassContext::drawTo makes it.
+#pragma once
+
+#include <span>
+
+#include "engine/core/math.h"
+#include "engine/gpu/gl_object.h"
+#include "engine/gpu/texture.h"
+
+namespace rivulet::gpu {
+
+// One level of a texture; layer -1: all of them (flat textures have one).
+struct Attachment {
+    const Texture* texture = nullptr;
+    int mip = 0;
+    int layer = -1;
+};
+
+class Framebuffer {
+  public:
+    Framebuffer() = default;
+    // colours[k] is the fragment shader's output k; a null texture is a gap. No colours and no depth is a mistake, as is anything
+    // that GL calls incomplete (ASSERT names the attachments).
+    Framebuffer(std::span<const Attachment> colours, const Attachment& depth);
+    Framebuffer(const Texture& colour, const Texture* depth);
+
+    GLuint name() const { return name_.name(); }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    explicit operator bool() const { return static_cast<bool>(name_); }
+
+    void bind() const;  // and the viewport: all of it
+    void clearColour(const vec4& value, int index = 0) const;
+    void clearDepth(float value = 1) const;
+    // Copies colour 0 to another framebuffer (0: the window), scaled to width x height with linear filtering.
+    void blitTo(GLuint framebuffer, int width, int height) const;
+
+  private:
+    FramebufferName name_;
+    int width_ = 0, height_ = 0;
+};
+
+}  // namespace rivulet::gpu

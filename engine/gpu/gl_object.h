@@ -1,0 +1,54 @@
+// GlObject: the one move-only owner of a GL name; buffer.h, texture.h, ... add what can be done with it.
+//
+// Everything in engine/gpu needs a current OpenGL 4.5 context, when it is made, used and destroyed (sharing contexts count as one).
+#pragma once
+
+#include <glad/gl.h>
+
+#include <utility>
+
+namespace rivulet::gpu {
+
+// kDelete(name) gives one GL name back.
+template <void (*kDelete)(GLuint)>
+class GlObject {
+  public:
+    GlObject() = default;
+    explicit GlObject(GLuint name) : name_(name) {}
+    GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+    GlObject& operator=(GlObject&& other) noexcept {
+        GlObject taken(std::move(other));
+        std::swap(name_, taken.name_);
+        return *this;
+    }
+    GlObject(const GlObject&) = delete;
+    GlObject& operator=(const GlObject&) = delete;
+    ~GlObject() {
+        if (name_ != 0) kDelete(name_);
+    }
+    GLuint name() const { return name_; }
+    explicit operator bool() const { return name_ != 0; }
+
+  private:
+    GLuint name_ = 0;
+};
+
+inline void deleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
+inline void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
+inline void deleteSampler(GLuint name) { glDeleteSamplers(1, &name); }
+inline void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+inline void deleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
+inline void deleteQuery(GLuint name) { glDeleteQueries(1, &name); }
+inline void deleteShader(GLuint name) { glDeleteShader(name); }
+inline void deleteProgram(GLuint name) { glDeleteProgram(name); }
+
+using BufferName = GlObject<deleteBuffer>;
+using TextureName = GlObject<deleteTexture>;
+using SamplerName = GlObject<deleteSampler>;
+using FramebufferName = GlObject<deleteFramebuffer>;
+using VertexArrayName = GlObject<deleteVertexArray>;
+using QueryName = GlObject<deleteQuery>;
+using ShaderName = GlObject<deleteShader>;
+using ProgramName = GlObject<deleteProgram>;
+
+}  // namespace rivulet::gpu

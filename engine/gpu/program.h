@@ -1,0 +1,72 @@
+// Program: shaders from files, uniforms by name, reloaded while the program runs.
+//
+//     Result<Program> p = Program::create(files, {"shaders/render/mesh.vert", "shaders/render/mesh.frag"});
+//     p->use();  p->set("viewProjection", m);  p->texture("shadow", 0, shadowMap);
+//
+// Shader files have no #version line (450 core is put in front) and may #include "shaders/...".
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/compute/kernel_source.h"
+#include "engine/core/math.h"
+#include "engine/gpu/gl_object.h"
+#include "engine/gpu/texture.h"
+
+namespace rivulet::gpu {
+
+class Program {
+  public:
+    Program() = default;
+    // The ending says the stage: .vert .frag .geom .comp .kernel (compute). Error (failed): what the compiler says, each line with the file
+    // and line it comes from, included files too; a file that is missing, or includes one that is.
+    static Result<Program> create(const ShaderFiles& files, std::vector<std::string> paths, std::vector<Define> defines = {});
+
+    // Reads the files again. On failure (as create, or a uniform that was set is no longer declared) the last good program stays.
+    // On success the uniforms are at their defaults: set them each frame.
+    Status reload();
+
+    GLuint name() const { return name_.name(); }
+    const std::vector<std::string>& paths() const { return paths_; }
+    explicit operator bool() const { return static_cast<bool>(name_); }
+    void use() const { glUseProgram(name()); }
+
+    // Need no use() before. A name that the compiler optimised away is ignored; one that no shader declares is a mistake (ASSERT).
+    void set(std::string_view uniform, float v);
+    void set(std::string_view uniform, int v);  // also bool, and a sampler's unit
+    void set(std::string_view uniform, unsigned v);
+    void set(std::string_view uniform, const vec2& v);
+    void set(std::string_view uniform, const vec3& v);
+    void set(std::string_view uniform, const vec4& v);
+    void set(std::string_view uniform, const ivec2& v);
+    void set(std::string_view uniform, const ivec3& v);
+    void set(std::string_view uniform, const mat3& v);
+    void set(std::string_view uniform, const mat4& v);
+    void set(std::string_view uniform, std::span<const float> v);  // arrays: the name without [0]
+    void set(std::string_view uniform, std::span<const vec3> v);
+    void set(std::string_view uniform, std::span<const vec4> v);
+    void set(std::string_view uniform, std::span<const mat4> v);
+
+    // Binds the texture to the unit, and the sampler to the unit.
+    void texture(std::string_view sampler, int unit, const Texture& t);
+
+    // use(), then as many work groups as hold x * y * z invocations. A barrier is the caller's (the frame graph's) part.
+    void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
+
+  private:
+    GLint location(std::string_view uniform);
+
+    ShaderFiles files_;
+    std::vector<std::string> paths_;
+    std::vector<Define> defines_;
+    ProgramName name_;
+    std::string declarations_;                             // every uniform declaration's text, to tell "optimised away" from "unknown"
+    std::map<std::string, GLint, std::less<>> locations_;  // -1: optimised away
+    uvec3 localSize_{0};                                   // of a compute program
+};
+
+}  // namespace rivulet::gpu

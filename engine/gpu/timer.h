@@ -1,0 +1,37 @@
+// Timer: how long the GPU worked on what was issued between begin() and end(). Results come some frames late; nothing ever waits.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "engine/gpu/gl_object.h"
+
+namespace rivulet::gpu {
+
+class Timer {
+  public:
+    // Spans may nest and may overlap those of other Timers (timestamps, not GL_TIME_ELAPSED). `tag` is handed back by collect().
+    // Beyond kMaxPending spans that nobody collected, new ones go untimed.
+    void begin(uint64_t tag);
+    void end();
+
+    // Calls then(tag, milliseconds) for every finished span, in the order of their end(), until one whose result has not arrived.
+    void collect(const std::function<void(uint64_t tag, double ms)>& then);
+    size_t pending() const { return pending_.size(); }
+    static constexpr size_t kMaxPending = 4096;
+
+  private:
+    struct Span {
+        uint64_t tag = 0;
+        QueryName begin, end;  // none: untimed
+    };
+    QueryName query();
+
+    std::vector<Span> open_;
+    std::deque<Span> pending_;
+    std::vector<QueryName> free_;
+};
+
+}  // namespace rivulet::gpu

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "engine/core/result.h"
 
@@ -34,8 +33,5 @@ class ContextEgl {
     explicit ContextEgl(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
-
-// True for a GL_RENDERER that is Mesa's CPU renderer.
-bool isSoftwareRenderer(std::string_view renderer);
 
 }  // namespace rivulet

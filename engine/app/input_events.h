@@ -1,6 +1,7 @@
 // InputEvents: what the person did since the last frame. WindowGlfw fills it; tests fill it themselves.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,8 @@ struct InputEvents {
 
     bool down(MouseButton b) const { return buttonDown[static_cast<int>(b)]; }
     bool pressed(MouseButton b) const { return buttonPressed[static_cast<int>(b)]; }
-    bool pressed(int key) const;
-    bool down(int key) const;
+    bool pressed(int key) const { return std::find(keysPressed.begin(), keysPressed.end(), key) != keysPressed.end(); }
+    bool down(int key) const { return std::find(keysDown.begin(), keysDown.end(), key) != keysDown.end(); }
 };
 
 }  // namespace rivulet

@@ -57,6 +57,7 @@ std::string joinDefines(std::span<const Define> defines) {
 
 // A cache line, and the widest vector.
 constexpr size_t kAlignment = 64;
+constexpr size_t kMostParams = 1024;  // bytes
 
 }  // namespace
 
@@ -161,8 +162,12 @@ void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::
     impl_->bindings.clear();
     for (const Buffer* b : buffers) impl_->bindings.push_back(b != nullptr ? hostPointer<void>(*b) : nullptr);
     void* const* bindings = impl_->bindings.data();
+    // Kernels read the block with aligned vector loads; the caller's struct need not be aligned.
+    alignas(kAlignment) std::byte block[kMostParams];
+    ASSERT(params.size() <= kMostParams, "keep a parameter block under 1 KiB: larger data belong in a buffer");
+    std::memcpy(block, params.data(), params.size());
     parallelFor(threads, row.grain, [&](size_t begin, size_t end) {
-        row.run(static_cast<uint32_t>(begin), static_cast<uint32_t>(end), params.data(), bindings);
+        row.run(static_cast<uint32_t>(begin), static_cast<uint32_t>(end), block, bindings);
     });
     addTime(row.path, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
 }

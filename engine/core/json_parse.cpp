@@ -139,6 +139,7 @@ Result<Json::Value> parseJson(std::string_view text, std::string_view file) {
 
     Json::CharReaderBuilder builder;
     Json::CharReaderBuilder::strictMode(&builder.settings_);
+    builder["strictRoot"] = false;  // the reader names what stands there instead of an object
     builder["stackLimit"] = static_cast<int>(2 * kDeepest);
     const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
     const std::string& masked = screen.masked();

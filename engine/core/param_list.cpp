@@ -15,7 +15,7 @@ class ParamLister final : public ParamVisitor {
     explicit ParamLister(std::vector<ParamEntry>& entries) : entries_(entries) {}
 
     void value(const ParamInfo& info, float& v) override { add(info, valueText(v)).range = rangeText(info); }
-    void value(const ParamInfo& info, int& v) override { add(info, valueText(v)).range = rangeText(info); }
+    void value(const ParamInfo& info, int& v) override { add(info, valueText(v)).range = "whole, " + rangeText(info); }
     void value(const ParamInfo& info, bool& v) override { add(info, valueText(v)).range = "true or false"; }
     void value(const ParamInfo& info, std::string& v) override { add(info, valueText(v)); }
     void value(const ParamInfo& info, vec3& v) override { add(info, valueText(v)).range = rangeText(info); }
@@ -76,8 +76,9 @@ std::string unknownParam(std::string_view group, std::string_view name, std::spa
     const std::string complaint = excerpt(pathOf(group, name)) + " is not a parameter; ";
     const std::string near = nearestName(name, beside);
     if (!near.empty()) return complaint + "did you mean " + pathOf(group, near) + "?";
+    const std::string ending = "." + std::string(name);
     for (const ParamEntry& entry : listParams(visit))
-        if (entry.path.ends_with("." + std::string(name))) return complaint + "did you mean " + entry.path + "?";
+        if (entry.path.ends_with(ending)) return complaint + "did you mean " + entry.path + "?";
     return complaint + "known here: " + joined(beside);
 }
 
@@ -85,7 +86,7 @@ std::string describeParams(const VisitFn& visit) {
     std::string page =
         "# Parameters\n\n"
         "Every parameter of a scene file, as `rivulet list --parameters` prints it. In a file the path is the nesting of JSON objects;\n"
-        "on the command line it is `--set path=value`, with a list's item by its index: `--set colliders.0.friction=0.2`.\n"
+        "on the command line it is `--set path=value`, with a list's item by its index: `--set colliders.0.resolution=64`.\n"
         "A value outside its range is an error. A vector's range holds for each component. Fixed: takes effect when the scene is "
         "loaded.\n\n"
         "| path | unit | range | default | what it is |\n"

@@ -27,25 +27,25 @@ bool parseNumber(std::string_view text, T& v) {
     return error == std::errc{} && end == text.data() + text.size();
 }
 
-std::string mustBe(std::string_view text, std::string_view what) { return fmt::format("is {}, must be {}", excerpt(text), what); }
-
-// "a number", "a whole number between 1 and 64 m"
-std::string wanted(const ParamInfo& info, std::string_view kind) {
-    std::string range = rangeText(info);
-    if (range.empty()) return std::string(kind);
-    if (*info.unit) range += fmt::format(" {}", info.unit);
-    return kind.empty() ? range : fmt::format("{} {}", kind, range);
+// "between 1 and 64 m", "at least 0"; where the Param sets no range, ParamInfo's own.
+std::string wantedRange(const ParamInfo& info) {
+    const std::string range = rangeText(info);
+    return (range.empty() ? fmt::format("between {} and {}", info.min, info.max) : range) + (*info.unit ? " " : "") + info.unit;
 }
 
-// NaN is in no range. T's own limits hold where the ParamInfo sets none.
+std::string notA(std::string_view kind, const ParamInfo& info, std::string_view text) {
+    const std::string range = rangeText(info).empty() ? "" : " " + wantedRange(info);
+    return fmt::format("is {}, must be {}{}", text.empty() ? "empty" : excerpt(text), kind, range);
+}
+
+std::string outOfRange(const ParamInfo& info, std::string_view text, std::string_view suffix = "") {
+    return fmt::format("is {}{}{}, must be {}{}", excerpt(text), *info.unit ? " " : "", info.unit, wantedRange(info), suffix);
+}
+
+// NaN is in no range. T's own limits hold where the ParamInfo sets wider ones.
 template <class T>
 bool inRange(const ParamInfo& info, double v) {
     return v >= info.min && v <= info.max && v >= std::numeric_limits<T>::lowest() && v <= std::numeric_limits<T>::max();
-}
-
-std::string outOfRange(const ParamInfo& info, std::string_view text, std::string_view kind, std::string_view suffix = "") {
-    const std::string shown = fmt::format("{}{}{}", excerpt(text), *info.unit ? " " : "", info.unit);
-    return fmt::format("is {}, must be {}{}", shown, wanted(info, kind), suffix);
 }
 
 bool splitInThree(std::string_view text, std::array<std::string_view, 3>& parts) {
@@ -71,8 +71,8 @@ float nearestFloat(std::string_view text, double wide) {
 std::string assignValue(const ParamInfo& info, std::string_view text, float& v) {
     text = trimmed(text);
     double wide = 0;
-    if (!parseNumber(text, wide)) return mustBe(text, wanted(info, "a number"));
-    if (!inRange<float>(info, wide)) return outOfRange(info, text, std::isfinite(wide) ? "" : "a number");
+    if (!parseNumber(text, wide) || std::isnan(wide)) return notA("a number", info, text);
+    if (!inRange<float>(info, wide)) return outOfRange(info, text);
     v = nearestFloat(text, wide);
     return "";
 }
@@ -80,15 +80,15 @@ std::string assignValue(const ParamInfo& info, std::string_view text, float& v) 
 std::string assignValue(const ParamInfo& info, std::string_view text, int& v) {
     text = trimmed(text);
     double wide = 0;
-    if (!parseNumber(text, wide)) return mustBe(text, wanted(info, "a whole number"));
-    if (!inRange<int>(info, wide) || wide != std::floor(wide)) return outOfRange(info, text, "a whole number");
+    if (!parseNumber(text, wide) || wide != std::floor(wide)) return notA("a whole number", info, text);
+    if (!inRange<int>(info, wide)) return outOfRange(info, text);
     v = static_cast<int>(wide);
     return "";
 }
 
-std::string assignValue(const ParamInfo&, std::string_view text, bool& v) {
+std::string assignValue(const ParamInfo& info, std::string_view text, bool& v) {
     text = trimmed(text);
-    if (text != "true" && text != "false") return mustBe(text, "true or false");
+    if (text != "true" && text != "false") return notA("true or false", info, text);
     v = text == "true";
     return "";
 }
@@ -102,12 +102,12 @@ std::string assignValue(const ParamInfo& info, std::string_view text, vec3& v) {
     text = trimmed(text);
     std::array<std::string_view, 3> parts;
     vec3 read{0.0F};
-    if (!splitInThree(text, parts)) return mustBe(text, wanted(info, "three numbers [x, y, z], each"));
+    if (!splitInThree(text, parts)) return notA("three numbers [x, y, z], each", info, text);
     for (int i = 0; i < 3; ++i) {
         const std::string_view part = parts[static_cast<size_t>(i)];
         double wide = 0;
-        if (!parseNumber(part, wide)) return mustBe(text, wanted(info, "three numbers [x, y, z], each"));
-        if (!inRange<float>(info, wide)) return outOfRange(info, text, "", " in each component");
+        if (!parseNumber(part, wide) || std::isnan(wide)) return notA("three numbers [x, y, z], each", info, text);
+        if (!inRange<float>(info, wide)) return outOfRange(info, text, " in each component");
         read[i] = nearestFloat(part, wide);
     }
     v = read;

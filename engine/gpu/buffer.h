@@ -29,6 +29,7 @@ class Buffer {
     }
 
     GLuint name() const { return name_.name(); }
+    GLuint letGo() { return name_.letGo(); }  // the caller owns the name now; this is empty
     size_t bytes() const { return bytes_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
 

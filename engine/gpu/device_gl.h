@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "engine/compute/device.h"
 #include "engine/compute/kernel_source.h"
@@ -14,5 +15,8 @@ namespace rivulet {
 // GL_SHADER_STORAGE_BUFFER, and the program in use, are changed by dispatch(). `log` hears of trouble that no Result can carry.
 // A Buffer's handle() is a GL buffer name: it may be drawn from (attributes, elements, SSBO, uniform, indirect) without further barriers.
 std::unique_ptr<Device> makeGlDevice(const ShaderFiles& files, Log log = {});
+
+// True for a GL_RENDERER that runs on the CPU: Mesa's llvmpipe, softpipe, swrast.
+bool isSoftwareRenderer(std::string_view renderer);
 
 }  // namespace rivulet

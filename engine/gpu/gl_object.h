@@ -27,6 +27,7 @@ class GlObject {
         if (name_ != 0) kDelete(name_);
     }
     GLuint name() const { return name_; }
+    GLuint letGo() { return std::exchange(name_, 0); }  // the caller owns it now
     explicit operator bool() const { return name_ != 0; }
 
   private:

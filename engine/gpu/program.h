@@ -51,7 +51,7 @@ class Program {
     void set(std::string_view uniform, std::span<const vec4> v);
     void set(std::string_view uniform, std::span<const mat4> v);
 
-    // Binds the texture to the unit, and the sampler to the unit.
+    // Binds the texture to the unit and tells the sampler so.
     void texture(std::string_view sampler, int unit, const Texture& t);
 
     // use(), then as many work groups as hold x * y * z invocations. A barrier is the caller's (the frame graph's) part.

@@ -48,6 +48,8 @@ struct TextureDesc {
     bool operator==(const TextureDesc&) const = default;
     size_t bytes() const;  // on the GPU, without padding
 };
+// The description a texture really gets: sizes at least 1, `mips` and `layers` as they become.
+TextureDesc settled(TextureDesc desc);
 // Levels down to 1 x 1.
 int fullMipCount(int width, int height);
 
@@ -70,7 +72,7 @@ class Texture {
     static Result<Texture> create(const TextureDesc& desc);
 
     GLuint name() const { return name_.name(); }
-    const TextureDesc& desc() const { return desc_; }  // with width, height and mips as they became
+    const TextureDesc& desc() const { return desc_; }  // settled
     int width(int mip = 0) const;
     int height(int mip = 0) const;
     explicit operator bool() const { return static_cast<bool>(name_); }
@@ -96,7 +98,7 @@ class Texture {
 class Sampler {
   public:
     Sampler() = default;
-    explicit Sampler(const Sampling& sampling);
+    explicit Sampler(const Sampling& sampling, bool mips = true);  // mips: look at levels other than 0
     GLuint name() const { return name_.name(); }
     void bind(GLuint unit) const { glBindSampler(unit, name()); }
 

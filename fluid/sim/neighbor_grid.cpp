@@ -193,8 +193,8 @@ void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
     device->run(scanBlocks, scan, {&blockSum}, SCAN_THREADS);
     device->run(scanApply, scan, {&cellCounts, &blockSum, &cellStart}, scan.blocks * SCAN_THREADS);
     device->run(cellScatter, params, {&cellStart, &cellOf, &rank, &order}, count);
-    device->run(cellSort, params, {&cellStart, &cellOf, &p.id, &order, &rank}, count);  // the ranks are used up: their place holds the order
-    device->run(reorder, params, {&rank, &p.positionNext, &p.velocityNext, &p.id, &p.position, &p.velocity, &p.idNext}, count);
+    device->run(cellSort, params, {&cellStart, &p.id, &order}, sortedCells());
+    device->run(reorder, params, {&order, &p.positionNext, &p.velocityNext, &p.id, &p.position, &p.velocity, &p.idNext}, count);
     p.id.swap(p.idNext);
 }
 

@@ -1,4 +1,6 @@
-// Bricks of 4^3 points, each with the triangles that can reach it, nearest first: a brick stops at the first that is out of its reach.
+// BrickPoints of 4^3 points in layers, each brick with the triangles that could be nearest to one of its points; each brick in 8 cubes of
+// 2^3 points, whose middles sieve the brick's triangles again. Distance changes by no more than one moves: who is further from
+// a middle than the nearest by more than a diagonal is nearest to none of the points around it.
 #include "fluid/voxel/distance_band.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -9,67 +11,97 @@
 namespace rivulet {
 namespace {
 
-constexpr int kEdge = 4;                       // points of a brick, each way
-constexpr int kPoints = kEdge * kEdge * kEdge;
-constexpr double kMiddle = 0.5 * (kEdge - 1);  // of a brick, from its first point
-constexpr double kRadius = 2.5980762113533160;  // sqrt(3) kMiddle: from there to its corners
+constexpr int kEdge = 4;                             // points of a brick, each way
+constexpr double kMiddle = 0.5 * (kEdge - 1);        // of a brick, from its first point
+constexpr double kBrickRadius = 2.5980762113533160;  // sqrt(3) kMiddle: from there to its corners
+constexpr double kCubeRadius = 0.8660254037844386;
+constexpr double kToCube = 1.7320508075688772;  // from a brick's middle to its cubes'
+constexpr double kSlack = 1e-6;                 // voxels: what sieves give away to rounding
 
-// What squared distances to one triangle need, worked out once.
+using BrickPoints = std::array<double, size_t{kEdge} * kEdge * kEdge>;
+
+double square(const dvec3& v) { return glm::dot(v, v); }
+
+// What distances to one triangle need, worked out once.
 struct Target {
-    GridTriangle t;
-    dvec3 bc{0.0}, normal{0.0};
-    double abab, abac, acac, area, perAb, perAc, perBc, perNormal;
+    dvec3 centre{0.0}, unit{0.0};  // unit: of the plane's normal; zero if the triangle has no area
+    double radius;                 // about the centre, of a disc that holds the triangle
+    dvec3 a{0.0}, ab{0.0}, ac{0.0}, bc{0.0};
+    double abab, abac, acac, area, perAb, perAc, perBc;
 
-    explicit Target(const GridTriangle& triangle) : t(triangle) {
-        bc = t.ac - t.ab;
-        normal = glm::cross(t.ab, t.ac);
-        abab = glm::dot(t.ab, t.ab);
-        abac = glm::dot(t.ab, t.ac);
-        acac = glm::dot(t.ac, t.ac);
-        const double bcbc = glm::dot(bc, bc);
-        const double square = glm::dot(normal, normal);
+    explicit Target(const GridTriangle& t) : a(t.a), ab(t.ab), ac(t.ac), bc(t.ac - t.ab) {
+        const dvec3 middle = (ab + ac) / 3.0;
+        centre = a + middle;
+        radius = std::sqrt(std::max(square(middle), std::max(square(middle - ab), square(middle - ac))));
+        abab = square(ab);
+        abac = glm::dot(ab, ac);
+        acac = square(ac);
+        const double bcbc = square(bc);
+        const dvec3 normal = glm::cross(ab, ac);
         // Without area (an angle below 1e-7) its edges are all there is: nothing is inside.
-        const bool flat = square <= 1e-14 * abab * acac;
+        const bool flat = square(normal) <= 1e-14 * abab * acac;
         area = flat ? -1.0 : abab * acac - abac * abac;
-        perNormal = flat ? 0.0 : 1.0 / square;
+        if (!flat) unit = normal / std::sqrt(square(normal));
         perAb = abab > 0.0 ? 1.0 / abab : 0.0;
         perAc = acac > 0.0 ? 1.0 / acac : 0.0;
         perBc = bcbc > 0.0 ? 1.0 / bcbc : 0.0;
     }
 
-    // Of the point at q from corner a: to the plane where it projects inside, else to the nearest edge.
-    double squaredDistance(double x, double y, double z) const {
-        const double onAb = t.ab.x * x + t.ab.y * y + t.ab.z * z;
-        const double onAc = t.ac.x * x + t.ac.y * y + t.ac.z * z;
-        const double onBc = bc.x * (x - t.ab.x) + bc.y * (y - t.ab.y) + bc.z * (z - t.ab.z);
-        const double alongAb = std::min(1.0, std::max(0.0, onAb * perAb));
-        const double alongAc = std::min(1.0, std::max(0.0, onAc * perAc));
-        const double alongBc = std::min(1.0, std::max(0.0, onBc * perBc));
-        const double toAb = square(x - t.ab.x * alongAb, y - t.ab.y * alongAb, z - t.ab.z * alongAb);
-        const double toAc = square(x - t.ac.x * alongAc, y - t.ac.y * alongAc, z - t.ac.z * alongAc);
-        const double toBc = square(x - t.ab.x - bc.x * alongBc, y - t.ab.y - bc.y * alongBc, z - t.ab.z - bc.z * alongBc);
-        const double height = normal.x * x + normal.y * y + normal.z * z;
+    // To the plane where the point projects inside, else to the nearest edge.
+    double squaredDistance(const dvec3& point) const {
+        const dvec3 q = point - a;
+        const dvec3 fromB = q - ab;
+        const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
         const double v = acac * onAb - abac * onAc;
         const double w = abab * onAc - abac * onAb;
-        const double toEdges = std::min(toAb, std::min(toAc, toBc));
-        const bool inside = (v >= 0.0) & (w >= 0.0) & (v + w <= area);
-        return inside ? height * height * perNormal : toEdges;
+        if (v >= 0.0 && w >= 0.0 && v + w <= area) {
+            const double height = glm::dot(unit, q);
+            return height * height;
+        }
+        const double alongAb = std::min(1.0, std::max(0.0, onAb * perAb));
+        const double alongAc = std::min(1.0, std::max(0.0, onAc * perAc));
+        const double alongBc = std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * perBc));
+        return std::min(square(q - ab * alongAb), std::min(square(q - ac * alongAc), square(fromB - bc * alongBc)));
     }
-    static double square(double x, double y, double z) { return x * x + y * y + z * z; }
+
+    // True only if the whole triangle is further than `reach` from the point, because the disc around it in its plane is:
+    // across the plane by h > reach, or along it by more than sqrt(reach^2 - h^2) + radius (squared twice, for speed).
+    bool beyond(const dvec3& point, double reach) const {
+        const double far = reach + kSlack;
+        const dvec3 q = point - centre;
+        const double excess = square(q) - far * far - radius * radius;
+        const double height = glm::dot(unit, q);
+        const double left = far * far - height * height;
+        return (excess > 0.0) & ((left < 0.0) | (excess * excess > 4.0 * radius * radius * left));
+    }
 };
 
-struct Entry {
-    double fromMiddle;  // distance of the triangle from the brick's middle
-    uint32_t triangle;
-    bool operator<(const Entry& other) const {
-        return fromMiddle != other.fromMiddle ? fromMiddle < other.fromMiddle : triangle < other.triangle;
-    }
-};
-
-// Memory a thread keeps from layer to layer.
+// Memory a thread keeps from layer to layer. `bricks`, `kept` and `near` index `targets`.
 struct Workspace {
-    std::vector<std::vector<Entry>> bricks;
+    std::vector<Target> targets;  // that reach the layer
+    std::vector<std::vector<uint32_t>> bricks;
+    std::vector<uint32_t> kept, near;
 };
+
+// Of `from`, those that may be nearest to a point within `radius` of `middle`, the nearest to `middle` itself first, into `to`.
+// `nearest`: no further than this is of interest. Returns the distance from `middle`, or that.
+double sieve(const std::vector<Target>& targets, const std::vector<uint32_t>& from, const dvec3& middle, double radius, double nearest,
+             std::vector<uint32_t>& to) {
+    to.clear();
+    for (uint32_t k : from) {
+        const Target& target = targets[k];
+        if (target.beyond(middle, nearest + 2.0 * radius)) continue;
+        to.push_back(k);
+        if (target.beyond(middle, nearest)) continue;
+        const double distance = std::sqrt(target.squaredDistance(middle));
+        if (distance < nearest) {
+            nearest = distance;
+            std::swap(to.front(), to.back());
+        }
+    }
+    std::erase_if(to, [&](uint32_t k) { return targets[k].beyond(middle, nearest + 2.0 * radius); });
+    return nearest;
+}
 
 class BandBaker {
   public:
@@ -86,7 +118,7 @@ class BandBaker {
     }
 
   private:
-    // Bricks along axis k that a triangle can reach.
+    // BrickPoints along axis k that a triangle can reach.
     ivec2 reached(double low, double high, int k) const {
         const double first = std::floor((low - band_ - (kEdge - 1)) / kEdge), last = std::floor((high + band_) / kEdge);
         return {static_cast<int>(std::max(0.0, first)), static_cast<int>(std::min(bricks_[k] - 1.0, last))};
@@ -112,55 +144,69 @@ class BandBaker {
     void bakeLayer(int layer, Workspace& work) {
         const auto l = static_cast<size_t>(layer);
         if (layerStart_[l] == layerStart_[l + 1]) return;
+        work.targets.clear();
         work.bricks.resize(static_cast<size_t>(bricks_.x) * static_cast<size_t>(bricks_.y));
         for (auto& entries : work.bricks) entries.clear();
-        for (size_t k = layerStart_[l]; k < layerStart_[l + 1]; ++k) enter(inLayer_[k], layer, work);
+        for (size_t k = layerStart_[l]; k < layerStart_[l + 1]; ++k) enter(triangles_[inLayer_[k]], layer, work);
         for (int y = 0; y < bricks_.y; ++y) {
-            for (int x = 0; x < bricks_.x; ++x) bakeBrick({x, y, layer}, work.bricks[brickIndex(x, y)]);
+            for (int x = 0; x < bricks_.x; ++x) bakeBrick({x, y, layer}, work);
         }
     }
 
-    void enter(uint32_t index, int layer, Workspace& work) const {
-        const Target target(triangles_[index]);
-        const dvec3 low = target.t.low(), high = target.t.high();
+    void enter(const GridTriangle& triangle, int layer, Workspace& work) const {
+        const auto k = static_cast<uint32_t>(work.targets.size());
+        const Target& target = work.targets.emplace_back(triangle);
+        const dvec3 low = triangle.low(), high = triangle.high();
         const ivec2 xs = reached(low.x, high.x, 0), ys = reached(low.y, high.y, 1);
         for (int y = ys.x; y <= ys.y; ++y) {
             for (int x = xs.x; x <= xs.y; ++x) {
-                const dvec3 middle = dvec3(x * kEdge, y * kEdge, layer * kEdge) + kMiddle - target.t.a;
-                const double distance = std::sqrt(target.squaredDistance(middle.x, middle.y, middle.z));
-                if (distance <= band_ + kRadius) work.bricks[brickIndex(x, y)].push_back({distance, index});
+                if (!target.beyond(dvec3(x * kEdge, y * kEdge, layer * kEdge) + kMiddle, band_ + kBrickRadius))
+                    work.bricks[brickIndex(x, y)].push_back(k);
             }
         }
     }
 
-    void bakeBrick(const ivec3& brick, std::vector<Entry>& entries) {
+    void bakeBrick(const ivec3& brick, Workspace& work) {
+        const std::vector<uint32_t>& entries = work.bricks[brickIndex(brick.x, brick.y)];
         if (entries.empty()) return;
-        std::sort(entries.begin(), entries.end());
-        std::array<double, kPoints> best;
-        best.fill(band_ * band_);
-        double worst = band_;
-        for (const Entry& entry : entries) {
-            if (entry.fromMiddle - kRadius > worst) break;
-            const Target target(triangles_[entry.triangle]);
-            const dvec3 corner = dvec3(brick * kEdge) - target.t.a;
-            double worstSquare = 0;
-            for (int row = 0; row < kEdge * kEdge; ++row) {
-                const double y = corner.y + row % kEdge, z = corner.z + row / kEdge;  // NOLINT(bugprone-integer-division)
-                double* of = best.data() + row * kEdge;
-                for (int x = 0; x < kEdge; ++x) of[x] = std::min(of[x], target.squaredDistance(corner.x + x, y, z));
-                for (int x = 0; x < kEdge; ++x) worstSquare = std::max(worstSquare, of[x]);
-            }
-            worst = std::sqrt(worstSquare);
-        }
+        const dvec3 middle = dvec3(brick * kEdge) + kMiddle;
+        const double nearest = sieve(work.targets, entries, middle, kBrickRadius, band_ + kBrickRadius, work.kept);
+        if (work.kept.empty()) return;
+        BrickPoints best;
+        for (int cube = 0; cube < 8; ++cube) bakeCube(brick, ivec3(cube & 1, (cube >> 1) & 1, cube >> 2) * 2, nearest, work, best);
         store(brick, best);
     }
 
-    void store(const ivec3& brick, const std::array<double, kPoints>& best) {
+    // `first`: the cube's low corner in the brick. `fromBrick`: the nearest triangle's distance from the brick's middle.
+    void bakeCube(const ivec3& brick, const ivec3& first, double fromBrick, Workspace& work, BrickPoints& best) const {
+        const dvec3 corner(brick * kEdge + first);
+        sieve(work.targets, work.kept, corner + 0.5, kCubeRadius, std::min(band_ + kCubeRadius, fromBrick + kToCube), work.near);
+        double reach = band_;
+        for (int k = 0; k < 8; ++k) {
+            const ivec3 at((k ^ (k >> 1)) & 1, ((k >> 1) ^ (k >> 2)) & 1, k >> 2);  // each a step from the one before
+            const dvec3 point = corner + dvec3(at);
+            double nearest = band_ * band_;
+            for (uint32_t n : work.near) {
+                const Target& target = work.targets[n];
+                if (target.beyond(point, reach)) continue;
+                const double distance = target.squaredDistance(point);
+                if (distance < nearest) {
+                    nearest = distance;
+                    reach = std::min(reach, std::sqrt(distance));
+                }
+            }
+            best[static_cast<size_t>(((first.z + at.z) * kEdge + first.y + at.y) * kEdge + first.x + at.x)] = nearest;
+            reach = std::min(band_, reach + 1.0);  // the next point's distance is no more
+        }
+    }
+
+    void store(const ivec3& brick, const BrickPoints& best) {
         const ivec3 first = brick * kEdge;
         const ivec3 end = glm::min(first + ivec3(kEdge), points_);
         for (int z = first.z; z < end.z; ++z) {
             for (int y = first.y; y < end.y; ++y) {
-                const size_t row = (static_cast<size_t>(z) * static_cast<size_t>(points_.y) + static_cast<size_t>(y)) * static_cast<size_t>(points_.x);
+                const size_t row =
+                    (static_cast<size_t>(z) * static_cast<size_t>(points_.y) + static_cast<size_t>(y)) * static_cast<size_t>(points_.x);
                 for (int x = first.x; x < end.x; ++x) {
                     const int k = ((z - first.z) * kEdge + (y - first.y)) * kEdge + (x - first.x);
                     distance_[row + static_cast<size_t>(x)] = static_cast<float>(std::sqrt(best[static_cast<size_t>(k)]));

@@ -68,15 +68,16 @@ Layout layoutFor(const Extent& extent, const VoxelFieldOptions& options, int res
 }
 
 std::string readableBytes(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.0f} MB", std::ceil(bytes / 1e6)) : fmt::format("{:.1f} GB", bytes / 1e9);
+    return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
 Error tooMuchMemory(const Extent& extent, const VoxelFieldOptions& options, double needed, double limit) {
     int fits = options.resolution;
     while (fits >= kMinResolution && layoutFor(extent, options, fits).bytes > limit) --fits;
-    const std::string remedy = fits >= kMinResolution ? fmt::format("a resolution of {} fits", fits)
-                                                      : fmt::format("the band of {} m and padding of {} m are too wide for meshes {} m long",
-                                                                    options.band, options.padding, extent.longest);
+    const std::string remedy = fits >= kMinResolution
+                                   ? fmt::format("a resolution of {} fits", fits)
+                                   : fmt::format("the band of {} m and padding of {} m are too wide for meshes {} m long", options.band,
+                                                 options.padding, extent.longest);
     return badInput(fmt::format("A voxel field of resolution {} needs {}, more than the {} allowed; {}.", options.resolution,
                                 readableBytes(needed), readableBytes(limit), remedy));
 }
@@ -101,14 +102,16 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
     if (options.resolution < kMinResolution || options.resolution > kMaxResolution)
         return badInput(fmt::format("A voxel field's resolution is {}..{}, not {}.", kMinResolution, kMaxResolution, options.resolution));
     if (!(options.band >= 0.0F && options.padding >= 0.0F) || !std::isfinite(options.band) || !std::isfinite(options.padding))
-        return badInput(fmt::format("A voxel field's band ({}) and padding ({}) must be finite lengths of 0 m or more.", options.band, options.padding));
+        return badInput(fmt::format("A voxel field's band ({}) and padding ({}) must be finite lengths of 0 m or more.", options.band,
+                                    options.padding));
     size_t triangles = 0;
     for (size_t m = 0; m < meshes.size(); ++m) {
         if (auto error = checkMesh(meshes[m], which(m, meshes.size()))) return *error;
         triangles += meshes[m].triangleCount();
     }
     if (triangles == 0) return badInput("There is no triangle to voxelise; the mesh is empty or holds only points and lines.");
-    if (triangles > std::numeric_limits<uint32_t>::max()) return badInput(fmt::format("{} triangles are more than a voxel field can take.", triangles));
+    if (triangles > std::numeric_limits<uint32_t>::max())
+        return badInput(fmt::format("{} triangles are more than a voxel field can take.", triangles));
 
     const Extent extent = extentOf(meshes);
     const dvec3 furthest = glm::max(glm::abs(dvec3(extent.bounds.min)), glm::abs(dvec3(extent.bounds.max)));
@@ -117,8 +120,10 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
     if (!(extent.longest > 0.0)) return badInput("All triangles lie in one point: the mesh has no extent; check its scale.");
     // A float near `away` is exact to 2^-24 of it; a voxel must span several of those steps.
     if (!(layout.voxel > 16.0 * away / 16777216.0) || !std::isnormal(layout.voxel))
-        return badInput(fmt::format("Voxels of {:.3g} m cannot be told apart {:.3g} m from the origin in 32-bit floats; "
-                                    "move the mesh nearer to the origin, scale it or lower the resolution.", layout.voxel, away));
+        return badInput(
+            fmt::format("Voxels of {:.3g} m cannot be told apart {:.3g} m from the origin in 32-bit floats; "
+                        "move the mesh nearer to the origin, scale it or lower the resolution.",
+                        layout.voxel, away));
     // Kernels count voxels and points in 32 bits.
     const double limit = std::min(static_cast<double>(options.memoryLimit), 4294967295.0 * sizeof(float));
     if (!(layout.bytes <= limit)) return tooMuchMemory(extent, options, layout.bytes, limit);
@@ -128,7 +133,8 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
         VoxelGrid& grid = field.surface;
         grid.size = ivec3(layout.voxels);
         grid.voxel = layout.voxel;
-        grid.origin = vec3(0.5 * (dvec3(extent.bounds.min) + dvec3(extent.bounds.max)) - 0.5 * layout.voxels * static_cast<double>(layout.voxel));
+        grid.origin =
+            vec3(0.5 * (dvec3(extent.bounds.min) + dvec3(extent.bounds.max)) - 0.5 * layout.voxels * static_cast<double>(layout.voxel));
         grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
         field.band = layout.band;
         const GridTriangles list(meshes, grid);

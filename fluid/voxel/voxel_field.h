@@ -12,9 +12,9 @@ namespace rivulet {
 
 // Distance is sampled at grid points p = origin + voxel * (x, y, z), 0 <= x <= size.x and so on: (size + 1) points an axis, x fastest.
 struct VoxelField {
-    VoxelGrid surface;             // voxels that a triangle passes through, touching counts
-    std::vector<float> distance;   // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
-    float band = 0;                // m
+    VoxelGrid surface;            // voxels that a triangle passes through, touching counts
+    std::vector<float> distance;  // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
+    float band = 0;               // m
     bool empty() const { return surface.count() == 0; }
     size_t bytes() const { return surface.bits.size() + distance.size() * sizeof(float); }
     // A lower bound (m) of the distance from `p` to the mesh, at most sqrt(3) voxels below it and never above `band`: distance changes
@@ -24,9 +24,9 @@ struct VoxelField {
 };
 
 struct VoxelFieldOptions {
-    int resolution = 128;   // voxels along the longest side of the meshes' bounds, 2..2048
-    float band = 0;         // m, at least this wide (and at least kBandVoxels voxels)
-    float padding = 0;      // m, around the bounds: at least the band, so that whoever comes near is inside the grid
+    int resolution = 128;                   // voxels along the longest side of the meshes' bounds, 2..2048
+    float band = 0;                         // m, at least this wide (and at least kBandVoxels voxels)
+    float padding = 0;                      // m, around the bounds: at least the band, so that whoever comes near is inside the grid
     size_t memoryLimit = size_t{1} << 30U;  // bytes the field may take
 };
 

@@ -1,4 +1,5 @@
-// Triangle-box overlap by separating axes (Akenine-Möller 2001), solved for whole rows of voxels (in the manner of Schwarz and Seidel 2010).
+// Triangle-box overlap by separating axes (Akenine-Möller 2001), solved for whole rows of voxels (in the manner of Schwarz and Seidel
+// 2010).
 #include "fluid/voxel/voxelize_surface.h"
 
 #include <oneapi/tbb/parallel_for.h>

@@ -116,8 +116,7 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) FieldPa
             // The share of this stretch that lay beyond contact answers like the way that is left.
             float intoA = -dot(stretch, a);
             float intoB = -dot(stretch, b);
-            float beyond = max(intoA > depthA ? depthA / intoA : (intoA > 0.0f ? 1.0f : 0.0f),
-                               intoB > depthB ? depthB / intoB : (intoB > 0.0f ? 1.0f : 0.0f));
+            float beyond = max(intoA > 0.0f ? clamp(depthA / intoA, 0.0f, 1.0f) : 0.0f, intoB > 0.0f ? clamp(depthB / intoB, 0.0f, 1.0f) : 0.0f);
             if (fast > 0.0f || beyond > 0.0f) {
                 s.touched = true;
                 next = next + respondBoth(stretch * beyond, a, b, f.friction, bounce) - stretch * beyond;

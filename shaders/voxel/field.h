@@ -1,4 +1,4 @@
-// The static field as a kernel reads it: interpolated distance and its gradient, surface bits. Include after BUFFERS.
+// The distance band as a kernel reads it: interpolated distance and its gradient. Include after BUFFERS; the buffer is `bandDistance`.
 // Points are in metres, cell coordinates in voxels from the grid's low corner.
 STRUCT(FieldSample) {
     vec3  gradient;  // of the trilinear interpolant: away from the mesh, length 1 by a lone wall, shorter where walls meet
@@ -64,11 +64,4 @@ FN bool farFromField(GLOBAL(float, bandDistance) FieldParams f, vec3 a, vec3 b) 
     uint slab = row * (TO_UINT(f.sizeY) + 1u);
     float there = bandDistance[TO_UINT(nearest.z) * slab + TO_UINT(nearest.y) * row + TO_UINT(nearest.x)];
     return there - length(g - nearest) * f.voxel > length(b - a) + f.contact;
-}
-
-// Voxels outside the grid are not set.
-FN bool voxelSet(GLOBAL(uint, surfaceBits) FieldParams f, int x, int y, int z) {
-    if (x < 0 || y < 0 || z < 0 || x >= f.sizeX || y >= f.sizeY || z >= f.sizeZ) return false;
-    uint k = (TO_UINT(z) * TO_UINT(f.sizeY) + TO_UINT(y)) * TO_UINT(f.sizeX) + TO_UINT(x);
-    return ((surfaceBits[k >> 5u] >> (k & 31u)) & 1u) != 0u;
 }

@@ -1,7 +1,15 @@
-// The walk through every voxel a segment pierces (Amanatides and Woo 1987), made proof against rounding. Include after field.h.
+// The walk through every voxel a segment pierces (Amanatides and Woo 1987), made proof against rounding. Include after BUFFERS;
+// the buffer is `surfaceBits`.
 // Every voxel that a segment touches holds one of the segment's ends or one of the points where it crosses a plane between voxels.
 // So the walk goes from crossing to crossing, each computed afresh from the segment's start, and at each asks all voxels
 // within `nudge`: two as a rule, four by an edge, eight by a corner. Ties, grazing along a face and boundaries need no case of their own.
+
+// Voxels outside the grid are not set.
+FN bool voxelSet(GLOBAL(uint, surfaceBits) FieldParams f, int x, int y, int z) {
+    if (x < 0 || y < 0 || z < 0 || x >= f.sizeX || y >= f.sizeY || z >= f.sizeZ) return false;
+    uint k = (TO_UINT(z) * TO_UINT(f.sizeY) + TO_UINT(y)) * TO_UINT(f.sizeX) + TO_UINT(x);
+    return ((surfaceBits[k >> 5u] >> (k & 31u)) & 1u) != 0u;
+}
 
 // `p` in cell coordinates.
 FN bool setVoxelNear(GLOBAL(uint, surfaceBits) FieldParams f, vec3 p) {

@@ -1,0 +1,149 @@
+#include "engine/app/window_glfw.h"
+
+#include <fmt/format.h>
+#include <glad/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/gpu/device_gl.h"
+
+namespace rivulet {
+namespace {
+
+// UTF-8 of one code point.
+void append(std::string& text, unsigned code) {
+    const auto put = [&](unsigned byte) { text += static_cast<char>(byte); };
+    if (code < 0x80) {
+        put(code);
+    } else if (code < 0x800) {
+        put(0xC0U | code >> 6U);
+        put(0x80U | (code & 0x3FU));
+    } else if (code < 0x10000) {
+        put(0xE0U | code >> 12U);
+        put(0x80U | (code >> 6U & 0x3FU));
+        put(0x80U | (code & 0x3FU));
+    } else {
+        put(0xF0U | code >> 18U);
+        put(0x80U | (code >> 12U & 0x3FU));
+        put(0x80U | (code >> 6U & 0x3FU));
+        put(0x80U | (code & 0x3FU));
+    }
+}
+
+std::string glfwTrouble() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text ? text : "GLFW gives no reason";
+}
+
+}  // namespace
+
+struct WindowGlfw::Impl {
+    GLFWwindow* window = nullptr;
+    InputEvents events;  // what callbacks gathered, and what is held
+    bool hasMouse = false;
+    std::string renderer;
+
+    Impl() = default;
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+    ~Impl() {
+        if (window) glfwDestroyWindow(window);
+        glfwTerminate();
+    }
+
+    static InputEvents& of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window))->events; }
+
+    // Set when the window is made: whoever installs his own later (ImGui) gets these to call on.
+    void listen() {
+        glfwSetWindowUserPointer(window, this);
+        glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
+            if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;  // left, right, middle: as in MouseButton
+            InputEvents& e = of(w);
+            e.buttonDown[button] = action != GLFW_RELEASE;
+            (action == GLFW_RELEASE ? e.buttonReleased : e.buttonPressed)[button] = true;
+        });
+        glfwSetScrollCallback(window,
+                              [](GLFWwindow* w, double x, double y) { of(w).wheel += vec2(static_cast<float>(x), static_cast<float>(y)); });
+        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
+            if (key == GLFW_KEY_UNKNOWN || action == GLFW_REPEAT) return;
+            InputEvents& e = of(w);
+            std::erase(e.keysDown, key);
+            if (action != GLFW_PRESS) return;
+            e.keysDown.push_back(key);
+            e.keysPressed.push_back(key);
+        });
+        glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code) { append(of(w).text, code); });
+        glfwSetDropCallback(
+            window, [](GLFWwindow* w, int count, const char** paths) { of(w).dropped.insert(of(w).dropped.end(), paths, paths + count); });
+    }
+};
+
+Result<WindowGlfw> WindowGlfw::create(const Options& options) {
+    if (glfwInit() != GLFW_TRUE)
+        return failed(fmt::format("no window can be opened ({}); run with --headless, or start a display", glfwTrouble()));
+    auto impl = std::make_unique<Impl>();  // from here on it ends GLFW
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug ? GLFW_TRUE : GLFW_FALSE);
+    glfwWindowHint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
+    impl->window = glfwCreateWindow(std::max(options.width, 1), std::max(options.height, 1), options.title.c_str(), nullptr, nullptr);
+    if (!impl->window)
+        return failed(
+            fmt::format("no window with OpenGL 4.5 can be opened ({}); run with --headless, or install a newer driver", glfwTrouble()));
+    glfwMakeContextCurrent(impl->window);
+    if (gladLoadGL(glfwGetProcAddress) == 0)
+        return failed("the window's OpenGL driver lacks functions of 4.5; run with --headless, or install a newer driver");
+    glfwSwapInterval(options.vsync ? 1 : 0);
+    impl->renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    impl->listen();
+    return WindowGlfw(std::move(impl));
+}
+
+WindowGlfw::WindowGlfw(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+WindowGlfw::WindowGlfw(WindowGlfw&&) noexcept = default;
+WindowGlfw& WindowGlfw::operator=(WindowGlfw&& other) noexcept {
+    std::swap(impl_, other.impl_);
+    return *this;
+}
+WindowGlfw::~WindowGlfw() = default;
+
+InputEvents WindowGlfw::poll() {
+    glfwPollEvents();
+    InputEvents& gathered = impl_->events;
+    double x = 0, y = 0;
+    glfwGetCursorPos(impl_->window, &x, &y);
+    const vec2 mouse(static_cast<float>(x), static_cast<float>(y));
+    gathered.mouseDelta = impl_->hasMouse ? mouse - gathered.mouse : vec2(0);
+    gathered.mouse = mouse;
+    impl_->hasMouse = true;
+    glfwGetWindowSize(impl_->window, &gathered.size.x, &gathered.size.y);
+    glfwGetFramebufferSize(impl_->window, &gathered.framebuffer.x, &gathered.framebuffer.y);
+    // X11 keeps the size of a minimised window; Windows says 0.
+    if (glfwGetWindowAttrib(impl_->window, GLFW_ICONIFIED) == GLFW_TRUE) gathered.size = gathered.framebuffer = ivec2(0);
+    gathered.closed = glfwWindowShouldClose(impl_->window) == GLFW_TRUE;
+
+    InputEvents taken = gathered;
+    std::fill(std::begin(gathered.buttonPressed), std::end(gathered.buttonPressed), false);
+    std::fill(std::begin(gathered.buttonReleased), std::end(gathered.buttonReleased), false);
+    gathered.wheel = vec2(0);
+    gathered.keysPressed.clear();
+    gathered.text.clear();
+    gathered.dropped.clear();
+    return taken;
+}
+
+void WindowGlfw::swap() { glfwSwapBuffers(impl_->window); }
+void WindowGlfw::setTitle(const std::string& title) { glfwSetWindowTitle(impl_->window, title.c_str()); }
+void WindowGlfw::resize(int width, int height) { glfwSetWindowSize(impl_->window, std::max(width, 1), std::max(height, 1)); }
+GLFWwindow* WindowGlfw::handle() const { return impl_->window; }
+bool WindowGlfw::software() const { return isSoftwareRenderer(impl_->renderer); }
+const std::string& WindowGlfw::renderer() const { return impl_->renderer; }
+
+}  // namespace rivulet

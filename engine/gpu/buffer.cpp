@@ -1,0 +1,65 @@
+#include "engine/gpu/buffer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/gpu/gl_error.h"
+
+namespace rivulet::gpu {
+namespace {
+
+// GL has no buffers of 0 bytes, and fills whole words; std140 blocks end on 16.
+size_t paddedBytes(size_t bytes) { return std::max<size_t>((bytes + 15) / 16 * 16, 16); }
+
+}  // namespace
+
+Result<Buffer> Buffer::create(size_t bytes, BufferKind kind) {
+    forgetGlErrors();
+    Buffer buffer;
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    buffer.name_ = BufferName(name);
+    buffer.bytes_ = bytes;
+    const GLbitfield mapping = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+    const GLbitfield flags = GL_DYNAMIC_STORAGE_BIT | (kind == BufferKind::mapped ? mapping : 0);
+    const size_t padded = paddedBytes(bytes);
+    glNamedBufferStorage(name, static_cast<GLsizeiptr>(padded), nullptr, flags);
+    GLenum error = takeGlError();
+    if (error == GL_NO_ERROR) {
+        buffer.fill(0);  // drivers that allocate late fail here
+        if (kind == BufferKind::mapped)
+            buffer.mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(name, 0, static_cast<GLsizeiptr>(padded), mapping));
+        error = takeGlError();
+    }
+    if (error != GL_NO_ERROR || (kind == BufferKind::mapped && !buffer.mapped_))
+        return failed(fmt::format("the GPU has no room for a buffer of {} bytes ({:.1f} MiB; {}); use fewer particles or coarser voxels",
+                                  bytes, static_cast<double>(bytes) / 1048576.0, glErrorName(error)));
+    return buffer;
+}
+
+Result<Buffer> Buffer::fromBytes(std::span<const std::byte> bytes) {
+    Result<Buffer> buffer = create(bytes.size());
+    if (buffer) buffer->write(bytes);
+    return buffer;
+}
+
+void Buffer::write(std::span<const std::byte> bytes, size_t offset) {
+    ASSERT(offset <= bytes_ && bytes.size() <= bytes_ - offset, "write inside the buffer");
+    if (bytes.empty()) return;
+    glNamedBufferSubData(name(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void Buffer::read(std::span<std::byte> bytes, size_t offset) const {
+    ASSERT(offset <= bytes_ && bytes.size() <= bytes_ - offset, "read inside the buffer");
+    if (bytes.empty()) return;
+    glGetNamedBufferSubData(name(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void Buffer::fill(uint32_t word) {
+    ASSERT(name() != 0, "create the buffer before filling it");
+    glClearNamedBufferData(name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+}  // namespace rivulet::gpu

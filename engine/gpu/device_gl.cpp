@@ -1,0 +1,351 @@
+#include "engine/gpu/device_gl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <utility>
+
+#include "engine/gpu/buffer.h"
+#include "engine/gpu/gl_error.h"
+#include "engine/gpu/program.h"
+#include "engine/gpu/timer.h"
+
+namespace rivulet {
+namespace {
+
+constexpr uint32_t kDefaultLocalSize = 64;
+constexpr size_t kBlockPage = size_t{64} << 10U;  // parameter blocks written before a new page is begun
+constexpr size_t kHarvestAbove = 1024;            // timed dispatches that may wait for takeTimes()
+
+// What a dispatch wrote is there for everything that a Buffer may be used for, here and in drawing.
+constexpr GLbitfield kReaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+                                GL_ELEMENT_ARRAY_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
+
+class Fence {
+  public:
+    Fence() = default;
+    Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
+    Fence& operator=(Fence&& other) noexcept {
+        std::swap(sync_, other.sync_);
+        return *this;
+    }
+    ~Fence() {
+        if (sync_) glDeleteSync(sync_);
+    }
+    // Everything issued so far.
+    static Fence now() {
+        Fence fence;
+        fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+        return fence;
+    }
+    bool passed() const {
+        if (!sync_) return true;
+        const GLenum state = glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
+        return state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
+    }
+
+  private:
+    GLsync sync_ = nullptr;
+};
+
+GLint64 limit(GLenum which) {
+    GLint64 value = 0;
+    glGetInteger64v(which, &value);
+    return value;
+}
+std::string text(GLenum which) {
+    const auto* value = reinterpret_cast<const char*>(glGetString(which));
+    return value ? value : "";
+}
+GLuint nameOf(const Buffer& buffer) { return static_cast<GLuint>(buffer.handle()); }
+size_t roundedUp(size_t value, size_t step) { return (value + step - 1) / step * step; }
+
+class GlDevice final : public Device {
+  public:
+    GlDevice(const ShaderFiles& files, Log log);
+    ~GlDevice() override = default;
+    Backend backend() const override { return Backend::gl; }
+    const DeviceInfo& info() const override { return info_; }
+    Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
+    Result<Buffer> allocate(size_t bytes) override;
+    void release(uint64_t handle, size_t bytes) override;
+    void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override;
+    void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override;
+    void fill(Buffer& to, uint32_t word) override;
+    void copy(const Buffer& from, Buffer& to, size_t bytes) override;
+    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) override;
+    void poll() override;
+    void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) override;
+    void finish() override;
+    std::vector<PassTime> takeTimes() override;
+    size_t bytesAllocated() const override { return bytesAllocated_; }
+
+  private:
+    struct Entry {
+        std::string key;  // path and defines
+        std::string path;
+        gpu::Program program;
+        uint32_t localSize;
+        size_t bindings;  // the highest SSBO binding that the kernel really uses
+        GLint groupBase;  // where lang.h's groupBase_ is; -1: the kernel needs no THREAD_ID
+    };
+    // Parameter blocks, written one after the other by the host. A page is written anew when the GPU is done with all it holds.
+    struct Page {
+        gpu::Buffer buffer;
+        size_t used = 0;
+        Fence done;
+    };
+    struct Awaited {
+        gpu::Buffer staging;
+        size_t bytes = 0;
+        Fence copied;
+        std::function<void(std::span<const std::byte>)> then;
+    };
+
+    bool bindParams(std::span<const std::byte> bytes);
+    bool nextPage(size_t bytes);
+    gpu::Buffer stagingFor(size_t bytes);
+    void harvest();
+    void tell(const std::string& trouble);
+
+    ShaderFiles files_;
+    Log log_;
+    DeviceInfo info_;
+    size_t maxLocalSize_, maxGroups_, blockAlignment_;
+    std::vector<Entry> kernels_;
+    std::deque<Page> pages_;  // the oldest first; the last is being written
+    std::vector<std::byte> lastBlock_;
+    size_t lastBlockAt_ = 0;
+    std::deque<Awaited> awaited_;
+    std::vector<gpu::Buffer> staging_;  // free
+    gpu::Timer timer_;
+    std::vector<PassTime> times_;
+    size_t bytesAllocated_ = 0;
+    bool troubleTold_ = false;
+};
+
+GlDevice::GlDevice(const ShaderFiles& files, Log log)
+    : files_(files),
+      log_(std::move(log)),
+      maxLocalSize_(static_cast<size_t>(limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS))),
+      blockAlignment_(std::max<size_t>(static_cast<size_t>(limit(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT)), 16)) {
+    GLint groups = 0;
+    glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
+    maxGroups_ = static_cast<size_t>(std::max(groups, 65535));
+    info_.name = text(GL_RENDERER);
+    info_.driver = text(GL_VERSION);
+    info_.software = isSoftwareRenderer(info_.name);
+    info_.maxBufferBytes = static_cast<size_t>(limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
+}
+
+// Calls that have no Result say their trouble once: it would come again every frame.
+void GlDevice::tell(const std::string& trouble) {
+    if (!troubleTold_) log_.error(trouble);
+    troubleTold_ = true;
+}
+
+Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> defines) {
+    std::vector<Define> sorted(defines.begin(), defines.end());
+    std::sort(sorted.begin(), sorted.end(), [](const Define& a, const Define& b) { return a.name < b.name; });
+    uint32_t localSize = 0;
+    std::string key(path);
+    for (const Define& d : sorted) {
+        key += fmt::format(";{}={}", d.name, d.value);
+        if (d.name == "LOCAL_SIZE") localSize = static_cast<uint32_t>(std::strtoul(d.value.c_str(), nullptr, 10));
+    }
+    const auto known = std::find_if(kernels_.begin(), kernels_.end(), [&](const Entry& e) { return e.key == key; });
+    if (known != kernels_.end()) return Kernel{static_cast<uint32_t>(known - kernels_.begin())};
+    if (localSize == 0) {
+        localSize = kDefaultLocalSize;
+        sorted.push_back({"LOCAL_SIZE", std::to_string(localSize)});
+    }
+    const std::string file = fmt::format("shaders/{}.kernel", path);
+    if (localSize > maxLocalSize_)
+        return failed(
+            fmt::format("{} runs in work groups of {}, but {} allows {}; try --backend cpu", file, localSize, info_.name, maxLocalSize_));
+    Result<gpu::Program> program = gpu::Program::create(files_, {file}, sorted);
+    if (!program) return program.error();
+
+    const GLuint name = program->name();
+    GLint blocks = 0;
+    glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
+    GLint bindings = 0;
+    for (GLint k = 0; k < blocks; ++k) {
+        const GLenum property = GL_BUFFER_BINDING;
+        GLint binding = 0;
+        glGetProgramResourceiv(name, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(k), 1, &property, 1, nullptr, &binding);
+        bindings = std::max(bindings, binding);
+    }
+    kernels_.push_back({std::move(key), std::string(path), std::move(*program), localSize, static_cast<size_t>(bindings),
+                        glGetUniformLocation(name, "groupBase_")});
+    return Kernel{static_cast<uint32_t>(kernels_.size() - 1)};
+}
+
+Result<Buffer> GlDevice::allocate(size_t bytes) {
+    if (bytes > info_.maxBufferBytes)
+        return failed(fmt::format(
+            "a buffer of {} bytes ({:.1f} MiB) was asked for, but {} allows {} bytes ({:.1f} MiB); use fewer particles or coarser voxels",
+            bytes, static_cast<double>(bytes) / 1048576.0, info_.name, info_.maxBufferBytes,
+            static_cast<double>(info_.maxBufferBytes) / 1048576.0));
+    Result<gpu::Buffer> buffer = gpu::Buffer::create(bytes);
+    if (!buffer)
+        return failed(fmt::format("{} ({:.1f} MiB are in use)", buffer.error().message, static_cast<double>(bytesAllocated_) / 1048576.0));
+    bytesAllocated_ += bytes;
+    return Buffer(*this, buffer->letGo(), bytes);
+}
+
+void GlDevice::release(uint64_t handle, size_t bytes) {
+    gpu::deleteBuffer(static_cast<GLuint>(handle));
+    bytesAllocated_ -= bytes;
+}
+
+void GlDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {
+    ASSERT(offset <= to.bytes() && bytes.size() <= to.bytes() - offset, "write inside the buffer");
+    if (bytes.empty()) return;
+    glNamedBufferSubData(nameOf(to), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void GlDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offset) {
+    ASSERT(offset <= from.bytes() && bytes.size() <= from.bytes() - offset, "read inside the buffer");
+    if (bytes.empty()) return;
+    glGetNamedBufferSubData(nameOf(from), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void GlDevice::fill(Buffer& to, uint32_t word) {
+    if (to.bytes() == 0) return;
+    glClearNamedBufferData(nameOf(to), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+void GlDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
+    ASSERT(bytes <= from.bytes() && bytes <= to.bytes(), "copy inside both buffers");
+    ASSERT(from.handle() != to.handle(), "copy from one buffer to another");
+    if (bytes == 0) return;
+    glCopyNamedBufferSubData(nameOf(from), nameOf(to), 0, 0, static_cast<GLsizeiptr>(bytes));
+}
+
+// A free piece of at least this size, or a new one: the ring grows instead of waiting.
+gpu::Buffer GlDevice::stagingFor(size_t bytes) {
+    const auto fits = std::find_if(staging_.begin(), staging_.end(), [&](const gpu::Buffer& b) { return b.bytes() >= bytes; });
+    if (fits != staging_.end()) {
+        gpu::Buffer found = std::move(*fits);
+        staging_.erase(fits);
+        return found;
+    }
+    Result<gpu::Buffer> made = gpu::Buffer::create(roundedUp(std::max<size_t>(bytes, 1), 4096), gpu::BufferKind::mapped);
+    if (made) return std::move(*made);
+    tell(fmt::format("results cannot be read back: {}", made.error().message));
+    return {};
+}
+
+void GlDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
+    ASSERT(bytes <= from.bytes(), "read inside the buffer");
+    Awaited awaited{stagingFor(bytes), bytes, {}, std::move(then)};
+    if (!awaited.staging) return;
+    if (bytes > 0) glCopyNamedBufferSubData(nameOf(from), awaited.staging.name(), 0, 0, static_cast<GLsizeiptr>(bytes));
+    awaited.copied = Fence::now();
+    awaited_.push_back(std::move(awaited));
+}
+
+void GlDevice::poll() {
+    // What a callback asks for waits for another poll().
+    for (size_t left = awaited_.size(); left > 0 && awaited_.front().copied.passed(); --left) {
+        Awaited ready = std::move(awaited_.front());
+        awaited_.pop_front();
+        ready.then(ready.staging.mapped().first(ready.bytes));
+        staging_.push_back(std::move(ready.staging));
+    }
+    harvest();
+}
+
+bool GlDevice::nextPage(size_t bytes) {
+    if (!pages_.empty()) pages_.back().done = Fence::now();
+    Page page;
+    if (!pages_.empty() && pages_.front().buffer.bytes() >= bytes && pages_.front().done.passed()) {
+        page = std::move(pages_.front());
+        pages_.pop_front();
+        page.used = 0;
+        page.done = {};
+    } else {
+        Result<gpu::Buffer> made = gpu::Buffer::create(std::max(kBlockPage, bytes), gpu::BufferKind::mapped);
+        if (!made) {
+            tell(fmt::format("a kernel cannot run: {}", made.error().message));
+            return false;
+        }
+        page.buffer = std::move(*made);
+    }
+    pages_.push_back(std::move(page));
+    return true;
+}
+
+// The kernels of a step mostly share their block: it is written once.
+bool GlDevice::bindParams(std::span<const std::byte> bytes) {
+    const bool same = lastBlock_.size() == bytes.size() && std::memcmp(lastBlock_.data(), bytes.data(), bytes.size()) == 0;
+    if (!same) {
+        lastBlock_.clear();
+        if ((pages_.empty() || pages_.back().used + bytes.size() > pages_.back().buffer.bytes()) && !nextPage(bytes.size())) return false;
+        Page& page = pages_.back();
+        std::memcpy(page.buffer.mapped().data() + page.used, bytes.data(), bytes.size());
+        lastBlock_.assign(bytes.begin(), bytes.end());
+        lastBlockAt_ = page.used;
+        page.used += roundedUp(bytes.size(), blockAlignment_);
+    }
+    glBindBufferRange(GL_UNIFORM_BUFFER, 0, pages_.back().buffer.name(), static_cast<GLintptr>(lastBlockAt_),
+                      static_cast<GLsizeiptr>(bytes.size()));
+    return true;
+}
+
+void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
+    ASSERT(kernel.index < kernels_.size(), "ask this device for the kernel before dispatching it");
+    Entry& entry = kernels_[kernel.index];
+    ASSERT(entry.bindings <= buffers.size(), "hand a buffer for every row of the kernel's ARGS");
+    ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
+    if (threads == 0 || !bindParams(params)) return;
+    for (size_t k = 0; k < buffers.size(); ++k)
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(k + 1), buffers[k] ? nameOf(*buffers[k]) : 0);
+    if (timer_.pending() > kHarvestAbove) harvest();
+    entry.program.use();
+    timer_.begin(kernel.index);
+    const size_t groups = (static_cast<size_t>(threads) + entry.localSize - 1) / entry.localSize;
+    for (size_t base = 0; base < groups; base += maxGroups_) {  // once, but for millions of threads
+        if (groups > maxGroups_) glProgramUniform1ui(entry.program.name(), entry.groupBase, static_cast<GLuint>(base));
+        glDispatchCompute(static_cast<GLuint>(std::min(maxGroups_, groups - base)), 1, 1);
+    }
+    if (groups > maxGroups_) glProgramUniform1ui(entry.program.name(), entry.groupBase, 0);
+    glMemoryBarrier(kReaders);
+    timer_.end();
+}
+
+void GlDevice::finish() {
+    glFinish();
+    harvest();
+}
+
+void GlDevice::harvest() {
+    timer_.collect([&](uint64_t index, double ms) {
+        const std::string& path = kernels_[index].path;
+        auto time = std::find_if(times_.begin(), times_.end(), [&](const PassTime& t) { return t.name == path; });
+        if (time == times_.end()) time = times_.insert(times_.end(), PassTime{path, 0, 0});
+        time->ms += ms;
+        ++time->calls;
+    });
+}
+
+std::vector<PassTime> GlDevice::takeTimes() {
+    harvest();
+    return std::exchange(times_, {});
+}
+
+}  // namespace
+
+std::unique_ptr<Device> makeGlDevice(const ShaderFiles& files, Log log) { return std::make_unique<GlDevice>(files, std::move(log)); }
+
+bool isSoftwareRenderer(std::string_view renderer) {
+    for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software Rasterizer"})
+        if (renderer.find(name) != std::string_view::npos) return true;
+    return false;
+}
+
+}  // namespace rivulet

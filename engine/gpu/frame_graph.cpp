@@ -1,0 +1,488 @@
+#include "engine/gpu/frame_graph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "engine/gpu/timer.h"
+#include "engine/gpu/vertex_array.h"
+
+namespace rivulet::gpu {
+namespace {
+
+constexpr uint64_t kKeepFrames = 8;     // what nobody borrowed for so long is freed
+constexpr uint64_t kTimesLate = 2;      // frames before a pass's time is asked for
+constexpr size_t kMaxTimedFrames = 16;  // whose times may be on their way
+
+bool fitsTexture(Usage usage) { return usage == Usage::sampled || usage == Usage::image || usage == Usage::target || usage == Usage::copy; }
+bool fitsBuffer(Usage usage) { return !fitsTexture(usage) || usage == Usage::copy; }
+
+// Writes that OpenGL shows to nobody without a barrier.
+bool incoherent(Usage usage) { return usage == Usage::image || usage == Usage::storage; }
+
+// What glMemoryBarrier needs to hear for such a write to be visible to this usage.
+GLbitfield barrierFor(Usage usage, bool texture) {
+    switch (usage) {
+        case Usage::sampled:
+            return GL_TEXTURE_FETCH_BARRIER_BIT;
+        case Usage::image:
+            return GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
+        case Usage::target:
+            return GL_FRAMEBUFFER_BARRIER_BIT;
+        case Usage::storage:
+            return GL_SHADER_STORAGE_BARRIER_BIT;
+        case Usage::uniform:
+            return GL_UNIFORM_BARRIER_BIT;
+        case Usage::attribute:
+            return GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT;
+        case Usage::index:
+            return GL_ELEMENT_ARRAY_BARRIER_BIT;
+        case Usage::indirect:
+            return GL_COMMAND_BARRIER_BIT;
+        case Usage::copy:
+            return texture ? GL_TEXTURE_UPDATE_BARRIER_BIT : GL_BUFFER_UPDATE_BARRIER_BIT;
+    }
+    ASSERT(false, "hand a Usage that exists");
+}
+
+// What a pass may leave behind, put back to OpenGL's defaults; framebuffer and viewport to what the host had.
+class StateScope {
+  public:
+    StateScope() {
+        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_);
+        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_);
+        glGetIntegerv(GL_VIEWPORT, viewport_);
+    }
+    void reset() const {
+        glUseProgram(0);
+        glBindVertexArray(0);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(draw_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_));
+        glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+        for (const GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_DEPTH_CLAMP, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST,
+                                        GL_PROGRAM_POINT_SIZE, GL_POLYGON_OFFSET_FILL, GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD})
+            glDisable(capability);
+        glBlendFunc(GL_ONE, GL_ZERO);
+        glBlendEquation(GL_FUNC_ADD);
+        glDepthFunc(GL_LESS);
+        glDepthMask(GL_TRUE);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glCullFace(GL_BACK);
+        glFrontFace(GL_CCW);
+        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+        glBindTextures(0, kUnits, nullptr);
+        glBindSamplers(0, kUnits, nullptr);
+        glBindImageTextures(0, kBindings, nullptr);
+        glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, kBindings, nullptr);
+    }
+
+  private:
+    static constexpr GLsizei kUnits = 16, kBindings = 8;  // what GL guarantees a stage
+    GLint draw_ = 0, read_ = 0, viewport_[4] = {0, 0, 0, 0};
+};
+
+size_t roundedBytes(size_t bytes) { return (std::max<size_t>(bytes, 1) + 255) / 256 * 256; }
+
+}  // namespace
+
+struct TransientPool::Impl {
+    template <class Object, class Key>
+    struct Item {
+        Key key;
+        Object object;
+        uint64_t lastUsed = 0;
+        bool lent = false;
+    };
+    using TextureItem = Item<Texture, TextureDesc>;
+    using BufferItem = Item<Buffer, size_t>;
+
+    // Items stay where they are: graphs point at them.
+    std::vector<std::unique_ptr<TextureItem>> textures;
+    std::vector<std::unique_ptr<BufferItem>> buffers;
+    uint64_t frame = 0;
+    VertexArray noAttributes;
+
+    struct TimedFrame {
+        uint64_t frame = 0;
+        size_t awaited = 0;
+        std::vector<PassTime> rows;
+    };
+    Timer timer;
+    std::deque<TimedFrame> timed;
+    std::vector<PassTime> times;
+
+    template <class Items, class Key, class Make>
+    static auto lend(Items& items, const Key& key, uint64_t frame, Make make) -> Result<typename Items::value_type::pointer> {
+        using Element = typename Items::value_type::element_type;
+        for (const auto& item : items) {
+            if (item->lent || !(item->key == key)) continue;
+            item->lent = true;
+            item->lastUsed = frame;
+            return item.get();
+        }
+        auto made = make();
+        if (!made) return made.error();
+        items.push_back(std::make_unique<Element>(Element{key, std::move(*made), frame, true}));
+        return items.back().get();
+    }
+    Result<TextureItem*> lendTexture(const TextureDesc& desc) {
+        return lend(textures, desc, frame, [&] { return Texture::create(desc); });
+    }
+    Result<BufferItem*> lendBuffer(size_t bytes) {
+        return lend(buffers, bytes, frame, [&] { return Buffer::create(bytes); });
+    }
+
+    void beginFrame() {
+        ++frame;
+        const auto old = [&](const auto& item) {
+            item->lent = false;
+            return item->lastUsed + kKeepFrames < frame;
+        };
+        std::erase_if(textures, old);
+        std::erase_if(buffers, old);
+        if (!timed.empty() && timed.front().frame + kTimesLate <= frame) collectTimes();
+    }
+
+    void collectTimes() {
+        timer.collect([&](uint64_t tag, double ms) {
+            for (TimedFrame& f : timed)
+                if (f.frame == tag >> 16U) {
+                    f.rows[tag & 0xFFFFU].ms += ms;
+                    --f.awaited;
+                }
+        });
+        while (!timed.empty() && (timed.front().awaited == 0 || timed.size() > kMaxTimedFrames)) {
+            if (timed.front().awaited == 0) times = std::move(timed.front().rows);
+            timed.pop_front();
+        }
+    }
+
+    // A row for the pass in the frame being made; a pass of a name that is there shares its row.
+    size_t timeRow(std::string_view name, bool ran) {
+        std::vector<PassTime>& rows = timed.back().rows;
+        auto row = std::find_if(rows.begin(), rows.end(), [&](const PassTime& t) { return t.name == name; });
+        if (row == rows.end()) row = rows.insert(rows.end(), PassTime{std::string(name), 0, 0});
+        row->calls += ran ? 1 : 0;
+        return static_cast<size_t>(row - rows.begin());
+    }
+};
+
+TransientPool::TransientPool() : impl_(std::make_unique<Impl>()) {}
+TransientPool::TransientPool(TransientPool&&) noexcept = default;
+TransientPool& TransientPool::operator=(TransientPool&&) noexcept = default;
+TransientPool::~TransientPool() = default;
+const std::vector<PassTime>& TransientPool::times() const { return impl_->times; }
+size_t TransientPool::textures() const { return impl_->textures.size(); }
+size_t TransientPool::buffers() const { return impl_->buffers.size(); }
+size_t TransientPool::bytes() const {
+    size_t sum = 0;
+    for (const auto& item : impl_->textures) sum += item->key.bytes();
+    for (const auto& item : impl_->buffers) sum += item->key;
+    return sum;
+}
+
+struct FrameGraph::Impl {
+    struct Resource {
+        std::string name;
+        bool isTexture = false, imported = false, written = false, output = false;
+        TextureDesc desc;                  // settled
+        size_t bytes = 0;                  // as asked for
+        const Texture* texture = nullptr;  // an import's from the start, a transient's from execute() on
+        GLuint buffer = 0;
+        size_t first = SIZE_MAX, last = 0;  // of the passes that run
+        bool* lent = nullptr;               // of the pool's item
+        GLuint glName() const { return isTexture ? texture->name() : buffer; }
+    };
+    struct Pass {
+        std::string name;
+        std::vector<Read> reads;
+        std::vector<Write> writes;
+        std::function<void(PassContext&)> work;
+        bool needed = false;
+        GLbitfield barriers = 0;
+    };
+    // What happened to one texture or buffer since barriers were last placed. Keyed by the GL name: transients may share one.
+    struct Hazard {
+        bool written = false;       // by a shader, incoherently ...
+        GLbitfield visibleTo = 0;   // ... but visible to these since
+        bool touched = false;       // otherwise, so that an incoherent write must not overtake it ...
+        GLbitfield orderedFor = 0;  // ... which these cannot any more
+    };
+    using Hazards = std::map<std::pair<bool, GLuint>, Hazard>;
+
+    explicit Impl(TransientPool::Impl& p) : pool(p) {}
+
+    TransientPool::Impl& pool;
+    std::vector<Resource> resources;
+    std::vector<Pass> passes;
+    bool executed = false;
+
+    uint32_t add(Resource resource) {
+        ASSERT(!executed, "build a new FrameGraph for the next frame");
+        resources.push_back(std::move(resource));
+        return static_cast<uint32_t>(resources.size() - 1);
+    }
+    Resource& at(uint32_t index, bool isTexture) {
+        ASSERT(index < resources.size() && resources[index].isTexture == isTexture, "use a handle that this graph made");
+        return resources[index];
+    }
+
+    void cull();
+    Status lendTransients();
+    GLbitfield placeBarriers(const Pass& pass, Hazards& hazards) const;
+    void noteAccesses(const Pass& pass, Hazards& hazards) const;
+};
+
+// Backwards: a pass is needed if it adds to something needed; then all it reads is needed too.
+void FrameGraph::Impl::cull() {
+    std::vector<bool> needed(resources.size());
+    for (size_t r = 0; r < resources.size(); ++r) needed[r] = resources[r].output;
+    for (size_t p = passes.size(); p-- > 0;) {
+        Pass& pass = passes[p];
+        pass.needed = std::any_of(pass.writes.begin(), pass.writes.end(), [&](const Write& w) { return needed[w.index]; });
+        if (!pass.needed) continue;
+        const auto touch = [&](uint32_t index) {
+            resources[index].first = std::min(resources[index].first, p);
+            resources[index].last = std::max(resources[index].last, p);
+        };
+        for (const Read& read : pass.reads) {
+            needed[read.index] = true;
+            touch(read.index);
+        }
+        for (const Write& write : pass.writes) touch(write.index);
+    }
+}
+
+Status FrameGraph::Impl::lendTransients() {
+    for (size_t p = 0; p < passes.size(); ++p) {
+        for (Resource& r : resources) {
+            if (r.imported || r.first != p) continue;
+            if (r.isTexture) {
+                Result<TransientPool::Impl::TextureItem*> item = pool.lendTexture(r.desc);
+                if (!item) return failed(fmt::format("the picture's \"{}\" cannot be made: {}", r.name, item.error().message));
+                r.texture = &(*item)->object;
+                r.lent = &(*item)->lent;
+            } else {
+                Result<TransientPool::Impl::BufferItem*> item = pool.lendBuffer(roundedBytes(r.bytes));
+                if (!item) return failed(fmt::format("the picture's \"{}\" cannot be made: {}", r.name, item.error().message));
+                r.buffer = (*item)->object.name();
+                r.lent = &(*item)->lent;
+            }
+        }
+        for (Resource& r : resources)
+            if (!r.imported && !r.output && r.first != SIZE_MAX && r.last == p) *r.lent = false;
+    }
+    return ok();
+}
+
+GLbitfield FrameGraph::Impl::placeBarriers(const Pass& pass, Hazards& hazards) const {
+    GLbitfield bits = 0;
+    const auto check = [&](uint32_t index, Usage usage, bool write) {
+        const Resource& r = resources[index];
+        const auto found = hazards.find({r.isTexture, r.glName()});
+        if (found == hazards.end()) return;
+        const GLbitfield bit = barrierFor(usage, r.isTexture);
+        const Hazard& hazard = found->second;
+        if (hazard.written && (hazard.visibleTo & bit) == 0) bits |= bit;
+        if (write && incoherent(usage) && hazard.touched && (hazard.orderedFor & bit) == 0) bits |= bit;
+    };
+    for (const Read& read : pass.reads) check(read.index, read.usage, false);
+    for (const Write& write : pass.writes) check(write.index, write.usage, true);
+    if (bits != 0) {
+        glMemoryBarrier(bits);
+        for (auto& [key, hazard] : hazards) {
+            hazard.visibleTo |= bits;
+            hazard.orderedFor |= bits;
+        }
+    }
+    return bits;
+}
+
+void FrameGraph::Impl::noteAccesses(const Pass& pass, Hazards& hazards) const {
+    const auto note = [&](uint32_t index, bool incoherentWrite) {
+        Hazard& hazard = hazards[{resources[index].isTexture, resources[index].glName()}];
+        (incoherentWrite ? hazard.written : hazard.touched) = true;
+        (incoherentWrite ? hazard.visibleTo : hazard.orderedFor) = 0;
+    };
+    for (const Read& read : pass.reads) note(read.index, false);
+    for (const Write& write : pass.writes) note(write.index, incoherent(write.usage));
+}
+
+FrameGraph::FrameGraph(TransientPool& pool) : impl_(std::make_unique<Impl>(*pool.impl_)) {}
+FrameGraph::~FrameGraph() = default;
+
+TextureHandle FrameGraph::texture(std::string_view name, const TextureDesc& desc) {
+    Impl::Resource resource;
+    resource.name = name;
+    resource.isTexture = true;
+    resource.desc = settled(desc);
+    return {impl_->add(std::move(resource))};
+}
+
+BufferHandle FrameGraph::buffer(std::string_view name, size_t bytes) {
+    Impl::Resource resource;
+    resource.name = name;
+    resource.bytes = bytes;
+    return {impl_->add(std::move(resource))};
+}
+
+TextureHandle FrameGraph::importTexture(std::string_view name, const Texture& texture) {
+    ASSERT(texture, "import a texture that exists");
+    Impl::Resource resource;
+    resource.name = name;
+    resource.isTexture = resource.imported = resource.written = true;
+    resource.desc = texture.desc();
+    resource.texture = &texture;
+    return {impl_->add(std::move(resource))};
+}
+
+BufferHandle FrameGraph::importBuffer(std::string_view name, GLuint buffer, size_t bytes) {
+    ASSERT(buffer != 0, "import a buffer that exists");
+    Impl::Resource resource;
+    resource.name = name;
+    resource.imported = resource.written = true;
+    resource.bytes = bytes;
+    resource.buffer = buffer;
+    return {impl_->add(std::move(resource))};
+}
+
+const TextureDesc& FrameGraph::desc(TextureHandle handle) const { return impl_->at(handle.index, true).desc; }
+
+void FrameGraph::pass(std::string_view name, const std::vector<Read>& reads, const std::vector<Write>& writes,
+                      std::function<void(PassContext&)> work) {
+    ASSERT(!impl_->executed, "build a new FrameGraph for the next frame");
+    std::vector<Impl::Resource>& resources = impl_->resources;
+    const auto told = [&](uint32_t index, const char* what) {
+        return fmt::format("pass \"{}\", \"{}\": {}", name, index < resources.size() ? resources[index].name : "?", what);
+    };
+    const auto check = [&](uint32_t index, Usage usage) {
+        ASSERT(index < resources.size(), told(index, "use a handle that this graph made").c_str());
+        ASSERT(resources[index].isTexture ? fitsTexture(usage) : fitsBuffer(usage), told(index, "use it as what it is").c_str());
+    };
+    for (const Read& read : reads) {
+        check(read.index, read.usage);
+        ASSERT(resources[read.index].written,
+               told(read.index, "nobody has written this; add the pass that does before the one that reads").c_str());
+        for (const Write& write : writes)
+            ASSERT(write.index != read.index || write.usage != Usage::target || read.usage == Usage::target,
+                   told(read.index, "a pass cannot read what it draws into; draw into another texture").c_str());
+    }
+    for (const Write& write : writes) {
+        check(write.index, write.usage);
+        ASSERT(write.usage == Usage::target || write.usage == Usage::image || write.usage == Usage::storage || write.usage == Usage::copy,
+               told(write.index, "only targets, images, storage and copies are written").c_str());
+        resources[write.index].written = true;
+    }
+    impl_->passes.push_back({std::string(name), reads, writes, std::move(work), false, 0});
+}
+
+void FrameGraph::output(TextureHandle handle) { impl_->at(handle.index, true).output = true; }
+void FrameGraph::output(BufferHandle handle) { impl_->at(handle.index, false).output = true; }
+
+Status FrameGraph::execute() {
+    ASSERT(!impl_->executed, "execute a FrameGraph once");
+    impl_->executed = true;
+    TransientPool::Impl& pool = impl_->pool;
+    pool.beginFrame();
+    impl_->cull();
+    const Status lent = impl_->lendTransients();
+    if (!lent) return lent.error();
+
+    pool.timed.push_back({pool.frame, 0, {}});
+    const StateScope state;
+    Impl::Hazards hazards;
+    for (size_t p = 0; p < impl_->passes.size(); ++p) {
+        Impl::Pass& pass = impl_->passes[p];
+        const size_t row = pool.timeRow(pass.name, pass.needed);
+        if (!pass.needed) continue;
+        glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(pass.name.size()), pass.name.c_str());
+        pool.timer.begin(pool.frame << 16U | row);
+        pass.barriers = impl_->placeBarriers(pass, hazards);
+        {
+            PassContext context(*this, static_cast<uint32_t>(p));
+            pass.work(context);
+            state.reset();
+        }
+        impl_->noteAccesses(pass, hazards);
+        pool.timer.end();
+        ++pool.timed.back().awaited;
+        glPopDebugGroup();
+    }
+    // Whatever comes next, here or in the host, finds what shaders wrote.
+    if (std::any_of(hazards.begin(), hazards.end(), [](const auto& h) { return h.second.written; })) glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    return ok();
+}
+
+const Texture& FrameGraph::result(TextureHandle handle) const {
+    const Impl::Resource& r = impl_->at(handle.index, true);
+    ASSERT(impl_->executed && r.output && r.texture, "ask for what was an output(), after execute() succeeded");
+    return *r.texture;
+}
+
+GLuint FrameGraph::result(BufferHandle handle) const {
+    const Impl::Resource& r = impl_->at(handle.index, false);
+    ASSERT(impl_->executed && r.output && r.buffer != 0, "ask for what was an output(), after execute() succeeded");
+    return r.buffer;
+}
+
+std::vector<FrameGraph::Ran> FrameGraph::ran() const {
+    std::vector<Ran> rows;
+    for (const Impl::Pass& pass : impl_->passes) rows.push_back({pass.name, !pass.needed, pass.barriers});
+    return rows;
+}
+
+// Of the pass's declarations: whether `test` holds for any.
+template <class Pass, class Test>
+static bool declared(const Pass& pass, Test test) {
+    return std::any_of(pass.reads.begin(), pass.reads.end(), test) || std::any_of(pass.writes.begin(), pass.writes.end(), test);
+}
+
+const Texture& PassContext::texture(TextureHandle handle) const {
+    const FrameGraph::Impl::Pass& pass = graph_.impl_->passes[pass_];
+    const FrameGraph::Impl::Resource& r = graph_.impl_->at(handle.index, true);
+    ASSERT(declared(pass, [&](const auto& use) { return use.index == handle.index; }),
+           fmt::format("pass \"{}\" uses \"{}\" without saying so; add it to its reads or writes", pass.name, r.name).c_str());
+    return *r.texture;
+}
+
+GLuint PassContext::buffer(BufferHandle handle) const {
+    const FrameGraph::Impl::Pass& pass = graph_.impl_->passes[pass_];
+    const FrameGraph::Impl::Resource& r = graph_.impl_->at(handle.index, false);
+    ASSERT(declared(pass, [&](const auto& use) { return use.index == handle.index; }),
+           fmt::format("pass \"{}\" uses \"{}\" without saying so; add it to its reads or writes", pass.name, r.name).c_str());
+    return r.buffer;
+}
+
+size_t PassContext::bytes(BufferHandle handle) const { return graph_.impl_->at(handle.index, false).bytes; }
+
+const Framebuffer& PassContext::drawTo(std::initializer_list<TextureHandle> colours, TextureHandle depth) {
+    const FrameGraph::Impl::Pass& pass = graph_.impl_->passes[pass_];
+    const auto attachment = [&](TextureHandle handle) {
+        if (!handle) return Attachment{};
+        const Texture& target = texture(handle);
+        ASSERT(declared(pass, [&](const auto& use) { return use.index == handle.index && use.usage == Usage::target; }),
+               fmt::format("pass \"{}\" draws into \"{}\" without saying so; add it to its writes", pass.name,
+                           graph_.impl_->resources[handle.index].name)
+                   .c_str());
+        return Attachment{&target};
+    };
+    std::vector<Attachment> attachments;
+    for (const TextureHandle colour : colours) attachments.push_back(attachment(colour));
+    framebuffer_ = Framebuffer(attachments, attachment(depth));
+    framebuffer_.bind();
+    return framebuffer_;
+}
+
+void PassContext::drawFullscreen() const {
+    VertexArray& array = graph_.impl_->pool.noAttributes;
+    if (!array) array = VertexArray::create();
+    array.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace rivulet::gpu

@@ -1,0 +1,36 @@
+#include "engine/gpu/gl_error.h"
+
+namespace rivulet::gpu {
+
+const char* glErrorName(GLenum error) {
+    switch (error) {
+        case GL_NO_ERROR:
+            return "GL_NO_ERROR";
+        case GL_OUT_OF_MEMORY:
+            return "GL_OUT_OF_MEMORY";
+        case GL_INVALID_ENUM:
+            return "GL_INVALID_ENUM";
+        case GL_INVALID_VALUE:
+            return "GL_INVALID_VALUE";
+        case GL_INVALID_OPERATION:
+            return "GL_INVALID_OPERATION";
+        case GL_INVALID_FRAMEBUFFER_OPERATION:
+            return "GL_INVALID_FRAMEBUFFER_OPERATION";
+        default:
+            return "an unknown GL error";
+    }
+}
+
+GLenum takeGlError() {
+    const GLenum first = glGetError();
+    if (first != GL_NO_ERROR) forgetGlErrors();
+    return first;
+}
+
+void forgetGlErrors() {
+    // A lost context answers with an error for ever.
+    for (int k = 0; k < 16 && glGetError() != GL_NO_ERROR; ++k) {
+    }
+}
+
+}  // namespace rivulet::gpu

@@ -1,0 +1,202 @@
+#include "engine/gpu/program.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <optional>
+#include <utility>
+
+namespace rivulet::gpu {
+namespace {
+
+std::optional<GLenum> stageOf(std::string_view path) {
+    const std::pair<std::string_view, GLenum> endings[] = {{".vert", GL_VERTEX_SHADER},
+                                                           {".frag", GL_FRAGMENT_SHADER},
+                                                           {".geom", GL_GEOMETRY_SHADER},
+                                                           {".comp", GL_COMPUTE_SHADER},
+                                                           {".kernel", GL_COMPUTE_SHADER}};
+    for (const auto& [ending, stage] : endings)
+        if (path.ends_with(ending)) return stage;
+    return std::nullopt;
+}
+
+bool partOfWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+// The position of `word` as a whole word at or after `from`.
+size_t findWord(std::string_view text, std::string_view word, size_t from = 0) {
+    for (size_t at = text.find(word, from); at != std::string_view::npos; at = text.find(word, at + 1)) {
+        const size_t end = at + word.size();
+        if ((at == 0 || !partOfWord(text[at - 1])) && (end == text.size() || !partOfWord(text[end]))) return at;
+    }
+    return std::string_view::npos;
+}
+
+std::string withoutComments(std::string_view text) {
+    std::string out;
+    for (size_t at = 0; at < text.size();) {
+        if (text.substr(at, 2) == "//") {
+            at = std::min(text.find('\n', at), text.size());
+        } else if (text.substr(at, 2) == "/*") {
+            const size_t close = text.find("*/", at + 2);
+            at = close == std::string_view::npos ? text.size() : close + 2;
+            out += ' ';
+        } else {
+            out += text[at++];
+        }
+    }
+    return out;
+}
+
+// "uniform vec3 a, b;", "uniform Block { ... } c;": every declaration, whether a condition leaves it out or not.
+std::string uniformDeclarations(std::string_view source) {
+    const std::string text = withoutComments(source);
+    std::string out;
+    for (size_t at = findWord(text, "uniform"); at != std::string_view::npos; at = findWord(text, "uniform", at)) {
+        int depth = 0;
+        for (; at < text.size() && (depth > 0 || text[at] != ';'); ++at) {
+            depth += text[at] == '{' ? 1 : text[at] == '}' ? -1 : 0;
+            out += text[at];
+        }
+        out += ";\n";
+    }
+    return out;
+}
+
+template <class Get, class GetLog>
+std::string infoLog(GLuint name, Get get, GetLog getLog) {
+    GLint length = 0;
+    get(name, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
+    getLog(name, length, nullptr, log.data());
+    log.resize(log.find_last_not_of(std::string_view(" \n\0", 3)) + 1);
+    return log;
+}
+
+std::string joined(const std::vector<std::string>& paths) { return fmt::format("{}", fmt::join(paths, " + ")); }
+
+struct Built {
+    ProgramName name;
+    std::string declarations;
+};
+
+Result<Built> build(const ShaderFiles& files, const std::vector<std::string>& paths, const std::vector<Define>& defines) {
+    Built built{ProgramName(glCreateProgram()), {}};
+    std::vector<ShaderName> shaders;
+    for (const std::string& path : paths) {
+        const std::optional<GLenum> stage = stageOf(path);
+        ASSERT(stage, fmt::format("\"{}\": end a shader's name with .vert .frag .geom .comp or .kernel", path).c_str());
+        const Result<KernelSource> source = files.flatten(path, defines, Dialect::glsl, "#version 450 core\n");
+        if (!source) return source.error();
+        built.declarations += uniformDeclarations(source->text);
+        const ShaderName& shader = shaders.emplace_back(glCreateShader(*stage));
+        const char* text = source->text.c_str();
+        const auto length = static_cast<GLint>(source->text.size());
+        glShaderSource(shader.name(), 1, &text, &length);
+        glCompileShader(shader.name());
+        GLint compiled = GL_FALSE;
+        glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
+        if (compiled == GL_FALSE) {
+            const std::string log = infoLog(shader.name(), glGetShaderiv, glGetShaderInfoLog);
+            return failed(fmt::format("OpenGL cannot compile {}:\n{}", path, readableLog(log, *source)));
+        }
+        glAttachShader(built.name.name(), shader.name());
+    }
+    glLinkProgram(built.name.name());
+    for (const ShaderName& shader : shaders) glDetachShader(built.name.name(), shader.name());
+    GLint linked = GL_FALSE;
+    glGetProgramiv(built.name.name(), GL_LINK_STATUS, &linked);
+    if (linked == GL_FALSE)
+        return failed(
+            fmt::format("OpenGL cannot link {}:\n{}", joined(paths), infoLog(built.name.name(), glGetProgramiv, glGetProgramInfoLog)));
+    return built;
+}
+
+// "lights[2].colour" -> "lights".
+std::string_view baseName(std::string_view uniform) { return uniform.substr(0, uniform.find_first_of(".[")); }
+
+bool declares(std::string_view declarations, std::string_view uniform) {
+    return findWord(declarations, baseName(uniform)) != std::string_view::npos;
+}
+
+}  // namespace
+
+Result<Program> Program::create(const ShaderFiles& files, std::vector<std::string> paths, std::vector<Define> defines) {
+    ASSERT(!paths.empty(), "name at least one shader file");
+    Program program;
+    program.files_ = files;
+    program.paths_ = std::move(paths);
+    program.defines_ = std::move(defines);
+    const Status loaded = program.reload();
+    if (!loaded) return loaded.error();
+    return program;
+}
+
+Status Program::reload() {
+    Result<Built> built = build(files_, paths_, defines_);
+    if (!built) return built.error();
+    for (const auto& [uniform, at] : locations_)
+        if (!declares(built->declarations, uniform))
+            return failed(
+                fmt::format("{} no longer declares the uniform \"{}\", which the program sets; put it back", joined(paths_), uniform));
+    name_ = std::move(built->name);
+    declarations_ = std::move(built->declarations);
+    locations_.clear();
+    localSize_ = uvec3(0);
+    if (stageOf(paths_.front()) == GL_COMPUTE_SHADER) {
+        GLint size[3] = {0, 0, 0};
+        glGetProgramiv(name(), GL_COMPUTE_WORK_GROUP_SIZE, size);
+        localSize_ = uvec3(size[0], size[1], size[2]);
+    }
+    return ok();
+}
+
+GLint Program::location(std::string_view uniform) {
+    const auto known = locations_.find(uniform);
+    if (known != locations_.end()) return known->second;
+    ASSERT(name_, "create the program before setting its uniforms");
+    const std::string text(uniform);
+    const GLint found = glGetUniformLocation(name(), text.c_str());
+    ASSERT(found >= 0 || declares(declarations_, uniform),
+           fmt::format("set a uniform that {} declares; \"{}\" is none", joined(paths_), uniform).c_str());
+    locations_.emplace(text, found);
+    return found;
+}
+
+void Program::set(std::string_view u, float v) { glProgramUniform1f(name(), location(u), v); }
+void Program::set(std::string_view u, int v) { glProgramUniform1i(name(), location(u), v); }
+void Program::set(std::string_view u, unsigned v) { glProgramUniform1ui(name(), location(u), v); }
+void Program::set(std::string_view u, const vec2& v) { glProgramUniform2fv(name(), location(u), 1, &v.x); }
+void Program::set(std::string_view u, const vec3& v) { glProgramUniform3fv(name(), location(u), 1, &v.x); }
+void Program::set(std::string_view u, const vec4& v) { glProgramUniform4fv(name(), location(u), 1, &v.x); }
+void Program::set(std::string_view u, const ivec2& v) { glProgramUniform2iv(name(), location(u), 1, &v.x); }
+void Program::set(std::string_view u, const ivec3& v) { glProgramUniform3iv(name(), location(u), 1, &v.x); }
+void Program::set(std::string_view u, const mat3& v) { glProgramUniformMatrix3fv(name(), location(u), 1, GL_FALSE, &v[0].x); }
+void Program::set(std::string_view u, const mat4& v) { glProgramUniformMatrix4fv(name(), location(u), 1, GL_FALSE, &v[0].x); }
+void Program::set(std::string_view u, std::span<const float> v) {
+    glProgramUniform1fv(name(), location(u), static_cast<GLsizei>(v.size()), v.data());
+}
+void Program::set(std::string_view u, std::span<const vec3> v) {
+    if (!v.empty()) glProgramUniform3fv(name(), location(u), static_cast<GLsizei>(v.size()), &v[0].x);
+}
+void Program::set(std::string_view u, std::span<const vec4> v) {
+    if (!v.empty()) glProgramUniform4fv(name(), location(u), static_cast<GLsizei>(v.size()), &v[0].x);
+}
+void Program::set(std::string_view u, std::span<const mat4> v) {
+    if (!v.empty()) glProgramUniformMatrix4fv(name(), location(u), static_cast<GLsizei>(v.size()), GL_FALSE, &v[0][0].x);
+}
+
+void Program::texture(std::string_view sampler, int unit, const Texture& t) {
+    set(sampler, unit);
+    t.bind(static_cast<GLuint>(unit));
+}
+
+void Program::dispatch(unsigned x, unsigned y, unsigned z) {
+    ASSERT(localSize_.x > 0, "dispatch a program that has a compute shader");
+    if (x == 0 || y == 0 || z == 0) return;
+    const uvec3 groups((x - 1) / localSize_.x + 1, (y - 1) / localSize_.y + 1, (z - 1) / localSize_.z + 1);
+    ASSERT(groups.x <= 65535 && groups.y <= 65535 && groups.z <= 65535, "dispatch at most 65535 work groups along an axis");
+    use();
+    glDispatchCompute(groups.x, groups.y, groups.z);
+}
+
+}  // namespace rivulet::gpu

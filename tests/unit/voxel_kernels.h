@@ -1,0 +1,14 @@
+// The kernel-language functions of shaders/voxel as the tests call them: params is a FieldParams, points are three floats.
+#pragma once
+
+#include <cstdint>
+
+namespace rivulet::test {
+
+// In cell coordinates; see shaders/voxel/walk.h.
+float walkVoxels(const void* params, const uint32_t* bits, const float* a, const float* b);
+// In metres; see shaders/voxel/field.h. Returns the distance.
+float fieldAt(const void* params, const float* distance, const float* point, float* gradient);
+bool farFromField(const void* params, const float* distance, const float* a, const float* b);
+
+}  // namespace rivulet::test

@@ -1,0 +1,29 @@
+// The surface function of meshes and floor: Lambert plus GGX (Walter et al. 2007; Smith visibility after Hammon 2017), lit by the key light
+// and the environment. Needs frame.glsl and environment.glsl.
+struct Surface {
+    vec3 baseColour;   // linear reflectance
+    float roughness;   // 0..1
+    float metallic;    // 0..1
+    vec3 normal;       // unit, world
+    float occlusion;   // 0..1: how open to the environment
+};
+
+vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving) {
+    float nv = max(dot(s.normal, toEye), 1.0e-3);
+    float nl = max(dot(s.normal, frame.lightDir.xyz), 0.0);
+    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    float nh = max(dot(s.normal, h), 0.0), vh = max(dot(toEye, h), 0.0);
+    float a = max(s.roughness * s.roughness, 0.01), a2 = a * a;
+    float d = a2 / (3.1415927 * pow(nh * nh * (a2 - 1.0) + 1.0, 2.0));
+    float visibility = 0.5 / mix(2.0 * nl * nv + 1.0e-4, nl + nv, a);
+    vec3 f0 = mix(vec3(0.04), s.baseColour, s.metallic);
+    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
+    vec3 matte = s.baseColour * (1.0 - s.metallic);
+    vec3 direct = (matte * 0.3183099 + fresnel * d * visibility) * nl * lightArriving;
+    // The environment's specular part: Karis 2014's fit of the split sum.
+    vec4 k = s.roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float b = min(k.x * k.x, exp2(-9.28 * nv)) * k.x + k.y;
+    vec3 gloss = f0 * (-1.04 * b + k.z) + (1.04 * b + k.w);
+    vec3 indirect = matte * ambient(s.normal) + gloss * environment(reflect(-toEye, s.normal), max(s.roughness, 0.08));
+    return direct + indirect * s.occlusion;
+}

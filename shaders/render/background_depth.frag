@@ -1,0 +1,7 @@
+// The floor's depth: a plane without end.
+#include "shaders/render/frame.glsl"
+void main() {
+    vec3 dir = directionToWorld(viewRay(gl_FragCoord.xy));
+    float t = (frame.floorColour.w - frame.cameraPos.y) / dir.y;
+    gl_FragDepth = frame.floorFade.w != 0.0 && t > frame.planes.x && t < frame.planes.y ? windowOfDepth(t) : 1.0;
+}

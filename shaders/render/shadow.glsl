@@ -1,0 +1,42 @@
+// How much of the key light reaches a point: through the meshes' shadow map (exponential variance shadow map: Lauritzen & McCool 2008) and
+// through the water. Needs frame.glsl.
+uniform sampler2D shadowSharp;  // moments, narrowly blurred
+uniform sampler2D shadowSoft;   // moments, widely blurred
+uniform sampler2D waterLight;   // thickness along the light (m), nearest depth, thickness relative to its surroundings (m)
+uniform vec3 waterAbsorption;   // 1/m
+
+const float kWarp = 40.0;
+
+float litFraction(vec2 moments, float warped, out float mean) {
+    mean = log(max(moments.x, 1.0e-20)) / kWarp;
+    float variance = max(moments.y - moments.x * moments.x, 1.0e-5 * warped * warped);
+    float beyond = warped - moments.x;
+    float p = beyond <= 0.0 ? 1.0 : variance / (variance + beyond * beyond);
+    return smoothstep(0.12, 1.0, p);  // cuts the tail that lets light bleed through
+}
+
+float meshShadow(vec3 posWorld, vec3 normal) {
+    if (frame.shadow.x == 0.0) return 1.0;
+    vec4 clip = frame.shadowProjection * vec4(posWorld + normal * (0.004 * frame.shadow.z), 1.0);
+    vec3 at = clip.xyz * 0.5 + 0.5;
+    if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+    float warped = exp(kWarp * clamp(at.z, 0.0, 1.03));
+    float blocker, unused;
+    float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, blocker);
+    float sharp = litFraction(texture(shadowSharp, at.xy).xy, warped, unused);
+    return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // far from what casts it, a shadow is soft
+}
+
+// Transmittance of the water between the point and the light, brighter where its surface gathers light.
+vec3 waterShadow(vec3 posWorld) {
+    if (frame.shadow.y == 0.0) return vec3(1.0);
+    vec4 clip = frame.waterProjection * vec4(posWorld, 1.0);
+    vec3 at = clip.xyz * 0.5 + 0.5;
+    if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return vec3(1.0);
+    vec3 water = texture(waterLight, at.xy).xyz;
+    float below = max((at.z - water.y) * frame.shadow.w, 0.0);
+    float through = min(water.x, below);
+    float covered = smoothstep(0.0, 0.02, through);
+    float gather = clamp(1.0 + 14.0 * water.z, 0.45, 2.2);
+    return mix(vec3(1.0), exp(-waterAbsorption * through) * 0.92 * gather, covered);
+}

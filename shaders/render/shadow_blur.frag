@@ -1,0 +1,26 @@
+// Moments of the warped depth (exponential variance shadow map: Lauritzen & McCool 2008), blurred along one axis.
+uniform sampler2D source;   // FROM_DEPTH: a depth map; else moments
+uniform ivec2 axis;         // (1,0) or (0,1)
+uniform int reach;          // texels either side
+layout(location = 0) out vec2 moments;
+const float kWarp = 40.0;
+vec2 at(ivec2 p, ivec2 last) {
+#if defined(FROM_DEPTH)
+    float e = exp(kWarp * texelFetch(source, clamp(p, ivec2(0), last), 0).r);
+    return vec2(e, e * e);
+#else
+    return texelFetch(source, clamp(p, ivec2(0), last), 0).rg;
+#endif
+}
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy), last = textureSize(source, 0) - 1;
+    float inverse = 2.0 / max(float(reach * reach), 1.0);
+    vec2 sum = at(here, last);
+    float weights = 1.0;
+    for (int k = 1; k <= reach; ++k) {
+        float w = exp(-float(k * k) * inverse);
+        sum += w * (at(here + k * axis, last) + at(here - k * axis, last));
+        weights += 2.0 * w;
+    }
+    moments = sum / weights;
+}

@@ -1,0 +1,16 @@
+#include "shaders/render/frame.glsl"
+#include "shaders/screen_space/particle.glsl"
+#include "shaders/screen_space/ramp.glsl"
+layout(location = 1) in vec4 velocity;
+layout(location = 2) in uint id;
+uniform int colourBy;     // 0 speed, 1 density, 2 id
+uniform float fullSpeed;  // m/s, the colour map's end
+flat out vec3 centreView;
+flat out vec3 baseColour;
+void main() {
+    centreView = (frame.view * vec4(particle.xyz, 1.0)).xyz;
+    gl_Position = lost(particle) ? kNowhere : sphereQuad(centreView);
+    if (colourBy == 0) baseColour = ramp(length(velocity.xyz) / fullSpeed);
+    else if (colourBy == 1) baseColour = ramp(0.5 + 5.0 * (particle.w - 1.0));  // 0.9 .. 1.1 of the rest density
+    else baseColour = ramp(fract(float((id * 2654435769u) >> 8) / 16777216.0));
+}

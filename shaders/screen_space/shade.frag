@@ -1,0 +1,78 @@
+// The water's surface: what lies behind it, refracted and absorbed, and what it reflects.
+#include "shaders/render/frame.glsl"
+#include "shaders/render/environment.glsl"
+#include "shaders/render/shadow.glsl"
+uniform sampler2D sceneColour;
+uniform sampler2D sceneDepth;   // window depth
+uniform sampler2D fluidDepth;   // m
+uniform sampler2D thickness;    // m
+uniform float radius;           // m
+uniform vec3 absorption;        // 1/m
+uniform float refractiveIndex;
+layout(location = 0) out vec4 colour;
+
+float surfaceDepth(ivec2 p) { return texelFetch(fluidDepth, clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r; }
+vec3 surfaceAt(ivec2 p, float depth) { return viewRay(vec2(p) + 0.5) * depth; }
+
+// Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less.
+vec3 slope(ivec2 here, ivec2 step_, vec3 p) {
+    float a = surfaceDepth(here + step_), b = surfaceDepth(here - step_);
+    float da = abs(a + p.z), db = abs(b + p.z);  // p.z = -depth
+    vec3 ahead = surfaceAt(here + step_, a) - p, back = p - surfaceAt(here - step_, b);
+    float near = 0.5 * radius;
+    if (da < near && db < near) return 0.5 * (ahead + back);
+    return da < db ? ahead : back;
+}
+
+// Exact for unpolarised light (Fresnel 1823). `c` = cosine of the angle of incidence, from air into index n.
+float fresnel(float c, float n) {
+    float g = sqrt(n * n - 1.0 + c * c);
+    float s = (c - g) / (c + g), p = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
+    return 0.5 * s * s * (1.0 + p * p);
+}
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    colour = texelFetch(sceneColour, here, 0);
+    float depth = texelFetch(fluidDepth, here, 0).r;
+    if (depth >= kFar) return;
+    float behind = depthOfWindow(texelFetch(sceneDepth, here, 0).r);
+    if (depth >= behind) return;
+
+    vec3 p = surfaceAt(here, depth);
+    vec3 toEye = -normalize(p);
+    vec3 n = normalize(cross(slope(here, ivec2(1, 0), p), slope(here, ivec2(0, 1), p)));
+    float nv = dot(n, toEye);
+    if (nv < 0.02) { n = normalize(n + (0.02 - nv) * toEye); nv = 0.02; }
+
+    // Behind: along the refracted ray, as far as the water is thick.
+    float through = texture(thickness, gl_FragCoord.xy * frame.viewport.zw).r;
+    vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
+    vec3 back = colour.rgb;
+    float stretch = 1.0;
+    for (int k = 0; k < 3; ++k) {
+        vec2 uv = pixelOf(p + bent * (through * stretch)) * frame.viewport.zw;
+        vec2 inside = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
+        if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else something in front of the water would leak into it
+            back = texture(sceneColour, inside).rgb;
+            through = mix(through, texture(thickness, inside).r, 0.5);
+            break;
+        }
+        stretch *= 0.4;
+    }
+    vec3 posWorld = toWorld(p);
+    vec3 nWorld = directionToWorld(n), eyeWorld = directionToWorld(toEye);
+    float lit = meshShadow(posWorld, nWorld);
+    vec3 passed = exp(-absorption * through);
+    // A little of what is absorbed comes back scattered, so that deep water has a colour of its own.
+    vec3 glow = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
+    vec3 scattered = vec3(0.012, 0.085, 0.11) * glow * (1.0 - exp(-2.5 * through));
+    vec3 transmitted = back * passed + scattered;
+
+    // Where the normal varies within a pixel the reflection is blurred: no sparkling.
+    vec3 dx = dFdx(nWorld), dy = dFdy(nWorld);
+    float rough = sqrt(min(0.02 + 0.35 * (dot(dx, dx) + dot(dy, dy)), 0.2));
+    vec3 mirrored = reflect(-eyeWorld, nWorld);
+    vec3 reflected = environment(mirrored, rough) * mix(0.6, 1.0, lit);
+    colour = vec4(mix(transmitted, reflected, fresnel(nv, refractiveIndex)), 1.0);
+}

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <random>
 
-#include "engine/compute/device_cl.h"
 #include "shaders/fluid/scan_params.h"
 #include "shaders/fluid/step_params.h"
+#include "tests/parity/devices.h"
 
 namespace rivulet {
 namespace {
@@ -133,12 +133,13 @@ uint32_t expectSorted(Device& device, const Particles& in, bool byId = true) {
     return inside;
 }
 
-class SortTest : public testing::TestWithParam<Backend> {
+class SortTest : public testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {
-        Result<std::unique_ptr<Device>> made = makeClDevice(ShaderFiles::developer());
+        Result<TestGpu> made = makeTestGpu(GetParam());
         if (!made) GTEST_SKIP() << made.error().message;
-        device_ = std::move(*made);
+        gpu_ = std::move(*made);
+        device_ = gpu_.device.get();
         for (const char* path : {"fluid/cell_count", "fluid/cell_scatter", "fluid/cell_sort", "fluid/reorder"}) {
             const auto kernel = device_->kernel(path);
             ASSERT_TRUE(kernel) << kernel.error().message;
@@ -148,7 +149,8 @@ class SortTest : public testing::TestWithParam<Backend> {
             ASSERT_TRUE(kernel) << kernel.error().message;
         }
     }
-    std::unique_ptr<Device> device_;
+    TestGpu gpu_;
+    Device* device_ = nullptr;
 };
 
 TEST_P(SortTest, prefixSumEqualsTheStandardLibrarys) {
@@ -217,8 +219,7 @@ TEST_P(SortTest, twoRunsGiveTheSameOrder) {
     for (int run = 0; run < 3; ++run) expectSorted(*device_, all);
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, SortTest, testing::Values(Backend::cl),
-                         [](const auto& param) { return std::string(backendName(param.param)); });
+INSTANTIATE_TEST_SUITE_P(Gpu, SortTest, testing::Values("cl", "gl"), [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
 }  // namespace rivulet

@@ -41,6 +41,7 @@ struct FluidWorld::Impl {
     vec3 gravity{0.0F};
     double time = 0;
     uint64_t frame = 0;
+    int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
     float fieldBlockDt = 0;  // fieldBlock was written for this step length
 
@@ -60,6 +61,7 @@ FluidWorld::~FluidWorld() = default;
 const FluidParams& FluidWorld::params() const { return impl_->params; }
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 double FluidWorld::time() const { return impl_->time; }
+int FluidWorld::lastSubsteps() const { return impl_->lastSubsteps; }
 Device& FluidWorld::device() const { return *impl_->device; }
 
 // The speed water of this scene reaches by falling from its highest block to the far side of the box, with what it starts with.
@@ -274,6 +276,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         w.say(fmt::format("a frame needed more than fluid.maxSubsteps = {} steps: simulated time runs slower than asked", p.maxSubsteps));
     }
     for (int k = 0; k < substeps; ++k) w.substep(dt);
+    w.lastSubsteps = substeps;
     w.time += dt * substeps;
     w.dtMin = w.dtMin == 0 ? dt : std::min(w.dtMin, dt);
     w.dtMax = std::max(w.dtMax, dt);

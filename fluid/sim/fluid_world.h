@@ -45,6 +45,7 @@ class FluidWorld {
     ParticleView particles() const;
     const FluidStats& stats() const;      // late on a GPU
     double time() const;                  // s simulated
+    int lastSubsteps() const;             // of the last step(), not late
     Device& device() const;
 
   private:

@@ -58,14 +58,14 @@ typedef float real; typedef float3 real3;
 #define PASS(n)
 #define RO(b, N, T, n) layout(std430, binding = b) readonly buffer N { T n[]; };
 #define RW(b, N, T, n) layout(std430, binding = b) buffer N { T n[]; };
-#define BUFFERS(P) layout(local_size_x = LOCAL_SIZE) in; layout(std140, binding = 0) uniform ParamBlock { P params_; }; ARGS(RO, RW)
+#define BUFFERS(P) layout(local_size_x = LOCAL_SIZE) in; layout(std140, binding = 0) uniform ParamBlock { P params_; }; uniform uint groupBase_; ARGS(RO, RW)
 #define SHARED_OUT(T, n, count) shared T n[count];
 #define SHARED_IN(T, n, count)
 #define KERNEL(name, P) void main()
 #define PARAMS params_
-#define THREAD_ID gl_GlobalInvocationID.x
+#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE)  /* a dispatch has 65535 groups at most: device gl makes several */
 #define LOCAL_ID gl_LocalInvocationID.x
-#define GROUP_ID gl_WorkGroupID.x
+#define GROUP_ID (gl_WorkGroupID.x + groupBase_)
 #define BARRIER { memoryBarrierShared(); barrier(); }
 #endif
 #if !defined(__cplusplus)  // what a lane is on a GPU: the particle itself

@@ -112,6 +112,15 @@ INLINE uint32_t appendLanes(uint32_t* to, uint32_t first, LaneMask keep) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(mask, lanes));
     return static_cast<uint32_t>(__builtin_popcount(mask));
 }
+#elif defined(__AVX2__) && defined(__BMI2__)
+// The kept lanes' numbers as bytes, packed by pext, widened to a vector.
+INLINE uint32_t appendLanes(uint32_t* to, uint32_t first, LaneMask keep) {
+    const uint32_t mask = static_cast<uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(keep)));
+    const uint64_t bytes = _pext_u64(0x0706050403020100ULL, _pdep_u64(mask, 0x0101010101010101ULL) * 0xFFU);
+    const __m256i lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(bytes)));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(first))));
+    return static_cast<uint32_t>(__builtin_popcount(mask));
+}
 #else
 INLINE uint32_t appendLanes(uint32_t* to, uint32_t first, LaneMask keep) {
     uint32_t kept = 0;

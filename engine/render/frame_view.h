@@ -7,7 +7,7 @@ namespace rivulet {
 
 struct FrameView {
     mat4 view{1.0F};            // world -> view, right-handed, looking down -z
-    mat4 projection{1.0F};      // view -> clip, OpenGL depth range [-1, 1]
+    mat4 projection{1.0F};      // view -> clip, perspective, OpenGL depth range [-1, 1]
     vec3 cameraPosWorld{0.0F};  // m
     float nearPlane = 0.01F;    // m
     float farPlane = 100.0F;    // m

@@ -7,7 +7,7 @@ float softbox(vec3 dir, vec3 towards, vec2 halfSize, float edge) {
     float facing = dot(dir, towards);
     if (facing <= 0.05) return 0.0;
     vec2 at = abs(vec2(dot(dir, side), dot(dir, cross(towards, side)))) / facing;
-    vec2 inside = 1.0 - smoothstep(halfSize - min(edge, halfSize), halfSize + edge, at);
+    vec2 inside = 1.0 - smoothstep(halfSize - min(halfSize, edge), halfSize + edge, at);
     vec2 spread = halfSize / max(halfSize, 0.5 * (halfSize + edge));  // what is blurred wider than the box is dimmer
     return inside.x * inside.y * spread.x * spread.y;
 }

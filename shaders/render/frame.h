@@ -1,7 +1,9 @@
 // What every render pass knows of the frame: uniform block 0. Layout shared by C++ and GLSL (std140): vec4 and mat4 only.
 #if defined(__cplusplus)
 #pragma once
+#endif
 #include "shaders/common/lang.h"
+#if defined(__cplusplus)
 namespace rivulet {
 #endif
 STRUCT(FrameParams) {

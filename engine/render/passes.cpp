@@ -1,0 +1,260 @@
+#include "engine/render/passes.h"
+
+#include <glm/matrix.hpp>
+
+#include "engine/scene/light.h"
+
+namespace rivulet {
+namespace {
+
+using gpu::BufferHandle;
+using gpu::Format;
+using gpu::FrameGraph;
+using gpu::PassContext;
+using gpu::Program;
+using gpu::TextureDesc;
+using gpu::TextureHandle;
+using gpu::Usage;
+
+constexpr int kShadowSize = 1024;      // texels, of the depth map
+constexpr int kShadowSharpReach = 2;   // texels either side
+constexpr int kShadowSoftReach = 14;
+constexpr float kExposure = 0.95F;
+constexpr float kBoxWidth = 1.2F;      // pixels
+const vec4 kBoxColour(0.10F, 0.13F, 0.16F, 0.35F);
+
+TextureDesc sized(const FrameView& view, Format format, int divide = 1) {
+    return {.width = (view.width + divide - 1) / divide, .height = (view.height + divide - 1) / divide, .format = format};
+}
+
+void bindFrame(const PassContext& c, BufferHandle frame) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(frame)); }
+
+void bindLight(Program& program, const PassContext& c, const LightMaps& light, int unit) {
+    program.texture("shadowSharp", unit, c.texture(light.sharp));
+    program.texture("shadowSoft", unit + 1, c.texture(light.soft));
+    program.texture("waterLight", unit + 2, c.texture(light.water));
+    program.set("waterAbsorption", light.absorption);
+}
+
+}  // namespace
+
+std::array<Program*, 13> RenderPrograms::all() {
+    return {&shadow, &shadowFirst, &shadowBlur, &depth, &floorDepth, &occlusion, &occlusionBlur, &background, &mesh, &box, &boxOverWater, &tonemap, &antialias};
+}
+
+Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
+    RenderPrograms p;
+    const std::string full = "shaders/render/fullscreen.vert", box = "shaders/render/box.vert", folder = "shaders/render/";
+    std::pair<Program*, Result<Program>> made[] = {
+        {&p.shadow, Program::create(files, {folder + "mesh_depth.vert", folder + "depth.frag"})},
+        {&p.shadowFirst, Program::create(files, {full, folder + "shadow_blur.frag"}, {{"FROM_DEPTH", "1"}})},
+        {&p.shadowBlur, Program::create(files, {full, folder + "shadow_blur.frag"})},
+        {&p.depth, Program::create(files, {"shaders/material/mesh.vert", folder + "depth.frag"})},
+        {&p.floorDepth, Program::create(files, {full, folder + "background_depth.frag"})},
+        {&p.occlusion, Program::create(files, {full, folder + "occlusion.frag"})},
+        {&p.occlusionBlur, Program::create(files, {full, folder + "occlusion_blur.frag"})},
+        {&p.background, Program::create(files, {full, folder + "background.frag"})},
+        {&p.mesh, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/mesh.frag"})},
+        {&p.box, Program::create(files, {box, folder + "box.frag"})},
+        {&p.boxOverWater, Program::create(files, {box, folder + "box.frag"}, {{"OVER_WATER", "1"}})},
+        {&p.tonemap, Program::create(files, {full, folder + "tonemap.frag"})},
+        {&p.antialias, Program::create(files, {full, folder + "antialias.frag"})},
+    };
+    for (auto& [into, program] : made) {
+        if (!program) return program.error();
+        *into = std::move(*program);
+    }
+    return p;
+}
+
+Status RenderPrograms::reload() {
+    for (Program* program : all())
+        if (Status s = program->reload(); !s) return s;
+    return ok();
+}
+
+FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds& meshes, const Bounds& water) {
+    FrameParams f{};
+    const mat4& p = view.projection;
+    const auto width = static_cast<float>(view.width), height = static_cast<float>(view.height);
+    f.view = view.view;
+    f.projection = p;
+    f.viewProjection = p * view.view;
+    f.inverseView = glm::inverse(view.view);
+    const Light light{view.lightDirWorld, view.lightColour};
+    if (!meshes.empty()) {
+        f.shadowProjection = light.projection(meshes);
+        f.shadow.x = 1.0F;
+        f.shadow.z = glm::length(meshes.size());
+    }
+    if (!water.empty()) {
+        f.waterProjection = light.projection(water);
+        f.shadow.y = 1.0F;
+        f.shadow.w = glm::length(water.size());
+    }
+    f.cameraPos = vec4(view.cameraPosWorld, static_cast<float>(view.time));
+    f.viewport = vec4(width, height, 1.0F / width, 1.0F / height);
+    f.ray = vec4(2.0F / (width * p[0][0]), 2.0F / (height * p[1][1]), (p[2][0] - 1.0F) / p[0][0], (p[2][1] - 1.0F) / p[1][1]);
+    f.planes = vec4(view.nearPlane, view.farPlane, p[2][2], p[3][2]);
+    f.lightDir = vec4(glm::normalize(view.lightDirWorld), 0.0F);
+    f.lightColour = vec4(view.lightColour, 0.0F);
+    f.horizon = vec4(studio.horizon, 0.0F);
+    f.zenith = vec4(studio.zenith, 0.0F);
+    f.floorColour = vec4(studio.floor, studio.floorHeight);
+    const Bounds& shown = studio.shown;
+    const float radius = shown.empty() ? 1.0F : 0.5F * glm::length(shown.size());
+    const vec3 centre = shown.empty() ? vec3(0.0F) : shown.centre();
+    f.floorFade = vec4(centre.x, centre.z, radius, studio.showFloor ? 1.0F : 0.0F);
+    return f;
+}
+
+LightMaps addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection) {
+    const TextureDesc map{.width = kShadowSize, .height = kShadowSize, .format = Format::depth32f};
+    const TextureDesc moments{.width = kShadowSize, .height = kShadowSize, .format = Format::rg32f};
+    const TextureDesc half{.width = kShadowSize / 2, .height = kShadowSize / 2, .format = Format::rg32f};
+    const TextureHandle depth = graph.texture("shadow depth", map);
+    graph.pass("shadow", {}, {depth}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
+        const gpu::Framebuffer& target = c.drawTo({}, depth);
+        target.clearDepth();
+        glEnable(GL_DEPTH_TEST);
+        programs.shadow.use();
+        for (const DrawnMesh& m : drawn) {
+            programs.shadow.set("toClip", projection * m.toWorld);
+            m.mesh->draw();
+        }
+    });
+    auto blur = [&](Program& program, TextureHandle from, const TextureDesc& desc, ivec2 axis, int reach) {
+        const TextureHandle to = graph.texture("shadow moments", desc);
+        graph.pass("shadow blur", {from}, {to}, [=, &program](PassContext& c) {
+            c.drawTo({to});
+            program.use();
+            program.texture("source", 0, c.texture(from));
+            program.set("axis", axis);
+            program.set("reach", reach);
+            c.drawFullscreen();
+        });
+        return to;
+    };
+    LightMaps light;
+    const TextureHandle across = blur(programs.shadowFirst, depth, moments, {1, 0}, kShadowSharpReach);
+    light.sharp = blur(programs.shadowBlur, across, moments, {0, 1}, kShadowSharpReach);
+    (void)half;
+    const TextureHandle wide = blur(programs.shadowBlur, light.sharp, moments, {1, 0}, kShadowSoftReach);
+    light.soft = blur(programs.shadowBlur, wide, moments, {0, 1}, kShadowSoftReach);
+    return light;
+}
+
+TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes) {
+    const TextureHandle depth = graph.texture("scene depth", sized(view, Format::depth32f));
+    graph.pass("depth", {{frame, Usage::uniform}}, {depth}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
+        c.drawTo({}, depth);
+        bindFrame(c, frame);
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_ALWAYS);  // the floor's depth, or 1, for every pixel: no clear needed
+        programs.floorDepth.use();
+        c.drawFullscreen();
+        glDepthFunc(GL_LESS);
+        programs.depth.use();
+        for (const DrawnMesh& m : drawn) {
+            programs.depth.set("toWorldMatrix", m.toWorld);
+            m.mesh->draw();
+        }
+    });
+    return depth;
+}
+
+TextureHandle addOcclusion(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle depth, float reach) {
+    const TextureHandle noisy = graph.texture("occlusion, noisy", sized(view, Format::r8, 2));
+    graph.pass("occlusion", {{frame, Usage::uniform}, depth}, {noisy}, [=, &programs](PassContext& c) {
+        c.drawTo({noisy});
+        bindFrame(c, frame);
+        programs.occlusion.use();
+        programs.occlusion.texture("sceneDepth", 0, c.texture(depth));
+        programs.occlusion.set("reach", reach);
+        c.drawFullscreen();
+    });
+    const TextureHandle open = graph.texture("occlusion", sized(view, Format::r8, 2));
+    graph.pass("occlusion blur", {{frame, Usage::uniform}, noisy, depth}, {open}, [=, &programs](PassContext& c) {
+        c.drawTo({open});
+        bindFrame(c, frame);
+        programs.occlusionBlur.use();
+        programs.occlusionBlur.texture("source", 0, c.texture(noisy));
+        programs.occlusionBlur.texture("sceneDepth", 1, c.texture(depth));
+        c.drawFullscreen();
+    });
+    return open;
+}
+
+TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes,
+                        TextureHandle depth, TextureHandle occlusion, const LightMaps& light) {
+    const TextureHandle colour = graph.texture("scene colour", sized(view, Format::rgba16f));
+    graph.pass("opaque", {{frame, Usage::uniform}, {depth, Usage::target}, occlusion, light.sharp, light.soft, light.water}, {colour},
+               [=, &programs, drawn = std::move(meshes)](PassContext& c) {
+                   c.drawTo({colour}, depth);
+                   bindFrame(c, frame);
+                   programs.background.use();
+                   programs.background.texture("occlusion", 0, c.texture(occlusion));
+                   bindLight(programs.background, c, light, 1);
+                   c.drawFullscreen();
+                   glEnable(GL_DEPTH_TEST);
+                   glDepthFunc(GL_LEQUAL);
+                   glDepthMask(GL_FALSE);
+                   Program& p = programs.mesh;
+                   p.use();
+                   p.texture("occlusion", 0, c.texture(occlusion));
+                   bindLight(p, c, light, 1);
+                   for (const DrawnMesh& m : drawn) {
+                       p.set("toWorldMatrix", m.toWorld);
+                       p.set("normalMatrix", glm::transpose(glm::inverse(mat3(m.toWorld))));
+                       p.set("baseColour", m.material.baseColour);
+                       p.set("roughness", m.material.roughness);
+                       p.set("metallic", m.material.metallic);
+                       m.mesh->draw();
+                   }
+               });
+    return colour;
+}
+
+void addBox(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const Bounds& box, TextureHandle colour, TextureHandle depth,
+            TextureHandle fluidDepth) {
+    std::vector<gpu::Read> reads = {{frame, Usage::uniform}, depth};
+    if (fluidDepth) reads.emplace_back(fluidDepth);
+    graph.pass("box", reads, {colour}, [=, &programs](PassContext& c) {
+        c.drawTo({colour});
+        bindFrame(c, frame);
+        Program& p = fluidDepth ? programs.boxOverWater : programs.box;
+        p.use();
+        p.set("low", box.min);
+        p.set("high", box.max);
+        p.set("width", kBoxWidth);
+        p.set("lineColour", kBoxColour);
+        p.texture("sceneDepth", 0, c.texture(depth));
+        if (fluidDepth) p.texture("fluidDepth", 1, c.texture(fluidDepth));
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        const gpu::VertexArray none = gpu::VertexArray::create();
+        none.bind();
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, 12);
+    });
+}
+
+void addTonemap(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle colour, TextureHandle picture) {
+    const TextureHandle mapped = graph.texture("tonemapped", sized(view, Format::rgba8));
+    graph.pass("tonemap", {{frame, Usage::uniform}, colour}, {mapped}, [=, &programs](PassContext& c) {
+        c.drawTo({mapped});
+        bindFrame(c, frame);
+        programs.tonemap.use();
+        programs.tonemap.texture("sceneColour", 0, c.texture(colour));
+        programs.tonemap.set("exposure", kExposure);
+        c.drawFullscreen();
+    });
+    graph.pass("antialias", {{frame, Usage::uniform}, mapped}, {picture}, [=, &programs](PassContext& c) {
+        c.drawTo({picture});
+        bindFrame(c, frame);
+        programs.antialias.use();
+        programs.antialias.texture("picture", 0, c.texture(mapped));
+        c.drawFullscreen();
+    });
+}
+
+}  // namespace rivulet

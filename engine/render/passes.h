@@ -1,0 +1,70 @@
+// The passes that draw a scene without water: free functions that add to a frame graph, handles in, handles out.
+// In their order: shadow, depth, occlusion, opaque, (a fluid's passes), box edges, tonemap.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "engine/compute/kernel_source.h"
+#include "engine/gpu/frame_graph.h"
+#include "engine/gpu/program.h"
+#include "engine/material/material.h"
+#include "engine/render/frame_view.h"
+#include "engine/render/gpu_mesh.h"
+#include "shaders/render/frame.h"
+
+namespace rivulet {
+
+// The programs of all passes; a failed reload keeps the last good ones.
+struct RenderPrograms {
+    gpu::Program shadow, shadowFirst, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, background, mesh, box, boxOverWater, tonemap, antialias;
+    static Result<RenderPrograms> create(const ShaderFiles& files);
+    Status reload();
+
+  private:
+    std::array<gpu::Program*, 13> all();
+};
+
+struct DrawnMesh {
+    const GpuMesh* mesh = nullptr;  // lives until the graph has executed
+    mat4 toWorld{1.0F};
+    Material material;
+};
+
+// What the studio looks like; colours linear.
+struct Studio {
+    vec3 horizon{0.80F, 0.84F, 0.88F};
+    vec3 zenith{0.30F, 0.42F, 0.58F};
+    vec3 floor{0.42F, 0.40F, 0.38F};
+    float floorHeight = 0.0F;  // m
+    bool showFloor = true;
+    Bounds shown;              // m; what the picture is about: the floor fades around it
+};
+
+// The uniform block of a frame. `meshes`, `water`: the world bounds that the light's maps must cover (m); empty: no map.
+FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds& meshes, const Bounds& water);
+
+// What the light's way to a surface is looked up in. Without meshes or without water, any texture stands in: FrameParams::shadow says so.
+struct LightMaps {
+    gpu::TextureHandle sharp, soft, water;
+    vec3 absorption{0.0F};  // 1/m, of the water
+};
+
+// The moments of the meshes' depth as the light sees it, blurred narrowly and widely.
+LightMaps addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection);
+// Window depth of meshes and floor. `frame`: the buffer of a FrameParams.
+gpu::TextureHandle addDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes);
+// How open each point is to the environment, at half resolution; `reach` in m.
+gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, gpu::TextureHandle depth,
+                                float reach);
+// Linear radiance (rgba16f) of background, floor and meshes.
+gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes,
+                             gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light);
+// The edges of a box, drawn into `colour`. With `fluidDepth` (m, r32f): only those in front of the water.
+void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour, gpu::TextureHandle depth,
+            gpu::TextureHandle fluidDepth = {});
+// Linear radiance to sRGB, edges smoothed, dithered, into `picture` (rgba8, view's size).
+void addTonemap(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, gpu::TextureHandle colour,
+                gpu::TextureHandle picture);
+
+}  // namespace rivulet

@@ -1,0 +1,215 @@
+#include "fluid/bridge/scene_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/scene/light.h"
+#include "engine/scene/transform.h"
+
+namespace rivulet {
+namespace {
+
+constexpr float kOcclusionReach = 0.16F;  // of the shown scene's radius
+
+Result<ColourBy> colourByName(const std::string& name) {
+    if (name == "speed") return ColourBy::speed;
+    if (name == "density") return ColourBy::density;
+    if (name == "id") return ColourBy::id;
+    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density or id", name));
+}
+
+Status uploadTo(gpu::Buffer& buffer, std::span<const std::byte> bytes) {
+    if (buffer.bytes() < bytes.size() || !buffer) {
+        Result<gpu::Buffer> made = gpu::Buffer::create(bytes.size());
+        if (!made) return made.error();
+        buffer = std::move(*made);
+    }
+    buffer.write(bytes);
+    return ok();
+}
+
+}  // namespace
+
+Camera cameraOf(const CameraParams& params, const Bounds& bounds) {
+    Camera camera;
+    camera.position = params.position;
+    camera.target = params.target;
+    camera.fieldOfView = params.fieldOfView;
+    camera.setPlanes(bounds);
+    return camera;
+}
+
+FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time) {
+    FrameView view;
+    view.width = std::max(width, 1);
+    view.height = std::max(height, 1);
+    view.view = camera.view();
+    view.projection = camera.projection(static_cast<float>(view.width) / static_cast<float>(view.height));
+    view.cameraPosWorld = camera.position;
+    view.nearPlane = camera.nearPlane;
+    view.farPlane = camera.farPlane;
+    view.lightDirWorld = glm::normalize(light.direction);
+    view.lightColour = light.colour * light.intensity;
+    view.time = time;
+    return view;
+}
+
+Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look) {
+    const ParticleView particles = world.particles();
+    FluidView out;
+    out.count = particles.count;
+    out.spacing = particles.spacing;
+    out.radius = look.radiusSpacings * particles.spacing;
+    out.bounds.add(world.params().box.min);
+    out.bounds.add(world.params().box.max);
+    if (out.count == 0) return out;
+    Device& device = world.device();
+    if (device.backend() == Backend::gl) {
+        out.position = static_cast<unsigned>(particles.position->handle());
+        out.velocity = static_cast<unsigned>(particles.velocity->handle());
+        out.id = static_cast<unsigned>(particles.id->handle());
+        return out;
+    }
+    vectors_.resize(out.count);
+    ids_.resize(out.count);
+    const std::pair<const Buffer*, gpu::Buffer*> both[] = {{particles.position, &position_}, {particles.velocity, &velocity_}};
+    for (const auto& [from, to] : both) {
+        device.read(*from, std::as_writable_bytes(std::span(vectors_)));
+        if (Status s = uploadTo(*to, std::as_bytes(std::span(vectors_))); !s) return s.error();
+    }
+    device.read(*particles.id, std::as_writable_bytes(std::span(ids_)));
+    if (Status s = uploadTo(id_, std::as_bytes(std::span(ids_))); !s) return s.error();
+    out.position = position_.name();
+    out.velocity = velocity_.name();
+    out.id = id_.name();
+    return out;
+}
+
+Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& files) {
+    std::unique_ptr<SceneRenderer> r(new SceneRenderer());
+    Result<RenderPrograms> render = RenderPrograms::create(files);
+    if (!render) return render.error();
+    Result<FluidPrograms> fluid = FluidPrograms::create(files);
+    if (!fluid) return fluid.error();
+    Result<gpu::Buffer> frame = gpu::Buffer::create(sizeof(FrameParams));
+    if (!frame) return frame.error();
+    Result<gpu::Texture> nothing = gpu::Texture::create({.width = 1, .height = 1, .format = gpu::Format::rgba8});
+    if (!nothing) return nothing.error();
+    nothing->clear(vec4(0.0F));
+    r->render_ = std::move(*render);
+    r->fluid_ = std::move(*fluid);
+    r->frame_ = std::move(*frame);
+    r->nothing_ = std::move(*nothing);
+    return r;
+}
+
+Status SceneRenderer::reload() {
+    if (Status s = render_.reload(); !s) return s;
+    return fluid_.reload();
+}
+
+// Meshes that are new go to the GPU, those that are gone leave it, and the picture takes the view's size.
+Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
+    std::set<std::shared_ptr<const Mesh>> used;
+    for (const Node& node : scene.nodes()) {
+        if (!node.mesh) continue;
+        used.insert(node.mesh);
+        if (meshes_.contains(node.mesh)) continue;
+        Result<GpuMesh> mesh = GpuMesh::create(*node.mesh);
+        if (!mesh) return mesh.error();
+        meshes_.emplace(node.mesh, std::move(*mesh));
+    }
+    std::erase_if(meshes_, [&](const auto& item) { return !used.contains(item.first); });
+    if (!picture_ || width() != view.width || height() != view.height) {
+        Result<gpu::Texture> picture = gpu::Texture::create({.width = view.width, .height = view.height, .format = gpu::Format::rgba8});
+        if (!picture) return picture.error();
+        picture_ = std::move(*picture);
+    }
+    return ok();
+}
+
+Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings) {
+    const RendererRow* row = renderers().find(settings.look.renderer);
+    if (row == nullptr) return badInput(fmt::format("look.renderer '{}' is not known", settings.look.renderer));
+    Result<ColourBy> colourBy = colourByName(settings.look.colourBy);
+    if (!colourBy) return colourBy.error();
+    if (Status s = prepare(view, scene); !s) return s;
+
+    std::vector<DrawnMesh> meshes;
+    const std::vector<mat4> world = scene.worldMatrices();
+    const std::vector<bool> visible = scene.visible();
+    Bounds solid;
+    for (size_t i = 0; i < scene.nodes().size(); ++i) {
+        const Node& node = scene.nodes()[i];
+        if (!visible[i] || !node.mesh) continue;
+        meshes.push_back({&meshes_.at(node.mesh), world[i], node.material});
+        const Bounds b = transformBounds(world[i], meshes_.at(node.mesh).bounds());
+        solid.add(b.min);
+        solid.add(b.max);
+    }
+    const Bounds water = fluid.count > 0 ? fluid.bounds : Bounds{};
+    const BackgroundParams& background = settings.background;
+    Studio studio{background.horizon, background.zenith, background.floor, background.floorHeight, background.showFloor, solid};
+    const Bounds box{settings.fluid.box.min, settings.fluid.box.max};
+    studio.shown.add(box.min);
+    studio.shown.add(box.max);
+    const FrameParams params = packFrame(view, studio, solid, water);
+    frame_.write(std::as_bytes(std::span(&params, 1)));
+
+    gpu::FrameGraph graph(pool_);
+    const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());
+    const gpu::TextureHandle nothing = graph.importTexture("nothing", nothing_);
+    LightMaps light{nothing, nothing, nothing, settings.look.absorption};
+    if (!meshes.empty()) {
+        const LightMaps shadow = addShadow(graph, render_, meshes, params.shadowProjection);
+        light.sharp = shadow.sharp;
+        light.soft = shadow.soft;
+    }
+    FluidDraw draw;
+    draw.view = view;
+    draw.fluid = fluid;
+    draw.look = {*colourBy, 3.0F, settings.look.smoothing, settings.look.absorption, settings.look.refractiveIndex};
+    draw.frame = frame;
+    if (fluid.count > 0) {
+        draw.position = graph.importBuffer("positions", fluid.position, size_t{fluid.count} * sizeof(vec4));
+        draw.velocity = graph.importBuffer("velocities", fluid.velocity, size_t{fluid.count} * sizeof(vec4));
+        draw.id = graph.importBuffer("ids", fluid.id, size_t{fluid.count} * sizeof(uint32_t));
+    }
+    if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
+    if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through
+
+    draw.depth = addDepth(graph, render_, frame, view, meshes);
+    const float radius = 0.5F * glm::length(studio.shown.size());
+    const gpu::TextureHandle occlusion = addOcclusion(graph, render_, frame, view, draw.depth, kOcclusionReach * radius);
+    draw.colour = addOpaque(graph, render_, frame, view, meshes, draw.depth, occlusion, light);
+    draw.shadowSharp = light.sharp;
+    draw.shadowSoft = light.soft;
+    draw.waterLight = light.water;
+
+    if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
+    const FluidLayers layers = row->add(graph, fluid_, draw);
+    if (background.showBox && (row->opaque || layers.fluidDepth)) addBox(graph, render_, frame, box, layers.colour, draw.depth, layers.fluidDepth);
+
+    const gpu::TextureHandle picture = graph.importTexture("picture", picture_);
+    addTonemap(graph, render_, frame, view, layers.colour, picture);
+    graph.output(picture);
+    return graph.execute();
+}
+
+void SceneRenderer::present(GLuint framebuffer, int width, int height) const {
+    if (picture_) gpu::Framebuffer(picture_, nullptr).blitTo(framebuffer, width, height);
+}
+
+std::vector<uint8_t> SceneRenderer::pixels() const {
+    if (!picture_) return {};
+    const size_t row = static_cast<size_t>(width()) * 4, rows = static_cast<size_t>(height());
+    std::vector<uint8_t> bottomUp(row * rows), topDown(row * rows);
+    picture_.read(std::as_writable_bytes(std::span(bottomUp)));
+    for (size_t y = 0; y < rows; ++y)
+        std::copy_n(bottomUp.begin() + static_cast<std::ptrdiff_t>(y * row), row, topDown.begin() + static_cast<std::ptrdiff_t>((rows - 1 - y) * row));
+    return topDown;
+}
+
+}  // namespace rivulet

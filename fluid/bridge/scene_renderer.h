@@ -1,0 +1,73 @@
+// SceneRenderer: one frame of a scene: shadow -> depth -> opaque -> fluid -> tonemap. Window, headless runs and tests share it.
+//
+//     Result<std::unique_ptr<SceneRenderer>> r = SceneRenderer::create(ShaderFiles::developer());
+//     Status drawn = (*r)->draw(frameViewOf(camera, settings.light, width, height, time), fluid, scene, settings);
+//     (*r)->present(0, width, height);  or  (*r)->pixels();
+//
+// Needs a current OpenGL 4.5 context throughout, its destruction included.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "engine/render/passes.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/scene.h"
+#include "fluid/bridge/scene_file.h"
+#include "fluid/render/renderers.h"
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet {
+
+// The scene file's camera, with planes that hold `bounds` (m, world).
+Camera cameraOf(const CameraParams& params, const Bounds& bounds);
+// A window of 0 pixels gives a view of 1.
+FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time);
+
+// A world's particles as GL buffers: the Device's own if it is gl, else copies, uploaded by view().
+class FluidUpload {
+  public:
+    // Valid until the next view() and until the world's next step. Error (failed): out of GPU memory.
+    Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look);
+
+  private:
+    gpu::Buffer position_, velocity_, id_;
+    std::vector<vec4> vectors_;
+    std::vector<uint32_t> ids_;
+};
+
+class SceneRenderer {
+  public:
+    // Error (failed): a shader does not compile, or is missing.
+    static Result<std::unique_ptr<SceneRenderer>> create(const ShaderFiles& files);
+
+    // Draws into a picture of its own, of the view's size. Error: an unknown renderer or colouring (badInput); out of GPU memory (failed).
+    Status draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings);
+
+    // The last picture, scaled into a framebuffer of this size (0: the window).
+    void present(GLuint framebuffer, int width, int height) const;
+    // The last picture: RGBA8, sRGB, top row first, alpha 255. Waits for the GPU.
+    std::vector<uint8_t> pixels() const;
+    int width() const { return picture_.desc().width; }
+    int height() const { return picture_.desc().height; }
+
+    // GPU time a pass, some frames late.
+    const std::vector<PassTime>& times() const { return pool_.times(); }
+    // Reads the shaders again. Error: as create; the last good ones stay in use.
+    Status reload();
+
+  private:
+    SceneRenderer() = default;
+    Status prepare(const FrameView& view, const Scene& scene);
+
+    RenderPrograms render_;
+    FluidPrograms fluid_;
+    gpu::TransientPool pool_;
+    gpu::Buffer frame_;      // FrameParams
+    gpu::Texture picture_;   // the last frame
+    gpu::Texture nothing_;   // stands in for a map of the light that is not there
+    std::map<std::shared_ptr<const Mesh>, GpuMesh> meshes_;
+};
+
+}  // namespace rivulet

@@ -1,0 +1,64 @@
+#include "fluid/render/renderers.h"
+
+#include <cmath>
+
+namespace rivulet {
+
+namespace {
+constexpr RendererRow kRows[] = {
+    {"points", "every particle as a lit sphere, coloured by speed, density or id", true, addPoints},
+    {"screen_space", "a water surface from the particles' smoothed depth: refraction, absorption, reflection", false, addScreenSpace},
+};
+constexpr Table<RendererRow> kRenderers{kRows};
+}  // namespace
+
+const Table<RendererRow>& renderers() { return kRenderers; }
+
+std::array<gpu::Program*, 10> FluidPrograms::all() {
+    return {&points, &occluder, &depth, &smooth, &thickness, &blur, &shade, &lightWater, &lightWaterFirst, &lightWaterLast};
+}
+
+Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
+    using gpu::Program;
+    const std::string folder = "shaders/screen_space/", full = "shaders/render/fullscreen.vert", sphere = folder + "sphere.vert";
+    FluidPrograms p;
+    std::pair<Program*, Result<Program>> made[] = {
+        {&p.points, Program::create(files, {folder + "points.vert", folder + "points.frag"})},
+        {&p.occluder, Program::create(files, {folder + "occluder.vert", "shaders/render/depth.frag"})},
+        {&p.depth, Program::create(files, {sphere, folder + "depth.frag"})},
+        {&p.smooth, Program::create(files, {full, folder + "smooth.frag"})},
+        {&p.thickness, Program::create(files, {sphere, folder + "thickness.frag"})},
+        {&p.blur, Program::create(files, {full, folder + "blur.frag"})},
+        {&p.shade, Program::create(files, {full, folder + "shade.frag"})},
+        {&p.lightWater, Program::create(files, {folder + "light_water.vert", folder + "light_water.frag"})},
+        {&p.lightWaterFirst, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"FIRST", "1"}})},
+        {&p.lightWaterLast, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"LAST", "1"}})},
+    };
+    for (auto& [into, program] : made) {
+        if (!program) return program.error();
+        *into = std::move(*program);
+    }
+    p.particles = gpu::VertexArray::create();
+    return p;
+}
+
+Status FluidPrograms::reload() {
+    for (gpu::Program* program : all())
+        if (Status s = program->reload(); !s) return s;
+    return ok();
+}
+
+void FluidPrograms::drawParticles(const FluidView& fluid) {
+    particles.attribute(0, fluid.position, 4, GL_FLOAT, 16, 0, 1);
+    particles.attribute(1, fluid.velocity, 4, GL_FLOAT, 16, 0, 1);
+    particles.integerAttribute(2, fluid.id, 1, GL_UNSIGNED_INT, 4, 0, 1);
+    particles.bind();
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(fluid.count));
+}
+
+float volumeScale(const FluidView& fluid) {
+    const float ratio = fluid.spacing / fluid.radius;
+    return ratio * ratio * ratio / (4.0F / 3.0F * kPi);
+}
+
+}  // namespace rivulet

@@ -1,0 +1,74 @@
+// Renderers: the ways to draw a fluid, as passes added to a frame graph after the scene's opaque pass.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "engine/compute/kernel_source.h"
+#include "engine/core/table.h"
+#include "engine/gpu/frame_graph.h"
+#include "engine/gpu/program.h"
+#include "engine/gpu/vertex_array.h"
+#include "engine/render/frame_view.h"
+#include "fluid/render/fluid_view.h"
+
+namespace rivulet {
+
+enum class ColourBy { speed, density, id };
+
+struct FluidLook {
+    ColourBy colourBy = ColourBy::speed;   // points
+    float fullSpeed = 3.0F;                // m/s: the end of the colour map
+    float smoothing = 2.5F;                // reach of the smoothing, in drawn radii
+    vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
+    float refractiveIndex = 1.333F;        // > 1
+};
+
+// The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
+struct FluidPrograms {
+    gpu::Program points, occluder, depth, smooth, thickness, blur, shade, lightWater, lightWaterFirst, lightWaterLast;
+    gpu::VertexArray particles;
+    static Result<FluidPrograms> create(const ShaderFiles& files);
+    Status reload();
+    void drawParticles(const FluidView& fluid);  // a quad each, with the program in use
+
+  private:
+    std::array<gpu::Program*, 10> all();
+};
+
+// What a renderer works with: the frame, the water, and the scene as drawn so far.
+struct FluidDraw {
+    FrameView view;
+    FluidView fluid;
+    FluidLook look;
+    gpu::BufferHandle frame;                              // a FrameParams (shaders/render/frame.h)
+    gpu::BufferHandle position, velocity, id;             // fluid's, imported
+    gpu::TextureHandle colour;                            // rgba16f, linear radiance
+    gpu::TextureHandle depth;                             // window depth
+    gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
+};
+
+struct FluidLayers {
+    gpu::TextureHandle colour;      // the picture with the fluid in it
+    gpu::TextureHandle fluidDepth;  // r32f, m, 1e6 where there is none; empty if the fluid went into the scene's depth instead
+};
+
+struct RendererRow {
+    const char* name;
+    const char* doc;
+    bool opaque;  // draws into the scene's colour and depth
+    FluidLayers (*add)(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+};
+const Table<RendererRow>& renderers();
+
+// What the light passes through on its way: x thickness (m), y nearest depth (0..1), z thickness relative to the surroundings (m).
+// `projection`: world -> the light's clip space, orthographic and of one scale.
+gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
+
+FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+
+// A particle's volume over its drawn sphere's: what turns lengths within spheres into lengths within water.
+float volumeScale(const FluidView& fluid);
+
+}  // namespace rivulet

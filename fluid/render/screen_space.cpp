@@ -1,0 +1,179 @@
+// A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a narrow-range filter (Truong & Yuksel 2018).
+#include <algorithm>
+
+#include "fluid/render/renderers.h"
+
+namespace rivulet {
+namespace {
+
+using gpu::Format;
+using gpu::FrameGraph;
+using gpu::PassContext;
+using gpu::Program;
+using gpu::TextureDesc;
+using gpu::TextureHandle;
+using gpu::Usage;
+
+constexpr float kFar = 1.0e6F;     // m, shaders/render/frame.glsl's depth of nothing
+constexpr int kSmoothPasses = 2;   // each along x and y
+constexpr int kSmoothTaps = 16;    // either side; a wider kernel takes larger steps
+constexpr float kRange = 3.0F;     // radii: depths further apart are two surfaces
+constexpr float kBend = 1.0F;      // radii
+constexpr int kThicknessScale = 2; // of the resolution
+constexpr int kLightMap = 512;     // texels
+
+void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
+
+// A full-screen pass from one texture to another of `desc`.
+template <class Setup>
+TextureHandle addFilter(FrameGraph& graph, const char* name, const FluidDraw& d, Program& program, TextureHandle from, const TextureDesc& desc, Setup setup) {
+    const TextureHandle to = graph.texture(name, desc);
+    graph.pass(name, {{d.frame, Usage::uniform}, from}, {to}, [=, &program](PassContext& c) {
+        c.drawTo({to});
+        useFrame(c, d);
+        program.use();
+        program.texture("source", 0, c.texture(from));
+        setup(program);
+        c.drawFullscreen();
+    });
+    return to;
+}
+
+TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
+    TextureDesc depthSize = size;
+    depthSize.format = Format::depth32f;
+    const TextureHandle depth = graph.texture("fluid depth", size), hidden = graph.texture("fluid occluders", depthSize);
+    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {depth, hidden}, [=, &programs](PassContext& c) {
+        const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
+        useFrame(c, d);
+        target.clearColour(vec4(kFar));
+        target.clearDepth();
+        glEnable(GL_DEPTH_TEST);
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        programs.occluder.use();
+        programs.occluder.set("radius", d.fluid.radius);
+        programs.drawParticles(d.fluid);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthMask(GL_FALSE);
+        glEnable(GL_BLEND);
+        glBlendEquation(GL_MIN);
+        programs.depth.use();
+        programs.depth.set("radius", d.fluid.radius);
+        programs.drawParticles(d.fluid);
+    });
+    return depth;
+}
+
+TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle depth) {
+    const float radius = d.fluid.radius;
+    for (int k = 0; k < 2 * kSmoothPasses; ++k)
+        depth = addFilter(graph, "smooth", d, programs.smooth, depth, graph.desc(depth), [=, look = d.look](Program& p) {
+            p.set("axis", k % 2 == 0 ? ivec2(1, 0) : ivec2(0, 1));
+            p.set("reach", look.smoothing * radius);
+            p.set("range", kRange * radius);
+            p.set("bend", kBend * radius);
+            p.set("maxTaps", kSmoothTaps);
+        });
+    return depth;
+}
+
+TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    const TextureDesc size{.width = (d.view.width + kThicknessScale - 1) / kThicknessScale,
+                           .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
+                           .format = Format::r16f};
+    TextureHandle thickness = graph.texture("thickness", size);
+    graph.pass("thickness", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth}, {thickness}, [=, &programs](PassContext& c) {
+        c.drawTo({thickness}).clearColour(vec4(0.0F));
+        useFrame(c, d);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE);
+        Program& p = programs.thickness;
+        p.use();
+        p.set("radius", d.fluid.radius);
+        p.set("volumeScale", volumeScale(d.fluid));
+        p.set("scale", kThicknessScale);
+        p.texture("sceneDepth", 0, c.texture(d.depth));
+        programs.drawParticles(d.fluid);
+    });
+    for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
+        thickness = addFilter(graph, "thickness blur", d, programs.blur, thickness, size, [=](Program& p) {
+            p.set("axis", axis);
+            p.set("reach", 4);
+        });
+    return thickness;
+}
+
+}  // namespace
+
+TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
+    const TextureDesc thin{.width = kLightMap, .height = kLightMap, .format = Format::r16f};
+    const TextureDesc nearer{.width = kLightMap, .height = kLightMap, .format = Format::r32f};
+    const TextureDesc map{.width = kLightMap, .height = kLightMap, .format = Format::rgba16f};
+    const TextureHandle thickness = graph.texture("light thickness", thin), nearest = graph.texture("light depth", nearer);
+    const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
+    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {thickness, nearest}, [=, &programs](PassContext& c) {
+        const gpu::Framebuffer& target = c.drawTo({thickness, nearest});
+        useFrame(c, d);
+        target.clearColour(vec4(0.0F), 0);
+        target.clearColour(vec4(1.0F), 1);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE);
+        glBlendEquationi(1, GL_MIN);
+        Program& p = programs.lightWater;
+        p.use();
+        p.set("clipRadius", clipRadius);
+        p.set("radius", d.fluid.radius);
+        p.set("volumeScale", volumeScale(d.fluid));
+        programs.drawParticles(d.fluid);
+    });
+    // The narrow blur hides the single particles: its reach is 1.5 spacings.
+    const int reach = std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * kLightMap), 2, 12);
+    TextureHandle from = thickness;
+    for (const bool first : {true, false}) {
+        const TextureHandle to = graph.texture("water light", map);
+        Program& p = first ? programs.lightWaterFirst : programs.lightWaterLast;
+        std::vector<gpu::Read> reads = {from};
+        if (first) reads.emplace_back(nearest);
+        graph.pass("water light blur", reads, {to}, [=, &p](PassContext& c) {
+            c.drawTo({to});
+            p.use();
+            p.texture("source", 0, c.texture(from));
+            if (first) p.texture("nearest", 1, c.texture(nearest));
+            p.set("axis", first ? ivec2(1, 0) : ivec2(0, 1));
+            p.set("reach", reach);
+            c.drawFullscreen();
+        });
+        from = to;
+    }
+    return from;
+}
+
+FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    if (d.fluid.count == 0) return {d.colour, {}};
+    const TextureHandle depth = addSmooth(graph, programs, d, addSphereDepth(graph, programs, d));
+    const TextureHandle thickness = addThickness(graph, programs, d);
+    const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
+    graph.pass("shade", {{d.frame, Usage::uniform}, d.colour, d.depth, depth, thickness, d.shadowSharp, d.shadowSoft, d.waterLight}, {colour},
+               [=, &programs](PassContext& c) {
+                   c.drawTo({colour});
+                   useFrame(c, d);
+                   Program& p = programs.shade;
+                   p.use();
+                   p.texture("sceneColour", 0, c.texture(d.colour));
+                   p.texture("sceneDepth", 1, c.texture(d.depth));
+                   p.texture("fluidDepth", 2, c.texture(depth));
+                   p.texture("thickness", 3, c.texture(thickness));
+                   p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
+                   p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
+                   p.texture("waterLight", 6, c.texture(d.waterLight));
+                   p.set("waterAbsorption", d.look.absorption);
+                   p.set("radius", d.fluid.radius);
+                   p.set("absorption", d.look.absorption);
+                   p.set("refractiveIndex", d.look.refractiveIndex);
+                   c.drawFullscreen();
+               });
+    return {colour, depth};
+}
+
+}  // namespace rivulet

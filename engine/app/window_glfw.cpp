@@ -1,5 +1,7 @@
 #include "engine/app/window_glfw.h"
 
+#define EGL_NO_X11
+#include <EGL/egl.h>
 #include <fmt/format.h>
 #include <glad/gl.h>
 #define GLFW_INCLUDE_NONE
@@ -83,6 +85,8 @@ struct WindowGlfw::Impl {
 };
 
 Result<WindowGlfw> WindowGlfw::create(const Options& options) {
+    // Some drivers end the process when GLX meets a current EGL context.
+    ASSERT(eglGetCurrentContext() == EGL_NO_CONTEXT, "destroy the ContextEgl before opening a window on its thread");
     if (glfwInit() != GLFW_TRUE)
         return failed(fmt::format("no window can be opened ({}); run with --headless, or start a display", glfwTrouble()));
     auto impl = std::make_unique<Impl>();  // from here on it ends GLFW

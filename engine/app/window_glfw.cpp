@@ -15,6 +15,10 @@
 namespace rivulet {
 namespace {
 
+static_assert(key::kEscape == GLFW_KEY_ESCAPE && key::kDelete == GLFW_KEY_DELETE && key::kRight == GLFW_KEY_RIGHT &&
+              key::kUp == GLFW_KEY_UP && key::kEnd == GLFW_KEY_END && key::kF1 == GLFW_KEY_F1 && key::kLeftShift == GLFW_KEY_LEFT_SHIFT &&
+              key::kRightAlt == GLFW_KEY_RIGHT_ALT && 'R' == GLFW_KEY_R && ' ' == GLFW_KEY_SPACE);
+
 // UTF-8 of one code point.
 void append(std::string& text, unsigned code) {
     const auto put = [&](unsigned byte) { text += static_cast<char>(byte); };

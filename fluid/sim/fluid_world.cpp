@@ -10,6 +10,7 @@
 #include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/particles.h"
+#include "fluid/voxel/labels.h"
 #include "shaders/fluid/stats_row.h"
 
 namespace rivulet {
@@ -140,10 +141,13 @@ Status FluidWorld::Impl::prepare() {
 void FluidWorld::Impl::fillStart() {
     for (const BlockParams& b : params.blocks) fillBlock(b, params.spacing, start);
     const float contact = field != nullptr ? fieldParams(*field, FieldContact{.spacing = params.spacing}).contact : 0.0F;
+    const std::vector<uint8_t> outside = field != nullptr ? reachableFromBorder(field->surface) : std::vector<uint8_t>{};
     const size_t left = std::erase_if(start, [&](const NewParticle& p) {
         for (const PlaneSolid& plane : planeSolids)
             if (glm::dot(glm::normalize(plane.normal), p.position - plane.position) < 0.5F * params.spacing) return true;
-        return field != nullptr && field->clearance(p.position) < contact;
+        if (field == nullptr) return false;
+        const ivec3 voxel = field->surface.cellOf(p.position);
+        return field->clearance(p.position) < contact || (field->surface.contains(voxel) && outside[field->surface.index(voxel)] == 0);
     });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }

@@ -314,6 +314,31 @@ TEST(Wcsph, APlaneHoldsWaterOnItsNormalsSide) {
         EXPECT_GT(glm::dot(n, vec3(x) - slope.position), 0.4F * p.spacing);
 }
 
+// A block over a closed box: no particle is born in its walls or in its hollow, and all others are.
+TEST(Wcsph, WhatAClosedMeshEnclosesStaysEmpty) {
+    std::vector<vec3> corners;
+    for (int k = 0; k < 8; ++k) corners.emplace_back((k & 1) != 0 ? 0.7F : 0.3F, (k & 2) != 0 ? 0.7F : 0.3F, (k & 4) != 0 ? 0.7F : 0.3F);
+    const std::vector<uint32_t> triangles = {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
+    const MeshView mesh{corners, triangles, {}, {}};
+    auto field = bakeVoxelField(std::span(&mesh, 1), {.resolution = 32, .band = 0.1F, .padding = 0.12F});
+    ASSERT_TRUE(field) << field.error().message;
+    auto device = cpu();
+    const FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(1.0F));
+    auto world = make(*device, p, {.field = &*field, .planes = {}});
+    const uint32_t n = world->particles().count;
+    const float contact = fieldParams(*field, {.spacing = p.spacing}).contact, lo = 0.3F - contact, hi = 0.7F + contact;
+    uint32_t expected = 0;
+    for (int z = 0; z < 25; ++z)
+        for (int y = 0; y < 25; ++y)
+            for (int x = 0; x < 25; ++x) {
+                const vec3 at = (vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) + 0.5F) * p.spacing;
+                expected += at.x < lo || at.x > hi || at.y < lo || at.y > hi || at.z < lo || at.z > hi ? 1 : 0;
+            }
+    EXPECT_NEAR(n, expected, 0.02 * expected) << "near edges and corners the clearance is a lower bound";
+    for (const vec4& x : device->readAll<vec4>(*world->particles().position, n))
+        EXPECT_FALSE(x.x > 0.3F && x.x < 0.7F && x.y > 0.3F && x.y < 0.7F && x.z > 0.3F && x.z < 0.7F);
+}
+
 TEST(Wcsph, ResetIsTheStartAgainAndTheSameRunAgain) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.4F));

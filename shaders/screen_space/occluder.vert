@@ -4,6 +4,6 @@
 #include "shaders/screen_space/particle.glsl"
 void main() {
     vec3 c = (frame.view * vec4(particle.xyz, 1.0)).xyz;
-    c.xy += (corner() - 0.5) * 1.40 * radius;  // half the side: 0.70 radii < 1 / sqrt(2)
+    c.xy += (corner() - 0.5) * 1.40 * drawnRadius(particle);  // half the side: 0.70 radii < 1 / sqrt(2)
     gl_Position = lost(particle) || -c.z < frame.planes.x ? kNowhere : frame.projection * vec4(c, 1.0);
 }

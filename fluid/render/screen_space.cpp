@@ -51,28 +51,35 @@ TextureHandle addTiles(FrameGraph& graph, FluidPrograms& programs, const FluidDr
 // A pass over the tiles from one texture to another of `desc`, `empty` elsewhere.
 template <class Setup>
 TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, Program& program, TextureHandle tiles,
-                        TextureHandle from, const TextureDesc& desc, float empty, Setup setup) {
+                        TextureHandle from, const TextureDesc& desc, float empty, Setup setup, TextureHandle second = {}) {
     const TextureHandle to = graph.texture(name, desc);
-    graph.pass(name, {{d.frame, Usage::uniform}, tiles, from}, {to}, [=, &programs, &program](PassContext& c) {
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, tiles, from};
+    if (second) reads.emplace_back(second);
+    graph.pass(name, reads, {to}, [=, &programs, &program](PassContext& c) {
         c.drawTo({to}).clearColour(vec4(empty));
         useFrame(c, d);
         program.use();
         program.texture("source", 0, c.texture(from));
-        setup(program);
+        setup(program, c);
         drawTiles(c, programs, program, tiles, 1);
     });
     return to;
 }
 
-TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+struct SphereDepth {
+    TextureHandle bulk, spray;
+};
+
+SphereDepth addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
     TextureDesc depthSize = size;
     depthSize.format = Format::depth32f;
-    const TextureHandle depth = graph.texture("fluid depth", size), hidden = graph.texture("fluid occluders", depthSize);
-    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {depth, hidden}, [=, &programs](PassContext& c) {
-        const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
+    const TextureHandle bulk = graph.texture("bulk depth", size), spray = graph.texture("spray depth", size), hidden = graph.texture("fluid occluders", depthSize);
+    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {bulk, spray, hidden}, [=, &programs](PassContext& c) {
+        const gpu::Framebuffer& target = c.drawTo({bulk, spray}, hidden);
         useFrame(c, d);
-        target.clearColour(vec4(kFar));
+        target.clearColour(vec4(kFar), 0);
+        target.clearColour(vec4(kFar), 1);
         target.clearDepth();
         glEnable(GL_DEPTH_TEST);
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -87,10 +94,11 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         programs.depth.set("radius", d.fluid.radius);
         programs.drawParticles(d.fluid);
     });
-    return depth;
+    return {bulk, spray};
 }
 
-TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle depth) {
+TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, const SphereDepth& spheres) {
+    TextureHandle depth = spheres.bulk;
     const float radius = d.fluid.radius;
     // A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two standard deviations.
     float squares = 0;
@@ -101,14 +109,16 @@ TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidD
     for (const float& step : kSmoothSteps) {
         const bool final = &step == std::end(kSmoothSteps) - 1;
         Program& program = final ? programs.smoothLast : programs.smooth;
-        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, graph.desc(depth), kFar, [=](Program& p) {
+        const auto setup = [=](Program& p, const PassContext& c) {
             p.set("step_", step * unit);
             p.set("range", kRange * radius);
             p.set("bend", kBend * radius);
             if (!final) return;
+            p.texture("spray", 2, c.texture(spheres.spray));
             p.set("low", box.min);
             p.set("high", box.max);
-        });
+        };
+        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, graph.desc(depth), kFar, setup, final ? spheres.spray : TextureHandle{});
     }
     return depth;
 }
@@ -132,7 +142,7 @@ TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const Flu
         programs.drawParticles(d.fluid);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
-        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, [=](Program& p) {
+        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, [=](Program& p, const PassContext&) {
             p.set("axis", axis);
             p.set("reach", kThicknessBlur);
         });

@@ -6,7 +6,7 @@ uniform float radius;                   // m
 const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);
 vec2 corner() { return vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)); }
 // Spray is finer than the particles that stand for it: those with few neighbours are drawn smaller.
-float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.8, p.w); }
+float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
 float drawnRadius(vec4 p) { return radius * mix(1.35, 0.5, spray(p)); }
 bool lost(vec4 p) { return !(dot(p.xyz, p.xyz) < 1.0e12); }  // NaN too
 

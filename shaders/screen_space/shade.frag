@@ -67,9 +67,9 @@ void main() {
     vec3 passed = exp(-absorption * through);
     // A little of what is absorbed comes back scattered, so that deep water has a colour of its own.
     vec3 glow = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
-    vec3 scattered = vec3(0.012, 0.085, 0.11) * glow * (1.0 - exp(-2.5 * through));
+    vec3 scattered = vec3(0.008, 0.060, 0.085) * glow * (1.0 - exp(-2.5 * through));
     vec3 transmitted = back * passed + scattered;
-    float white = 1.0 - exp(-water.y * 0.5 / radius);
+    float white = 1.0 - exp(-water.y * 0.3 / radius);
     transmitted = mix(transmitted, 0.9 * (ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * (0.35 + 0.65 * max(dot(nWorld, frame.lightDir.xyz), 0.0)))), 0.75 * white);
 
     // Where the normal varies within a pixel the reflection is blurred: no sparkling.

@@ -8,6 +8,7 @@ uniform float step_;    // m
 uniform float range;    // m: how far from a straight line depths of one surface may be
 uniform float bend;     // m
 #if defined(LAST)
+uniform sampler2D spray; // m: drops stay as they are
 uniform vec3 low, high; // m, world: the box that the water cannot leave
 #endif
 layout(location = 0) out float depth;
@@ -30,15 +31,15 @@ void main() {
     z = texelFetch(source, here, 0).r;
     depth = z;
     int k = int(min(step_ / (z * frame.ray.y), 0.1 * frame.viewport.y) + 0.5);
-    if (z >= kFar) return;
     sum = 4.0 * z;
     weights = 4.0;
     addPair(ivec2(k, 0), 2.0);
     addPair(ivec2(0, k), 2.0);
     addPair(ivec2(k, k), 1.0);
     addPair(ivec2(k, -k), 1.0);
-    depth = sum / weights;
+    if (z < kFar) depth = sum / weights;
 #if defined(LAST)
+    depth = min(depth, texelFetch(spray, here, 0).r);
     // The spheres reach a little out of the box. Cut, its walls are as flat as glass.
     vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy));
     vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;

@@ -46,8 +46,70 @@ Status checkExtras(const CLI::App& app) {
 
 }  // namespace
 
-std::optional<int> parse(CLI::App& app, const Arguments& arguments) {
-    app.allow_extras();  // judged here, with the nearest option named
+struct ArgumentReader::Impl {
+    CLI::App app;
+};
+
+ArgumentReader::ArgumentReader(std::string_view verb, std::string_view doc) : impl_(std::make_unique<Impl>()) {
+    impl_->app.description(std::string(doc));
+    impl_->app.name(fmt::format("rivulet {}", verb));
+    impl_->app.allow_extras();  // judged in read(), with the nearest option named
+}
+
+ArgumentReader::~ArgumentReader() = default;
+
+void ArgumentReader::positional(const std::string& name, const std::string& doc, std::string& value, bool required) {
+    impl_->app.add_option(name, value, doc)->required(required)->type_name("");
+}
+
+void ArgumentReader::positional(const std::string& name, const std::string& doc, std::vector<std::string>& values) {
+    impl_->app.add_option(name, values, doc)->type_name("");
+}
+
+void ArgumentReader::flag(const std::string& name, const std::string& doc, bool& value) { impl_->app.add_flag(name, value, doc); }
+
+void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::string& value) {
+    impl_->app.add_option(name, value, doc)->type_name(type);
+}
+
+void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::vector<std::string>& values) {
+    impl_->app.add_option(name, values, doc)->type_name(type)->allow_extra_args(false);
+}
+
+namespace {
+
+// A check that NaN fails too.
+template <class T>
+CLI::Validator within(T min, T max) {
+    return CLI::Validator(
+        [min, max](std::string& text) {
+            T value{};
+            if (CLI::detail::lexical_cast(text, value) && value >= min && value <= max) return std::string();
+            return fmt::format("it takes a number from {} to {}, not '{}'", min, max, text);
+        },
+        "");
+}
+
+}  // namespace
+
+void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::optional<int>& value, int min,
+                            int max) {
+    impl_->app.add_option(name, value, doc)->type_name(type)->check(within(min, max));
+}
+
+void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::optional<double>& value,
+                            double min, double max) {
+    impl_->app.add_option(name, value, doc)->type_name(type)->check(within(min, max));
+}
+
+void ArgumentReader::exclude(const std::string& name, const std::string& other) {
+    impl_->app.get_option(name)->excludes(impl_->app.get_option(other));
+}
+
+void ArgumentReader::footer(const std::string& text) { impl_->app.footer(text); }
+
+std::optional<int> ArgumentReader::read(const Arguments& arguments) {
+    CLI::App& app = impl_->app;
     auto refuse = [&app](const std::string& why) { return report(badInput(fmt::format("{} (see '{} --help')", why, app.get_name()))); };
     try {
         app.parse(Arguments(arguments.rbegin(), arguments.rend()));

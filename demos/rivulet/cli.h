@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,10 +11,6 @@
 
 #include "engine/core/result.h"
 #include "engine/core/table.h"
-
-namespace CLI {
-class App;
-}
 
 namespace rivulet {
 
@@ -36,9 +33,36 @@ int benchVerb(const Arguments& arguments);
 // "rivulet: sentence" on stderr; returns the exit code that the error's fault asks for.
 int report(const Error& error);
 
-// Reads arguments into what was bound to `app` (named "rivulet VERB"). A value: the exit code to leave with, since help was
-// asked for (0) or the arguments make no sense (2, said on stderr with the nearest option there is).
-std::optional<int> parse(CLI::App& app, const Arguments& arguments);
+// What a verb takes. CLI11 reads it, behind this one interface: its templates would cost every verb some seconds of compiling.
+class ArgumentReader {
+  public:
+    ArgumentReader(std::string_view verb, std::string_view doc);
+    ~ArgumentReader();
+    ArgumentReader(const ArgumentReader&) = delete;
+    ArgumentReader& operator=(const ArgumentReader&) = delete;
+
+    // By position; `name` as help shows it.
+    void positional(const std::string& name, const std::string& doc, std::string& value, bool required);
+    void positional(const std::string& name, const std::string& doc, std::vector<std::string>& values);
+    // By name; `type` as help shows it: "FILE", "N".
+    void flag(const std::string& name, const std::string& doc, bool& value);
+    void option(const std::string& name, const std::string& type, const std::string& doc, std::string& value);
+    void option(const std::string& name, const std::string& type, const std::string& doc,
+                std::vector<std::string>& values);  // one each time
+    void option(const std::string& name, const std::string& type, const std::string& doc, std::optional<int>& value, int min, int max);
+    void option(const std::string& name, const std::string& type, const std::string& doc, std::optional<double>& value, double min,
+                double max);
+    void exclude(const std::string& name, const std::string& other);  // not both
+    void footer(const std::string& text);                             // below the help
+
+    // A value: the exit code to leave with, since help was asked for (0) or the arguments make no sense (2, said on stderr
+    // with the nearest option there is).
+    std::optional<int> read(const Arguments& arguments);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 // Nothing when `word` is among `names`; else "unknown WHAT 'word'; did you mean 'near'?", or all names where none is near.
 Status checkWord(std::string_view what, std::string_view word, std::span<const std::string> names);

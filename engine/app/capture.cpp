@@ -201,7 +201,8 @@ Status VideoWriter::close() {
         bool empty = impl_->frames == 0;
         int status = impl_->wait();
         if (empty) return ok();
-        if (status != 0) return impl_->failure();
+        // ffmpeg ends with 0 even when the last block did not fit on the disk: what it says on its error channel is believed instead.
+        if (status != 0 || ::lseek(impl_->messages, 0, SEEK_END) > 0) return impl_->failure();
     }
     if (!impl_->broken.empty()) return impl_->failure();
     if (!impl_->temporary.empty() && ::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0)

@@ -125,12 +125,15 @@ struct ContextEgl::Impl {
 };
 
 Result<ContextEgl> ContextEgl::create(const Options& options) {
-    std::string why = "EGL lists no display";
+    std::string why;  // of the first: it was the most likely one
     std::unique_ptr<Impl> best;
     for (const Candidate& candidate : findDisplays(false)) {
-        best = Impl::open(candidate, options, why);
+        std::string here;
+        best = Impl::open(candidate, options, here);
         if (best) break;
+        if (why.empty()) why = here;
     }
+    if (why.empty()) why = "EGL lists no display";
     // Beside a software renderer, a GPU may hide behind another driver.
     if (best && isSoftwareRenderer(best->renderer))
         for (const Candidate& candidate : findDisplays(true)) {

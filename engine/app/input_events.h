@@ -11,6 +11,15 @@ namespace rivulet {
 
 enum class MouseButton { left, right, middle };
 
+// Keys that print nothing, by GLFW's numbers; the others are their character on a US keyboard: 'R', ' ', '.'.
+namespace key {
+inline constexpr int kEscape = 256, kEnter = 257, kTab = 258, kBackspace = 259, kInsert = 260, kDelete = 261;
+inline constexpr int kRight = 262, kLeft = 263, kDown = 264, kUp = 265;
+inline constexpr int kPageUp = 266, kPageDown = 267, kHome = 268, kEnd = 269;
+inline constexpr int kF1 = 290;  // kF1 + n - 1 is Fn
+inline constexpr int kLeftShift = 340, kLeftControl = 341, kLeftAlt = 342, kRightShift = 344, kRightControl = 345, kRightAlt = 346;
+}  // namespace key
+
 struct InputEvents {
     vec2 mouse{0.0F};                  // window coordinates, from the top left corner
     vec2 mouseDelta{0.0F};             // since the last frame
@@ -18,7 +27,7 @@ struct InputEvents {
     bool buttonPressed[3] = {};        // went down since the last frame
     bool buttonReleased[3] = {};       // went up
     vec2 wheel{0.0F};                  // steps; y > 0 is away from the person
-    std::vector<int> keysPressed;      // GLFW_KEY_*: printable keys by US layout, letters as 'A'; repeats are not in it
+    std::vector<int> keysPressed;      // went down since the last frame; repeats are not in it
     std::vector<int> keysDown;         // held now
     std::string text;                  // UTF-8 typed
     ivec2 size{0};                     // window coordinates; 0 when minimised

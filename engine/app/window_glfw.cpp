@@ -1,5 +1,7 @@
 #include "engine/app/window_glfw.h"
 
+#define EGL_NO_X11
+#include <EGL/egl.h>
 #include <fmt/format.h>
 #include <glad/gl.h>
 #define GLFW_INCLUDE_NONE
@@ -12,6 +14,10 @@
 
 namespace rivulet {
 namespace {
+
+static_assert(key::kEscape == GLFW_KEY_ESCAPE && key::kDelete == GLFW_KEY_DELETE && key::kRight == GLFW_KEY_RIGHT &&
+              key::kUp == GLFW_KEY_UP && key::kEnd == GLFW_KEY_END && key::kF1 == GLFW_KEY_F1 && key::kLeftShift == GLFW_KEY_LEFT_SHIFT &&
+              key::kRightAlt == GLFW_KEY_RIGHT_ALT && 'R' == GLFW_KEY_R && ' ' == GLFW_KEY_SPACE);
 
 // UTF-8 of one code point.
 void append(std::string& text, unsigned code) {
@@ -83,6 +89,8 @@ struct WindowGlfw::Impl {
 };
 
 Result<WindowGlfw> WindowGlfw::create(const Options& options) {
+    // Some drivers end the process when GLX meets a current EGL context.
+    ASSERT(eglGetCurrentContext() == EGL_NO_CONTEXT, "destroy the ContextEgl before opening a window on its thread");
     if (glfwInit() != GLFW_TRUE)
         return failed(fmt::format("no window can be opened ({}); run with --headless, or start a display", glfwTrouble()));
     auto impl = std::make_unique<Impl>();  // from here on it ends GLFW

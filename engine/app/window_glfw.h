@@ -11,7 +11,8 @@ struct GLFWwindow;
 
 namespace rivulet {
 
-// On the main thread only; its context is current on it. ImGui_ImplGlfw_InitForOpenGL(handle(), true) chains to this window's callbacks.
+// One at a time, on the main thread, with no ContextEgl current there; its context is current on it. ImGui_ImplGlfw_InitForOpenGL(handle(),
+// true) chains to this window's callbacks.
 class WindowGlfw {
   public:
     struct Options {

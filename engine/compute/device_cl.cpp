@@ -80,16 +80,17 @@ T deviceValue(cl_device_id device, cl_device_info what) {
     return value;
 }
 
-// What clGet*Info gives as text, without the blanks some drivers pad it with.
+// What clGet*Info gives as text, without the blanks and line ends that some drivers put around it.
 template <class Get>
 std::string infoText(Get get) {
+    constexpr const char* kBlank = " \n\r\t";
     size_t size = 0;
     if (get(size_t{0}, nullptr, &size) != CL_SUCCESS || size == 0) return {};
     std::string text(size, '\0');
     if (get(size, text.data(), nullptr) != CL_SUCCESS) return {};
     text.resize(std::strlen(text.c_str()));
-    const size_t first = text.find_first_not_of(' ');
-    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+    const size_t first = text.find_first_not_of(kBlank);
+    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 std::string deviceText(cl_device_id device, cl_device_info what) {
     return infoText([&](size_t size, void* to, size_t* needed) { return clGetDeviceInfo(device, what, size, to, needed); });

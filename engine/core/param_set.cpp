@@ -57,7 +57,7 @@ class ParamSetter final : public ParamVisitor {
     void endGroup() override { leave(); }
 
     size_t beginList(const ParamInfo& info, size_t current) override {
-        wantedItem_ = kNone;
+        wantedItems_.push_back(kNone);
         if (!isNext(info)) return current;
         const std::string path = pathOf(group_, info.name);
         if (depth_ + 2 >= segments_.size()) {
@@ -72,11 +72,11 @@ class ParamSetter final : public ParamVisitor {
                                      excerpt(typed)));
             return current;
         }
-        wantedItem_ = index;
+        wantedItems_.back() = index;
         return std::max(current, index + 1);
     }
     void beginItem(size_t index) override {
-        if (index == wantedItem_)
+        if (index == wantedItems_.back())
             descend(pathOf(pathOf(group_, segments_[depth_]), index), 2);
         else
             ++skipped_;
@@ -87,7 +87,7 @@ class ParamSetter final : public ParamVisitor {
         else
             leave();
     }
-    void endList() override {}
+    void endList() override { wantedItems_.pop_back(); }
 
   private:
     static constexpr size_t kNone = static_cast<size_t>(-1);
@@ -127,7 +127,7 @@ class ParamSetter final : public ParamVisitor {
     size_t depth_ = 0;                 // segments_[depth_] is looked for
     std::string group_;                // in this group
     std::vector<std::string> beside_;  // which has these names
-    size_t wantedItem_ = kNone;        // of the list being visited
+    std::vector<size_t> wantedItems_;  // of the lists being visited, the innermost last
     int skipped_ = 0;                  // items around this one that the path does not lead into
     bool finished_ = false, left_ = false;
     std::string complaint_;

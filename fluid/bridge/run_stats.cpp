@@ -84,20 +84,17 @@ bool inSetVoxel(const VoxelGrid& surface, const vec4& p) {
 }
 
 RunRecorder::RunRecorder(FluidWorld& world, const VoxelField* field, bool readBack)
-    : world_(&world), field_(field), readBack_(readBack), lastFrame_(world.stats().frame), penetrated_(world.particles().count) {}
+    : world_(&world), field_(field), readBack_(readBack), penetrated_(world.particles().count) {}
 
-void RunRecorder::frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> renderPasses) {
+void RunRecorder::frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
+                        std::span<const PassTime> renderPasses) {
     simulate_.push_back(simulateMs);
     if (renderMs > 0) render_.push_back(renderMs);
     frame_.push_back(frameMs);
     wallMs_ += frameMs;
-    for (const PassTime& pass : world_->device().takeTimes()) passes_[pass.name].push_back(pass.ms);
+    for (const PassTime& pass : simulatePasses) passes_[pass.name].push_back(pass.ms);
     for (const PassTime& pass : renderPasses) passes_["render: " + pass.name].push_back(pass.ms);
-    const FluidStats& stats = world_->stats();
-    if (stats.frame != lastFrame_) {
-        lastFrame_ = stats.frame;
-        substeps_ += static_cast<uint64_t>(stats.substeps);
-    }
+    substeps_ += static_cast<uint64_t>(world_->lastSubsteps());
     if (!readBack_) return;
 
     HostParticles now = readParticles(*world_);
@@ -219,6 +216,7 @@ std::string writeRunStats(const RunStats& stats) {
 
     Json::StreamWriterBuilder builder;
     builder["indentation"] = "  ";
+    builder["enableYAMLCompatibility"] = true;  // "key": value
     builder["precision"] = 9;
     builder["useSpecialFloats"] = false;
     return Json::writeString(builder, v) + "\n";

@@ -60,7 +60,9 @@ class RunRecorder {
   public:
     // `readBack`: reads the particles after each frame, for compression and penetrations; costs time that is not counted as simulation.
     RunRecorder(FluidWorld& world, const VoxelField* field, bool readBack);
-    void frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> renderPasses);
+    // renderMs 0: nothing was drawn.
+    void frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
+               std::span<const PassTime> renderPasses);
     // Reads the particles once more for what holds at the end.
     RunStats finish(std::string scene);
 
@@ -71,7 +73,7 @@ class RunRecorder {
     std::vector<double> simulate_, render_, frame_;
     std::map<std::string, std::vector<double>> passes_;
     double compressionSum_ = 0, maxCompression_ = 0, wallMs_ = 0;
-    uint64_t compressionFrames_ = 0, substeps_ = 0, lastFrame_ = 0;
+    uint64_t compressionFrames_ = 0, substeps_ = 0;
     std::vector<bool> penetrated_;  // by id
 };
 

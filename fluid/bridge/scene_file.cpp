@@ -142,6 +142,11 @@ void SceneFile::visit(ParamVisitor& v) {
     v.group({.name = "background", .doc = "sky and ground"}, background);
 }
 
+Status checkScene(const SceneFile& scene) {
+    const std::string wrong = contradiction(scene);
+    return wrong.empty() ? ok() : badInput(wrong);
+}
+
 Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments) {
     Result<std::string> file = findAsset(path, "");
     if (!file) return file.error();
@@ -150,7 +155,7 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
     if (Status read = readJsonFile(*file, visit); !read) return read.error();
     for (const std::string& assignment : assignments)
         if (Status set = setParam(assignment, visit); !set) return badInput("--set " + assignment + ": " + set.error().message);
-    if (const std::string wrong = contradiction(scene); !wrong.empty()) return badInput(*file + ": " + wrong);
+    if (Status sense = checkScene(scene); !sense) return badInput(*file + ": " + sense.error().message);
     scene.folder = fs::path(*file).parent_path().string();
     return scene;
 }

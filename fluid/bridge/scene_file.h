@@ -80,6 +80,9 @@ struct SceneFile {
 // `assignments`: each --set, in order. Error: as readJson and setParam say.
 Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments);
 
+// Error: values that make no sense together, each fine by itself. loadScene asks it; who edits a scene asks it too.
+Status checkScene(const SceneFile& scene);
+
 // Where an asset is: `path` as given, beside the scene, in RIVULET_ASSETS, in the source tree's or the installed assets/. Error: every place looked at.
 Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder);
 

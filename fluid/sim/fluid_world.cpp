@@ -35,7 +35,7 @@ struct FluidWorld::Impl {
     std::vector<PlaneSolid> planeSolids;
     Kernel boundary, integrate, collide, stats;
     const VoxelField* field = nullptr;  // null: no mesh in the scene, and no pass for one
-    Buffer fieldBlock, fieldBits, fieldDistance;
+    Buffer fieldBlock, fieldBits, fieldDistance, fieldNormal;
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};
     vec3 gravity{0.0F};
@@ -153,6 +153,7 @@ Status FluidWorld::Impl::uploadField() {
         {&fieldBlock, nullptr, sizeof(FieldParams)},
         {&fieldBits, field->surface.bits.data(), field->surface.bits.size()},
         {&fieldDistance, field->distance.data(), field->distance.size() * sizeof(float)},
+        {&fieldNormal, field->normal.data(), field->normal.size() * sizeof(uint32_t)},
     };
     for (auto [buffer, data, bytes] : parts) {
         Result<Buffer> made = device->allocate(bytes);
@@ -232,7 +233,8 @@ void FluidWorld::Impl::substep(double dt) {
                  &particles.positionNext, &particles.velocityNext},
                 particles.count);
     if (field != nullptr)
-        device->run(collide, block, {&particles.position, &particles.positionNext, &particles.velocityNext, &grid->cellStart(), &fieldBits, &fieldDistance},
+        device->run(collide, block,
+                    {&particles.position, &particles.positionNext, &particles.velocityNext, &grid->cellStart(), &fieldBits, &fieldDistance, &fieldNormal},
                     particles.count);
 }
 

@@ -18,7 +18,13 @@ constexpr double kCubeRadius = 0.8660254037844386;
 constexpr double kToCube = 1.7320508075688772;  // from a brick's middle to its cubes'
 constexpr double kSlack = 1e-6;                 // voxels: what sieves give away to rounding
 
-using BrickPoints = std::array<double, size_t{kEdge} * kEdge * kEdge>;
+constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+
+struct Nearest {
+    double square = 0;  // of the distance
+    uint32_t target = kNone;
+};
+using BrickPoints = std::array<Nearest, size_t{kEdge} * kEdge * kEdge>;
 
 double square(const dvec3& v) { return glm::dot(v, v); }
 
@@ -62,6 +68,20 @@ struct Target {
         const double alongAc = std::min(1.0, std::max(0.0, onAc * perAc));
         const double alongBc = std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * perBc));
         return std::min(square(q - ab * alongAb), std::min(square(q - ac * alongAc), square(fromB - bc * alongBc)));
+    }
+
+    // From the triangle's nearest point to `point`.
+    dvec3 away(const dvec3& point) const {
+        const dvec3 q = point - a;
+        const dvec3 fromB = q - ab;
+        const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
+        const double v = acac * onAb - abac * onAc;
+        const double w = abab * onAc - abac * onAb;
+        if (v >= 0.0 && w >= 0.0 && v + w <= area) return unit * glm::dot(unit, q);
+        const std::array<dvec3, 3> ways{q - ab * std::min(1.0, std::max(0.0, onAb * perAb)),
+                                        q - ac * std::min(1.0, std::max(0.0, onAc * perAc)),
+                                        fromB - bc * std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * perBc))};
+        return *std::min_element(ways.begin(), ways.end(), [](const dvec3& x, const dvec3& y) { return square(x) < square(y); });
     }
 
     // True only if the whole triangle is further than `reach` from the point, because the disc around it in its plane is:
@@ -108,13 +128,14 @@ class BandBaker {
     BandBaker(const GridTriangles& triangles, const ivec3& size, double band)
         : triangles_(triangles), points_(size + ivec3(1)), bricks_((points_ + ivec3(kEdge - 1)) / kEdge), band_(band) {}
 
-    std::vector<float> bake() {
+    DistanceBand bake() {
         const auto total = static_cast<size_t>(points_.x) * static_cast<size_t>(points_.y) * static_cast<size_t>(points_.z);
-        distance_.assign(total, static_cast<float>(band_));
+        result_.distance.assign(total, static_cast<float>(band_));
+        result_.normal.assign(total, 0);
         sortIntoLayers();
         tbb::enumerable_thread_specific<Workspace> workspaces;
         tbb::parallel_for(0, bricks_.z, [&](int layer) { bakeLayer(layer, workspaces.local()); });
-        return std::move(distance_);
+        return std::move(result_);
     }
 
   private:
@@ -174,7 +195,7 @@ class BandBaker {
         if (work.kept.empty()) return;
         BrickPoints best;
         for (int cube = 0; cube < 8; ++cube) bakeCube(brick, ivec3(cube & 1, (cube >> 1) & 1, cube >> 2) * 2, nearest, work, best);
-        store(brick, best);
+        store(brick, best, work.targets);
     }
 
     // `first`: the cube's low corner in the brick. `fromBrick`: the nearest triangle's distance from the brick's middle.
@@ -185,13 +206,13 @@ class BandBaker {
         for (int k = 0; k < 8; ++k) {
             const ivec3 at((k ^ (k >> 1)) & 1, ((k >> 1) ^ (k >> 2)) & 1, k >> 2);  // each a step from the one before
             const dvec3 point = corner + dvec3(at);
-            double nearest = band_ * band_;
+            Nearest nearest{band_ * band_, kNone};
             for (uint32_t n : work.near) {
                 const Target& target = work.targets[n];
                 if (target.beyond(point, reach)) continue;
                 const double distance = target.squaredDistance(point);
-                if (distance < nearest) {
-                    nearest = distance;
+                if (distance < nearest.square) {
+                    nearest = {distance, n};
                     reach = std::min(reach, std::sqrt(distance));
                 }
             }
@@ -200,7 +221,7 @@ class BandBaker {
         }
     }
 
-    void store(const ivec3& brick, const BrickPoints& best) {
+    void store(const ivec3& brick, const BrickPoints& best, const std::vector<Target>& targets) {
         const ivec3 first = brick * kEdge;
         const ivec3 end = glm::min(first + ivec3(kEdge), points_);
         for (int z = first.z; z < end.z; ++z) {
@@ -208,8 +229,10 @@ class BandBaker {
                 const size_t row =
                     (static_cast<size_t>(z) * static_cast<size_t>(points_.y) + static_cast<size_t>(y)) * static_cast<size_t>(points_.x);
                 for (int x = first.x; x < end.x; ++x) {
-                    const int k = ((z - first.z) * kEdge + (y - first.y)) * kEdge + (x - first.x);
-                    distance_[row + static_cast<size_t>(x)] = static_cast<float>(std::sqrt(best[static_cast<size_t>(k)]));
+                    const Nearest& nearest = best[static_cast<size_t>(((z - first.z) * kEdge + (y - first.y)) * kEdge + (x - first.x))];
+                    if (nearest.target == kNone) continue;
+                    result_.distance[row + static_cast<size_t>(x)] = static_cast<float>(std::sqrt(nearest.square));
+                    result_.normal[row + static_cast<size_t>(x)] = packNormal(targets[nearest.target].away(dvec3(x, y, z)));
                 }
             }
         }
@@ -220,14 +243,27 @@ class BandBaker {
     const GridTriangles& triangles_;
     ivec3 points_, bricks_;
     double band_;
-    std::vector<float> distance_;
+    DistanceBand result_;
     std::vector<size_t> layerStart_;
     std::vector<uint32_t> inLayer_;
 };
 
 }  // namespace
 
-std::vector<float> distanceBand(const GridTriangles& triangles, const ivec3& size, double band) {
+uint32_t packNormal(const dvec3& direction) {
+    const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+    if (!(sum > 0.0)) return 0;
+    double x = direction.x / sum, y = direction.y / sum;
+    if (direction.z < 0.0) {
+        const double folded = (1.0 - std::abs(y)) * (x < 0.0 ? -1.0 : 1.0);
+        y = (1.0 - std::abs(x)) * (y < 0.0 ? -1.0 : 1.0);
+        x = folded;
+    }
+    const auto bits = [](double v) { return static_cast<uint32_t>(std::lround((0.5 * v + 0.5) * 65535.0)); };
+    return bits(x) | (bits(y) << 16U);
+}
+
+DistanceBand distanceBand(const GridTriangles& triangles, const ivec3& size, double band) {
     return BandBaker(triangles, size, band).bake();
 }
 

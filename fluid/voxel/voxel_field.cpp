@@ -63,7 +63,7 @@ Layout layoutFor(const Extent& extent, const VoxelFieldOptions& options, int res
     // One more than needed, so that half a voxel is left on each side for rounding, and faces of boxes lie amid voxels, not between.
     l.voxels = glm::ceil((size + 2.0 * padding) / static_cast<double>(l.voxel)) + 1.0;
     const dvec3 points = l.voxels + 1.0;
-    l.bytes = points.x * points.y * points.z * sizeof(float) + l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
+    l.bytes = points.x * points.y * points.z * (sizeof(float) + sizeof(uint32_t)) + l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
     return l;
 }
 
@@ -139,7 +139,9 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
         field.band = layout.band;
         const GridTriangles list(meshes, grid);
         voxelizeSurface(list, grid);
-        field.distance = distanceBand(list, grid.size, static_cast<double>(layout.band) / static_cast<double>(layout.voxel));
+        DistanceBand band = distanceBand(list, grid.size, static_cast<double>(layout.band) / static_cast<double>(layout.voxel));
+        field.distance = std::move(band.distance);
+        field.normal = std::move(band.normal);
         for (float& d : field.distance) d = std::min(d * layout.voxel, layout.band);
         return field;
     } catch (const std::bad_alloc&) {

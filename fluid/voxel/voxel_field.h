@@ -12,11 +12,12 @@ namespace rivulet {
 
 // Distance is sampled at grid points p = origin + voxel * (x, y, z), 0 <= x <= size.x and so on: (size + 1) points an axis, x fastest.
 struct VoxelField {
-    VoxelGrid surface;            // voxels that a triangle passes through, touching counts
-    std::vector<float> distance;  // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
-    float band = 0;               // m
+    VoxelGrid surface;             // voxels that a triangle passes through, touching counts
+    std::vector<float> distance;   // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
+    std::vector<uint32_t> normal;  // within the band: from the nearest triangle to the point, packed by packNormal of distance_band.h
+    float band = 0;                // m
     bool empty() const { return surface.count() == 0; }
-    size_t bytes() const { return surface.bits.size() + distance.size() * sizeof(float); }
+    size_t bytes() const { return surface.bits.size() + distance.size() * sizeof(float) + normal.size() * sizeof(uint32_t); }
     // A lower bound (m) of the distance from `p` to the mesh, at most sqrt(3) voxels below it and never above `band`: distance changes
     // by no more than one moves, whichever side of the mesh one is on. May be negative near the mesh. A particle may be
     // born at `p` if clearance(p) >= contact.
@@ -30,7 +31,7 @@ struct VoxelFieldOptions {
     size_t memoryLimit = size_t{1} << 30U;  // bytes the field may take
 };
 
-// The narrowest useful band: contact at 1.74 voxels, room to see it coming, and what a lower bound from one sample gives away.
+// The narrowest useful band: contact at 1.74 voxels, a cell's diagonal of 1.74, and room to see walls coming.
 inline constexpr float kBandVoxels = 5.0F;
 
 // In voxels, a little over sqrt(3). Let p be a point whose voxel a triangle touches: all 8 samples around p are within sqrt(3)

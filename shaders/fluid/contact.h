@@ -5,58 +5,100 @@
 
 #include "shaders/fluid/respond.h"
 
-// The walls at a point: one, or two where they meet at an angle that holds water. A zero normal is no wall.
+// The walls at a point: one; or, where walls face each other, up to three. A zero normal is no wall.
 STRUCT(Walls) {
     vec3  normalA;
     vec3  normalB;
-    float distanceA;  // m
+    vec3  normalC;
+    float distanceA;  // m, from the point
     float distanceB;
+    float distanceC;
+    bool  corner;
 };
 
-// Response to both; what the second would push into the first goes along the crease instead.
-FN vec3 respondBoth(vec3 u, vec3 a, vec3 b, float friction, float bounce) {
-    vec3 v = respond(respond(u, a, friction, bounce), b, friction, bounce);
-    if (dot(v, a) < 0.0f && dot(v, v) > 0.0f) {
-        vec3 crease = cross(a, b);
-        float square = dot(crease, crease);
-        v = square > 1.0e-6f ? crease * (dot(v, crease) / square) : vec3(0.0f, 0.0f, 0.0f);
-    }
+// Response to all of them; what the answer to one pushes into another goes next time round.
+FN vec3 respondToAll(vec3 u, Walls w, float friction, float bounce) {
+    vec3 v = respond(respond(respond(u, w.normalA, friction, bounce), w.normalB, friction, bounce), w.normalC, friction, bounce);
+    if (w.corner)
+        for (int k = 0; k < 4; ++k) v = respond(respond(respond(v, w.normalA, 0.0f, 0.0f), w.normalB, 0.0f, 0.0f), w.normalC, 0.0f, 0.0f);
     return v;
 }
 
-// Near where two walls meet the interpolated distance blends them: its gradient is shorter than 1 and points between them, and a
-// particle would be led round the corner as in a bowl. One voxel ahead and one behind, along the way it slides, the walls are told apart.
-FN Walls wallsAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p, FieldSample here, vec3 heading) {
+// See packNormal in fluid/voxel/distance_band.h.
+FN vec3 unpackNormal(uint code) {
+    float x = TO_FLOAT(code & 65535u) * (2.0f / 65535.0f) - 1.0f;
+    float y = TO_FLOAT(code >> 16u) * (2.0f / 65535.0f) - 1.0f;
+    float z = 1.0f - max(x, -x) - max(y, -y);
+    float fold = max(-z, 0.0f);
+    vec3 n = vec3(x + (x < 0.0f ? fold : -fold), y + (y < 0.0f ? fold : -fold), z);
+    return n * (1.0f / length(n));
+}
+
+// Near where walls face each other the interpolated distance blends them: its gradient points between them, and a particle would be
+// led round the corner as in a bowl. The cell's own grid points tell the walls apart: each knows the direction to its nearest
+// triangle. From there the wall is extended as a plane. Round an outer edge such planes come nearer to the point than the mesh
+// is, and are not walls.
+FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 p, FieldSample here) {
     Walls w;
-    w.normalA = fieldNormal(here);
-    w.distanceA = here.distance;
-    w.normalB = vec3(0.0f, 0.0f, 0.0f);
+    w.normalA = vec3(0.0f, 0.0f, 0.0f);
+    w.normalB = w.normalA;
+    w.normalC = w.normalA;
+    w.distanceA = f.band;
     w.distanceB = f.band;
-    vec3 slide = heading - w.normalA * dot(heading, w.normalA);
-    float along = length(slide);
-    if (dot(here.gradient, here.gradient) < 0.9f && along > 1.0e-3f * length(heading)) {
-        vec3 reach = slide * (f.voxel / along);
-        FieldSample ahead = fieldAt(PASS(bandDistance) f, p + reach);
-        FieldSample behind = fieldAt(PASS(bandDistance) f, p - reach);
-        vec3 aheadNormal = fieldNormal(ahead);
-        vec3 behindNormal = fieldNormal(behind);
-        float rise = dot(aheadNormal, reach);
-        float fall = dot(behindNormal, reach);
-        // Only where the walls face each other: round an outer edge the one normal is right.
-        if (fall > 0.2f * f.voxel) {
-            w.normalB = behindNormal;
-            w.distanceB = behind.distance + fall;
-        }
-        if (rise < -0.2f * f.voxel) {
-            if (fall <= 0.2f * f.voxel) {
-                w.normalB = w.normalA;
-                w.distanceB = w.distanceA;
+    w.distanceC = f.band;
+    if (!loneWall(here)) {
+        vec3 g = toCells(f, p);
+        int cx = clamp(TO_INT(floor(g.x)), 0, f.sizeX - 1);
+        int cy = clamp(TO_INT(floor(g.y)), 0, f.sizeY - 1);
+        int cz = clamp(TO_INT(floor(g.z)), 0, f.sizeZ - 1);
+        for (int k = 0; k < 8; ++k) {
+            int x = cx + (k & 1);
+            int y = cy + ((k >> 1) & 1);
+            int z = cz + (k >> 2);
+            uint at = (TO_UINT(z) * (TO_UINT(f.sizeY) + 1u) + TO_UINT(y)) * (TO_UINT(f.sizeX) + 1u) + TO_UINT(x);
+            float there = bandDistance[at];
+            vec3 n = unpackNormal(bandNormal[at]);
+            float distance_ = there + dot(n, g - vec3(TO_FLOAT(x), TO_FLOAT(y), TO_FLOAT(z))) * f.voxel;
+            if (there >= f.band || distance_ < here.distance - 0.02f * f.voxel) continue;
+            // The nearest of each direction, in the order they come.
+            if (dot(w.normalA, w.normalA) == 0.0f || dot(w.normalA, n) > 0.9f) {
+                if (distance_ < w.distanceA) {
+                    w.normalA = n;
+                    w.distanceA = distance_;
+                }
+            } else if (dot(w.normalB, w.normalB) == 0.0f || dot(w.normalB, n) > 0.9f) {
+                if (distance_ < w.distanceB) {
+                    w.normalB = n;
+                    w.distanceB = distance_;
+                }
+            } else if (distance_ < w.distanceC) {
+                w.normalC = n;
+                w.distanceC = distance_;
             }
-            w.normalA = aheadNormal;
-            w.distanceA = ahead.distance - rise;
         }
     }
+    // Blending takes less than half a voxel off the distance of the nearest; if more is missing, there is a wall that was not found.
+    w.corner = dot(w.normalB, w.normalB) > 0.0f && min(min(w.distanceA, w.distanceB), w.distanceC) < here.distance + 0.5f * f.voxel;
+    if (!w.corner) {
+        w.normalB = vec3(0.0f, 0.0f, 0.0f);
+        w.normalC = w.normalB;
+        w.normalA = fieldNormal(here);
+        w.distanceA = here.distance;
+    }
     return w;
+}
+
+// A way that ended `depth` beyond contact with a wall: the share of it that lay beyond answers to the wall.
+FN vec3 respondBeyond(vec3 way, vec3 n, float depth, float friction, float bounce) {
+    float into = -dot(way, n);
+    if (!(into > 0.0f && depth > 0.0f)) return way;
+    float share = min(depth / into, 1.0f);
+    return way * (1.0f - share) + respond(way * share, n, friction, bounce);
+}
+
+// Out of a wall that `moved` has not yet left by `depth`, half a voxel at most.
+FN vec3 pushOut(vec3 moved, vec3 n, float depth, float most) {
+    return moved + n * clamp(depth - dot(moved, n), 0.0f, most);
 }
 
 STRUCT(Slid) {
@@ -83,7 +125,7 @@ FN float enterGrid(FieldParams f, vec3 a, vec3 d) {
 }
 
 // `start` touches no set voxel; nor does the position returned.
-FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) FieldParams f, vec3 start, vec3 end, vec3 velocity) {
+FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 start, vec3 end, vec3 velocity) {
     Slid s;
     s.position = start;
     s.velocity = velocity;
@@ -100,37 +142,45 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) FieldPa
         // As far as is free, and half a voxel at least: from contact that is still on the near side of the wall.
         float share = min(max(here.distance - f.contact, 0.5f * f.voxel) / left, 1.0f);
         vec3 stretch = rest * share;
-        vec3 heading = rest;
         vec3 next = s.position + stretch;
         rest = share < 1.0f ? rest - stretch : vec3(0.0f, 0.0f, 0.0f);
         if (share >= 1.0f && !s.touched) next = end;
         FieldSample there = fieldAt(PASS(bandDistance) f, next);
         if (there.distance < f.contact) {
-            Walls w = wallsAt(PASS(bandDistance) f, next, there, heading);
+            Walls w = wallsAt(PASS(bandDistance) PASS(bandNormal) f, next, there);
             float depthA = f.contact - w.distanceA;
             float depthB = f.contact - w.distanceB;
-            vec3 a = depthA > 0.0f ? w.normalA : vec3(0.0f, 0.0f, 0.0f);
-            vec3 b = depthB > 0.0f ? w.normalB : vec3(0.0f, 0.0f, 0.0f);
-            float fast = max(-dot(s.velocity, a), -dot(s.velocity, b));
+            float depthC = f.contact - w.distanceC;
+            if (!(depthA > 0.0f)) w.normalA = vec3(0.0f, 0.0f, 0.0f);
+            if (!(depthB > 0.0f)) w.normalB = vec3(0.0f, 0.0f, 0.0f);
+            if (!(depthC > 0.0f)) w.normalC = vec3(0.0f, 0.0f, 0.0f);
+            float fast = -min(min(dot(s.velocity, w.normalA), dot(s.velocity, w.normalB)), dot(s.velocity, w.normalC));
             float bounce = fast > f.restSpeed ? f.restitution : 0.0f;
-            // The share of this stretch that lay beyond contact answers like the way that is left.
-            float intoA = -dot(stretch, a);
-            float intoB = -dot(stretch, b);
-            float beyond = max(intoA > 0.0f ? clamp(depthA / intoA, 0.0f, 1.0f) : 0.0f, intoB > 0.0f ? clamp(depthB / intoB, 0.0f, 1.0f) : 0.0f);
-            if (fast > 0.0f || beyond > 0.0f) {
+            vec3 ended = respondBeyond(respondBeyond(respondBeyond(stretch, w.normalA, depthA, f.friction, bounce), w.normalB, depthB, f.friction, bounce),
+                                       w.normalC, depthC, f.friction, bounce);
+            vec3 change = ended - stretch;
+            if (fast > 0.0f || dot(change, change) > 0.0f) {
                 s.touched = true;
-                next = next + respondBoth(stretch * beyond, a, b, f.friction, bounce) - stretch * beyond;
-                rest = respondBoth(rest, a, b, f.friction, bounce);
-                s.velocity = respondBoth(s.velocity, a, b, f.friction, bounce);
-                there = fieldAt(PASS(bandDistance) f, next);
+                rest = respondToAll(rest, w, f.friction, bounce);
+                s.velocity = respondToAll(s.velocity, w, f.friction, bounce);
             }
-            // Still nearer than contact, by curvature or from the start: out along the gradient, while that helps. Where walls face each
-            // other the gradient is short and the push with it, so that in a channel too narrow for contact nothing is thrown to and fro.
-            for (int r = 0; r < 2; ++r) {
+            // Still nearer than contact, by curvature or from the start. In a corner: out of each wall.
+            if (w.corner) {
+                for (int r = 0; r < 3; ++r) {
+                    change = pushOut(change, w.normalA, depthA, 0.5f * f.voxel);
+                    change = pushOut(change, w.normalB, depthB, 0.5f * f.voxel);
+                    change = pushOut(change, w.normalC, depthC, 0.5f * f.voxel);
+                }
+                s.touched = true;
+            }
+            next = next + change;
+            there = fieldAt(PASS(bandDistance) f, next);
+            // Else along the gradient, while that helps. Midway between two walls the gradient is short and the push with it, so that in
+            // a channel too narrow for contact nothing is thrown to and fro.
+            for (int r = 0; r < 2 && !w.corner; ++r) {
                 float depth = f.contact - there.distance;
                 if (depth < CONTACT_SLACK * f.voxel) break;
-                float slope = length(there.gradient);
-                vec3 out_ = fieldNormal(there) * (min(depth, 0.5f * f.voxel) * min(slope, 1.0f));
+                vec3 out_ = fieldNormal(there) * (min(depth, 0.5f * f.voxel) * min(length(there.gradient), 1.0f));
                 FieldSample better = fieldAt(PASS(bandDistance) f, next + out_);
                 if (!(better.distance > there.distance)) break;
                 next = next + out_;

@@ -1,8 +1,9 @@
 // The distance band as a kernel reads it: interpolated distance and its gradient. Include after BUFFERS; the buffer is `bandDistance`.
 // Points are in metres, cell coordinates in voxels from the grid's low corner.
 STRUCT(FieldSample) {
-    vec3  gradient;  // of the trilinear interpolant: away from the mesh, length 1 by a lone wall, shorter where walls meet
+    vec3  gradient;  // of the trilinear interpolant: away from the mesh; length 1 by a lone wall
     float distance;  // m, at most the band
+    float bend;      // how far the cell's samples are from lying on a plane; 0 by a lone flat wall, about 1 voxel / radius by a round one
 };
 
 FN vec3 toCells(FieldParams f, vec3 p) {
@@ -13,9 +14,9 @@ FN vec3 toCells(FieldParams f, vec3 p) {
 FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     vec3 g = toCells(f, p);
     g = vec3(clamp(g.x, 0.0f, TO_FLOAT(f.sizeX)), clamp(g.y, 0.0f, TO_FLOAT(f.sizeY)), clamp(g.z, 0.0f, TO_FLOAT(f.sizeZ)));
-    int cx = min(TO_INT(g.x), f.sizeX - 1);
-    int cy = min(TO_INT(g.y), f.sizeY - 1);
-    int cz = min(TO_INT(g.z), f.sizeZ - 1);
+    int cx = clamp(TO_INT(g.x), 0, f.sizeX - 1);
+    int cy = clamp(TO_INT(g.y), 0, f.sizeY - 1);
+    int cz = clamp(TO_INT(g.z), 0, f.sizeZ - 1);
     float x = g.x - TO_FLOAT(cx);
     float y = g.y - TO_FLOAT(cy);
     float z = g.z - TO_FLOAT(cz);
@@ -38,7 +39,12 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     float high = e01 + (e11 - e01) * y;
     float alongX0 = (d100 - d000) + ((d110 - d010) - (d100 - d000)) * y;
     float alongX1 = (d101 - d001) + ((d111 - d011) - (d101 - d001)) * y;
+    // What the distance gains along an axis differs from one edge of the cell to the next by:
+    float bendXY = max(max((d110 - d010) - (d100 - d000), (d111 - d011) - (d101 - d001)), max((d100 - d000) - (d110 - d010), (d101 - d001) - (d111 - d011)));
+    float bendXZ = max(max((d101 - d001) - (d100 - d000), (d111 - d011) - (d110 - d010)), max((d100 - d000) - (d101 - d001), (d110 - d010) - (d111 - d011)));
+    float bendYZ = max(max((d011 - d001) - (d010 - d000), (d111 - d101) - (d110 - d100)), max((d010 - d000) - (d011 - d001), (d110 - d100) - (d111 - d101)));
     FieldSample s;
+    s.bend = max(max(bendXY, bendXZ), bendYZ) * f.origin.w;
     s.distance = low + (high - low) * z;
     s.gradient = vec3(alongX0 + (alongX1 - alongX0) * z, (e10 - e00) + ((e11 - e01) - (e10 - e00)) * z, high - low) * f.origin.w;
     return s;
@@ -48,6 +54,12 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
 FN vec3 fieldNormal(FieldSample s) {
     float slope = length(s.gradient);
     return slope > 0.1f ? s.gradient * (1.0f / slope) : vec3(0.0f, 0.0f, 0.0f);
+}
+
+// False where walls meet, and the interpolant blends their distances: then the gradient is none of their normals.
+FN bool loneWall(FieldSample s) {
+    float square = dot(s.gradient, s.gradient);
+    return s.bend < 0.15f && square > 0.9f && square < 1.1f;
 }
 
 // True if nothing on the way from `a` to `b` can come within contact of the mesh: one look. Distance changes by no more than

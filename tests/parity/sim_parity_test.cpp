@@ -132,7 +132,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     };
     keep("reorder position", particles->position, true);
     keep("reorder velocity", particles->velocity, true);
-    Buffer block, bits, distance;
+    Buffer block, bits, distance, normal;
     FieldParams fieldBlock{};
     if (field != nullptr) {
         fieldBlock = fieldParams(*field, {.spacing = kSpacing, .friction = 0.1F, .restitution = 0.2F, .countIndex = s.cellCount});
@@ -141,7 +141,9 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
         distance = std::move(*device.allocate(field->distance.size() * sizeof(float)));
         device.write(block, std::as_bytes(std::span(&fieldBlock, 1)));
         device.writeAll<uint8_t>(bits, field->surface.bits);
+        normal = std::move(*device.allocate(field->normal.size() * sizeof(uint32_t)));
         device.writeAll<float>(distance, field->distance);
+        device.writeAll<uint32_t>(normal, field->normal);
     }
     if ((*method)->wallsInDensity()) {
         if (field != nullptr)
@@ -162,7 +164,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     keep("integrate position", particles->positionNext, true);
     keep("integrate velocity", particles->velocityNext, true);
     if (field != nullptr) {
-        device.run(*collide, fieldBlock, {&particles->position, &particles->positionNext, &particles->velocityNext, &grid->cellStart(), &bits, &distance},
+        device.run(*collide, fieldBlock, {&particles->position, &particles->positionNext, &particles->velocityNext, &grid->cellStart(), &bits, &distance, &normal},
                    count);
         keep("collide position", particles->positionNext, true);
         keep("collide velocity", particles->velocityNext, true);

@@ -57,6 +57,8 @@ Sample anySample(std::mt19937& random) {
     s.colliders.resize(random() % 4);
     for (SampleItem& item : s.colliders) {
         item.mesh = anyText(random);
+        item.parts.resize(random() % 3);
+        for (SamplePart& part : item.parts) part.count = static_cast<int>(random() % 10);
         if (random() % 2 == 0) item.tint = vec3(anyFloat(random, 0, 1), anyFloat(random, 0, 1), anyFloat(random, 0, 1));
     }
     return s;
@@ -149,6 +151,8 @@ TEST(Json, RefusesValuesWithPlacePathAndRemedy) {
          "x.json:1:25: colliders[2].mash is not a parameter; did you mean colliders[2].mesh?"},
         {R"({"colliders": [{"tint": [0, 0, 2]}]})",
          "x.json:1:25: colliders[0].tint is [0, 0, 2], must be between 0 and 1 in each component"},
+        {R"({"colliders": [{"parts": [{}, {"count": -1}]}]})", "x.json:1:41: colliders[0].parts[1].count is -1, must be between 0 and 9"},
+        {R"({"colliders": [{"parts": [{"mash": 1}]}]})", "x.json:1:28: colliders[0].parts[0].mash is not a parameter; known here: count"},
         {"[1, 2]", "x.json:1:1: the file's outermost value is [1, 2], must be an object {...}"},
     };
     for (const Refusal& r : refusals) EXPECT_EQ(errorOf(r.text), r.error) << r.text;
@@ -240,6 +244,7 @@ TEST(Json, WritesShortNumbersAndIndents) {
     s.free = 0.1F;
     s.colliders.resize(1);
     s.colliders[0].mesh = "a\"\x01";
+    s.colliders[0].parts = {{2}};
     EXPECT_EQ(writeJson(visiting(s)), R"({
     "name": "unnamed",
     "free": 0.1,
@@ -254,7 +259,12 @@ TEST(Json, WritesShortNumbersAndIndents) {
         {
             "size": 0.5,
             "mesh": "a\"\u0001",
-            "tint": [1, 0.5, 0.25]
+            "tint": [1, 0.5, 0.25],
+            "parts": [
+                {
+                    "count": 2
+                }
+            ]
         }
     ]
 }

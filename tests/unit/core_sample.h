@@ -8,14 +8,22 @@
 
 namespace rivulet {
 
+struct SamplePart {
+    int count = 1;
+    void visit(ParamVisitor& v) { v.value({"count", "", "how many", 0, 9}, count); }
+    bool operator==(const SamplePart&) const = default;
+};
+
 struct SampleItem {
     float size = 0.5F;
     std::string mesh;
     vec3 tint{1.0F, 0.5F, 0.25F};
+    std::vector<SamplePart> parts;
     void visit(ParamVisitor& v) {
         v.value({"size", "m", "edge", 0.001, 10}, size);
         v.value({.name = "mesh", .doc = "file"}, mesh);
         v.colour({"tint", "", "linear", 0, 1}, tint);
+        v.list({.name = "parts", .doc = "lists nest"}, parts);
     }
     bool operator==(const SampleItem&) const = default;
 };

@@ -34,7 +34,26 @@ TEST(SetParam, ReachesEveryKindOfValueAndNothingElse) {
     Sample expected;
     expected.name = "a=b [c], d";
     expected.fluid = {0.25F, 7, false, "wcsph_thesis", vec3(1.0F, -2.5F, 3.0F)};
-    expected.colliders = {{3.0F, "cow.obj", SampleItem{}.tint}, {0.5F, "", vec3(0.0F, 0.5F, 1.0F)}};
+    expected.colliders = {{3.0F, "cow.obj", SampleItem{}.tint, {}}, {0.5F, "", vec3(0.0F, 0.5F, 1.0F), {}}};
+    EXPECT_EQ(s, expected);
+}
+
+TEST(SetParam, ListsNest) {
+    Sample s;
+    s.colliders.resize(3);
+    for (SampleItem& item : s.colliders) item.parts.resize(2);
+    Sample expected = s;
+    expected.colliders[1].parts.resize(3);
+    expected.colliders[1].parts[0].count = 5;
+    expected.colliders[1].parts[2].count = 7;
+    expected.colliders[2].size = 4;
+    EXPECT_EQ(set(s, "colliders.1.parts.0.count=5"), "");
+    EXPECT_EQ(set(s, "colliders.1.parts.2.count=7"), "");
+    EXPECT_EQ(set(s, "colliders.2.size=4"), "");
+    EXPECT_EQ(set(s, "colliders.0.parts.0.cuont=5"),
+              "colliders[0].parts[0].cuont is not a parameter; did you mean colliders[0].parts[0].count?");
+    EXPECT_EQ(set(s, "colliders.0.parts.1=5"),
+              "colliders[0].parts is a list; name an item and its parameter, as in colliders[0].parts.0.name=value");
     EXPECT_EQ(s, expected);
 }
 
@@ -107,7 +126,8 @@ TEST(DescribeParams, NamesEveryParamWithUnitRangeAndDefault) {
                             "| `fluid.walls` |  | true or false | `true` | a \\| b |\n",
                             "| `fluid.method` |  | one of wcsph, wcsph_thesis | `\"wcsph\"` | pressure (fixed) |\n",
                             "| `fluid.gravity` | m/s^2 | between -1000 and 1000 | `[0, -9.81, 0]` | downwards |\n",
-                            "| **colliders** |  |  | `[]` | solids |\n", "| `colliders[].mesh` |  |  | `\"\"` | file |\n"})
+                            "| **colliders** |  |  | `[]` | solids |\n", "| `colliders[].mesh` |  |  | `\"\"` | file |\n",
+                            "| `colliders[].parts[].count` |  | whole, between 0 and 9 | `1` | how many |\n"})
         EXPECT_NE(page.find(row), std::string::npos) << row << page;
 }
 

@@ -1,6 +1,7 @@
 // What every test with OpenGL needs: a headless context, and that the driver has no errors to report.
 #pragma once
 
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@ namespace rivulet {
 class GpuTest : public testing::Test {
   protected:
     void SetUp() override {
+        GTEST_FLAG_SET(death_test_style, "threadsafe");  // the driver has threads: no fork in the middle
         Result<ContextEgl> context = ContextEgl::create({.debug = true});
         ASSERT_TRUE(context) << context.error().message;
         context_.emplace(std::move(*context));
@@ -25,7 +27,15 @@ class GpuTest : public testing::Test {
         }});
     }
     void TearDown() override {
-        if (messages_) EXPECT_EQ(messages_->errors(), 0) << said_;
+        if (messages_) {
+            EXPECT_EQ(messages_->errors(), 0) << said_;
+        }
+    }
+    // Memory that this process holds, in bytes.
+    static size_t residentBytes() {
+        size_t total = 0, resident = 0;
+        std::ifstream("/proc/self/statm") >> total >> resident;
+        return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
     }
     // A folder of its own, to be read as ShaderFiles(root()).
     const std::string& root() {

@@ -206,7 +206,9 @@ TEST_F(GpuFrameGraph, TimesArriveSomeFramesLateByPassWithWhatWasLeftOut) {
         graph.pass("unread", {a}, {b}, [](PassContext&) {});
         graph.output(a);
         ASSERT_TRUE(graph.execute());
-        if (frame < 2) EXPECT_TRUE(pool_->times().empty());
+        if (frame < 2) {
+            EXPECT_TRUE(pool_->times().empty());
+        }
         glFinish();
     }
     const std::vector<PassTime>& times = pool_->times();

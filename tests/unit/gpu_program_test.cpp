@@ -97,6 +97,7 @@ TEST_F(GpuProgram, AFailedReloadKeepsTheLastGoodProgram) {
 
     writeFile("shaders/paint.frag", "out vec4 result; uniform float v;\nvoid main() { result = vec4(v + 1.0); }\n");
     ASSERT_TRUE(program->reload());
+    glUseProgram(0);  // a program in use outlives its name
     EXPECT_FALSE(glIsProgram(before));
     program->set("v", 0.5F);
     EXPECT_EQ(paint(*program), vec4(1.5F));

@@ -40,7 +40,7 @@ TEST(ProgramCli, NothingAskedIsBadUse) {
 TEST(ProgramCli, AMistypedNameIsAnsweredWithTheNearest) {
     Scratch scratch;
     std::string scene = scratch.file("small.json", smallScene());
-    expectRefusal(runProgram({"rnu", scene}), 2, "did you mean 'run'");
+    expectRefusal(runProgram({"runn", scene}), 2, "did you mean 'run'");
     expectRefusal(runProgram({"run", scene, "--bakcend", "cpu"}), 2, "did you mean '--backend'");
     expectRefusal(runProgram({"run", "--headles", scene}), 2, "did you mean '--headless'");
     expectRefusal(runProgram({"run", scene, "--backend", "cpuu"}), 2, "did you mean 'cpu'");

@@ -279,7 +279,7 @@ TEST(VoxelField, SaysWhatIsWrongWithItsInput) {
     options.resolution = 64;
     options.memoryLimit = 1 << 20;
     const std::string message = errorOf(good, options);
-    expectSays(message, {"needs 1.8 MB", "1.0 MB allowed", "resolution of "});
+    expectSays(message, {"needs 3.6 MB", "1.0 MB allowed", "resolution of "});
     options.resolution = std::stoi(message.substr(message.find("resolution of ", 40) + 14));
     EXPECT_EQ(errorOf(good, options), "no error") << "the resolution that is said to fit must fit";
     ++options.resolution;

@@ -2,8 +2,10 @@
 #include "shaders/common/lang.h"
 namespace rivulet::RIVULET_KERNEL_UNIT {
 namespace {
-#include "shaders/voxel/field.h"
 #include "shaders/voxel/field_params.h"
+
+#include "shaders/voxel/field.h"
+
 #include "shaders/voxel/walk.h"
 vec3 point(const float* p) { return vec3(p[0], p[1], p[2]); }
 }  // namespace

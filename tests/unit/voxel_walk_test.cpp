@@ -28,7 +28,7 @@ double entry(const dvec3& a, const dvec3& d, const dvec3& low, double grow) {
 
 struct Grid {
     VoxelGrid voxels;
-    FieldParams params{};
+    alignas(16) FieldParams params{};
     std::vector<ivec3> set;
 
     explicit Grid(const ivec3& size) {
@@ -200,7 +200,7 @@ TEST(VoxelWalk, NoMotionSamplesWhereItIs) {
 
 struct Baked {
     VoxelField field;
-    FieldParams params;
+    alignas(16) FieldParams params;
     float at(const vec3& p, vec3& gradient) const { return test::fieldAt(&params, field.distance.data(), &p.x, &gradient.x); }
 };
 

@@ -1,0 +1,175 @@
+// The simulation's benches: the column of 0.5 x 0.5 x 1 m in a 1 m box, and the thesis's series of falling columns, 16,384 i particles.
+#include "demos/rivulet/bench_cases.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "engine/app/context_egl.h"
+#include "engine/compute/device_cpu.h"
+#include "fluid/bridge/backend.h"
+#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet {
+
+namespace {
+
+struct Column {
+    const char* name;
+    float spacing;
+};
+// Support radius two spacings: 8,192, 31,250 and 128,000 particles.
+constexpr Column kColumns[] = {{"8k", 0.03125F}, {"31k", 0.02F}, {"128k", 0.0125F}};
+
+FluidParams columnScene(float spacing) {
+    FluidParams p;
+    p.spacing = spacing;
+    p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
+    return p;
+}
+
+// Thesis 2.4: a column in free fall in a box of 1 m; its height grows with i.
+FluidParams seriesScene(int i) {
+    FluidParams p;
+    p.spacing = 1.0F / 128.0F;
+    p.blocks = {{vec3(0.375F, 0.0F, 0.375F), vec3(0.625F, 0.125F * static_cast<float>(i), 0.625F), vec3(0.0F)}};
+    return p;
+}
+
+// The devices of this machine, with the GL context that one of them needs.
+struct Devices {
+    Result<ContextEgl> context = failed("not asked for");
+    std::vector<std::unique_ptr<Device>> list;
+};
+
+Devices allDevices(const Log& log) {
+    Devices all;
+    all.context = ContextEgl::create();
+    const GlFacts gl = all.context ? currentGlFacts() : GlFacts{};
+    for (const char* name : {"cpu", "gl", "cl"}) {
+        std::unique_ptr<Device> device = makeDevice(name, gl, log);
+        if (std::string(backendName(device->backend())) == name) all.list.push_back(std::move(device));
+    }
+    return all;
+}
+
+struct Measured {
+    double msPerStep = 0;
+    std::map<std::string, double> passes;  // ms per step
+};
+
+// One world stepped from t = 0 until `seconds` of it have passed.
+Result<Measured> measure(Device& device, const FluidParams& params, double seconds, int frames) {
+    Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(device, params, {}, {});
+    if (!world) return world.error();
+    device.finish();
+    device.takeTimes();
+    Measured m;
+    int steps = 0;
+    const auto start = std::chrono::steady_clock::now();
+    for (int k = 0; k < frames; ++k) {
+        (*world)->step({params.gravity}, seconds / frames);
+        steps += (*world)->lastSubsteps();
+    }
+    device.finish();
+    m.msPerStep = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / steps;
+    for (const PassTime& t : device.takeTimes()) m.passes[t.name] = t.ms / steps;
+    return m;
+}
+
+// Several worlds, one after another; the passes are those of the last.
+Status report(const BenchContext& context, const std::string& name, Device& device, const FluidParams& params, double seconds, int frames) {
+    Measured last;
+    Status status = ok();
+    BenchRow row{.name = name, .unit = "ms/step", .value = repeat(context,
+                                                                  [&] {
+                                                                      Result<Measured> m = measure(device, params, seconds, frames);
+                                                                      if (!m) {
+                                                                          status = m.error();
+                                                                          return 0.0;
+                                                                      }
+                                                                      last = *m;
+                                                                      return m->msPerStep;
+                                                                  }),
+                 .passes = {}};
+    row.passes = last.passes;
+    if (status && !context.interrupted()) context.report(row);
+    return status;
+}
+
+Status benchStep(const BenchContext& context) {
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    auto device = makeCpuDevice(rows);
+    for (const Column& c : kColumns)
+        if (Status s = report(context, fmt::format("wcsph step, column {}, cpu", c.name), *device, columnScene(c.spacing), 0.1, 6); !s) return s;
+    return ok();
+}
+
+Status benchMemory(const BenchContext& context) {
+    Devices devices = allDevices(context.log);
+    for (const std::unique_ptr<Device>& device : devices.list) {
+        const FluidParams p = columnScene(kColumns[2].spacing);
+        const size_t before = device->bytesAllocated();
+        Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(*device, p, {}, {});
+        if (!world) return world.error();
+        (*world)->step({p.gravity}, 1.0e-3);
+        const double bytes = static_cast<double>(device->bytesAllocated() - before) / (*world)->particles().count;
+        context.report({.name = fmt::format("memory, column 128k, {}", backendName(device->backend())),
+                        .unit = "B/particle",
+                        .value = spreadOf({bytes}),
+                        .passes = {}});
+    }
+    return ok();
+}
+
+// The density pass alone, in one run on each device: what a software GPU costs against the CPU's own path.
+Status benchDensity(const BenchContext& context) {
+    Devices devices = allDevices(context.log);
+    const FluidParams p = columnScene(kColumns[1].spacing);
+    for (const std::unique_ptr<Device>& device : devices.list) {
+        Status status = ok();
+        double list = 0;
+        const Spread spread = repeat(context, [&] {
+            Result<Measured> m = measure(*device, p, 4.0e-3, 1);
+            if (!m) {
+                status = m.error();
+                return 0.0;
+            }
+            list = m->passes["fluid/cpu_neighbor_list"];
+            return m->passes["fluid/wcsph_density"];
+        });
+        if (!status) return status;
+        BenchRow row{.name = fmt::format("density pass, column 31k, {}", backendName(device->backend())), .unit = "ms", .value = spread, .passes = {}};
+        if (list > 0) row.passes["neighbour lists, not counted above"] = list;
+        if (!context.interrupted()) context.report(row);
+    }
+    return ok();
+}
+
+Status benchSeries(const BenchContext& context) {
+    Devices devices = allDevices(context.log);
+    for (const std::unique_ptr<Device>& device : devices.list)
+        for (int i = 1; i <= 8 && !context.interrupted(); ++i) {
+            const FluidParams p = seriesScene(i);
+            const double seconds = device->backend() == Backend::cpu || !device->info().software ? 5.0e-3 : 1.0e-3;
+            const std::string name = fmt::format("falling column, {} particles, {}", 16384 * i, backendName(device->backend()));
+            if (Status s = report(context, name, *device, p, seconds, 1); !s) return s;
+        }
+    return ok();
+}
+
+}  // namespace
+
+Table<BenchCase> benchCases() {
+    static constexpr BenchCase rows[] = {
+        {"step", "a whole WCSPH step on the cpu, column of 8k, 31k and 128k particles, t = 0 to 0.1 s", benchStep},
+        {"density", "the density pass on every device, column of 31k", benchDensity},
+        {"memory", "bytes a particle on every device, column of 128k", benchMemory},
+        {"series", "the thesis's falling column, 16,384 i particles, i = 1 to 8, on every device", benchSeries},
+    };
+    return {rows};
+}
+
+}  // namespace rivulet

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "demos/rivulet/cli.h"
+#include "demos/rivulet/run_options.h"
+#include "engine/app/capture.h"
+#include "engine/app/context_egl.h"
+#include "engine/core/json.h"
+#include "fluid/bridge/backend.h"
+#include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/scene_renderer.h"
+#include "fluid/bridge/session.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double msSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+
+// Which frames become a PNG: the first, the last, and four evenly between.
+std::set<int> pictureFrames(int frames) {
+    constexpr int kPictures = 6;
+    std::set<int> which;
+    for (int k = 0; k < kPictures && frames > 0; ++k)
+        which.insert(static_cast<int>(std::lround(static_cast<double>(frames - 1) * k / (kPictures - 1))));
+    return which;
+}
+
+// Where everything goes. Made before the first step, so that what cannot be written is said before the work, not after.
+struct Outputs {
+    std::string stats, video, picturePrefix;
+    std::optional<VideoWriter> writer;
+
+    static Result<Outputs> open(const RunOptions& options) {
+        Outputs to;
+        std::string name = fileNameOf(options.scene.name);
+        to.stats = options.stats.empty() ? (fs::path(options.out) / "stats.json").string() : options.stats;
+        to.picturePrefix = (fs::path(options.out) / name).string();
+        to.video = options.video.empty() ? to.picturePrefix + ".mp4" : options.video;
+        if (options.render || options.stats.empty())
+            if (Status made = makeFolder(options.out); !made) return made.error();
+        if (Status writable = checkWritable(to.stats); !writable) return writable.error();
+        if (!options.render) return to;
+        Result<VideoWriter> video = VideoWriter::open(to.video, options.width, options.height, kFramesPerSecond);
+        if (!video) return video.error();
+        to.writer = std::move(*video);
+        return to;
+    }
+};
+
+// Draws a session's frames into a picture in memory.
+struct Painter {
+    std::unique_ptr<SceneRenderer> renderer;
+    FluidUpload upload;
+
+    Result<std::vector<uint8_t>> paint(Session& session, int width, int height) {
+        const SceneFile& scene = session.scene();
+        Result<FluidView> fluid = upload.view(session.world(), scene.look);
+        if (!fluid) return fluid.error();
+        FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.world().time());
+        if (Status drawn = renderer->draw(view, *fluid, session.solids(), scene); !drawn) return drawn.error();
+        return renderer->pixels();
+    }
+};
+
+struct Loop {
+    const RunOptions& options;
+    const Graceful& graceful;
+    Session& session;
+    Outputs& to;
+    Painter& painter;
+    RunRecorder recorder;
+    int pictures = 0;
+
+    Status run(int frames) {
+        std::set<int> kept = pictureFrames(frames);
+        Progress progress(options.scene.name);
+        for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
+            Clock::time_point start = Clock::now();
+            double simulateMs = session.step(1.0 / kFramesPerSecond, true), renderMs = 0;
+            std::vector<PassTime> drawn;
+            if (options.render) {
+                Clock::time_point before = Clock::now();
+                Result<std::vector<uint8_t>> pixels = painter.paint(session, options.width, options.height);
+                if (!pixels) return pixels.error();
+                renderMs = msSince(before);
+                drawn = painter.renderer->times();
+                if (Status added = to.writer->add(*pixels); !added) return added;
+                if (kept.contains(f)) {
+                    if (Status written = writePng(fmt::format("{}_{:04}.png", to.picturePrefix, f), *pixels, options.width, options.height);
+                        !written)
+                        return written;
+                    ++pictures;
+                }
+            }
+            recorder.frame(simulateMs, renderMs, msSince(start), session.world().device().takeTimes(), drawn);
+            progress.show(static_cast<double>(f + 1) / frames,
+                          fmt::format("{:.2f} s, {:.0f} ms a frame", session.world().time(), msSince(start)));
+        }
+        return ok();
+    }
+};
+
+}  // namespace
+
+int runHeadless(const RunOptions& options, const Graceful& graceful) {
+    // OpenGL is asked for where a picture is, or where it may simulate; its absence is an error only for the picture.
+    std::optional<ContextEgl> context;
+    GlFacts gl = noGl("no OpenGL was asked for");
+    if (options.render || options.backend == "gl" || options.backend == "auto") {
+        Result<ContextEgl> made = ContextEgl::create();
+        if (!made && options.render) return report(failed(fmt::format("a picture needs OpenGL: {}", made.error().message)));
+        gl = made ? currentGlFacts() : noGl(made.error().message);
+        if (made) context = std::move(*made);
+    }
+    std::unique_ptr<Device> device = makeDevice(options.backend, gl, options.log);
+    auto session = Session::create(options.scene, *device, options.log);
+    if (!session) return report(session.error());
+    Painter painter;
+    if (options.render) {
+        auto renderer = SceneRenderer::create(ShaderFiles::developer());
+        if (!renderer) return report(renderer.error());
+        painter.renderer = std::move(*renderer);
+    }
+    Result<Outputs> to = Outputs::open(options);
+    if (!to) return report(to.error());
+
+    int frames = options.frames.value_or(static_cast<int>(std::lround(static_cast<double>(options.scene.duration) * kFramesPerSecond)));
+    Loop loop{options, graceful, **session, *to, painter, RunRecorder((*session)->world(), &(*session)->field(), true)};
+    if (Status done = loop.run(frames); !done) return report(done.error());
+    if (to->writer)
+        if (Status closed = to->writer->close(); !closed) return report(closed.error());
+    RunStats stats = loop.recorder.finish(options.scene.name);
+    if (Status written = writeFileAtomic(to->stats, writeRunStats(stats)); !written) return report(written.error());
+
+    std::string where = to->stats;
+    if (options.render && stats.frames > 0)
+        where = fmt::format("{}, {} pictures {}_*.png and {}", to->video, loop.pictures, to->picturePrefix, to->stats);
+    fmt::print("{}\n", where);
+    return graceful.interrupted() ? kInterrupted : kDone;
+}
+
+}  // namespace rivulet

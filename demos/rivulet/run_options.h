@@ -1,0 +1,34 @@
+// What `rivulet run` was asked for, and the two loops that carry it out.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demos/rivulet/interrupt.h"
+#include "engine/core/log.h"
+#include "fluid/bridge/scene_file.h"
+
+namespace rivulet {
+
+struct RunOptions {
+    SceneFile scene;
+    std::vector<std::string> assignments;  // --set, in order; for R in the window, which reads the file again
+    std::string backend = "auto";          // auto | cpu | gl | cl
+    bool render = true;
+    std::optional<int> frames;       // how many; nothing: the loop's own default
+    int width = 1280, height = 720;  // pixels
+    std::string out = "out";         // folder of what is written
+    std::string video;               // file; empty: out/NAME.mp4
+    std::string stats;               // file; empty: out/stats.json, or none in the window
+    Log log;
+};
+
+// Each returns an ExitCode.
+int runHeadless(const RunOptions& options, const Graceful& graceful);
+int runWindow(const RunOptions& options, const Graceful& graceful);
+
+// The scene's name as a file's: letters, digits, '-' and '_' stay, all else becomes '_'.
+std::string fileNameOf(const std::string& sceneName);
+
+}  // namespace rivulet

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+#include <json/json.h>
+
+#include "demos/rivulet/bench_cases.h"
+#include "demos/rivulet/cli.h"
+#include "demos/rivulet/interrupt.h"
+#include "engine/core/json.h"
+
+namespace rivulet {
+
+Spread repeat(const BenchContext& context, const std::function<double()>& once) {
+    once();
+    std::vector<double> values;
+    for (int i = 0; i < context.runs && !context.interrupted(); ++i) values.push_back(once());
+    return spreadOf(values);
+}
+
+namespace {
+
+Json::Value jsonOf(const char* benchCase, const BenchRow& row) {
+    Json::Value v(Json::objectValue);
+    v["case"] = benchCase;
+    v["name"] = row.name;
+    v["unit"] = row.unit;
+    v["runs"] = Json::UInt64(row.value.count);
+    v["median"] = row.value.median;
+    v["min"] = row.value.min;
+    v["max"] = row.value.max;
+    for (const auto& [pass, ms] : row.passes) v["passes"][pass] = ms;
+    return v;
+}
+
+void print(const BenchRow& row) {
+    fmt::print("{:<44} {:>10.3f} {:>10.3f} {:>10.3f}  {:<10} {} runs\n", row.name, row.value.median, row.value.min, row.value.max, row.unit,
+               row.value.count);
+    for (const auto& [pass, ms] : row.passes) fmt::print("    {:<40} {:>10.3f}\n", pass, ms);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int benchVerb(const Arguments& arguments) {
+    ArgumentReader reader("bench", "Measures speed and memory.");
+    std::vector<std::string> names;
+    std::string jsonFile;
+    std::optional<int> runs;
+    std::string list;
+    for (const BenchCase& row : benchCases().rows) list += fmt::format("\n  {:<16}{}", row.name, row.doc);
+    reader.footer("Cases:" + list);
+    reader.positional("CASE", "which cases; all of them when none is named", names);
+    reader.option("--json", "FILE.json", "also write the figures to a file", jsonFile);
+    reader.option("--runs", "N", "measured runs of each", runs, 5, 1000);
+    if (std::optional<int> code = reader.read(arguments)) return *code;
+
+    std::vector<const BenchCase*> cases;
+    for (const BenchCase& row : benchCases().rows)
+        if (names.empty()) cases.push_back(&row);
+    for (const std::string& name : names) {
+        if (Status known = checkWord("bench case", name, benchCases().names()); !known) return report(known.error());
+        cases.push_back(benchCases().find(name));
+    }
+
+    Graceful graceful;
+    Json::Value all(Json::objectValue);
+    all["version"] = RIVULET_VERSION;
+    all["machine"] = machineName();
+    all["rows"] = Json::Value(Json::arrayValue);
+    fmt::print("{}\n{:<44} {:>10} {:>10} {:>10}\n", machineName(), "", "median", "min", "max");
+    for (const BenchCase* benchCase : cases) {
+        BenchContext context;
+        context.runs = runs.value_or(5);
+        context.log = stderrLog();
+        context.interrupted = [&graceful] { return graceful.interrupted(); };
+        context.report = [&all, benchCase](const BenchRow& row) {
+            print(row);
+            all["rows"].append(jsonOf(benchCase->name, row));
+        };
+        if (Status done = benchCase->run(context); !done) return report(done.error());
+        if (graceful.interrupted()) return kInterrupted;
+    }
+    if (!jsonFile.empty()) {
+        Json::StreamWriterBuilder builder;
+        builder["indentation"] = "  ";
+        builder["enableYAMLCompatibility"] = true;
+        builder["precision"] = 6;
+        if (Status written = writeFileAtomic(jsonFile, Json::writeString(builder, all) + "\n"); !written) return report(written.error());
+    }
+    return kDone;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include "demos/rivulet/cli.h"
+#include "engine/core/json.h"
+#include "fluid/bridge/backend.h"
+#include "fluid/bridge/scene_file.h"
+#include "fluid/render/renderers.h"
+#include "fluid/sim/method.h"
+
+namespace rivulet {
+
+namespace {
+
+void row(std::string_view name, std::string_view doc) { fmt::print("{:<18}{}\n", name, doc); }
+
+template <class Row>
+void rows(const Table<Row>& table) {
+    for (const Row& r : table.rows) row(r.name, r.doc);
+}
+
+void scenes() {
+    for (const SceneListing& scene : listScenes()) {
+        row(scene.name, scene.doc);
+        fmt::print("{:<18}{}\n", "", scene.path);
+    }
+}
+
+struct ListRow {
+    const char* name;
+    const char* doc;
+    void (*print)();
+};
+Table<ListRow> lists() {
+    static const ListRow table[] = {
+        {"scenes", "scene files that come with the program, or lie in RIVULET_ASSETS", scenes},
+        {"methods", "fluid.method: how pressure is found", [] { rows(methods()); }},
+        {"renderers", "look.renderer: how the water is drawn", [] { rows(renderers()); }},
+        {"devices", "--backend: what can simulate", [] { rows(backends()); }},
+    };
+    return {table};
+}
+
+}  // namespace
+
+int listVerb(const Arguments& arguments) {
+    ArgumentReader reader("list", "Lists what there is.");
+    std::string what;
+    bool parameters = false;
+    std::string doc = "what to list:";
+    for (const ListRow& list : lists().rows) doc += fmt::format(" {}", list.name);
+    reader.positional("WHAT", doc, what, false);
+    reader.flag("--parameters", "every parameter of a scene, as a markdown table", parameters);
+    if (std::optional<int> code = reader.read(arguments)) return *code;
+
+    if (parameters) {
+        SceneFile scene;
+        fmt::print("{}", describeParams([&scene](ParamVisitor& v) { scene.visit(v); }));
+        return kDone;
+    }
+    if (!what.empty()) {
+        if (Status known = checkWord("list", what, lists().names()); !known) return report(known.error());
+        lists().find(what)->print();
+        return kDone;
+    }
+    for (const ListRow& list : lists().rows) {
+        fmt::print("{}: {}\n\n", list.name, list.doc);
+        list.print();
+        fmt::print("\n");
+    }
+    return kDone;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "demos/rivulet/cli.h"
+#include "demos/rivulet/run_options.h"
+#include "fluid/bridge/session.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr int kMostFrames = 60'000'000;
+
+bool hasDisplay() {
+    auto given = [](const char* variable) {
+        const char* value = std::getenv(variable);
+        return value != nullptr && *value != '\0';
+    };
+    return given("DISPLAY") || given("WAYLAND_DISPLAY");
+}
+
+}  // namespace
+
+std::string fileNameOf(const std::string& sceneName) {
+    std::string name;
+    for (char c : sceneName) {
+        bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+        name += plain ? c : '_';
+    }
+    constexpr size_t kLongest = 100;
+    return name.empty() ? "scene" : name.substr(0, kLongest);
+}
+
+int runVerb(const Arguments& arguments) {
+    ArgumentReader reader(
+        "run", "Runs a scene: in a window where there is a display, else (or with --headless) to a video, pictures and figures.");
+    std::string scene, size = "1280x720";
+    RunOptions options;
+    bool headless = false, noRender = false;
+    std::optional<double> seconds;
+    reader.positional("SCENE.json", "the scene", scene, true);
+    reader.option("--backend", "NAME", "what simulates: auto, cpu, gl or cl", options.backend);
+    reader.flag("--headless", "no window: write a video, pictures and figures", headless);
+    reader.flag("--no-render", "no pictures at all: simulate and write figures", noRender);
+    reader.option("--frames", "N", "how many frames, 60 a simulated second", options.frames, 0, kMostFrames);
+    reader.option("--seconds", "S", "how long, simulated; headless default: the scene's duration", seconds, 0,
+                  kMostFrames / kFramesPerSecond);
+    reader.exclude("--seconds", "--frames");
+    reader.option("--size", "WxH", "of the picture, in pixels", size);
+    reader.option("--out", "DIR", "folder that the video, pictures and figures go to", options.out);
+    reader.option("--video", "FILE.mp4", "the video's file, instead of DIR/NAME.mp4", options.video);
+    reader.option("--stats", "FILE.json", "the figures' file, instead of DIR/stats.json", options.stats);
+    reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", options.assignments);
+    if (std::optional<int> code = reader.read(arguments)) return *code;
+
+    static const std::vector<std::string> backends = {"auto", "cpu", "gl", "cl"};
+    if (Status known = checkWord("backend", options.backend, backends); !known) return report(known.error());
+    Result<std::pair<int, int>> pixels = parseSize(size);
+    if (!pixels) return report(pixels.error());
+    std::tie(options.width, options.height) = *pixels;
+    if (noRender && !options.video.empty())
+        return report(badInput("--video asks for pictures and --no-render for none; leave one of them out"));
+
+    Result<SceneFile> loaded = loadScene(scene, options.assignments);
+    if (!loaded) return report(loaded.error());
+    options.scene = std::move(*loaded);
+    options.render = !noRender;
+    if (seconds) options.frames = static_cast<int>(std::lround(*seconds * kFramesPerSecond));
+    options.log = stderrLog();
+
+    if (!headless && !noRender && !hasDisplay()) {
+        options.log.notice("there is no display: running headless");
+        headless = true;
+    }
+    Graceful graceful;
+    return headless || noRender ? runHeadless(options, graceful) : runWindow(options, graceful);
+}
+
+}  // namespace rivulet

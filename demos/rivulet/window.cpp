@@ -1,0 +1,45 @@
+#include <chrono>
+#include <thread>
+
+#include "demos/rivulet/cli.h"
+#include "demos/rivulet/run_options.h"
+#include "engine/app/capture.h"
+#include "engine/app/window_glfw.h"
+#include "engine/core/json.h"
+#include "fluid/bridge/viewer.h"
+
+namespace rivulet {
+
+int runWindow(const RunOptions& options, const Graceful& graceful) {
+    WindowGlfw::Options wish;
+    wish.title = options.scene.name + " - rivulet";
+    wish.width = options.width;
+    wish.height = options.height;
+    Result<WindowGlfw> window = WindowGlfw::create(wish);
+    if (!window) return report(window.error());
+    auto viewer = Viewer::create(options.scene, options.backend, options.log, window->handle());
+    if (!viewer) return report(viewer.error());
+    Viewer& v = **viewer;
+    if (!options.stats.empty()) {
+        if (Status writable = checkWritable(options.stats); !writable) return report(writable.error());
+        v.record();
+    }
+
+    auto last = std::chrono::steady_clock::now();
+    while (!graceful.interrupted() && (!options.frames || v.steps() < static_cast<uint64_t>(*options.frames))) {
+        InputEvents input = window->poll();
+        if (input.closed) break;
+        auto now = std::chrono::steady_clock::now();
+        double seconds = std::chrono::duration<double>(now - last).count();
+        last = now;
+        if (Status drawn = v.frame(input, seconds, 0); !drawn) return report(drawn.error());
+        window->swap();
+        if (input.framebuffer.x <= 0 || input.framebuffer.y <= 0)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing paces it
+    }
+    if (!options.stats.empty())
+        if (Status written = writeFileAtomic(options.stats, writeRunStats(v.finishRecord())); !written) return report(written.error());
+    return graceful.interrupted() ? kInterrupted : kDone;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,131 @@
+#include "engine/app/ui_layer.h"
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "engine/ui/style.h"
+
+namespace rivulet {
+
+struct UiLayer::Impl {
+    ImGuiContext* context = nullptr;
+    bool drawing = false;  // the backend was set up
+
+    ~Impl() {
+        if (context == nullptr) return;
+        ImGui::SetCurrentContext(context);
+        if (drawing) ImGui_ImplOpenGL3_Shutdown();
+        ImGui::DestroyContext(context);
+    }
+};
+
+UiLayer::UiLayer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+UiLayer::UiLayer(UiLayer&&) noexcept = default;
+UiLayer& UiLayer::operator=(UiLayer&&) noexcept = default;
+UiLayer::~UiLayer() = default;
+
+namespace {
+
+void mapKeys(ImGuiIO& io) {
+    constexpr struct {
+        ImGuiKey_ to;
+        int from;
+    } kKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
+                 {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
+                 {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
+                 {ImGuiKey_UpArrow, GLFW_KEY_UP},
+                 {ImGuiKey_DownArrow, GLFW_KEY_DOWN},
+                 {ImGuiKey_PageUp, GLFW_KEY_PAGE_UP},
+                 {ImGuiKey_PageDown, GLFW_KEY_PAGE_DOWN},
+                 {ImGuiKey_Home, GLFW_KEY_HOME},
+                 {ImGuiKey_End, GLFW_KEY_END},
+                 {ImGuiKey_Insert, GLFW_KEY_INSERT},
+                 {ImGuiKey_Delete, GLFW_KEY_DELETE},
+                 {ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
+                 {ImGuiKey_Space, GLFW_KEY_SPACE},
+                 {ImGuiKey_Enter, GLFW_KEY_ENTER},
+                 {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
+                 {ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
+                 {ImGuiKey_A, GLFW_KEY_A},
+                 {ImGuiKey_C, GLFW_KEY_C},
+                 {ImGuiKey_V, GLFW_KEY_V},
+                 {ImGuiKey_X, GLFW_KEY_X},
+                 {ImGuiKey_Y, GLFW_KEY_Y},
+                 {ImGuiKey_Z, GLFW_KEY_Z}};
+    for (const auto& key : kKeys) io.KeyMap[key.to] = key.from;
+}
+
+}  // namespace
+
+Result<UiLayer> UiLayer::create(void* clipboard) {
+    auto impl = std::make_unique<Impl>();
+    impl->context = ImGui::CreateContext();
+    ImGui::SetCurrentContext(impl->context);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;  // nothing is written behind the person's back
+    io.LogFilename = nullptr;
+    mapKeys(io);
+    if (clipboard != nullptr) {
+        io.ClipboardUserData = clipboard;
+        io.GetClipboardTextFn = [](void* window) { return glfwGetClipboardString(static_cast<GLFWwindow*>(window)); };
+        io.SetClipboardTextFn = [](void* window, const char* text) { glfwSetClipboardString(static_cast<GLFWwindow*>(window), text); };
+    }
+    applyUiStyle();
+    impl->drawing = ImGui_ImplOpenGL3_Init("#version 450 core");
+    if (!impl->drawing) return failed("the user interface could not be set up: the OpenGL driver refuses it");
+    return UiLayer(std::move(impl));
+}
+
+void UiLayer::begin(const InputEvents& input, double seconds) {
+    ImGui::SetCurrentContext(impl_->context);
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = ImVec2(static_cast<float>(std::max(input.size.x, 0)), static_cast<float>(std::max(input.size.y, 0)));
+    if (input.size.x > 0 && input.size.y > 0)
+        io.DisplayFramebufferScale =
+            ImVec2(static_cast<float>(input.framebuffer.x) / io.DisplaySize.x, static_cast<float>(input.framebuffer.y) / io.DisplaySize.y);
+    io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 0.25));
+
+    io.MousePos = ImVec2(input.mouse.x, input.mouse.y);
+    constexpr MouseButton kButtons[] = {MouseButton::left, MouseButton::right, MouseButton::middle};
+    for (int i = 0; i < 3; ++i)
+        io.MouseDown[i] = input.down(kButtons[i]) || input.pressed(kButtons[i]);  // a click within a frame counts too
+    io.MouseWheelH = input.wheel.x;
+    io.MouseWheel = input.wheel.y;
+
+    std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+    auto press = [&io](int key) {
+        if (key >= 0 && key < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[key] = true;
+    };
+    for (int key : input.keysDown) press(key);
+    for (int key : input.keysPressed) press(key);
+    auto either = [&io](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+    io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+    io.KeySuper = either(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+    io.AddInputCharactersUTF8(input.text.c_str());
+
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+}
+
+void UiLayer::draw() {
+    ImGui::SetCurrentContext(impl_->context);
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool UiLayer::wantsMouse() const {
+    ImGui::SetCurrentContext(impl_->context);
+    return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool UiLayer::wantsKeyboard() const {
+    ImGui::SetCurrentContext(impl_->context);
+    return ImGui::GetIO().WantTextInput;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,9 @@
+// How the panels look: dark, quiet, one accent; a readable font where the system has one.
+#pragma once
+
+namespace rivulet {
+
+// On the current ImGui context, before its first frame.
+void applyUiStyle();
+
+}  // namespace rivulet

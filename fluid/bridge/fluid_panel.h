@@ -1,0 +1,27 @@
+// The panel that says what the water does: pause, step, reset, and figures.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet {
+
+struct FluidPanelState {
+    bool paused = false;
+    std::string backend;   // what simulates: "cpu: Intel(R) ..."
+    std::string renderer;  // what draws: "llvmpipe (LLVM 15.0.6, 256 bits)"
+    double simulateMs = 0, frameMs = 0;
+    std::string message;  // an edit that was refused
+    std::span<const std::string> notices;
+};
+
+struct FluidPanelActions {
+    bool togglePause = false, step = false, reset = false, help = false;
+};
+
+// Inside an ImGui window.
+FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState& state);
+
+}  // namespace rivulet

@@ -1,0 +1,223 @@
+#include "fluid/bridge/viewer.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/ui/param_panel.h"
+
+namespace rivulet {
+
+namespace {
+
+void drawHelp() {
+    ImVec2 display = ImGui::GetIO().DisplaySize;
+    constexpr struct {
+        const char* key;
+        const char* does;
+    } kKeys[] = {{"left drag", "turn the view"},   {"right or middle drag", "move the view"},
+                 {"wheel", "nearer, farther"},     {"space", "pause, go on"},
+                 {"period", "one step"},           {"R", "start again"},
+                 {"Tab", "show, hide the panels"}, {"H", "show, hide this"}};
+    ImGui::SetNextWindowPos(ImVec2(display.x / 2, display.y / 2), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    ImGui::Begin("keys", nullptr,
+                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
+    for (const auto& row : kKeys) {
+        ImGui::TextUnformatted(row.key);
+        ImGui::SameLine(ImGui::GetFontSize() * 12);
+        ImGui::TextDisabled("%s", row.does);
+    }
+    ImGui::Dummy(ImVec2(ImGui::GetFontSize() * 24, 1));
+    ImGui::End();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::string& backend, Log log, void* clipboard) {
+    Result<UiLayer> ui = UiLayer::create(clipboard);
+    if (!ui) return ui.error();
+    std::unique_ptr<Viewer> viewer(new Viewer(std::move(*ui)));
+    Viewer& v = *viewer;
+    // What is said to the person at the program is said in the panel too.
+    v.log_.sink = [log, kept = v.notices_](LogLevel level, std::string_view text) {
+        if (log.sink) log.sink(level, text);
+        constexpr size_t kMost = 4;
+        if (level < LogLevel::notice) return;
+        if (kept->size() == kMost) kept->erase(kept->begin());
+        kept->emplace_back(text);
+    };
+    v.gl_ = currentGlFacts();
+    v.device_ = makeDevice(backend, v.gl_, v.log_);
+    auto session = Session::create(std::move(scene), *v.device_, v.log_);
+    if (!session) return session.error();
+    v.session_ = std::move(*session);
+    v.draft_ = v.session_->scene();
+    auto renderer = SceneRenderer::create(ShaderFiles::developer());
+    if (!renderer) return renderer.error();
+    v.renderer_ = std::move(*renderer);
+    return viewer;
+}
+
+Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffer) {
+    edited_ = false;
+    ui_.begin(input, seconds);
+    if (!ui_.wantsKeyboard()) takeKeys(input);
+    bool recreate = showPanels_ && drawPanels();
+    if (showHelp_) drawHelp();
+    if (!ui_.wantsMouse()) moveCamera(input);
+    if (edited_ || recreate) takeEdits(recreate);
+    step(seconds);
+    Status drawn = draw(input, framebuffer);
+    profiler_.endFrame(1000 * seconds);
+    return drawn;
+}
+
+void Viewer::takeKeys(const InputEvents& input) {
+    if (input.pressed(GLFW_KEY_SPACE)) paused_ = !paused_;
+    if (input.pressed(GLFW_KEY_PERIOD)) paused_ = stepOnce_ = true;
+    if (input.pressed(GLFW_KEY_R)) session_->reset();
+    if (input.pressed(GLFW_KEY_TAB)) showPanels_ = !showPanels_;
+    if (input.pressed(GLFW_KEY_H)) showHelp_ = !showHelp_;
+}
+
+void Viewer::moveCamera(const InputEvents& input) {
+    vec2 size(std::max(input.size.x, 1), std::max(input.size.y, 1));
+    vec2 moved = input.mouseDelta / size.y;
+    bool turns = input.down(MouseButton::left), pans = input.down(MouseButton::right) || input.down(MouseButton::middle);
+    bool any = (turns || pans) && moved != vec2(0.0F);
+    if (!any && input.wheel.y == 0) return;
+    Camera camera = cameraOf(draft_.camera, session_->bounds());
+    OrbitCamera orbit = OrbitCamera::from(camera);
+    constexpr float kDegreesAcross = 200;  // of a drag over the window's height
+    if (turns) orbit.orbit(-kDegreesAcross * moved.x, kDegreesAcross * moved.y);
+    if (pans && !turns) {
+        float across = 2 * std::tan(0.5F * camera.fieldOfView * kPi / 180.0F);  // in distances: the point under the mouse stays under it
+        orbit.pan(-across * moved.x, across * moved.y);
+    }
+    if (input.wheel.y != 0) orbit.zoom(input.wheel.y);
+    constexpr float kNearest = 1e-3F, kFarthest = 1e4F;  // m
+    orbit.distance = std::clamp(orbit.distance, kNearest, kFarthest);
+    orbit.apply(camera);
+    if (!isFinite(camera.position) || !isFinite(camera.target)) return;
+    draft_.camera.position = camera.position;
+    draft_.camera.target = camera.target;
+    edited_ = true;
+}
+
+bool Viewer::drawPanels() {
+    ImVec2 display = ImGui::GetIO().DisplaySize;
+    constexpr float kMargin = 10;
+    float width = std::clamp(display.x * 0.28F, 280.0F, 400.0F), tall = std::max(display.y - 2 * kMargin, 80.0F);
+    ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), ImGuiCond_Once);
+    ImGui::SetNextWindowSize(ImVec2(width, tall), ImGuiCond_Once);
+    bool recreate = false;
+    if (ImGui::Begin(fmt::format("{}###scene", draft_.name).c_str())) {
+        const DeviceInfo& device = device_->info();
+        FluidPanelState state;
+        state.paused = paused_;
+        state.backend = fmt::format("{}: {}", backendName(device_->backend()), device.name);
+        state.renderer = gl_.renderer;
+        state.simulateMs = profiler_.mean("simulate");
+        state.frameMs = 1000.0 / std::max(static_cast<double>(ImGui::GetIO().Framerate), 1e-3);
+        state.message = message_;
+        state.notices = *notices_;
+        FluidPanelActions actions = drawFluidPanel(session_->world(), state);
+        if (actions.togglePause) paused_ = !paused_;
+        if (actions.step) paused_ = stepOnce_ = true;
+        if (actions.reset) session_->reset();
+        if (actions.help) showHelp_ = !showHelp_;
+        ImGui::Spacing();
+        ImGui::BeginChild("parameters");
+        ParamPanel panel;
+        draft_.visit(panel);
+        ImGui::EndChild();
+        edited_ = edited_ || panel.changed();
+        recreate = panel.recreate();
+    }
+    ImGui::End();
+
+    ImGui::SetNextWindowPos(ImVec2(display.x - kMargin, kMargin), ImGuiCond_Once, ImVec2(1, 0));
+    ImGui::SetNextWindowSize(ImVec2(std::min(width, 320.0F), 0), ImGuiCond_Once);
+    if (ImGui::Begin("times")) profiler_.draw();
+    ImGui::End();
+    return recreate;
+}
+
+// An edit that makes no sense is refused with a sentence, and the last good scene stays.
+void Viewer::takeEdits(bool recreate) {
+    Status sense = checkScene(draft_);
+    if (!sense && !recreate) {
+        message_ = sense.error().message;  // a drag may pass through it: the draft stays as it is
+        return;
+    }
+    if (!recreate) {
+        message_.clear();
+        session_->apply(draft_);
+        return;
+    }
+    notices_->clear();
+    Result<std::unique_ptr<Session>> fresh =
+        sense ? Session::create(draft_, *device_, log_) : Result<std::unique_ptr<Session>>(sense.error());
+    if (fresh) {
+        session_ = std::move(*fresh);
+        message_.clear();
+        profiler_.clear();
+        if (recorder_) record();
+    } else {
+        message_ = fresh.error().message;
+        draft_ = session_->scene();
+    }
+}
+
+void Viewer::step(double seconds) {
+    constexpr double kStep = 1.0 / kFramesPerSecond;
+    waiting_ = std::min(waiting_ + std::max(seconds, 0.0), 2 * kStep);
+    bool due = waiting_ >= kStep;
+    if (due) waiting_ -= kStep;
+    if ((paused_ || !due) && !stepOnce_) return;
+    stepOnce_ = false;
+    double ms = session_->step(kStep, false);
+    ++steps_;
+    std::vector<PassTime> passes = device_->takeTimes();
+    profiler_.add("simulate", passes);
+    if (recorder_) recorder_->frame(ms, 0, 1000 * seconds, passes, renderer_->times());
+}
+
+void Viewer::record() { recorder_.emplace(session_->world(), &session_->field(), true); }
+
+RunStats Viewer::finishRecord() {
+    ASSERT(recorder_, "record() comes first");
+    return recorder_->finish(session_->scene().name);
+}
+
+Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
+    int width = input.framebuffer.x, height = input.framebuffer.y;
+    if (width <= 0 || height <= 0) {
+        ui_.draw();  // ends ImGui's frame; it draws nothing
+        return ok();
+    }
+    const SceneFile& scene = session_->scene();
+    Result<FluidView> fluid = upload_.view(session_->world(), scene.look);
+    if (!fluid) return fluid.error();
+    Camera camera = cameraOf(scene.camera, session_->bounds());
+    FrameView view = frameViewOf(camera, scene.light, width, height, session_->world().time());
+    if (Status drawn = renderer_->draw(view, *fluid, session_->solids(), scene); !drawn) return drawn;
+    renderer_->present(framebuffer, width, height);
+
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, width, height);
+    uiTimer_.begin(0);
+    ui_.draw();
+    uiTimer_.end();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    uiTimer_.collect([this](uint64_t, double ms) { uiMs_ = ms; });
+    profiler_.add("render", renderer_->times());
+    const PassTime ui[] = {{.name = "ui", .ms = uiMs_, .calls = 1}};
+    profiler_.add("render", ui);
+    return ok();
+}
+
+}  // namespace rivulet

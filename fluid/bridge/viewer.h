@@ -1,0 +1,71 @@
+// Viewer: a scene that a person looks at: stepped, drawn, with panels and an orbit camera. It knows no window: it takes InputEvents and
+// draws into a framebuffer, so that a test can drive it as a person would.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/app/input_events.h"
+#include "engine/app/ui_layer.h"
+#include "engine/gpu/timer.h"
+#include "engine/ui/profiler_panel.h"
+#include "fluid/bridge/backend.h"
+#include "fluid/bridge/fluid_panel.h"
+#include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/scene_renderer.h"
+#include "fluid/bridge/session.h"
+
+namespace rivulet {
+
+class Viewer {
+  public:
+    // Needs a current OpenGL 4.5 context until destroyed. `clipboard`: as UiLayer. Error: as Session and SceneRenderer.
+    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, Log log, void* clipboard = nullptr);
+
+    // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
+    // machine shows slow water, not fewer pictures. A window of 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.
+    Status frame(const InputEvents& input, double seconds, GLuint framebuffer);
+
+    bool paused() const { return paused_; }
+    uint64_t steps() const { return steps_; }
+    const SceneFile& scene() const { return session_->scene(); }
+    Session& session() { return *session_; }
+    const std::string& message() const { return message_; }  // what the last edit was refused for; "" = nothing
+
+    // From now on keeps the record of the run; starts anew with every new session.
+    void record();
+    RunStats finishRecord();  // after record()
+
+  private:
+    Viewer() = default;
+    void takeKeys(const InputEvents& input);
+    void moveCamera(const InputEvents& input);
+    bool drawPanels();  // whether a new session is wanted
+    void takeEdits(bool recreate);
+    void step(double seconds);
+    Status draw(const InputEvents& input, GLuint framebuffer);
+
+    std::shared_ptr<std::vector<std::string>> notices_ = std::make_shared<std::vector<std::string>>();
+    Log log_;
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<Session> session_;
+    std::unique_ptr<SceneRenderer> renderer_;
+    FluidUpload upload_;
+    UiLayer ui_;
+    ProfilerPanel profiler_;
+    gpu::Timer uiTimer_;
+    GlFacts gl_;
+    SceneFile draft_;  // what the panel edits; becomes the session's when it makes sense
+    std::string message_;
+    bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
+    double waiting_ = 0;  // s on the wall that the water has not been stepped for
+    double uiMs_ = 0;
+    std::optional<RunRecorder> recorder_;
+    uint64_t steps_ = 0;
+
+    explicit Viewer(UiLayer ui) : ui_(std::move(ui)) {}
+};
+
+}  // namespace rivulet

@@ -1,5 +1,6 @@
 #include "engine/render/passes.h"
 
+#include <algorithm>
 #include <glm/matrix.hpp>
 
 #include "engine/scene/light.h"
@@ -18,8 +19,8 @@ using gpu::Usage;
 
 constexpr int kShadowSize = 1024;      // texels, of the depth map
 constexpr int kShadowSharpReach = 2;   // texels either side
-constexpr int kShadowSoftReach = 14;
-constexpr float kExposure = 0.95F;
+constexpr int kShadowSoftReach = 9;
+constexpr float kExposure = 0.55F;
 constexpr float kBoxWidth = 1.2F;      // pixels
 const vec4 kBoxColour(0.10F, 0.13F, 0.16F, 0.35F);
 
@@ -34,6 +35,27 @@ void bindLight(Program& program, const PassContext& c, const LightMaps& light, i
     program.texture("shadowSoft", unit + 1, c.texture(light.soft));
     program.texture("waterLight", unit + 2, c.texture(light.water));
     program.set("waterAbsorption", light.absorption);
+}
+
+// Three softboxes, turned with the key light.
+void placeSoftboxes(FrameParams& f) {
+    const vec3 key(f.lightDir), colour(f.lightColour);
+    const float flatLength = glm::length(vec2(key.x, key.z));
+    const vec3 ahead = flatLength > 1e-3F ? vec3(key.x, 0.0F, key.z) / flatLength : vec3(1, 0, 0), side(-ahead.z, 0.0F, ahead.x);
+    const vec3 tint = colour / std::max({colour.x, colour.y, colour.z, 1e-4F});
+    const struct {
+        vec3 towards;
+        vec2 halfSize;
+        vec3 radiance;
+    } boxes[3] = {{key, {0.30F, 0.22F}, 3.0F * colour},                                                         // around the key light
+                  {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint},               // a strip at one side
+                  {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0), {0.70F, 0.07F}, {2.6F, 2.85F, 3.0F}}};      // a wide one opposite the key
+    for (size_t k = 0; k < 3; ++k) {
+        const vec3 towards = glm::normalize(boxes[k].towards);
+        f.boxTowards[k] = vec4(towards, boxes[k].halfSize.x);
+        f.boxSide[k] = vec4(glm::normalize(glm::cross(vec3(0.0F, 1.0F, 0.001F), towards)), boxes[k].halfSize.y);
+        f.boxRadiance[k] = vec4(boxes[k].radiance, 0.0F);
+    }
 }
 
 }  // namespace
@@ -98,6 +120,7 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
     f.planes = vec4(view.nearPlane, view.farPlane, p[2][2], p[3][2]);
     f.lightDir = vec4(glm::normalize(view.lightDirWorld), 0.0F);
     f.lightColour = vec4(view.lightColour, 0.0F);
+    placeSoftboxes(f);
     f.horizon = vec4(studio.horizon, 0.0F);
     f.zenith = vec4(studio.zenith, 0.0F);
     f.floorColour = vec4(studio.floor, studio.floorHeight);
@@ -108,11 +131,14 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
     return f;
 }
 
-LightMaps addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection) {
-    const TextureDesc map{.width = kShadowSize, .height = kShadowSize, .format = Format::depth32f};
-    const TextureDesc moments{.width = kShadowSize, .height = kShadowSize, .format = Format::rg32f};
-    const TextureDesc half{.width = kShadowSize / 2, .height = kShadowSize / 2, .format = Format::rg32f};
-    const TextureHandle depth = graph.texture("shadow depth", map);
+TextureDesc shadowMapDesc(bool soft) {
+    const int size = soft ? kShadowSize / 4 : kShadowSize;
+    return {.width = size, .height = size, .format = Format::rg32f};
+}
+
+void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection, TextureHandle sharp,
+               TextureHandle soft) {
+    const TextureHandle depth = graph.texture("shadow depth", {.width = kShadowSize, .height = kShadowSize, .format = Format::depth32f});
     graph.pass("shadow", {}, {depth}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
         const gpu::Framebuffer& target = c.drawTo({}, depth);
         target.clearDepth();
@@ -123,25 +149,22 @@ LightMaps addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<Dra
             m.mesh->draw();
         }
     });
-    auto blur = [&](Program& program, TextureHandle from, const TextureDesc& desc, ivec2 axis, int reach) {
-        const TextureHandle to = graph.texture("shadow moments", desc);
+    auto blur = [&](Program& program, TextureHandle from, TextureHandle to, ivec2 axis, int reach) {
         graph.pass("shadow blur", {from}, {to}, [=, &program](PassContext& c) {
             c.drawTo({to});
             program.use();
             program.texture("source", 0, c.texture(from));
             program.set("axis", axis);
             program.set("reach", reach);
+            program.set("scale", static_cast<float>(c.texture(from).width()) / static_cast<float>(c.texture(to).width()));
             c.drawFullscreen();
         });
-        return to;
     };
-    LightMaps light;
-    const TextureHandle across = blur(programs.shadowFirst, depth, moments, {1, 0}, kShadowSharpReach);
-    light.sharp = blur(programs.shadowBlur, across, moments, {0, 1}, kShadowSharpReach);
-    (void)half;
-    const TextureHandle wide = blur(programs.shadowBlur, light.sharp, moments, {1, 0}, kShadowSoftReach);
-    light.soft = blur(programs.shadowBlur, wide, moments, {0, 1}, kShadowSoftReach);
-    return light;
+    const TextureHandle across = graph.texture("shadow across", shadowMapDesc(false)), wide = graph.texture("shadow wide", shadowMapDesc(true));
+    blur(programs.shadowFirst, depth, across, {1, 0}, kShadowSharpReach);
+    blur(programs.shadowBlur, across, sharp, {0, 1}, kShadowSharpReach);
+    blur(programs.shadowBlur, sharp, wide, {1, 0}, kShadowSoftReach);
+    blur(programs.shadowBlur, wide, soft, {0, 1}, kShadowSoftReach);
 }
 
 TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes) {
@@ -164,24 +187,27 @@ TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle
 }
 
 TextureHandle addOcclusion(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle depth, float reach) {
-    const TextureHandle noisy = graph.texture("occlusion, noisy", sized(view, Format::r8, 2));
-    graph.pass("occlusion", {{frame, Usage::uniform}, depth}, {noisy}, [=, &programs](PassContext& c) {
-        c.drawTo({noisy});
+    const TextureDesc half = sized(view, Format::rg16f, 2);
+    TextureHandle open = graph.texture("occlusion", half);
+    graph.pass("occlusion", {{frame, Usage::uniform}, depth}, {open}, [=, &programs](PassContext& c) {
+        c.drawTo({open});
         bindFrame(c, frame);
         programs.occlusion.use();
         programs.occlusion.texture("sceneDepth", 0, c.texture(depth));
         programs.occlusion.set("reach", reach);
         c.drawFullscreen();
     });
-    const TextureHandle open = graph.texture("occlusion", sized(view, Format::r8, 2));
-    graph.pass("occlusion blur", {{frame, Usage::uniform}, noisy, depth}, {open}, [=, &programs](PassContext& c) {
-        c.drawTo({open});
-        bindFrame(c, frame);
-        programs.occlusionBlur.use();
-        programs.occlusionBlur.texture("source", 0, c.texture(noisy));
-        programs.occlusionBlur.texture("sceneDepth", 1, c.texture(depth));
-        c.drawFullscreen();
-    });
+    for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
+        const TextureHandle from = open, to = graph.texture("occlusion", half);
+        graph.pass("occlusion blur", {from}, {to}, [=, &programs](PassContext& c) {
+            c.drawTo({to});
+            programs.occlusionBlur.use();
+            programs.occlusionBlur.texture("source", 0, c.texture(from));
+            programs.occlusionBlur.set("axis", axis);
+            c.drawFullscreen();
+        });
+        open = to;
+    }
     return open;
 }
 

@@ -50,8 +50,11 @@ struct LightMaps {
     vec3 absorption{0.0F};  // 1/m, of the water
 };
 
-// The moments of the meshes' depth as the light sees it, blurred narrowly and widely.
-LightMaps addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection);
+// The moments of the meshes' depth as the light sees it, blurred narrowly into `sharp` and widely into `soft`, which are of shadowMapDesc().
+// They change only with the meshes and the light, so whoever keeps them saves the pass.
+gpu::TextureDesc shadowMapDesc(bool soft);
+void addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection, gpu::TextureHandle sharp,
+               gpu::TextureHandle soft);
 // Window depth of meshes and floor. `frame`: the buffer of a FrameParams.
 gpu::TextureHandle addDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes);
 // How open each point is to the environment, at half resolution; `reach` in m.

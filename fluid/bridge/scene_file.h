@@ -36,16 +36,16 @@ struct CameraParams {
 };
 
 struct LightParams {
-    vec3 direction{0.4F, 0.8F, 0.45F};  // towards the light
+    vec3 direction{0.72F, 0.8F, 0.1F};  // towards the light
     vec3 colour{1.0F, 0.96F, 0.9F};     // linear
-    float intensity = 3.0F;
+    float intensity = 3.6F;
     void visit(ParamVisitor& v);
 };
 
 struct BackgroundParams {
-    vec3 horizon{0.80F, 0.84F, 0.88F};  // linear
-    vec3 zenith{0.30F, 0.42F, 0.58F};
-    vec3 floor{0.42F, 0.40F, 0.38F};    // the ground plane's colour
+    vec3 horizon{0.40F, 0.44F, 0.48F};  // linear
+    vec3 zenith{0.12F, 0.17F, 0.24F};
+    vec3 floor{0.56F, 0.55F, 0.53F};    // the ground plane's colour
     float floorHeight = 0.0F;           // m
     bool showFloor = true;
     bool showBox = true;                // edges of the fluid's box
@@ -57,7 +57,7 @@ struct FluidLookParams {
     std::string renderer = "screen_space";  // a row of renderers(): points | screen_space
     std::string colourBy = "speed";         // points: speed | density | id
     float radiusSpacings = 0.6F;            // drawn radius = this * spacing
-    float smoothing = 2.5F;                 // reach of the smoothing, in drawn radii
+    float smoothing = 3.0F;                 // reach of the smoothing, in drawn radii
     vec3 absorption{4.5F, 1.1F, 0.5F};      // 1/m, Beer-Lambert per channel
     float refractiveIndex = 1.333F;
     void visit(ParamVisitor& v);

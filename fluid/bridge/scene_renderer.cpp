@@ -98,6 +98,11 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
     Result<gpu::Texture> nothing = gpu::Texture::create({.width = 1, .height = 1, .format = gpu::Format::rgba8});
     if (!nothing) return nothing.error();
     nothing->clear(vec4(0.0F));
+    for (const auto& [into, soft] : {std::pair(&r->shadowSharp_, false), std::pair(&r->shadowSoft_, true)}) {
+        Result<gpu::Texture> map = gpu::Texture::create(shadowMapDesc(soft));
+        if (!map) return map.error();
+        *into = std::move(*map);
+    }
     r->render_ = std::move(*render);
     r->fluid_ = std::move(*fluid);
     r->frame_ = std::move(*frame);
@@ -106,6 +111,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
 }
 
 Status SceneRenderer::reload() {
+    shadowOf_.clear();
     if (Status s = render_.reload(); !s) return s;
     return fluid_.reload();
 }
@@ -128,6 +134,24 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
         picture_ = std::move(*picture);
     }
     return ok();
+}
+
+// The maps are drawn anew only when the light or a mesh has moved.
+void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, LightMaps& light) {
+    light.sharp = graph.importTexture("shadow, sharp", shadowSharp_);
+    light.soft = graph.importTexture("shadow, soft", shadowSoft_);
+    std::vector<mat4> places = {projection};
+    std::vector<const GpuMesh*> drawn;
+    for (const DrawnMesh& m : meshes) {
+        places.push_back(m.toWorld);
+        drawn.push_back(m.mesh);
+    }
+    if (places == shadowOf_ && drawn == shadowMeshes_) return;
+    addShadow(graph, render_, meshes, projection, light.sharp, light.soft);
+    graph.output(light.sharp);
+    graph.output(light.soft);
+    shadowOf_ = std::move(places);
+    shadowMeshes_ = std::move(drawn);
 }
 
 Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings) {
@@ -162,11 +186,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());
     const gpu::TextureHandle nothing = graph.importTexture("nothing", nothing_);
     LightMaps light{nothing, nothing, nothing, settings.look.absorption};
-    if (!meshes.empty()) {
-        const LightMaps shadow = addShadow(graph, render_, meshes, params.shadowProjection);
-        light.sharp = shadow.sharp;
-        light.soft = shadow.soft;
-    }
+    if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, light);
     FluidDraw draw;
     draw.view = view;
     draw.fluid = fluid;

@@ -16,7 +16,7 @@ struct FluidView {
     uint32_t count = 0;      // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
     float radius = 0.01F;    // m, of a drawn sphere
     float spacing = 0.02F;   // m
-    Bounds bounds;           // m, world: where water can be (the fluid's box): what the light's map of it covers; empty: it throws no shadow
+    Bounds bounds;           // m, world: the box that the water is in: it is cut there, and its shadow map covers it; empty: no cut, no shadow
 };
 
 }  // namespace rivulet

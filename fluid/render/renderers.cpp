@@ -14,22 +14,24 @@ constexpr Table<RendererRow> kRenderers{kRows};
 
 const Table<RendererRow>& renderers() { return kRenderers; }
 
-std::array<gpu::Program*, 10> FluidPrograms::all() {
-    return {&points, &occluder, &depth, &smooth, &thickness, &blur, &shade, &lightWater, &lightWaterFirst, &lightWaterLast};
+std::array<gpu::Program*, 12> FluidPrograms::all() {
+    return {&points, &occluder, &markTiles, &depth, &smooth, &smoothLast, &thickness, &blur, &shade, &lightWater, &lightWaterFirst, &lightWaterLast};
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     using gpu::Program;
-    const std::string folder = "shaders/screen_space/", full = "shaders/render/fullscreen.vert", sphere = folder + "sphere.vert";
+    const std::string folder = "shaders/screen_space/", full = "shaders/render/fullscreen.vert", tile = folder + "tile.vert", sphere = folder + "sphere.vert";
     FluidPrograms p;
     std::pair<Program*, Result<Program>> made[] = {
         {&p.points, Program::create(files, {folder + "points.vert", folder + "points.frag"})},
         {&p.occluder, Program::create(files, {folder + "occluder.vert", "shaders/render/depth.frag"})},
+        {&p.markTiles, Program::create(files, {folder + "mark_tiles.vert", folder + "mark_tiles.frag"})},
         {&p.depth, Program::create(files, {sphere, folder + "depth.frag"})},
-        {&p.smooth, Program::create(files, {full, folder + "smooth.frag"})},
+        {&p.smooth, Program::create(files, {tile, folder + "smooth.frag"})},
+        {&p.smoothLast, Program::create(files, {tile, folder + "smooth.frag"}, {{"LAST", "1"}})},
         {&p.thickness, Program::create(files, {sphere, folder + "thickness.frag"})},
-        {&p.blur, Program::create(files, {full, folder + "blur.frag"})},
-        {&p.shade, Program::create(files, {full, folder + "shade.frag"})},
+        {&p.blur, Program::create(files, {tile, folder + "blur.frag"})},
+        {&p.shade, Program::create(files, {tile, folder + "shade.frag"})},
         {&p.lightWater, Program::create(files, {folder + "light_water.vert", folder + "light_water.frag"})},
         {&p.lightWaterFirst, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"FIRST", "1"}})},
         {&p.lightWaterLast, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"LAST", "1"}})},
@@ -39,6 +41,7 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         *into = std::move(*program);
     }
     p.particles = gpu::VertexArray::create();
+    p.none = gpu::VertexArray::create();
     return p;
 }
 

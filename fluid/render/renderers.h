@@ -26,14 +26,14 @@ struct FluidLook {
 
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
-    gpu::Program points, occluder, depth, smooth, thickness, blur, shade, lightWater, lightWaterFirst, lightWaterLast;
-    gpu::VertexArray particles;
+    gpu::Program points, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst, lightWaterLast;
+    gpu::VertexArray particles, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
     void drawParticles(const FluidView& fluid);  // a quad each, with the program in use
 
   private:
-    std::array<gpu::Program*, 10> all();
+    std::array<gpu::Program*, 12> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.

@@ -1,5 +1,6 @@
 // A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a narrow-range filter (Truong & Yuksel 2018).
 #include <algorithm>
+#include <cmath>
 
 #include "fluid/render/renderers.h"
 
@@ -14,40 +15,71 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr float kFar = 1.0e6F;     // m, shaders/render/frame.glsl's depth of nothing
-constexpr int kSmoothPasses = 2;   // each along x and y
-constexpr int kSmoothTaps = 16;    // either side; a wider kernel takes larger steps
-constexpr float kRange = 3.0F;     // radii: depths further apart are two surfaces
-constexpr float kBend = 1.0F;      // radii
-constexpr int kThicknessScale = 2; // of the resolution
-constexpr int kLightMap = 512;     // texels
+constexpr float kFar = 1.0e6F;                     // m, shaders/render/frame.glsl's depth of nothing
+constexpr float kSmoothSteps[] = {1, 2, 4, 7, 5};  // of the levels, relative
+constexpr float kRange = 7.0F;                     // radii
+constexpr float kBend = 0.5F;                      // radii
+constexpr int kThicknessScale = 2;                 // of the resolution
+constexpr int kThicknessBlur = 4;                  // texels either side
+constexpr int kTile = 32;                          // pixels
+constexpr int kLightMap = 256;                     // texels
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
-// A full-screen pass from one texture to another of `desc`.
+// Everything after the spheres runs only in the tiles that they touch.
+void drawTiles(const PassContext& c, FluidPrograms& programs, Program& program, TextureHandle tiles, int unit) {
+    const gpu::Texture& mask = c.texture(tiles);
+    program.texture("tileMask", unit, mask);
+    programs.none.bind();
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, mask.width() * mask.height());
+}
+
+TextureHandle addTiles(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    const TextureDesc size{.width = (d.view.width + kTile - 1) / kTile, .height = (d.view.height + kTile - 1) / kTile, .format = Format::r8};
+    const TextureHandle tiles = graph.texture("water tiles", size);
+    graph.pass("tiles", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {tiles}, [=, &programs](PassContext& c) {
+        c.drawTo({tiles}).clearColour(vec4(0.0F));
+        useFrame(c, d);
+        programs.markTiles.use();
+        programs.markTiles.set("radius", d.fluid.radius);
+        programs.markTiles.set("tiles", vec2(size.width, size.height));
+        programs.drawParticles(d.fluid);
+    });
+    return tiles;
+}
+
+// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere.
 template <class Setup>
-TextureHandle addFilter(FrameGraph& graph, const char* name, const FluidDraw& d, Program& program, TextureHandle from, const TextureDesc& desc, Setup setup) {
+TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, Program& program, TextureHandle tiles,
+                        TextureHandle from, const TextureDesc& desc, float empty, Setup setup, TextureHandle second = {}) {
     const TextureHandle to = graph.texture(name, desc);
-    graph.pass(name, {{d.frame, Usage::uniform}, from}, {to}, [=, &program](PassContext& c) {
-        c.drawTo({to});
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, tiles, from};
+    if (second) reads.emplace_back(second);
+    graph.pass(name, reads, {to}, [=, &programs, &program](PassContext& c) {
+        c.drawTo({to}).clearColour(vec4(empty));
         useFrame(c, d);
         program.use();
         program.texture("source", 0, c.texture(from));
-        setup(program);
-        c.drawFullscreen();
+        setup(program, c);
+        drawTiles(c, programs, program, tiles, 1);
     });
     return to;
 }
 
-TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+struct SphereDepth {
+    TextureHandle bulk, spray;
+};
+
+SphereDepth addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
     TextureDesc depthSize = size;
     depthSize.format = Format::depth32f;
-    const TextureHandle depth = graph.texture("fluid depth", size), hidden = graph.texture("fluid occluders", depthSize);
-    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {depth, hidden}, [=, &programs](PassContext& c) {
-        const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
+    const TextureHandle bulk = graph.texture("bulk depth", size), spray = graph.texture("spray depth", size), hidden = graph.texture("fluid occluders", depthSize);
+    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {bulk, spray, hidden}, [=, &programs](PassContext& c) {
+        const gpu::Framebuffer& target = c.drawTo({bulk, spray}, hidden);
         useFrame(c, d);
-        target.clearColour(vec4(kFar));
+        target.clearColour(vec4(kFar), 0);
+        target.clearColour(vec4(kFar), 1);
         target.clearDepth();
         glEnable(GL_DEPTH_TEST);
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -62,26 +94,39 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         programs.depth.set("radius", d.fluid.radius);
         programs.drawParticles(d.fluid);
     });
-    return depth;
+    return {bulk, spray};
 }
 
-TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle depth) {
+TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, const SphereDepth& spheres) {
+    TextureHandle depth = spheres.bulk;
     const float radius = d.fluid.radius;
-    for (int k = 0; k < 2 * kSmoothPasses; ++k)
-        depth = addFilter(graph, "smooth", d, programs.smooth, depth, graph.desc(depth), [=, look = d.look](Program& p) {
-            p.set("axis", k % 2 == 0 ? ivec2(1, 0) : ivec2(0, 1));
-            p.set("reach", look.smoothing * radius);
+    // A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two standard deviations.
+    float squares = 0;
+    for (const float step : kSmoothSteps) squares += 0.5F * step * step;
+    const float unit = 0.5F * d.look.smoothing * radius / std::sqrt(squares);
+    const float huge = 1.0e5F;
+    const Bounds box = d.fluid.bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : d.fluid.bounds;
+    for (const float& step : kSmoothSteps) {
+        const bool final = &step == std::end(kSmoothSteps) - 1;
+        Program& program = final ? programs.smoothLast : programs.smooth;
+        const auto setup = [=](Program& p, const PassContext& c) {
+            p.set("step_", step * unit);
             p.set("range", kRange * radius);
             p.set("bend", kBend * radius);
-            p.set("maxTaps", kSmoothTaps);
-        });
+            if (!final) return;
+            p.texture("spray", 2, c.texture(spheres.spray));
+            p.set("low", box.min);
+            p.set("high", box.max);
+        };
+        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, graph.desc(depth), kFar, setup, final ? spheres.spray : TextureHandle{});
+    }
     return depth;
 }
 
-TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
     const TextureDesc size{.width = (d.view.width + kThicknessScale - 1) / kThicknessScale,
                            .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
-                           .format = Format::r16f};
+                           .format = Format::rg16f};
     TextureHandle thickness = graph.texture("thickness", size);
     graph.pass("thickness", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth}, {thickness}, [=, &programs](PassContext& c) {
         c.drawTo({thickness}).clearColour(vec4(0.0F));
@@ -91,15 +136,15 @@ TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const Flu
         Program& p = programs.thickness;
         p.use();
         p.set("radius", d.fluid.radius);
-        p.set("volumeScale", volumeScale(d.fluid));
+        p.set("spacing", d.fluid.spacing);
         p.set("scale", kThicknessScale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
         programs.drawParticles(d.fluid);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
-        thickness = addFilter(graph, "thickness blur", d, programs.blur, thickness, size, [=](Program& p) {
+        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, [=](Program& p, const PassContext&) {
             p.set("axis", axis);
-            p.set("reach", 4);
+            p.set("reach", kThicknessBlur);
         });
     return thickness;
 }
@@ -128,7 +173,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         programs.drawParticles(d.fluid);
     });
     // The narrow blur hides the single particles: its reach is 1.5 spacings.
-    const int reach = std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * kLightMap), 2, 12);
+    const int reach = std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * kLightMap), 2, 6);
     TextureHandle from = thickness;
     for (const bool first : {true, false}) {
         const TextureHandle to = graph.texture("water light", map);
@@ -151,10 +196,15 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
 
 FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
-    const TextureHandle depth = addSmooth(graph, programs, d, addSphereDepth(graph, programs, d));
-    const TextureHandle thickness = addThickness(graph, programs, d);
+    const TextureHandle tiles = addTiles(graph, programs, d);
+    const TextureHandle depth = addSmooth(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
+    const TextureHandle thickness = addThickness(graph, programs, d, tiles);
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
-    graph.pass("shade", {{d.frame, Usage::uniform}, d.colour, d.depth, depth, thickness, d.shadowSharp, d.shadowSoft, d.waterLight}, {colour},
+    graph.pass("copy scene", {{d.colour, Usage::copy}}, {{colour, Usage::copy}}, [=](PassContext& c) {
+        const gpu::Texture &from = c.texture(d.colour), &to = c.texture(colour);
+        glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
+    });
+    graph.pass("shade", {{d.frame, Usage::uniform}, tiles, d.colour, d.depth, depth, thickness, d.shadowSharp, d.shadowSoft, d.waterLight}, {colour},
                [=, &programs](PassContext& c) {
                    c.drawTo({colour});
                    useFrame(c, d);
@@ -171,7 +221,7 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
                    p.set("radius", d.fluid.radius);
                    p.set("absorption", d.look.absorption);
                    p.set("refractiveIndex", d.look.refractiveIndex);
-                   c.drawFullscreen();
+                   drawTiles(c, programs, p, tiles, 7);
                });
     return {colour, depth};
 }

@@ -8,7 +8,8 @@ struct Surface {
     float occlusion;   // 0..1: how open to the environment
 };
 
-vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving) {
+// `mirrored`: radiance of the environment from the mirror direction, blurred by the roughness.
+vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving, vec3 mirrored) {
     float nv = max(dot(s.normal, toEye), 1.0e-3);
     float nl = max(dot(s.normal, frame.lightDir.xyz), 0.0);
     vec3 h = normalize(toEye + frame.lightDir.xyz);
@@ -24,6 +25,9 @@ vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving) {
     vec4 k = s.roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
     float b = min(k.x * k.x, exp2(-9.28 * nv)) * k.x + k.y;
     vec3 gloss = f0 * (-1.04 * b + k.z) + (1.04 * b + k.w);
-    vec3 indirect = matte * ambient(s.normal) + gloss * environment(reflect(-toEye, s.normal), max(s.roughness, 0.08));
+    vec3 indirect = matte * ambient(s.normal) + gloss * mirrored;
     return direct + indirect * s.occlusion;
+}
+vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving) {
+    return shadeSurface(s, toEye, lightArriving, environment(reflect(-toEye, s.normal), max(s.roughness, 0.08)));
 }

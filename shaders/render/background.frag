@@ -20,6 +20,6 @@ void main() {
     vec3 light = frame.lightColour.rgb;
     if (away < 4.0) light *= meshShadow(posWorld, vec3(0.0, 1.0, 0.0)) * waterShadow(posWorld);
     Surface s = Surface(frame.floorColour.rgb, 0.55, 0.0, vec3(0.0, 1.0, 0.0), open);
-    vec3 surface = shadeSurface(s, -dir, light);
+    vec3 surface = shadeSurface(s, -dir, light, skyGradient(vec3(dir.x, -dir.y, dir.z)));
     colour.rgb = mix(sky, surface, near);
 }

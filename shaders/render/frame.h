@@ -23,6 +23,9 @@ STRUCT(FrameParams) {
     vec4 zenith;           // and overhead
     vec4 floorColour;      // reflectance; w = height, m
     vec4 floorFade;        // x, z of the centre (m), radius where the floor begins to fade into the horizon (m), 1 if there is a floor
+    vec4 boxTowards[3];    // softboxes: unit direction, world; w = half width / distance
+    vec4 boxSide[3];       // unit; w = half height / distance
+    vec4 boxRadiance[3];
     vec4 shadow;           // 1 if the meshes' map was drawn, 1 if the water's was, metres a unit of the first map's depth, of the second's
 };
 #if defined(__cplusplus)

@@ -20,7 +20,7 @@ float meshShadow(vec3 posWorld, vec3 normal) {
     vec4 clip = frame.shadowProjection * vec4(posWorld + normal * (0.004 * frame.shadow.z), 1.0);
     vec3 at = clip.xyz * 0.5 + 0.5;
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
-    float warped = exp(kWarp * clamp(at.z, 0.0, 1.03));
+    float warped = exp(kWarp * clamp(at.z, 0.0, 1.0));
     float blocker, unused;
     float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, blocker);
     float sharp = litFraction(texture(shadowSharp, at.xy).xy, warped, unused);
@@ -37,6 +37,6 @@ vec3 waterShadow(vec3 posWorld) {
     float below = max((at.z - water.y) * frame.shadow.w, 0.0);
     float through = min(water.x, below);
     float covered = smoothstep(0.0, 0.02, through);
-    float gather = clamp(1.0 + 14.0 * water.z, 0.45, 2.2);
+    float gather = 1.0 + clamp(25.0 * water.z, -0.2, 0.6);
     return mix(vec3(1.0), exp(-waterAbsorption * through) * 0.92 * gather, covered);
 }

@@ -2,6 +2,7 @@
 uniform sampler2D source;   // FROM_DEPTH: a depth map; else moments
 uniform ivec2 axis;         // (1,0) or (0,1)
 uniform int reach;          // texels either side
+uniform float scale;        // of the source's size to the target's
 layout(location = 0) out vec2 moments;
 const float kWarp = 40.0;
 vec2 at(ivec2 p, ivec2 last) {
@@ -13,13 +14,14 @@ vec2 at(ivec2 p, ivec2 last) {
 #endif
 }
 void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy), last = textureSize(source, 0) - 1;
+    ivec2 last = textureSize(source, 0) - 1, here = ivec2(gl_FragCoord.xy * scale);
+    ivec2 stride = axis * int(scale);
     float inverse = 2.0 / max(float(reach * reach), 1.0);
     vec2 sum = at(here, last);
     float weights = 1.0;
     for (int k = 1; k <= reach; ++k) {
         float w = exp(-float(k * k) * inverse);
-        sum += w * (at(here + k * axis, last) + at(here - k * axis, last));
+        sum += w * (at(here + k * stride, last) + at(here - k * stride, last));
         weights += 2.0 * w;
     }
     moments = sum / weights;

@@ -14,7 +14,8 @@ vec3 toSrgb(vec3 c) { return mix(12.92 * c, 1.055 * pow(max(c, vec3(0.0031308)),
 void main() {
     vec3 light = texelFetch(sceneColour, ivec2(gl_FragCoord.xy), 0).rgb;
     vec2 centre = gl_FragCoord.xy * frame.viewport.zw - 0.5;
-    light *= exposure * (1.0 - 0.22 * dot(centre, centre));
+    light *= exposure * (1.0 - 0.35 * dot(centre, centre));
     vec3 c = toSrgb(filmic(max(light, 0.0)));
+    c = mix(c, c * c * (3.0 - 2.0 * c), 0.4);  // a little more contrast
     colour = vec4(c, dot(c, vec3(0.299, 0.587, 0.114)));
 }

@@ -1,10 +1,13 @@
-// Depth of the sphere; blended by minimum.
+// Depth of the sphere, in the bulk's layer or the spray's; blended by minimum.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/sphere.glsl"
-uniform float radius;
-flat in vec3 centreView;
-layout(location = 0) out float depth;
+flat in vec4 centreView;
+flat in float sprayed;
+layout(location = 0) out float bulk;
+layout(location = 1) out float spray;
 void main() {
-    float through;
-    if (!hitSphere(gl_FragCoord.xy, centreView, radius, depth, through)) discard;
+    float depth, through;
+    if (!hitSphere(gl_FragCoord.xy, centreView.xyz, centreView.w, depth, through)) discard;
+    bulk = sprayed > 0.5 ? kFar : depth;
+    spray = sprayed > 0.5 ? depth : kFar;
 }

@@ -5,6 +5,9 @@ uniform float radius;                   // m
 
 const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);
 vec2 corner() { return vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)); }
+// Spray is finer than the particles that stand for it: those with few neighbours are drawn smaller.
+float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
+float drawnRadius(vec4 p) { return radius * mix(1.35, 0.5, spray(p)); }
 bool lost(vec4 p) { return !(dot(p.xyz, p.xyz) < 1.0e12); }  // NaN too
 
 // Slopes (x / depth) between which a circle around (x, depth) is seen: its two tangents through the origin.
@@ -14,11 +17,11 @@ vec2 tangents(float x, float depth, float r) {
 }
 
 // Clip position of this vertex of a quad around the sphere, in the plane through its nearest point. `centre` in view space.
-vec4 sphereQuad(vec3 centre) {
+vec4 sphereQuad(vec3 centre, float r) {
     float depth = -centre.z;
-    if (depth - radius < frame.planes.x) return kNowhere;  // the camera is in it, or it is behind
-    vec2 x = tangents(centre.x, depth, radius), y = tangents(centre.y, depth, radius);
+    if (depth - r < frame.planes.x) return kNowhere;  // the camera is in it, or it is behind
+    vec2 x = tangents(centre.x, depth, r), y = tangents(centre.y, depth, r);
     vec2 at = mix(vec2(x.x, y.x), vec2(x.y, y.y), corner());
-    float front = depth - radius;
+    float front = depth - r;
     return frame.projection * vec4(at * front, -front, 1.0);
 }

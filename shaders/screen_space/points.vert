@@ -5,11 +5,11 @@ layout(location = 1) in vec4 velocity;
 layout(location = 2) in uint id;
 uniform int colourBy;     // 0 speed, 1 density, 2 id
 uniform float fullSpeed;  // m/s, the colour map's end
-flat out vec3 centreView;
+flat out vec4 centreView;  // w: radius
 flat out vec3 baseColour;
 void main() {
-    centreView = (frame.view * vec4(particle.xyz, 1.0)).xyz;
-    gl_Position = lost(particle) ? kNowhere : sphereQuad(centreView);
+    centreView = vec4((frame.view * vec4(particle.xyz, 1.0)).xyz, drawnRadius(particle));
+    gl_Position = lost(particle) ? kNowhere : sphereQuad(centreView.xyz, centreView.w);
     if (colourBy == 0) baseColour = ramp(length(velocity.xyz) / fullSpeed);
     else if (colourBy == 1) baseColour = ramp(0.5 + 5.0 * (particle.w - 1.0));  // 0.9 .. 1.1 of the rest density
     else baseColour = ramp(fract(float((id * 2654435769u) >> 8) / 16777216.0));

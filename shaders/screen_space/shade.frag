@@ -5,7 +5,7 @@
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;   // window depth
 uniform sampler2D fluidDepth;   // m
-uniform sampler2D thickness;    // m
+uniform sampler2D thickness;    // m: of water, of that as spray
 uniform float radius;           // m
 uniform vec3 absorption;        // 1/m
 uniform float refractiveIndex;
@@ -46,7 +46,8 @@ void main() {
     if (nv < 0.02) { n = normalize(n + (0.02 - nv) * toEye); nv = 0.02; }
 
     // Behind: along the refracted ray, as far as the water is thick.
-    float through = texture(thickness, gl_FragCoord.xy * frame.viewport.zw).r;
+    vec2 water = texture(thickness, gl_FragCoord.xy * frame.viewport.zw).rg;
+    float through = water.x;
     vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
     vec3 back = colour.rgb;
     float stretch = 1.0;
@@ -66,8 +67,10 @@ void main() {
     vec3 passed = exp(-absorption * through);
     // A little of what is absorbed comes back scattered, so that deep water has a colour of its own.
     vec3 glow = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
-    vec3 scattered = vec3(0.012, 0.085, 0.11) * glow * (1.0 - exp(-2.5 * through));
+    vec3 scattered = vec3(0.008, 0.060, 0.085) * glow * (1.0 - exp(-2.5 * through));
     vec3 transmitted = back * passed + scattered;
+    float white = 1.0 - exp(-water.y * 0.3 / radius);
+    transmitted = mix(transmitted, 0.9 * (ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * (0.35 + 0.65 * max(dot(nWorld, frame.lightDir.xyz), 0.0)))), 0.75 * white);
 
     // Where the normal varies within a pixel the reflection is blurred: no sparkling.
     vec3 dx = dFdx(nWorld), dy = dFdy(nWorld);

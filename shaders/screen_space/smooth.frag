@@ -1,36 +1,50 @@
-// Narrow-range filter (Truong & Yuksel 2018), one axis: depths far in front are left out, depths far behind are pulled near, so that
-// surfaces bend at their edges and do not melt into each other. The range follows the surface as the filter walks out.
+// One level of the surface's smoothing: a 3x3 binomial kernel with holes (Holschneider et al. 1989, "a trous"), levels of growing step in turn.
+// Which depths belong to the surface is decided as in the narrow-range filter (Truong & Yuksel 2018): what lies far in front is left out, what
+// lies far behind is pulled near, so that surfaces bend at their edges and do not melt into each other. Opposite neighbours are judged
+// together, by how far the three depths are from a straight line: a steep surface is as smooth as a level one.
 #include "shaders/render/frame.glsl"
 uniform sampler2D source;
-uniform ivec2 axis;
-uniform float reach;      // m, of the kernel
-uniform float range;      // m
-uniform float bend;       // m, how far behind what is behind is taken to be
-uniform int maxTaps;
+uniform float step_;    // m
+uniform float range;    // m: how far from a straight line depths of one surface may be
+uniform float bend;     // m
+#if defined(LAST)
+uniform sampler2D spray; // m: drops stay as they are
+uniform vec3 low, high; // m, world: the box that the water cannot leave
+#endif
 layout(location = 0) out float depth;
+
+float z, sum, weights;
+ivec2 here, last;
+float at(ivec2 p) { return texelFetch(source, clamp(p, ivec2(0), last), 0).r; }
+void addPair(ivec2 away, float w) {
+    float a = at(here + away), b = at(here - away);
+    float off = a + b - 2.0 * z;
+    float near = min(a, b);
+    float pulled = near > z + range ? 2.0 * (z + bend) : 2.0 * z + bend;
+    float pair = off > range ? pulled : a + b;
+    sum += w * (off < -range ? 2.0 * z : pair);
+    weights += 2.0 * w;
+}
 void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy), last = textureSize(source, 0) - 1;
-    float z = texelFetch(source, here, 0).r;
+    here = ivec2(gl_FragCoord.xy);
+    last = textureSize(source, 0) - 1;
+    z = texelFetch(source, here, 0).r;
     depth = z;
-    if (z >= kFar) return;
-    float pixels = min(reach / (z * frame.ray.y), 0.5 * frame.viewport.y);
-    if (pixels < 1.0) return;
-    int taps = min(int(pixels), maxTaps);
-    float stride = pixels / float(taps);
-    float sum = z, weights = 1.0;
-    float low = z - range, high = z + range;
-    for (int k = 1; k <= taps; ++k) {
-        ivec2 away = int(float(k) * stride + 0.5) * axis;
-        float a = texelFetch(source, clamp(here + away, ivec2(0), last), 0).r;
-        float b = texelFetch(source, clamp(here - away, ivec2(0), last), 0).r;
-        float t = float(k) / float(taps);
-        float w = exp(-2.0 * t * t);
-        if (a < low || b < low) continue;  // both or none: a one-sided average would tilt the surface
-        float wa = w, wb = w;
-        if (a > high) a = z + bend; else { low = min(low, a - range); high = max(high, a + range); }
-        if (b > high) b = z + bend; else { low = min(low, b - range); high = max(high, b + range); }
-        sum += wa * a + wb * b;
-        weights += wa + wb;
-    }
-    depth = sum / weights;
+    int k = int(min(step_ / (z * frame.ray.y), 0.1 * frame.viewport.y) + 0.5);
+    sum = 4.0 * z;
+    weights = 4.0;
+    addPair(ivec2(k, 0), 2.0);
+    addPair(ivec2(0, k), 2.0);
+    addPair(ivec2(k, k), 1.0);
+    addPair(ivec2(k, -k), 1.0);
+    if (z < kFar) depth = sum / weights;
+#if defined(LAST)
+    depth = min(depth, texelFetch(spray, here, 0).r);
+    // The spheres reach a little out of the box. Cut, its walls are as flat as glass.
+    vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy));
+    vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;
+    vec3 enter = min(a, b), leave = max(a, b);
+    float entry = max(max(enter.x, enter.y), enter.z), exit_ = min(min(leave.x, leave.y), leave.z);
+    depth = entry > exit_ || depth > exit_ ? kFar : max(depth, entry);
+#endif
 }

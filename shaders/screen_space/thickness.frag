@@ -1,16 +1,19 @@
-// Water along the line of sight, in front of the scene; blended by addition. Drawn at 1 / SCALE of the resolution.
+// Water along the line of sight, in front of the scene, and how much of it is spray; blended by addition. Drawn at 1 / `scale` of the resolution.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/sphere.glsl"
-uniform float radius;
-uniform float volumeScale;  // a particle's volume / its sphere's
+uniform float spacing;      // m
 uniform int scale;
 uniform sampler2D sceneDepth;
-flat in vec3 centreView;
-layout(location = 0) out float thickness;
+flat in vec4 centreView;
+flat in float sprayed;
+layout(location = 0) out vec2 thickness;
 void main() {
     vec2 pixel = gl_FragCoord.xy * float(scale);
     float front, through;
-    if (!hitSphere(pixel, centreView, radius, front, through)) discard;
+    if (!hitSphere(pixel, centreView.xyz, centreView.w, front, through)) discard;
     float scene = depthOfWindow(texelFetch(sceneDepth, min(ivec2(pixel), ivec2(frame.viewport.xy) - 1), 0).r);
-    thickness = volumeScale * clamp(scene - front, 0.0, through);
+    float r = centreView.w / spacing;
+    float share = min(0.2387324 / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
+    float water = share * clamp(scene - front, 0.0, through);
+    thickness = vec2(water, water * sprayed);
 }

@@ -2,6 +2,7 @@
 // and every stretch of its way is walked through the voxels, so that nothing passes. Include after voxel/field.h and voxel/walk.h.
 #define CONTACT_STRETCHES 64  // at most, a step; a particle that needs more stops where it got to, and goes on next step
 #define CONTACT_SLACK 1.0e-4f // voxels: nearer than contact by less than this is let be
+#define CONTACT_VOXELS 1.735f // above sqrt(3); a little below kContactVoxels of fluid/voxel/voxel_field.h, which says what it is good for
 
 #include "shaders/fluid/respond.h"
 
@@ -188,7 +189,12 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
                 s.touched = true;
             }
         }
-        if (walkVoxels(PASS(surfaceBits) f, toCells(f, s.position), toCells(f, next)) <= 1.0f) {
+        // A stretch within one voxel whose end is CONTACT_VOXELS from the mesh is within a voxel that no triangle touches; any other is walked.
+        vec3 a = toCells(f, s.position);
+        vec3 b = toCells(f, next);
+        vec3 across = floor(a) - floor(b);
+        bool within = dot(across, across) == 0.0f && there.distance >= CONTACT_VOXELS * f.voxel;
+        if (!within && walkVoxels(PASS(surfaceBits) f, a, b) <= 1.0f) {
             s.velocity = vec3(0.0f, 0.0f, 0.0f);
             s.touched = true;
             return s;

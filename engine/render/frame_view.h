@@ -6,15 +6,15 @@
 namespace rivulet {
 
 struct FrameView {
-    mat4 view{1.0F};            // world -> view, right-handed, looking down -z
-    mat4 projection{1.0F};      // view -> clip, perspective, OpenGL depth range [-1, 1]
-    vec3 cameraPosWorld{0.0F};  // m
-    float nearPlane = 0.01F;    // m
-    float farPlane = 100.0F;    // m
-    int width = 0, height = 0;  // pixels
+    mat4 view{1.0F};                        // world -> view, right-handed, looking down -z
+    mat4 projection{1.0F};                  // view -> clip, perspective, OpenGL depth range [-1, 1]
+    vec3 cameraPosWorld{0.0F};              // m
+    float nearPlane = 0.01F;                // m
+    float farPlane = 100.0F;                // m
+    int width = 0, height = 0;              // pixels
     vec3 lightDirWorld{0.4F, 0.8F, 0.45F};  // unit, towards the light
-    vec3 lightColour{3.0F};     // linear RGB radiance
-    double time = 0;            // s
+    vec3 lightColour{3.0F};                 // linear RGB radiance
+    double time = 0;                        // s
 };
 
 }  // namespace rivulet

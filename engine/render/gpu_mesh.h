@@ -11,7 +11,7 @@ class GpuMesh {
   public:
     // Attribute 0: position, 1: normal (zero where the mesh has none). Error (failed): out of GPU memory.
     static Result<GpuMesh> create(const Mesh& mesh);
-    void draw() const;  // with the program in use
+    void draw() const;                                // with the program in use
     const Bounds& bounds() const { return bounds_; }  // the mesh's own
 
   private:

@@ -17,11 +17,11 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr int kShadowSize = 1024;      // texels, of the depth map
-constexpr int kShadowSharpReach = 2;   // texels either side
+constexpr int kShadowSize = 1024;     // texels, of the depth map
+constexpr int kShadowSharpReach = 2;  // texels either side
 constexpr int kShadowSoftReach = 9;
 constexpr float kExposure = 0.55F;
-constexpr float kBoxWidth = 1.2F;      // pixels
+constexpr float kBoxWidth = 1.2F;  // pixels
 const vec4 kBoxColour(0.10F, 0.13F, 0.16F, 0.35F);
 
 TextureDesc sized(const FrameView& view, Format format, int divide = 1) {
@@ -47,9 +47,9 @@ void placeSoftboxes(FrameParams& f) {
         vec3 towards;
         vec2 halfSize;
         vec3 radiance;
-    } boxes[3] = {{key, {0.30F, 0.22F}, 3.0F * colour},                                                         // around the key light
-                  {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint},               // a strip at one side
-                  {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0), {0.70F, 0.07F}, {2.6F, 2.85F, 3.0F}}};      // a wide one opposite the key
+    } boxes[3] = {{key, {0.30F, 0.22F}, 3.0F * colour},                                                     // around the key light
+                  {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint},           // a strip at one side
+                  {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0), {0.70F, 0.07F}, {2.6F, 2.85F, 3.0F}}};  // a wide one opposite the key
     for (size_t k = 0; k < 3; ++k) {
         const vec3 towards = glm::normalize(boxes[k].towards);
         f.boxTowards[k] = vec4(towards, boxes[k].halfSize.x);
@@ -61,7 +61,8 @@ void placeSoftboxes(FrameParams& f) {
 }  // namespace
 
 std::array<Program*, 13> RenderPrograms::all() {
-    return {&shadow, &shadowFirst, &shadowBlur, &depth, &floorDepth, &occlusion, &occlusionBlur, &background, &mesh, &box, &boxOverWater, &tonemap, &antialias};
+    return {&shadow,     &shadowFirst, &shadowBlur, &depth,        &floorDepth, &occlusion, &occlusionBlur,
+            &background, &mesh,        &box,        &boxOverWater, &tonemap,    &antialias};
 }
 
 Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
@@ -160,14 +161,16 @@ void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMes
             c.drawFullscreen();
         });
     };
-    const TextureHandle across = graph.texture("shadow across", shadowMapDesc(false)), wide = graph.texture("shadow wide", shadowMapDesc(true));
+    const TextureHandle across = graph.texture("shadow across", shadowMapDesc(false)),
+                        wide = graph.texture("shadow wide", shadowMapDesc(true));
     blur(programs.shadowFirst, depth, across, {1, 0}, kShadowSharpReach);
     blur(programs.shadowBlur, across, sharp, {0, 1}, kShadowSharpReach);
     blur(programs.shadowBlur, sharp, wide, {1, 0}, kShadowSoftReach);
     blur(programs.shadowBlur, wide, soft, {0, 1}, kShadowSoftReach);
 }
 
-TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes) {
+TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
+                       std::vector<DrawnMesh> meshes) {
     const TextureHandle depth = graph.texture("scene depth", sized(view, Format::depth32f));
     graph.pass("depth", {{frame, Usage::uniform}}, {depth}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
         c.drawTo({}, depth);
@@ -186,7 +189,8 @@ TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle
     return depth;
 }
 
-TextureHandle addOcclusion(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle depth, float reach) {
+TextureHandle addOcclusion(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle depth,
+                           float reach) {
     const TextureDesc half = sized(view, Format::rg16f, 2);
     TextureHandle open = graph.texture("occlusion", half);
     graph.pass("occlusion", {{frame, Usage::uniform}, depth}, {open}, [=, &programs](PassContext& c) {
@@ -211,8 +215,8 @@ TextureHandle addOcclusion(FrameGraph& graph, RenderPrograms& programs, BufferHa
     return open;
 }
 
-TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes,
-                        TextureHandle depth, TextureHandle occlusion, const LightMaps& light) {
+TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
+                        std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light) {
     const TextureHandle colour = graph.texture("scene colour", sized(view, Format::rgba16f));
     graph.pass("opaque", {{frame, Usage::uniform}, {depth, Usage::target}, occlusion, light.sharp, light.soft, light.water}, {colour},
                [=, &programs, drawn = std::move(meshes)](PassContext& c) {
@@ -264,7 +268,8 @@ void addBox(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, con
     });
 }
 
-void addTonemap(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle colour, TextureHandle picture) {
+void addTonemap(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle colour,
+                TextureHandle picture) {
     const TextureHandle mapped = graph.texture("tonemapped", sized(view, Format::rgba8));
     graph.pass("tonemap", {{frame, Usage::uniform}, colour}, {mapped}, [=, &programs](PassContext& c) {
         c.drawTo({mapped});

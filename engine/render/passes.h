@@ -17,7 +17,8 @@ namespace rivulet {
 
 // The programs of all passes; a failed reload keeps the last good ones.
 struct RenderPrograms {
-    gpu::Program shadow, shadowFirst, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, background, mesh, box, boxOverWater, tonemap, antialias;
+    gpu::Program shadow, shadowFirst, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, background, mesh, box, boxOverWater, tonemap,
+        antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
     Status reload();
 
@@ -38,7 +39,7 @@ struct Studio {
     vec3 floor{0.42F, 0.40F, 0.38F};
     float floorHeight = 0.0F;  // m
     bool showFloor = true;
-    Bounds shown;              // m; what the picture is about: the floor fades around it
+    Bounds shown;  // m; what the picture is about: the floor fades around it
 };
 
 // The uniform block of a frame. `meshes`, `water`: the world bounds that the light's maps must cover (m); empty: no map.
@@ -50,22 +51,23 @@ struct LightMaps {
     vec3 absorption{0.0F};  // 1/m, of the water
 };
 
-// The moments of the meshes' depth as the light sees it, blurred narrowly into `sharp` and widely into `soft`, which are of shadowMapDesc().
-// They change only with the meshes and the light, so whoever keeps them saves the pass.
+// The moments of the meshes' depth as the light sees it, blurred narrowly into `sharp` and widely into `soft`, which are of
+// shadowMapDesc(). They change only with the meshes and the light, so whoever keeps them saves the pass.
 gpu::TextureDesc shadowMapDesc(bool soft);
-void addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection, gpu::TextureHandle sharp,
-               gpu::TextureHandle soft);
+void addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection,
+               gpu::TextureHandle sharp, gpu::TextureHandle soft);
 // Window depth of meshes and floor. `frame`: the buffer of a FrameParams.
-gpu::TextureHandle addDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes);
+gpu::TextureHandle addDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
+                            std::vector<DrawnMesh> meshes);
 // How open each point is to the environment, at half resolution; `reach` in m.
-gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, gpu::TextureHandle depth,
-                                float reach);
+gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
+                                gpu::TextureHandle depth, float reach);
 // Linear radiance (rgba16f) of background, floor and meshes.
-gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, std::vector<DrawnMesh> meshes,
-                             gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light);
+gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
+                             std::vector<DrawnMesh> meshes, gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light);
 // The edges of a box, drawn into `colour`. With `fluidDepth` (m, r32f): only those in front of the water.
-void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour, gpu::TextureHandle depth,
-            gpu::TextureHandle fluidDepth = {});
+void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour,
+            gpu::TextureHandle depth, gpu::TextureHandle fluidDepth = {});
 // Linear radiance to sRGB, edges smoothed, dithered, into `picture` (rgba8, view's size).
 void addTonemap(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, gpu::TextureHandle colour,
                 gpu::TextureHandle picture);

@@ -210,7 +210,8 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
     const FluidLayers layers = row->add(graph, fluid_, draw);
-    if (background.showBox && (row->opaque || layers.fluidDepth)) addBox(graph, render_, frame, box, layers.colour, draw.depth, layers.fluidDepth);
+    if (background.showBox && (row->opaque || layers.fluidDepth))
+        addBox(graph, render_, frame, box, layers.colour, draw.depth, layers.fluidDepth);
 
     const gpu::TextureHandle picture = graph.importTexture("picture", picture_);
     addTonemap(graph, render_, frame, view, layers.colour, picture);
@@ -228,7 +229,8 @@ std::vector<uint8_t> SceneRenderer::pixels() const {
     std::vector<uint8_t> bottomUp(row * rows), topDown(row * rows);
     picture_.read(std::as_writable_bytes(std::span(bottomUp)));
     for (size_t y = 0; y < rows; ++y)
-        std::copy_n(bottomUp.begin() + static_cast<std::ptrdiff_t>(y * row), row, topDown.begin() + static_cast<std::ptrdiff_t>((rows - 1 - y) * row));
+        std::copy_n(bottomUp.begin() + static_cast<std::ptrdiff_t>(y * row), row,
+                    topDown.begin() + static_cast<std::ptrdiff_t>((rows - 1 - y) * row));
     return topDown;
 }
 

@@ -65,12 +65,12 @@ class SceneRenderer {
     RenderPrograms render_;
     FluidPrograms fluid_;
     gpu::TransientPool pool_;
-    gpu::Buffer frame_;      // FrameParams
-    gpu::Texture picture_;   // the last frame
+    gpu::Buffer frame_;     // FrameParams
+    gpu::Texture picture_;  // the last frame
     gpu::Texture shadowSharp_, shadowSoft_;
     std::vector<mat4> shadowOf_;  // what the shadow maps show: the light's projection, then a matrix a mesh
     std::vector<const GpuMesh*> shadowMeshes_;
-    gpu::Texture nothing_;   // stands in for a map of the light that is not there
+    gpu::Texture nothing_;  // stands in for a map of the light that is not there
     std::map<std::shared_ptr<const Mesh>, GpuMesh> meshes_;
 };
 

@@ -10,13 +10,13 @@
 namespace rivulet {
 
 struct FluidView {
-    unsigned position = 0;   // GL buffer name, vec4: xyz m, w = density / rest density
-    unsigned velocity = 0;   // GL buffer name, vec4: xyz m/s
-    unsigned id = 0;         // GL buffer name, uint
-    uint32_t count = 0;      // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
-    float radius = 0.01F;    // m, of a drawn sphere
-    float spacing = 0.02F;   // m
-    Bounds bounds;           // m, world: the box that the water is in: it is cut there, and its shadow map covers it; empty: no cut, no shadow
+    unsigned position = 0;  // GL buffer name, vec4: xyz m, w = density / rest density
+    unsigned velocity = 0;  // GL buffer name, vec4: xyz m/s
+    unsigned id = 0;        // GL buffer name, uint
+    uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
+    float radius = 0.01F;   // m, of a drawn sphere
+    float spacing = 0.02F;  // m
+    Bounds bounds;  // m, world: the box that the water is in: it is cut there, and its shadow map covers it; empty: no cut, no shadow
 };
 
 }  // namespace rivulet

@@ -7,8 +7,13 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
     using gpu::Usage;
     if (d.fluid.count == 0) return {d.colour, {}};
     graph.pass("points",
-               {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, {d.velocity, Usage::attribute}, {d.id, Usage::attribute}, d.shadowSharp,
-                d.shadowSoft, d.waterLight},
+               {{d.frame, Usage::uniform},
+                {d.position, Usage::attribute},
+                {d.velocity, Usage::attribute},
+                {d.id, Usage::attribute},
+                d.shadowSharp,
+                d.shadowSoft,
+                d.waterLight},
                {d.colour, d.depth}, [d, &programs](gpu::PassContext& c) {
                    c.drawTo({d.colour}, d.depth);
                    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));

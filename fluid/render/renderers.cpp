@@ -15,12 +15,14 @@ constexpr Table<RendererRow> kRenderers{kRows};
 const Table<RendererRow>& renderers() { return kRenderers; }
 
 std::array<gpu::Program*, 12> FluidPrograms::all() {
-    return {&points, &occluder, &markTiles, &depth, &smooth, &smoothLast, &thickness, &blur, &shade, &lightWater, &lightWaterFirst, &lightWaterLast};
+    return {&points,    &occluder, &markTiles, &depth,      &smooth,          &smoothLast,
+            &thickness, &blur,     &shade,     &lightWater, &lightWaterFirst, &lightWaterLast};
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     using gpu::Program;
-    const std::string folder = "shaders/screen_space/", full = "shaders/render/fullscreen.vert", tile = folder + "tile.vert", sphere = folder + "sphere.vert";
+    const std::string folder = "shaders/screen_space/", full = "shaders/render/fullscreen.vert", tile = folder + "tile.vert",
+                      sphere = folder + "sphere.vert";
     FluidPrograms p;
     std::pair<Program*, Result<Program>> made[] = {
         {&p.points, Program::create(files, {folder + "points.vert", folder + "points.frag"})},

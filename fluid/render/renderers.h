@@ -17,16 +17,17 @@ namespace rivulet {
 enum class ColourBy { speed, density, id };
 
 struct FluidLook {
-    ColourBy colourBy = ColourBy::speed;   // points
-    float fullSpeed = 3.0F;                // m/s: the end of the colour map
-    float smoothing = 2.5F;                // reach of the smoothing, in drawn radii
-    vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
-    float refractiveIndex = 1.333F;        // > 1
+    ColourBy colourBy = ColourBy::speed;  // points
+    float fullSpeed = 3.0F;               // m/s: the end of the colour map
+    float smoothing = 2.5F;               // reach of the smoothing, in drawn radii
+    vec3 absorption{4.5F, 1.1F, 0.5F};    // 1/m, Beer-Lambert per channel
+    float refractiveIndex = 1.333F;       // > 1
 };
 
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
-    gpu::Program points, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst, lightWaterLast;
+    gpu::Program points, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
+        lightWaterLast;
     gpu::VertexArray particles, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
@@ -41,10 +42,10 @@ struct FluidDraw {
     FrameView view;
     FluidView fluid;
     FluidLook look;
-    gpu::BufferHandle frame;                              // a FrameParams (shaders/render/frame.h)
-    gpu::BufferHandle position, velocity, id;             // fluid's, imported
-    gpu::TextureHandle colour;                            // rgba16f, linear radiance
-    gpu::TextureHandle depth;                             // window depth
+    gpu::BufferHandle frame;                                 // a FrameParams (shaders/render/frame.h)
+    gpu::BufferHandle position, velocity, id;                // fluid's, imported
+    gpu::TextureHandle colour;                               // rgba16f, linear radiance
+    gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
 };
 

@@ -35,7 +35,8 @@ void drawTiles(const PassContext& c, FluidPrograms& programs, Program& program, 
 }
 
 TextureHandle addTiles(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
-    const TextureDesc size{.width = (d.view.width + kTile - 1) / kTile, .height = (d.view.height + kTile - 1) / kTile, .format = Format::r8};
+    const TextureDesc size{
+        .width = (d.view.width + kTile - 1) / kTile, .height = (d.view.height + kTile - 1) / kTile, .format = Format::r8};
     const TextureHandle tiles = graph.texture("water tiles", size);
     graph.pass("tiles", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {tiles}, [=, &programs](PassContext& c) {
         c.drawTo({tiles}).clearColour(vec4(0.0F));
@@ -50,8 +51,9 @@ TextureHandle addTiles(FrameGraph& graph, FluidPrograms& programs, const FluidDr
 
 // A pass over the tiles from one texture to another of `desc`, `empty` elsewhere.
 template <class Setup>
-TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, Program& program, TextureHandle tiles,
-                        TextureHandle from, const TextureDesc& desc, float empty, Setup setup, TextureHandle second = {}) {
+TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, Program& program,
+                        TextureHandle tiles, TextureHandle from, const TextureDesc& desc, float empty, Setup setup,
+                        TextureHandle second = {}) {
     const TextureHandle to = graph.texture(name, desc);
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, tiles, from};
     if (second) reads.emplace_back(second);
@@ -74,26 +76,28 @@ SphereDepth addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const Flu
     const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
     TextureDesc depthSize = size;
     depthSize.format = Format::depth32f;
-    const TextureHandle bulk = graph.texture("bulk depth", size), spray = graph.texture("spray depth", size), hidden = graph.texture("fluid occluders", depthSize);
-    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {bulk, spray, hidden}, [=, &programs](PassContext& c) {
-        const gpu::Framebuffer& target = c.drawTo({bulk, spray}, hidden);
-        useFrame(c, d);
-        target.clearColour(vec4(kFar), 0);
-        target.clearColour(vec4(kFar), 1);
-        target.clearDepth();
-        glEnable(GL_DEPTH_TEST);
-        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        programs.occluder.use();
-        programs.occluder.set("radius", d.fluid.radius);
-        programs.drawParticles(d.fluid);
-        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glDepthMask(GL_FALSE);
-        glEnable(GL_BLEND);
-        glBlendEquation(GL_MIN);
-        programs.depth.use();
-        programs.depth.set("radius", d.fluid.radius);
-        programs.drawParticles(d.fluid);
-    });
+    const TextureHandle bulk = graph.texture("bulk depth", size), spray = graph.texture("spray depth", size),
+                        hidden = graph.texture("fluid occluders", depthSize);
+    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {bulk, spray, hidden},
+               [=, &programs](PassContext& c) {
+                   const gpu::Framebuffer& target = c.drawTo({bulk, spray}, hidden);
+                   useFrame(c, d);
+                   target.clearColour(vec4(kFar), 0);
+                   target.clearColour(vec4(kFar), 1);
+                   target.clearDepth();
+                   glEnable(GL_DEPTH_TEST);
+                   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+                   programs.occluder.use();
+                   programs.occluder.set("radius", d.fluid.radius);
+                   programs.drawParticles(d.fluid);
+                   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+                   glDepthMask(GL_FALSE);
+                   glEnable(GL_BLEND);
+                   glBlendEquation(GL_MIN);
+                   programs.depth.use();
+                   programs.depth.set("radius", d.fluid.radius);
+                   programs.drawParticles(d.fluid);
+               });
     return {bulk, spray};
 }
 
@@ -118,7 +122,8 @@ TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidD
             p.set("low", box.min);
             p.set("high", box.max);
         };
-        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, graph.desc(depth), kFar, setup, final ? spheres.spray : TextureHandle{});
+        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, graph.desc(depth), kFar, setup,
+                          final ? spheres.spray : TextureHandle{});
     }
     return depth;
 }
@@ -128,24 +133,26 @@ TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const Flu
                            .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
                            .format = Format::rg16f};
     TextureHandle thickness = graph.texture("thickness", size);
-    graph.pass("thickness", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth}, {thickness}, [=, &programs](PassContext& c) {
-        c.drawTo({thickness}).clearColour(vec4(0.0F));
-        useFrame(c, d);
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE);
-        Program& p = programs.thickness;
-        p.use();
-        p.set("radius", d.fluid.radius);
-        p.set("spacing", d.fluid.spacing);
-        p.set("scale", kThicknessScale);
-        p.texture("sceneDepth", 0, c.texture(d.depth));
-        programs.drawParticles(d.fluid);
-    });
+    graph.pass("thickness", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth}, {thickness},
+               [=, &programs](PassContext& c) {
+                   c.drawTo({thickness}).clearColour(vec4(0.0F));
+                   useFrame(c, d);
+                   glEnable(GL_BLEND);
+                   glBlendFunc(GL_ONE, GL_ONE);
+                   Program& p = programs.thickness;
+                   p.use();
+                   p.set("radius", d.fluid.radius);
+                   p.set("spacing", d.fluid.spacing);
+                   p.set("scale", kThicknessScale);
+                   p.texture("sceneDepth", 0, c.texture(d.depth));
+                   programs.drawParticles(d.fluid);
+               });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
-        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, [=](Program& p, const PassContext&) {
-            p.set("axis", axis);
-            p.set("reach", kThicknessBlur);
-        });
+        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F,
+                              [=](Program& p, const PassContext&) {
+                                  p.set("axis", axis);
+                                  p.set("reach", kThicknessBlur);
+                              });
     return thickness;
 }
 
@@ -157,21 +164,22 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc map{.width = kLightMap, .height = kLightMap, .format = Format::rgba16f};
     const TextureHandle thickness = graph.texture("light thickness", thin), nearest = graph.texture("light depth", nearer);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {thickness, nearest}, [=, &programs](PassContext& c) {
-        const gpu::Framebuffer& target = c.drawTo({thickness, nearest});
-        useFrame(c, d);
-        target.clearColour(vec4(0.0F), 0);
-        target.clearColour(vec4(1.0F), 1);
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE);
-        glBlendEquationi(1, GL_MIN);
-        Program& p = programs.lightWater;
-        p.use();
-        p.set("clipRadius", clipRadius);
-        p.set("radius", d.fluid.radius);
-        p.set("volumeScale", volumeScale(d.fluid));
-        programs.drawParticles(d.fluid);
-    });
+    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {thickness, nearest},
+               [=, &programs](PassContext& c) {
+                   const gpu::Framebuffer& target = c.drawTo({thickness, nearest});
+                   useFrame(c, d);
+                   target.clearColour(vec4(0.0F), 0);
+                   target.clearColour(vec4(1.0F), 1);
+                   glEnable(GL_BLEND);
+                   glBlendFunc(GL_ONE, GL_ONE);
+                   glBlendEquationi(1, GL_MIN);
+                   Program& p = programs.lightWater;
+                   p.use();
+                   p.set("clipRadius", clipRadius);
+                   p.set("radius", d.fluid.radius);
+                   p.set("volumeScale", volumeScale(d.fluid));
+                   programs.drawParticles(d.fluid);
+               });
     // The narrow blur hides the single particles: its reach is 1.5 spacings.
     const int reach = std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * kLightMap), 2, 6);
     TextureHandle from = thickness;
@@ -204,8 +212,8 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
         const gpu::Texture &from = c.texture(d.colour), &to = c.texture(colour);
         glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
     });
-    graph.pass("shade", {{d.frame, Usage::uniform}, tiles, d.colour, d.depth, depth, thickness, d.shadowSharp, d.shadowSoft, d.waterLight}, {colour},
-               [=, &programs](PassContext& c) {
+    graph.pass("shade", {{d.frame, Usage::uniform}, tiles, d.colour, d.depth, depth, thickness, d.shadowSharp, d.shadowSoft, d.waterLight},
+               {colour}, [=, &programs](PassContext& c) {
                    c.drawTo({colour});
                    useFrame(c, d);
                    Program& p = programs.shade;

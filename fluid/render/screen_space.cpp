@@ -15,14 +15,14 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr float kFar = 1.0e6F;                     // m, shaders/render/frame.glsl's depth of nothing
-constexpr float kSmoothSteps[] = {1, 2, 4, 7, 5};  // of the levels, relative
-constexpr float kRange = 7.0F;                     // radii
-constexpr float kBend = 0.5F;                      // radii
-constexpr int kThicknessScale = 2;                 // of the resolution
-constexpr int kThicknessBlur = 4;                  // texels either side
-constexpr int kTile = 32;                          // pixels
-constexpr int kLightMap = 256;                     // texels
+constexpr float kFar = 1.0e6F;                        // m, shaders/render/frame.glsl's depth of nothing
+constexpr float kSmoothSteps[] = {3, 5, 7, 4, 2, 1};  // of the levels, relative; the small ones last: they iron out what the holes leave
+constexpr float kRange = 7.0F;                        // radii
+constexpr float kBend = 0.5F;                         // radii
+constexpr int kThicknessScale = 2;                    // of the resolution
+constexpr int kThicknessBlur = 4;                     // texels either side
+constexpr int kTile = 32;                             // pixels
+constexpr int kLightMap = 256;                        // texels
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 

@@ -31,6 +31,33 @@ float fresnel(float c, float n) {
     return 0.5 * s * s * (1.0 + p * p);
 }
 
+// What the mirror direction meets of the picture itself: rgb, and a = how surely. View space; steps grow with distance.
+vec4 mirroredScene(vec3 from, vec3 dir) {
+    const int kSteps = 10;
+    float t = 3.0 * radius, previous = 0.0;
+    for (int k = 0; k < kSteps; ++k) {
+        vec3 p = from + dir * t;
+        if (p.z > -frame.planes.x) return vec4(0.0);
+        vec2 uv = pixelOf(p) * frame.viewport.zw;
+        if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec4(0.0);
+        float behind = -p.z - depthOfWindow(textureLod(sceneDepth, uv, 0.0).r);
+        if (behind > 0.0 && behind < 1.5 * (t - previous)) {
+            float low = previous, high = t;
+            for (int i = 0; i < 3; ++i) {
+                float middle = 0.5 * (low + high);
+                vec3 q = from + dir * middle;
+                if (-q.z > depthOfWindow(textureLod(sceneDepth, pixelOf(q) * frame.viewport.zw, 0.0).r)) high = middle; else low = middle;
+            }
+            uv = pixelOf(from + dir * high) * frame.viewport.zw;
+            vec2 edge = smoothstep(vec2(0.0), vec2(0.08), uv) * smoothstep(vec2(0.0), vec2(0.08), 1.0 - uv);
+            return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y);
+        }
+        previous = t;
+        t *= 1.5;
+    }
+    return vec4(0.0);
+}
+
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     colour = texelFetch(sceneColour, here, 0);
@@ -77,5 +104,9 @@ void main() {
     float rough = sqrt(min(0.02 + 0.35 * (dot(dx, dx) + dot(dy, dy)), 0.2));
     vec3 mirrored = reflect(-eyeWorld, nWorld);
     vec3 reflected = environment(mirrored, rough) * mix(0.6, 1.0, lit);
-    colour = vec4(mix(transmitted, reflected, fresnel(nv, refractiveIndex)), 1.0);
+    vec4 met = mirroredScene(p, reflect(-toEye, n));
+    reflected = mix(reflected, met.rgb, met.a);
+    // The fringe of the water, less than a particle thick, is a matter of where particles happen to be: it does not mirror.
+    float mirror = fresnel(nv, refractiveIndex) * smoothstep(0.0, 0.8 * radius, through);
+    colour = vec4(mix(transmitted, reflected, mirror), 1.0);
 }

@@ -30,7 +30,7 @@ void main() {
     last = textureSize(source, 0) - 1;
     z = texelFetch(source, here, 0).r;
     depth = z;
-    int k = int(min(step_ / (z * frame.ray.y), 0.1 * frame.viewport.y) + 0.5);
+    int k = max(int(min(step_ / (z * frame.ray.y), 0.1 * frame.viewport.y) + 0.5), 1);
     sum = 4.0 * z;
     weights = 4.0;
     addPair(ivec2(k, 0), 2.0);

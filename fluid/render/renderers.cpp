@@ -35,7 +35,7 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         {&p.blur, Program::create(files, {tile, folder + "blur.frag"})},
         {&p.shade, Program::create(files, {tile, folder + "shade.frag"})},
         {&p.lightWater, Program::create(files, {folder + "light_water.vert", folder + "light_water.frag"})},
-        {&p.lightWaterFirst, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"FIRST", "1"}})},
+        {&p.lightWaterFirst, Program::create(files, {full, folder + "light_water_blur.frag"})},
         {&p.lightWaterLast, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"LAST", "1"}})},
     };
     for (auto& [into, program] : made) {

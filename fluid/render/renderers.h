@@ -62,7 +62,7 @@ struct RendererRow {
 };
 const Table<RendererRow>& renderers();
 
-// What the light passes through on its way: x thickness (m), y nearest depth (0..1), z thickness relative to the surroundings (m).
+// What the light passes through on its way: x thickness (m), y that times its depth (0..1), z thickness relative to the surroundings (m).
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
 

@@ -159,40 +159,32 @@ TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const Flu
 }  // namespace
 
 TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
-    const TextureDesc thin{.width = kLightMap, .height = kLightMap, .format = Format::r16f};
-    const TextureDesc nearer{.width = kLightMap, .height = kLightMap, .format = Format::r32f};
+    const TextureDesc raw{.width = kLightMap, .height = kLightMap, .format = Format::rg16f};
     const TextureDesc map{.width = kLightMap, .height = kLightMap, .format = Format::rgba16f};
-    const TextureHandle thickness = graph.texture("light thickness", thin), nearest = graph.texture("light depth", nearer);
+    const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {thickness, nearest},
-               [=, &programs](PassContext& c) {
-                   const gpu::Framebuffer& target = c.drawTo({thickness, nearest});
-                   useFrame(c, d);
-                   target.clearColour(vec4(0.0F), 0);
-                   target.clearColour(vec4(1.0F), 1);
-                   glEnable(GL_BLEND);
-                   glBlendFunc(GL_ONE, GL_ONE);
-                   glBlendEquationi(1, GL_MIN);
-                   Program& p = programs.lightWater;
-                   p.use();
-                   p.set("clipRadius", clipRadius);
-                   p.set("radius", d.fluid.radius);
-                   p.set("volumeScale", volumeScale(d.fluid));
-                   programs.drawParticles(d.fluid);
-               });
+    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {drawn}, [=, &programs](PassContext& c) {
+        c.drawTo({drawn}).clearColour(vec4(0.0F));
+        useFrame(c, d);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE);
+        Program& p = programs.lightWater;
+        p.use();
+        p.set("clipRadius", clipRadius);
+        p.set("radius", d.fluid.radius);
+        p.set("volumeScale", volumeScale(d.fluid));
+        programs.drawParticles(d.fluid);
+    });
     // The narrow blur hides the single particles: its reach is 1.5 spacings.
     const int reach = std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * kLightMap), 2, 6);
-    TextureHandle from = thickness;
+    TextureHandle from = drawn;
     for (const bool first : {true, false}) {
         const TextureHandle to = graph.texture("water light", map);
         Program& p = first ? programs.lightWaterFirst : programs.lightWaterLast;
-        std::vector<gpu::Read> reads = {from};
-        if (first) reads.emplace_back(nearest);
-        graph.pass("water light blur", reads, {to}, [=, &p](PassContext& c) {
+        graph.pass("water light blur", {from}, {to}, [=, &p](PassContext& c) {
             c.drawTo({to});
             p.use();
             p.texture("source", 0, c.texture(from));
-            if (first) p.texture("nearest", 1, c.texture(nearest));
             p.set("axis", first ? ivec2(1, 0) : ivec2(0, 1));
             p.set("reach", reach);
             c.drawFullscreen();

@@ -2,7 +2,7 @@
 // through the water. Needs frame.glsl.
 uniform sampler2D shadowSharp;  // moments, narrowly blurred
 uniform sampler2D shadowSoft;   // moments, widely blurred
-uniform sampler2D waterLight;   // thickness along the light (m), nearest depth, thickness relative to its surroundings (m)
+uniform sampler2D waterLight;   // thickness along the light (m), that times its depth, thickness relative to its surroundings (m)
 uniform vec3 waterAbsorption;   // 1/m
 
 const float kWarp = 40.0;
@@ -34,8 +34,10 @@ vec3 waterShadow(vec3 posWorld) {
     vec3 at = clip.xyz * 0.5 + 0.5;
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return vec3(1.0);
     vec3 water = texture(waterLight, at.xy).xyz;
-    float below = max((at.z - water.y) * frame.shadow.w, 0.0);
-    float through = min(water.x, below);
+    // As if the water lay in one layer around its mean depth: of that, what is nearer the light than the point.
+    float layer = max(water.x, 0.03);
+    float behind = (at.z - water.y / max(water.x, 1.0e-5)) * frame.shadow.w / layer + 0.5;
+    float through = water.x * clamp(behind, 0.0, 1.0);
     float covered = smoothstep(0.0, 0.02, through);
     float gather = 1.0 + clamp(25.0 * water.z, -0.2, 0.6);
     return mix(vec3(1.0), exp(-waterAbsorption * through) * 0.92 * gather, covered);

@@ -3,10 +3,10 @@
 #include "shaders/screen_space/particle.glsl"
 uniform float clipRadius;  // of a particle in the light's clip space
 out vec2 inDisc;
-flat out float nearest;
+flat out float depth;
 void main() {
     inDisc = corner() * 2.0 - 1.0;
     vec4 clip = frame.waterProjection * vec4(particle.xyz, 1.0);
-    nearest = clip.z * 0.5 + 0.5;
+    depth = clip.z * 0.5 + 0.5;
     gl_Position = lost(particle) ? kNowhere : clip + vec4(inDisc * clipRadius, 0.0, 0.0);
 }

@@ -1,34 +1,30 @@
-// Blurs the light's map of the water along one axis: x thickness, y nearest depth, z thickness blurred widely; LAST: z becomes how much more
-// water there is here than around, which is where light gathers.
-uniform sampler2D source;   // FIRST: thickness; else x, y, z
-uniform sampler2D nearest;  // FIRST: depth
+// Blurs the light's map of the water along one axis: x thickness, y thickness times depth, z thickness blurred twice as widely. LAST: z becomes
+// how much more water there is here than around, which is where light gathers.
+uniform sampler2D source;
 uniform ivec2 axis;
-uniform int reach;          // texels either side, of the narrow blur
+uniform int reach;  // texels either side, of the narrow blur
 layout(location = 0) out vec4 value;
 vec3 at(ivec2 p) {
-    p = clamp(p, ivec2(0), textureSize(source, 0) - 1);
-#if defined(FIRST)
-    float t = texelFetch(source, p, 0).r;
-    return vec3(t, texelFetch(nearest, p, 0).r, t);
+    vec3 v = texelFetch(source, clamp(p, ivec2(0), textureSize(source, 0) - 1), 0).xyz;
+#if defined(LAST)
+    return v;
 #else
-    return texelFetch(source, p, 0).xyz;
+    return v.xyx;
 #endif
 }
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     float narrow = 2.0 / float(reach * reach), wide = narrow / 4.0;
-    vec3 c = at(here);
-    float sum = c.x, depth = c.y, wideSum = c.z, weights = 1.0, wideWeights = 1.0;
+    value = vec4(at(here), 1.0);
+    float weights = 1.0, wideWeights = 1.0;
     for (int k = 1; k <= 2 * reach; ++k) {
-        vec3 a = at(here + k * axis), b = at(here - k * axis);
+        vec3 both = at(here + k * axis) + at(here - k * axis);
         float w = exp(-float(k * k) * narrow), v = exp(-float(k * k) * wide);
-        sum += w * (a.x + b.x);
-        wideSum += v * (a.z + b.z);
+        value.xyz += vec3(w, w, v) * both;
         weights += 2.0 * w;
         wideWeights += 2.0 * v;
-        if (k <= reach) depth = min(depth, min(a.y, b.y));
     }
-    value = vec4(sum / weights, depth, wideSum / wideWeights, 1.0);
+    value.xyz /= vec3(weights, weights, wideWeights);
 #if defined(LAST)
     value.z = value.x - value.z;
 #endif

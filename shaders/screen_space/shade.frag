@@ -31,31 +31,30 @@ float fresnel(float c, float n) {
     return 0.5 * s * s * (1.0 + p * p);
 }
 
-// What the mirror direction meets of the picture itself: rgb, and a = how surely. View space; steps grow with distance.
-vec4 mirroredScene(vec3 from, vec3 dir) {
-    const int kSteps = 10;
-    float t = 3.0 * radius, previous = 0.0;
-    for (int k = 0; k < kSteps; ++k) {
+// What the mirror direction meets of the picture itself: rgb, and a = how surely. View space; steps grow with distance. `steps` 0: nothing.
+vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
+    float t = 3.0 * radius, low = 0.0, high = 0.0;
+    for (int k = 0; k < steps; ++k) {
         vec3 p = from + dir * t;
-        if (p.z > -frame.planes.x) return vec4(0.0);
         vec2 uv = pixelOf(p) * frame.viewport.zw;
-        if (any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec4(0.0);
+        if (p.z > -frame.planes.x || any(greaterThan(abs(uv - 0.5), vec2(0.5)))) break;
         float behind = -p.z - depthOfWindow(textureLod(sceneDepth, uv, 0.0).r);
-        if (behind > 0.0 && behind < 1.5 * (t - previous)) {
-            float low = previous, high = t;
-            for (int i = 0; i < 3; ++i) {
-                float middle = 0.5 * (low + high);
-                vec3 q = from + dir * middle;
-                if (-q.z > depthOfWindow(textureLod(sceneDepth, pixelOf(q) * frame.viewport.zw, 0.0).r)) high = middle; else low = middle;
-            }
-            uv = pixelOf(from + dir * high) * frame.viewport.zw;
-            vec2 edge = smoothstep(vec2(0.0), vec2(0.08), uv) * smoothstep(vec2(0.0), vec2(0.08), 1.0 - uv);
-            return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y);
+        if (behind > 0.0 && behind < 1.5 * (t - low)) {
+            high = t;
+            break;
         }
-        previous = t;
+        low = t;
         t *= 1.5;
     }
-    return vec4(0.0);
+    for (int k = high > 0.0 ? 3 : 0; k > 0; --k) {
+        float middle = 0.5 * (low + high);
+        vec3 p = from + dir * middle;
+        if (-p.z > depthOfWindow(textureLod(sceneDepth, pixelOf(p) * frame.viewport.zw, 0.0).r)) high = middle; else low = middle;
+    }
+    if (high == 0.0) return vec4(0.0);
+    vec2 uv = pixelOf(from + dir * high) * frame.viewport.zw;
+    vec2 edge = smoothstep(vec2(0.5), vec2(0.42), abs(uv - 0.5));
+    return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y);
 }
 
 void main() {
@@ -72,14 +71,17 @@ void main() {
     float nv = dot(n, toEye);
     if (nv < 0.02) { n = normalize(n + (0.02 - nv) * toEye); nv = 0.02; }
 
-    // Behind: along the refracted ray, as far as the water is thick.
+    // Behind: along the refracted ray as far as the water is thick, then on through the air, turned halfway back: a slab would turn it back
+    // wholly, a prism not at all.
     vec2 water = texture(thickness, gl_FragCoord.xy * frame.viewport.zw).rg;
     float through = water.x;
     vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
     vec3 back = colour.rgb;
+    float air = clamp((behind - depth) * length(p) / depth - through, 0.0, 60.0 * radius);
+    vec3 way = bent * through + 0.5 * (bent - toEye) * air;
     float stretch = 1.0;
     for (int k = 0; k < 3; ++k) {
-        vec2 uv = pixelOf(p + bent * (through * stretch)) * frame.viewport.zw;
+        vec2 uv = pixelOf(p + way * stretch) * frame.viewport.zw;
         vec2 inside = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
         if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else something in front of the water would leak into it
             back = texture(sceneColour, inside).rgb;
@@ -104,9 +106,10 @@ void main() {
     float rough = sqrt(min(0.02 + 0.35 * (dot(dx, dx) + dot(dy, dy)), 0.2));
     vec3 mirrored = reflect(-eyeWorld, nWorld);
     vec3 reflected = environment(mirrored, rough) * mix(0.6, 1.0, lit);
-    vec4 met = mirroredScene(p, reflect(-toEye, n));
-    reflected = mix(reflected, met.rgb, met.a);
     // The fringe of the water, less than a particle thick, is a matter of where particles happen to be: it does not mirror.
     float mirror = fresnel(nv, refractiveIndex) * smoothstep(0.0, 0.8 * radius, through);
-    colour = vec4(mix(transmitted, reflected, mirror), 1.0);
+    vec4 met = mirroredScene(p, reflect(-toEye, n), mirror > 0.03 ? 10 : 0);
+    reflected = mix(reflected, met.rgb, met.a);
+    // Where it meets a solid, and at the rim of a film on it, the water does not end in a line.
+    colour.rgb = mix(colour.rgb, mix(transmitted, reflected, mirror), smoothstep(0.0, 1.2 * radius, behind - depth));
 }

@@ -83,16 +83,18 @@ Result<Measured> measure(Device& device, const FluidParams& params, double secon
 Status report(const BenchContext& context, const std::string& name, Device& device, const FluidParams& params, double seconds, int frames) {
     Measured last;
     Status status = ok();
-    BenchRow row{.name = name, .unit = "ms/step", .value = repeat(context,
-                                                                  [&] {
-                                                                      Result<Measured> m = measure(device, params, seconds, frames);
-                                                                      if (!m) {
-                                                                          status = m.error();
-                                                                          return 0.0;
-                                                                      }
-                                                                      last = *m;
-                                                                      return m->msPerStep;
-                                                                  }),
+    BenchRow row{.name = name,
+                 .unit = "ms/step",
+                 .value = repeat(context,
+                                 [&] {
+                                     Result<Measured> m = measure(device, params, seconds, frames);
+                                     if (!m) {
+                                         status = m.error();
+                                         return 0.0;
+                                     }
+                                     last = *m;
+                                     return m->msPerStep;
+                                 }),
                  .passes = {}};
     row.passes = last.passes;
     if (status && !context.interrupted()) context.report(row);
@@ -103,7 +105,8 @@ Status benchStep(const BenchContext& context) {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     auto device = makeCpuDevice(rows);
     for (const Column& c : kColumns)
-        if (Status s = report(context, fmt::format("wcsph step, column {}, cpu", c.name), *device, columnScene(c.spacing), 0.1, 6); !s) return s;
+        if (Status s = report(context, fmt::format("wcsph step, column {}, cpu", c.name), *device, columnScene(c.spacing), 0.1, 6); !s)
+            return s;
     return ok();
 }
 
@@ -141,7 +144,10 @@ Status benchDensity(const BenchContext& context) {
             return m->passes["fluid/wcsph_density"];
         });
         if (!status) return status;
-        BenchRow row{.name = fmt::format("density pass, column 31k, {}", backendName(device->backend())), .unit = "ms", .value = spread, .passes = {}};
+        BenchRow row{.name = fmt::format("density pass, column 31k, {}", backendName(device->backend())),
+                     .unit = "ms",
+                     .value = spread,
+                     .passes = {}};
         if (list > 0) row.passes["neighbour lists, not counted above"] = list;
         if (!context.interrupted()) context.report(row);
     }

@@ -1,5 +1,6 @@
 #include "engine/app/ui_layer.h"
 
+#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
@@ -67,6 +68,7 @@ Result<UiLayer> UiLayer::create(void* clipboard) {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // nothing is written behind the person's back
     io.LogFilename = nullptr;
+    io.ConfigWindowsMoveFromTitleBarOnly = true;  // or a drag beside a slider would move its window
     mapKeys(io);
     if (clipboard != nullptr) {
         io.ClipboardUserData = clipboard;

@@ -61,9 +61,9 @@ struct Kernel {
 };
 
 struct DeviceInfo {
-    std::string name;         // "Intel(R) Xeon(R) Processor, 2 threads, avx512"
-    std::string driver;       // "" on the cpu
-    bool software = false;    // a GPU API that runs on the CPU: llvmpipe, PoCL
+    std::string name;       // "Intel(R) Xeon(R) Processor, 2 threads, avx512"
+    std::string driver;     // "" on the cpu
+    bool software = false;  // a GPU API that runs on the CPU: llvmpipe, PoCL
     size_t maxBufferBytes = SIZE_MAX;
 };
 
@@ -92,7 +92,8 @@ class Device {
     virtual void fill(Buffer& to, uint32_t word) = 0;
     virtual void copy(const Buffer& from, Buffer& to, size_t bytes) = 0;
 
-    // Hands a copy of the first `bytes` of `from`, as they are now, to `then` during some later poll(), without waiting. On the cpu: at once.
+    // Hands a copy of the first `bytes` of `from`, as they are now, to `then` during some later poll(), without waiting. On the cpu: at
+    // once.
     virtual void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) = 0;
     virtual void poll() = 0;
 
@@ -108,7 +109,9 @@ class Device {
     virtual size_t bytesAllocated() const = 0;
 
     template <class T>
-    void writeAll(Buffer& to, std::span<const T> items) { write(to, std::as_bytes(items)); }
+    void writeAll(Buffer& to, std::span<const T> items) {
+        write(to, std::as_bytes(items));
+    }
     template <class T>
     std::vector<T> readAll(const Buffer& from, size_t count) {
         std::vector<T> items(count);

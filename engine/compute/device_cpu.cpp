@@ -16,9 +16,12 @@ namespace rivulet {
 
 const char* isaName(Isa isa) {
     switch (isa) {
-        case Isa::generic: return "generic";
-        case Isa::avx2: return "avx2";
-        case Isa::avx512: return "avx512";
+        case Isa::generic:
+            return "generic";
+        case Isa::avx2:
+            return "avx2";
+        case Isa::avx512:
+            return "avx512";
     }
     return "generic";
 }
@@ -98,7 +101,8 @@ Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> 
     for (const CpuKernelRow& row : impl_->rows)
         if (path == row.path && wanted == row.defines && row.isa <= isa_ && (best == nullptr || row.isa > best->isa)) best = &row;
     if (best == nullptr)
-        return failed(fmt::format("the kernel {} with defines '{}' was not compiled for the CPU: add it to fluid/sim/kernels", path, wanted));
+        return failed(
+            fmt::format("the kernel {} with defines '{}' was not compiled for the CPU: add it to fluid/sim/kernels", path, wanted));
     for (uint32_t i = 0; i < impl_->kernels.size(); ++i)
         if (impl_->kernels[i].run == best->run) return Kernel{i};
     impl_->kernels.push_back(*best);
@@ -108,7 +112,8 @@ Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> 
 Result<Buffer> CpuDevice::allocate(size_t bytes) {
     size_t padded = (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment;
     void* memory = std::aligned_alloc(kAlignment, padded);
-    if (memory == nullptr) return failed(fmt::format("out of memory: {} MiB were asked for; use fewer particles or coarser voxels", bytes >> 20U));
+    if (memory == nullptr)
+        return failed(fmt::format("out of memory: {} MiB were asked for; use fewer particles or coarser voxels", bytes >> 20U));
     std::memset(memory, 0, padded);
     bytesAllocated_ += bytes;
     return Buffer(*this, reinterpret_cast<uintptr_t>(memory), bytes);
@@ -151,8 +156,9 @@ void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void
         return;
     }
     impl_->arena.execute([&] {
-        tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain), [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); },
-                          tbb::simple_partitioner());
+        tbb::parallel_for(
+            tbb::blocked_range<size_t>(0, count, grain), [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); },
+            tbb::simple_partitioner());
     });
 }
 
@@ -168,9 +174,8 @@ void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::
     alignas(kAlignment) std::byte block[kMostParams];
     ASSERT(params.size() <= kMostParams, "keep a parameter block under 1 KiB: larger data belong in a buffer");
     std::memcpy(block, params.data(), params.size());
-    parallelFor(threads, row.grain, [&](size_t begin, size_t end) {
-        row.run(static_cast<uint32_t>(begin), static_cast<uint32_t>(end), block, bindings);
-    });
+    parallelFor(threads, row.grain,
+                [&](size_t begin, size_t end) { row.run(static_cast<uint32_t>(begin), static_cast<uint32_t>(end), block, bindings); });
     addTime(row.path, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
 }
 

@@ -14,11 +14,11 @@ Isa bestIsa();  // what this machine runs
 // One compiled kernel. `defines` as "A=1;B=2", sorted by name, empty for none.
 using CpuKernelFn = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
 struct CpuKernelRow {
-    const char* path;     // "fluid/wcsph_density"
+    const char* path;  // "fluid/wcsph_density"
     const char* defines;
     Isa isa;
     CpuKernelFn run;
-    uint32_t grain;       // threads a chunk
+    uint32_t grain;  // threads a chunk
 };
 
 struct CpuOptions {
@@ -67,6 +67,8 @@ class CpuDevice final : public Device {
 
 // The memory behind a cpu Buffer.
 template <class T>
-T* hostPointer(const Buffer& buffer) { return reinterpret_cast<T*>(static_cast<uintptr_t>(buffer.handle())); }
+T* hostPointer(const Buffer& buffer) {
+    return reinterpret_cast<T*>(static_cast<uintptr_t>(buffer.handle()));
+}
 
 }  // namespace rivulet

@@ -26,10 +26,12 @@ class ShaderFiles {
   public:
     // Empty `root`: the embedded copies only; else files under root come first.
     explicit ShaderFiles(std::string root = {});
-    static ShaderFiles developer();  // RIVULET_SHADERS from the environment, else the source tree the build came from if it is still there, else embedded
+    static ShaderFiles
+    developer();  // RIVULET_SHADERS from the environment, else the source tree the build came from if it is still there, else embedded
     Result<std::string> load(std::string_view path) const;
     // `path` e.g. "shaders/fluid/reorder.kernel". Each include is taken once. `header` goes before everything (e.g. "#version 450 core\n").
-    Result<KernelSource> flatten(std::string_view path, std::span<const Define> defines, Dialect dialect, std::string_view header = {}) const;
+    Result<KernelSource> flatten(std::string_view path, std::span<const Define> defines, Dialect dialect,
+                                 std::string_view header = {}) const;
 
   private:
     std::string root_;

@@ -13,10 +13,18 @@ enum class LogLevel { info, notice, warning, error };
 // A sink; empty = silent. Called on the thread that calls the library.
 struct Log {
     std::function<void(LogLevel, std::string_view)> sink;
-    void info(std::string_view text) const { if (sink) sink(LogLevel::info, text); }
-    void notice(std::string_view text) const { if (sink) sink(LogLevel::notice, text); }
-    void warning(std::string_view text) const { if (sink) sink(LogLevel::warning, text); }
-    void error(std::string_view text) const { if (sink) sink(LogLevel::error, text); }
+    void info(std::string_view text) const {
+        if (sink) sink(LogLevel::info, text);
+    }
+    void notice(std::string_view text) const {
+        if (sink) sink(LogLevel::notice, text);
+    }
+    void warning(std::string_view text) const {
+        if (sink) sink(LogLevel::warning, text);
+    }
+    void error(std::string_view text) const {
+        if (sink) sink(LogLevel::error, text);
+    }
 };
 
 // A sink that writes to stderr, "rivulet: sentence".

@@ -3,17 +3,18 @@
 
 #define GLM_FORCE_XYZW_ONLY
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <glm/geometric.hpp>
-#include <glm/common.hpp>
 #include <limits>
 
 namespace rivulet {
 
+using glm::dvec3;
 using glm::ivec2;
 using glm::ivec3;
 using glm::mat3;
@@ -24,7 +25,6 @@ using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
-using glm::dvec3;
 
 inline constexpr float kPi = 3.14159265358979323846F;
 
@@ -34,7 +34,10 @@ inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite
 struct Bounds {
     vec3 min{std::numeric_limits<float>::max()};
     vec3 max{std::numeric_limits<float>::lowest()};
-    void add(const vec3& p) { min = glm::min(min, p); max = glm::max(max, p); }
+    void add(const vec3& p) {
+        min = glm::min(min, p);
+        max = glm::max(max, p);
+    }
     bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
     vec3 size() const { return max - min; }
     vec3 centre() const { return 0.5F * (min + max); }

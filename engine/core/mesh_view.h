@@ -9,10 +9,10 @@
 namespace rivulet {
 
 struct MeshView {
-    std::span<const vec3> positions;       // m
-    std::span<const uint32_t> indices;     // 3 a triangle, each < positions.size()
-    std::span<const vec3> normals;         // empty, or one a position, unit length
-    std::span<const vec2> uvs;             // empty, or one a position
+    std::span<const vec3> positions;    // m
+    std::span<const uint32_t> indices;  // 3 a triangle, each < positions.size()
+    std::span<const vec3> normals;      // empty, or one a position, unit length
+    std::span<const vec2> uvs;          // empty, or one a position
     size_t triangleCount() const { return indices.size() / 3; }
 };
 

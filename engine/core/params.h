@@ -68,9 +68,9 @@ class ParamVisitor {
     }
 
   protected:
-    virtual bool beginGroup(const ParamInfo& info) = 0;                     // false: skip it, endGroup is not called
+    virtual bool beginGroup(const ParamInfo& info) = 0;  // false: skip it, endGroup is not called
     virtual void endGroup() = 0;
-    virtual size_t beginList(const ParamInfo& info, size_t current) = 0;    // returns the wanted length
+    virtual size_t beginList(const ParamInfo& info, size_t current) = 0;  // returns the wanted length
     virtual void beginItem(size_t index) = 0;
     virtual void endItem() = 0;
     virtual void endList() = 0;

@@ -23,12 +23,21 @@ inline Error failed(std::string message) { return {std::move(message), Fault::fa
 template <class T>
 class [[nodiscard]] Result {
   public:
-    Result(T value) : state_(std::move(value)) {}        // NOLINT(google-explicit-constructor): a function returns its T or its Error
-    Result(Error error) : state_(std::move(error)) {}    // NOLINT(google-explicit-constructor)
+    Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor): a function returns its T or its Error
+    Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
     explicit operator bool() const { return state_.index() == 0; }
-    T& value() { ASSERT(state_.index() == 0, "test a Result before reading its value"); return std::get<0>(state_); }
-    const T& value() const { ASSERT(state_.index() == 0, "test a Result before reading its value"); return std::get<0>(state_); }
-    const Error& error() const { ASSERT(state_.index() == 1, "a Result that succeeded has no error"); return std::get<1>(state_); }
+    T& value() {
+        ASSERT(state_.index() == 0, "test a Result before reading its value");
+        return std::get<0>(state_);
+    }
+    const T& value() const {
+        ASSERT(state_.index() == 0, "test a Result before reading its value");
+        return std::get<0>(state_);
+    }
+    const Error& error() const {
+        ASSERT(state_.index() == 1, "a Result that succeeded has no error");
+        return std::get<1>(state_);
+    }
     T& operator*() { return value(); }
     const T& operator*() const { return value(); }
     T* operator->() { return &value(); }

@@ -60,7 +60,8 @@ void ParamPanel::label(const ParamInfo& info) {
     // Widgets stand in one column whatever the nesting; the unit, dimmed, at its right.
     float column = std::max(left + 20, ImGui::GetWindowWidth() * 0.42F);
     ImGui::SameLine(column);
-    ImGui::SetNextItemWidth(std::max(40.0F, ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize("kg/m^3").x - 8));
+    float unit = info.unit[0] != '\0' || info.max < kOpenRange ? ImGui::CalcTextSize("m^2/s^2").x + 8 : 0;  // text fields have none
+    ImGui::SetNextItemWidth(std::max(40.0F, ImGui::GetContentRegionAvail().x - unit));
 }
 
 void ParamPanel::settle(const ParamInfo& info, bool edited) {

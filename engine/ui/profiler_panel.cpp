@@ -10,8 +10,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr int kMeanFrames = 30;
-
 // Hues apart by the golden ratio: neighbours in the list never look alike.
 ImU32 hueOf(size_t index) {
     float hue = std::fmod(0.55F + 0.618034F * static_cast<float>(index), 1.0F);
@@ -20,10 +18,11 @@ ImU32 hueOf(size_t index) {
 
 }  // namespace
 
-float ProfilerPanel::Line::mean(int at) const {
-    float sum = 0;
-    for (int k = 1; k <= kMeanFrames; ++k) sum += ms[static_cast<size_t>((at - k + kFrames) % kFrames)];
-    return sum / kMeanFrames;
+double ProfilerPanel::meanOf(const std::vector<float>& ring) const {
+    int frames = std::min(filled_, kMeanFrames);
+    double sum = 0;
+    for (int k = 1; k <= frames; ++k) sum += static_cast<double>(ring[static_cast<size_t>((at_ - k + kFrames) % kFrames)]);
+    return frames > 0 ? sum / frames : 0;
 }
 
 ProfilerPanel::Line& ProfilerPanel::line(std::string_view side, std::string_view name) {
@@ -44,30 +43,34 @@ void ProfilerPanel::add(std::string_view side, std::span<const PassTime> passes)
 void ProfilerPanel::endFrame(double frameMs) {
     frame_[static_cast<size_t>(at_)] = static_cast<float>(frameMs);
     at_ = (at_ + 1) % kFrames;
+    filled_ = std::min(filled_ + 1, kFrames - 1);
     frame_[static_cast<size_t>(at_)] = 0;
     for (Line& l : lines_) l.ms[static_cast<size_t>(at_)] = 0;
 }
 
 void ProfilerPanel::clear() {
     lines_.clear();
+    filled_ = 0;
     std::fill(frame_.begin(), frame_.end(), 0.0F);
 }
 
 double ProfilerPanel::mean(std::string_view side) const {
     double sum = 0;
     for (const Line& l : lines_)
-        if (l.side == side) sum += static_cast<double>(l.mean(at_));
+        if (l.side == side) sum += meanOf(l.ms);
     return sum;
 }
 
-void ProfilerPanel::draw() {
-    drawGraph();
+double ProfilerPanel::meanFrame() const { return meanOf(frame_); }
+
+void ProfilerPanel::draw(float width) {
+    drawGraph(width);
     drawTable();
 }
 
 // Passes stacked from the bottom, one column of colour a frame, newest at the right; the frame's whole time as a line above.
-void ProfilerPanel::drawGraph() const {
-    ImVec2 size(ImGui::GetContentRegionAvail().x, 110);
+void ProfilerPanel::drawGraph(float across) const {
+    ImVec2 size(across, 110);
     ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + size.x, low.y + size.y);
     ImGui::Dummy(size);
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -112,7 +115,7 @@ void ProfilerPanel::drawTable() const {
     ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthFixed, 56);
     ImGui::TableSetupColumn("share", ImGuiTableColumnFlags_WidthStretch, 2);
     double all = 1e-6;
-    for (const Line& l : lines_) all += static_cast<double>(l.mean(at_));
+    for (const Line& l : lines_) all += meanOf(l.ms);
     std::string side;
     for (size_t i = 0; i < lines_.size(); ++i) {
         const Line& l = lines_[i];
@@ -124,7 +127,7 @@ void ProfilerPanel::drawTable() const {
             ImGui::TableNextColumn();
             ImGui::Text("%7.2f", mean(side));
         }
-        double ms = static_cast<double>(l.mean(at_));
+        double ms = meanOf(l.ms);
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::Indent(8);

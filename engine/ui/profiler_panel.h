@@ -15,26 +15,27 @@ class ProfilerPanel {
     // One frame's passes of one side, "simulate" or "render". Call for each side, then endFrame().
     void add(std::string_view side, std::span<const PassTime> passes);
     void endFrame(double frameMs);
-    void draw();  // inside an ImGui window
+    void draw(float width);  // pixels; inside an ImGui window
     void clear();
 
-    // Mean of the last second of a side's passes, ms.
+    // ms, of the last kMeanFrames frames: a side's passes; the whole frame on the wall.
     double mean(std::string_view side) const;
+    double meanFrame() const;
 
   private:
-    static constexpr int kFrames = 240;
+    static constexpr int kFrames = 240, kMeanFrames = 30;
     struct Line {
         std::string side, name;
         std::vector<float> ms = std::vector<float>(kFrames, 0.0F);  // a ring
-        float mean(int at) const;
     };
+    double meanOf(const std::vector<float>& ring) const;
     Line& line(std::string_view side, std::string_view name);
-    void drawGraph() const;
+    void drawGraph(float across) const;
     void drawTable() const;
 
     std::vector<Line> lines_;  // one a pass, in order of first sight
     std::vector<float> frame_ = std::vector<float>(kFrames, 0.0F);
-    int at_ = 0;  // where the frame in the making is written
+    int at_ = 0, filled_ = 0;  // where the frame in the making is written
 };
 
 }  // namespace rivulet

@@ -9,7 +9,7 @@ namespace {
 
 void fact(const char* name, const std::string& text) {
     ImGui::TextDisabled("%s", name);
-    ImGui::SameLine(ImGui::GetFontSize() * 6);
+    ImGui::SameLine(ImGui::GetFontSize() * 7.5F);
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();

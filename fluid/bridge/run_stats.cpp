@@ -167,11 +167,14 @@ RunStats RunRecorder::finish(std::string scene) {
 
 namespace {
 
+// JSON has no NaN and no infinity.
+Json::Value number(double v) { return std::isfinite(v) ? Json::Value(v) : Json::Value(); }
+
 Json::Value jsonOf(const Spread& spread) {
     Json::Value v(Json::objectValue);
-    v["min"] = spread.min;
-    v["median"] = spread.median;
-    v["p95"] = spread.p95;
+    v["min"] = number(spread.min);
+    v["median"] = number(spread.median);
+    v["p95"] = number(spread.p95);
     return v;
 }
 
@@ -187,30 +190,30 @@ std::string writeRunStats(const RunStats& stats) {
     v["method"] = stats.method;
     v["particles"] = stats.particles;
     v["frames"] = Json::UInt64(stats.frames);
-    v["seconds"] = stats.seconds;
-    v["wallSeconds"] = stats.wallSeconds;
+    v["seconds"] = number(stats.seconds);
+    v["wallSeconds"] = number(stats.wallSeconds);
     v["simulateMs"] = jsonOf(stats.simulateMs);
     v["renderMs"] = jsonOf(stats.renderMs);
     v["frameMs"] = jsonOf(stats.frameMs);
     v["passes"] = Json::Value(Json::objectValue);
     for (const auto& [name, spread] : stats.passes) v["passes"][name] = jsonOf(spread);
-    v["density"]["avgCompression"] = stats.avgCompression;
-    v["density"]["maxCompression"] = stats.maxCompression;
-    v["energy"]["kinetic"] = stats.kinetic;
-    v["energy"]["potential"] = stats.potential;
+    v["density"]["avgCompression"] = number(stats.avgCompression);
+    v["density"]["maxCompression"] = number(stats.maxCompression);
+    v["energy"]["kinetic"] = number(stats.kinetic);
+    v["energy"]["potential"] = number(stats.potential);
     v["centreOfMass"] = Json::Value();
     if (stats.centreOfMass) {
         v["centreOfMass"] = Json::Value(Json::arrayValue);
-        for (int axis = 0; axis < 3; ++axis) v["centreOfMass"].append((*stats.centreOfMass)[axis]);
+        for (int axis = 0; axis < 3; ++axis) v["centreOfMass"].append(number((*stats.centreOfMass)[axis]));
     }
     v["front"] = stats.front ? Json::Value(*stats.front) : Json::Value();
-    v["volume"] = stats.volume;
+    v["volume"] = number(stats.volume);
     v["lost"] = stats.lost;
     v["penetrations"] = stats.penetrations;
     v["nan"] = stats.nan;
     v["substeps"] = Json::UInt64(stats.substeps);
-    v["dt"]["min"] = stats.dtMin;
-    v["dt"]["max"] = stats.dtMax;
+    v["dt"]["min"] = number(stats.dtMin);
+    v["dt"]["max"] = number(stats.dtMax);
     v["limited"] = Json::Value(Json::arrayValue);
     for (const std::string& sentence : stats.limited) v["limited"].append(sentence);
 
@@ -218,7 +221,6 @@ std::string writeRunStats(const RunStats& stats) {
     builder["indentation"] = "  ";
     builder["enableYAMLCompatibility"] = true;  // "key": value
     builder["precision"] = 9;
-    builder["useSpecialFloats"] = false;
     return Json::writeString(builder, v) + "\n";
 }
 

@@ -14,15 +14,15 @@ namespace rivulet {
 
 // A solid that does not move. "mesh": a file, scaled, turned, moved. "plane": water on the side the normal points to.
 struct ColliderParams {
-    std::string shape = "mesh";       // mesh | plane
-    std::string mesh;                 // path: as given, beside the scene file, in RIVULET_ASSETS (a list of folders), in assets/
-    int resolution = 128;             // voxels along the mesh's longest side
-    vec3 position{0.0F};              // m; plane: a point on it
-    vec3 rotation{0.0F};              // deg, about x, then y, then z
+    std::string shape = "mesh";  // mesh | plane
+    std::string mesh;            // path: as given, beside the scene file, in RIVULET_ASSETS (a list of folders), in assets/
+    int resolution = 128;        // voxels along the mesh's longest side
+    vec3 position{0.0F};         // m; plane: a point on it
+    vec3 rotation{0.0F};         // deg, about x, then y, then z
     float scale = 1.0F;
-    float fitSize = 0.0F;             // m; > 0: scaled so that the longest side has this length, and its bounds' centre put at `position`
-    vec3 normal{0.0F, 1.0F, 0.0F};    // plane
-    vec3 colour{0.72F, 0.71F, 0.69F}; // linear
+    float fitSize = 0.0F;              // m; > 0: scaled so that the longest side has this length, and its bounds' centre put at `position`
+    vec3 normal{0.0F, 1.0F, 0.0F};     // plane
+    vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
     bool visible = true;
     void visit(ParamVisitor& v);
@@ -45,10 +45,10 @@ struct LightParams {
 struct BackgroundParams {
     vec3 horizon{0.40F, 0.44F, 0.48F};  // linear
     vec3 zenith{0.12F, 0.17F, 0.24F};
-    vec3 floor{0.56F, 0.55F, 0.53F};    // the ground plane's colour
-    float floorHeight = 0.0F;           // m
+    vec3 floor{0.56F, 0.55F, 0.53F};  // the ground plane's colour
+    float floorHeight = 0.0F;         // m
     bool showFloor = true;
-    bool showBox = true;                // edges of the fluid's box
+    bool showBox = true;  // edges of the fluid's box
     void visit(ParamVisitor& v);
 };
 
@@ -66,14 +66,14 @@ struct FluidLookParams {
 struct SceneFile {
     std::string name = "unnamed";
     std::string doc;
-    float duration = 5.0F;                  // s
+    float duration = 5.0F;  // s
     FluidParams fluid;
     std::vector<ColliderParams> colliders;
     FluidLookParams look;
     CameraParams camera;
     LightParams light;
     BackgroundParams background;
-    std::string folder;                     // of the file it came from; not a Param
+    std::string folder;  // of the file it came from; not a Param
     void visit(ParamVisitor& v);
 };
 
@@ -83,11 +83,14 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
 // Error: values that make no sense together, each fine by itself. loadScene asks it; who edits a scene asks it too.
 Status checkScene(const SceneFile& scene);
 
-// Where an asset is: `path` as given, beside the scene, in RIVULET_ASSETS, in the source tree's or the installed assets/. Error: every place looked at.
+// Where an asset is: `path` as given, beside the scene, in RIVULET_ASSETS, in the source tree's or the installed assets/. Error: every
+// place looked at.
 Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder);
 
 // Every scene file found in the places that findAsset searches under scenes/, with its name and doc.
-struct SceneListing { std::string path, name, doc; };
+struct SceneListing {
+    std::string path, name, doc;
+};
 std::vector<SceneListing> listScenes();
 
 }  // namespace rivulet

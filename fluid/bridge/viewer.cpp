@@ -1,5 +1,6 @@
 #include "fluid/bridge/viewer.h"
 
+#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
@@ -110,7 +111,7 @@ void Viewer::moveCamera(const InputEvents& input) {
 bool Viewer::drawPanels() {
     ImVec2 display = ImGui::GetIO().DisplaySize;
     constexpr float kMargin = 10;
-    float width = std::clamp(display.x * 0.28F, 280.0F, 400.0F), tall = std::max(display.y - 2 * kMargin, 80.0F);
+    float width = std::clamp(display.x * 0.26F, 320.0F, 420.0F), tall = std::max(display.y - 2 * kMargin, 80.0F);
     ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), ImGuiCond_Once);
     ImGui::SetNextWindowSize(ImVec2(width, tall), ImGuiCond_Once);
     bool recreate = false;
@@ -121,7 +122,7 @@ bool Viewer::drawPanels() {
         state.backend = fmt::format("{}: {}", backendName(device_->backend()), device.name);
         state.renderer = gl_.renderer;
         state.simulateMs = profiler_.mean("simulate");
-        state.frameMs = 1000.0 / std::max(static_cast<double>(ImGui::GetIO().Framerate), 1e-3);
+        state.frameMs = profiler_.meanFrame();
         state.message = message_;
         state.notices = *notices_;
         FluidPanelActions actions = drawFluidPanel(session_->world(), state);
@@ -140,8 +141,9 @@ bool Viewer::drawPanels() {
     ImGui::End();
 
     ImGui::SetNextWindowPos(ImVec2(display.x - kMargin, kMargin), ImGuiCond_Once, ImVec2(1, 0));
-    ImGui::SetNextWindowSize(ImVec2(std::min(width, 320.0F), 0), ImGuiCond_Once);
-    if (ImGui::Begin("times")) profiler_.draw();
+    float narrow = std::min(width, 320.0F);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(narrow, 0), ImVec2(narrow, tall));
+    if (ImGui::Begin("times", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) profiler_.draw(narrow - 2 * ImGui::GetStyle().WindowPadding.x);
     ImGui::End();
     return recreate;
 }

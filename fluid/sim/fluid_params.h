@@ -28,17 +28,17 @@ struct CollisionParams {
 };
 
 struct FluidParams {
-    std::string method = "wcsph";   // a row of methods()
-    float spacing = 0.02F;          // m
-    float supportSpacings = 2.0F;   // h = this * spacing
-    float restDensity = 1000.0F;    // kg/m^3
-    float viscosity = 1.0e-6F;      // m^2/s, kinematic
+    std::string method = "wcsph";  // a row of methods()
+    float spacing = 0.02F;         // m
+    float supportSpacings = 2.0F;  // h = this * spacing
+    float restDensity = 1000.0F;   // kg/m^3
+    float viscosity = 1.0e-6F;     // m^2/s, kinematic
     float artificialViscosity = 0.02F;
-    float soundSpeed = 0.0F;        // m/s; 0 = ten times the fastest speed the scene can fall to
-    float stiffness = 20.0F;        // thesis mode: k of (4), m^2/s^2
+    float soundSpeed = 0.0F;  // m/s; 0 = ten times the fastest speed the scene can fall to
+    float stiffness = 20.0F;  // thesis mode: k of (4), m^2/s^2
     vec3 gravity{0.0F, -9.81F, 0.0F};
-    float cfl = 0.4F;               // dt <= cfl * hs / (c0 + v)
-    int maxSubsteps = 1000;          // a frame
+    float cfl = 0.4F;        // dt <= cfl * hs / (c0 + v)
+    int maxSubsteps = 1000;  // a frame
     BoxParams box;
     CollisionParams collision;
     std::vector<BlockParams> blocks;

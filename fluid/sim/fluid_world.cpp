@@ -73,7 +73,8 @@ float FluidWorld::Impl::fastestFall() const {
         float fall = 0.0F;
         if (g > 0.0F) {
             const vec3 down = gravity / g;
-            for (int k = 0; k < 3; ++k) fall += std::abs(down[k]) * (down[k] < 0 ? b.max[k] - params.box.min[k] : params.box.max[k] - b.min[k]);
+            for (int k = 0; k < 3; ++k)
+                fall += std::abs(down[k]) * (down[k] < 0 ? b.max[k] - params.box.min[k] : params.box.max[k] - b.min[k]);
         }
         fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
     }
@@ -88,8 +89,9 @@ Status FluidWorld::Impl::prepare() {
     double wanted = 0;
     for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
     if (wanted > kMostParticles)
-        return badInput(fmt::format("fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
-                                    params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
+        return badInput(fmt::format(
+            "fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
+            params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
     fillStart();
 
     struct Wanted {
@@ -226,7 +228,9 @@ void FluidWorld::Impl::substep(double dt) {
     }
     if (method->wallsInDensity()) {
         if (field != nullptr)
-            device->run(boundary, step, {&grid->cellStart(), &particles.position, &planes, &particles.boundary, &fieldBlock, &fieldDistance}, particles.count);
+            device->run(boundary, step,
+                        {&grid->cellStart(), &particles.position, &planes, &particles.boundary, &fieldBlock, &fieldDistance},
+                        particles.count);
         else
             device->run(boundary, step, {&grid->cellStart(), &particles.position, &planes, &particles.boundary}, particles.count);
     }
@@ -238,7 +242,8 @@ void FluidWorld::Impl::substep(double dt) {
                 particles.count);
     if (field != nullptr)
         device->run(collide, block,
-                    {&particles.position, &particles.positionNext, &particles.velocityNext, &grid->cellStart(), &fieldBits, &fieldDistance, &fieldNormal},
+                    {&particles.position, &particles.positionNext, &particles.velocityNext, &grid->cellStart(), &fieldBits, &fieldDistance,
+                     &fieldNormal},
                     particles.count);
 }
 
@@ -291,7 +296,8 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
 
 void FluidWorld::Impl::gatherStats(int substeps) {
     device->run(stats, step, {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows}, STATS_THREADS);
-    const FluidStats now{.frame = frame, .time = time, .particles = particles.count, .substeps = substeps, .dtMin = dtMin, .dtMax = dtMax, .limited = {}};
+    const FluidStats now{
+        .frame = frame, .time = time, .particles = particles.count, .substeps = substeps, .dtMin = dtMin, .dtMax = dtMax, .limited = {}};
     device->readLater(statsRows, STATS_THREADS * sizeof(StatsRow),
                       [now, into = figures, mass = double{step.mass}, g = gravity, this](std::span<const std::byte> bytes) {
                           const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
@@ -344,8 +350,9 @@ void FluidWorld::setParams(const FluidParams& params) {
 
 ParticleView FluidWorld::particles() const {
     const Impl& w = *impl_;
-    return {&w.particles.positionNext, &w.particles.velocityNext, &w.particles.id, w.particles.count, w.params.spacing,
-            w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
+    return {&w.particles.positionNext, &w.particles.velocityNext,
+            &w.particles.id,           w.particles.count,
+            w.params.spacing,          w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const StaticSolids& solids, Log log) {

@@ -38,14 +38,14 @@ class FluidWorld {
     // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits ask. 0 or less: nothing happens.
     // A frame longer than maxSubsteps can cover advances less, and stats().limited says so: simulated time slows, steps do not grow.
     void step(const FluidInputs& inputs, double seconds);
-    void reset();                         // back to t = 0
-    void setParams(const FluidParams&);   // takes what can change between steps; `fixed` values wait for a new world
+    void reset();                        // back to t = 0
+    void setParams(const FluidParams&);  // takes what can change between steps; `fixed` values wait for a new world
 
     const FluidParams& params() const;
     ParticleView particles() const;
-    const FluidStats& stats() const;      // late on a GPU
-    double time() const;                  // s simulated
-    int lastSubsteps() const;             // of the last step(), not late
+    const FluidStats& stats() const;  // late on a GPU
+    double time() const;              // s simulated
+    int lastSubsteps() const;         // of the last step(), not late
     Device& device() const;
 
   private:

@@ -53,7 +53,9 @@ struct NeighborGrid::Impl {
     Kernel cellCount, scanReduce, scanBlocks, scanApply, cellScatter, cellSort, reorder;
 
     bool onCpu() const { return device->backend() == Backend::cpu; }
-    uint32_t coarseCells() const { return static_cast<uint32_t>(cells.x) * static_cast<uint32_t>(cells.y) * static_cast<uint32_t>(cells.z); }
+    uint32_t coarseCells() const {
+        return static_cast<uint32_t>(cells.x) * static_cast<uint32_t>(cells.y) * static_cast<uint32_t>(cells.z);
+    }
     uint32_t sortedCells() const { return onCpu() ? 2 * coarseCells() : coarseCells(); }
     Status allocate();
     Status findKernels();
@@ -74,7 +76,8 @@ Status NeighborGrid::Impl::allocate() {
         histogram = take(chunks * (sorted + 1) * sizeof(uint32_t));
         segmentSum = take(kScanSegments * sizeof(uint32_t));
         // A row's last group may be short: at most one such a row.
-        groups = take((count / 8 + std::min<size_t>(count, static_cast<size_t>(cells.y) * static_cast<size_t>(cells.z)) + 1) * sizeof(CpuGroup));
+        groups =
+            take((count / 8 + std::min<size_t>(count, static_cast<size_t>(cells.y) * static_cast<size_t>(cells.z)) + 1) * sizeof(CpuGroup));
         listCursor = take(sizeof(uint32_t));
         lists = take(sizeof(CpuNeighborLists));
         listCapacity = count * 14 + 64 * kListRegion / 8;
@@ -96,14 +99,19 @@ Status NeighborGrid::Impl::findKernels() {
     };
     std::vector<Wanted> wanted;
     if (onCpu())
-        wanted = {{&sortCount, "fluid/cpu_sort_count", {}},     {&sortSegments, "fluid/cpu_sort_segments", {}},
-                  {&sortOffsets, "fluid/cpu_sort_offsets", {}}, {&sortScatter, "fluid/cpu_sort_scatter", {}},
+        wanted = {{&sortCount, "fluid/cpu_sort_count", {}},
+                  {&sortSegments, "fluid/cpu_sort_segments", {}},
+                  {&sortOffsets, "fluid/cpu_sort_offsets", {}},
+                  {&sortScatter, "fluid/cpu_sort_scatter", {}},
                   {&neighborList, "fluid/cpu_neighbor_list", {}}};
     else {
         const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
-        wanted = {{&cellCount, "fluid/cell_count", {}},         {&scanReduce, "fluid/scan_reduce", scanSize},
-                  {&scanBlocks, "fluid/scan_blocks", scanSize}, {&scanApply, "fluid/scan_apply", scanSize},
-                  {&cellScatter, "fluid/cell_scatter", {}},     {&cellSort, "fluid/cell_sort", {}},
+        wanted = {{&cellCount, "fluid/cell_count", {}},
+                  {&scanReduce, "fluid/scan_reduce", scanSize},
+                  {&scanBlocks, "fluid/scan_blocks", scanSize},
+                  {&scanApply, "fluid/scan_apply", scanSize},
+                  {&cellScatter, "fluid/cell_scatter", {}},
+                  {&cellSort, "fluid/cell_sort", {}},
                   {&reorder, "fluid/reorder", {}}};
     }
     for (Wanted& w : wanted) {
@@ -155,7 +163,8 @@ void NeighborGrid::Impl::buildGroups() {
     groupCount = 0;
     for (size_t row = 0; row < rows; ++row) {
         const uint32_t end = start[(row + 1) * rowLength];
-        for (uint32_t first = start[row * rowLength]; first < end; first += 8) group[groupCount++] = {first, std::min(8U, end - first), 0, 0};
+        for (uint32_t first = start[row * rowLength]; first < end; first += 8)
+            group[groupCount++] = {first, std::min(8U, end - first), 0, 0};
     }
 }
 
@@ -175,7 +184,8 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
         run(neighborList, j, groupCount);
         const uint32_t taken = *hostPointer<uint32_t>(listCursor);
         if (taken <= listCapacity) break;
-        if (taken > UINT32_MAX / 2) return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
+        if (taken > UINT32_MAX / 2)
+            return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
         listCapacity = taken + taken / 4;
         Result<Buffer> larger = device->allocate(size_t{listCapacity} * sizeof(uint32_t));
         if (!larger) return larger.error();
@@ -209,10 +219,12 @@ Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, 
     const vec3 size = inside.size() / h;
     const double cells = (std::ceil(double{size.x}) + 3) * (std::ceil(double{size.y}) + 3) * (std::ceil(double{size.z}) + 3);
     if (cells > kMostCells)
-        return badInput(fmt::format("the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
-                                    inside.size().x, inside.size().y, inside.size().z, cells, h, h / 2 * std::cbrt(cells / kMostCells)));
+        return badInput(fmt::format(
+            "the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
+            inside.size().x, inside.size().y, inside.size().z, cells, h, h / 2 * std::cbrt(cells / kMostCells)));
     // The last interior cell may be cut by the bounds; a wall's own coordinate still lies inside.
-    impl->cells = ivec3(static_cast<int>(std::floor(size.x)) + 3, static_cast<int>(std::floor(size.y)) + 3, static_cast<int>(std::floor(size.z)) + 3);
+    impl->cells =
+        ivec3(static_cast<int>(std::floor(size.x)) + 3, static_cast<int>(std::floor(size.y)) + 3, static_cast<int>(std::floor(size.z)) + 3);
     if (Status s = impl->findKernels(); !s) return s.error();
     if (Status s = impl->allocate(); !s) return s.error();
     return NeighborGrid(std::move(impl));

@@ -10,20 +10,20 @@
 namespace rivulet {
 
 struct FluidStats {
-    uint64_t frame = 0;           // of the figures below
-    double time = 0;              // s simulated
-    uint32_t particles = 0;       // all of them, frozen ones too
-    uint32_t lost = 0;            // left the grid or NaN: counted, frozen, indexed nowhere
-    uint32_t nan = 0;             // of those, NaN or infinite
-    double avgCompression = 0;    // mean of max(rho / rho0 - 1, 0) over particles
+    uint64_t frame = 0;         // of the figures below
+    double time = 0;            // s simulated
+    uint32_t particles = 0;     // all of them, frozen ones too
+    uint32_t lost = 0;          // left the grid or NaN: counted, frozen, indexed nowhere
+    uint32_t nan = 0;           // of those, NaN or infinite
+    double avgCompression = 0;  // mean of max(rho / rho0 - 1, 0) over particles
     double maxCompression = 0;
-    double kinetic = 0;           // J
-    double potential = 0;         // J, against height 0
+    double kinetic = 0;    // J
+    double potential = 0;  // J, against height 0
     double centreOfMass[3] = {0, 0, 0};
-    double maxSpeed = 0;          // m/s
-    uint32_t speedLimited = 0;    // particles whose speed the step had to limit
-    int substeps = 0;             // of that frame
-    double dtMin = 0, dtMax = 0;  // s, since the start
+    double maxSpeed = 0;               // m/s
+    uint32_t speedLimited = 0;         // particles whose speed the step had to limit
+    int substeps = 0;                  // of that frame
+    double dtMin = 0, dtMax = 0;       // s, since the start
     std::vector<std::string> limited;  // plain sentences: what the program limited, each once
 };
 

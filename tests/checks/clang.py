@@ -51,7 +51,7 @@ def check(entry):
         pass
     deps = stamp + ".d"
     run = lambda words: subprocess.run(words, cwd=entry["directory"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    done = run([*command, "-MD", "-MF", deps] if mode == "syntax" else [*command, "-M", "-MF", deps])
+    done = run([*command, "-MD", "-MF", deps] if mode == "syntax" else [*command[:-3], "-M", "-MF", deps])
     if done.returncode == 0 and mode == "tidy":
         done = run(["clang-tidy", "--quiet", "--warnings-as-errors=*", f"--header-filter=^{root}/(engine|fluid|demos)/.*", source,
                     "--", *command[1:-3], "-Wno-unknown-warning-option"])

@@ -53,7 +53,8 @@ VoxelField ball() {
     for (int r = 0; r <= rings; ++r)
         for (int s = 0; s < sides; ++s) {
             const float theta = kPi * static_cast<float>(r) / rings, phi = 2 * kPi * static_cast<float>(s) / sides;
-            points.push_back(vec3(0.2F, 0.12F, 0.22F) + 0.1F * vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
+            points.push_back(vec3(0.2F, 0.12F, 0.22F) +
+                             0.1F * vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
         }
     for (uint32_t r = 0; r < rings; ++r)
         for (uint32_t s = 0; s < sides; ++s) {
@@ -87,8 +88,8 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     auto particles = Particles::create(device, count);
     std::vector<Define> defines;
     if (field != nullptr) defines.push_back({"FIELD", "1"});
-    auto boundary = device.kernel("fluid/boundary", defines), integrate = device.kernel("fluid/integrate"), collide = device.kernel("fluid/collide"),
-         stats = device.kernel("fluid/stats");
+    auto boundary = device.kernel("fluid/boundary", defines), integrate = device.kernel("fluid/integrate"),
+         collide = device.kernel("fluid/collide"), stats = device.kernel("fluid/stats");
     for (const Result<Kernel>* k : {&boundary, &integrate, &collide, &stats}) {
         EXPECT_TRUE(*k) << (*k ? "" : k->error().message);
         if (!*k) return out;
@@ -164,8 +165,10 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     keep("integrate position", particles->positionNext, true);
     keep("integrate velocity", particles->velocityNext, true);
     if (field != nullptr) {
-        device.run(*collide, fieldBlock, {&particles->position, &particles->positionNext, &particles->velocityNext, &grid->cellStart(), &bits, &distance, &normal},
-                   count);
+        device.run(
+            *collide, fieldBlock,
+            {&particles->position, &particles->positionNext, &particles->velocityNext, &grid->cellStart(), &bits, &distance, &normal},
+            count);
         keep("collide position", particles->positionNext, true);
         keep("collide velocity", particles->velocityNext, true);
     }
@@ -247,7 +250,8 @@ TEST(SimSameness, ACpuRunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
         int threads;
         Isa isa;
     };
-    for (Run run : {Run{1, bestIsa()}, Run{2, bestIsa()}, Run{2, bestIsa()}, Run{2, Isa::generic}, Run{2, std::min(bestIsa(), Isa::avx2)}}) {
+    for (Run run :
+         {Run{1, bestIsa()}, Run{2, bestIsa()}, Run{2, bestIsa()}, Run{2, Isa::generic}, Run{2, std::min(bestIsa(), Isa::avx2)}}) {
         auto device = makeTestCpu(run.threads, run.isa);
         FluidParams p;
         p.spacing = kSpacing;

@@ -303,6 +303,43 @@ TEST(Collide, FlowsThroughANarrowChannel) {
     }
 }
 
+// Born nearer than contact, where distances tell little: only the walk through the voxels holds, and it does.
+TEST(Collide, TheWalkHoldsWhereDistancesDoNot) {
+    random_.seed(8);
+    World channel(
+        [] {
+            test::Mesh mesh;
+            for (float y : {0.0F, 0.06F}) mesh.quad(vec3(-1, y, -1), vec3(1, y, -1), vec3(1, y, 1), vec3(-1, y, 1));
+            return mesh;
+        }(),
+        120, 0.08F);
+    World jumble(test::makeJumble(5, 40), 40, 0.08F);
+    while (channel.position.size() < 2000) {
+        channel.position.emplace_back(uniform(-0.5F, 0.5F), uniform(0.025F, 0.035F), uniform(-0.5F, 0.5F), 0.0F);
+        channel.velocity.emplace_back(direction() * uniform(0.0F, 40.0F), 0.0F);
+    }
+    while (jumble.position.size() < 4000) {
+        const vec3 p(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)), nudge(0.01F * jumble.params.voxel);
+        const VoxelGrid& bits = jumble.field.surface;
+        if (bits.test(bits.cellOf(p)) || bits.test(bits.cellOf(p - nudge)) || bits.test(bits.cellOf(p + nudge))) continue;
+        jumble.position.emplace_back(p, 0.0F);
+        jumble.velocity.emplace_back(direction() * uniform(0.0F, 40.0F), 0.0F);
+    }
+    ASSERT_EQ(jumble.penetrations(), 0U);
+    for (int step = 0; step < 100; ++step) {
+        for (World* world : {&channel, &jumble}) {
+            world->step(vec3(0, -9.81F, 0), 0.003F);
+            ASSERT_EQ(world->penetrations(), 0U) << "step " << step;
+            for (vec4& v : world->velocity) v += vec4(direction() * uniform(0.0F, 10.0F), 0);
+        }
+        for (size_t i = 0; i < channel.position.size(); ++i) {
+            const vec3 p = channel.at(i);
+            ASSERT_TRUE(p.y > 0 && p.y < 0.06F) << "particle " << i << ", step " << step;
+            if (std::max(std::abs(p.x), std::abs(p.z)) > 0.9F) channel.velocity[i] = vec4(0), channel.position[i] = vec4(0, 0.03F, 0, 0);
+        }
+    }
+}
+
 // NaN, infinity, no motion, outside the grid, beyond the active count: left alone.
 TEST(Collide, LeavesAloneWhatIsNotItsBusiness) {
     World world(test::makeSphere(vec3(0), 0.5F, 12), 32, 0.02F);

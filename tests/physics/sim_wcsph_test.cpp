@@ -318,7 +318,8 @@ TEST(Wcsph, APlaneHoldsWaterOnItsNormalsSide) {
 TEST(Wcsph, WhatAClosedMeshEnclosesStaysEmpty) {
     std::vector<vec3> corners;
     for (int k = 0; k < 8; ++k) corners.emplace_back((k & 1) != 0 ? 0.7F : 0.3F, (k & 2) != 0 ? 0.7F : 0.3F, (k & 4) != 0 ? 0.7F : 0.3F);
-    const std::vector<uint32_t> triangles = {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
+    const std::vector<uint32_t> triangles = {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
+                                             2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
     const MeshView mesh{corners, triangles, {}, {}};
     auto field = bakeVoxelField(std::span(&mesh, 1), {.resolution = 32, .band = 0.1F, .padding = 0.12F});
     ASSERT_TRUE(field) << field.error().message;

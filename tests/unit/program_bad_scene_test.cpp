@@ -41,7 +41,8 @@ TEST(ProgramBadScene, TheFileItself) {
 
 TEST(ProgramBadScene, KeysTypesAndRanges) {
     Scratch scratch;
-    expectBad(scratch, scratch.file("key.json", "{\n  \"fluid\": {\"spacin\": 0.1}\n}"), {"key.json", "2", "fluid", "spacin", "did you mean fluid.spacing"});
+    expectBad(scratch, scratch.file("key.json", "{\n  \"fluid\": {\"spacin\": 0.1}\n}"),
+              {"key.json", "2", "fluid", "spacin", "did you mean fluid.spacing"});
     expectBad(scratch, scratch.file("type.json", "{\n \"fluid\": {\"spacing\": \"wide\"}\n}"), {"type.json", "2", "spacing"});
     expectBad(scratch, scratch.file("range.json", "{\"fluid\": {\"spacing\": -1}}"), {"range.json", "spacing"});
     expectBad(scratch, scratch.file("big.json", "{\"fluid\": {\"spacing\": 1e400}}"), {"big.json"});

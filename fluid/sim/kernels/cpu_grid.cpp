@@ -19,7 +19,8 @@ INLINE Range part(uint32_t count, uint32_t parts, uint32_t k) {
 void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
     const uint32_t cells = job.cells();
-    const float limitX = static_cast<float>(job.cellsX - 1), limitY = static_cast<float>(job.cellsY - 1), limitZ = static_cast<float>(job.cellsZ - 1);
+    const float limitX = static_cast<float>(job.cellsX - 1), limitY = static_cast<float>(job.cellsY - 1),
+                limitZ = static_cast<float>(job.cellsZ - 1);
     for (uint32_t c = begin; c < end; ++c) {
         uint32_t* histogram = job.histogram + size_t{c} * (cells + 1);
         memset(histogram, 0, (cells + 1) * sizeof(uint32_t));
@@ -31,7 +32,8 @@ void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
             const bool inside = (gx >= 1.0F) & (gx < limitX) & (gy >= 1.0F) & (gy < limitY) & (gz >= 1.0F) & (gz < limitZ);
             uint32_t cell = cells;
             if (inside)
-                cell = (static_cast<uint32_t>(static_cast<int>(gz)) * static_cast<uint32_t>(job.cellsY) + static_cast<uint32_t>(static_cast<int>(gy))) *
+                cell = (static_cast<uint32_t>(static_cast<int>(gz)) * static_cast<uint32_t>(job.cellsY) +
+                        static_cast<uint32_t>(static_cast<int>(gy))) *
                            static_cast<uint32_t>(2 * job.cellsX) +
                        static_cast<uint32_t>(static_cast<int>(2.0F * gx));
             job.cell[i] = cell;
@@ -167,7 +169,8 @@ void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*
         for (int dz = -1; dz <= 1; ++dz)
             for (int dy = -1; dy <= 1; ++dy) {
                 // The row's distance from the group's box narrows the stretch of x that can hold neighbours.
-                const float rowY = job.originY + static_cast<float>(cy + dy) * job.h, rowZ = job.originZ + static_cast<float>(cz + dz) * job.h;
+                const float rowY = job.originY + static_cast<float>(cy + dy) * job.h,
+                            rowZ = job.originZ + static_cast<float>(cz + dz) * job.h;
                 const float gapY = dy < 0 ? loY - (rowY + job.h) : dy > 0 ? rowY - hiY : 0.0F;
                 const float gapZ = dz < 0 ? loZ - (rowZ + job.h) : dz > 0 ? rowZ - hiZ : 0.0F;
                 const float gap2 = max0(gapY) * max0(gapY) + max0(gapZ) * max0(gapZ);
@@ -176,8 +179,9 @@ void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*
                 const float reach = sqrt(h2 - gap2) + 1.0e-4F * job.h;
                 const int x0 = max(static_cast<int>((loX - reach - job.originX) * 2.0F * job.invH), 0);
                 const int x1 = min(static_cast<int>((hiX + reach - job.originX) * 2.0F * job.invH), rowLength - 1);
-                const uint32_t* row = job.cellStart + (static_cast<size_t>(cz + dz) * static_cast<size_t>(job.cellsY) + static_cast<size_t>(cy + dy)) *
-                                                          static_cast<size_t>(rowLength);
+                const uint32_t* row =
+                    job.cellStart + (static_cast<size_t>(cz + dz) * static_cast<size_t>(job.cellsY) + static_cast<size_t>(cy + dy)) *
+                                        static_cast<size_t>(rowLength);
                 from[rows] = row[x0];
                 to[rows] = row[x1 + 1];
                 atMost += to[rows] - from[rows];

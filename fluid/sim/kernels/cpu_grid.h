@@ -29,20 +29,20 @@ struct CpuGridJob {
     uint32_t count;              // particles
     uint32_t chunks;             // of the two-histogram sort
     uint32_t groupCount;
-    uint32_t listCapacity;       // entries
+    uint32_t listCapacity;  // entries
     // Input (unsorted) and output (sorted).
     const Float4 *position, *velocity;
     const uint32_t* id;
     Float4 *positionOut, *velocityOut;
     uint32_t* idOut;
-    float *x, *y, *z;            // sorted positions again, one array each; 8 beyond the end may be read
-    uint32_t* cell;              // of each unsorted particle
-    uint32_t* histogram;         // chunks * (cells + 1)
-    uint32_t* segmentSum;        // kScanSegments
-    uint32_t* cellStart;         // cells + 2: [cells] = particles inside, [cells + 1] = all
+    float *x, *y, *z;      // sorted positions again, one array each; 8 beyond the end may be read
+    uint32_t* cell;        // of each unsorted particle
+    uint32_t* histogram;   // chunks * (cells + 1)
+    uint32_t* segmentSum;  // kScanSegments
+    uint32_t* cellStart;   // cells + 2: [cells] = particles inside, [cells + 1] = all
     CpuGroup* groups;
     uint32_t* list;
-    uint32_t* listCursor;        // entries taken; above listCapacity: the lists did not fit
+    uint32_t* listCursor;  // entries taken; above listCapacity: the lists did not fit
     uint32_t cells() const { return static_cast<uint32_t>(2 * cellsX) * static_cast<uint32_t>(cellsY) * static_cast<uint32_t>(cellsZ); }
 };
 inline constexpr uint32_t kScanSegments = 16;

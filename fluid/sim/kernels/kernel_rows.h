@@ -6,11 +6,11 @@
 
 #include "engine/compute/device_cpu.h"
 
-#define RIVULET_KERNEL_FAMILIES(isa)                          \
-    namespace rivulet::isa {                                  \
-    std::span<const CpuKernelRow> gridRows();                 \
-    std::span<const CpuKernelRow> particleRows();             \
-    std::span<const CpuKernelRow> wcsphRows();                \
+#define RIVULET_KERNEL_FAMILIES(isa)              \
+    namespace rivulet::isa {                      \
+    std::span<const CpuKernelRow> gridRows();     \
+    std::span<const CpuKernelRow> particleRows(); \
+    std::span<const CpuKernelRow> wcsphRows();    \
     }
 #if defined(RIVULET_KERNEL_UNIT)
 #define RIVULET_ISA_OF_kernels_generic Isa::generic

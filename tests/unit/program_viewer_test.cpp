@@ -1,0 +1,235 @@
+// The window's inside, driven by InputEvents as a person would, drawn into a framebuffer: keys, camera, sliders.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <optional>
+
+#include "engine/app/context_egl.h"
+#include "engine/core/json.h"
+#include "engine/gpu/debug.h"
+#include "engine/gpu/framebuffer.h"
+#include "engine/ui/param_panel.h"
+#include "fluid/bridge/viewer.h"
+
+namespace rivulet {
+namespace {
+
+// A person at a window of 900 x 1600: the panels lie in its left part, the scene is to be seen at its right. The picture has few pixels,
+// for the sake of machines without a GPU.
+class Person : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        Result<ContextEgl> made = ContextEgl::create();
+        ASSERT_TRUE(made) << made.error().message;
+        context_.emplace(std::move(*made));
+        messages_.emplace(Log{});
+        input_.size = kWindow;
+        input_.framebuffer = kPixels;
+        input_.mouse = vec2(700, 1200);
+        SceneFile scene;
+        scene.name = "small";
+        scene.fluid.spacing = 0.05F;
+        scene.look.renderer = "points";
+        scene.fluid.blocks = {{.min = vec3(0.2F), .max = vec3(0.4F)}};
+        auto viewer = Viewer::create(scene, "cpu", {});
+        ASSERT_TRUE(viewer) << viewer.error().message;
+        viewer_ = std::move(*viewer);
+        gpu::TextureDesc desc;
+        desc.width = input_.framebuffer.x;
+        desc.height = input_.framebuffer.y;
+        auto picture = gpu::Texture::create(desc);
+        ASSERT_TRUE(picture) << picture.error().message;
+        picture_ = std::move(*picture);
+        target_ = gpu::Framebuffer(picture_, nullptr);
+    }
+
+    void TearDown() override {
+        if (messages_) {
+            EXPECT_EQ(messages_->errors(), 0) << messages_->lastError();
+        }
+        viewer_.reset();
+    }
+
+    // One frame of the input so far; presses, wheel and text hold for one frame.
+    void frame(double seconds = 0) {
+        Status drawn = viewer_->frame(input_, seconds, target_.name());
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        input_.mouseDelta = input_.wheel = vec2(0.0F);
+        input_.keysPressed.clear();
+        input_.text.clear();
+        for (bool* each : {input_.buttonPressed, input_.buttonReleased}) std::fill(each, each + 3, false);
+    }
+    void key(int which) {
+        input_.keysPressed = {which};
+        frame();
+    }
+    void moveTo(vec2 place) {
+        input_.mouseDelta = place - input_.mouse;
+        input_.mouse = place;
+        frame();
+    }
+    void press(MouseButton button, bool down) {
+        auto k = static_cast<int>(button);
+        (down ? input_.buttonPressed : input_.buttonReleased)[k] = true;
+        input_.buttonDown[k] = down;
+        frame();
+    }
+    void drag(MouseButton button, vec2 from, vec2 to) {
+        moveTo(from);
+        frame();
+        press(button, true);
+        moveTo(to);
+        press(button, false);
+        frame();
+    }
+    // Unfolds a group of the parameters' panel, which knows it by the names on the way.
+    static void unfold(std::initializer_list<const char*> path) {
+        for (ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            if (std::string_view(window->Name).find("parameters") == std::string_view::npos) continue;
+            ImGuiID id = window->ID;
+            for (const char* name : path) id = ImHashStr(name, 0, id);
+            window->StateStorage.SetInt(ImHashStr(std::data(path)[path.size() - 1], 0, id), 1);
+        }
+    }
+    static void unfoldAll() {
+        for (const char* group : {"fluid", "look", "camera", "light", "background"}) unfold({group});
+        unfold({"fluid", "box"});
+        unfold({"fluid", "collision"});
+    }
+    const CameraParams& camera() const { return viewer_->scene().camera; }
+    float distance() const { return glm::length(camera().position - camera().target); }
+
+    static constexpr ivec2 kWindow{900, 1600}, kPixels{90, 160};
+    std::optional<ContextEgl> context_;
+    std::optional<gpu::DebugMessages> messages_;
+    std::unique_ptr<Viewer> viewer_;
+    gpu::Texture picture_;
+    gpu::Framebuffer target_;
+    InputEvents input_;
+};
+
+TEST_F(Person, KeysPauseStepAndReset) {
+    for (int i = 0; i < 3; ++i) frame(1.0 / 60);
+    EXPECT_EQ(viewer_->steps(), 3U);
+    key(GLFW_KEY_SPACE);
+    EXPECT_TRUE(viewer_->paused());
+    for (int i = 0; i < 3; ++i) frame(1.0 / 60);
+    EXPECT_EQ(viewer_->steps(), 3U);
+    key(GLFW_KEY_PERIOD);
+    EXPECT_EQ(viewer_->steps(), 4U);
+    EXPECT_NEAR(viewer_->session().world().time(), 4.0 / 60, 1e-9);
+    key(GLFW_KEY_R);
+    EXPECT_EQ(viewer_->session().world().time(), 0);
+    key(GLFW_KEY_SPACE);
+    EXPECT_FALSE(viewer_->paused());
+    // A frame of a second makes one step, not sixty; one of a hundredth of a sixtieth makes none.
+    frame(1);
+    EXPECT_EQ(viewer_->steps(), 5U);
+    frame(0);
+    uint64_t steps = viewer_->steps();
+    frame(1e-4);
+    EXPECT_EQ(viewer_->steps(), steps);
+}
+
+TEST_F(Person, TheMouseMovesTheCamera) {
+    key(GLFW_KEY_SPACE);
+    CameraParams before = camera();
+    float away = distance();
+    drag(MouseButton::left, {600, 1200}, {700, 1150});
+    EXPECT_NEAR(distance(), away, 1e-3F) << "turning keeps the distance";
+    EXPECT_LT(glm::length(camera().target - before.target), 1e-4F);
+    EXPECT_GT(glm::length(camera().position - before.position), 0.1F * away);
+
+    before = camera();
+    drag(MouseButton::right, {600, 1200}, {650, 1200});
+    vec3 moved = camera().target - before.target;
+    EXPECT_GT(glm::length(moved), 0.01F * away);
+    EXPECT_LT(glm::length((camera().position - before.position) - moved), 1e-3F) << "moving keeps the direction";
+    vec3 right = glm::cross(before.target - before.position, vec3(0, 1, 0));
+    EXPECT_LT(glm::dot(moved, right), 0) << "the scene follows the mouse";
+
+    input_.wheel.y = 1;
+    frame();
+    EXPECT_LT(distance(), away);
+    input_.wheel.y = -1000;
+    frame();
+    EXPECT_TRUE(isFinite(camera().position));
+
+    before = camera();
+    drag(MouseButton::left, {100, 1500}, {200, 1400});
+    EXPECT_EQ(camera().position, before.position) << "a drag over the panel is no camera movement";
+}
+
+TEST_F(Person, AWindowOfNoSizeIsNoError) {
+    input_.size = input_.framebuffer = ivec2(0);
+    for (int i = 0; i < 3; ++i) frame(1.0 / 60);
+    EXPECT_EQ(viewer_->steps(), 3U);
+    input_.size = input_.framebuffer = ivec2(1, 1);
+    frame();
+    input_.size = kWindow;
+    input_.framebuffer = kPixels;
+    frame();
+}
+
+// Every row of the panel is pressed and dragged: no crash, what changed is a scene that could be read from a file, and where a value is
+// one that needs a new world there is one.
+TEST_F(Person, EverySliderMayBeDragged) {
+    key(GLFW_KEY_SPACE);
+    input_.framebuffer = ivec2(0);  // the panel alone
+    frame();
+    auto textOf = [this] {
+        SceneFile scene = viewer_->scene();
+        return writeJson([&scene](ParamVisitor& v) { scene.visit(v); });
+    };
+    uint32_t particles = viewer_->session().world().particles().count;
+    bool recreated = false;
+    size_t edits = 0;
+    for (float y = 200; y < 1580; y += 12) {
+        unfoldAll();  // a press on a header has folded it
+        frame();
+        std::string before = textOf();
+        drag(MouseButton::left, {210, y}, {200, y + 2});
+        key(GLFW_KEY_ESCAPE);
+        recreated = recreated || viewer_->session().world().particles().count != particles;
+        edits += textOf() == before ? 0 : 1;
+        SceneFile again;
+        Status read = readJson(textOf(), "edited", [&again](ParamVisitor& v) { again.visit(v); });
+        ASSERT_TRUE(read) << read.error().message;
+        Status sense = checkScene(viewer_->scene());
+        ASSERT_TRUE(sense) << sense.error().message;
+    }
+    EXPECT_GT(edits, 25U);
+    EXPECT_TRUE(recreated) << "the spacing's slider makes a new world when it is let go of";
+    key(GLFW_KEY_PERIOD);
+    EXPECT_TRUE(std::isfinite(viewer_->session().world().stats().kinetic));
+}
+
+// A pixel of the panel's background is dark, whatever the scene behind: the panels are drawn, over the picture.
+TEST_F(Person, ThePanelsLieOverThePicture) {
+    key(GLFW_KEY_SPACE);
+    auto brightness = [this](int x, int fromTop) {
+        std::vector<uint8_t> texels(picture_.hostBytes());
+        picture_.read(std::as_writable_bytes(std::span(texels)));
+        size_t at =
+            4 * (static_cast<size_t>(picture_.height() - 1 - fromTop) * static_cast<size_t>(picture_.width()) + static_cast<size_t>(x));
+        return texels[at] + texels[at + 1] + texels[at + 2];
+    };
+    frame();
+    EXPECT_LT(brightness(2, 157), 180);
+    int bright = brightness(45, 3);
+    key(GLFW_KEY_TAB);
+    frame();
+    EXPECT_GT(brightness(2, 157), 200) << "Tab hides them";
+    EXPECT_NEAR(brightness(45, 3), bright, 12);
+}
+
+TEST(ParamPanelNames, AreReadable) {
+    EXPECT_EQ(readableName("artificialViscosity"), "artificial viscosity");
+    EXPECT_EQ(readableName("cfl"), "cfl");
+}
+
+}  // namespace
+}  // namespace rivulet

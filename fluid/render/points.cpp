@@ -4,36 +4,42 @@
 namespace rivulet {
 
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    using gpu::PassContext;
     using gpu::Usage;
     if (d.fluid.count == 0) return {d.colour, {}};
+    gpu::TextureDesc size{.width = d.view.width, .height = d.view.height, .format = gpu::Format::rgba8};
+    const gpu::TextureHandle surface = graph.texture("points surface", size);
+    size.format = gpu::Format::rg16f;
+    const gpu::TextureHandle normal = graph.texture("points normal", size);
     graph.pass("points",
-               {{d.frame, Usage::uniform},
-                {d.position, Usage::attribute},
-                {d.velocity, Usage::attribute},
-                {d.id, Usage::attribute},
-                d.shadowSharp,
-                d.shadowSoft,
-                d.waterLight},
-               {d.colour, d.depth}, [d, &programs](gpu::PassContext& c) {
-                   c.drawTo({d.colour}, d.depth);
+               {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, {d.velocity, Usage::attribute}, {d.id, Usage::attribute}},
+               {surface, normal, d.depth}, [=, &programs](PassContext& c) {
+                   const gpu::Framebuffer& target = c.drawTo({surface, normal}, d.depth);
+                   target.clearColour(vec4(0.0F), 0);
                    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
                    glEnable(GL_DEPTH_TEST);
-                   // The squares inside the spheres first: they hide most of what lies deep in the water before it is shaded.
-                   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-                   programs.occluder.use();
-                   programs.occluder.set("radius", d.fluid.radius);
-                   programs.drawParticles(d.fluid);
-                   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
                    gpu::Program& p = programs.points;
                    p.use();
                    p.set("radius", d.fluid.radius);
                    p.set("colourBy", static_cast<int>(d.look.colourBy));
                    p.set("fullSpeed", d.look.fullSpeed);
-                   p.texture("shadowSharp", 0, c.texture(d.shadowSharp));
-                   p.texture("shadowSoft", 1, c.texture(d.shadowSoft));
-                   p.texture("waterLight", 2, c.texture(d.waterLight));
-                   p.set("waterAbsorption", d.look.absorption);
                    programs.drawParticles(d.fluid);
+               });
+    const gpu::TextureHandle tiles = addTiles(graph, programs, d);
+    graph.pass("points shade", {{d.frame, Usage::uniform}, surface, normal, d.depth, tiles, d.shadowSharp, d.shadowSoft, d.waterLight},
+               {d.colour}, [=, &programs](PassContext& c) {
+                   c.drawTo({d.colour});
+                   glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+                   gpu::Program& p = programs.pointsShade;
+                   p.use();
+                   p.texture("surface", 0, c.texture(surface));
+                   p.texture("normal", 1, c.texture(normal));
+                   p.texture("depth", 2, c.texture(d.depth));
+                   p.texture("shadowSharp", 3, c.texture(d.shadowSharp));
+                   p.texture("shadowSoft", 4, c.texture(d.shadowSoft));
+                   p.texture("waterLight", 5, c.texture(d.waterLight));
+                   p.set("waterAbsorption", d.look.absorption);
+                   programs.drawTiles(p, c.texture(tiles), 6);
                });
     return {d.colour, {}};
 }

@@ -10,13 +10,14 @@ constexpr RendererRow kRows[] = {
     {"screen_space", "a water surface from the particles' smoothed depth: refraction, absorption, reflection", false, addScreenSpace},
 };
 constexpr Table<RendererRow> kRenderers{kRows};
+constexpr int kTile = 32;  // pixels
 }  // namespace
 
 const Table<RendererRow>& renderers() { return kRenderers; }
 
-std::array<gpu::Program*, 12> FluidPrograms::all() {
-    return {&points,    &occluder, &markTiles, &depth,      &smooth,          &smoothLast,
-            &thickness, &blur,     &shade,     &lightWater, &lightWaterFirst, &lightWaterLast};
+std::array<gpu::Program*, 13> FluidPrograms::all() {
+    return {&points,    &pointsShade, &occluder, &markTiles,  &depth,           &smooth,        &smoothLast,
+            &thickness, &blur,        &shade,    &lightWater, &lightWaterFirst, &lightWaterLast};
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
@@ -26,6 +27,7 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     FluidPrograms p;
     std::pair<Program*, Result<Program>> made[] = {
         {&p.points, Program::create(files, {folder + "points.vert", folder + "points.frag"})},
+        {&p.pointsShade, Program::create(files, {tile, folder + "points_shade.frag"})},
         {&p.occluder, Program::create(files, {folder + "occluder.vert", "shaders/render/depth.frag"})},
         {&p.markTiles, Program::create(files, {folder + "mark_tiles.vert", folder + "mark_tiles.frag"})},
         {&p.depth, Program::create(files, {sphere, folder + "depth.frag"})},
@@ -59,6 +61,28 @@ void FluidPrograms::drawParticles(const FluidView& fluid) {
     particles.integerAttribute(2, fluid.id, 1, GL_UNSIGNED_INT, 4, 0, 1);
     particles.bind();
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(fluid.count));
+}
+
+gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    const gpu::TextureDesc size{
+        .width = (d.view.width + kTile - 1) / kTile, .height = (d.view.height + kTile - 1) / kTile, .format = gpu::Format::r8};
+    const gpu::TextureHandle tiles = graph.texture("water tiles", size);
+    graph.pass("tiles", {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::attribute}}, {tiles},
+               [=, &programs](gpu::PassContext& c) {
+                   c.drawTo({tiles}).clearColour(vec4(0.0F));
+                   glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+                   programs.markTiles.use();
+                   programs.markTiles.set("radius", d.fluid.radius);
+                   programs.markTiles.set("tiles", vec2(size.width, size.height));
+                   programs.drawParticles(d.fluid);
+               });
+    return tiles;
+}
+
+void FluidPrograms::drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit) {
+    program.texture("tileMask", unit, tiles);
+    none.bind();
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, tiles.width() * tiles.height());
 }
 
 float volumeScale(const FluidView& fluid) {

@@ -26,15 +26,17 @@ struct FluidLook {
 
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
-    gpu::Program points, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
+    gpu::Program points, pointsShade, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
         lightWaterLast;
     gpu::VertexArray particles, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
     void drawParticles(const FluidView& fluid);  // a quad each, with the program in use
+    // The marked ones, with the program in use, whose vertex shader is tile.vert; the mask is bound to `unit`.
+    void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 
   private:
-    std::array<gpu::Program*, 12> all();
+    std::array<gpu::Program*, 13> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.
@@ -65,6 +67,9 @@ const Table<RendererRow>& renderers();
 // What the light passes through on its way: x thickness (m), y that times its depth (0..1), z thickness relative to the surroundings (m).
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
+
+// Marks the tiles of the picture that particles touch: what comes after the spheres runs only there.
+gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);

@@ -21,33 +21,9 @@ constexpr float kRange = 7.0F;                        // radii
 constexpr float kBend = 0.5F;                         // radii
 constexpr int kThicknessScale = 2;                    // of the resolution
 constexpr int kThicknessBlur = 4;                     // texels either side
-constexpr int kTile = 32;                             // pixels
 constexpr int kLightMap = 256;                        // texels
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
-
-// Everything after the spheres runs only in the tiles that they touch.
-void drawTiles(const PassContext& c, FluidPrograms& programs, Program& program, TextureHandle tiles, int unit) {
-    const gpu::Texture& mask = c.texture(tiles);
-    program.texture("tileMask", unit, mask);
-    programs.none.bind();
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, mask.width() * mask.height());
-}
-
-TextureHandle addTiles(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
-    const TextureDesc size{
-        .width = (d.view.width + kTile - 1) / kTile, .height = (d.view.height + kTile - 1) / kTile, .format = Format::r8};
-    const TextureHandle tiles = graph.texture("water tiles", size);
-    graph.pass("tiles", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {tiles}, [=, &programs](PassContext& c) {
-        c.drawTo({tiles}).clearColour(vec4(0.0F));
-        useFrame(c, d);
-        programs.markTiles.use();
-        programs.markTiles.set("radius", d.fluid.radius);
-        programs.markTiles.set("tiles", vec2(size.width, size.height));
-        programs.drawParticles(d.fluid);
-    });
-    return tiles;
-}
 
 // A pass over the tiles from one texture to another of `desc`, `empty` elsewhere.
 template <class Setup>
@@ -63,7 +39,7 @@ TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& prog
         program.use();
         program.texture("source", 0, c.texture(from));
         setup(program, c);
-        drawTiles(c, programs, program, tiles, 1);
+        programs.drawTiles(program, c.texture(tiles), 1);
     });
     return to;
 }
@@ -215,7 +191,7 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
                    p.set("radius", d.fluid.radius);
                    p.set("absorption", d.look.absorption);
                    p.set("refractiveIndex", d.look.refractiveIndex);
-                   drawTiles(c, programs, p, tiles, 7);
+                   programs.drawTiles(p, c.texture(tiles), 7);
                });
     return {colour, depth};
 }

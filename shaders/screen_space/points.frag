@@ -1,18 +1,14 @@
-// Spheres, lit like any surface.
+// Spheres into a small picture of surfaces, lit afterwards, once a pixel.
 #include "shaders/render/frame.glsl"
-#include "shaders/render/environment.glsl"
-#include "shaders/render/shadow.glsl"
-#include "shaders/material/surface.glsl"
 #include "shaders/screen_space/sphere.glsl"
 flat in vec4 centreView;
 flat in vec3 baseColour;
-layout(location = 0) out vec4 colour;
+layout(location = 0) out vec4 surface;  // colour, 1
+layout(location = 1) out vec2 normal;   // x and y, view; z is what is missing to 1
 void main() {
     float depth, through;
     if (!hitSphere(gl_FragCoord.xy, centreView.xyz, centreView.w, depth, through)) discard;
     gl_FragDepth = windowOfDepth(depth);
-    vec3 p = viewRay(gl_FragCoord.xy) * depth;
-    vec3 n = directionToWorld((p - centreView.xyz) / centreView.w);
-    vec3 light = frame.lightColour.rgb * meshShadow(toWorld(p), n);
-    colour = vec4(shadeSurface(Surface(baseColour, 0.45, 0.0, n, 1.0), directionToWorld(-normalize(p)), light), 1.0);
+    normal = (viewRay(gl_FragCoord.xy).xy * depth - centreView.xy) / centreView.w;
+    surface = vec4(sqrt(baseColour), 1.0);  // even steps of brightness in 8 bits
 }

@@ -7,8 +7,8 @@ vec3 oklabToLinear(vec3 c) {
     return max(vec3(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
                     -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), vec3(0.0));
 }
-vec3 ramp(float t) {  // lightness 0.30 .. 0.95 in even steps
-    const vec3 stops[5] = vec3[5](vec3(0.30, -0.01, -0.12), vec3(0.46, -0.05, -0.14), vec3(0.63, -0.09, -0.06), vec3(0.79, -0.04, 0.05), vec3(0.95, 0.00, 0.05));
+vec3 ramp(float t) {  // lightness 0.36 .. 0.95 in even steps
+    const vec3 stops[5] = vec3[5](vec3(0.36, -0.02, -0.11), vec3(0.51, -0.06, -0.12), vec3(0.66, -0.085, -0.05), vec3(0.80, -0.04, 0.04), vec3(0.95, 0.00, 0.04));
     float at = clamp(t, 0.0, 1.0) * 4.0;
     int k = min(int(at), 3);
     return oklabToLinear(mix(stops[k], stops[k + 1], at - float(k)));

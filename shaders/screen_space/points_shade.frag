@@ -1,0 +1,19 @@
+// Lights the spheres that points.frag found.
+#include "shaders/render/frame.glsl"
+#include "shaders/render/environment.glsl"
+#include "shaders/render/shadow.glsl"
+#include "shaders/material/surface.glsl"
+uniform sampler2D surface;
+uniform sampler2D normal;
+uniform sampler2D depth;  // window depth
+layout(location = 0) out vec4 colour;
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    vec4 base = texelFetch(surface, here, 0);
+    if (base.a == 0.0) discard;
+    vec2 xy = texelFetch(normal, here, 0).rg;
+    vec3 p = viewRay(gl_FragCoord.xy) * depthOfWindow(texelFetch(depth, here, 0).r);
+    vec3 n = directionToWorld(vec3(xy, sqrt(max(1.0 - dot(xy, xy), 0.0))));
+    vec3 light = frame.lightColour.rgb * meshShadow(toWorld(p), n);
+    colour = vec4(shadeSurface(Surface(base.rgb * base.rgb, 0.45, 0.0, n, 1.0), directionToWorld(-normalize(p)), light), 1.0);
+}

@@ -60,9 +60,9 @@ void placeSoftboxes(FrameParams& f) {
 
 }  // namespace
 
-std::array<Program*, 13> RenderPrograms::all() {
-    return {&shadow,     &shadowFirst, &shadowBlur, &depth,        &floorDepth, &occlusion, &occlusionBlur,
-            &background, &mesh,        &box,        &boxOverWater, &tonemap,    &antialias};
+std::array<Program*, 14> RenderPrograms::all() {
+    return {&shadow, &shadowFirst, &shadowBlur, &depth, &floorDepth,   &occlusion, &occlusionBlur,
+            &sky,    &floor,       &mesh,       &box,   &boxOverWater, &tonemap,   &antialias};
 }
 
 Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
@@ -76,7 +76,8 @@ Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
         {&p.floorDepth, Program::create(files, {full, folder + "background_depth.frag"})},
         {&p.occlusion, Program::create(files, {full, folder + "occlusion.frag"})},
         {&p.occlusionBlur, Program::create(files, {full, folder + "occlusion_blur.frag"})},
-        {&p.background, Program::create(files, {full, folder + "background.frag"})},
+        {&p.sky, Program::create(files, {full, folder + "background.frag"})},
+        {&p.floor, Program::create(files, {full, folder + "background.frag"}, {{"FLOOR", "1"}})},
         {&p.mesh, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/mesh.frag"})},
         {&p.box, Program::create(files, {box, folder + "box.frag"})},
         {&p.boxOverWater, Program::create(files, {box, folder + "box.frag"}, {{"OVER_WATER", "1"}})},
@@ -222,13 +223,18 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
                [=, &programs, drawn = std::move(meshes)](PassContext& c) {
                    c.drawTo({colour}, depth);
                    bindFrame(c, frame);
-                   programs.background.use();
-                   programs.background.texture("occlusion", 0, c.texture(occlusion));
-                   bindLight(programs.background, c, light, 1);
-                   c.drawFullscreen();
+                   // The full-screen triangle lies on the far plane: sky is where nothing is nearer, floor (and mesh) where something is.
                    glEnable(GL_DEPTH_TEST);
-                   glDepthFunc(GL_LEQUAL);
                    glDepthMask(GL_FALSE);
+                   glDepthFunc(GL_EQUAL);
+                   programs.sky.use();
+                   c.drawFullscreen();
+                   glDepthFunc(GL_GREATER);
+                   programs.floor.use();
+                   programs.floor.texture("occlusion", 0, c.texture(occlusion));
+                   bindLight(programs.floor, c, light, 1);
+                   c.drawFullscreen();
+                   glDepthFunc(GL_LEQUAL);
                    Program& p = programs.mesh;
                    p.use();
                    p.texture("occlusion", 0, c.texture(occlusion));

@@ -17,13 +17,13 @@ namespace rivulet {
 
 // The programs of all passes; a failed reload keeps the last good ones.
 struct RenderPrograms {
-    gpu::Program shadow, shadowFirst, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, background, mesh, box, boxOverWater, tonemap,
+    gpu::Program shadow, shadowFirst, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh, box, boxOverWater, tonemap,
         antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
     Status reload();
 
   private:
-    std::array<gpu::Program*, 13> all();
+    std::array<gpu::Program*, 14> all();
 };
 
 struct DrawnMesh {

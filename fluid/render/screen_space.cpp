@@ -68,42 +68,37 @@ TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& prog
     return to;
 }
 
-struct SphereDepth {
-    TextureHandle bulk, spray;
-};
-
-SphereDepth addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
-    const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-    TextureDesc depthSize = size;
-    depthSize.format = Format::depth32f;
-    const TextureHandle bulk = graph.texture("bulk depth", size), spray = graph.texture("spray depth", size),
-                        hidden = graph.texture("fluid occluders", depthSize);
-    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {bulk, spray, hidden},
-               [=, &programs](PassContext& c) {
-                   const gpu::Framebuffer& target = c.drawTo({bulk, spray}, hidden);
-                   useFrame(c, d);
-                   target.clearColour(vec4(kFar), 0);
-                   target.clearColour(vec4(kFar), 1);
-                   target.clearDepth();
-                   glEnable(GL_DEPTH_TEST);
-                   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-                   programs.occluder.use();
-                   programs.occluder.set("radius", d.fluid.radius);
-                   programs.drawParticles(d.fluid);
-                   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-                   glDepthMask(GL_FALSE);
-                   glEnable(GL_BLEND);
-                   glBlendEquation(GL_MIN);
-                   programs.depth.use();
-                   programs.depth.set("radius", d.fluid.radius);
-                   programs.drawParticles(d.fluid);
-               });
-    return {bulk, spray};
+// x: depth of the bulk, y: of the spray; m.
+TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::rg32f};
+    const TextureHandle depth = graph.texture("sphere depth", size);
+    size.format = Format::depth32f;
+    const TextureHandle hidden = graph.texture("fluid occluders", size);
+    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {depth, hidden}, [=, &programs](PassContext& c) {
+        const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
+        useFrame(c, d);
+        target.clearColour(vec4(kFar));
+        target.clearDepth();
+        glEnable(GL_DEPTH_TEST);
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        programs.occluder.use();
+        programs.occluder.set("radius", d.fluid.radius);
+        programs.drawParticles(d.fluid);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthMask(GL_FALSE);
+        glEnable(GL_BLEND);
+        glBlendEquation(GL_MIN);
+        programs.depth.use();
+        programs.depth.set("radius", d.fluid.radius);
+        programs.drawParticles(d.fluid);
+    });
+    return depth;
 }
 
-TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, const SphereDepth& spheres) {
-    TextureHandle depth = spheres.bulk;
+TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+    TextureHandle depth = spheres;
     const float radius = d.fluid.radius;
+    const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
     // A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two standard deviations.
     float squares = 0;
     for (const float step : kSmoothSteps) squares += 0.5F * step * step;
@@ -118,12 +113,11 @@ TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidD
             p.set("range", kRange * radius);
             p.set("bend", kBend * radius);
             if (!final) return;
-            p.texture("spray", 2, c.texture(spheres.spray));
+            p.texture("spray", 2, c.texture(spheres));
             p.set("low", box.min);
             p.set("high", box.max);
         };
-        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, graph.desc(depth), kFar, setup,
-                          final ? spheres.spray : TextureHandle{});
+        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, size, kFar, setup, final ? spheres : TextureHandle{});
     }
     return depth;
 }

@@ -3,11 +3,9 @@
 #include "shaders/screen_space/sphere.glsl"
 flat in vec4 centreView;
 flat in float sprayed;
-layout(location = 0) out float bulk;
-layout(location = 1) out float spray;
+layout(location = 0) out vec2 bulkSpray;
 void main() {
     float depth, through;
     if (!hitSphere(gl_FragCoord.xy, centreView.xyz, centreView.w, depth, through)) discard;
-    bulk = sprayed > 0.5 ? kFar : depth;
-    spray = sprayed > 0.5 ? depth : kFar;
+    bulkSpray = sprayed > 0.5 ? vec2(kFar, depth) : vec2(depth, kFar);
 }

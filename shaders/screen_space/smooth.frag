@@ -8,7 +8,7 @@ uniform float step_;    // m
 uniform float range;    // m: how far from a straight line depths of one surface may be
 uniform float bend;     // m
 #if defined(LAST)
-uniform sampler2D spray; // m: drops stay as they are
+uniform sampler2D spray; // y, m: drops stay as they are
 uniform vec3 low, high; // m, world: the box that the water cannot leave
 #endif
 layout(location = 0) out float depth;
@@ -39,7 +39,7 @@ void main() {
     addPair(ivec2(k, -k), 1.0);
     if (z < kFar) depth = sum / weights;
 #if defined(LAST)
-    depth = min(depth, texelFetch(spray, here, 0).r);
+    depth = min(depth, texelFetch(spray, here, 0).g);
     // The spheres reach a little out of the box. Cut, its walls are as flat as glass.
     vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy));
     vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;

@@ -39,7 +39,6 @@ class Viewer {
     RunStats finishRecord();  // after record()
 
   private:
-    Viewer() = default;
     void takeKeys(const InputEvents& input);
     void moveCamera(const InputEvents& input);
     bool drawPanels();  // whether a new session is wanted

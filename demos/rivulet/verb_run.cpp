@@ -46,7 +46,7 @@ int runVerb(const Arguments& arguments) {
     reader.flag("--no-render", "no pictures at all: simulate and write figures", noRender);
     reader.option("--frames", "N", "how many frames, 60 a simulated second", options.frames, 0, kMostFrames);
     reader.option("--seconds", "S", "how long, simulated; headless default: the scene's duration", seconds, 0,
-                  kMostFrames / kFramesPerSecond);
+                  static_cast<double>(kMostFrames) / kFramesPerSecond);
     reader.exclude("--seconds", "--frames");
     reader.option("--size", "WxH", "of the picture, in pixels", size);
     reader.option("--out", "DIR", "folder that the video, pictures and figures go to", options.out);

@@ -414,10 +414,10 @@ void ClDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     if (threads == 0) return;
     const cl_mem block = this->params(params);
     if (!block) return;
-    clSetKernelArg(entry.kernel.get(), 0, sizeof block, &block);
+    clSetKernelArg(entry.kernel.get(), 0, sizeof(cl_mem), &block);
     for (size_t k = 0; k < buffers.size(); ++k) {
         const cl_mem bound = buffers[k] ? memory(*buffers[k]) : nullptr;
-        clSetKernelArg(entry.kernel.get(), static_cast<cl_uint>(k + 1), sizeof bound, &bound);
+        clSetKernelArg(entry.kernel.get(), static_cast<cl_uint>(k + 1), sizeof(cl_mem), &bound);
     }
     const size_t local = entry.localSize;
     const size_t global = (threads + local - 1) / local * local;

@@ -50,7 +50,7 @@ BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl) {
     return {Backend::gl, fmt::format("the OpenGL renderer {} is a GPU", gl.renderer)};
 }
 
-std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, Log log) {
+std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log) {
     auto cpu = [] {
         std::vector<CpuKernelRow> rows = cpuKernels();
         return makeCpuDevice(rows);

@@ -35,6 +35,6 @@ struct BackendChoice {
 BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl);
 
 // The device that was asked for. One that is absent: a notice in `log`, and a cpu device. Error: none at all, the cpu's cannot fail.
-std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, Log log);
+std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log);
 
 }  // namespace rivulet

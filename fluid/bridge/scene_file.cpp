@@ -172,6 +172,7 @@ Result<std::string> findAsset(const std::string& path, const std::string& sceneF
     if (fs::is_directory(path, error)) return badInput(fmt::format("{} is a folder, not a file", path));
     if (places.size() == 1) return badInput(fmt::format("{} does not exist", path));
     std::vector<std::string> looked;
+    looked.reserve(places.size());
     for (const fs::path& place : places) looked.push_back(place.string());
     return badInput(fmt::format("{} does not exist; looked at {}", path, fmt::join(looked, ", ")));
 }

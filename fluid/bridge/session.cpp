@@ -21,7 +21,7 @@ float longest(const Bounds& bounds) {
 
 }  // namespace
 
-Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, Log log) {
+Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, const Log& log) {
     std::unique_ptr<Session> session(new Session());
     session->scene_ = std::move(scene);
     if (Status imported = session->importColliders(); !imported) return imported.error();

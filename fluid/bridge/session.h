@@ -20,7 +20,7 @@ class Session {
   public:
     // `device` must outlive the session. Error (badInput): a mesh is missing, unreadable or not finite; values that make no sense
     // together. Error (failed): out of memory.
-    static Result<std::unique_ptr<Session>> create(SceneFile scene, Device& device, Log log);
+    static Result<std::unique_ptr<Session>> create(SceneFile scene, Device& device, const Log& log);
 
     const SceneFile& scene() const { return scene_; }
     FluidWorld& world() { return *world_; }

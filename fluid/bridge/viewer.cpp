@@ -37,7 +37,7 @@ void drawHelp() {
 
 }  // namespace
 
-Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::string& backend, Log log, void* clipboard) {
+Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard) {
     Result<UiLayer> ui = UiLayer::create(clipboard);
     if (!ui) return ui.error();
     std::unique_ptr<Viewer> viewer(new Viewer(std::move(*ui)));

@@ -22,7 +22,7 @@ namespace rivulet {
 class Viewer {
   public:
     // Needs a current OpenGL 4.5 context until destroyed. `clipboard`: as UiLayer. Error: as Session and SceneRenderer.
-    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, Log log, void* clipboard = nullptr);
+    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard = nullptr);
 
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
     // machine shows slow water, not fewer pictures. A window of 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.

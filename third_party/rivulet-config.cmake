@@ -1,0 +1,12 @@
+# find_package(rivulet): rivulet::fluid, the simulation and its renderers, and rivulet::base below it.
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(glm)
+find_dependency(fmt)
+find_dependency(TBB)
+find_dependency(OpenCL)
+find_dependency(PkgConfig)
+if(NOT TARGET PkgConfig::jsoncpp)
+    pkg_check_modules(jsoncpp REQUIRED IMPORTED_TARGET GLOBAL jsoncpp)
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/rivulet-targets.cmake)

@@ -1,6 +1,7 @@
 // A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a narrow-range filter (Truong & Yuksel 2018).
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "fluid/render/renderers.h"
 
@@ -15,13 +16,16 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr float kFar = 1.0e6F;                        // m, shaders/render/frame.glsl's depth of nothing
-constexpr float kSmoothSteps[] = {3, 5, 7, 4, 2, 1};  // of the levels, relative; the small ones last: they iron out what the holes leave
-constexpr float kRange = 7.0F;                        // radii
-constexpr float kBend = 0.5F;                         // radii
-constexpr int kThicknessScale = 2;                    // of the resolution
-constexpr int kThicknessBlur = 4;                     // texels either side
-constexpr int kLightMap = 256;                        // texels
+constexpr float kFar = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothing
+// Steps of the smoothing's levels, relative; the small ones last: they iron out what the holes of the others leave.
+constexpr float kSteps[] = {3, 5, 7, 4, 2, 1};
+constexpr float kStepsNear[] = {4, 9, 13, 8, 5, 3, 2, 1};  // for a camera so near that holes between the former would be wide
+constexpr float kUnitPixels = 3.0F;                        // a step of 1 is no wider than this
+constexpr float kRange = 7.0F;                             // radii
+constexpr float kBend = 0.5F;                              // radii
+constexpr int kThicknessScale = 2;                         // of the resolution
+constexpr int kThicknessBlur = 4;                          // texels either side
+constexpr int kLightMap = 256;                             // texels
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
@@ -75,17 +79,27 @@ TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidD
     TextureHandle depth = spheres;
     const float radius = d.fluid.radius;
     const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-    // A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two standard deviations.
-    float squares = 0;
-    for (const float step : kSmoothSteps) squares += 0.5F * step * step;
-    const float unit = 0.5F * d.look.smoothing * radius / std::sqrt(squares);
+    const Bounds& bounds = d.fluid.bounds;
     const float huge = 1.0e5F;
-    const Bounds box = d.fluid.bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : d.fluid.bounds;
-    for (const float& step : kSmoothSteps) {
-        const bool final = &step == std::end(kSmoothSteps) - 1;
+    const Bounds box = bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : bounds;
+    // A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two standard deviations.
+    auto unitOf = [&](std::span<const float> steps) {
+        float squares = 0;
+        for (const float step : steps) squares += 0.5F * step * step;
+        return 0.5F * d.look.smoothing * radius / std::sqrt(squares);
+    };
+    const float away = bounds.empty() ? 1.0F : glm::length(d.view.cameraPosWorld - glm::clamp(d.view.cameraPosWorld, box.min, box.max));
+    const float pixelsPerMetre = 0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / std::max(away, d.view.nearPlane);
+    const bool near = unitOf(kSteps) * pixelsPerMetre > kUnitPixels;
+    const std::span<const float> steps = near ? std::span<const float>(kStepsNear) : std::span<const float>(kSteps);
+    const float unit = unitOf(steps);
+    for (size_t level = 0; level < steps.size(); ++level) {
+        const float step = steps[level];
+        const bool final = level + 1 == steps.size();
         Program& program = final ? programs.smoothLast : programs.smooth;
         const auto setup = [=](Program& p, const PassContext& c) {
             p.set("step_", step * unit);
+            p.set("maxStep", step * kUnitPixels);
             p.set("range", kRange * radius);
             p.set("bend", kBend * radius);
             if (!final) return;

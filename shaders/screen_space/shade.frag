@@ -14,14 +14,17 @@ layout(location = 0) out vec4 colour;
 float surfaceDepth(ivec2 p) { return texelFetch(fluidDepth, clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r; }
 vec3 surfaceAt(ivec2 p, float depth) { return viewRay(vec2(p) + 0.5) * depth; }
 
-// Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less.
-vec3 slope(ivec2 here, ivec2 step_, vec3 p) {
+// Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less. `turn`: about
+// how much the normal turns from pixel to pixel.
+vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
     float a = surfaceDepth(here + step_), b = surfaceDepth(here - step_);
     float da = abs(a + p.z), db = abs(b + p.z);  // p.z = -depth
     vec3 ahead = surfaceAt(here + step_, a) - p, back = p - surfaceAt(here - step_, b);
     float near = 0.5 * radius;
-    if (da < near && db < near) return 0.5 * (ahead + back);
-    return da < db ? ahead : back;
+    bool both = da < near && db < near;
+    float steep = 0.5 * (a - b) / pixel;
+    turn = both ? abs(a + b + 2.0 * p.z) / (pixel * (1.0 + steep * steep)) : 0.5;
+    return both ? 0.5 * (ahead + back) : da < db ? ahead : back;
 }
 
 // Exact for unpolarised light (Fresnel 1823). `c` = cosine of the angle of incidence, from air into index n.
@@ -67,7 +70,9 @@ void main() {
 
     vec3 p = surfaceAt(here, depth);
     vec3 toEye = -normalize(p);
-    vec3 n = normalize(cross(slope(here, ivec2(1, 0), p), slope(here, ivec2(0, 1), p)));
+    vec2 turn;
+    vec3 right = slope(here, ivec2(1, 0), p, depth * frame.ray.x, turn.x), up = slope(here, ivec2(0, 1), p, depth * frame.ray.y, turn.y);
+    vec3 n = normalize(cross(right, up));
     float nv = dot(n, toEye);
     if (nv < 0.02) { n = normalize(n + (0.02 - nv) * toEye); nv = 0.02; }
 
@@ -98,18 +103,18 @@ void main() {
     vec3 glow = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
     vec3 scattered = vec3(0.008, 0.060, 0.085) * glow * (1.0 - exp(-2.5 * through));
     vec3 transmitted = back * passed + scattered;
-    float white = 1.0 - exp(-water.y * 0.3 / radius);
+    float white = 1.0 - exp(-water.y * 0.24 / radius);
     transmitted = mix(transmitted, 0.9 * (ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * (0.35 + 0.65 * max(dot(nWorld, frame.lightDir.xyz), 0.0)))), 0.75 * white);
 
     // Where the normal varies within a pixel the reflection is blurred: no sparkling.
-    vec3 dx = dFdx(nWorld), dy = dFdy(nWorld);
-    float rough = sqrt(min(0.02 + 0.35 * (dot(dx, dx) + dot(dy, dy)), 0.2));
+    float rough = sqrt(min(0.02 + 0.35 * dot(turn, turn), 0.2));
     vec3 mirrored = reflect(-eyeWorld, nWorld);
     vec3 reflected = environment(mirrored, rough) * mix(0.6, 1.0, lit);
     // The fringe of the water, less than a particle thick, is a matter of where particles happen to be: it does not mirror.
     float mirror = fresnel(nv, refractiveIndex) * smoothstep(0.0, 0.8 * radius, through);
     vec4 met = mirroredScene(p, reflect(-toEye, n), mirror > 0.03 ? 10 : 0);
     reflected = mix(reflected, met.rgb, met.a);
-    // Where it meets a solid, and at the rim of a film on it, the water does not end in a line.
-    colour.rgb = mix(colour.rgb, mix(transmitted, reflected, mirror), smoothstep(0.0, 1.2 * radius, behind - depth));
+    // Where it meets a solid, at the rim of a film on it and at its own outline, the water does not end in a line.
+    float there = smoothstep(0.0, 1.2 * radius, behind - depth) * smoothstep(0.0, 0.5 * radius, water.x);
+    colour.rgb = mix(colour.rgb, mix(transmitted, reflected, mirror), there);
 }

@@ -5,6 +5,7 @@
 #include "shaders/render/frame.glsl"
 uniform sampler2D source;
 uniform float step_;    // m
+uniform float maxStep;  // pixels: wider holes than other levels can fill would show
 uniform float range;    // m: how far from a straight line depths of one surface may be
 uniform float bend;     // m
 #if defined(LAST)
@@ -30,7 +31,7 @@ void main() {
     last = textureSize(source, 0) - 1;
     z = texelFetch(source, here, 0).r;
     depth = z;
-    int k = max(int(min(step_ / (z * frame.ray.y), 0.1 * frame.viewport.y) + 0.5), 1);
+    int k = max(int(min(step_ / (z * frame.ray.y), maxStep) + 0.5), 1);
     sum = 4.0 * z;
     weights = 4.0;
     addPair(ivec2(k, 0), 2.0);

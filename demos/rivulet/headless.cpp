@@ -6,6 +6,7 @@
 #include <set>
 
 #include "demos/rivulet/cli.h"
+#include "demos/rivulet/interrupt.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
@@ -110,7 +111,7 @@ struct Loop {
 
 }  // namespace
 
-int runHeadless(const RunOptions& options, const Graceful& graceful) {
+int runHeadless(const RunOptions& options) {
     // OpenGL is asked for where a picture is, or where it may simulate; its absence is an error only for the picture.
     std::optional<ContextEgl> context;
     GlFacts gl = noGl("no OpenGL was asked for");
@@ -129,6 +130,7 @@ int runHeadless(const RunOptions& options, const Graceful& graceful) {
         if (!renderer) return report(renderer.error());
         painter.renderer = std::move(*renderer);
     }
+    Graceful graceful;  // until here Ctrl-C leaves at once; from here files are closed first
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 

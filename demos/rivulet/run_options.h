@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "demos/rivulet/interrupt.h"
 #include "engine/core/log.h"
 #include "fluid/bridge/scene_file.h"
 
@@ -13,8 +12,7 @@ namespace rivulet {
 
 struct RunOptions {
     SceneFile scene;
-    std::vector<std::string> assignments;  // --set, in order; for R in the window, which reads the file again
-    std::string backend = "auto";          // auto | cpu | gl | cl
+    std::string backend = "auto";  // auto | cpu | gl | cl
     bool render = true;
     std::optional<int> frames;       // how many; nothing: the loop's own default
     int width = 1280, height = 720;  // pixels
@@ -25,8 +23,8 @@ struct RunOptions {
 };
 
 // Each returns an ExitCode.
-int runHeadless(const RunOptions& options, const Graceful& graceful);
-int runWindow(const RunOptions& options, const Graceful& graceful);
+int runHeadless(const RunOptions& options);
+int runWindow(const RunOptions& options);
 
 // The scene's name as a file's: letters, digits, '-' and '_' stay, all else becomes '_'.
 std::string fileNameOf(const std::string& sceneName);

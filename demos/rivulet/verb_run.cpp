@@ -38,6 +38,7 @@ int runVerb(const Arguments& arguments) {
         "run", "Runs a scene: in a window where there is a display, else (or with --headless) to a video, pictures and figures.");
     std::string scene, size = "1280x720";
     RunOptions options;
+    std::vector<std::string> assignments;
     bool headless = false, noRender = false;
     std::optional<double> seconds;
     reader.positional("SCENE.json", "the scene", scene, true);
@@ -52,7 +53,7 @@ int runVerb(const Arguments& arguments) {
     reader.option("--out", "DIR", "folder that the video, pictures and figures go to", options.out);
     reader.option("--video", "FILE.mp4", "the video's file, instead of DIR/NAME.mp4", options.video);
     reader.option("--stats", "FILE.json", "the figures' file, instead of DIR/stats.json", options.stats);
-    reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", options.assignments);
+    reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
     static const std::vector<std::string> backends = {"auto", "cpu", "gl", "cl"};
@@ -63,7 +64,7 @@ int runVerb(const Arguments& arguments) {
     if (noRender && !options.video.empty())
         return report(badInput("--video asks for pictures and --no-render for none; leave one of them out"));
 
-    Result<SceneFile> loaded = loadScene(scene, options.assignments);
+    Result<SceneFile> loaded = loadScene(scene, assignments);
     if (!loaded) return report(loaded.error());
     options.scene = std::move(*loaded);
     options.render = !noRender;
@@ -74,8 +75,7 @@ int runVerb(const Arguments& arguments) {
         options.log.notice("there is no display: running headless");
         headless = true;
     }
-    Graceful graceful;
-    return headless || noRender ? runHeadless(options, graceful) : runWindow(options, graceful);
+    return headless || noRender ? runHeadless(options) : runWindow(options);
 }
 
 }  // namespace rivulet

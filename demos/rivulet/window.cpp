@@ -2,6 +2,7 @@
 #include <thread>
 
 #include "demos/rivulet/cli.h"
+#include "demos/rivulet/interrupt.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
 #include "engine/app/window_glfw.h"
@@ -10,7 +11,7 @@
 
 namespace rivulet {
 
-int runWindow(const RunOptions& options, const Graceful& graceful) {
+int runWindow(const RunOptions& options) {
     WindowGlfw::Options wish;
     wish.title = options.scene.name + " - rivulet";
     wish.width = options.width;
@@ -25,6 +26,7 @@ int runWindow(const RunOptions& options, const Graceful& graceful) {
         v.record();
     }
 
+    Graceful graceful;
     auto last = std::chrono::steady_clock::now();
     while (!graceful.interrupted() && (!options.frames || v.steps() < static_cast<uint64_t>(*options.frames))) {
         InputEvents input = window->poll();

@@ -152,7 +152,10 @@ Result<VideoWriter> VideoWriter::open(const std::string& path, int width, int he
                                       // H.264 with 4:2:0 colour, which every player reads, needs even sides
                                       "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18",
                                       "-pix_fmt", "yuv420p", "-movflags", "+faststart"};
-    if (impl->temporary.empty()) words.insert(words.end(), {"-f", "matroska"});  // a device: it has no ending, and may not seek
+    if (impl->temporary.empty())
+        words.insert(words.end(), {"-f", "matroska"});  // a device: it has no ending, and may not seek
+    else if (!fs::path(path).has_extension())
+        words.insert(words.end(), {"-f", "mp4"});
     words.insert(words.end(), {target.c_str(), nullptr});
 
     posix_spawn_file_actions_t files;

@@ -114,8 +114,8 @@ void ProfilerPanel::drawTable() const {
     ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch, 3);
     ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthFixed, 56);
     ImGui::TableSetupColumn("share", ImGuiTableColumnFlags_WidthStretch, 2);
-    double all = 1e-6;
-    for (const Line& l : lines_) all += meanOf(l.ms);
+    double most = 1e-6;
+    for (const Line& l : lines_) most = std::max(most, meanOf(l.ms));
     std::string side;
     for (size_t i = 0; i < lines_.size(); ++i) {
         const Line& l = lines_[i];
@@ -131,13 +131,14 @@ void ProfilerPanel::drawTable() const {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::Indent(8);
-        ImGui::TextColored(ImColor(hueOf(i)), "%s", l.name.c_str());
+        ImGui::TextColored(ImColor(hueOf(i)), "%s",
+                           l.name.c_str() + l.name.rfind('/') + 1);  // "fluid/integrate": the folder says nothing here
         ImGui::Unindent(8);
         ImGui::TableNextColumn();
         ImGui::Text("%7.2f", ms);
         ImGui::TableNextColumn();
         ImVec2 at = ImGui::GetCursorScreenPos();
-        float width = ImGui::GetContentRegionAvail().x * static_cast<float>(ms / all), tall = ImGui::GetTextLineHeight();
+        float width = ImGui::GetContentRegionAvail().x * static_cast<float>(ms / most), tall = ImGui::GetTextLineHeight();
         ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x, at.y + 3), ImVec2(at.x + width, at.y + tall - 2), hueOf(i), 2);
     }
     ImGui::EndTable();

@@ -217,6 +217,7 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     uiTimer_.collect([this](uint64_t, double ms) { uiMs_ = ms; });
     profiler_.add("render", renderer_->times());
+    if (renderer_->times().empty()) return ok();  // none has come back yet
     const PassTime ui[] = {{.name = "ui", .ms = uiMs_, .calls = 1}};
     profiler_.add("render", ui);
     return ok();

@@ -24,6 +24,8 @@ TEST(ProgramCli, HelpSaysWhatEveryVerbTakes) {
         EXPECT_EQ(help.code, 0) << verb;
         EXPECT_NE(help.out.find("--help"), std::string::npos) << verb;
         EXPECT_EQ(help.err, "") << verb;
+        EXPECT_TRUE(std::filesystem::exists(std::string(RIVULET_SOURCE_DIR "/demos/rivulet/verb_") + verb + ".cpp"))
+            << "demos/run.sh knows verbs by it";
     }
     Outcome run = runProgram({"run", "--help"});
     for (const char* option :

@@ -37,18 +37,34 @@ void print(const BenchRow& row) {
     std::fflush(stdout);
 }
 
+// A page of a table, with the passes of each row beneath it.
+std::string markdownOf(const Json::Value& all) {
+    std::string page = fmt::format("# Performance\n\nWritten by `rivulet bench --markdown`, version {}, on: {}.\n\n",
+                                   all["version"].asString(), all["machine"].asString());
+    page += "| what | unit | median | least | most | runs | its passes, ms |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const Json::Value& row : all["rows"]) {
+        std::string passes;
+        for (const std::string& name : row["passes"].getMemberNames())
+            passes += fmt::format("{}{} {:.3f}", passes.empty() ? "" : ", ", name, row["passes"][name].asDouble());
+        page += fmt::format("| {} | {} | {:.4g} | {:.4g} | {:.4g} | {} | {} |\n", row["name"].asString(), row["unit"].asString(),
+                            row["median"].asDouble(), row["min"].asDouble(), row["max"].asDouble(), row["runs"].asUInt64(), passes);
+    }
+    return page;
+}
+
 }  // namespace
 
 int benchVerb(const Arguments& arguments) {
     ArgumentReader reader("bench", "Measures speed and memory.");
     std::vector<std::string> names;
-    std::string jsonFile;
+    std::string jsonFile, markdownFile;
     std::optional<int> runs;
     std::string list;
     for (const BenchCase& row : benchCases().rows) list += fmt::format("\n  {:<16}{}", row.name, row.doc);
     reader.footer("Cases:" + list);
     reader.positional("CASE", "which cases; all of them when none is named", names);
     reader.option("--json", "FILE.json", "also write the figures to a file", jsonFile);
+    reader.option("--markdown", "FILE.md", "also write a page of them, as docs/performance.md is", markdownFile);
     reader.option("--runs", "N", "measured runs of each", runs, 5, 1000);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
@@ -85,6 +101,8 @@ int benchVerb(const Arguments& arguments) {
         builder["precision"] = 6;
         if (Status written = writeFileAtomic(jsonFile, Json::writeString(builder, all) + "\n"); !written) return report(written.error());
     }
+    if (!markdownFile.empty())
+        if (Status written = writeFileAtomic(markdownFile, markdownOf(all)); !written) return report(written.error());
     return kDone;
 }
 

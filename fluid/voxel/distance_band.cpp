@@ -98,7 +98,8 @@ struct Target {
 
 // Memory a thread keeps from layer to layer. `bricks`, `kept` and `near` index `targets`.
 struct Workspace {
-    std::vector<Target> targets;  // that reach the layer
+    std::vector<Target> targets;   // that reach the layer
+    std::vector<uint8_t> surface;  // of each target
     std::vector<std::vector<uint32_t>> bricks;
     std::vector<uint32_t> kept, near;
 };
@@ -125,8 +126,12 @@ double sieve(const std::vector<Target>& targets, const std::vector<uint32_t>& fr
 
 class BandBaker {
   public:
-    BandBaker(const GridTriangles& triangles, const ivec3& size, double band)
-        : triangles_(triangles), points_(size + ivec3(1)), bricks_((points_ + ivec3(kEdge - 1)) / kEdge), band_(band) {}
+    BandBaker(const GridTriangles& triangles, std::span<const uint8_t> surfaces, const ivec3& size, double band)
+        : triangles_(triangles),
+          surfaces_(surfaces),
+          points_(size + ivec3(1)),
+          bricks_((points_ + ivec3(kEdge - 1)) / kEdge),
+          band_(band) {}
 
     DistanceBand bake() {
         const auto total = static_cast<size_t>(points_.x) * static_cast<size_t>(points_.y) * static_cast<size_t>(points_.z);
@@ -166,9 +171,13 @@ class BandBaker {
         const auto l = static_cast<size_t>(layer);
         if (layerStart_[l] == layerStart_[l + 1]) return;
         work.targets.clear();
+        work.surface.clear();
         work.bricks.resize(static_cast<size_t>(bricks_.x) * static_cast<size_t>(bricks_.y));
         for (auto& entries : work.bricks) entries.clear();
-        for (size_t k = layerStart_[l]; k < layerStart_[l + 1]; ++k) enter(triangles_[inLayer_[k]], layer, work);
+        for (size_t k = layerStart_[l]; k < layerStart_[l + 1]; ++k) {
+            work.surface.push_back(surfaces_.empty() ? uint8_t{0} : surfaces_[triangles_.owner(inLayer_[k])]);
+            enter(triangles_[inLayer_[k]], layer, work);
+        }
         for (int y = 0; y < bricks_.y; ++y) {
             for (int x = 0; x < bricks_.x; ++x) bakeBrick({x, y, layer}, work);
         }
@@ -195,7 +204,7 @@ class BandBaker {
         if (work.kept.empty()) return;
         BrickPoints best;
         for (int cube = 0; cube < 8; ++cube) bakeCube(brick, ivec3(cube & 1, (cube >> 1) & 1, cube >> 2) * 2, nearest, work, best);
-        store(brick, best, work.targets);
+        store(brick, best, work);
     }
 
     // `first`: the cube's low corner in the brick. `fromBrick`: the nearest triangle's distance from the brick's middle.
@@ -221,7 +230,7 @@ class BandBaker {
         }
     }
 
-    void store(const ivec3& brick, const BrickPoints& best, const std::vector<Target>& targets) {
+    void store(const ivec3& brick, const BrickPoints& best, const Workspace& work) {
         const ivec3 first = brick * kEdge;
         const ivec3 end = glm::min(first + ivec3(kEdge), points_);
         for (int z = first.z; z < end.z; ++z) {
@@ -232,7 +241,8 @@ class BandBaker {
                     const Nearest& nearest = best[static_cast<size_t>(((z - first.z) * kEdge + (y - first.y)) * kEdge + (x - first.x))];
                     if (nearest.target == kNone) continue;
                     result_.distance[row + static_cast<size_t>(x)] = static_cast<float>(std::sqrt(nearest.square));
-                    result_.normal[row + static_cast<size_t>(x)] = packNormal(targets[nearest.target].away(dvec3(x, y, z)));
+                    result_.normal[row + static_cast<size_t>(x)] =
+                        packNormal(work.targets[nearest.target].away(dvec3(x, y, z)), work.surface[nearest.target]);
                 }
             }
         }
@@ -241,6 +251,7 @@ class BandBaker {
     size_t brickIndex(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(bricks_.x) + static_cast<size_t>(x); }
 
     const GridTriangles& triangles_;
+    std::span<const uint8_t> surfaces_;
     ivec3 points_, bricks_;
     double band_;
     DistanceBand result_;
@@ -250,21 +261,36 @@ class BandBaker {
 
 }  // namespace
 
-uint32_t packNormal(const dvec3& direction) {
+uint32_t packNormal(const dvec3& direction, uint32_t surface) {
     const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-    if (!(sum > 0.0)) return 0;
-    double x = direction.x / sum, y = direction.y / sum;
-    if (direction.z < 0.0) {
-        const double folded = (1.0 - std::abs(y)) * (x < 0.0 ? -1.0 : 1.0);
-        y = (1.0 - std::abs(x)) * (y < 0.0 ? -1.0 : 1.0);
-        x = folded;
+    if (!(sum > 0.0)) return surface << 28U;
+    const dvec3 d = direction / sum;
+    double x = d.x, y = d.y;
+    if (d.z < 0.0) {
+        x = (1.0 - std::abs(d.y)) * (d.x < 0.0 ? -1.0 : 1.0);
+        y = (1.0 - std::abs(d.x)) * (d.y < 0.0 ? -1.0 : 1.0);
     }
-    const auto bits = [](double v) { return static_cast<uint32_t>(std::lround((0.5 * v + 0.5) * 65535.0)); };
-    return bits(x) | (bits(y) << 16U);
+    // Of the four codes around, the one whose direction has the largest cosine; it is positive for all.
+    const double lowX = std::min(8190.0, std::floor(x * 8191.0)), lowY = std::min(8190.0, std::floor(y * 8191.0));
+    double best = -1.0;
+    uint32_t code = 0;
+    for (int k = 0; k < 4; ++k) {
+        const double u = lowX + (k & 1), v = lowY + (k >> 1);
+        const double z = 8191.0 - std::abs(u) - std::abs(v);
+        const double fold = std::max(-z, 0.0);
+        const dvec3 n(u < 0.0 ? u + fold : u - fold, v < 0.0 ? v + fold : v - fold, z);
+        const double along = glm::dot(n, d);
+        const double cosine = along * along / glm::dot(n, n);
+        if (cosine > best) {
+            best = cosine;
+            code = static_cast<uint32_t>(static_cast<int>(u) + 8191) | static_cast<uint32_t>(static_cast<int>(v) + 8191) << 14U;
+        }
+    }
+    return code | surface << 28U;
 }
 
-DistanceBand distanceBand(const GridTriangles& triangles, const ivec3& size, double band) {
-    return BandBaker(triangles, size, band).bake();
+DistanceBand distanceBand(const GridTriangles& triangles, std::span<const uint8_t> surfaces, const ivec3& size, double band) {
+    return BandBaker(triangles, surfaces, size, band).bake();
 }
 
 }  // namespace rivulet

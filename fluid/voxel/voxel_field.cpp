@@ -32,6 +32,17 @@ std::optional<Error> checkMesh(const MeshView& mesh, const std::string& name) {
     return std::nullopt;
 }
 
+std::optional<Error> checkSurfaces(size_t meshes, std::span<const uint8_t> surfaces) {
+    if (!surfaces.empty() && surfaces.size() != meshes)
+        return badInput(
+            fmt::format("A voxel field was given {} surfaces for {} meshes; give one a mesh, or none.", surfaces.size(), meshes));
+    const auto wrong = std::find_if(surfaces.begin(), surfaces.end(), [](uint8_t s) { return s > kMaxSurface; });
+    if (wrong != surfaces.end())
+        return badInput(fmt::format("Surface {} of mesh {} is above {}: a voxel field tells {} surfaces apart; let meshes share one.",
+                                    *wrong, wrong - surfaces.begin() + 1, kMaxSurface, kMaxSurface + 1));
+    return std::nullopt;
+}
+
 // Where the triangles are, and how long the longest side is (m).
 struct Extent {
     Bounds bounds;
@@ -113,6 +124,8 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
     if (triangles > std::numeric_limits<uint32_t>::max())
         return badInput(fmt::format("{} triangles are more than a voxel field can take.", triangles));
 
+    if (auto error = checkSurfaces(meshes.size(), options.surfaces)) return *error;
+
     const Extent extent = extentOf(meshes);
     const dvec3 furthest = glm::max(glm::abs(dvec3(extent.bounds.min)), glm::abs(dvec3(extent.bounds.max)));
     const double away = std::max(furthest.x, std::max(furthest.y, furthest.z));
@@ -139,7 +152,8 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
         field.band = layout.band;
         const GridTriangles list(meshes, grid);
         voxelizeSurface(list, grid);
-        DistanceBand band = distanceBand(list, grid.size, static_cast<double>(layout.band) / static_cast<double>(layout.voxel));
+        DistanceBand band =
+            distanceBand(list, options.surfaces, grid.size, static_cast<double>(layout.band) / static_cast<double>(layout.voxel));
         field.distance = std::move(band.distance);
         field.normal = std::move(band.normal);
         for (float& d : field.distance) d = std::min(d * layout.voxel, layout.band);

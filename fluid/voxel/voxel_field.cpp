@@ -43,16 +43,19 @@ std::optional<Error> checkSurfaces(size_t meshes, std::span<const uint8_t> surfa
     return std::nullopt;
 }
 
-// Where the triangles are, and how long the longest side is (m).
+// Where the triangles are (or are said to be), and how long the longest side is (m).
 struct Extent {
     Bounds bounds;
     double longest = 0;
+    size_t extra = 0;  // bytes a point
 };
 
-Extent extentOf(std::span<const MeshView> meshes) {
+Extent extentOf(std::span<const MeshView> meshes, const Bounds* reach, size_t extra) {
     Extent e;
-    for (const MeshView& mesh : meshes) {
-        for (uint32_t index : mesh.indices) e.bounds.add(mesh.positions[index]);
+    e.extra = extra;
+    if (reach != nullptr) e.bounds = *reach;
+    for (size_t m = 0; m < meshes.size() && reach == nullptr; ++m) {
+        for (uint32_t index : meshes[m].indices) e.bounds.add(meshes[m].positions[index]);
     }
     const dvec3 size = dvec3(e.bounds.max) - dvec3(e.bounds.min);
     e.longest = std::max(size.x, std::max(size.y, size.z));
@@ -74,7 +77,8 @@ Layout layoutFor(const Extent& extent, const VoxelFieldOptions& options, int res
     // One more than needed, so that half a voxel is left on each side for rounding, and faces of boxes lie amid voxels, not between.
     l.voxels = glm::ceil((size + 2.0 * padding) / static_cast<double>(l.voxel)) + 1.0;
     const dvec3 points = l.voxels + 1.0;
-    l.bytes = points.x * points.y * points.z * (sizeof(float) + sizeof(uint32_t)) + l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
+    l.bytes = points.x * points.y * points.z * static_cast<double>(sizeof(float) + sizeof(uint32_t) + extent.extra) +
+              l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
     return l;
 }
 
@@ -109,7 +113,7 @@ float VoxelField::clearance(const vec3& p) const {
     return best;
 }
 
-Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
+Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra) {
     if (options.resolution < kMinResolution || options.resolution > kMaxResolution)
         return badInput(fmt::format("A voxel field's resolution is {}..{}, not {}.", kMinResolution, kMaxResolution, options.resolution));
     if (!(options.band >= 0.0F && options.padding >= 0.0F) || !std::isfinite(options.band) || !std::isfinite(options.padding))
@@ -126,7 +130,7 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
 
     if (auto error = checkSurfaces(meshes.size(), options.surfaces)) return *error;
 
-    const Extent extent = extentOf(meshes);
+    const Extent extent = extentOf(meshes, reach, extra);
     const dvec3 furthest = glm::max(glm::abs(dvec3(extent.bounds.min)), glm::abs(dvec3(extent.bounds.max)));
     const double away = std::max(furthest.x, std::max(furthest.y, furthest.z));
     const Layout layout = layoutFor(extent, options, options.resolution);
@@ -150,17 +154,27 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
             vec3(0.5 * (dvec3(extent.bounds.min) + dvec3(extent.bounds.max)) - 0.5 * layout.voxels * static_cast<double>(layout.voxel));
         grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
         field.band = layout.band;
-        const GridTriangles list(meshes, grid);
-        voxelizeSurface(list, grid);
-        DistanceBand band =
-            distanceBand(list, options.surfaces, grid.size, static_cast<double>(layout.band) / static_cast<double>(layout.voxel));
-        field.distance = std::move(band.distance);
-        field.normal = std::move(band.normal);
-        for (float& d : field.distance) d = std::min(d * layout.voxel, layout.band);
+        const auto points =
+            (static_cast<size_t>(grid.size.x) + 1) * (static_cast<size_t>(grid.size.y) + 1) * (static_cast<size_t>(grid.size.z) + 1);
+        field.distance.assign(points, field.band);
+        field.normal.assign(points, 0);
         return field;
     } catch (const std::bad_alloc&) {
         return failed(fmt::format("Not enough memory for a voxel field of resolution {}, which needs {}; lower the resolution.",
                                   options.resolution, readableBytes(layout.bytes)));
+    }
+}
+
+Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
+    Result<VoxelField> field = emptyVoxelField(meshes, nullptr, options, 0);
+    if (!field) return field;
+    try {
+        const GridTriangles list(meshes, field->surface);
+        voxelizeSurface(list, field->surface);
+        DistanceBand(field->surface, field->band).bake(list, options.surfaces, {}, {}, {}, {field->distance, field->normal, {}});
+        return field;
+    } catch (const std::bad_alloc&) {
+        return failed(fmt::format("Not enough memory to bake a voxel field of resolution {}; lower the resolution.", options.resolution));
     }
 }
 

@@ -50,6 +50,10 @@ inline constexpr float kContactVoxels = 1.74F;
 // The same bits and distances for any number of threads.
 Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options);
 
+// What bakeVoxelField starts from: its checks, its grid with no bit set, distances at the band. `reach`: lay the grid out over this instead
+// of the meshes' bounds, which then need not fill it. `extra`: bytes a grid point that the caller will need besides.
+Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra);
+
 // How particles meet the field.
 struct FieldContact {
     float spacing = 0;        // m, rest distance of particles

@@ -8,29 +8,13 @@
 #include <optional>
 
 #include "fluid/voxel/distance_band.h"
+#include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/voxelize_surface.h"
 
 namespace rivulet {
 namespace {
 
 constexpr int kMinResolution = 2, kMaxResolution = 2048;
-
-// "mesh 2 of 3" where there are several.
-std::string which(size_t mesh, size_t count) { return count == 1 ? "The mesh" : fmt::format("Mesh {} of {}", mesh + 1, count); }
-
-std::optional<Error> checkMesh(const MeshView& mesh, const std::string& name) {
-    if (mesh.indices.size() % 3 != 0)
-        return badInput(fmt::format("{} has {} indices, which is not three for each triangle; triangulate it.", name, mesh.indices.size()));
-    const auto inside = [&](uint32_t index) { return index < mesh.positions.size(); };
-    const auto stray = std::find_if_not(mesh.indices.begin(), mesh.indices.end(), inside);
-    if (stray != mesh.indices.end())
-        return badInput(fmt::format("{} refers to vertex {} but has only {} vertices (triangle {}); export it again.", name, *stray,
-                                    mesh.positions.size(), (stray - mesh.indices.begin()) / 3));
-    const auto wrong = std::count_if(mesh.positions.begin(), mesh.positions.end(), [](const vec3& p) { return !isFinite(p); });
-    if (wrong > 0)
-        return badInput(fmt::format("{} has {} of {} vertices that are NaN or infinite; remove them.", name, wrong, mesh.positions.size()));
-    return std::nullopt;
-}
 
 std::optional<Error> checkSurfaces(size_t meshes, std::span<const uint8_t> surfaces) {
     if (!surfaces.empty() && surfaces.size() != meshes)
@@ -43,24 +27,11 @@ std::optional<Error> checkSurfaces(size_t meshes, std::span<const uint8_t> surfa
     return std::nullopt;
 }
 
-// Where the triangles are (or are said to be), and how long the longest side is (m).
-struct Extent {
-    Bounds bounds;
-    double longest = 0;
-    size_t extra = 0;  // bytes a point
+// Where the grid is to be.
+struct Place {
+    MeshExtent extent;
+    size_t pointBytes = sizeof(float) + sizeof(uint32_t);  // a grid point's
 };
-
-Extent extentOf(std::span<const MeshView> meshes, const Bounds* reach, size_t extra) {
-    Extent e;
-    e.extra = extra;
-    if (reach != nullptr) e.bounds = *reach;
-    for (size_t m = 0; m < meshes.size() && reach == nullptr; ++m) {
-        for (uint32_t index : meshes[m].indices) e.bounds.add(meshes[m].positions[index]);
-    }
-    const dvec3 size = dvec3(e.bounds.max) - dvec3(e.bounds.min);
-    e.longest = std::max(size.x, std::max(size.y, size.z));
-    return e;
-}
 
 struct Layout {
     float voxel = 0, band = 0;
@@ -68,7 +39,8 @@ struct Layout {
     double bytes = 0;
 };
 
-Layout layoutFor(const Extent& extent, const VoxelFieldOptions& options, int resolution) {
+Layout layoutFor(const Place& place, const VoxelFieldOptions& options, int resolution) {
+    const MeshExtent& extent = place.extent;
     Layout l;
     l.voxel = static_cast<float>(extent.longest / resolution);
     l.band = std::max(options.band, kBandVoxels * l.voxel);
@@ -77,22 +49,17 @@ Layout layoutFor(const Extent& extent, const VoxelFieldOptions& options, int res
     // One more than needed, so that half a voxel is left on each side for rounding, and faces of boxes lie amid voxels, not between.
     l.voxels = glm::ceil((size + 2.0 * padding) / static_cast<double>(l.voxel)) + 1.0;
     const dvec3 points = l.voxels + 1.0;
-    l.bytes = points.x * points.y * points.z * static_cast<double>(sizeof(float) + sizeof(uint32_t) + extent.extra) +
-              l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
+    l.bytes = points.x * points.y * points.z * static_cast<double>(place.pointBytes) + l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
     return l;
 }
 
-std::string readableBytes(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
-}
-
-Error tooMuchMemory(const Extent& extent, const VoxelFieldOptions& options, double needed, double limit) {
+Error tooMuchMemory(const Place& place, const VoxelFieldOptions& options, double needed, double limit) {
     int fits = options.resolution;
-    while (fits >= kMinResolution && layoutFor(extent, options, fits).bytes > limit) --fits;
+    while (fits >= kMinResolution && layoutFor(place, options, fits).bytes > limit) --fits;
     const std::string remedy = fits >= kMinResolution
                                    ? fmt::format("a resolution of {} fits", fits)
                                    : fmt::format("the band of {} m and padding of {} m are too wide for meshes {} m long", options.band,
-                                                 options.padding, extent.longest);
+                                                 options.padding, place.extent.longest);
     return badInput(fmt::format("A voxel field of resolution {} needs {}, more than the {} allowed; {}.", options.resolution,
                                 readableBytes(needed), readableBytes(limit), remedy));
 }
@@ -119,31 +86,24 @@ Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bound
     if (!(options.band >= 0.0F && options.padding >= 0.0F) || !std::isfinite(options.band) || !std::isfinite(options.padding))
         return badInput(fmt::format("A voxel field's band ({}) and padding ({}) must be finite lengths of 0 m or more.", options.band,
                                     options.padding));
-    size_t triangles = 0;
-    for (size_t m = 0; m < meshes.size(); ++m) {
-        if (auto error = checkMesh(meshes[m], which(m, meshes.size()))) return *error;
-        triangles += meshes[m].triangleCount();
-    }
-    if (triangles == 0) return badInput("There is no triangle to voxelise; the mesh is empty or holds only points and lines.");
-    if (triangles > std::numeric_limits<uint32_t>::max())
-        return badInput(fmt::format("{} triangles are more than a voxel field can take.", triangles));
+    if (auto error = checkMeshes(meshes)) return *error;
 
     if (auto error = checkSurfaces(meshes.size(), options.surfaces)) return *error;
 
-    const Extent extent = extentOf(meshes, reach, extra);
-    const dvec3 furthest = glm::max(glm::abs(dvec3(extent.bounds.min)), glm::abs(dvec3(extent.bounds.max)));
-    const double away = std::max(furthest.x, std::max(furthest.y, furthest.z));
-    const Layout layout = layoutFor(extent, options, options.resolution);
-    if (!(extent.longest > 0.0)) return badInput("All triangles lie in one point: the mesh has no extent; check its scale.");
-    // A float near `away` is exact to 2^-24 of it; a voxel must span several of those steps.
-    if (!(layout.voxel > 16.0 * away / 16777216.0) || !std::isnormal(layout.voxel))
-        return badInput(
-            fmt::format("Voxels of {:.3g} m cannot be told apart {:.3g} m from the origin in 32-bit floats; "
-                        "move the mesh nearer to the origin, scale it or lower the resolution.",
-                        layout.voxel, away));
+    Place place;
+    MeshExtent& extent = place.extent;
+    if (reach == nullptr) {
+        extent = extentOf(meshes);
+    } else {
+        const dvec3 size = dvec3(reach->max) - dvec3(reach->min);
+        extent = {*reach, std::max(size.x, std::max(size.y, size.z))};
+    }
+    place.pointBytes += extra;
+    const Layout layout = layoutFor(place, options, options.resolution);
+    if (auto error = checkVoxel(extent, layout.voxel)) return *error;
     // Kernels count voxels and points in 32 bits.
     const double limit = std::min(static_cast<double>(options.memoryLimit), 4294967295.0 * sizeof(float));
-    if (!(layout.bytes <= limit)) return tooMuchMemory(extent, options, layout.bytes, limit);
+    if (!(layout.bytes <= limit)) return tooMuchMemory(place, options, layout.bytes, limit);
 
     try {
         VoxelField field;

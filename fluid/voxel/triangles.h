@@ -24,8 +24,12 @@ class GridTriangles {
         for (const MeshView& mesh : meshes_) ends_.push_back(size() + mesh.triangleCount());
     }
     size_t size() const { return ends_.empty() ? 0 : ends_.back(); }
-    GridTriangle operator[](size_t k) const {
-        const auto owner = static_cast<size_t>(std::upper_bound(ends_.begin(), ends_.end(), k) - ends_.begin());
+    // Which mesh triangle k is of.
+    size_t owner(size_t k) const { return static_cast<size_t>(std::upper_bound(ends_.begin(), ends_.end(), k) - ends_.begin()); }
+    GridTriangle operator[](size_t k) const { return ofMesh(owner(k), k); }
+
+  private:
+    GridTriangle ofMesh(size_t owner, size_t k) const {
         const MeshView& mesh = meshes_[owner];
         const size_t first = 3 * (k - (owner == 0 ? 0 : ends_[owner - 1]));
         const dvec3 a(mesh.positions[mesh.indices[first]]);
@@ -34,7 +38,6 @@ class GridTriangles {
         return {(a - origin_) / voxel_, (b - a) / voxel_, (c - a) / voxel_};
     }
 
-  private:
     std::span<const MeshView> meshes_;
     std::vector<size_t> ends_;  // of each mesh's triangles in the list
     dvec3 origin_;

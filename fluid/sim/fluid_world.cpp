@@ -41,6 +41,7 @@ struct FluidWorld::Impl {
     uint64_t frame = 0;
     int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
+    float fastestWall = 0;  // m/s, of moving solids so far
 
     Status prepare();
     void fillStart();
@@ -48,7 +49,7 @@ struct FluidWorld::Impl {
     float fastestFall() const;
     double stepLimit(double frameSeconds) const;
     void say(const std::string& sentence);
-    void substep(double dt);
+    void substep(double dt, double from, double to);
     void gatherStats(int substeps);
 };
 
@@ -58,6 +59,8 @@ const FluidParams& FluidWorld::params() const { return impl_->params; }
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 double FluidWorld::time() const { return impl_->time; }
 int FluidWorld::lastSubsteps() const { return impl_->lastSubsteps; }
+const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
+uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
 // The speed water of this scene reaches by falling from its highest block to the far side of the box, with what it starts with.
@@ -73,6 +76,7 @@ float FluidWorld::Impl::fastestFall() const {
         }
         fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
     }
+    fastest = std::max(fastest, fastestWall);
     // Still water without gravity has no speed of its own: the length it could be pushed over in a tenth of a second.
     return std::max(fastest, 10.0F * params.spacing);
 }
@@ -155,7 +159,8 @@ void FluidWorld::Impl::say(const std::string& sentence) {
 double FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
-    const double fastest = figures->maxSpeed + g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
+    const double fastest = std::max(figures->maxSpeed, double{solids.fastestWall()}) +
+                           g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
     double dt = params.cfl * hs / (c0 + fastest);
     const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
     if (nu > 0) dt = std::min(dt, 0.125 * hs * hs / nu);
@@ -163,14 +168,15 @@ double FluidWorld::Impl::stepLimit(double frameSeconds) const {
     return dt;
 }
 
-void FluidWorld::Impl::substep(double dt) {
+// `from`, `to`: the shares of the frame's time at which it begins and ends.
+void FluidWorld::Impl::substep(double dt, double from, double to) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = static_cast<float>(params.spacing / dt);
     if (Status built = grid->build(step, particles); !built) {
         say(built.error().message);
         return;
     }
-    solids.prepare(params, step, glm::length(gravity));
+    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
     if (method->wallsInDensity()) solids.boundary(step, *grid, particles);
     StepContext context{*device, step, *grid, particles};
     method->step(context);
@@ -191,6 +197,8 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         return;
     }
     w.gravity = inputs.gravity;
+    if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, seconds); !asked) w.say(asked.error().message);
+    w.fastestWall = std::max(w.fastestWall, w.solids.fastestWall());
     const FluidParams& p = w.params;
     StepParams& s = w.step;
     s = StepParams{};
@@ -220,7 +228,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         dt = limit;
         w.say(fmt::format("a frame needed more than fluid.maxSubsteps = {} steps: simulated time runs slower than asked", p.maxSubsteps));
     }
-    for (int k = 0; k < substeps; ++k) w.substep(dt);
+    for (int k = 0; k < substeps; ++k) w.substep(dt, k * dt / seconds, (k + 1) * dt / seconds);
     w.lastSubsteps = substeps;
     w.time += dt * substeps;
     w.dtMin = w.dtMin == 0 ? dt : std::min(w.dtMin, dt);
@@ -267,7 +275,13 @@ void FluidWorld::Impl::gatherStats(int substeps) {
                       });
 }
 
-void FluidWorld::reset() { impl_->writeStart(); }
+void FluidWorld::reset() {
+    if (Status back = impl_->solids.reset(); !back) impl_->say(back.error().message);
+    impl_->fastestWall = 0;
+    impl_->writeStart();
+}
+
+void FluidWorld::setSurfaces(std::span<const Surface> surfaces) { impl_->solids.setSurfaces(surfaces); }
 
 void FluidWorld::setParams(const FluidParams& params) {
     FluidParams next = params;
@@ -279,6 +293,7 @@ void FluidWorld::setParams(const FluidParams& params) {
     next.box.min = old.box.min;
     next.box.max = old.box.max;
     next.blocks = old.blocks;
+    next.collision.walk = old.collision.walk;
     impl_->params = next;
 }
 
@@ -289,12 +304,12 @@ ParticleView FluidWorld::particles() const {
             w.params.spacing,          w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
 }
 
-Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const StaticSolids& solids, Log log) {
+Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log) {
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
-    Result<SolidPasses> passes = SolidPasses::create(device, solids);
+    Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision);
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
     w.log = std::move(log);

@@ -1,6 +1,7 @@
 // Particles against the static field: nothing in, nothing through, nothing sticks.
 #include <gtest/gtest.h>
 
+#include "fluid/sim/solids.h"
 #include "fluid/voxel/voxel_field.h"
 #include "tests/physics/collide_unit.h"
 #include "tests/unit/voxel_test_meshes.h"
@@ -24,11 +25,10 @@ struct World {
         field = std::move(*baked);
         FieldContact contact;
         contact.spacing = spacing;
-        contact.friction = friction;
-        contact.restitution = restitution;
         contact.restSpeed = 0.05F;
         contact.countIndex = 2;
         params = fieldParams(field, contact);
+        for (uint32_t word : surfaceWords({}, {friction, restitution})) field.normal.push_back(word);
     }
 
     // Only where a particle may be born: at contact or further.

@@ -271,7 +271,7 @@ struct Bake {
                 y[n] = direction.y;
                 z[n] = direction.z;
             }
-            kernels.pack({x.data(), y.data(), z.data(), codes.data()});
+            kernels.pack({x.data(), y.data(), z.data(), codes.data(), kBrickPoints});
         }
         const ivec3 end = glm::min(first + ivec3(kEdge), points);
         for (int pz = first.z; pz < end.z; ++pz) {
@@ -325,8 +325,8 @@ void DistanceBand::bake(const GridTriangles& triangles, std::span<const uint8_t>
 }
 
 uint32_t packNormal(const dvec3& direction, uint32_t surface) {
-    std::array<double, kBrickPoints> x, y, z;
-    std::array<uint32_t, kBrickPoints> codes{};
+    std::array<double, 8> x, y, z;
+    std::array<uint32_t, 8> codes{};
     x.fill(direction.x);
     y.fill(direction.y);
     z.fill(direction == dvec3(0.0) ? 1.0 : direction.z);

@@ -183,7 +183,7 @@ void rows(const BandRows& job) {
 INLINE Wide magnitude(Wide a) { return larger(a, -a); }
 
 void pack(const BandPack& job) {
-    for (int k = 0; k < 64; k += kWide) {
+    for (uint32_t k = 0; k < job.count; k += kWide) {
         Wide3 d;
         memcpy(&d.x, job.x + k, sizeof(Wide));
         memcpy(&d.y, job.y + k, sizeof(Wide));

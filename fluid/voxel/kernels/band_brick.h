@@ -42,10 +42,11 @@ struct BandRows {
     uint32_t* bits;  // of each row: bit k for its brick k, 0..7
 };
 
-// 64 directions of any length but 0 into the low 28 bits of packNormal's code.
+// Directions of any length but 0 into the low 28 bits of packNormal's code.
 struct BandPack {
     const double *x, *y, *z;
     uint32_t* code;
+    uint32_t count;  // a multiple of 8
 };
 
 struct BandKernels {

@@ -5,7 +5,6 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <array>
-#include <glm/vector_relational.hpp>
 #include <new>
 
 #include "fluid/voxel/distance_band.h"
@@ -31,6 +30,19 @@ void forPoints(const ivec3& brick, const ivec3& size, const Body& body) {
             size_t at = (static_cast<size_t>(z) * static_cast<size_t>(size.y) + static_cast<size_t>(y)) * static_cast<size_t>(size.x) +
                         static_cast<size_t>(first.x);
             for (int x = first.x; x < end.x; ++x, ++at) body(at, ivec3(x, y, z));
+        }
+    }
+}
+
+// The voxels of a brick.
+void clearBits(const ivec3& brick, VoxelGrid& grid) {
+    const ivec3 first = brick * kBrick, end = glm::min(first + ivec3(kBrick), grid.size);
+    for (int z = first.z; z < end.z; ++z) {
+        for (int y = first.y; y < end.y; ++y) {
+            for (int x = first.x; x < end.x; ++x) {
+                const size_t i = grid.index({x, y, z});
+                grid.bits[i >> 3U] = static_cast<uint8_t>(grid.bits[i >> 3U] & ~(1U << (i & 7U)));
+            }
         }
     }
 }
@@ -114,7 +126,8 @@ Result<DeformingField::Change> DeformingField::update(std::span<const vec3> posi
         if (all) {
             bakeAll();
         } else {
-            bakePart(before);
+            std::fill(dirty_.begin(), dirty_.end(), uint8_t{0});
+            if (moved > 0) bakePart(before);
         }
         const Change change = displace(before);
         stale_ = false;
@@ -167,13 +180,11 @@ void DeformingField::bakeAll() {
     });
 }
 
-void DeformingField::bakePart(const std::vector<vec3>& before) {
-    VoxelGrid& grid = field_.surface;
-    const DistanceBand band(grid, field_.band);
+// Flags the bricks of `band` that the moved triangles reach from where they were or are, and widens [low, high] to hold them.
+void DeformingField::markMoved(const DistanceBand& band, const std::vector<vec3>& before, std::span<uint8_t> flags, ivec3& low,
+                               ivec3& high) const {
     const MeshView oldMesh{before, indices_, {}, {}}, newMesh{positions_, indices_, {}, {}};
-    const GridTriangles oldList(std::span(&oldMesh, 1), grid), newList(std::span(&newMesh, 1), grid);
-    std::fill(dirty_.begin(), dirty_.end(), uint8_t{0});
-    ivec3 low = band.bricks(), high(-1);
+    const GridTriangles oldList(std::span(&oldMesh, 1), field_.surface), newList(std::span(&newMesh, 1), field_.surface);
     for (size_t k = 0; k < moved_.size(); ++k) {
         if (moved_[k] == 0) continue;
         for (const GridTriangles* list : {&oldList, &newList}) {
@@ -182,40 +193,59 @@ void DeformingField::bakePart(const std::vector<vec3>& before) {
             band.reach(t.low(), t.high(), first, last);
             low = glm::min(low, first);
             high = glm::max(high, last);
-            band.markReach(t, dirty_);
+            band.markReach(t, flags);
         }
     }
-    // Every triangle that may reach a dirty brick, in the old order.
-    std::vector<uint32_t> numbers, indices;
-    for (size_t k = 0; k < moved_.size() && low.x <= high.x; ++k) {
-        const GridTriangle t = newList[k];
-        ivec3 first, last;
-        band.reach(t.low(), t.high(), first, last);
-        if (glm::any(glm::greaterThan(first, high)) || glm::any(glm::lessThan(last, low))) continue;
+}
+
+// The triangles whose box comes within `margin` (m) of the bricks [low, high], in their old order: numbers, and corners.
+void DeformingField::findNear(const ivec3& low, const ivec3& high, float margin, std::vector<uint32_t>& numbers,
+                              std::vector<uint32_t>& corners) const {
+    const VoxelGrid& grid = field_.surface;
+    const vec3 boxLow = grid.origin + grid.voxel * vec3(low * kBrick) - margin;
+    const vec3 boxHigh = grid.origin + grid.voxel * vec3((high + 1) * kBrick) + margin;
+    for (size_t k = 0; k < moved_.size(); ++k) {
+        const vec3& a = positions_[indices_[3 * k]];
+        const vec3& b = positions_[indices_[3 * k + 1]];
+        const vec3& c = positions_[indices_[3 * k + 2]];
+        bool apart = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            apart = apart || std::min(a[axis], std::min(b[axis], c[axis])) > boxHigh[axis] ||
+                    std::max(a[axis], std::max(b[axis], c[axis])) < boxLow[axis];
+        }
+        if (apart) continue;
         numbers.push_back(static_cast<uint32_t>(k));
-        indices.insert(indices.end(), indices_.begin() + static_cast<ptrdiff_t>(3 * k),
-                       indices_.begin() + static_cast<ptrdiff_t>(3 * k + 3));
+        for (size_t corner = 3 * k; corner < 3 * k + 3; ++corner) corners.push_back(indices_[corner]);
     }
-    const MeshView part{positions_, indices, {}, {}};
-    const GridTriangles list(std::span(&part, 1), grid);
+}
+
+void DeformingField::bakePart(const std::vector<vec3>& before) {
+    VoxelGrid& grid = field_.surface;
+    // A voxel that a triangle touches has its low corner within sqrt(3) voxels of it. Bricks with such corners are voxelised again.
+    const DistanceBand touch(grid, kContactVoxels * grid.voxel);
+    std::vector<uint8_t> cleared(dirty_.size(), 0);
+    ivec3 low = touch.bricks(), high(-1);
+    markMoved(touch, before, cleared, low, high);
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) {
             for (int x = low.x; x <= high.x; ++x) {
-                if (dirty_[band.brickIndex({x, y, z})] == 0) continue;
-                const ivec3 first = ivec3(x, y, z) * kBrick, end = glm::min(first + ivec3(kBrick), grid.size);
-                for (int vz = first.z; vz < end.z; ++vz) {
-                    for (int vy = first.y; vy < end.y; ++vy) {
-                        for (int vx = first.x; vx < end.x; ++vx) {
-                            const size_t i = grid.index({vx, vy, vz});
-                            grid.bits[i >> 3U] = static_cast<uint8_t>(grid.bits[i >> 3U] & ~(1U << (i & 7U)));
-                        }
-                    }
-                }
+                if (cleared[touch.brickIndex({x, y, z})] != 0) clearBits(ivec3(x, y, z), grid);
             }
         }
     }
-    voxelizeSurface(list, grid);
-    band.bake(list, surfaces_, numbers, dirty_, occupied_, {field_.distance, field_.normal, nearest_});
+    std::vector<uint32_t> numbers, corners;
+    findNear(low, high, grid.voxel, numbers, corners);
+    const MeshView touching{positions_, corners, {}, {}};
+    voxelizeSurface(GridTriangles(std::span(&touching, 1), grid), grid);
+
+    const DistanceBand band(grid, field_.band);
+    markMoved(band, before, dirty_, low, high);
+    numbers.clear();
+    corners.clear();
+    findNear(low, high, field_.band + grid.voxel, numbers, corners);
+    const MeshView reaching{positions_, corners, {}, {}};
+    band.bake(GridTriangles(std::span(&reaching, 1), grid), surfaces_, numbers, dirty_, occupied_,
+              {field_.distance, field_.normal, nearest_});
 }
 
 // At the points of bricks done anew; and where the last update left a displacement, none.

@@ -7,6 +7,8 @@
 
 namespace rivulet {
 
+class DistanceBand;
+
 class DeformingField {
   public:
     // One mesh as it is at first, m. `reach`: a box that holds it at all times (m); the grid covers that, padded as a static field's is,
@@ -37,6 +39,8 @@ class DeformingField {
     size_t findMoved(std::span<const vec3> positions);
     void bakeAll();
     void bakePart(const std::vector<vec3>& before);
+    void markMoved(const DistanceBand& band, const std::vector<vec3>& before, std::span<uint8_t> flags, ivec3& low, ivec3& high) const;
+    void findNear(const ivec3& low, const ivec3& high, float margin, std::vector<uint32_t>& numbers, std::vector<uint32_t>& corners) const;
     Change displace(const std::vector<vec3>& before);
 
     VoxelField field_;

@@ -1,132 +1,159 @@
-// BrickPoints of 4^3 points in layers, each brick with the triangles that could be nearest to one of its points; each brick in 8 cubes of
-// 2^3 points, whose middles sieve the brick's triangles again. Distance changes by no more than one moves: who is further from
-// a middle than the nearest by more than a diagonal is nearest to none of the points around it.
+// Bricks of 4^3 points in layers, each brick with the triangles that could be nearest to one of its points;
+// fluid/voxel/kernels/band_brick.cpp does a brick.
 #include "fluid/voxel/distance_band.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <array>
+#include <bit>
+
+#include "fluid/voxel/kernels/band_brick.h"
+
+RIVULET_BAND_UNIT(kernels_generic)
+#if defined(RIVULET_HAS_AVX2)
+RIVULET_BAND_UNIT(kernels_avx2)
+RIVULET_BAND_UNIT(kernels_avx512)
+#endif
 
 namespace rivulet {
 namespace {
 
 constexpr int kEdge = DistanceBand::kBrick;
+constexpr size_t kBrickPoints = size_t{kEdge} * kEdge * kEdge;
 constexpr double kMiddle = 0.5 * (kEdge - 1);        // of a brick, from its first point
 constexpr double kBrickRadius = 2.5980762113533160;  // sqrt(3) kMiddle: from there to its corners
-constexpr double kCubeRadius = 0.8660254037844386;
-constexpr double kToCube = 1.7320508075688772;  // from a brick's middle to its cubes'
-constexpr double kSlack = 1e-6;                 // voxels: what sieves give away to rounding
-
-struct Nearest {
-    double square = 0;  // of the distance
-    uint32_t target = kNoTriangle;
-};
-using BrickPoints = std::array<Nearest, size_t{kEdge} * kEdge * kEdge>;
+constexpr size_t kTargetsAtOnce = size_t{1} << 20U;  // above that many each layer works its own out: memory
 
 double square(const dvec3& v) { return glm::dot(v, v); }
+dvec3 from(const double* v) { return {v[0], v[1], v[2]}; }
+void to(double* v, const dvec3& d) {
+    for (int k = 0; k < 3; ++k) v[k] = d[k];
+}
 
-// What distances to one triangle need, worked out once.
+BandKernels kernelsOf(Isa isa) {
+#if defined(RIVULET_HAS_AVX2)
+    if (isa == Isa::avx512) return kernels_avx512::bandKernels();
+    if (isa == Isa::avx2) return kernels_avx2::bandKernels();
+#endif
+    static_cast<void>(isa);
+    return kernels_generic::bandKernels();
+}
+
 struct Target {
-    dvec3 centre{0.0}, unit{0.0};  // unit: of the plane's normal; zero if the triangle has no area
-    double radius;                 // about the centre, of a disc that holds the triangle
-    dvec3 a{0.0}, ab{0.0}, ac{0.0}, bc{0.0};
-    double abab, abac, acac, area, perAb, perAc, perBc;
-
-    explicit Target(const GridTriangle& t) : a(t.a), ab(t.ab), ac(t.ac), bc(t.ac - t.ab) {
-        const dvec3 middle = (ab + ac) / 3.0;
-        centre = a + middle;
-        radius = std::sqrt(std::max(square(middle), std::max(square(middle - ab), square(middle - ac))));
-        abab = square(ab);
-        abac = glm::dot(ab, ac);
-        acac = square(ac);
-        const double bcbc = square(bc);
-        const dvec3 normal = glm::cross(ab, ac);
-        // Without area (an angle below 1e-7) its edges are all there is: nothing is inside.
-        const bool flat = square(normal) <= 1e-14 * abab * acac;
-        area = flat ? -1.0 : abab * acac - abac * abac;
-        if (!flat) unit = normal / std::sqrt(square(normal));
-        perAb = abab > 0.0 ? 1.0 / abab : 0.0;
-        perAc = acac > 0.0 ? 1.0 / acac : 0.0;
-        perBc = bcbc > 0.0 ? 1.0 / bcbc : 0.0;
-    }
-
-    // To the plane where the point projects inside, else to the nearest edge.
-    double squaredDistance(const dvec3& point) const {
-        const dvec3 q = point - a;
-        const dvec3 fromB = q - ab;
-        const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
-        const double v = acac * onAb - abac * onAc;
-        const double w = abab * onAc - abac * onAb;
-        if (v >= 0.0 && w >= 0.0 && v + w <= area) {
-            const double height = glm::dot(unit, q);
-            return height * height;
-        }
-        const double alongAb = std::min(1.0, std::max(0.0, onAb * perAb));
-        const double alongAc = std::min(1.0, std::max(0.0, onAc * perAc));
-        const double alongBc = std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * perBc));
-        return std::min(square(q - ab * alongAb), std::min(square(q - ac * alongAc), square(fromB - bc * alongBc)));
-    }
-
-    // From the triangle's nearest point to `point`.
-    dvec3 away(const dvec3& point) const {
-        const dvec3 q = point - a;
-        const dvec3 fromB = q - ab;
-        const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
-        const double v = acac * onAb - abac * onAc;
-        const double w = abab * onAc - abac * onAb;
-        if (v >= 0.0 && w >= 0.0 && v + w <= area) return unit * glm::dot(unit, q);
-        const std::array<dvec3, 3> ways{q - ab * std::min(1.0, std::max(0.0, onAb * perAb)),
-                                        q - ac * std::min(1.0, std::max(0.0, onAc * perAc)),
-                                        fromB - bc * std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * perBc))};
-        return *std::min_element(ways.begin(), ways.end(), [](const dvec3& x, const dvec3& y) { return square(x) < square(y); });
-    }
-
-    // True only if the whole triangle is further than `reach` from the point, because the disc around it in its plane is:
-    // across the plane by h > reach, or along it by more than sqrt(reach^2 - h^2) + radius (squared twice, for speed).
-    bool beyond(const dvec3& point, double reach) const {
-        const double far = reach + kSlack;
-        const dvec3 q = point - centre;
-        const double excess = square(q) - far * far - radius * radius;
-        const double height = glm::dot(unit, q);
-        const double left = far * far - height * height;
-        return (excess > 0.0) & ((left < 0.0) | (excess * excess > 4.0 * radius * radius * left));
-    }
+    BandTarget exact;
+    BandDisc disc;
 };
+
+// `width`: of the band. `furthest`: the largest coordinate of the grid.
+Target targetOf(const GridTriangle& t, double width, double furthest) {
+    Target target;
+    BandTarget& r = target.exact;
+    BandDisc& disc = target.disc;
+    const dvec3 bc = t.ac - t.ab, middle = (t.ab + t.ac) / 3.0;
+    to(r.a, t.a);
+    to(r.ab, t.ab);
+    to(r.ac, t.ac);
+    to(r.bc, bc);
+    r.abab = square(t.ab);
+    r.abac = glm::dot(t.ab, t.ac);
+    r.acac = square(t.ac);
+    const double bcbc = square(bc);
+    const dvec3 normal = glm::cross(t.ab, t.ac);
+    // Without area: an angle below 1e-7.
+    const bool flat = square(normal) <= 1e-14 * r.abab * r.acac;
+    r.area = flat ? -1.0 : r.abab * r.acac - r.abac * r.abac;
+    const dvec3 unit = flat ? dvec3(0.0) : normal / std::sqrt(square(normal));
+    to(r.unit, unit);
+    r.perAb = r.abab > 0.0 ? 1.0 / r.abab : 0.0;
+    r.perAc = r.acac > 0.0 ? 1.0 / r.acac : 0.0;
+    r.perBc = bcbc > 0.0 ? 1.0 / bcbc : 0.0;
+    const double radius = std::sqrt(std::max(square(middle), std::max(square(middle - t.ab), square(middle - t.ac))));
+    for (int k = 0; k < 3; ++k) {
+        disc.centre[k] = static_cast<float>(t.a[k] + middle[k]);
+        disc.normal[k] = static_cast<float>(unit[k]);
+    }
+    disc.radius = static_cast<float>(radius * 1.000001);
+    // Who is in reach has its centre within `span`; it is off by a rounding of `furthest` at most along each axis, and sums of products
+    // of such floats by 3e-6 of their square.
+    const double span = radius + width + 3.0;
+    disc.slack = static_cast<float>(4e-6 * span * span + 3e-7 * span * (furthest + radius));
+    return target;
+}
+
+// From the triangle's nearest point to `point`, any length but 0: at the triangle itself its normal.
+dvec3 away(const BandTarget& t, const dvec3& point) {
+    const dvec3 ab = from(t.ab), ac = from(t.ac), bc = from(t.bc);
+    const dvec3 q = point - from(t.a);
+    const dvec3 fromB = q - ab;
+    const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
+    const double v = t.acac * onAb - t.abac * onAc;
+    const double w = t.abab * onAc - t.abac * onAb;
+    if (v >= 0.0 && w >= 0.0 && v + w <= t.area) {
+        const double height = glm::dot(from(t.unit), q);
+        return height < 0.0 ? -from(t.unit) : from(t.unit);
+    }
+    const std::array<dvec3, 3> ways{q - ab * std::min(1.0, std::max(0.0, onAb * t.perAb)),
+                                    q - ac * std::min(1.0, std::max(0.0, onAc * t.perAc)),
+                                    fromB - bc * std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * t.perBc))};
+    const dvec3 way = *std::min_element(ways.begin(), ways.end(), [](const dvec3& x, const dvec3& y) { return square(x) < square(y); });
+    return way == dvec3(0.0) ? (t.area < 0.0 ? dvec3(0.0, 0.0, 1.0) : from(t.unit)) : way;
+}
 
 // In 0 or 1: whether a brick is to be done.
 bool flagged(std::span<const uint8_t> flags, size_t brick) { return flags.empty() || flags[brick] != 0; }
 
-// Memory a thread keeps from layer to layer. `bricks`, `kept` and `near` index `targets`.
-struct Workspace {
-    std::vector<Target> targets;   // that reach the layer
-    std::vector<uint32_t> listed;  // of each target: its place in the list
-    std::vector<std::vector<uint32_t>> bricks;
-    std::vector<uint32_t> kept, near;
+// Bricks along each axis.
+struct Reach {
+    std::array<int16_t, 3> first{}, last{};
 };
 
-// Of `from`, those that may be nearest to a point within `radius` of `middle`, the nearest to `middle` itself first, into `to`.
-// `nearest`: no further than this is of interest. Returns the distance from `middle`, or that.
-double sieve(const std::vector<Target>& targets, const std::vector<uint32_t>& from, const dvec3& middle, double radius, double nearest,
-             std::vector<uint32_t>& to) {
-    to.clear();
-    for (uint32_t k : from) {
-        const Target& target = targets[k];
-        if (target.beyond(middle, nearest + 2.0 * radius)) continue;
-        to.push_back(k);
-        if (target.beyond(middle, nearest)) continue;
-        const double distance = std::sqrt(target.squaredDistance(middle));
-        if (distance < nearest) {
-            nearest = distance;
-            std::swap(to.front(), to.back());
+Reach reachOf(const DistanceBand& band, const GridTriangle& triangle) {
+    Reach r;
+    ivec3 first, last;
+    band.reach(triangle.low(), triangle.high(), first, last);
+    for (int k = 0; k < 3; ++k) {
+        r.first[static_cast<size_t>(k)] = static_cast<int16_t>(std::min(first[k], 32767));
+        r.last[static_cast<size_t>(k)] = static_cast<int16_t>(std::max(last[k], -1));
+    }
+    return r;
+}
+
+// Calls body(brick) for those of layer z that the triangle may reach. `bits`: room.
+template <class Body>
+void forReached(const BandKernels& kernels, double width, const Reach& reach, const BandDisc& disc, int z, std::vector<uint32_t>& bits,
+                const Body& body) {
+    const int rows = reach.last[1] - reach.first[1] + 1;
+    if (rows <= 0) return;
+    if (bits.size() < static_cast<size_t>(rows)) bits.resize(static_cast<size_t>(rows));
+    for (int x0 = reach.first[0]; x0 <= reach.last[0]; x0 += 8) {
+        const auto middle = [](int brick) { return static_cast<float>(brick * kEdge) + static_cast<float>(kMiddle); };
+        kernels.rows({&disc,
+                      {middle(x0), middle(reach.first[1]), middle(z)},
+                      static_cast<uint32_t>(rows),
+                      static_cast<float>(width + kBrickRadius) * 1.000001F,
+                      bits.data()});
+        const uint32_t all = reach.last[0] - x0 >= 7 ? 0xFFU : (2U << static_cast<unsigned>(reach.last[0] - x0)) - 1U;
+        for (int r = 0; r < rows; ++r) {
+            for (uint32_t row = bits[static_cast<size_t>(r)] & all; row != 0; row &= row - 1)
+                body(ivec3(x0 + std::countr_zero(row), reach.first[1] + r, z));
         }
     }
-    std::erase_if(to, [&](uint32_t k) { return targets[k].beyond(middle, nearest + 2.0 * radius); });
-    return nearest;
 }
+
+// Memory a thread keeps from layer to layer.
+struct Workspace {
+    std::vector<BandTarget> targets;  // that reach the layer, if they are not worked out once for all
+    std::vector<BandDisc> discs;      // of each of these
+    std::vector<uint32_t> bits;
+    std::vector<uint32_t> listed;  // of each of these: its place in the list
+    std::vector<std::vector<uint32_t>> bricks;
+    std::vector<float> lower;
+};
 
 struct Bake {
     const DistanceBand& band;
+    const BandKernels kernels;
     const GridTriangles& triangles;
     std::span<const uint8_t> surfaces;
     std::span<const uint32_t> numbers;
@@ -134,13 +161,28 @@ struct Bake {
     std::span<uint8_t> reached;
     const BandPoints& out;
     ivec3 points;
-    double width;  // of the band, voxels
+    double width;     // of the band, voxels
+    double furthest;  // of a grid's coordinates
     float voxel, metres;
+    std::vector<BandTarget> all;     // of each triangle, or empty
+    std::vector<BandDisc> allDiscs;  // of each of these
+    std::vector<Reach> reaches;      // of each triangle
     std::vector<size_t> layerStart;  // layerStart[l] .. layerStart[l + 1]: the part of inLayer that reaches layer l of bricks, in order
     std::vector<uint32_t> inLayer;
 
     void run() {
         sortIntoLayers();
+        if (triangles.size() <= kTargetsAtOnce) {
+            all.resize(triangles.size());
+            allDiscs.resize(triangles.size());
+            tbb::parallel_for(tbb::blocked_range<size_t>(0, all.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+                for (size_t k = range.begin(); k != range.end(); ++k) {
+                    const Target target = targetOf(triangles[k], width, furthest);
+                    all[k] = target.exact;
+                    allDiscs[k] = target.disc;
+                }
+            });
+        }
         tbb::enumerable_thread_specific<Workspace> workspaces;
         tbb::parallel_for(0, band.bricks().z, [&](int layer) { bakeLayer(layer, workspaces.local()); });
     }
@@ -148,12 +190,14 @@ struct Bake {
     void sortIntoLayers() {
         const auto layers = static_cast<size_t>(band.bricks().z);
         layerStart.assign(layers + 1, 0);
+        reaches.resize(triangles.size());
+        tbb::parallel_for(tbb::blocked_range<size_t>(0, reaches.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
+            for (size_t k = range.begin(); k != range.end(); ++k) reaches[k] = reachOf(band, triangles[k]);
+        });
         const auto forLayers = [&](const auto& body) {
-            for (size_t k = 0; k < triangles.size(); ++k) {
-                const GridTriangle t = triangles[k];
-                ivec3 first, last;
-                band.reach(t.low(), t.high(), first, last);
-                for (int layer = first.z; layer <= last.z; ++layer) body(static_cast<size_t>(layer), static_cast<uint32_t>(k));
+            for (size_t k = 0; k < reaches.size(); ++k) {
+                for (int layer = reaches[k].first[2]; layer <= reaches[k].last[2]; ++layer)
+                    body(static_cast<size_t>(layer), static_cast<uint32_t>(k));
             }
         };
         forLayers([&](size_t layer, uint32_t) { ++layerStart[layer + 1]; });
@@ -166,29 +210,32 @@ struct Bake {
     void bakeLayer(int layer, Workspace& work) const {
         const auto l = static_cast<size_t>(layer);
         const ivec3& bricks = band.bricks();
+        const size_t inIt = static_cast<size_t>(bricks.x) * static_cast<size_t>(bricks.y);
+        if (flags.empty() ? layerStart[l] == layerStart[l + 1]
+                          : std::all_of(&flags[l * inIt], &flags[l * inIt] + inIt, [](uint8_t flag) { return flag == 0; }))
+            return;
         work.targets.clear();
+        work.discs.clear();
         work.listed.clear();
-        work.bricks.resize(static_cast<size_t>(bricks.x) * static_cast<size_t>(bricks.y));
+        work.bricks.resize(inIt);
         for (auto& entries : work.bricks) entries.clear();
-        for (size_t k = layerStart[l]; k < layerStart[l + 1]; ++k) enter(inLayer[k], layer, work);
+        for (size_t n = layerStart[l]; n < layerStart[l + 1]; ++n) {
+            const uint32_t k = inLayer[n];
+            uint32_t place = k;
+            if (all.empty()) {
+                place = static_cast<uint32_t>(work.targets.size());
+                const Target target = targetOf(triangles[k], width, furthest);
+                work.targets.push_back(target.exact);
+                work.discs.push_back(target.disc);
+                work.listed.push_back(k);
+            }
+            const BandDisc& disc = all.empty() ? work.discs.back() : allDiscs[k];
+            forReached(kernels, width, reaches[k], disc, layer, work.bits, [&](const ivec3& b) {
+                if (flagged(flags, band.brickIndex(b))) work.bricks[band.brickIndex({b.x, b.y, 0})].push_back(place);
+            });
+        }
         for (int y = 0; y < bricks.y; ++y) {
             for (int x = 0; x < bricks.x; ++x) bakeBrick({x, y, layer}, work);
-        }
-    }
-
-    void enter(uint32_t k, int layer, Workspace& work) const {
-        const GridTriangle triangle = triangles[k];
-        const auto place = static_cast<uint32_t>(work.targets.size());
-        const Target& target = work.targets.emplace_back(triangle);
-        work.listed.push_back(k);
-        ivec3 first, last;
-        band.reach(triangle.low(), triangle.high(), first, last);
-        for (int y = first.y; y <= last.y; ++y) {
-            for (int x = first.x; x <= last.x; ++x) {
-                if (!flagged(flags, band.brickIndex({x, y, layer}))) continue;
-                if (!target.beyond(dvec3(x * kEdge, y * kEdge, layer * kEdge) + kMiddle, width + kBrickRadius))
-                    work.bricks[band.brickIndex({x, y, 0})].push_back(place);
-            }
         }
     }
 
@@ -198,64 +245,59 @@ struct Bake {
         const std::vector<uint32_t>& entries = work.bricks[band.brickIndex({brick.x, brick.y, 0})];
         if (!reached.empty()) reached[index] = entries.empty() ? 0 : 1;
         if (flags.empty() && entries.empty()) return;
-        BrickPoints best;
-        const dvec3 middle = dvec3(brick * kEdge) + kMiddle;
-        const double nearest = sieve(work.targets, entries, middle, kBrickRadius, width + kBrickRadius, work.kept);
-        for (int cube = 0; cube < 8 && !work.kept.empty(); ++cube)
-            bakeCube(brick, ivec3(cube & 1, (cube >> 1) & 1, cube >> 2) * 2, nearest, work, best);
-        store(brick, best, work);
-    }
-
-    // `first`: the cube's low corner in the brick. `fromBrick`: the nearest triangle's distance from the brick's middle.
-    void bakeCube(const ivec3& brick, const ivec3& first, double fromBrick, Workspace& work, BrickPoints& best) const {
-        const dvec3 corner(brick * kEdge + first);
-        sieve(work.targets, work.kept, corner + 0.5, kCubeRadius, std::min(width + kCubeRadius, fromBrick + kToCube), work.near);
-        double reach = width;
-        for (int k = 0; k < 8; ++k) {
-            const ivec3 at((k ^ (k >> 1)) & 1, ((k >> 1) ^ (k >> 2)) & 1, k >> 2);  // each a step from the one before
-            const dvec3 point = corner + dvec3(at);
-            Nearest nearest{width * width, kNoTriangle};
-            for (uint32_t n : work.near) {
-                const Target& target = work.targets[n];
-                if (target.beyond(point, reach)) continue;
-                const double distance = target.squaredDistance(point);
-                if (distance < nearest.square || (distance == nearest.square && n < nearest.target)) {
-                    nearest = {distance, n};
-                    reach = std::min(reach, std::sqrt(distance));
-                }
-            }
-            best[static_cast<size_t>(((first.z + at.z) * kEdge + first.y + at.y) * kEdge + first.x + at.x)] = nearest;
-            reach = std::min(width, reach + 1.0);  // the next point's distance is no more
-        }
-    }
-
-    void store(const ivec3& brick, const BrickPoints& best, const Workspace& work) const {
+        if (work.lower.size() < 8 * entries.size()) work.lower.resize(8 * entries.size());
+        std::array<double, kBrickPoints> squares;
+        std::array<uint32_t, kBrickPoints> nearest;
         const ivec3 first = brick * kEdge;
+        const BandTarget* targets = all.empty() ? work.targets.data() : all.data();
+        const BandDisc* discs = all.empty() ? work.discs.data() : allDiscs.data();
+        kernels.brick({targets,
+                       discs,
+                       entries.data(),
+                       static_cast<uint32_t>(entries.size()),
+                       {static_cast<double>(first.x), static_cast<double>(first.y), static_cast<double>(first.z)},
+                       width,
+                       work.lower.data(),
+                       squares.data(),
+                       nearest.data()});
+        std::array<double, kBrickPoints> x, y, z;
+        std::array<uint32_t, kBrickPoints> codes{};
+        if (!entries.empty()) {
+            for (size_t n = 0; n < kBrickPoints; ++n) {
+                const auto i = static_cast<int>(n);
+                const dvec3 point(first + ivec3(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge)));
+                const dvec3 direction = nearest[n] == kNobody ? dvec3(1.0) : away(targets[nearest[n]], point);
+                x[n] = direction.x;
+                y[n] = direction.y;
+                z[n] = direction.z;
+            }
+            kernels.pack({x.data(), y.data(), z.data(), codes.data(), kBrickPoints});
+        }
         const ivec3 end = glm::min(first + ivec3(kEdge), points);
-        for (int z = first.z; z < end.z; ++z) {
-            for (int y = first.y; y < end.y; ++y) {
-                const size_t row =
-                    (static_cast<size_t>(z) * static_cast<size_t>(points.y) + static_cast<size_t>(y)) * static_cast<size_t>(points.x);
-                for (int x = first.x; x < end.x; ++x) {
-                    const size_t at = row + static_cast<size_t>(x);
-                    const Nearest& nearest = best[static_cast<size_t>(((z - first.z) * kEdge + (y - first.y)) * kEdge + (x - first.x))];
-                    const bool none = nearest.target == kNoTriangle;
-                    const uint32_t k = none ? 0 : work.listed[nearest.target];
-                    out.distance[at] = none ? metres : std::min(static_cast<float>(std::sqrt(nearest.square)) * voxel, metres);
-                    out.normal[at] = none ? 0
-                                          : packNormal(work.targets[nearest.target].away(dvec3(x, y, z)),
-                                                       surfaces.empty() ? 0 : surfaces[triangles.owner(k)]);
-                    if (!out.nearest.empty()) out.nearest[at] = none ? kNoTriangle : (numbers.empty() ? k : numbers[k]);
-                }
+        for (int pz = first.z; pz < end.z; ++pz) {
+            for (int py = first.y; py < end.y; ++py) {
+                size_t at =
+                    (static_cast<size_t>(pz) * static_cast<size_t>(points.y) + static_cast<size_t>(py)) * static_cast<size_t>(points.x) +
+                    static_cast<size_t>(first.x);
+                auto n = static_cast<size_t>(((pz - first.z) * kEdge + (py - first.y)) * kEdge);
+                for (int px = first.x; px < end.x; ++px, ++at, ++n) store(at, squares[n], nearest[n], codes[n], work.listed);
             }
         }
+    }
+
+    void store(size_t at, double squared, uint32_t place, uint32_t code, const std::vector<uint32_t>& listed) const {
+        const bool none = place == kNobody;
+        const uint32_t k = none || listed.empty() ? place : listed[place];
+        out.distance[at] = none ? metres : std::min(static_cast<float>(std::sqrt(squared)) * voxel, metres);
+        out.normal[at] = none ? 0 : (code | (surfaces.empty() ? 0U : uint32_t{surfaces[triangles.owner(k)]} << 28U));
+        if (!out.nearest.empty()) out.nearest[at] = none || numbers.empty() ? k : numbers[k];
     }
 };
 
 }  // namespace
 
-DistanceBand::DistanceBand(const VoxelGrid& grid, float band)
-    : points_(grid.size + ivec3(1)), bricks_((points_ + ivec3(kBrick - 1)) / kBrick), voxel_(grid.voxel), band_(band) {}
+DistanceBand::DistanceBand(const VoxelGrid& grid, float band, Isa isa)
+    : points_(grid.size + ivec3(1)), bricks_((points_ + ivec3(kBrick - 1)) / kBrick), voxel_(grid.voxel), band_(band), isa_(isa) {}
 
 void DistanceBand::reach(const dvec3& low, const dvec3& high, ivec3& first, ivec3& last) const {
     const double width = static_cast<double>(band_) / static_cast<double>(voxel_) + 1e-6;
@@ -267,51 +309,29 @@ void DistanceBand::reach(const dvec3& low, const dvec3& high, ivec3& first, ivec
 
 void DistanceBand::markReach(const GridTriangle& triangle, std::span<uint8_t> flags) const {
     const double width = static_cast<double>(band_) / static_cast<double>(voxel_);
-    const Target target(triangle);
-    ivec3 first, last;
-    reach(triangle.low(), triangle.high(), first, last);
-    for (int z = first.z; z <= last.z; ++z) {
-        for (int y = first.y; y <= last.y; ++y) {
-            for (int x = first.x; x <= last.x; ++x) {
-                uint8_t& flag = flags[brickIndex({x, y, z})];
-                if (flag == 0 && !target.beyond(dvec3(x * kEdge, y * kEdge, z * kEdge) + kMiddle, width + kBrickRadius)) flag = 1;
-            }
-        }
-    }
+    const Reach reach = reachOf(*this, triangle);
+    const Target target = targetOf(triangle, width, furthest());
+    std::vector<uint32_t> bits;
+    for (int z = reach.first[2]; z <= reach.last[2]; ++z)
+        forReached(kernelsOf(isa_), width, reach, target.disc, z, bits, [&](const ivec3& b) { flags[brickIndex(b)] = 1; });
 }
 
 void DistanceBand::bake(const GridTriangles& triangles, std::span<const uint8_t> surfaces, std::span<const uint32_t> numbers,
                         std::span<const uint8_t> flags, std::span<uint8_t> reached, const BandPoints& out) const {
     const double width = static_cast<double>(band_) / static_cast<double>(voxel_);
-    Bake{*this, triangles, surfaces, numbers, flags, reached, out, points_, width, voxel_, band_, {}, {}}.run();
+    Bake{*this, kernelsOf(isa_), triangles, surfaces, numbers, flags, reached, out, points_,
+         width, furthest(),      voxel_,    band_,    {},      {},    {},      {},  {}}
+        .run();
 }
 
 uint32_t packNormal(const dvec3& direction, uint32_t surface) {
-    const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-    if (!(sum > 0.0)) return surface << 28U;
-    const dvec3 d = direction / sum;
-    double x = d.x, y = d.y;
-    if (d.z < 0.0) {
-        x = (1.0 - std::abs(d.y)) * (d.x < 0.0 ? -1.0 : 1.0);
-        y = (1.0 - std::abs(d.x)) * (d.y < 0.0 ? -1.0 : 1.0);
-    }
-    // Of the four codes around, the one whose direction has the largest cosine; it is positive for all.
-    const double lowX = std::min(8190.0, std::floor(x * 8191.0)), lowY = std::min(8190.0, std::floor(y * 8191.0));
-    double best = -1.0;
-    uint32_t code = 0;
-    for (int k = 0; k < 4; ++k) {
-        const double u = lowX + (k & 1), v = lowY + (k >> 1);
-        const double z = 8191.0 - std::abs(u) - std::abs(v);
-        const double fold = std::max(-z, 0.0);
-        const dvec3 n(u < 0.0 ? u + fold : u - fold, v < 0.0 ? v + fold : v - fold, z);
-        const double along = glm::dot(n, d);
-        const double cosine = along * along / glm::dot(n, n);
-        if (cosine > best) {
-            best = cosine;
-            code = static_cast<uint32_t>(static_cast<int>(u) + 8191) | static_cast<uint32_t>(static_cast<int>(v) + 8191) << 14U;
-        }
-    }
-    return code | surface << 28U;
+    std::array<double, 8> x, y, z;
+    std::array<uint32_t, 8> codes{};
+    x.fill(direction.x);
+    y.fill(direction.y);
+    z.fill(direction == dvec3(0.0) ? 1.0 : direction.z);
+    kernelsOf(Isa::generic).pack({x.data(), y.data(), z.data(), codes.data()});
+    return codes[0] | surface << 28U;
 }
 
 }  // namespace rivulet

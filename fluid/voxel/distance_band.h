@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/compute/device_cpu.h"
 #include "fluid/voxel/triangles.h"
 
 namespace rivulet {
@@ -22,8 +23,8 @@ struct BandPoints {
 class DistanceBand {
   public:
     static constexpr int kBrick = 4;
-    DistanceBand(const VoxelGrid& grid, float band);  // m
-    const ivec3& bricks() const { return bricks_; }   // along each axis; brick b holds the points [kBrick b, kBrick (b + 1))
+    DistanceBand(const VoxelGrid& grid, float band /* m */, Isa isa = bestIsa());
+    const ivec3& bricks() const { return bricks_; }  // along each axis; brick b holds the points [kBrick b, kBrick (b + 1))
     size_t brickIndex(const ivec3& b) const {
         return (static_cast<size_t>(b.z) * static_cast<size_t>(bricks_.y) + static_cast<size_t>(b.y)) * static_cast<size_t>(bricks_.x) +
                static_cast<size_t>(b.x);
@@ -40,8 +41,10 @@ class DistanceBand {
               std::span<const uint8_t> flags, std::span<uint8_t> reached, const BandPoints& out) const;
 
   private:
+    double furthest() const { return std::max(points_.x, std::max(points_.y, points_.z)); }
     ivec3 points_, bricks_;
     float voxel_, band_;
+    Isa isa_;
 };
 
 // A direction on an octahedron (Meyer et al. 2010), x and y of its unfolded square as 14 bits each, x low: 1 is 8191 above the middle. The

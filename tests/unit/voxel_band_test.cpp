@@ -91,5 +91,37 @@ TEST(VoxelBand, EachPointKnowsWhoseWallIsNearest) {
     EXPECT_EQ(errorOf({}), "no error");
 }
 
+// Floats only sieve; what they may not do is lose the nearest. Distances above are against brute force on this machine's instruction set.
+TEST(VoxelBand, SameForAnyInstructionSet) {
+    Mesh mesh = test::makeJumble(21, 140);
+    for (const vec3& p : test::makeSphere(vec3(0.3F), 0.6F, 16).positions) mesh.positions.push_back(p);
+    for (size_t k = mesh.indices.size(); k < mesh.positions.size(); ++k) mesh.indices.push_back(static_cast<uint32_t>(k));
+    mesh.triangle(vec3(-900, -900, 0.2F), vec3(900, -800, 0.1F), vec3(10, 1000, 0.3F));  // far beyond the grid
+    const MeshView view = mesh.view();
+    VoxelGrid grid;
+    grid.size = ivec3(49, 51, 46);
+    grid.origin = vec3(-1.25F);
+    grid.voxel = 0.05F;
+    const GridTriangles list(std::span(&view, 1), grid);
+    const size_t points = size_t{50} * 52 * 47;
+    const auto bake = [&](Isa isa, std::vector<float>& distance, std::vector<uint32_t>& normal, std::vector<uint32_t>& nearest) {
+        distance.assign(points, 0.27F);
+        normal.assign(points, 0);
+        nearest.assign(points, kNoTriangle);
+        DistanceBand(grid, 0.27F, isa).bake(list, {}, {}, {}, {}, {distance, normal, nearest});
+    };
+    std::vector<float> distance, otherDistance;
+    std::vector<uint32_t> normal, nearest, otherNormal, otherNearest;
+    bake(Isa::generic, distance, normal, nearest);
+    EXPECT_GT(std::count(nearest.begin(), nearest.end(), kNoTriangle), 1000);
+    for (const Isa isa : {Isa::avx2, Isa::avx512}) {
+        if (isa > bestIsa()) continue;
+        bake(isa, otherDistance, otherNormal, otherNearest);
+        EXPECT_TRUE(distance == otherDistance) << isaName(isa);
+        EXPECT_TRUE(normal == otherNormal) << isaName(isa);
+        EXPECT_TRUE(nearest == otherNearest) << isaName(isa);
+    }
+}
+
 }  // namespace
 }  // namespace rivulet

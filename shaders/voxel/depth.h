@@ -1,7 +1,10 @@
 // depth.h: depth images of work boxes, for kernels and for the host: which voxel does a line through voxels' centres meet on its way
 // through a triangle? Scan lines in double; each value depends on one edge alone, whichever triangle it is seen from, so that along
 // any line a closed mesh is met an even number of times and no line slips between two triangles.
-#if defined(__OPENCL_C_VERSION__)
+#if defined(__cplusplus)
+#pragma once
+namespace rivulet {
+#elif defined(__OPENCL_C_VERSION__)
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 #endif
@@ -90,3 +93,6 @@ FN uint pixelOf(DepthBox box, int axis, int x, int y, int z)
     uint pixel = axis == 0 ? k * ey + j : axis == 1 ? ey * ez + k * ex + i : ey * ez + ex * ez + j * ex + i;
     return 2u * (box.image + pixel);
 }
+#if defined(__cplusplus)
+}  // namespace rivulet
+#endif

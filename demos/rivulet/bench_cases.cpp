@@ -174,6 +174,8 @@ Table<BenchCase> benchCases() {
         {"density", "the density pass on every device, column of 31k", benchDensity},
         {"memory", "bytes a particle on every device, column of 128k", benchMemory},
         {"series", "the thesis's falling column, 16,384 i particles, i = 1 to 8, on every device", benchSeries},
+        {"voxels", "a mesh of 70,000 triangles voxelised in every mode, and baked as a field", benchVoxels},
+        {"collide", "the share of a step that collision with a mesh takes, 16,384 particles", benchCollide},
     };
     return {rows};
 }

@@ -35,6 +35,9 @@ struct BenchCase {
 };
 Table<BenchCase> benchCases();
 
+Status benchVoxels(const BenchContext& context);
+Status benchCollide(const BenchContext& context);
+
 // Calls `once` context.runs times (a first call, not counted, warms caches); the spread of what it returns.
 Spread repeat(const BenchContext& context, const std::function<double()>& once);
 

@@ -85,7 +85,7 @@ void ask(const CleanMesh& mesh, const VoxelGrid& grid, const ivec3& c, Wrong& w)
 }
 
 // Every voxel, if triangles times voxels are few enough; else some of all voxels, and some of those whose neighbours along x differ.
-Wrong compare(const Mesh& mesh, VoxelGrid grid, double budget = 4e6) {
+Wrong compare(const Mesh& mesh, VoxelGrid grid, double budget = 2.5e6) {
     const CleanMesh clean = cleaned(mesh);
     voxelizeSolid(clean, grid);
     Wrong w;

@@ -156,10 +156,8 @@ TEST(VoxelOverlap, CornersExactlyOnTheGrid) {
     // Multiples of a quarter of a voxel: every touch is exact, and nothing is in doubt.
     std::mt19937 random(9);
     std::uniform_int_distribution<int> quarter(0, 32);
-    const auto point = [&](int step) {
-        return 0.25F * vec3(static_cast<float>(quarter(random) / step * step), static_cast<float>(quarter(random) / step * step),
-                            static_cast<float>(quarter(random) / step * step));
-    };
+    const auto along = [&](int step) { return 0.25F * static_cast<float>(quarter(random) & -step); };
+    const auto point = [&](int step) { return vec3(along(step), along(step), along(step)); };
     for (int k = 0; k < 300; ++k) {
         Mesh mesh;
         const int step = k % 3 == 0 ? 4 : (k % 3 == 1 ? 2 : 1);

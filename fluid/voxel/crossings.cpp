@@ -110,11 +110,11 @@ void sortAndSet(ColumnCrossings& crossings, VoxelGrid& grid) {
 
 }  // namespace
 
-ColumnCrossings crossColumns(std::span<const Corners> triangles, VoxelGrid& grid) {
+ColumnCrossings crossColumns(const CrossedTriangles& triangles, VoxelGrid& grid) {
     std::vector<std::vector<Found>> found((triangles.size() + kChunk - 1) / kChunk);
     tbb::parallel_for(size_t{0}, found.size(), [&](size_t chunk) {
-        for (const Corners& t : triangles.subspan(chunk * kChunk, std::min(kChunk, triangles.size() - chunk * kChunk)))
-            crossTriangle(t, grid, found[chunk]);
+        for (size_t k = chunk * kChunk; k < std::min((chunk + 1) * kChunk, triangles.size()); ++k)
+            crossTriangle(triangles[k], grid, found[chunk]);
     });
     size_t total = 0;
     for (const auto& some : found) total += some.size();
@@ -161,11 +161,11 @@ struct Batch {
     std::vector<uint32_t> items;
 };
 
-Batch batchOf(std::span<const Corners> triangles, const VoxelGrid& grid) {
+Batch batchOf(const CrossedTriangles& triangles, size_t first, size_t last, const VoxelGrid& grid) {
     Batch batch;
-    batch.numbers.reserve(triangles.size() * CROSSING_DOUBLES);
-    for (const Corners& t : triangles) {
-        const Prepared p = prepare(t, grid);
+    batch.numbers.reserve((last - first) * CROSSING_DOUBLES);
+    for (size_t k = first; k < last; ++k) {
+        const Prepared p = prepare(triangles[k], grid);
         if (p.firstRow >= p.endRow) continue;
         const auto number = static_cast<uint32_t>(batch.numbers.size() / CROSSING_DOUBLES);
         batch.numbers.insert(batch.numbers.end(), p.numbers.begin(), p.numbers.end());
@@ -180,9 +180,10 @@ Batch batchOf(std::span<const Corners> triangles, const VoxelGrid& grid) {
 }
 
 // Crossings at most, by the triangles' bounds.
-double mostCrossings(std::span<const Corners> triangles, const VoxelGrid& grid) {
+double mostCrossings(const CrossedTriangles& triangles, const VoxelGrid& grid) {
     double most = 0;
-    for (const Corners& t : triangles) {
+    for (size_t k = 0; k < triangles.size(); ++k) {
+        const Corners t = triangles[k];
         const dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
         most += static_cast<double>(centresBelow(high.y, grid.size.y) - centresBelow(low.y, grid.size.y) + 1) *
                 static_cast<double>(centresBelow(high.z, grid.size.z) - centresBelow(low.z, grid.size.z));
@@ -192,7 +193,7 @@ double mostCrossings(std::span<const Corners> triangles, const VoxelGrid& grid) 
 
 }  // namespace
 
-Result<ColumnCrossings> crossColumnsOn(Device& device, std::span<const Corners> triangles, VoxelGrid& grid, bool wanted) {
+Result<ColumnCrossings> crossColumnsOn(Device& device, const CrossedTriangles& triangles, VoxelGrid& grid, bool wanted) {
     ASSERT(grid.count() <= std::numeric_limits<uint32_t>::max(), "kernels count voxels in 32 bits: use the host for larger grids");
     if (mostCrossings(triangles, grid) > 4.0e9)
         return failed(fmt::format("{} triangles cross too many columns of {} x {} voxels for {}; lower the resolution or use the cpu.",
@@ -215,7 +216,7 @@ Result<ColumnCrossings> crossColumnsOn(Device& device, std::span<const Corners> 
     const auto eachBatch = [&](auto run) {
         for (size_t first = 0; first < triangles.size() && take.status; first += kUpload) {
             if (!numbers || triangles.size() > kUpload) {
-                const Batch batch = batchOf(triangles.subspan(first, std::min(kUpload, triangles.size() - first)), grid);
+                const Batch batch = batchOf(triangles, first, std::min(first + kUpload, triangles.size()), grid);
                 params.items = static_cast<uint32_t>(batch.items.size() / CROSSING_ITEM);
                 numbers = take.buffer(batch.numbers.size() * sizeof(double));
                 items = take.buffer(batch.items.size() * sizeof(uint32_t));

@@ -13,6 +13,18 @@ namespace rivulet {
 
 using Corners = std::array<dvec3, 3>;  // of a triangle, in voxels from the grid's low corner
 
+// A mesh by its places, and loose triangles after it. Refers to somebody else's memory.
+struct CrossedTriangles {
+    std::span<const dvec3> places;
+    std::span<const uint32_t> indices;  // 3 a triangle, into places
+    std::span<const Corners> loose;
+    size_t size() const { return indices.size() / 3 + loose.size(); }
+    Corners operator[](size_t k) const {
+        if (3 * k >= indices.size()) return loose[k - indices.size() / 3];
+        return {places[indices[3 * k]], places[indices[3 * k + 1]], places[indices[3 * k + 2]]};
+    }
+};
+
 // What each column of voxels along x crosses. Columns are (y, z), y fastest.
 struct ColumnCrossings {
     std::vector<uint32_t> start;  // into items; one more than columns
@@ -24,9 +36,9 @@ inline int crossedVoxel(uint32_t crossing) { return static_cast<int>(crossing >>
 inline int crossedChange(uint32_t crossing) { return (crossing & 1U) != 0 ? 1 : -1; }
 
 // Sets the bits of `grid` (clear before) where the crossings of the triangles count to other than 0. Throws std::bad_alloc.
-ColumnCrossings crossColumns(std::span<const Corners> triangles, VoxelGrid& grid);
+ColumnCrossings crossColumns(const CrossedTriangles& triangles, VoxelGrid& grid);
 
 // The same by the kernels of a gl or cl device, for grids of fewer than 2^32 voxels. Fetches the crossings only if `wanted`.
-Result<ColumnCrossings> crossColumnsOn(Device& device, std::span<const Corners> triangles, VoxelGrid& grid, bool wanted);
+Result<ColumnCrossings> crossColumnsOn(Device& device, const CrossedTriangles& triangles, VoxelGrid& grid, bool wanted);
 
 }  // namespace rivulet

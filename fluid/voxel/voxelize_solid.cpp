@@ -15,22 +15,21 @@ namespace {
 
 // The mesh in the grid's coordinates, with caps over its holes.
 struct Closed {
-    std::vector<Corners> triangles;
+    std::vector<dvec3> places;
     std::optional<BoundaryCaps> caps;  // of an open mesh
-};
+    CrossedTriangles triangles;
 
-Closed closeMesh(const CleanMesh& mesh, const VoxelGrid& grid) {
-    std::vector<dvec3> places(mesh.positions.size());
-    for (size_t k = 0; k < places.size(); ++k)
-        places[k] = (dvec3(mesh.positions[k]) - dvec3(grid.origin)) / static_cast<double>(grid.voxel);
-    Closed closed;
-    if (!mesh.unmatched.empty()) closed.caps.emplace(mesh, places);
-    closed.triangles.reserve(mesh.source.size() + (closed.caps ? closed.caps->triangles().size() : 0));
-    for (size_t t = 0; t < mesh.source.size(); ++t)
-        closed.triangles.push_back({places[mesh.indices[3 * t]], places[mesh.indices[3 * t + 1]], places[mesh.indices[3 * t + 2]]});
-    if (closed.caps) closed.triangles.insert(closed.triangles.end(), closed.caps->triangles().begin(), closed.caps->triangles().end());
-    return closed;
-}
+    Closed(const CleanMesh& mesh, const VoxelGrid& grid) : places(mesh.positions.size()) {
+        for (size_t k = 0; k < places.size(); ++k)
+            places[k] = (dvec3(mesh.positions[k]) - dvec3(grid.origin)) / static_cast<double>(grid.voxel);
+        triangles = {places, mesh.indices, {}};
+        if (mesh.unmatched.empty()) return;
+        caps.emplace(mesh, places);
+        triangles.loose = caps->triangles();
+    }
+    Closed(const Closed&) = delete;
+    Closed& operator=(const Closed&) = delete;
+};
 
 void clear(VoxelGrid& grid) { grid.bits.assign((grid.count() + 31) / 32 * 4, 0); }
 
@@ -38,7 +37,7 @@ void clear(VoxelGrid& grid) { grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
 
 void voxelizeSolid(const CleanMesh& mesh, VoxelGrid& inside) {
     clear(inside);
-    const Closed closed = closeMesh(mesh, inside);
+    const Closed closed(mesh, inside);
     const ColumnCrossings crossings = crossColumns(closed.triangles, inside);
     if (closed.caps) closed.caps->correct(mesh, crossings, inside);
 }
@@ -54,7 +53,7 @@ Status voxelizeSolid(Device& device, const CleanMesh& mesh, VoxelGrid& inside) {
             return ok();
         }
         clear(inside);
-        const Closed closed = closeMesh(mesh, inside);
+        const Closed closed(mesh, inside);
         const Result<ColumnCrossings> crossings = crossColumnsOn(device, closed.triangles, inside, closed.caps.has_value());
         if (!crossings) return crossings.error();
         if (closed.caps) closed.caps->correct(mesh, *crossings, inside);

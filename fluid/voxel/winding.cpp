@@ -14,15 +14,20 @@ namespace rivulet {
 namespace {
 
 constexpr uint32_t kPiece = 16;     // triangles of a fan looked at together
-constexpr double kFrozen = 0.15;    // turns that all pieces taken as constant over a cell may be wrong by
+constexpr double kModel = 0.1;      // turns that the first-order model of all pieces may be wrong by
+constexpr double kBend = 0.05;      // turns that it may be wrong by in a cell that is decided voxel by voxel
 constexpr double kRounding = 1e-9;  // turns
-constexpr int kBrick = 4;           // voxels along the smallest cell that is asked for surface
-constexpr int kTask = 16;           // voxels along a cell that is one task
+constexpr double kSphere = 4.0 * std::numbers::pi;
+constexpr int kBrick = 4;  // voxels along the smallest cell that is asked for surface
+constexpr int kTask = 16;  // voxels along a cell that is one task
+constexpr int kFine = 8;   // voxels along a cell that looks at a piece's own edges
+constexpr int kSmall = 2;  // voxels along a cell that is decided voxel by voxel
 
-double distanceToSegment(const dvec3& p, const dvec3& a, const dvec3& b) {
+// From the origin.
+double distanceToSegment(const dvec3& a, const dvec3& b) {
     const dvec3 ab = b - a;
-    const double along = glm::dot(p - a, ab), all = glm::dot(ab, ab);
-    return glm::length(p - (a + ab * (all > 0.0 ? std::clamp(along / all, 0.0, 1.0) : 0.0)));
+    const double along = -glm::dot(a, ab), all = glm::dot(ab, ab);
+    return glm::length(a + ab * (all > 0.0 ? std::clamp(along / all, 0.0, 1.0) : 0.0));
 }
 
 // Closed loops that the directed edges (pairs of places) form; no place twice in one. loop(places) for each.
@@ -153,13 +158,17 @@ double BoundaryCaps::winding(const Piece& piece, const dvec3& p) const {
         const dvec3 a = triangles_[k][0] - p;  // the next triangle's b
         const double lengthA = glm::length(a), alongAC = glm::dot(a, c);
         const double y = glm::dot(a, glm::cross(b, c));
-        const double x = lengthA * lengthB * lengthC + glm::dot(a, b) * lengthC + alongAC * lengthB + alongBC * lengthA;
+        const double x = (lengthA * lengthB + glm::dot(a, b)) * lengthC + (alongAC * lengthB + alongBC * lengthA);
         const double turnedRe = re * x - im * y, turnedIm = re * y + im * x;
-        if (im >= 0.0 && y >= 0.0 && turnedIm < 0.0) ++turns;
-        if (im < 0.0 && y < 0.0 && turnedIm >= 0.0) --turns;
-        const double size = std::abs(turnedRe) + std::abs(turnedIm), shrink = size > 0.0 ? 1.0 / size : 1.0;
-        re = turnedRe * shrink;
-        im = turnedIm * shrink;
+        turns += im >= 0.0 && y >= 0.0 && turnedIm < 0.0 ? 1 : 0;
+        turns -= im < 0.0 && y < 0.0 && turnedIm >= 0.0 ? 1 : 0;
+        re = turnedRe;
+        im = turnedIm;
+        if ((k & 3U) == 3U) {  // before it outgrows a double, or vanishes
+            const double size = std::abs(re) + std::abs(im), shrink = size > 0.0 ? 1.0 / size : 1.0;
+            re *= shrink;
+            im *= shrink;
+        }
         b = a;
         lengthB = lengthA;
         alongBC = alongAC;
@@ -177,13 +186,16 @@ double BoundaryCaps::winding(const dvec3& p) const {
 struct BoundaryCaps::Cell {
     ivec3 low{0};
     int size = 0;                // a power of two
-    std::vector<uint32_t> near;  // pieces whose part varies over the cell, ascending
-    double far = 0, slack = 0;   // the others' part, and how much it may be wrong by
+    std::vector<uint32_t> near;  // pieces, ascending, that are not in the first-order model of the others:
+    double far = 0, slack = 0;   // their part at a point p is far + slope . p, give or take slack
+    dvec3 slope{0.0};
+    double model(const dvec3& p) const { return far + glm::dot(slope, p); }
 };
 
 // Decides cells as a whole where bounds allow it, and halves the others. With r the integer nearest to the caps' part, a voxel is inside
 // iff its crossings count to other than r. r is constant where the caps' part stays between two halves, which takes a cell that no cap
-// passes through; the winding number itself is smooth across caps, and settles cells that the mesh does not pass through.
+// passes through; the winding number itself is smooth across caps, and settles cells that the mesh does not pass through. The smallest
+// cells are decided voxel by voxel.
 class BoundaryCaps::Descent {
   public:
     Descent(const BoundaryCaps& caps, const CleanMesh& mesh, const ColumnCrossings& crossings, VoxelGrid& grid)
@@ -191,53 +203,70 @@ class BoundaryCaps::Descent {
           crossings_(crossings),
           grid_(grid),
           occupied_(mesh, grid),
-          tolerance_(kFrozen / static_cast<double>(caps.pieces_.size())) {}
+          tolerance_(kModel / static_cast<double>(caps.pieces_.size())) {}
 
     void run() {
         Cell all;
-        all.size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max({grid_.size.x, grid_.size.y, grid_.size.z}))));
+        all.size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max({grid_.size.x, grid_.size.y, grid_.size.z, kSmall}))));
         for (uint32_t k = 0; k < caps_.pieces_.size(); ++k) all.near.push_back(k);
         descend(all);
     }
 
   private:
+    // A cell's middle, and how far its voxels' centres are from there.
+    struct Ball {
+        dvec3 middle{0.0};
+        double reach = 0;
+    };
+
+    // What is smooth in a cell, to the first order: the caps' part, or, where a cap passes through, that less the crossings.
+    struct Smooth {
+        double value = 0;  // at the grid's corner
+        dvec3 slope{0.0};
+        double slack = 0;
+        double crossed = 0;  // at the middle
+        bool capped = false;
+    };
+
     void descend(const Cell& cell) {
         const ivec3 end = glm::min(cell.low + cell.size, grid_.size);
         if (cell.low.x >= end.x || cell.low.y >= end.y || cell.low.z >= end.z) return;
         const ivec3 middle = glm::min(cell.low + cell.size / 2, end - 1);
-        const dvec3 p = dvec3(middle) + 0.5;
-        const double reach = glm::length(dvec3(glm::max(middle - cell.low, end - 1 - middle)));
-        if (partBelowHalf(cell, p, reach)) return;  // what the crossings say holds
-        Cell inner;
-        inner.far = cell.far;
-        inner.slack = cell.slack;
-        inner.size = cell.size / 2;
+        const Ball ball{dvec3(middle) + 0.5, glm::length(dvec3(glm::max(middle - cell.low, end - 1 - middle)))};
+        if (partBelowHalf(cell, ball)) return;  // what the crossings say holds
+        Cell inner = cell;
+        inner.near.clear();
         double part = 0;
         bool capped = false;
         for (uint32_t k : cell.near) {
-            const Piece& piece = caps_.pieces_[k];
-            const double value = caps_.winding(piece, p), apart = glm::length(piece.centre - p) - piece.radius - reach;
-            const double change = apart > 0.0 ? reach * steepest(piece, apart) : 1.0;
-            if (change <= tolerance_) {
-                inner.far += value;
-                inner.slack += change;
-            } else {
-                part += value;
-                inner.near.push_back(k);
-                capped = capped || apart <= 0.0;
-            }
+            const double value = caps_.winding(caps_.pieces_[k], ball.middle);
+            bool passes = false;
+            if (moveToModel(caps_.pieces_[k], value, ball, inner, passes)) continue;
+            part += value;
+            inner.near.push_back(k);
+            capped = capped || passes;
         }
-        part += inner.far;
-        if (cell.size == 1) return decideVoxel(middle, p, part, inner.slack);
-        const double slack = inner.slack + reach * slope(inner.near, p, reach) + kRounding;
+        part += inner.model(ball.middle);
+        // Over the ball the part is within `change` of that, and within `bend` of what the gradient makes of it, but for the caps' steps.
+        const Wires wires = outline(inner.near, ball);
+        const dvec3 slope = inner.slope + wires.slope / kSphere;
+        const double bend = inner.slack + 0.5 * ball.reach * ball.reach * wires.bend / kSphere + kRounding;
+        const double change = std::min(inner.slack + ball.reach * (glm::length(inner.slope) + wires.steepest / kSphere) + kRounding,
+                                       ball.reach * glm::length(slope) + bend);
         if (!capped) {
-            const double lowest = std::floor(part - slack + 0.5), highest = std::floor(part + slack + 0.5);
+            const double lowest = std::floor(part - change + 0.5), highest = std::floor(part + change + 0.5);
             if (lowest == highest) return compare(cell.low, end, static_cast<int>(lowest));
         }
-        if (!occupied_.test(cell.low, cell.size)) {
-            const double turns = std::abs(crossedAt(middle) - part);
-            if (std::abs(turns - 0.5) > slack) return fill(cell.low, end, turns > 0.5);
+        const double crossed = crossedAt(middle);
+        const bool occupied = occupied_.test(cell.low, cell.size);
+        if (std::abs(std::abs(crossed - part) - 0.5) > change && !occupied) return fill(cell.low, end, std::abs(crossed - part) > 0.5);
+        const bool smooth = bend < kBend && !(capped && occupied);
+        if (cell.size <= kSmall || smooth) {
+            const Smooth model{part - glm::dot(slope, ball.middle), slope, smooth ? bend : std::numeric_limits<double>::infinity(), crossed,
+                               capped};
+            return decideEach(cell.low, end, inner, model);
         }
+        inner.size = cell.size / 2;
         const auto half = [&](int k) {
             Cell child = inner;
             child.low = cell.low + inner.size * ivec3(k & 1, (k >> 1) & 1, k >> 2);
@@ -250,40 +279,113 @@ class BoundaryCaps::Descent {
     }
 
     // A patch's solid angle is at most its area over its least distance squared.
-    bool partBelowHalf(const Cell& cell, const dvec3& p, double reach) const {
-        double most = std::abs(cell.far) + cell.slack + kRounding;
+    bool partBelowHalf(const Cell& cell, const Ball& ball) const {
+        double most = std::abs(cell.model(ball.middle)) + ball.reach * glm::length(cell.slope) + cell.slack + kRounding;
         for (uint32_t k : cell.near) {
             const Piece& piece = caps_.pieces_[k];
-            const double apart = glm::length(piece.centre - p) - piece.radius - reach;
+            const double apart = glm::length(piece.centre - ball.middle) - piece.radius - ball.reach;
             if (apart <= 0.0) return false;
-            most += piece.area / (4.0 * std::numbers::pi * apart * apart);
+            most += piece.area / (kSphere * apart * apart);
             if (most >= 0.5) return false;
         }
         return true;
     }
 
-    // The most a piece's part changes per voxel at that distance: by its outline as a wire (Biot and Savart), or by its area as dipoles.
-    static double steepest(const Piece& piece, double apart) {
-        return std::min(piece.outline, 2.0 * piece.area / apart) / (4.0 * std::numbers::pi * apart * apart);
+    // Adds a piece whose part at the middle is `value` to the first-order model if that is good enough all over the ball; else says whether
+    // the piece may pass through the ball.
+    bool moveToModel(const Piece& piece, double value, const Ball& ball, Cell& cell, bool& passes) const {
+        const double apart = glm::length(piece.centre - ball.middle) - piece.radius - ball.reach, second = 0.5 * ball.reach * ball.reach;
+        // By its outline as a wire (Biot and Savart), or by its area as dipoles.
+        double wrong = std::numeric_limits<double>::infinity();
+        if (apart > 0.0) wrong = second * std::min(2.0 * piece.outline, 6.0 * piece.area / apart) / (kSphere * apart * apart * apart);
+        if (wrong > tolerance_) {
+            passes = apart <= 0.0 && passesThrough(piece, ball);
+            if (passes || cell.size > kFine) return false;
+        }
+        Wires wires;
+        eachWire(piece, [&](const dvec3& a, const dvec3& b) { wires.add(a, b, ball); });
+        wrong = std::min(wrong, second * wires.bend / kSphere);
+        if (wrong > tolerance_) return false;
+        const dvec3 slope = wires.slope / kSphere;
+        cell.far += value - glm::dot(slope, ball.middle);
+        cell.slope += slope;
+        cell.slack += wrong;
+        return true;
     }
 
-    // The same for several pieces at once, whose inner outlines cancel.
-    double slope(const std::vector<uint32_t>& near, const dvec3& p, double reach) const {
-        double sum = 0;
-        const auto wire = [&](const dvec3& a, const dvec3& b) {
-            const double apart = distanceToSegment(p, a, b) - reach;
-            sum += apart > 0.0 ? std::min(glm::length(b - a) / apart, 2.0) / apart : std::numeric_limits<double>::infinity();
-        };
+    // Currents along edges: their field at the ball's middle is the solid angle's gradient (Biot and Savart).
+    struct Wires {
+        dvec3 slope{0.0};
+        double steepest = 0, bend = 0;  // bounds all over the ball, on the first and the second derivative
+        void add(const dvec3& from, const dvec3& to, const Ball& ball) {
+            const dvec3 a = from - ball.middle, b = to - ball.middle;
+            const double apart = distanceToSegment(a, b) - ball.reach;
+            if (apart <= 0.0) {
+                steepest = bend = std::numeric_limits<double>::infinity();
+                return;
+            }
+            const double lengthA = glm::length(a), lengthB = glm::length(b), both = lengthA * lengthB;
+            slope += glm::cross(a, b) * ((lengthA + lengthB) / (both * (both + glm::dot(a, b))));
+            const double most = std::min(glm::length(to - from) / apart, 2.0) / apart;
+            steepest += most;
+            bend += 2.0 * most / apart;
+        }
+    };
+
+    template <class Wire>
+    void eachWire(const Piece& piece, Wire wire) const {
+        for (uint32_t t = piece.first; t < piece.end; ++t) wire(caps_.triangles_[t][0], caps_.triangles_[t][1]);
+        if (piece.next == static_cast<uint32_t>(&piece - caps_.pieces_.data())) return;  // a fan by itself: its ends meet
+        wire(caps_.triangles_[piece.first][1], caps_.triangles_[piece.first][2]);
+        wire(caps_.triangles_[piece.end - 1][2], caps_.triangles_[piece.end - 1][0]);
+    }
+
+    // Of several pieces: where they meet their outlines cancel.
+    Wires outline(const std::vector<uint32_t>& near, const Ball& ball) const {
+        Wires wires;
         for (uint32_t k : near) {
             const Piece& piece = caps_.pieces_[k];
-            for (uint32_t t = piece.first; t < piece.end; ++t) wire(caps_.triangles_[t][0], caps_.triangles_[t][1]);
+            for (uint32_t t = piece.first; t < piece.end; ++t) wires.add(caps_.triangles_[t][0], caps_.triangles_[t][1], ball);
             const Corners &first = caps_.triangles_[piece.first], &last = caps_.triangles_[piece.end - 1];
-            if (!std::binary_search(near.begin(), near.end(), piece.previous)) wire(first[1], first[2]);
-            if (!std::binary_search(near.begin(), near.end(), piece.next)) wire(last[0], last[2]);
-            if (sum == std::numeric_limits<double>::infinity()) break;
+            if (!std::binary_search(near.begin(), near.end(), piece.previous)) wires.add(first[1], first[2], ball);
+            if (!std::binary_search(near.begin(), near.end(), piece.next)) wires.add(last[2], last[0], ball);
+            if (wires.steepest == std::numeric_limits<double>::infinity()) break;
         }
-        return sum / (4.0 * std::numbers::pi);
+        return wires;
     }
+
+    // False is certain.
+    bool passesThrough(const Piece& piece, const Ball& ball) const {
+        for (uint32_t k = piece.first; k < piece.end; ++k) {
+            const Corners& t = caps_.triangles_[k];
+            const dvec3 a = t[0] - ball.middle, b = t[1] - ball.middle, c = t[2] - ball.middle;
+            const dvec3 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
+            if (std::max({low.x, low.y, low.z, -high.x, -high.y, -high.z}) > ball.reach) continue;
+            const dvec3 normal = glm::cross(b - a, c - a);
+            if (std::abs(glm::dot(normal, a)) <= (ball.reach + kRounding) * glm::length(normal)) return true;
+        }
+        return false;
+    }
+
+    // By the smooth model; where that cannot tell, by the pieces; where theirs cannot, by all of them.
+    void decideEach(const ivec3& low, const ivec3& end, const Cell& cell, const Smooth& smooth) {
+        for (int z = low.z; z < end.z; ++z) {
+            for (int y = low.y; y < end.y; ++y) {
+                for (int x = low.x; x < end.x; ++x) {
+                    const dvec3 p = dvec3(x, y, z) + 0.5;
+                    const double crossed = crossedAt({x, y, z});
+                    double turns = (smooth.capped ? smooth.crossed : crossed) - smooth.value - glm::dot(smooth.slope, p);
+                    if (unclear(turns, smooth.slack)) {
+                        turns = crossed - cell.model(p);
+                        for (uint32_t k : cell.near) turns -= caps_.winding(caps_.pieces_[k], p);
+                        if (unclear(turns, cell.slack + kRounding)) turns = crossed - caps_.winding(p);
+                    }
+                    assignRun(grid_, grid_.index({x, y, z}), grid_.index({x, y, z}) + 1, std::abs(turns) > 0.5);
+                }
+            }
+        }
+    }
+    static bool unclear(double turns, double slack) { return std::abs(std::abs(turns) - 0.5) <= slack; }
 
     size_t columnOf(int y, int z) const { return static_cast<size_t>(z) * static_cast<size_t>(grid_.size.y) + static_cast<size_t>(y); }
 
@@ -294,13 +396,6 @@ class BoundaryCaps::Descent {
             winding += crossedChange(crossing);
         }
         return winding;
-    }
-
-    void decideVoxel(const ivec3& c, const dvec3& p, double part, double slack) {
-        const int crossed = crossedAt(c);
-        double turns = std::abs(crossed - part);
-        if (std::abs(turns - 0.5) <= slack + kRounding) turns = std::abs(crossed - caps_.winding(p));
-        assignRun(grid_, grid_.index(c), grid_.index(c) + 1, turns > 0.5);
     }
 
     void fill(const ivec3& low, const ivec3& end, bool value) {

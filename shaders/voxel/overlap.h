@@ -22,8 +22,9 @@ FN OverlapRun overlapRow(GLOBAL(double, numbers) GLOBAL(int, bounds) uint triang
     double ax = numbers[at];
     EXACT double qy = TO_DOUBLE(y) + 0.5 - numbers[at + 1u];
     EXACT double qz = TO_DOUBLE(z) + 0.5 - numbers[at + 2u];
-    EXACT double from = TO_DOUBLE(bounds[box]) + 0.5 - ax;
-    EXACT double to = TO_DOUBLE(bounds[box + 3u]) + 0.5 - ax;
+    // A voxel more at both ends: rounding must not cut off the outermost, and whole numbers bound the run in the end.
+    EXACT double from = TO_DOUBLE(bounds[box]) - 0.5 - ax;
+    EXACT double to = TO_DOUBLE(bounds[box + 3u]) + 1.5 - ax;
     OverlapRun none;
     none.first = 0;
     none.last = -1;
@@ -44,13 +45,13 @@ FN OverlapRun overlapRow(GLOBAL(double, numbers) GLOBAL(int, bounds) uint triang
         slab += OVERLAP_SLAB;
     }
     if (from > to) return none;
-    // Both are 0 or more, but for rounding.
     EXACT double start = from + ax - 0.5;
     EXACT double end = to + ax - 0.5;
     OverlapRun run;
     run.first = TO_INT(start);
     if (TO_DOUBLE(run.first) < start) run.first += 1;
     run.last = TO_INT(end);
+    if (TO_DOUBLE(run.last) > end) run.last -= 1;
     run.first = run.first > bounds[box] ? run.first : bounds[box];
     run.last = run.last < bounds[box + 3u] ? run.last : bounds[box + 3u];
     return run;

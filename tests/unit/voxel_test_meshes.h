@@ -43,8 +43,9 @@ inline Mesh makeSphere(const vec3& centre, float radius, int rings = 24) {
     Mesh m;
     const auto at = [&](int ring, int side) {
         const float polar = kPi * static_cast<float>(ring) / static_cast<float>(rings);
-        const float round = kPi * static_cast<float>(side) / static_cast<float>(rings);
-        return centre + radius * vec3(std::sin(polar) * std::cos(round), std::cos(polar), std::sin(polar) * std::sin(round));
+        const float round = kPi * static_cast<float>(side % (2 * rings)) / static_cast<float>(rings);
+        const float out = ring == 0 || ring == rings ? 0.0F : std::sin(polar);  // so that it closes to the last bit
+        return centre + radius * vec3(out * std::cos(round), std::cos(polar), out * std::sin(round));
     };
     for (int r = 0; r < rings; ++r) {
         for (int s = 0; s < 2 * rings; ++s) {

@@ -7,6 +7,10 @@ namespace {
 #include "shaders/voxel/field.h"
 
 #include "shaders/voxel/walk.h"
+
+#include "shaders/fluid/contact.h"
+
+#include "shaders/fluid/contact_thesis.h"
 vec3 point(const float* p) { return vec3(p[0], p[1], p[2]); }
 }  // namespace
 }  // namespace rivulet::RIVULET_KERNEL_UNIT
@@ -21,6 +25,10 @@ float walkVoxels(const void* params, const uint32_t* bits, const float* a, const
     return voxel_test_unit::walkVoxels(bits, *static_cast<const FieldParams*>(params), point(a), point(b));
 }
 
+float walkThesis(const void* params, const uint32_t* bits, const float* a, const float* b) {
+    return voxel_test_unit::walkThesis(bits, *static_cast<const FieldParams*>(params), point(a), point(b));
+}
+
 float fieldAt(const void* params, const float* distance, const float* p, float* gradient) {
     const FieldSample s = voxel_test_unit::fieldAt(distance, *static_cast<const FieldParams*>(params), point(p));
     gradient[0] = s.gradient.x;
@@ -31,6 +39,14 @@ float fieldAt(const void* params, const float* distance, const float* p, float* 
 
 bool farFromField(const void* params, const float* distance, const float* a, const float* b) {
     return voxel_test_unit::farFromField(distance, *static_cast<const FieldParams*>(params), point(a), point(b));
+}
+
+uint32_t unpackWall(uint32_t code, float* direction) {
+    const vec3 n = unpackNormal(code);
+    direction[0] = n.x;
+    direction[1] = n.y;
+    direction[2] = n.z;
+    return wallSurface(code);
 }
 
 }  // namespace rivulet::test

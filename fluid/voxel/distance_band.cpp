@@ -330,7 +330,7 @@ uint32_t packNormal(const dvec3& direction, uint32_t surface) {
     x.fill(direction.x);
     y.fill(direction.y);
     z.fill(direction == dvec3(0.0) ? 1.0 : direction.z);
-    kernelsOf(Isa::generic).pack({x.data(), y.data(), z.data(), codes.data()});
+    kernelsOf(Isa::generic).pack({x.data(), y.data(), z.data(), codes.data(), 8});
     return codes[0] | surface << 28U;
 }
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <functional>
+
 #include "fluid/voxel/voxel_field.h"
 #include "tests/unit/voxel_kernels.h"
 #include "tests/unit/voxel_test_meshes.h"
@@ -121,6 +124,120 @@ TEST(VoxelBand, SameForAnyInstructionSet) {
         EXPECT_TRUE(normal == otherNormal) << isaName(isa);
         EXPECT_TRUE(nearest == otherNearest) << isaName(isa);
     }
+}
+
+// Turns every face round.
+Mesh inverted(Mesh mesh) {
+    for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) std::swap(mesh.indices[k + 1], mesh.indices[k + 2]);
+    return mesh;
+}
+
+// Vertices that rounding set apart, at seams and poles, at one place.
+Mesh welded(Mesh mesh) {
+    for (vec3& p : mesh.positions) p = glm::round(p * 16384.0F) / 16384.0F;
+    return mesh;
+}
+
+Mesh joined(const std::vector<Mesh>& meshes) {
+    Mesh all;
+    for (const Mesh& mesh : meshes) {
+        for (uint32_t i : mesh.indices) all.indices.push_back(i + static_cast<uint32_t>(all.positions.size()));
+        all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    }
+    return all;
+}
+
+// How often the mesh's faces wind round p, by their solid angles (van Oosterom and Strackee 1983).
+double winding(const Mesh& mesh, const dvec3& p) {
+    double sum = 0;
+    for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
+        const dvec3 a = dvec3(mesh.positions[mesh.indices[k]]) - p, b = dvec3(mesh.positions[mesh.indices[k + 1]]) - p,
+                    c = dvec3(mesh.positions[mesh.indices[k + 2]]) - p;
+        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+        sum +=
+            2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+    }
+    return sum / (4.0 * 3.14159265358979323846);
+}
+
+// Against `inside`, at every grid point further than `margin` (voxels) from the surface.
+void expectSigns(const std::vector<Mesh>& meshes, int resolution, const char* name, const std::function<bool(const dvec3&)>& inside) {
+    std::vector<MeshView> views;
+    for (const Mesh& mesh : meshes) views.push_back(mesh.view());
+    const Result<VoxelField> field = bakeVoxelField(views, {.resolution = resolution});
+    ASSERT_TRUE(field);
+    EXPECT_TRUE(field->closed) << name;
+    const VoxelGrid& grid = field->surface;
+    size_t wrong = 0, within = 0, k = 0;
+    for (int z = 0; z <= grid.size.z; ++z) {
+        for (int y = 0; y <= grid.size.y; ++y) {
+            for (int x = 0; x <= grid.size.x; ++x, ++k) {
+                const float d = field->distance[k];
+                if (std::abs(d) < 1e-4F * grid.voxel) continue;
+                wrong += inside(dvec3(grid.origin) + static_cast<double>(grid.voxel) * dvec3(x, y, z)) != (d < 0.0F) ? 1 : 0;
+                within += d < 0.0F ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_EQ(wrong, 0U) << name;
+    EXPECT_GT(within, 100U) << name;
+}
+
+TEST(VoxelBand, NegativeInsideClosedMeshes) {
+    const Mesh ball = welded(test::makeSphere(vec3(0.1F, 0, 0), 0.5F, 10));
+    const auto windsRound = [](const Mesh& mesh) { return [&mesh](const dvec3& p) { return std::abs(winding(mesh, p)) > 0.5; }; };
+    expectSigns({ball}, 20, "ball", windsRound(ball));
+    const Mesh out = inverted(ball);
+    expectSigns({out}, 20, "ball inside out", windsRound(out));
+    const Mesh shell = welded(joined({test::makeSphere(vec3(0), 1.0F, 9), inverted(test::makeSphere(vec3(0.1F), 0.6F, 9))}));
+    expectSigns({shell}, 20, "shell", windsRound(shell));
+    // Two that overlap, one of them inside out: each has its own inside.
+    const Mesh box = inverted(test::makeBox(vec3(0.2F, -0.3F, -0.2F), vec3(0.9F, 0.3F, 0.4F)));
+    expectSigns({ball, box}, 20, "ball and box",
+                [&](const dvec3& p) { return std::abs(winding(ball, p)) > 0.5 || std::abs(winding(box, p)) > 0.5; });
+    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
+    const Mesh cup = test::readObj(test::sharedMesh("generated/thin_wall_cup.obj"));
+    expectSigns({cup}, 24, "cup", windsRound(cup));
+}
+
+TEST(VoxelBand, UnsignedUnlessAllMeshesAreClosed) {
+    Mesh open = welded(test::makeSphere(vec3(0), 0.5F, 10));
+    open.indices.resize(open.indices.size() - 3);
+    const Mesh ball = welded(test::makeSphere(vec3(1.2F, 0, 0), 0.5F, 10)), sheet = test::makeSheet(vec3(0), vec3(0, 1, 0), 1.0F);
+    for (const std::vector<Mesh>& meshes : {std::vector<Mesh>{open}, {ball, open}, {sheet, ball}}) {
+        std::vector<MeshView> views;
+        for (const Mesh& mesh : meshes) views.push_back(mesh.view());
+        const Result<VoxelField> field = bakeVoxelField(views, {.resolution = 20});
+        ASSERT_TRUE(field);
+        EXPECT_FALSE(field->closed);
+        EXPECT_GE(*std::min_element(field->distance.begin(), field->distance.end()), 0.0F);
+    }
+}
+
+// Kernels and clearance ask how far the mesh is, from either side: the sign changes nothing for them.
+TEST(VoxelBand, TheSignIsNotSeenByWhoAsksForTheDistance) {
+    const Mesh ball = welded(test::makeSphere(vec3(0), 0.5F, 12));
+    const MeshView view = ball.view();
+    const Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 30});
+    ASSERT_TRUE(field && field->closed);
+    VoxelField plain = *field;
+    for (float& d : plain.distance) d = std::abs(d);
+    const FieldParams params = fieldParams(*field, {});
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> at(-0.7F, 0.7F);
+    size_t far = 0;
+    for (int k = 0; k < 20000; ++k) {
+        const vec3 p(at(random), at(random), at(random)), q = p + 0.05F * vec3(at(random), at(random), at(random));
+        EXPECT_EQ(field->clearance(p), plain.clearance(p));
+        vec3 gradient, plainGradient;
+        EXPECT_EQ(test::fieldAt(&params, field->distance.data(), &p.x, &gradient.x),
+                  test::fieldAt(&params, plain.distance.data(), &p.x, &plainGradient.x));
+        EXPECT_EQ(gradient, plainGradient);
+        const bool isFar = test::farFromField(&params, field->distance.data(), &p.x, &q.x);
+        EXPECT_EQ(isFar, test::farFromField(&params, plain.distance.data(), &p.x, &q.x));
+        far += isFar ? 1 : 0;
+    }
+    EXPECT_GT(far, 1000U);
 }
 
 }  // namespace

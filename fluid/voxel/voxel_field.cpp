@@ -2,6 +2,7 @@
 #include "fluid/voxel/voxel_field.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <new>
@@ -9,6 +10,8 @@
 
 #include "fluid/voxel/distance_band.h"
 #include "fluid/voxel/mesh_check.h"
+#include "fluid/voxel/mesh_defects.h"
+#include "fluid/voxel/voxelize_solid.h"
 #include "fluid/voxel/voxelize_surface.h"
 
 namespace rivulet {
@@ -64,6 +67,30 @@ Error tooMuchMemory(const Place& place, const VoxelFieldOptions& options, double
                                 readableBytes(needed), readableBytes(limit), remedy));
 }
 
+// Where all meshes are watertight, makes distances inside negative.
+void signInside(std::span<const MeshView> meshes, VoxelField& field) {
+    std::vector<CleanMesh> cleaned;
+    for (const MeshView& mesh : meshes) {
+        if (mesh.triangleCount() == 0) continue;
+        cleaned.push_back(cleanMesh(std::span(&mesh, 1)));
+        if (!cleaned.back().defects.watertight) return;
+    }
+    // Voxels about the grid points: half a voxel off, one more each way.
+    VoxelGrid inside;
+    inside.size = field.surface.size + 1;
+    inside.voxel = field.surface.voxel;
+    inside.origin = field.surface.origin - 0.5F * field.surface.voxel;
+    for (const CleanMesh& mesh : cleaned) {
+        voxelizeSolid(mesh, inside);
+        tbb::parallel_for(tbb::blocked_range<size_t>(0, field.distance.size(), 65536), [&](const tbb::blocked_range<size_t>& range) {
+            for (size_t k = range.begin(); k != range.end(); ++k) {
+                if (((inside.bits[k >> 3U] >> (k & 7U)) & 1U) != 0) field.distance[k] = -std::abs(field.distance[k]);
+            }
+        });
+    }
+    field.closed = true;
+}
+
 }  // namespace
 
 float VoxelField::clearance(const vec3& p) const {
@@ -75,7 +102,7 @@ float VoxelField::clearance(const vec3& p) const {
         const ivec3 c = cell + ivec3(k & 1, (k >> 1) & 1, k >> 2);
         const auto row = static_cast<size_t>(c.z) * static_cast<size_t>(size.y + 1) + static_cast<size_t>(c.y);
         const float there = distance[row * static_cast<size_t>(size.x + 1) + static_cast<size_t>(c.x)];
-        best = std::max(best, there - glm::length(vec3(c) - g) * surface.voxel);
+        best = std::max(best, std::abs(there) - glm::length(vec3(c) - g) * surface.voxel);
     }
     return best;
 }
@@ -132,6 +159,7 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
         const GridTriangles list(meshes, field->surface);
         voxelizeSurface(list, field->surface);
         DistanceBand(field->surface, field->band).bake(list, options.surfaces, {}, {}, {}, {field->distance, field->normal, {}});
+        signInside(meshes, *field);
         return field;
     } catch (const std::bad_alloc&) {
         return failed(fmt::format("Not enough memory to bake a voxel field of resolution {}; lower the resolution.", options.resolution));

@@ -12,15 +12,15 @@ namespace rivulet {
 
 // Distance is sampled at grid points p = origin + voxel * (x, y, z), 0 <= x <= size.x and so on: (size + 1) points an axis, x fastest.
 struct VoxelField {
-    VoxelGrid surface;            // voxels that a triangle passes through, touching counts
-    std::vector<float> distance;  // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
-    std::vector<uint32_t>
-        normal;      // within the band: from the nearest triangle to the point, and whose it is: packNormal of distance_band.h
-    float band = 0;  // m
+    VoxelGrid surface;             // voxels that a triangle passes through, touching counts
+    std::vector<float> distance;   // m, to the nearest triangle, exact within `band`, `band` beyond it; negative inside, if `closed`
+    std::vector<uint32_t> normal;  // within the band: from the nearest triangle to the point, and whose it is: packNormal
+    float band = 0;                // m
+    bool closed = false;           // every mesh is watertight, and so has an inside; else no distance is negative
     bool empty() const { return surface.count() == 0; }
     size_t bytes() const { return surface.bits.size() + distance.size() * sizeof(float) + normal.size() * sizeof(uint32_t); }
     // A lower bound (m) of the distance from `p` to the mesh, at most sqrt(3) voxels below it and never above `band`: distance changes
-    // by no more than one moves, whichever side of the mesh one is on. May be negative near the mesh. A particle may be
+    // by no more than one moves, whichever side of the mesh one is on (`p` may be inside). May be negative near the mesh. A particle may be
     // born at `p` if clearance(p) >= contact.
     float clearance(const vec3& p) const;
 };
@@ -30,8 +30,8 @@ struct VoxelFieldOptions {
     float band = 0;                         // m, at least this wide (and at least kBandVoxels voxels)
     float padding = 0;                      // m, around the bounds: at least the band, so that whoever comes near is inside the grid
     size_t memoryLimit = size_t{1} << 30U;  // bytes the field may take
-    std::span<const uint8_t> surfaces =
-        {};  // of each mesh, 0..kMaxSurface: what wallSurface of shaders/fluid/contact.h says of its walls; empty: all 0
+    // Of each mesh, 0..kMaxSurface: what wallSurface of shaders/fluid/contact.h says of its walls. Empty: all 0.
+    std::span<const uint8_t> surfaces = {};
 };
 
 inline constexpr uint8_t kMaxSurface = 15;
@@ -47,7 +47,8 @@ inline constexpr float kContactVoxels = 1.74F;
 // `meshes` in world space (m). Error: no triangle, an index out of range, NaN or infinite vertices (with how many), meshes of no
 // extent or too far from the origin for floats, a resolution outside 2..2048, too much memory (with how much, and what resolution fits),
 // a surface above kMaxSurface or not one a mesh.
-// The same bits and distances for any number of threads.
+// The same bits and distances for any number of threads. A grid point is inside if one of the meshes, made consistent by cleanMesh, winds
+// round it; nearer to a mesh than the grid's origin is rounded (1/32 voxel at worst, 1e-5 as a rule) it may count for either side.
 Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options);
 
 // What bakeVoxelField starts from: its checks, its grid with no bit set, distances at the band. `reach`: lay the grid out over this instead

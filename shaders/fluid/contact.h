@@ -84,7 +84,7 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
             int y = cy + ((k >> 1) & 1);
             int z = cz + (k >> 2);
             uint at = (TO_UINT(z) * (TO_UINT(f.sizeY) + 1u) + TO_UINT(y)) * (TO_UINT(f.sizeX) + 1u) + TO_UINT(x);
-            float there = bandDistance[at];
+            float there = abs(bandDistance[at]);
             uint code = bandNormal[at];
             vec3 n = unpackNormal(code);
             float distance_ = there + dot(n, g - vec3(TO_FLOAT(x), TO_FLOAT(y), TO_FLOAT(z))) * f.voxel;

@@ -1,4 +1,5 @@
 // The distance band as a kernel reads it: interpolated distance and its gradient. Include after BUFFERS; the buffer is `bandDistance`.
+// Where the mesh is closed that is negative inside; here only the distance counts, whichever side one is on (fluid/voxel/README.md).
 // Points are in metres, cell coordinates in voxels from the grid's low corner.
 STRUCT(FieldSample) {
     vec3  gradient;  // of the trilinear interpolant: away from the mesh; length 1 by a lone wall
@@ -23,14 +24,14 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     uint row = TO_UINT(f.sizeX) + 1u;
     uint slab = row * (TO_UINT(f.sizeY) + 1u);
     uint at = TO_UINT(cz) * slab + TO_UINT(cy) * row + TO_UINT(cx);
-    float d000 = bandDistance[at];
-    float d100 = bandDistance[at + 1u];
-    float d010 = bandDistance[at + row];
-    float d110 = bandDistance[at + row + 1u];
-    float d001 = bandDistance[at + slab];
-    float d101 = bandDistance[at + slab + 1u];
-    float d011 = bandDistance[at + slab + row];
-    float d111 = bandDistance[at + slab + row + 1u];
+    float d000 = abs(bandDistance[at]);
+    float d100 = abs(bandDistance[at + 1u]);
+    float d010 = abs(bandDistance[at + row]);
+    float d110 = abs(bandDistance[at + row + 1u]);
+    float d001 = abs(bandDistance[at + slab]);
+    float d101 = abs(bandDistance[at + slab + 1u]);
+    float d011 = abs(bandDistance[at + slab + row]);
+    float d111 = abs(bandDistance[at + slab + row + 1u]);
     float e00 = d000 + (d100 - d000) * x;
     float e10 = d010 + (d110 - d010) * x;
     float e01 = d001 + (d101 - d001) * x;
@@ -74,6 +75,6 @@ FN bool farFromField(GLOBAL(float, bandDistance) FieldParams f, vec3 a, vec3 b) 
     vec3 nearest = floor(g + vec3(0.5f, 0.5f, 0.5f));
     uint row = TO_UINT(f.sizeX) + 1u;
     uint slab = row * (TO_UINT(f.sizeY) + 1u);
-    float there = bandDistance[TO_UINT(nearest.z) * slab + TO_UINT(nearest.y) * row + TO_UINT(nearest.x)];
+    float there = abs(bandDistance[TO_UINT(nearest.z) * slab + TO_UINT(nearest.y) * row + TO_UINT(nearest.x)]);
     return there - length(g - nearest) * f.voxel > length(b - a) + f.contact;
 }

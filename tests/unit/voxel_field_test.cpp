@@ -166,7 +166,7 @@ void expectExactBand(const Mesh& mesh, int resolution, float band) {
                 const dvec3 p = dvec3(field.surface.origin) + static_cast<double>(field.surface.voxel) * dvec3(x, y, z);
                 double nearest = static_cast<double>(field.band);
                 for (size_t t = 0; t < mesh.indices.size() / 3; ++t) nearest = std::min(nearest, referenceDistance(corners(mesh, t), p));
-                worst = std::max(worst, std::abs(nearest - static_cast<double>(field.distance[k])));
+                worst = std::max(worst, std::abs(nearest - std::abs(static_cast<double>(field.distance[k]))));
             }
         }
     }

@@ -138,6 +138,12 @@ Mesh welded(Mesh mesh) {
     return mesh;
 }
 
+std::vector<MeshView> viewsOf(const std::vector<Mesh>& meshes) {
+    std::vector<MeshView> views(meshes.size());
+    std::transform(meshes.begin(), meshes.end(), views.begin(), [](const Mesh& mesh) { return mesh.view(); });
+    return views;
+}
+
 Mesh joined(const std::vector<Mesh>& meshes) {
     Mesh all;
     for (const Mesh& mesh : meshes) {
@@ -162,8 +168,7 @@ double winding(const Mesh& mesh, const dvec3& p) {
 
 // Against `inside`, at every grid point further than `margin` (voxels) from the surface.
 void expectSigns(const std::vector<Mesh>& meshes, int resolution, const char* name, const std::function<bool(const dvec3&)>& inside) {
-    std::vector<MeshView> views;
-    for (const Mesh& mesh : meshes) views.push_back(mesh.view());
+    const std::vector<MeshView> views = viewsOf(meshes);
     const Result<VoxelField> field = bakeVoxelField(views, {.resolution = resolution});
     ASSERT_TRUE(field);
     EXPECT_TRUE(field->closed) << name;
@@ -205,8 +210,7 @@ TEST(VoxelBand, UnsignedUnlessAllMeshesAreClosed) {
     open.indices.resize(open.indices.size() - 3);
     const Mesh ball = welded(test::makeSphere(vec3(1.2F, 0, 0), 0.5F, 10)), sheet = test::makeSheet(vec3(0), vec3(0, 1, 0), 1.0F);
     for (const std::vector<Mesh>& meshes : {std::vector<Mesh>{open}, {ball, open}, {sheet, ball}}) {
-        std::vector<MeshView> views;
-        for (const Mesh& mesh : meshes) views.push_back(mesh.view());
+        const std::vector<MeshView> views = viewsOf(meshes);
         const Result<VoxelField> field = bakeVoxelField(views, {.resolution = 20});
         ASSERT_TRUE(field);
         EXPECT_FALSE(field->closed);

@@ -84,7 +84,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
 
     if (solids.field != nullptr && !solids.field->empty()) {
         s.static_.field = solids.field;
-        s.outside_ = reachableFromBorder(solids.field->surface);
+        if (!solids.field->closed) s.outside_ = reachableFromBorder(solids.field->surface);
         if (Status done = s.static_.upload(device); !done) return done.error();
         Result<Buffer> block = device.allocate(sizeof(FieldParams));
         if (!block) return block.error();
@@ -156,8 +156,9 @@ Status SolidPasses::addMoving(Moving m) {
 bool SolidPasses::mayBeBorn(const vec3& p, float spacing) const {
     for (const PlaneSolid& plane : planeSolids_)
         if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * spacing) return false;
+    // Not nearer than it would rest, and not inside where the mesh is closed.
     const auto clear = [&](const VoxelField& field, const vec3& at) {
-        return field.clearance(at) >= fieldParams(field, FieldContact{.spacing = spacing}).contact;
+        return field.clearance(at) >= fieldParams(field, FieldContact{.spacing = spacing}).contact && !field.inside(at);
     };
     for (const Moving& m : rigid_)
         if (!clear(*m.on.field, m.atStart.toOwn(p))) return false;
@@ -166,7 +167,8 @@ bool SolidPasses::mayBeBorn(const vec3& p, float spacing) const {
     if (static_.field == nullptr) return true;
     const VoxelGrid& grid = static_.field->surface;
     const ivec3 voxel = grid.cellOf(p);
-    return clear(*static_.field, p) && (!grid.contains(voxel) || outside_[grid.index(voxel)] != 0);
+    // Where a mesh is not closed nobody knows which side of it is inside: what cannot be reached from the border counts as that.
+    return clear(*static_.field, p) && (static_.field->closed || !grid.contains(voxel) || outside_[grid.index(voxel)] != 0);
 }
 
 void SolidPasses::setSurfaces(std::span<const Surface> surfaces) {

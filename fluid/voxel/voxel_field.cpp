@@ -107,6 +107,14 @@ float VoxelField::clearance(const vec3& p) const {
     return best;
 }
 
+bool VoxelField::inside(const vec3& p) const {
+    const vec3 g = glm::floor((p - surface.origin) / surface.voxel + 0.5F);
+    if (!closed || glm::any(glm::lessThan(g, vec3(0.0F))) || glm::any(glm::greaterThan(g, vec3(surface.size)))) return false;
+    const ivec3 c(g);
+    const auto row = static_cast<size_t>(c.z) * static_cast<size_t>(surface.size.y + 1) + static_cast<size_t>(c.y);
+    return distance[row * static_cast<size_t>(surface.size.x + 1) + static_cast<size_t>(c.x)] < 0;
+}
+
 Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra) {
     if (options.resolution < kMinResolution || options.resolution > kMaxResolution)
         return badInput(fmt::format("A voxel field's resolution is {}..{}, not {}.", kMinResolution, kMaxResolution, options.resolution));

@@ -23,6 +23,8 @@ struct VoxelField {
     // by no more than one moves, whichever side of the mesh one is on (`p` may be inside). May be negative near the mesh. A particle may be
     // born at `p` if clearance(p) >= contact.
     float clearance(const vec3& p) const;
+    // Whether the grid point nearest to `p` is inside a mesh; false where not all are closed, and outside the grid.
+    bool inside(const vec3& p) const;
 };
 
 struct VoxelFieldOptions {

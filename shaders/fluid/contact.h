@@ -170,10 +170,12 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
     rest = rest * (1.0f - enters);
     FieldSample here = fieldAt(PASS(bandDistance) f, s.position);
 #if defined(MOVING)
-    // Overrun by its wall, or squeezed into it by another: no way is walked; out, half a voxel a step, and no further in.
-    if (setVoxelNear(PASS(surfaceBits) f, toCells(f, s.position))) {
-        vec3 n = fieldNormal(here);
-        s.position = s.position + n * min(f.contact - here.distance, 0.5f * f.voxel);
+    // Overrun by its wall, or squeezed into it by another: no way is walked; out, half a voxel a step, and no further in. Within a closed
+    // mesh, where the sign says so, out is through the wall.
+    bool within = bandDistance[nearestPoint(f, toCells(f, s.position))] < 0.0f;
+    if (within || setVoxelNear(PASS(surfaceBits) f, toCells(f, s.position))) {
+        vec3 n = within ? fieldNormal(here) * -1.0f : fieldNormal(here);
+        s.position = s.position + n * min(within ? f.contact + here.distance : f.contact - here.distance, 0.5f * f.voxel);
         s.velocity = respond(velocity, n, 0.0f, 0.0f);
         s.touched = true;
         return s;
@@ -236,8 +238,8 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
         vec3 a = toCells(f, s.position);
         vec3 b = toCells(f, next);
         vec3 across = floor(a) - floor(b);
-        bool within = dot(across, across) == 0.0f && there.distance >= CONTACT_VOXELS * f.voxel;
-        if (!within && walkVoxels(PASS(surfaceBits) f, a, b) <= 1.0f) {
+        bool sameVoxel = dot(across, across) == 0.0f && there.distance >= CONTACT_VOXELS * f.voxel;
+        if (!sameVoxel && walkVoxels(PASS(surfaceBits) f, a, b) <= 1.0f) {
             s.velocity = vec3(0.0f, 0.0f, 0.0f);
             s.touched = true;
             return s;

@@ -10,6 +10,7 @@
 #include "fluid/sim/fluid_world.h"
 #include "fluid/sim/method.h"
 #include "fluid/sim/method_wcsph.h"
+#include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet {
 namespace {
@@ -338,6 +339,34 @@ TEST(Wcsph, WhatAClosedMeshEnclosesStaysEmpty) {
     EXPECT_NEAR(n, expected, 0.02 * expected) << "near edges and corners the clearance is a lower bound";
     for (const vec4& x : device->readAll<vec4>(*world->particles().position, n))
         EXPECT_FALSE(x.x > 0.3F && x.x < 0.7F && x.y > 0.3F && x.y < 0.7F && x.z > 0.3F && x.z < 0.7F);
+}
+
+// A hollow ball, wall and all: its hollow is no part of the solid, so a block fills it, and its wall stays empty.
+TEST(Wcsph, AHollowOfAClosedMeshCanBeFilled) {
+    test::Mesh ball = test::makeSphere(vec3(0.5F), 0.45F, 24);
+    const test::Mesh hollow = test::makeSphere(vec3(0.5F), 0.3F, 24);
+    for (size_t t = 0; t < hollow.indices.size(); t += 3)
+        ball.triangle(hollow.positions[hollow.indices[t]], hollow.positions[hollow.indices[t + 2]],
+                      hollow.positions[hollow.indices[t + 1]]);
+    const MeshView mesh = ball.view();
+    auto field = bakeVoxelField(std::span(&mesh, 1), {.resolution = 64, .band = 0.1F, .padding = 0.12F});
+    ASSERT_TRUE(field) << field.error().message;
+    EXPECT_TRUE(field->closed);
+    auto device = cpu();
+    const FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(1.0F));
+    auto world = make(*device, p, {.field = &*field});
+    size_t within = 0, outside = 0, wall = 0;
+    const float contact = fieldParams(*field, {.spacing = p.spacing}).contact;
+    for (const vec4& x : device->readAll<vec4>(*world->particles().position, world->particles().count)) {
+        const float r = glm::length(vec3(x) - 0.5F);
+        within += r < 0.3F ? 1 : 0;
+        outside += r > 0.45F ? 1 : 0;
+        wall += r > 0.3F - 0.9F * contact && r < 0.45F ? 1 : 0;
+    }
+    EXPECT_EQ(wall, 0U);
+    const float r = 0.3F - contact, cell = p.spacing * p.spacing * p.spacing;
+    EXPECT_NEAR(static_cast<double>(within), 4.18879 * static_cast<double>(r * r * r / cell), 0.15 * static_cast<double>(within));
+    EXPECT_GT(outside, 5000U);
 }
 
 TEST(Wcsph, ResetIsTheStartAgainAndTheSameRunAgain) {

@@ -197,6 +197,15 @@ Bounds Session::bounds() const {
     return all;
 }
 
+bool Session::needsNew(const SceneFile& scene) const {
+    if (scene.colliders.size() != scene_.colliders.size()) return true;
+    for (size_t i = 0; i < scene.colliders.size(); ++i) {
+        const ColliderParams &a = scene_.colliders[i], &b = scene.colliders[i];
+        if (a.motion.moves() != b.motion.moves() || (a.wave.amplitude > 0) != (b.wave.amplitude > 0)) return true;
+    }
+    return false;
+}
+
 void Session::apply(const SceneFile& scene) {
     std::string folder = scene_.folder;
     scene_ = scene;

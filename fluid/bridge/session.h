@@ -37,6 +37,8 @@ class Session {
     const Scene& solids() const { return solids_; }  // the visible colliders, to be drawn
     Bounds bounds() const;                           // the fluid's box and the solids, m, world
 
+    // Whether a collider of `scene` moves, bends or stands still where it did not before: its voxels are of another kind then.
+    bool needsNew(const SceneFile& scene) const;
     // Takes what may change between steps; what is `fixed` needs a new Session.
     void apply(const SceneFile& scene);
 

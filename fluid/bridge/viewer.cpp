@@ -155,6 +155,7 @@ void Viewer::takeEdits(bool recreate) {
         message_ = sense.error().message;  // a drag may pass through it: the draft stays as it is
         return;
     }
+    recreate = recreate || session_->needsNew(draft_);
     if (!recreate) {
         message_.clear();
         session_->apply(draft_);

@@ -1,5 +1,3 @@
-// Numbers of several bytes go by planes, block by block: all first bytes, then all second bytes and so on. Neighbours differ in their low
-// bytes alone, so that the others pack well.
 #include "fluid/voxel/packed_array.h"
 
 #include <zstd.h>
@@ -10,22 +8,9 @@
 namespace rivulet {
 namespace {
 
-constexpr int kLevel = 3;
-constexpr int kMostWindowLog = 23;  // 8 MiB: what a frame may make the reader keep; level 3 asks for 2 MiB
-
-void toPlanes(std::span<const std::byte> items, size_t itemBytes, std::span<std::byte> planes) {
-    const size_t count = items.size() / itemBytes;
-    for (size_t b = 0; b < itemBytes; ++b) {
-        for (size_t k = 0; k < count; ++k) planes[b * count + k] = items[k * itemBytes + b];
-    }
-}
-
-void fromPlanes(std::span<const std::byte> planes, size_t itemBytes, std::span<std::byte> items) {
-    const size_t count = items.size() / itemBytes;
-    for (size_t b = 0; b < itemBytes; ++b) {
-        for (size_t k = 0; k < count; ++k) items[k * itemBytes + b] = planes[b * count + k];
-    }
-}
+// Of a 256^3 band, level 3 takes twice the time for 3 % less; bytes sorted into planes made 25 % more.
+constexpr int kLevel = 1;
+constexpr int kMostWindowLog = 23;  // 8 MiB: what a frame may make the reader keep; our level asks for 512 KiB
 
 void require(size_t code) {
     if (ZSTD_isError(code) != 0) throw std::bad_alloc();  // nothing else can go wrong with bytes that are to be compressed
@@ -35,7 +20,6 @@ void require(size_t code) {
 
 struct ArrayPacker::Impl {
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> context{ZSTD_createCCtx(), ZSTD_freeCCtx};
-    std::vector<std::byte> planes;
 };
 
 ArrayPacker::ArrayPacker(std::string& out) : impl_(std::make_unique<Impl>()), out_(out) {
@@ -44,21 +28,6 @@ ArrayPacker::ArrayPacker(std::string& out) : impl_(std::make_unique<Impl>()), ou
 }
 
 ArrayPacker::~ArrayPacker() = default;
-
-void ArrayPacker::putBytes(std::span<const std::byte> bytes, size_t itemBytes) {
-    const size_t block = ArrayUnpacker::kBlockBytes / itemBytes * itemBytes;
-    while (!bytes.empty()) {
-        const auto piece = bytes.first(std::min(block, bytes.size()));
-        bytes = bytes.subspan(piece.size());
-        if (itemBytes == 1) {
-            feed(piece, false);
-            continue;
-        }
-        impl_->planes.resize(piece.size());
-        toPlanes(piece, itemBytes, impl_->planes);
-        feed(impl_->planes, false);
-    }
-}
 
 void ArrayPacker::finish() { feed({}, true); }
 
@@ -78,7 +47,6 @@ struct ArrayUnpacker::Impl {
     std::unique_ptr<ZSTD_DCtx, size_t (*)(ZSTD_DCtx*)> context{ZSTD_createDCtx(), ZSTD_freeDCtx};
     ZSTD_inBuffer in{nullptr, 0, 0};
     bool ended = false;  // the frame has
-    std::vector<std::byte> planes;
 };
 
 ArrayUnpacker::ArrayUnpacker(std::span<const std::byte> packed) : impl_(std::make_unique<Impl>()) {
@@ -89,24 +57,7 @@ ArrayUnpacker::ArrayUnpacker(std::span<const std::byte> packed) : impl_(std::mak
 
 ArrayUnpacker::~ArrayUnpacker() = default;
 
-// A call takes whole blocks, but for the last of an array: as they were put.
-bool ArrayUnpacker::takeBytes(std::span<std::byte> bytes, size_t itemBytes) {
-    const size_t block = kBlockBytes / itemBytes * itemBytes;
-    while (!bytes.empty()) {
-        const auto piece = bytes.first(std::min(block, bytes.size()));
-        bytes = bytes.subspan(piece.size());
-        if (itemBytes == 1) {
-            if (!pull(piece)) return false;
-            continue;
-        }
-        impl_->planes.resize(piece.size());
-        if (!pull(impl_->planes)) return false;
-        fromPlanes(impl_->planes, itemBytes, piece);
-    }
-    return true;
-}
-
-bool ArrayUnpacker::pull(std::span<std::byte> bytes) {
+bool ArrayUnpacker::takeBytes(std::span<std::byte> bytes) {
     ZSTD_outBuffer out{bytes.data(), bytes.size(), 0};
     while (out.pos < out.size) {
         if (impl_->ended) {

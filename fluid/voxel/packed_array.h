@@ -26,12 +26,11 @@ class ArrayPacker {
     template <class T>
     void put(std::span<const T> items) {
         static_assert(std::is_trivially_copyable_v<T>);
-        putBytes(std::as_bytes(items), sizeof(T));
+        feed(std::as_bytes(items), false);
     }
     void finish();
 
   private:
-    void putBytes(std::span<const std::byte> bytes, size_t itemBytes);
     void feed(std::span<const std::byte> bytes, bool last);
     struct Impl;
     std::unique_ptr<Impl> impl_;
@@ -46,16 +45,15 @@ class ArrayUnpacker {
     ArrayUnpacker(const ArrayUnpacker&) = delete;
     ArrayUnpacker& operator=(const ArrayUnpacker&) = delete;
 
-    // False: the bytes are no such array; why() says what is wrong with them. `to` has then at most twice as many items as there were,
-    // or a block's.
+    // False: the bytes are no such array; why() says what is wrong with them. `to` has then at most twice as many items as there were.
     template <class T>
     bool take(size_t count, std::vector<T>& to) {
         static_assert(std::is_trivially_copyable_v<T>);
         to.clear();
         while (to.size() < count) {
             const size_t first = to.size();
-            to.resize(first + std::min(count - first, std::max(first, kBlockBytes / sizeof(T))));
-            if (!takeBytes(std::as_writable_bytes(std::span(to).subspan(first)), sizeof(T))) return false;
+            to.resize(first + std::min(count - first, std::max(first, kFirstBytes / sizeof(T))));
+            if (!takeBytes(std::as_writable_bytes(std::span(to).subspan(first)))) return false;
         }
         return true;
     }
@@ -63,14 +61,11 @@ class ArrayUnpacker {
     const char* why() const { return why_; }
 
   private:
-    static constexpr size_t kBlockBytes = size_t{1} << 18U;
-    bool takeBytes(std::span<std::byte> bytes, size_t itemBytes);
-    bool pull(std::span<std::byte> bytes);
+    static constexpr size_t kFirstBytes = size_t{1} << 18U;
+    bool takeBytes(std::span<std::byte> bytes);
     struct Impl;
     std::unique_ptr<Impl> impl_;
     const char* why_ = "";
-
-    friend class ArrayPacker;
 };
 
 }  // namespace rivulet

@@ -9,6 +9,7 @@
 
 #include "engine/scene/import_assimp.h"
 #include "engine/scene/transform.h"
+#include "fluid/voxel/voxel_cache.h"
 
 namespace rivulet {
 
@@ -25,7 +26,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     std::unique_ptr<Session> session(new Session());
     session->scene_ = std::move(scene);
     if (Status imported = session->importColliders(); !imported) return imported.error();
-    if (Status baked = session->bake(); !baked) return baked.error();
+    if (Status baked = session->bake(log); !baked) return baked.error();
     StaticSolids solids;
     if (!session->meshes_.empty()) solids.field = &session->field_;
     for (const ColliderParams& collider : session->scene_.colliders)
@@ -59,7 +60,7 @@ Status Session::importColliders() {
     return ok();
 }
 
-Status Session::bake() {
+Status Session::bake(const Log& log) {
     if (meshes_.empty()) return ok();
     // Every mesh names the voxels along its own longest side; the one field takes the finest edge that any of them asks for.
     VoxelFieldOptions options;
@@ -79,7 +80,7 @@ Status Session::bake() {
     options.padding = options.band;
     std::vector<MeshView> views;
     for (const Mesh& mesh : meshes_) views.push_back(mesh.view());
-    Result<VoxelField> field = bakeVoxelField(views, options);
+    Result<VoxelField> field = cachedVoxelField(views, options, log);
     if (!field) return field.error();
     field_ = std::move(*field);
     return ok();

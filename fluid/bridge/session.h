@@ -38,7 +38,7 @@ class Session {
   private:
     Session() = default;
     Status importColliders();
-    Status bake();
+    Status bake(const Log& log);
 
     SceneFile scene_;
     Scene solids_;

@@ -21,7 +21,7 @@ struct VoxelMaterial {
     bool solid = true;  // false: a cavity, enclosed but outside the mesh by its winding number (mode solid alone tells)
 };
 
-// A linear colour for material `index` (0, 1, ...): neighbours in the list are easy to tell apart; the same at every call.
+// A linear colour for material `index` (0, 1, ...): of even lightness, neighbours in the list easy to tell apart; the same at every call.
 vec3 materialColour(uint32_t index);
 
 // Voxels [x, next run's x) of a row. A row's first run starts at 0; neighbours differ in label.
@@ -40,18 +40,29 @@ struct VoxelLabels {
 
     uint32_t at(const ivec3& c) const;  // kOutside beyond the grid
     std::span<const LabelRun> row(int y, int z) const;
+    size_t bytes() const {
+        return rowStart.size() * sizeof(uint32_t) + runs.size() * sizeof(LabelRun) + materials.size() * sizeof(VoxelMaterial);
+    }
 };
 
 // Regions of voxels that are neither `surface` nor separated by it. Mode solid hands in `inside`, the voxels within the mesh by winding
-// number: no region spans both kinds. null: connectivity alone (the thesis's rule), and every enclosed region counts as solid.
-// A region is kOutside if it touches the grid's border and is not inside. The same for any number of threads.
+// number (of the same size; what is surface there does not matter): no region spans both kinds. null: connectivity alone (the
+// thesis's rule), and every enclosed region counts as solid. A region is kOutside if it touches the grid's border and is not inside.
+// The same for any number of threads. Throws std::bad_alloc, also if there were 2^32 runs or more (over 48 GB of them).
 VoxelLabels labelRegions(const VoxelGrid& surface, const VoxelGrid* inside);
 
-// The thesis's storage [4.1.4]: 0 where kOutside, 1 elsewhere.
+// The thesis's storage [4.1.4]: 0 where kOutside, 1 elsewhere. Origin and voxel as `like`'s.
 VoxelGrid solidBits(const VoxelLabels& labels, const VoxelGrid& like);
 
 // One byte a voxel, in the grid's order: 1 where the voxel is not set and can be reached from the grid's border through faces of voxels
 // that are not set; 0 for the surface and for what it encloses.
 std::vector<uint8_t> reachableFromBorder(const VoxelGrid& surface);
+
+// What labelRegions ends with, for those who find regions in a way of their own: `labels` has size, rowStart and runs, whose labels say
+// which kind they are: kInsideSurface, or kOutside, or any other. Of each run `root` says which run of its region is the first (ignored
+// for surface), `outside` whether its root's region is kOutside, `voxelVolume` what a voxel counts. Numbers materials, sums them up and
+// writes the runs' labels. Those whose kind was kCavity get solid = false.
+inline constexpr uint32_t kCavity = 3;
+void numberRegions(VoxelLabels& labels, std::span<const uint32_t> root, std::span<const uint8_t> outside, double voxelVolume);
 
 }  // namespace rivulet

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <new>
-#include <optional>
 
 #include "fluid/voxel/distance_band.h"
+#include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/voxelize_surface.h"
 
 namespace rivulet {
@@ -15,46 +15,13 @@ namespace {
 
 constexpr int kMinResolution = 2, kMaxResolution = 2048;
 
-// "mesh 2 of 3" where there are several.
-std::string which(size_t mesh, size_t count) { return count == 1 ? "The mesh" : fmt::format("Mesh {} of {}", mesh + 1, count); }
-
-std::optional<Error> checkMesh(const MeshView& mesh, const std::string& name) {
-    if (mesh.indices.size() % 3 != 0)
-        return badInput(fmt::format("{} has {} indices, which is not three for each triangle; triangulate it.", name, mesh.indices.size()));
-    const auto inside = [&](uint32_t index) { return index < mesh.positions.size(); };
-    const auto stray = std::find_if_not(mesh.indices.begin(), mesh.indices.end(), inside);
-    if (stray != mesh.indices.end())
-        return badInput(fmt::format("{} refers to vertex {} but has only {} vertices (triangle {}); export it again.", name, *stray,
-                                    mesh.positions.size(), (stray - mesh.indices.begin()) / 3));
-    const auto wrong = std::count_if(mesh.positions.begin(), mesh.positions.end(), [](const vec3& p) { return !isFinite(p); });
-    if (wrong > 0)
-        return badInput(fmt::format("{} has {} of {} vertices that are NaN or infinite; remove them.", name, wrong, mesh.positions.size()));
-    return std::nullopt;
-}
-
-// Where the triangles are, and how long the longest side is (m).
-struct Extent {
-    Bounds bounds;
-    double longest = 0;
-};
-
-Extent extentOf(std::span<const MeshView> meshes) {
-    Extent e;
-    for (const MeshView& mesh : meshes) {
-        for (uint32_t index : mesh.indices) e.bounds.add(mesh.positions[index]);
-    }
-    const dvec3 size = dvec3(e.bounds.max) - dvec3(e.bounds.min);
-    e.longest = std::max(size.x, std::max(size.y, size.z));
-    return e;
-}
-
 struct Layout {
     float voxel = 0, band = 0;
     dvec3 voxels{0.0};  // along each axis; may be absurdly many
     double bytes = 0;
 };
 
-Layout layoutFor(const Extent& extent, const VoxelFieldOptions& options, int resolution) {
+Layout layoutFor(const MeshExtent& extent, const VoxelFieldOptions& options, int resolution) {
     Layout l;
     l.voxel = static_cast<float>(extent.longest / resolution);
     l.band = std::max(options.band, kBandVoxels * l.voxel);
@@ -67,11 +34,7 @@ Layout layoutFor(const Extent& extent, const VoxelFieldOptions& options, int res
     return l;
 }
 
-std::string readableBytes(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
-}
-
-Error tooMuchMemory(const Extent& extent, const VoxelFieldOptions& options, double needed, double limit) {
+Error tooMuchMemory(const MeshExtent& extent, const VoxelFieldOptions& options, double needed, double limit) {
     int fits = options.resolution;
     while (fits >= kMinResolution && layoutFor(extent, options, fits).bytes > limit) --fits;
     const std::string remedy = fits >= kMinResolution
@@ -104,26 +67,11 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
     if (!(options.band >= 0.0F && options.padding >= 0.0F) || !std::isfinite(options.band) || !std::isfinite(options.padding))
         return badInput(fmt::format("A voxel field's band ({}) and padding ({}) must be finite lengths of 0 m or more.", options.band,
                                     options.padding));
-    size_t triangles = 0;
-    for (size_t m = 0; m < meshes.size(); ++m) {
-        if (auto error = checkMesh(meshes[m], which(m, meshes.size()))) return *error;
-        triangles += meshes[m].triangleCount();
-    }
-    if (triangles == 0) return badInput("There is no triangle to voxelise; the mesh is empty or holds only points and lines.");
-    if (triangles > std::numeric_limits<uint32_t>::max())
-        return badInput(fmt::format("{} triangles are more than a voxel field can take.", triangles));
+    if (auto error = checkMeshes(meshes)) return *error;
 
-    const Extent extent = extentOf(meshes);
-    const dvec3 furthest = glm::max(glm::abs(dvec3(extent.bounds.min)), glm::abs(dvec3(extent.bounds.max)));
-    const double away = std::max(furthest.x, std::max(furthest.y, furthest.z));
+    const MeshExtent extent = extentOf(meshes);
     const Layout layout = layoutFor(extent, options, options.resolution);
-    if (!(extent.longest > 0.0)) return badInput("All triangles lie in one point: the mesh has no extent; check its scale.");
-    // A float near `away` is exact to 2^-24 of it; a voxel must span several of those steps.
-    if (!(layout.voxel > 16.0 * away / 16777216.0) || !std::isnormal(layout.voxel))
-        return badInput(
-            fmt::format("Voxels of {:.3g} m cannot be told apart {:.3g} m from the origin in 32-bit floats; "
-                        "move the mesh nearer to the origin, scale it or lower the resolution.",
-                        layout.voxel, away));
+    if (auto error = checkVoxel(extent, layout.voxel)) return *error;
     // Kernels count voxels and points in 32 bits.
     const double limit = std::min(static_cast<double>(options.memoryLimit), 4294967295.0 * sizeof(float));
     if (!(layout.bytes <= limit)) return tooMuchMemory(extent, options, layout.bytes, limit);

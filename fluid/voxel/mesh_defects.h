@@ -32,8 +32,12 @@ struct CleanMesh {
     std::vector<uint32_t> indices;    // 3 a triangle
     std::vector<uint32_t> source;     // of each triangle: its number in the meshes as given, one after the other
     std::vector<uint32_t> component;  // of each triangle
+    // Pairs of places: the edges, with their sense, along which more faces run one way than the other, as often as they do so. Empty iff
+    // the faces close; at every place as many end as begin.
+    std::vector<uint32_t> unmatched;
     MeshDefects defects;
 };
+// Indices must be in range and positions finite; fewer than 2^31 corners in all.
 CleanMesh cleanMesh(std::span<const MeshView> meshes);
 
 }  // namespace rivulet

@@ -19,6 +19,8 @@ typedef float real; typedef float3 real3;
 #define TO_INT(x) ((int)(x))
 #define TO_UINT(x) ((uint)(x))
 #define TO_FLOAT(x) ((float)(x))
+#define TO_DOUBLE(x) ((double)(x))
+#define EXACT  /* before a declaration: its value is as written, nothing contracted; OpenCL says so by a pragma, see voxel/crossing.h */
 #define FLOAT_BITS(f) as_uint(f)
 #define BITS_FLOAT(u) as_float(u)
 #define ATOMIC_ADD(x, v) atomic_add(&(x), v)
@@ -47,6 +49,8 @@ typedef float real; typedef float3 real3;
 #define TO_INT(x) int(x)
 #define TO_UINT(x) uint(x)
 #define TO_FLOAT(x) float(x)
+#define TO_DOUBLE(x) double(x)
+#define EXACT precise
 #define FLOAT_BITS(f) floatBitsToUint(f)
 #define BITS_FLOAT(u) uintBitsToFloat(u)
 #define ATOMIC_ADD(x, v) atomicAdd(x, v)

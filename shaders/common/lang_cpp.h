@@ -6,6 +6,11 @@
 #include "engine/core/math.h"
 #define FN inline
 #define STRUCT(n) struct n
+#define GLOBAL(T, n) const T* n,
+#define PASS(n) n,
+#define EXACT
+#define TO_INT(x) static_cast<int>(x)
+#define TO_DOUBLE(x) static_cast<double>(x)
 namespace rivulet { using uint = unsigned; }
 
 #else

@@ -1,0 +1,233 @@
+// Solid voxels against the generalized winding number by brute force: every triangle's solid angle, in double, at voxels' centres.
+#include "fluid/voxel/voxelize_solid.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <numbers>
+
+#include "tests/unit/voxel_test_meshes.h"
+
+namespace rivulet {
+namespace {
+
+using test::Mesh;
+
+CleanMesh cleaned(const Mesh& mesh) {
+    const MeshView view = mesh.view();
+    return cleanMesh(std::span(&view, 1));
+}
+
+// `resolution` voxels along the mesh's longest side, its low corner `margin` voxels inside the grid.
+VoxelGrid gridAround(const Mesh& mesh, int resolution, float margin = 0.0F) {
+    Bounds bounds;
+    for (uint32_t index : mesh.indices) bounds.add(mesh.positions[index]);
+    const vec3 size = bounds.size();
+    VoxelGrid grid;
+    grid.voxel = std::max({size.x, size.y, size.z}) / static_cast<float>(resolution);
+    grid.origin = bounds.min - margin * grid.voxel;
+    grid.size = glm::max(ivec3(glm::ceil(size / grid.voxel + 2.0F * margin)), ivec3(1));
+    return grid;
+}
+
+struct Oracle {
+    double winding = 0;
+    bool onSurface = false;  // within 1e-6 voxels
+};
+
+double distanceToTriangle(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c) {
+    const auto toSegment = [&](const dvec3& s, const dvec3& e) {
+        const double all = glm::dot(e - s, e - s);
+        return glm::length(p - (s + (e - s) * (all > 0 ? std::clamp(glm::dot(p - s, e - s) / all, 0.0, 1.0) : 0.0)));
+    };
+    const double rim = std::min({toSegment(a, b), toSegment(b, c), toSegment(c, a)});
+    const dvec3 n = glm::cross(b - a, c - a);
+    const double area = glm::length(n);
+    if (area < 1e-12) return rim;
+    const bool within = glm::dot(glm::cross(b - a, p - a), n) >= 0 && glm::dot(glm::cross(c - b, p - b), n) >= 0 &&
+                        glm::dot(glm::cross(a - c, p - c), n) >= 0;
+    return within ? std::min(rim, std::abs(glm::dot(p - a, n)) / area) : rim;
+}
+
+// Van Oosterom and Strackee 1983.
+Oracle oracleAt(const CleanMesh& mesh, const VoxelGrid& grid, const ivec3& voxel) {
+    const dvec3 p = dvec3(voxel) + 0.5;
+    const auto corner = [&](uint32_t index) {
+        return (dvec3(mesh.positions[index]) - dvec3(grid.origin)) / static_cast<double>(grid.voxel) - p;
+    };
+    Oracle o;
+    for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+        const dvec3 a = corner(mesh.indices[t]), b = corner(mesh.indices[t + 1]), c = corner(mesh.indices[t + 2]);
+        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+        const double volume = glm::dot(a, glm::cross(b, c));
+        o.winding += std::atan2(volume, la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+        const double twiceArea = glm::length(glm::cross(b - a, c - a));
+        if (std::abs(volume) <= 1e-5 * twiceArea + 1e-12 && distanceToTriangle(dvec3(0.0), a, b, c) < 1e-6) o.onSurface = true;
+    }
+    o.winding /= 2.0 * std::numbers::pi;
+    return o;
+}
+
+struct Wrong {
+    size_t asked = 0, wrong = 0, inside = 0;
+    std::string first;
+};
+
+void ask(const CleanMesh& mesh, const VoxelGrid& grid, const ivec3& c, Wrong& w) {
+    const Oracle o = oracleAt(mesh, grid, c);
+    if (o.onSurface || std::abs(std::abs(o.winding) - 0.5) < 1e-7) return;
+    ++w.asked;
+    w.inside += grid.test(c) ? 1 : 0;
+    if (grid.test(c) == (std::abs(o.winding) > 0.5)) return;
+    if (w.wrong++ == 0)
+        w.first = "voxel " + std::to_string(c.x) + " " + std::to_string(c.y) + " " + std::to_string(c.z) + " has winding number " +
+                  std::to_string(o.winding);
+}
+
+// Every voxel, if triangles times voxels are few enough; else some of all voxels, and some of those whose neighbours along x differ.
+Wrong compare(const Mesh& mesh, VoxelGrid grid, double budget = 4e6) {
+    const CleanMesh clean = cleaned(mesh);
+    voxelizeSolid(clean, grid);
+    Wrong w;
+    const auto affordable = static_cast<size_t>(budget / static_cast<double>(clean.source.size() + 1));
+    std::vector<ivec3> all, edge;
+    for (int z = 0; z < grid.size.z; ++z) {
+        for (int y = 0; y < grid.size.y; ++y) {
+            for (int x = 0; x < grid.size.x; ++x) {
+                all.emplace_back(x, y, z);
+                if (grid.test({x, y, z}) != grid.test({x + 1, y, z}) || grid.test({x, y, z}) != grid.test({x - 1, y, z}))
+                    edge.emplace_back(x, y, z);
+            }
+        }
+    }
+    if (all.size() > affordable) {
+        std::mt19937 random(7);
+        for (std::vector<ivec3>* some : {&all, &edge}) {
+            std::shuffle(some->begin(), some->end(), random);
+            some->resize(std::min(some->size(), affordable / 2));
+        }
+        all.insert(all.end(), edge.begin(), edge.end());
+    }
+    for (const ivec3& c : all) ask(clean, grid, c, w);
+    return w;
+}
+
+void expectRight(const Mesh& mesh, const VoxelGrid& grid, const std::string& name) {
+    const Wrong w = compare(mesh, grid);
+    EXPECT_GT(w.asked, 0U) << name;
+    EXPECT_EQ(w.wrong, 0U) << name << ": of " << w.asked << ", first: " << w.first;
+}
+
+Mesh joined(const Mesh& a, const Mesh& b) {
+    Mesh m = a;
+    for (uint32_t i : b.indices) m.indices.push_back(i + static_cast<uint32_t>(a.positions.size()));
+    m.positions.insert(m.positions.end(), b.positions.begin(), b.positions.end());
+    return m;
+}
+
+Mesh turnedOver(Mesh m) {
+    for (size_t t = 0; t < m.indices.size(); t += 3) std::swap(m.indices[t + 1], m.indices[t + 2]);
+    return m;
+}
+
+// Without the triangles that `gone` names.
+template <class Gone>
+Mesh without(const Mesh& mesh, Gone gone) {
+    Mesh m = mesh;
+    m.indices.clear();
+    for (size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+        if (gone(t)) continue;
+        for (size_t k = 0; k < 3; ++k) m.indices.push_back(mesh.indices[3 * t + k]);
+    }
+    return m;
+}
+
+TEST(VoxelSolid, ClosedMeshesAreFilled) {
+    const Mesh ball = test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 1.0F, 9);
+    for (int resolution : {1, 2, 7, 16, 33}) expectRight(ball, gridAround(ball, resolution), "ball");
+    expectRight(turnedOver(ball), gridAround(ball, 20), "inverted ball");
+    const Mesh box = test::makeBox(vec3(0), vec3(1.0F, 0.5F, 0.25F));
+    // Faces amid, on and between the planes of centres.
+    for (float margin : {0.0F, 0.5F, 0.25F, 1.7F}) expectRight(box, gridAround(box, 16, margin), "box");
+    const Mesh shells = joined(joined(ball, turnedOver(test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 0.7F, 9))),
+                               test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 0.3F, 9));
+    expectRight(shells, gridAround(shells, 24), "nested shells");
+    const Mesh twice = joined(ball, test::makeSphere(vec3(0.6F, 0.2F, 0.3F), 0.8F, 9));
+    expectRight(twice, gridAround(twice, 24, 2.0F), "overlapping balls");
+}
+
+TEST(VoxelSolid, CountsVoxelsOfABox) {
+    // Faces on the planes of centres on both sides: half open, so each plane counts once.
+    const Mesh box = test::makeBox(vec3(0), vec3(1));
+    VoxelGrid grid = gridAround(box, 8, 0.5F);
+    voxelizeSolid(cleaned(box), grid);
+    size_t inside = 0;
+    for (uint8_t byte : grid.bits) inside += static_cast<size_t>(std::popcount(byte));
+    EXPECT_EQ(inside, 8U * 8U * 8U);
+}
+
+TEST(VoxelSolid, OpenMeshesByWindingNumber) {
+    const Mesh ball = test::makeSphere(vec3(0), 1.0F, 9);
+    expectRight(without(ball, [](size_t t) { return t % 7 == 0; }), gridAround(ball, 24), "ball with holes");
+    expectRight(without(ball, [](size_t t) { return t < 120; }), gridAround(ball, 24), "bowl");
+    expectRight(without(ball, [](size_t t) { return t % 2 == 0; }), gridAround(ball, 24), "half of the faces");
+    const Mesh box = test::makeBox(vec3(0), vec3(1));
+    for (size_t side = 0; side < 6; ++side)
+        for (float margin : {0.0F, 0.5F})
+            expectRight(without(box, [&](size_t t) { return t / 2 == side; }), gridAround(box, 12, margin), "box without a side");
+    for (const vec3& normal : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0.3F, 1, 0.2F)}) {
+        const Mesh sheet = test::makeSheet(vec3(0.1F, 0.2F, 0.3F), normal, 1.0F);
+        expectRight(sheet, gridAround(sheet, 12, 3.0F), "sheet");
+    }
+    for (unsigned seed = 1; seed <= 4; ++seed)
+        expectRight(test::makeJumble(seed, 40), gridAround(test::makeJumble(seed, 40), 16), "jumble");
+    Mesh lone;
+    lone.triangle(vec3(0), vec3(1, 0.1F, 0.2F), vec3(0.3F, 1, 0.7F));
+    expectRight(lone, gridAround(lone, 12, 1.0F), "one triangle");
+}
+
+TEST(VoxelSolid, GridsThatCutTheMesh) {
+    for (const Mesh& mesh :
+         {test::makeSphere(vec3(0), 1.0F, 9), without(test::makeSphere(vec3(0), 1.0F, 9), [](size_t t) { return t % 5 == 0; })}) {
+        VoxelGrid grid = gridAround(mesh, 32);
+        grid.size = ivec3(13, 7, 5);
+        for (const vec3& at : {vec3(-0.9F), vec3(-0.2F, 0.1F, 0.4F), vec3(0.3F, -1.1F, 0.0F), vec3(3.0F)}) {
+            grid.origin = at;
+            expectRight(mesh, grid, "part of a ball");
+        }
+    }
+}
+
+TEST(VoxelSolid, SharedMeshes) {
+    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
+    for (const char* folder : {"generated", "classic"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(test::sharedMesh(folder))) {
+            if (entry.path().extension() != ".obj") continue;
+            const Mesh mesh = test::readObj(entry.path());
+            expectRight(mesh, gridAround(mesh, 40), entry.path().stem());
+            expectRight(mesh, gridAround(mesh, 23, 1.5F), entry.path().stem());
+        }
+    }
+}
+
+TEST(VoxelSolid, NoTriangleSetsNothing) {
+    VoxelGrid grid;
+    grid.size = ivec3(5, 3, 2);
+    grid.voxel = 1.0F;
+    voxelizeSolid(CleanMesh{}, grid);
+    EXPECT_EQ(grid.bits, std::vector<uint8_t>(4, 0));
+}
+
+TEST(VoxelSolid, TheSameForAnyNumberOfThreads) {
+    const Mesh mesh = without(test::makeSphere(vec3(0), 1.0F, 24), [](size_t t) { return t % 11 == 0; });
+    VoxelGrid one = gridAround(mesh, 61), many = one;
+    {
+        const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+        voxelizeSolid(cleaned(mesh), one);
+    }
+    voxelizeSolid(cleaned(mesh), many);
+    EXPECT_EQ(one.bits, many.bits);
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -18,7 +18,7 @@ constexpr int kLayers = 16;        // a task's, of z
 constexpr size_t kRowChunk = 512;  // a task's rows; a multiple of 8, so that no two tasks write the same byte of bits
 
 // Kinds of runs, before they have labels.
-constexpr uint32_t kOpen = 0, kWithin = 2;
+constexpr uint32_t kOpen = 0, kWithin = 2, kCavity = 3;
 
 size_t rowsOf(const ivec3& size) { return static_cast<size_t>(size.y) * static_cast<size_t>(size.z); }
 
@@ -161,6 +161,35 @@ void forAllRuns(const VoxelLabels& labels, const Body& body) {
     }
 }
 
+// From kinds to labels. Of each run `root` is its region's first run; `outside` of that: whether the region is kOutside.
+void numberRegions(VoxelLabels& labels, const std::vector<uint32_t>& root, const std::vector<uint8_t>& outside, float voxel) {
+    std::vector<uint32_t> number(labels.runs.size(), kOutside);  // of roots
+    forAllRuns(labels, [&](uint32_t k, int y, int z, int first, int last) {
+        LabelRun& run = labels.runs[k];
+        const auto voxels = static_cast<size_t>(last - first + 1);
+        if (run.label == kInsideSurface) {
+            labels.surface += voxels;
+            return;
+        }
+        if (outside[root[k]] != 0) {
+            labels.outside += voxels;
+            run.label = kOutside;
+            return;
+        }
+        if (root[k] == k) {
+            number[k] = kFirstMaterial + static_cast<uint32_t>(labels.materials.size());
+            labels.materials.push_back({0, 0.0, ivec3(first, y, z), ivec3(last, y, z), run.label != kCavity});
+        }
+        run.label = number[root[k]];
+        VoxelMaterial& material = labels.materials[run.label - kFirstMaterial];
+        material.voxels += voxels;
+        material.low = glm::min(material.low, ivec3(first, y, z));
+        material.high = glm::max(material.high, ivec3(last, y, z));
+    });
+    const auto edge = static_cast<double>(voxel);
+    for (VoxelMaterial& material : labels.materials) material.volume = static_cast<double>(material.voxels) * edge * edge * edge;
+}
+
 // Sets bits [first, last]; no other thread writes to their bytes.
 void setBits(std::vector<uint8_t>& bits, size_t first, size_t last) {
     const size_t firstByte = first >> 3U, lastByte = last >> 3U;
@@ -216,33 +245,6 @@ std::span<const LabelRun> VoxelLabels::row(int y, int z) const {
     return {runs.data() + rowStart[k], rowStart[k + 1] - rowStart[k]};
 }
 
-void numberRegions(VoxelLabels& labels, std::span<const uint32_t> root, std::span<const uint8_t> outside, double voxelVolume) {
-    std::vector<uint32_t> number(labels.runs.size(), kOutside);  // of roots
-    forAllRuns(labels, [&](uint32_t k, int y, int z, int first, int last) {
-        LabelRun& run = labels.runs[k];
-        const auto voxels = static_cast<size_t>(last - first + 1);
-        if (run.label == kInsideSurface) {
-            labels.surface += voxels;
-            return;
-        }
-        if (outside[root[k]] != 0) {
-            labels.outside += voxels;
-            run.label = kOutside;
-            return;
-        }
-        if (root[k] == k) {
-            number[k] = kFirstMaterial + static_cast<uint32_t>(labels.materials.size());
-            labels.materials.push_back({0, 0.0, ivec3(first, y, z), ivec3(last, y, z), run.label != kCavity});
-        }
-        run.label = number[root[k]];
-        VoxelMaterial& material = labels.materials[run.label - kFirstMaterial];
-        material.voxels += voxels;
-        material.low = glm::min(material.low, ivec3(first, y, z));
-        material.high = glm::max(material.high, ivec3(last, y, z));
-    });
-    for (VoxelMaterial& material : labels.materials) material.volume = static_cast<double>(material.voxels) * voxelVolume;
-}
-
 VoxelLabels labelRegions(const VoxelGrid& surface, const VoxelGrid* inside) {
     ASSERT(inside == nullptr || inside->size == surface.size, "label with an inside of the surface's size");
     VoxelLabels labels;
@@ -256,8 +258,26 @@ VoxelLabels labelRegions(const VoxelGrid& surface, const VoxelGrid* inside) {
         if (y == 0 || z == 0 || y == last.y || z == last.z || first == 0 || end == last.x) outside[root[k]] = 1;
         if (inside != nullptr) labels.runs[k].label = kCavity;  // unless outside
     });
-    const auto edge = static_cast<double>(surface.voxel);
-    numberRegions(labels, root, outside, edge * edge * edge);
+    numberRegions(labels, root, outside, surface.voxel);
+    return labels;
+}
+
+VoxelLabels labelsOf(const VoxelGrid& surface, std::span<const uint32_t> region, uint32_t regions) {
+    ASSERT(region.size() == surface.count(), "give each voxel a region");
+    VoxelLabels labels;
+    labels.size = surface.size;
+    findRuns(surface, nullptr, labels);
+    std::vector<uint32_t> root(labels.runs.size()), firstRun(regions, kNone);
+    std::vector<uint8_t> outside(labels.runs.size(), 0);
+    forAllRuns(labels, [&](uint32_t k, int y, int z, int first, int) {
+        if (labels.runs[k].label == kInsideSurface) return;
+        const uint32_t of = region[surface.index({first, y, z})];
+        ASSERT(of < regions, "number regions below their count");
+        if (firstRun[of] == kNone) firstRun[of] = k;
+        root[k] = firstRun[of];
+        outside[k] = of == 0 ? 1 : 0;
+    });
+    numberRegions(labels, root, outside, surface.voxel);
     return labels;
 }
 

@@ -58,11 +58,8 @@ VoxelGrid solidBits(const VoxelLabels& labels, const VoxelGrid& like);
 // that are not set; 0 for the surface and for what it encloses.
 std::vector<uint8_t> reachableFromBorder(const VoxelGrid& surface);
 
-// What labelRegions ends with, for those who find regions in a way of their own: `labels` has size, rowStart and runs, whose labels say
-// which kind they are: kInsideSurface, or kOutside, or any other. Of each run `root` says which run of its region is the first (ignored
-// for surface), `outside` whether its root's region is kOutside, `voxelVolume` what a voxel counts. Numbers materials, sums them up and
-// writes the runs' labels. Those whose kind was kCavity get solid = false.
-inline constexpr uint32_t kCavity = 3;
-void numberRegions(VoxelLabels& labels, std::span<const uint32_t> root, std::span<const uint8_t> outside, double voxelVolume);
+// Labels of regions that were found in another way. `region` of each voxel, in the grid's order: 0 is kOutside, else any number below
+// `regions`, one for each material; where a voxel is surface it does not matter. No two regions touch.
+VoxelLabels labelsOf(const VoxelGrid& surface, std::span<const uint32_t> region, uint32_t regions);
 
 }  // namespace rivulet

@@ -63,7 +63,8 @@ std::optional<Error> checkVoxel(const MeshExtent& extent, float voxel) {
 }
 
 std::string readableBytes(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
+    if (bytes < 1e9) return fmt::format("{:.1f} MB", bytes / 1e6);
+    return bytes < 1e15 ? fmt::format("{:.1f} GB", bytes / 1e9) : fmt::format("{:.0e} GB", bytes / 1e9);
 }
 
 }  // namespace rivulet

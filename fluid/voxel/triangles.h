@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -25,14 +26,19 @@ class GridTriangles {
     }
     size_t size() const { return ends_.empty() ? 0 : ends_.back(); }
     GridTriangle operator[](size_t k) const {
+        const auto [a, b, c] = corners(k);
+        return {inVoxels(a), (b - a) / voxel_, (c - a) / voxel_};
+    }
+    // Its corners in the mesh's own coordinates, and one of those in the grid's.
+    std::array<dvec3, 3> corners(size_t k) const {
         const auto owner = static_cast<size_t>(std::upper_bound(ends_.begin(), ends_.end(), k) - ends_.begin());
         const MeshView& mesh = meshes_[owner];
         const size_t first = 3 * (k - (owner == 0 ? 0 : ends_[owner - 1]));
-        const dvec3 a(mesh.positions[mesh.indices[first]]);
-        const dvec3 b(mesh.positions[mesh.indices[first + 1]]);
-        const dvec3 c(mesh.positions[mesh.indices[first + 2]]);
-        return {(a - origin_) / voxel_, (b - a) / voxel_, (c - a) / voxel_};
+        return {dvec3(mesh.positions[mesh.indices[first]]), dvec3(mesh.positions[mesh.indices[first + 1]]),
+                dvec3(mesh.positions[mesh.indices[first + 2]])};
     }
+    dvec3 inVoxels(const dvec3& p) const { return (p - origin_) / voxel_; }
+    double voxel() const { return voxel_; }
 
   private:
     std::span<const MeshView> meshes_;

@@ -1,30 +1,119 @@
-// Triangle-box overlap by separating axes (Akenine-Möller 2001), solved for whole rows of voxels (in the manner of Schwarz and Seidel
-// 2010).
 #include "fluid/voxel/voxelize_surface.h"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <array>
 #include <atomic>
+#include <limits>
+#include <new>
+
+#include "engine/compute/device_cpu.h"
+#include "shaders/voxel/overlap.h"
 
 namespace rivulet {
 namespace {
 
-constexpr double kTouch = 1e-9;  // voxels
+constexpr double kTouch = 1e-9;        // voxels
+constexpr double kLevel = 1e-11;       // of an axis: what x may add to it before it counts as sloped
+constexpr double kRounding = 4e-16;    // of a double's operation, with something to spare
+constexpr size_t kUpload = 64 * 1024;  // triangles at a time on a device: 29 MB
 
-// One separating axis: a voxel whose centre is q (measured from the triangle's corner a) overlaps as far as this axis can tell iff
-// low <= axis . q <= high.
-struct Slab {
-    dvec3 axis{0.0};
-    double low = 0, high = 0, perX = 0;  // perX: 1 / axis.x, 0 if the axis has no x
+// A triangle as shaders/voxel/overlap.h wants it.
+struct Prepared {
+    std::array<double, OVERLAP_DOUBLES> numbers{};
+    std::array<int, OVERLAP_INTS> bounds{};  // of which 0, 1, 2: first voxel; 3, 4, 5: last; 6: level slabs; 7: slabs
+    bool empty = false;                      // beyond the grid
+    int wide() const { return bounds[4] - bounds[1] + 1; }
+    int rows() const { return wide() * (bounds[5] - bounds[2] + 1); }
 };
 
-Slab slabOf(const GridTriangle& t, const dvec3& axis, double slack) {
-    const double b = glm::dot(axis, t.ab);
-    const double c = glm::dot(axis, t.ac);
-    const double half = 0.5 * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
-    const double reach = half * (1.0 + 2.0 * kTouch) + slack;
-    return {axis, std::min(0.0, std::min(b, c)) - reach, std::max(0.0, std::max(b, c)) + reach, axis.x != 0.0 ? 1.0 / axis.x : 0.0};
+// a b - c d to an ulp or two (Kahan's way).
+double differenceOfProducts(double a, double b, double c, double d) {
+    const double cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+// Whether b - a is what the subtraction gives, without rounding (Knuth 1969).
+bool exact(const dvec3& a, const dvec3& b) {
+    const dvec3 d = b - a, back = d - b, lost = (b - (d - back)) - (a + back);
+    return lost.x == 0.0 && lost.y == 0.0 && lost.z == 0.0;
+}
+
+class Slabs {
+  public:
+    Slabs(Prepared& p, double across) : p_(p), across_(across) {}
+    // The triangle spans 0 to `extent` on the axis, give or take `slack`.
+    void add(const dvec3& axis, double extent, double slack) {
+        const double half = 0.5 * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
+        if (half == 0.0) return;
+        const double reach = half * (1.0 + 2.0 * kTouch) + slack;
+        Slab s{axis.y, axis.z, std::min(0.0, extent) - reach, std::max(0.0, extent) + reach, 0.0};
+        const double alongX = std::abs(axis.x) * across_;
+        if (alongX <= kLevel * half) {
+            s[2] -= alongX;
+            s[3] += alongX;
+            level_[levels_++] = s;
+        } else {
+            if (axis.x < 0.0) std::swap(s[2], s[3]);
+            s[4] = 1.0 / axis.x;
+            sloped_[slopes_++] = s;
+        }
+    }
+    void write() {
+        auto to = p_.numbers.begin() + 3;
+        for (size_t k = 0; k < levels_; ++k) to = std::copy(level_[k].begin(), level_[k].end(), to);
+        for (size_t k = 0; k < slopes_; ++k) to = std::copy(sloped_[k].begin(), sloped_[k].end(), to);
+        p_.bounds[6] = static_cast<int>(levels_);
+        p_.bounds[7] = static_cast<int>(levels_ + slopes_);
+    }
+
+  private:
+    using Slab = std::array<double, OVERLAP_SLAB>;
+    Prepared& p_;
+    double across_;  // voxels along x that a centre may be away from corner a
+    std::array<Slab, OVERLAP_SLABS> level_, sloped_;
+    size_t levels_ = 0, slopes_ = 0;
+};
+
+void prepare(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, Prepared& p) {
+    const auto [a, b, c] = triangles.corners(k);
+    const dvec3 ab = b - a, ac = c - a, bc = c - b;  // in the mesh's unit: mostly exact
+    const GridTriangle t{triangles.inVoxels(a), ab / triangles.voxel(), ac / triangles.voxel()};
+    const dvec3 low = t.low(), high = t.high();
+    ivec3 several(0);
+    for (int i = 0; i < 3; ++i) {
+        const double first = std::max(0.0, std::floor(low[i] - kTouch)), last = std::min(grid.size[i] - 1.0, std::floor(high[i] + kTouch));
+        p.empty = !(first <= last);
+        if (p.empty) return;
+        p.bounds[static_cast<size_t>(i)] = static_cast<int>(first);
+        p.bounds[static_cast<size_t>(i) + 3] = static_cast<int>(last);
+        several[i] = std::floor(low[i] - kTouch) < std::floor(high[i] + kTouch) ? 1 : 0;
+    }
+    p.numbers[0] = t.a.x;
+    p.numbers[1] = t.a.y;
+    p.numbers[2] = t.a.z;
+    Slabs slabs(p, high.x - low.x + 1.0);
+    const int axes = several.x + several.y + several.z;
+    if (axes >= 2) {  // else the triangle runs along a single row of voxels, and overlaps all of it
+        if (axes == 3) {
+            const dvec3 normal(differenceOfProducts(ab.y, ac.z, ab.z, ac.y), differenceOfProducts(ab.z, ac.x, ab.x, ac.z),
+                               differenceOfProducts(ab.x, ac.y, ab.y, ac.x));
+            // Where the ways are rounded, the normal of a triangle almost without area is rounding's, and may separate by no more than
+            // that.
+            const bool sure = exact(a, b) && exact(a, c);
+            const double reach = glm::length(t.ab) + glm::length(t.ac) + 1.0;
+            slabs.add(normal, 0.0, sure ? 0.0 : kRounding * glm::length(ab) * glm::length(ac) * reach);
+        }
+        // Edges across the box's edges. Within a single layer of voxels only those across the layer's normal can tell them apart.
+        for (const auto& [e, other] : {std::pair{ab, t.ac}, std::pair{ac, t.ab}, std::pair{bc, t.ab}}) {
+            if (axes == 3 || several.x == 0) slabs.add(dvec3(0.0, e.z, -e.y), e.z * other.y - e.y * other.z, 0.0);
+            if (axes == 3 || several.y == 0) slabs.add(dvec3(-e.z, 0.0, e.x), e.x * other.z - e.z * other.x, 0.0);
+            if (axes == 3 || several.z == 0) slabs.add(dvec3(e.y, -e.x, 0.0), e.y * other.x - e.x * other.y, 0.0);
+        }
+    }
+    slabs.write();
 }
 
 // Sets bits [first, last] of the row-major order. Other threads may be setting their neighbours.
@@ -38,62 +127,88 @@ void setRun(VoxelGrid& grid, size_t first, size_t last) {
     }
 }
 
-void voxelizeTriangle(const GridTriangle& t, VoxelGrid& grid) {
-    // The box's own axes: bounds of the candidates.
-    const dvec3 low = t.low(), high = t.high();
-    ivec3 first(0), last(0);
-    for (int k = 0; k < 3; ++k) {
-        first[k] = static_cast<int>(std::max(0.0, std::floor(low[k] - kTouch)));
-        last[k] = static_cast<int>(std::min(grid.size[k] - 1.0, std::floor(high[k] + kTouch)));
-        if (first[k] > last[k]) return;
-    }
-    // The triangle's plane. Of a triangle without area the normal is rounding's: it may separate nothing by less than that.
-    const double reach = 1.0 + glm::length(t.ab) + glm::length(t.ac);
-    std::array<Slab, 7> sloped;
-    sloped[0] = slabOf(t, glm::cross(t.ab, t.ac), 1e-15 * glm::length(t.ab) * glm::length(t.ac) * reach);
-    // Edges across the box's edges; those across x say the same for a whole row.
-    std::array<Slab, 3> level;
-    const std::array<dvec3, 3> edges{t.ab, t.ac, t.ac - t.ab};
-    for (size_t k = 0; k < 3; ++k) {
-        const dvec3& e = edges[k];
-        level[k] = slabOf(t, dvec3(0.0, e.z, -e.y), 0.0);
-        sloped[1 + 2 * k] = slabOf(t, dvec3(-e.z, 0.0, e.x), 0.0);
-        sloped[2 + 2 * k] = slabOf(t, dvec3(e.y, -e.x, 0.0), 0.0);
-    }
-    for (int z = first.z; z <= last.z; ++z) {
-        const double qz = z + 0.5 - t.a.z;
-        for (int y = first.y; y <= last.y; ++y) {
-            const double qy = y + 0.5 - t.a.y;
-            bool apart = false;
-            for (const Slab& s : level) {
-                const double at = s.axis.y * qy + s.axis.z * qz;
-                apart = apart || at < s.low || at > s.high;
-            }
-            double from = first.x + 0.5 - t.a.x, to = last.x + 0.5 - t.a.x;
-            for (const Slab& s : sloped) {
-                const double at = s.axis.y * qy + s.axis.z * qz;
-                if (s.perX == 0.0) {
-                    apart = apart || at < s.low || at > s.high;
-                } else {
-                    const double one = (s.low - at) * s.perX, other = (s.high - at) * s.perX;
-                    from = std::max(from, std::min(one, other));
-                    to = std::min(to, std::max(one, other));
-                }
-            }
-            if (apart || from > to) continue;
-            const int x0 = std::max(first.x, static_cast<int>(std::ceil(from + t.a.x - 0.5)));
-            const int x1 = std::min(last.x, static_cast<int>(std::floor(to + t.a.x - 0.5)));
-            if (x0 <= x1) setRun(grid, grid.index({x0, y, z}), grid.index({x1, y, z}));
+void setTriangle(const Prepared& p, VoxelGrid& grid) {
+    for (int z = p.bounds[2]; z <= p.bounds[5]; ++z) {
+        for (int y = p.bounds[1]; y <= p.bounds[4]; ++y) {
+            const OverlapRun run = overlapRow(p.numbers.data(), p.bounds.data(), 0, y, z);
+            if (run.first > run.last) continue;
+            const size_t row = grid.index({0, y, z});
+            setRun(grid, row + static_cast<size_t>(run.first), row + static_cast<size_t>(run.last));
         }
     }
+}
+
+// Some triangles as the kernel wants them, with their work items.
+struct Batch {
+    std::vector<double> numbers;
+    std::vector<int> bounds;
+    std::vector<uint32_t> items;
+};
+
+Batch batchOf(const GridTriangles& triangles, size_t first, size_t end, const VoxelGrid& grid) {
+    Batch batch;
+    Prepared p;
+    for (size_t k = first; k < end; ++k) {
+        prepare(triangles, k, grid, p);
+        if (p.empty) continue;
+        const auto number = static_cast<uint32_t>(batch.bounds.size() / OVERLAP_INTS), rows = static_cast<uint32_t>(p.rows());
+        batch.numbers.insert(batch.numbers.end(), p.numbers.begin(), p.numbers.end());
+        batch.bounds.insert(batch.bounds.end(), p.bounds.begin(), p.bounds.end());
+        for (uint32_t row = 0; row < rows; row += OVERLAP_ROWS)
+            for (uint32_t n : {number, row, std::min(row + OVERLAP_ROWS, rows)}) batch.items.push_back(n);
+    }
+    return batch;
+}
+
+Status onDevice(Device& device, const GridTriangles& triangles, VoxelGrid& grid) {
+    const Result<Kernel> kernel = device.kernel("voxel/voxelize_surface");
+    if (!kernel)
+        return failed(fmt::format("{} cannot voxelise (are its 64-bit floats missing?): {}; use the cpu.", device.info().name,
+                                  kernel.error().message));
+    Result<Buffer> bits = device.allocate(grid.bits.size());
+    if (!bits) return bits.error();
+    device.writeAll<uint8_t>(*bits, grid.bits);
+    for (size_t first = 0; first < triangles.size(); first += kUpload) {
+        const Batch batch = batchOf(triangles, first, std::min(first + kUpload, triangles.size()), grid);
+        Result<Buffer> numbers = device.allocate(batch.numbers.size() * sizeof(double));
+        Result<Buffer> bounds = device.allocate(batch.bounds.size() * sizeof(int));
+        Result<Buffer> items = device.allocate(batch.items.size() * sizeof(uint32_t));
+        for (const Result<Buffer>* made : {&numbers, &bounds, &items})
+            if (!*made) return made->error();
+        device.writeAll<double>(*numbers, batch.numbers);
+        device.writeAll<int>(*bounds, batch.bounds);
+        device.writeAll<uint32_t>(*items, batch.items);
+        const OverlapParams params{grid.size.x, grid.size.y, grid.size.z, static_cast<uint32_t>(batch.items.size() / OVERLAP_ITEM)};
+        device.run(*kernel, params, {&*numbers, &*bounds, &*items, &*bits}, params.items);
+    }
+    device.read(*bits, std::as_writable_bytes(std::span(grid.bits)));
+    return ok();
 }
 
 }  // namespace
 
 void voxelizeSurface(const GridTriangles& triangles, VoxelGrid& grid) {
     tbb::parallel_for(tbb::blocked_range<size_t>(0, triangles.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t k = range.begin(); k != range.end(); ++k) voxelizeTriangle(triangles[k], grid);
+        Prepared p;
+        for (size_t k = range.begin(); k != range.end(); ++k) {
+            prepare(triangles, k, grid, p);
+            if (!p.empty) setTriangle(p, grid);
+        }
     });
+}
+
+Status voxelizeSurface(Device& device, const GridTriangles& triangles, VoxelGrid& grid) {
+    try {
+        if (device.backend() == Backend::cpu)
+            tbb::task_arena(static_cast<CpuDevice&>(device).threads()).execute([&] { voxelizeSurface(triangles, grid); });
+        else if (grid.count() > std::numeric_limits<uint32_t>::max())  // kernels count voxels in 32 bits
+            voxelizeSurface(triangles, grid);
+        else
+            return onDevice(device, triangles, grid);
+        return ok();
+    } catch (const std::bad_alloc&) {
+        return failed("Not enough memory for surface voxels; lower the resolution.");
+    }
 }
 
 }  // namespace rivulet

@@ -10,6 +10,7 @@
 #define PASS(n) n,
 #define EXACT
 #define TO_INT(x) static_cast<int>(x)
+#define TO_UINT(x) static_cast<unsigned>(x)
 #define TO_DOUBLE(x) static_cast<double>(x)
 namespace rivulet { using uint = unsigned; }
 

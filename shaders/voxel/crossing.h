@@ -4,38 +4,13 @@
 // A triangle's corners are sorted by z. At the height of a row of centres two of its edges pass, the long one (corner 0 to 2) and a short
 // one (0 to 1 or 1 to 2); it covers the columns between them. An edge is always reckoned from its lower end, so faces that share it agree
 // on which columns it parts, whatever rounding does: a closed mesh has no leak, and no column is counted twice (a half-open rule).
+//
+// Include after BUFFERS; the buffer is `corners`.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/common/lang.h"
+#include "shaders/voxel/crossing_params.h"
 namespace rivulet {
 #endif
-#if defined(__OPENCL_C_VERSION__)
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#pragma OPENCL FP_CONTRACT OFF
-#endif
-
-// A triangle as it is handed to a device, in doubles: corner 0 x y z, corner 1, corner 2, then 1 / (z1 - z0), 1 / (z2 - z1),
-// 1 / (z2 - z0) (0 where they are level), then its plane's dx/dy and dx/dz (0 where it is edge-on).
-#define CROSSING_DOUBLES 14u
-// A work item: triangle << 1 | (1 if its sorted corners run round as the mesh has them), its first row, the row after its last.
-#define CROSSING_ITEM 3u
-// Rows a work item has at most: with rows of 4096 columns no loop comes near the 65,535 rounds llvmpipe allows.
-#define CROSSING_ROWS 8u
-// Bits of a voxel's counter, and crossings of a column that they and llvmpipe's loops are enough for.
-#define CROSSING_PLANES 9u
-#define CROSSING_DEEPEST 150u
-
-STRUCT(CrossingParams) {
-    int sizeX;       // voxels
-    int sizeY;
-    int sizeZ;
-    uint items;
-    uint words;  // of 32 bits in the grid
-    uint pad0;
-    uint pad1;
-    uint pad2;
-};
-
 // What a row of columns sees of a triangle.
 STRUCT(CrossingRow) {
     double lowX;   // the cut's bounds along x
@@ -95,6 +70,5 @@ FN int crossingVoxel(CrossingRow r, int y, int sizeX) {
 }
 
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
-static_assert(sizeof(CrossingParams) % 16 == 0);
 }  // namespace rivulet
 #endif

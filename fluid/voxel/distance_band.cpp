@@ -1,270 +1,337 @@
-// BrickPoints of 4^3 points in layers, each brick with the triangles that could be nearest to one of its points; each brick in 8 cubes of
-// 2^3 points, whose middles sieve the brick's triangles again. Distance changes by no more than one moves: who is further from
-// a middle than the nearest by more than a diagonal is nearest to none of the points around it.
+// Bricks of 4^3 points in layers, each brick with the triangles that could be nearest to one of its points;
+// fluid/voxel/kernels/band_brick.cpp does a brick.
 #include "fluid/voxel/distance_band.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <array>
+#include <bit>
+
+#include "fluid/voxel/kernels/band_brick.h"
+
+RIVULET_BAND_UNIT(kernels_generic)
+#if defined(RIVULET_HAS_AVX2)
+RIVULET_BAND_UNIT(kernels_avx2)
+RIVULET_BAND_UNIT(kernels_avx512)
+#endif
 
 namespace rivulet {
 namespace {
 
-constexpr int kEdge = 4;                             // points of a brick, each way
+constexpr int kEdge = DistanceBand::kBrick;
+constexpr size_t kBrickPoints = size_t{kEdge} * kEdge * kEdge;
 constexpr double kMiddle = 0.5 * (kEdge - 1);        // of a brick, from its first point
 constexpr double kBrickRadius = 2.5980762113533160;  // sqrt(3) kMiddle: from there to its corners
-constexpr double kCubeRadius = 0.8660254037844386;
-constexpr double kToCube = 1.7320508075688772;  // from a brick's middle to its cubes'
-constexpr double kSlack = 1e-6;                 // voxels: what sieves give away to rounding
-
-constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-
-struct Nearest {
-    double square = 0;  // of the distance
-    uint32_t target = kNone;
-};
-using BrickPoints = std::array<Nearest, size_t{kEdge} * kEdge * kEdge>;
+constexpr size_t kTargetsAtOnce = size_t{1} << 20U;  // above that many each layer works its own out: memory
 
 double square(const dvec3& v) { return glm::dot(v, v); }
-
-// What distances to one triangle need, worked out once.
-struct Target {
-    dvec3 centre{0.0}, unit{0.0};  // unit: of the plane's normal; zero if the triangle has no area
-    double radius;                 // about the centre, of a disc that holds the triangle
-    dvec3 a{0.0}, ab{0.0}, ac{0.0}, bc{0.0};
-    double abab, abac, acac, area, perAb, perAc, perBc;
-
-    explicit Target(const GridTriangle& t) : a(t.a), ab(t.ab), ac(t.ac), bc(t.ac - t.ab) {
-        const dvec3 middle = (ab + ac) / 3.0;
-        centre = a + middle;
-        radius = std::sqrt(std::max(square(middle), std::max(square(middle - ab), square(middle - ac))));
-        abab = square(ab);
-        abac = glm::dot(ab, ac);
-        acac = square(ac);
-        const double bcbc = square(bc);
-        const dvec3 normal = glm::cross(ab, ac);
-        // Without area (an angle below 1e-7) its edges are all there is: nothing is inside.
-        const bool flat = square(normal) <= 1e-14 * abab * acac;
-        area = flat ? -1.0 : abab * acac - abac * abac;
-        if (!flat) unit = normal / std::sqrt(square(normal));
-        perAb = abab > 0.0 ? 1.0 / abab : 0.0;
-        perAc = acac > 0.0 ? 1.0 / acac : 0.0;
-        perBc = bcbc > 0.0 ? 1.0 / bcbc : 0.0;
-    }
-
-    // To the plane where the point projects inside, else to the nearest edge.
-    double squaredDistance(const dvec3& point) const {
-        const dvec3 q = point - a;
-        const dvec3 fromB = q - ab;
-        const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
-        const double v = acac * onAb - abac * onAc;
-        const double w = abab * onAc - abac * onAb;
-        if (v >= 0.0 && w >= 0.0 && v + w <= area) {
-            const double height = glm::dot(unit, q);
-            return height * height;
-        }
-        const double alongAb = std::min(1.0, std::max(0.0, onAb * perAb));
-        const double alongAc = std::min(1.0, std::max(0.0, onAc * perAc));
-        const double alongBc = std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * perBc));
-        return std::min(square(q - ab * alongAb), std::min(square(q - ac * alongAc), square(fromB - bc * alongBc)));
-    }
-
-    // From the triangle's nearest point to `point`.
-    dvec3 away(const dvec3& point) const {
-        const dvec3 q = point - a;
-        const dvec3 fromB = q - ab;
-        const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
-        const double v = acac * onAb - abac * onAc;
-        const double w = abab * onAc - abac * onAb;
-        if (v >= 0.0 && w >= 0.0 && v + w <= area) return unit * glm::dot(unit, q);
-        const std::array<dvec3, 3> ways{q - ab * std::min(1.0, std::max(0.0, onAb * perAb)),
-                                        q - ac * std::min(1.0, std::max(0.0, onAc * perAc)),
-                                        fromB - bc * std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * perBc))};
-        return *std::min_element(ways.begin(), ways.end(), [](const dvec3& x, const dvec3& y) { return square(x) < square(y); });
-    }
-
-    // True only if the whole triangle is further than `reach` from the point, because the disc around it in its plane is:
-    // across the plane by h > reach, or along it by more than sqrt(reach^2 - h^2) + radius (squared twice, for speed).
-    bool beyond(const dvec3& point, double reach) const {
-        const double far = reach + kSlack;
-        const dvec3 q = point - centre;
-        const double excess = square(q) - far * far - radius * radius;
-        const double height = glm::dot(unit, q);
-        const double left = far * far - height * height;
-        return (excess > 0.0) & ((left < 0.0) | (excess * excess > 4.0 * radius * radius * left));
-    }
-};
-
-// Memory a thread keeps from layer to layer. `bricks`, `kept` and `near` index `targets`.
-struct Workspace {
-    std::vector<Target> targets;  // that reach the layer
-    std::vector<std::vector<uint32_t>> bricks;
-    std::vector<uint32_t> kept, near;
-};
-
-// Of `from`, those that may be nearest to a point within `radius` of `middle`, the nearest to `middle` itself first, into `to`.
-// `nearest`: no further than this is of interest. Returns the distance from `middle`, or that.
-double sieve(const std::vector<Target>& targets, const std::vector<uint32_t>& from, const dvec3& middle, double radius, double nearest,
-             std::vector<uint32_t>& to) {
-    to.clear();
-    for (uint32_t k : from) {
-        const Target& target = targets[k];
-        if (target.beyond(middle, nearest + 2.0 * radius)) continue;
-        to.push_back(k);
-        if (target.beyond(middle, nearest)) continue;
-        const double distance = std::sqrt(target.squaredDistance(middle));
-        if (distance < nearest) {
-            nearest = distance;
-            std::swap(to.front(), to.back());
-        }
-    }
-    std::erase_if(to, [&](uint32_t k) { return targets[k].beyond(middle, nearest + 2.0 * radius); });
-    return nearest;
+dvec3 from(const double* v) { return {v[0], v[1], v[2]}; }
+void to(double* v, const dvec3& d) {
+    for (int k = 0; k < 3; ++k) v[k] = d[k];
 }
 
-class BandBaker {
-  public:
-    BandBaker(const GridTriangles& triangles, const ivec3& size, double band)
-        : triangles_(triangles), points_(size + ivec3(1)), bricks_((points_ + ivec3(kEdge - 1)) / kEdge), band_(band) {}
+BandKernels kernelsOf(Isa isa) {
+#if defined(RIVULET_HAS_AVX2)
+    if (isa == Isa::avx512) return kernels_avx512::bandKernels();
+    if (isa == Isa::avx2) return kernels_avx2::bandKernels();
+#endif
+    static_cast<void>(isa);
+    return kernels_generic::bandKernels();
+}
 
-    DistanceBand bake() {
-        const auto total = static_cast<size_t>(points_.x) * static_cast<size_t>(points_.y) * static_cast<size_t>(points_.z);
-        result_.distance.assign(total, static_cast<float>(band_));
-        result_.normal.assign(total, 0);
+struct Target {
+    BandTarget exact;
+    BandDisc disc;
+};
+
+// `width`: of the band. `furthest`: the largest coordinate of the grid.
+Target targetOf(const GridTriangle& t, double width, double furthest) {
+    Target target;
+    BandTarget& r = target.exact;
+    BandDisc& disc = target.disc;
+    const dvec3 bc = t.ac - t.ab, middle = (t.ab + t.ac) / 3.0;
+    to(r.a, t.a);
+    to(r.ab, t.ab);
+    to(r.ac, t.ac);
+    to(r.bc, bc);
+    r.abab = square(t.ab);
+    r.abac = glm::dot(t.ab, t.ac);
+    r.acac = square(t.ac);
+    const double bcbc = square(bc);
+    const dvec3 normal = glm::cross(t.ab, t.ac);
+    // Without area: an angle below 1e-7.
+    const bool flat = square(normal) <= 1e-14 * r.abab * r.acac;
+    r.area = flat ? -1.0 : r.abab * r.acac - r.abac * r.abac;
+    const dvec3 unit = flat ? dvec3(0.0) : normal / std::sqrt(square(normal));
+    to(r.unit, unit);
+    r.perAb = r.abab > 0.0 ? 1.0 / r.abab : 0.0;
+    r.perAc = r.acac > 0.0 ? 1.0 / r.acac : 0.0;
+    r.perBc = bcbc > 0.0 ? 1.0 / bcbc : 0.0;
+    const double radius = std::sqrt(std::max(square(middle), std::max(square(middle - t.ab), square(middle - t.ac))));
+    for (int k = 0; k < 3; ++k) {
+        disc.centre[k] = static_cast<float>(t.a[k] + middle[k]);
+        disc.normal[k] = static_cast<float>(unit[k]);
+    }
+    disc.radius = static_cast<float>(radius * 1.000001);
+    // Who is in reach has its centre within `span`; it is off by a rounding of `furthest` at most along each axis, and sums of products
+    // of such floats by 3e-6 of their square.
+    const double span = radius + width + 3.0;
+    disc.slack = static_cast<float>(4e-6 * span * span + 3e-7 * span * (furthest + radius));
+    return target;
+}
+
+// From the triangle's nearest point to `point`, any length but 0: at the triangle itself its normal.
+dvec3 away(const BandTarget& t, const dvec3& point) {
+    const dvec3 ab = from(t.ab), ac = from(t.ac), bc = from(t.bc);
+    const dvec3 q = point - from(t.a);
+    const dvec3 fromB = q - ab;
+    const double onAb = glm::dot(ab, q), onAc = glm::dot(ac, q);
+    const double v = t.acac * onAb - t.abac * onAc;
+    const double w = t.abab * onAc - t.abac * onAb;
+    if (v >= 0.0 && w >= 0.0 && v + w <= t.area) {
+        const double height = glm::dot(from(t.unit), q);
+        return height < 0.0 ? -from(t.unit) : from(t.unit);
+    }
+    const std::array<dvec3, 3> ways{q - ab * std::min(1.0, std::max(0.0, onAb * t.perAb)),
+                                    q - ac * std::min(1.0, std::max(0.0, onAc * t.perAc)),
+                                    fromB - bc * std::min(1.0, std::max(0.0, glm::dot(bc, fromB) * t.perBc))};
+    const dvec3 way = *std::min_element(ways.begin(), ways.end(), [](const dvec3& x, const dvec3& y) { return square(x) < square(y); });
+    return way == dvec3(0.0) ? (t.area < 0.0 ? dvec3(0.0, 0.0, 1.0) : from(t.unit)) : way;
+}
+
+// In 0 or 1: whether a brick is to be done.
+bool flagged(std::span<const uint8_t> flags, size_t brick) { return flags.empty() || flags[brick] != 0; }
+
+// Bricks along each axis.
+struct Reach {
+    std::array<int16_t, 3> first{}, last{};
+};
+
+Reach reachOf(const DistanceBand& band, const GridTriangle& triangle) {
+    Reach r;
+    ivec3 first, last;
+    band.reach(triangle.low(), triangle.high(), first, last);
+    for (int k = 0; k < 3; ++k) {
+        r.first[static_cast<size_t>(k)] = static_cast<int16_t>(std::min(first[k], 32767));
+        r.last[static_cast<size_t>(k)] = static_cast<int16_t>(std::max(last[k], -1));
+    }
+    return r;
+}
+
+// Calls body(brick) for those of layer z that the triangle may reach. `bits`: room.
+template <class Body>
+void forReached(const BandKernels& kernels, double width, const Reach& reach, const BandDisc& disc, int z, std::vector<uint32_t>& bits,
+                const Body& body) {
+    const int rows = reach.last[1] - reach.first[1] + 1;
+    if (rows <= 0) return;
+    if (bits.size() < static_cast<size_t>(rows)) bits.resize(static_cast<size_t>(rows));
+    for (int x0 = reach.first[0]; x0 <= reach.last[0]; x0 += 8) {
+        const auto middle = [](int brick) { return static_cast<float>(brick * kEdge) + static_cast<float>(kMiddle); };
+        kernels.rows({&disc,
+                      {middle(x0), middle(reach.first[1]), middle(z)},
+                      static_cast<uint32_t>(rows),
+                      static_cast<float>(width + kBrickRadius) * 1.000001F,
+                      bits.data()});
+        const uint32_t all = reach.last[0] - x0 >= 7 ? 0xFFU : (2U << static_cast<unsigned>(reach.last[0] - x0)) - 1U;
+        for (int r = 0; r < rows; ++r) {
+            for (uint32_t row = bits[static_cast<size_t>(r)] & all; row != 0; row &= row - 1)
+                body(ivec3(x0 + std::countr_zero(row), reach.first[1] + r, z));
+        }
+    }
+}
+
+// Memory a thread keeps from layer to layer.
+struct Workspace {
+    std::vector<BandTarget> targets;  // that reach the layer, if they are not worked out once for all
+    std::vector<BandDisc> discs;      // of each of these
+    std::vector<uint32_t> bits;
+    std::vector<uint32_t> listed;  // of each of these: its place in the list
+    std::vector<std::vector<uint32_t>> bricks;
+    std::vector<float> lower;
+};
+
+struct Bake {
+    const DistanceBand& band;
+    const BandKernels kernels;
+    const GridTriangles& triangles;
+    std::span<const uint8_t> surfaces;
+    std::span<const uint32_t> numbers;
+    std::span<const uint8_t> flags;
+    std::span<uint8_t> reached;
+    const BandPoints& out;
+    ivec3 points;
+    double width;     // of the band, voxels
+    double furthest;  // of a grid's coordinates
+    float voxel, metres;
+    std::vector<BandTarget> all;     // of each triangle, or empty
+    std::vector<BandDisc> allDiscs;  // of each of these
+    std::vector<Reach> reaches;      // of each triangle
+    std::vector<size_t> layerStart;  // layerStart[l] .. layerStart[l + 1]: the part of inLayer that reaches layer l of bricks, in order
+    std::vector<uint32_t> inLayer;
+
+    void run() {
         sortIntoLayers();
+        if (triangles.size() <= kTargetsAtOnce) {
+            all.resize(triangles.size());
+            allDiscs.resize(triangles.size());
+            tbb::parallel_for(tbb::blocked_range<size_t>(0, all.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+                for (size_t k = range.begin(); k != range.end(); ++k) {
+                    const Target target = targetOf(triangles[k], width, furthest);
+                    all[k] = target.exact;
+                    allDiscs[k] = target.disc;
+                }
+            });
+        }
         tbb::enumerable_thread_specific<Workspace> workspaces;
-        tbb::parallel_for(0, bricks_.z, [&](int layer) { bakeLayer(layer, workspaces.local()); });
-        return std::move(result_);
+        tbb::parallel_for(0, band.bricks().z, [&](int layer) { bakeLayer(layer, workspaces.local()); });
     }
 
-  private:
-    // BrickPoints along axis k that a triangle can reach.
-    ivec2 reached(double low, double high, int k) const {
-        const double first = std::floor((low - band_ - (kEdge - 1)) / kEdge), last = std::floor((high + band_) / kEdge);
-        return {static_cast<int>(std::max(0.0, first)), static_cast<int>(std::min(bricks_[k] - 1.0, last))};
-    }
-
-    // layerStart_[l] .. layerStart_[l + 1]: the triangles that reach layer l of bricks, in order.
     void sortIntoLayers() {
-        layerStart_.assign(static_cast<size_t>(bricks_.z) + 1, 0);
+        const auto layers = static_cast<size_t>(band.bricks().z);
+        layerStart.assign(layers + 1, 0);
+        reaches.resize(triangles.size());
+        tbb::parallel_for(tbb::blocked_range<size_t>(0, reaches.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
+            for (size_t k = range.begin(); k != range.end(); ++k) reaches[k] = reachOf(band, triangles[k]);
+        });
         const auto forLayers = [&](const auto& body) {
-            for (size_t k = 0; k < triangles_.size(); ++k) {
-                const GridTriangle t = triangles_[k];
-                const ivec2 range = reached(t.low().z, t.high().z, 2);
-                for (int layer = range.x; layer <= range.y; ++layer) body(static_cast<size_t>(layer), static_cast<uint32_t>(k));
+            for (size_t k = 0; k < reaches.size(); ++k) {
+                for (int layer = reaches[k].first[2]; layer <= reaches[k].last[2]; ++layer)
+                    body(static_cast<size_t>(layer), static_cast<uint32_t>(k));
             }
         };
-        forLayers([&](size_t layer, uint32_t) { ++layerStart_[layer + 1]; });
-        for (size_t l = 1; l < layerStart_.size(); ++l) layerStart_[l] += layerStart_[l - 1];
-        inLayer_.resize(layerStart_.back());
-        std::vector<size_t> next(layerStart_.begin(), layerStart_.end() - 1);
-        forLayers([&](size_t layer, uint32_t triangle) { inLayer_[next[layer]++] = triangle; });
+        forLayers([&](size_t layer, uint32_t) { ++layerStart[layer + 1]; });
+        for (size_t l = 1; l < layerStart.size(); ++l) layerStart[l] += layerStart[l - 1];
+        inLayer.resize(layerStart.back());
+        std::vector<size_t> next(layerStart.begin(), layerStart.end() - 1);
+        forLayers([&](size_t layer, uint32_t triangle) { inLayer[next[layer]++] = triangle; });
     }
 
-    void bakeLayer(int layer, Workspace& work) {
+    void bakeLayer(int layer, Workspace& work) const {
         const auto l = static_cast<size_t>(layer);
-        if (layerStart_[l] == layerStart_[l + 1]) return;
+        const ivec3& bricks = band.bricks();
+        const size_t inIt = static_cast<size_t>(bricks.x) * static_cast<size_t>(bricks.y);
+        if (flags.empty() ? layerStart[l] == layerStart[l + 1]
+                          : std::all_of(&flags[l * inIt], &flags[l * inIt] + inIt, [](uint8_t flag) { return flag == 0; }))
+            return;
         work.targets.clear();
-        work.bricks.resize(static_cast<size_t>(bricks_.x) * static_cast<size_t>(bricks_.y));
+        work.discs.clear();
+        work.listed.clear();
+        work.bricks.resize(inIt);
         for (auto& entries : work.bricks) entries.clear();
-        for (size_t k = layerStart_[l]; k < layerStart_[l + 1]; ++k) enter(triangles_[inLayer_[k]], layer, work);
-        for (int y = 0; y < bricks_.y; ++y) {
-            for (int x = 0; x < bricks_.x; ++x) bakeBrick({x, y, layer}, work);
-        }
-    }
-
-    void enter(const GridTriangle& triangle, int layer, Workspace& work) const {
-        const auto k = static_cast<uint32_t>(work.targets.size());
-        const Target& target = work.targets.emplace_back(triangle);
-        const dvec3 low = triangle.low(), high = triangle.high();
-        const ivec2 xs = reached(low.x, high.x, 0), ys = reached(low.y, high.y, 1);
-        for (int y = ys.x; y <= ys.y; ++y) {
-            for (int x = xs.x; x <= xs.y; ++x) {
-                if (!target.beyond(dvec3(x * kEdge, y * kEdge, layer * kEdge) + kMiddle, band_ + kBrickRadius))
-                    work.bricks[brickIndex(x, y)].push_back(k);
+        for (size_t n = layerStart[l]; n < layerStart[l + 1]; ++n) {
+            const uint32_t k = inLayer[n];
+            uint32_t place = k;
+            if (all.empty()) {
+                place = static_cast<uint32_t>(work.targets.size());
+                const Target target = targetOf(triangles[k], width, furthest);
+                work.targets.push_back(target.exact);
+                work.discs.push_back(target.disc);
+                work.listed.push_back(k);
             }
+            const BandDisc& disc = all.empty() ? work.discs.back() : allDiscs[k];
+            forReached(kernels, width, reaches[k], disc, layer, work.bits, [&](const ivec3& b) {
+                if (flagged(flags, band.brickIndex(b))) work.bricks[band.brickIndex({b.x, b.y, 0})].push_back(place);
+            });
+        }
+        for (int y = 0; y < bricks.y; ++y) {
+            for (int x = 0; x < bricks.x; ++x) bakeBrick({x, y, layer}, work);
         }
     }
 
-    void bakeBrick(const ivec3& brick, Workspace& work) {
-        const std::vector<uint32_t>& entries = work.bricks[brickIndex(brick.x, brick.y)];
-        if (entries.empty()) return;
-        const dvec3 middle = dvec3(brick * kEdge) + kMiddle;
-        const double nearest = sieve(work.targets, entries, middle, kBrickRadius, band_ + kBrickRadius, work.kept);
-        if (work.kept.empty()) return;
-        BrickPoints best;
-        for (int cube = 0; cube < 8; ++cube) bakeCube(brick, ivec3(cube & 1, (cube >> 1) & 1, cube >> 2) * 2, nearest, work, best);
-        store(brick, best, work.targets);
-    }
-
-    // `first`: the cube's low corner in the brick. `fromBrick`: the nearest triangle's distance from the brick's middle.
-    void bakeCube(const ivec3& brick, const ivec3& first, double fromBrick, Workspace& work, BrickPoints& best) const {
-        const dvec3 corner(brick * kEdge + first);
-        sieve(work.targets, work.kept, corner + 0.5, kCubeRadius, std::min(band_ + kCubeRadius, fromBrick + kToCube), work.near);
-        double reach = band_;
-        for (int k = 0; k < 8; ++k) {
-            const ivec3 at((k ^ (k >> 1)) & 1, ((k >> 1) ^ (k >> 2)) & 1, k >> 2);  // each a step from the one before
-            const dvec3 point = corner + dvec3(at);
-            Nearest nearest{band_ * band_, kNone};
-            for (uint32_t n : work.near) {
-                const Target& target = work.targets[n];
-                if (target.beyond(point, reach)) continue;
-                const double distance = target.squaredDistance(point);
-                if (distance < nearest.square) {
-                    nearest = {distance, n};
-                    reach = std::min(reach, std::sqrt(distance));
-                }
-            }
-            best[static_cast<size_t>(((first.z + at.z) * kEdge + first.y + at.y) * kEdge + first.x + at.x)] = nearest;
-            reach = std::min(band_, reach + 1.0);  // the next point's distance is no more
-        }
-    }
-
-    void store(const ivec3& brick, const BrickPoints& best, const std::vector<Target>& targets) {
+    void bakeBrick(const ivec3& brick, Workspace& work) const {
+        const size_t index = band.brickIndex(brick);
+        if (!flagged(flags, index)) return;
+        const std::vector<uint32_t>& entries = work.bricks[band.brickIndex({brick.x, brick.y, 0})];
+        if (!reached.empty()) reached[index] = entries.empty() ? 0 : 1;
+        if (flags.empty() && entries.empty()) return;
+        if (work.lower.size() < 8 * entries.size()) work.lower.resize(8 * entries.size());
+        std::array<double, kBrickPoints> squares;
+        std::array<uint32_t, kBrickPoints> nearest;
         const ivec3 first = brick * kEdge;
-        const ivec3 end = glm::min(first + ivec3(kEdge), points_);
-        for (int z = first.z; z < end.z; ++z) {
-            for (int y = first.y; y < end.y; ++y) {
-                const size_t row =
-                    (static_cast<size_t>(z) * static_cast<size_t>(points_.y) + static_cast<size_t>(y)) * static_cast<size_t>(points_.x);
-                for (int x = first.x; x < end.x; ++x) {
-                    const Nearest& nearest = best[static_cast<size_t>(((z - first.z) * kEdge + (y - first.y)) * kEdge + (x - first.x))];
-                    if (nearest.target == kNone) continue;
-                    result_.distance[row + static_cast<size_t>(x)] = static_cast<float>(std::sqrt(nearest.square));
-                    result_.normal[row + static_cast<size_t>(x)] = packNormal(targets[nearest.target].away(dvec3(x, y, z)));
-                }
+        const BandTarget* targets = all.empty() ? work.targets.data() : all.data();
+        const BandDisc* discs = all.empty() ? work.discs.data() : allDiscs.data();
+        kernels.brick({targets,
+                       discs,
+                       entries.data(),
+                       static_cast<uint32_t>(entries.size()),
+                       {static_cast<double>(first.x), static_cast<double>(first.y), static_cast<double>(first.z)},
+                       width,
+                       work.lower.data(),
+                       squares.data(),
+                       nearest.data()});
+        std::array<double, kBrickPoints> x, y, z;
+        std::array<uint32_t, kBrickPoints> codes{};
+        if (!entries.empty()) {
+            for (size_t n = 0; n < kBrickPoints; ++n) {
+                const auto i = static_cast<int>(n);
+                const dvec3 point(first + ivec3(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge)));
+                const dvec3 direction = nearest[n] == kNobody ? dvec3(1.0) : away(targets[nearest[n]], point);
+                x[n] = direction.x;
+                y[n] = direction.y;
+                z[n] = direction.z;
+            }
+            kernels.pack({x.data(), y.data(), z.data(), codes.data(), kBrickPoints});
+        }
+        const ivec3 end = glm::min(first + ivec3(kEdge), points);
+        for (int pz = first.z; pz < end.z; ++pz) {
+            for (int py = first.y; py < end.y; ++py) {
+                size_t at =
+                    (static_cast<size_t>(pz) * static_cast<size_t>(points.y) + static_cast<size_t>(py)) * static_cast<size_t>(points.x) +
+                    static_cast<size_t>(first.x);
+                auto n = static_cast<size_t>(((pz - first.z) * kEdge + (py - first.y)) * kEdge);
+                for (int px = first.x; px < end.x; ++px, ++at, ++n) store(at, squares[n], nearest[n], codes[n], work.listed);
             }
         }
     }
 
-    size_t brickIndex(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(bricks_.x) + static_cast<size_t>(x); }
-
-    const GridTriangles& triangles_;
-    ivec3 points_, bricks_;
-    double band_;
-    DistanceBand result_;
-    std::vector<size_t> layerStart_;
-    std::vector<uint32_t> inLayer_;
+    void store(size_t at, double squared, uint32_t place, uint32_t code, const std::vector<uint32_t>& listed) const {
+        const bool none = place == kNobody;
+        const uint32_t k = none || listed.empty() ? place : listed[place];
+        out.distance[at] = none ? metres : std::min(static_cast<float>(std::sqrt(squared)) * voxel, metres);
+        out.normal[at] = none ? 0 : (code | (surfaces.empty() ? 0U : uint32_t{surfaces[triangles.owner(k)]} << 28U));
+        if (!out.nearest.empty()) out.nearest[at] = none || numbers.empty() ? k : numbers[k];
+    }
 };
 
 }  // namespace
 
-uint32_t packNormal(const dvec3& direction) {
-    const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-    if (!(sum > 0.0)) return 0;
-    double x = direction.x / sum, y = direction.y / sum;
-    if (direction.z < 0.0) {
-        const double folded = (1.0 - std::abs(y)) * (x < 0.0 ? -1.0 : 1.0);
-        y = (1.0 - std::abs(x)) * (y < 0.0 ? -1.0 : 1.0);
-        x = folded;
+DistanceBand::DistanceBand(const VoxelGrid& grid, float band, Isa isa)
+    : points_(grid.size + ivec3(1)), bricks_((points_ + ivec3(kBrick - 1)) / kBrick), voxel_(grid.voxel), band_(band), isa_(isa) {}
+
+void DistanceBand::reach(const dvec3& low, const dvec3& high, ivec3& first, ivec3& last) const {
+    const double width = static_cast<double>(band_) / static_cast<double>(voxel_) + 1e-6;
+    for (int k = 0; k < 3; ++k) {
+        first[k] = static_cast<int>(std::max(0.0, std::floor((low[k] - width - (kBrick - 1)) / kBrick)));
+        last[k] = static_cast<int>(std::min(bricks_[k] - 1.0, std::floor((high[k] + width) / kBrick)));
     }
-    const auto bits = [](double v) { return static_cast<uint32_t>(std::lround((0.5 * v + 0.5) * 65535.0)); };
-    return bits(x) | (bits(y) << 16U);
 }
 
-DistanceBand distanceBand(const GridTriangles& triangles, const ivec3& size, double band) {
-    return BandBaker(triangles, size, band).bake();
+void DistanceBand::markReach(const GridTriangle& triangle, std::span<uint8_t> flags) const {
+    const double width = static_cast<double>(band_) / static_cast<double>(voxel_);
+    const Reach reach = reachOf(*this, triangle);
+    const Target target = targetOf(triangle, width, furthest());
+    std::vector<uint32_t> bits;
+    for (int z = reach.first[2]; z <= reach.last[2]; ++z)
+        forReached(kernelsOf(isa_), width, reach, target.disc, z, bits, [&](const ivec3& b) { flags[brickIndex(b)] = 1; });
+}
+
+void DistanceBand::bake(const GridTriangles& triangles, std::span<const uint8_t> surfaces, std::span<const uint32_t> numbers,
+                        std::span<const uint8_t> flags, std::span<uint8_t> reached, const BandPoints& out) const {
+    const double width = static_cast<double>(band_) / static_cast<double>(voxel_);
+    Bake{*this, kernelsOf(isa_), triangles, surfaces, numbers, flags, reached, out, points_,
+         width, furthest(),      voxel_,    band_,    {},      {},    {},      {},  {}}
+        .run();
+}
+
+uint32_t packNormal(const dvec3& direction, uint32_t surface) {
+    std::array<double, 8> x, y, z;
+    std::array<uint32_t, 8> codes{};
+    x.fill(direction.x);
+    y.fill(direction.y);
+    z.fill(direction == dvec3(0.0) ? 1.0 : direction.z);
+    kernelsOf(Isa::generic).pack({x.data(), y.data(), z.data(), codes.data(), 8});
+    return codes[0] | surface << 28U;
 }
 
 }  // namespace rivulet

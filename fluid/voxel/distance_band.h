@@ -3,20 +3,53 @@
 
 #include <vector>
 
+#include "engine/compute/device_cpu.h"
 #include "fluid/voxel/triangles.h"
 
 namespace rivulet {
 
-struct DistanceBand {
-    std::vector<float> distance;   // voxels, to the nearest triangle; `band` where that is further
-    std::vector<uint32_t> normal;  // from there to the point, see packNormal; of no meaning beyond the band
+inline constexpr uint32_t kNoTriangle = std::numeric_limits<uint32_t>::max();
+
+// Where the results go: at the (size + 1) points an axis of a grid, x fastest.
+struct BandPoints {
+    std::span<float> distance;    // m, to the nearest triangle; `band` where that is further
+    std::span<uint32_t> normal;   // from there to the point, see packNormal; of no meaning beyond the band
+    std::span<uint32_t> nearest;  // that triangle's number in the list, kNoTriangle beyond the band; empty if nobody wants it
 };
 
-// At the (size + 1) points an axis of a grid of `size` voxels, x fastest. Unsigned; computed in double. The same for any number of threads.
-DistanceBand distanceBand(const GridTriangles& triangles, const ivec3& size, double band);
+// Works in bricks of kBrick^3 points, so that a part can be done again. Unsigned; computed in double. Of triangles equally near the first
+// in the list counts, so that the result depends on the triangles within the band alone: the same for any number of threads, and for any
+// part.
+class DistanceBand {
+  public:
+    static constexpr int kBrick = 4;
+    DistanceBand(const VoxelGrid& grid, float band /* m */, Isa isa = bestIsa());
+    const ivec3& bricks() const { return bricks_; }  // along each axis; brick b holds the points [kBrick b, kBrick (b + 1))
+    size_t brickIndex(const ivec3& b) const {
+        return (static_cast<size_t>(b.z) * static_cast<size_t>(bricks_.y) + static_cast<size_t>(b.y)) * static_cast<size_t>(bricks_.x) +
+               static_cast<size_t>(b.x);
+    }
+    // Sets the flags of all bricks (by brickIndex) with a point to which this triangle may be the nearest, and of all that hold a voxel it
+    // touches (voxel v is of brick v / kBrick).
+    void markReach(const GridTriangle& triangle, std::span<uint8_t> flags) const;
+    // Bricks, first and last along each axis, that a triangle in this box (grid coordinates) may reach. May be empty.
+    void reach(const dvec3& low, const dvec3& high, ivec3& first, ivec3& last) const;
+    // Writes all points of the bricks whose flag is set; with no flags, the bricks that a triangle reaches. `surfaces`: of each mesh, for
+    // packNormal; empty: 0. `numbers`: of each triangle of the list, increasing, for `nearest`; empty: its place in the list.
+    // `reached`, if not empty: set to 1 for the bricks done that a triangle reaches, to 0 for the others done.
+    void bake(const GridTriangles& triangles, std::span<const uint8_t> surfaces, std::span<const uint32_t> numbers,
+              std::span<const uint8_t> flags, std::span<uint8_t> reached, const BandPoints& out) const;
 
-// A direction in 32 bits, on an octahedron (Meyer et al. 2010): x and y of its unfolded square as 16 bits each, x low. Exact to 1e-4.
-// Any length but 0.
-uint32_t packNormal(const dvec3& direction);
+  private:
+    double furthest() const { return std::max(points_.x, std::max(points_.y, points_.z)); }
+    ivec3 points_, bricks_;
+    float voxel_, band_;
+    Isa isa_;
+};
+
+// A direction on an octahedron (Meyer et al. 2010), x and y of its unfolded square as 14 bits each, x low: 1 is 8191 above the middle. The
+// nearest of the four codes around (Cigolle et al. 2014), within 1.73e-4 rad of the direction; axes are exact. Any length but 0. Above them
+// 4 bits: `surface`, 0..15, whose wall it is. Unpacked by unpackNormal and wallSurface of shaders/fluid/contact.h.
+uint32_t packNormal(const dvec3& direction, uint32_t surface);
 
 }  // namespace rivulet

@@ -25,15 +25,17 @@ class GridTriangles {
         for (const MeshView& mesh : meshes_) ends_.push_back(size() + mesh.triangleCount());
     }
     size_t size() const { return ends_.empty() ? 0 : ends_.back(); }
+    // Which mesh triangle k is of.
+    size_t owner(size_t k) const { return static_cast<size_t>(std::upper_bound(ends_.begin(), ends_.end(), k) - ends_.begin()); }
     GridTriangle operator[](size_t k) const {
         const auto [a, b, c] = corners(k);
         return {inVoxels(a), (b - a) / voxel_, (c - a) / voxel_};
     }
     // Its corners in the mesh's own coordinates, and one of those in the grid's.
     std::array<dvec3, 3> corners(size_t k) const {
-        const auto owner = static_cast<size_t>(std::upper_bound(ends_.begin(), ends_.end(), k) - ends_.begin());
-        const MeshView& mesh = meshes_[owner];
-        const size_t first = 3 * (k - (owner == 0 ? 0 : ends_[owner - 1]));
+        const size_t mine = owner(k);
+        const MeshView& mesh = meshes_[mine];
+        const size_t first = 3 * (k - (mine == 0 ? 0 : ends_[mine - 1]));
         return {dvec3(mesh.positions[mesh.indices[first]]), dvec3(mesh.positions[mesh.indices[first + 1]]),
                 dvec3(mesh.positions[mesh.indices[first + 2]])};
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 
 #include "fluid/voxel/distance_band.h"
 #include "fluid/voxel/mesh_check.h"
@@ -15,13 +16,31 @@ namespace {
 
 constexpr int kMinResolution = 2, kMaxResolution = 2048;
 
+std::optional<Error> checkSurfaces(size_t meshes, std::span<const uint8_t> surfaces) {
+    if (!surfaces.empty() && surfaces.size() != meshes)
+        return badInput(
+            fmt::format("A voxel field was given {} surfaces for {} meshes; give one a mesh, or none.", surfaces.size(), meshes));
+    const auto wrong = std::find_if(surfaces.begin(), surfaces.end(), [](uint8_t s) { return s > kMaxSurface; });
+    if (wrong != surfaces.end())
+        return badInput(fmt::format("Surface {} of mesh {} is above {}: a voxel field tells {} surfaces apart; let meshes share one.",
+                                    *wrong, wrong - surfaces.begin() + 1, kMaxSurface, kMaxSurface + 1));
+    return std::nullopt;
+}
+
+// Where the grid is to be.
+struct Place {
+    MeshExtent extent;
+    size_t pointBytes = sizeof(float) + sizeof(uint32_t);  // a grid point's
+};
+
 struct Layout {
     float voxel = 0, band = 0;
     dvec3 voxels{0.0};  // along each axis; may be absurdly many
     double bytes = 0;
 };
 
-Layout layoutFor(const MeshExtent& extent, const VoxelFieldOptions& options, int resolution) {
+Layout layoutFor(const Place& place, const VoxelFieldOptions& options, int resolution) {
+    const MeshExtent& extent = place.extent;
     Layout l;
     l.voxel = static_cast<float>(extent.longest / resolution);
     l.band = std::max(options.band, kBandVoxels * l.voxel);
@@ -30,17 +49,17 @@ Layout layoutFor(const MeshExtent& extent, const VoxelFieldOptions& options, int
     // One more than needed, so that half a voxel is left on each side for rounding, and faces of boxes lie amid voxels, not between.
     l.voxels = glm::ceil((size + 2.0 * padding) / static_cast<double>(l.voxel)) + 1.0;
     const dvec3 points = l.voxels + 1.0;
-    l.bytes = points.x * points.y * points.z * (sizeof(float) + sizeof(uint32_t)) + l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
+    l.bytes = points.x * points.y * points.z * static_cast<double>(place.pointBytes) + l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
     return l;
 }
 
-Error tooMuchMemory(const MeshExtent& extent, const VoxelFieldOptions& options, double needed, double limit) {
+Error tooMuchMemory(const Place& place, const VoxelFieldOptions& options, double needed, double limit) {
     int fits = options.resolution;
-    while (fits >= kMinResolution && layoutFor(extent, options, fits).bytes > limit) --fits;
+    while (fits >= kMinResolution && layoutFor(place, options, fits).bytes > limit) --fits;
     const std::string remedy = fits >= kMinResolution
                                    ? fmt::format("a resolution of {} fits", fits)
                                    : fmt::format("the band of {} m and padding of {} m are too wide for meshes {} m long", options.band,
-                                                 options.padding, extent.longest);
+                                                 options.padding, place.extent.longest);
     return badInput(fmt::format("A voxel field of resolution {} needs {}, more than the {} allowed; {}.", options.resolution,
                                 readableBytes(needed), readableBytes(limit), remedy));
 }
@@ -61,7 +80,7 @@ float VoxelField::clearance(const vec3& p) const {
     return best;
 }
 
-Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
+Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra) {
     if (options.resolution < kMinResolution || options.resolution > kMaxResolution)
         return badInput(fmt::format("A voxel field's resolution is {}..{}, not {}.", kMinResolution, kMaxResolution, options.resolution));
     if (!(options.band >= 0.0F && options.padding >= 0.0F) || !std::isfinite(options.band) || !std::isfinite(options.padding))
@@ -69,12 +88,22 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
                                     options.padding));
     if (auto error = checkMeshes(meshes)) return *error;
 
-    const MeshExtent extent = extentOf(meshes);
-    const Layout layout = layoutFor(extent, options, options.resolution);
+    if (auto error = checkSurfaces(meshes.size(), options.surfaces)) return *error;
+
+    Place place;
+    MeshExtent& extent = place.extent;
+    if (reach == nullptr) {
+        extent = extentOf(meshes);
+    } else {
+        const dvec3 size = dvec3(reach->max) - dvec3(reach->min);
+        extent = {*reach, std::max(size.x, std::max(size.y, size.z))};
+    }
+    place.pointBytes += extra;
+    const Layout layout = layoutFor(place, options, options.resolution);
     if (auto error = checkVoxel(extent, layout.voxel)) return *error;
     // Kernels count voxels and points in 32 bits.
     const double limit = std::min(static_cast<double>(options.memoryLimit), 4294967295.0 * sizeof(float));
-    if (!(layout.bytes <= limit)) return tooMuchMemory(extent, options, layout.bytes, limit);
+    if (!(layout.bytes <= limit)) return tooMuchMemory(place, options, layout.bytes, limit);
 
     try {
         VoxelField field;
@@ -85,16 +114,27 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
             vec3(0.5 * (dvec3(extent.bounds.min) + dvec3(extent.bounds.max)) - 0.5 * layout.voxels * static_cast<double>(layout.voxel));
         grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
         field.band = layout.band;
-        const GridTriangles list(meshes, grid);
-        voxelizeSurface(list, grid);
-        DistanceBand band = distanceBand(list, grid.size, static_cast<double>(layout.band) / static_cast<double>(layout.voxel));
-        field.distance = std::move(band.distance);
-        field.normal = std::move(band.normal);
-        for (float& d : field.distance) d = std::min(d * layout.voxel, layout.band);
+        const auto points =
+            (static_cast<size_t>(grid.size.x) + 1) * (static_cast<size_t>(grid.size.y) + 1) * (static_cast<size_t>(grid.size.z) + 1);
+        field.distance.assign(points, field.band);
+        field.normal.assign(points, 0);
         return field;
     } catch (const std::bad_alloc&) {
         return failed(fmt::format("Not enough memory for a voxel field of resolution {}, which needs {}; lower the resolution.",
                                   options.resolution, readableBytes(layout.bytes)));
+    }
+}
+
+Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
+    Result<VoxelField> field = emptyVoxelField(meshes, nullptr, options, 0);
+    if (!field) return field;
+    try {
+        const GridTriangles list(meshes, field->surface);
+        voxelizeSurface(list, field->surface);
+        DistanceBand(field->surface, field->band).bake(list, options.surfaces, {}, {}, {}, {field->distance, field->normal, {}});
+        return field;
+    } catch (const std::bad_alloc&) {
+        return failed(fmt::format("Not enough memory to bake a voxel field of resolution {}; lower the resolution.", options.resolution));
     }
 }
 

@@ -12,10 +12,11 @@ namespace rivulet {
 
 // Distance is sampled at grid points p = origin + voxel * (x, y, z), 0 <= x <= size.x and so on: (size + 1) points an axis, x fastest.
 struct VoxelField {
-    VoxelGrid surface;             // voxels that a triangle passes through, touching counts
-    std::vector<float> distance;   // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
-    std::vector<uint32_t> normal;  // within the band: from the nearest triangle to the point, packed by packNormal of distance_band.h
-    float band = 0;                // m
+    VoxelGrid surface;            // voxels that a triangle passes through, touching counts
+    std::vector<float> distance;  // m, >= 0, to the nearest triangle, exact within `band`, `band` beyond it
+    std::vector<uint32_t>
+        normal;      // within the band: from the nearest triangle to the point, and whose it is: packNormal of distance_band.h
+    float band = 0;  // m
     bool empty() const { return surface.count() == 0; }
     size_t bytes() const { return surface.bits.size() + distance.size() * sizeof(float) + normal.size() * sizeof(uint32_t); }
     // A lower bound (m) of the distance from `p` to the mesh, at most sqrt(3) voxels below it and never above `band`: distance changes
@@ -29,7 +30,11 @@ struct VoxelFieldOptions {
     float band = 0;                         // m, at least this wide (and at least kBandVoxels voxels)
     float padding = 0;                      // m, around the bounds: at least the band, so that whoever comes near is inside the grid
     size_t memoryLimit = size_t{1} << 30U;  // bytes the field may take
+    std::span<const uint8_t> surfaces =
+        {};  // of each mesh, 0..kMaxSurface: what wallSurface of shaders/fluid/contact.h says of its walls; empty: all 0
 };
+
+inline constexpr uint8_t kMaxSurface = 15;
 
 // The narrowest useful band: contact at 1.74 voxels, a cell's diagonal of 1.74, and room to see walls coming.
 inline constexpr float kBandVoxels = 5.0F;
@@ -40,9 +45,14 @@ inline constexpr float kBandVoxels = 5.0F;
 inline constexpr float kContactVoxels = 1.74F;
 
 // `meshes` in world space (m). Error: no triangle, an index out of range, NaN or infinite vertices (with how many), meshes of no
-// extent or too far from the origin for floats, a resolution outside 2..2048, too much memory (with how much, and what resolution fits).
+// extent or too far from the origin for floats, a resolution outside 2..2048, too much memory (with how much, and what resolution fits),
+// a surface above kMaxSurface or not one a mesh.
 // The same bits and distances for any number of threads.
 Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options);
+
+// What bakeVoxelField starts from: its checks, its grid with no bit set, distances at the band. `reach`: lay the grid out over this instead
+// of the meshes' bounds, which then need not fill it. `extra`: bytes a grid point that the caller will need besides.
+Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra);
 
 // How particles meet the field.
 struct FieldContact {

@@ -27,12 +27,17 @@ FN vec3 respondToAll(vec3 u, Walls w, float friction, float bounce) {
 
 // See packNormal in fluid/voxel/distance_band.h.
 FN vec3 unpackNormal(uint code) {
-    float x = TO_FLOAT(code & 65535u) * (2.0f / 65535.0f) - 1.0f;
-    float y = TO_FLOAT(code >> 16u) * (2.0f / 65535.0f) - 1.0f;
+    float x = (TO_FLOAT(code & 16383u) - 8191.0f) * (1.0f / 8191.0f);
+    float y = (TO_FLOAT((code >> 14u) & 16383u) - 8191.0f) * (1.0f / 8191.0f);
     float z = 1.0f - max(x, -x) - max(y, -y);
     float fold = max(-z, 0.0f);
     vec3 n = vec3(x + (x < 0.0f ? fold : -fold), y + (y < 0.0f ? fold : -fold), z);
     return n * (1.0f / length(n));
+}
+
+// Which collider's wall it is, 0..15: the `surfaces` of VoxelFieldOptions.
+FN uint wallSurface(uint code) {
+    return code >> 28u;
 }
 
 // Near where walls face each other the interpolated distance blends them: its gradient points between them, and a particle would be

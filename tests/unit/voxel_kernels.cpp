@@ -7,6 +7,8 @@ namespace {
 #include "shaders/voxel/field.h"
 
 #include "shaders/voxel/walk.h"
+
+#include "shaders/fluid/contact.h"
 vec3 point(const float* p) { return vec3(p[0], p[1], p[2]); }
 }  // namespace
 }  // namespace rivulet::RIVULET_KERNEL_UNIT
@@ -31,6 +33,14 @@ float fieldAt(const void* params, const float* distance, const float* p, float* 
 
 bool farFromField(const void* params, const float* distance, const float* a, const float* b) {
     return voxel_test_unit::farFromField(distance, *static_cast<const FieldParams*>(params), point(a), point(b));
+}
+
+uint32_t unpackWall(uint32_t code, float* direction) {
+    const vec3 n = unpackNormal(code);
+    direction[0] = n.x;
+    direction[1] = n.y;
+    direction[2] = n.z;
+    return wallSurface(code);
 }
 
 }  // namespace rivulet::test

@@ -117,7 +117,7 @@ Status benchMemory(const BenchContext& context) {
         const size_t before = device->bytesAllocated();
         Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(*device, p, {}, {});
         if (!world) return world.error();
-        (*world)->step({p.gravity}, 1.0e-3);
+        (*world)->step({.gravity = p.gravity}, 1.0e-3);
         const double bytes = static_cast<double>(device->bytesAllocated() - before) / (*world)->particles().count;
         context.report({.name = fmt::format("memory, column 128k, {}", backendName(device->backend())),
                         .unit = "B/particle",

@@ -135,7 +135,7 @@ int runHeadless(const RunOptions& options) {
     if (!to) return report(to.error());
 
     int frames = options.frames.value_or(static_cast<int>(std::lround(static_cast<double>(options.scene.duration) * kFramesPerSecond)));
-    Loop loop{options, graceful, **session, *to, painter, RunRecorder((*session)->world(), &(*session)->field(), true)};
+    Loop loop{options, graceful, **session, *to, painter, RunRecorder((*session)->world(), (*session)->fields(), true)};
     if (Status done = loop.run(frames); !done) return report(done.error());
     if (to->writer)
         if (Status closed = to->writer->close(); !closed) return report(closed.error());

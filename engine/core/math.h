@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -19,6 +20,7 @@ using glm::ivec2;
 using glm::ivec3;
 using glm::mat3;
 using glm::mat4;
+using glm::quat;
 using glm::uvec2;
 using glm::uvec3;
 using glm::uvec4;

@@ -83,8 +83,17 @@ bool inSetVoxel(const VoxelGrid& surface, const vec4& p) {
     return ((surface.bits[bit / 8] >> (bit % 8)) & 1U) != 0;
 }
 
-RunRecorder::RunRecorder(FluidWorld& world, const VoxelField* field, bool readBack)
-    : world_(&world), field_(field), readBack_(readBack), penetrated_(world.particles().count) {}
+RunRecorder::RunRecorder(FluidWorld& world, SolidFields fields, bool readBack)
+    : world_(&world), fields_(std::move(fields)), readBack_(readBack), penetrated_(world.particles().count) {}
+
+bool RunRecorder::inSolid(const vec4& p) const {
+    if (fields_.still != nullptr && inSetVoxel(fields_.still->surface, p)) return true;
+    for (const VoxelField* field : fields_.deforming)
+        if (inSetVoxel(field->surface, p)) return true;
+    for (size_t k = 0; k < fields_.rigid.size(); ++k)
+        if (inSetVoxel(fields_.rigid[k]->surface, vec4(world_->poses()[k].toOwn(vec3(p)), p.w))) return true;
+    return false;
+}
 
 void RunRecorder::frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
                         std::span<const PassTime> renderPasses) {
@@ -107,7 +116,7 @@ void RunRecorder::frame(double simulateMs, double renderMs, double frameMs, std:
         sum += compression;
         ++counted;
         maxCompression_ = std::max(maxCompression_, compression);
-        if (field_ != nullptr && now.id[i] < penetrated_.size() && inSetVoxel(field_->surface, p)) penetrated_[now.id[i]] = true;
+        if (now.id[i] < penetrated_.size() && inSolid(p)) penetrated_[now.id[i]] = true;
     }
     if (counted > 0) {
         compressionSum_ += sum / static_cast<double>(counted);
@@ -159,6 +168,15 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.nan = late.nan;
     stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));
     stats.substeps = substeps_;
+    stats.voxelsRewritten = world.voxelsRewritten();
+    const auto offStand = [&](const VoxelField& field) {
+        const float spacing = world.particles().spacing;
+        const double off = static_cast<double>(fieldParams(field, {.spacing = spacing}).contact) - 0.5 * static_cast<double>(spacing);
+        stats.standOff = std::max(stats.standOff.value_or(0.0), off);
+    };
+    if (fields_.still != nullptr) offStand(*fields_.still);
+    for (const auto* list : {&fields_.rigid, &fields_.deforming})
+        for (const VoxelField* field : *list) offStand(*field);
     stats.dtMin = late.dtMin;
     stats.dtMax = late.dtMax;
     stats.limited = late.limited;
@@ -211,6 +229,8 @@ std::string writeRunStats(const RunStats& stats) {
     v["lost"] = stats.lost;
     v["penetrations"] = stats.penetrations;
     v["nan"] = stats.nan;
+    v["standOff"] = stats.standOff ? Json::Value(*stats.standOff) : Json::Value();
+    v["voxelsRewritten"] = Json::UInt64(stats.voxelsRewritten);
     v["substeps"] = Json::UInt64(stats.substeps);
     v["dt"]["min"] = number(stats.dtMin);
     v["dt"]["max"] = number(stats.dtMax);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/compute/device.h"
+#include "fluid/bridge/session.h"
 #include "fluid/sim/fluid_world.h"
 
 namespace rivulet {
@@ -49,6 +50,9 @@ struct RunStats {
     std::optional<double> front;                    // m
     double volume = 0;                              // m^3, of all particles at rest density
     uint32_t lost = 0, penetrations = 0, nan = 0;
+    uint64_t voxelsRewritten = 0;  // of solids that change their shape
+    std::optional<double>
+        standOff;  // m, of centres at rest on a mesh beyond half a spacing, the largest of the fields; nothing without a mesh
     uint64_t substeps = 0;
     double dtMin = 0, dtMax = 0;  // s
     std::vector<std::string> limited;
@@ -59,7 +63,7 @@ std::string writeRunStats(const RunStats& stats);  // one JSON object, ends in a
 class RunRecorder {
   public:
     // `readBack`: reads the particles after each frame, for compression and penetrations; costs time that is not counted as simulation.
-    RunRecorder(FluidWorld& world, const VoxelField* field, bool readBack);
+    RunRecorder(FluidWorld& world, SolidFields fields, bool readBack);
     // renderMs 0: nothing was drawn.
     void frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
                std::span<const PassTime> renderPasses);
@@ -67,8 +71,10 @@ class RunRecorder {
     RunStats finish(std::string scene);
 
   private:
+    bool inSolid(const vec4& p) const;
+
     FluidWorld* world_;
-    const VoxelField* field_;
+    SolidFields fields_;
     bool readBack_;
     std::vector<double> simulate_, render_, frame_;
     std::map<std::string, std::vector<double>> passes_;

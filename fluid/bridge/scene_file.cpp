@@ -42,6 +42,20 @@ std::string contradiction(const SceneFile& scene) {
             return fmt::format("colliders[{}].mesh is empty: name a mesh file, or make its shape a plane", i);
         if (collider.shape == "plane" && glm::length(collider.normal) < 1.0e-6F)
             return fmt::format("colliders[{}].normal is {}, must have a length", i, shown(collider.normal));
+        const ColliderMotion& motion = collider.motion;
+        const ColliderWave& wave = collider.wave;
+        if (collider.shape == "plane" && (motion.moves() || wave.amplitude > 0))
+            return fmt::format("colliders[{}] is a plane, which stands still: make it a mesh, or take its motion and wave away", i);
+        if (motion.moves() && wave.amplitude > 0)
+            return fmt::format("colliders[{}] has both a motion and a wave: it can have one of them", i);
+        if (motion.spin != 0 && glm::length(motion.axis) < 1.0e-6F)
+            return fmt::format("colliders[{}].motion.axis is {}, must have a length", i, shown(motion.axis));
+        for (size_t k = 1; k < motion.keys.size(); ++k)
+            if (!(motion.keys[k].time > motion.keys[k - 1].time))
+                return fmt::format("colliders[{}].motion.keys[{}].time is {} s, must be later than the key before, {} s", i, k,
+                                   motion.keys[k].time, motion.keys[k - 1].time);
+        if (wave.amplitude > 0 && (glm::length(wave.along) < 1.0e-6F || glm::length(wave.direction) < 1.0e-6F))
+            return fmt::format("colliders[{}].wave.along and direction must have a length", i);
     }
     const vec3 sight = scene.camera.target - scene.camera.position;
     if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must not be where the camera is", shown(scene.camera.target));
@@ -79,12 +93,36 @@ VisitFn visiting(SceneFile& scene) {
 
 }  // namespace
 
+void ColliderKey::visit(ParamVisitor& v) {
+    v.value({"time", "s", "when it is there", 0, 3600}, time);
+    v.value({"position", "m", "added to the collider's", -kFar, kFar}, position);
+    v.value({"rotation", "deg", "about x, then y, then z, after the collider's own", -36000, 36000}, rotation);
+}
+
+void ColliderMotion::visit(ParamVisitor& v) {
+    v.value({"axis", "", "what it spins about, through its position; of any length", -1.0e6, 1.0e6}, axis);
+    v.value({"spin", "deg/s", "how fast it spins, right-handed", -7200, 7200}, spin);
+    v.value({"shake", "m", "how far it swings to and fro", -100, 100}, shake);
+    v.value({"shakeFrequency", "Hz", "how often it does", 0, 100}, shakeFrequency);
+    v.list({.name = "keys", .doc = "places at times, in order; between them it moves smoothly, after the last it stays"}, keys);
+}
+
+void ColliderWave::visit(ParamVisitor& v) {
+    v.value({"amplitude", "m", "height of the wave; 0 = none", 0, 100}, amplitude);
+    v.value({"length", "m", "from crest to crest", 0.001, kFar, kLog}, length);
+    v.value({"period", "s", "from crest to crest; it rises to its height in the first", 0.01, 3600, kLog}, period);
+    v.value({"along", "", "the way it runs, of any length", -1.0e6, 1.0e6}, along);
+    v.value({"direction", "", "the way it lifts, of any length", -1.0e6, 1.0e6}, direction);
+}
+
 void ColliderParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"mesh", "plane"};
     v.choice({.name = "shape", .doc = "a mesh from a file, or a plane with fluid on the side of its normal", .fixed = kFixed}, shape,
              shapes);
     v.value({.name = "mesh", .doc = "mesh file: as given, beside the scene, in RIVULET_ASSETS, in assets/", .fixed = kFixed}, mesh);
-    v.value({"resolution", "", "voxels along the mesh's longest side", 4, 1024, kLog, kFixed}, resolution);
+    v.value({"resolution", "", "voxels along the mesh's longest side; 0 = so many that a voxel is a quarter of the fluid's spacing", 0,
+             2048, kLinear, kFixed},
+            resolution);
     v.value({"position", "m", "where the mesh's origin goes (with fitSize: its middle); of a plane: a point on it", -kFar, kFar, kLinear,
              kFixed},
             position);
@@ -93,6 +131,10 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.value({"fitSize", "m", "length that a mesh's longest side is scaled to, instead of scale; 0 = scale holds", 0, kFar, kLog, kFixed},
             fitSize);
     v.value({"normal", "", "of a plane, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, normal);
+    v.value({"friction", "", "Coulomb friction; -1 = as fluid.collision says", -1, 10}, friction);
+    v.value({"restitution", "", "share of the speed into it that comes back; -1 = as fluid.collision says", -1, 1}, restitution);
+    v.group({.name = "motion", .doc = "how a mesh moves as a whole"}, motion);
+    v.group({.name = "wave", .doc = "a wave that bends a mesh"}, wave);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
     v.value({.name = "visible", .doc = "whether it is drawn; it is solid either way"}, visible);
@@ -135,7 +177,7 @@ void SceneFile::visit(ParamVisitor& v) {
     v.value({.name = "doc", .doc = "one sentence on what is to be seen"}, doc);
     v.value({"duration", "s", "simulated time of a run that is given no other", 0, 3600}, duration);
     v.group({.name = "fluid", .doc = "what flows, and how it is simulated"}, fluid);
-    v.list({.name = "colliders", .doc = "solids that do not move", .fixed = kFixed}, colliders);
+    v.list({.name = "colliders", .doc = "what is solid", .fixed = kFixed}, colliders);
     v.group({.name = "look", .doc = "how the fluid is drawn"}, look);
     v.group({.name = "camera", .doc = "where the picture is taken from"}, camera);
     v.group({.name = "light", .doc = "the sun"}, light);

@@ -9,6 +9,7 @@
 
 #include "engine/scene/import_assimp.h"
 #include "engine/scene/transform.h"
+#include "fluid/bridge/collider_motion.h"
 #include "fluid/voxel/voxel_cache.h"
 
 namespace rivulet {
@@ -20,27 +21,54 @@ float longest(const Bounds& bounds) {
     return std::max({size.x, size.y, size.z});
 }
 
+mat4 matrixOf(const Pose& pose) {
+    mat4 m = glm::mat4_cast(pose.rotation);
+    m[3] = vec4(pose.position, 1.0F);
+    return m;
+}
+
+// Area-weighted.
+void recomputeNormals(Mesh& mesh) {
+    mesh.normals.assign(mesh.positions.size(), vec3(0.0F));
+    for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+        const uint32_t a = mesh.indices[t], b = mesh.indices[t + 1], c = mesh.indices[t + 2];
+        const vec3 n = glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+        for (uint32_t v : {a, b, c}) mesh.normals[v] += n;
+    }
+    for (vec3& n : mesh.normals) {
+        const float size = glm::length(n);
+        n = size > 0 ? n / size : vec3(0, 1, 0);
+    }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, const Log& log) {
     std::unique_ptr<Session> session(new Session());
-    session->scene_ = std::move(scene);
-    if (Status imported = session->importColliders(); !imported) return imported.error();
-    if (Status baked = session->bake(log); !baked) return baked.error();
-    StaticSolids solids;
-    if (!session->meshes_.empty()) solids.field = &session->field_;
-    for (const ColliderParams& collider : session->scene_.colliders)
-        if (collider.shape == "plane") solids.planes.push_back({collider.position, collider.normal});
-    auto world = FluidWorld::create(device, session->scene_.fluid, solids, log);
-    if (!world) return Error{fmt::format("{}: {}", session->scene_.name, world.error().message), world.error().fault};
-    session->world_ = std::move(*world);
-    if (session->world_->particles().count == 0)
-        log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", session->scene_.name));
+    Session& s = *session;
+    s.scene_ = std::move(scene);
+    if (Status imported = s.importColliders(); !imported) return imported.error();
+    Solids solids;
+    solids.surfaces = s.surfaces();
+    if (Status baked = s.bake(log); !baked) return baked.error();
+    if (!s.field_.empty()) solids.field = &s.field_;
+    for (size_t i = 0; i < s.scene_.colliders.size(); ++i) {
+        const ColliderParams& collider = s.scene_.colliders[i];
+        if (collider.shape == "plane") solids.planes.push_back({collider.position, collider.normal, s.surfaceOf_[i]});
+    }
+    for (const Rigid& r : s.rigid_) solids.rigid.push_back({r.field.get(), colliderPose(s.scene_.colliders[r.collider], 0, 0)});
+    for (const Deforming& d : s.deforming_) solids.deforming.push_back(d.field.get());
+    auto world = FluidWorld::create(device, s.scene_.fluid, solids, log);
+    if (!world) return Error{fmt::format("{}: {}", s.scene_.name, world.error().message), world.error().fault};
+    s.world_ = std::move(*world);
+    s.placeNodes();
+    if (s.world_->particles().count == 0) log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", s.scene_.name));
     return session;
 }
 
 Status Session::importColliders() {
-    for (const ColliderParams& collider : scene_.colliders) {
+    for (size_t i = 0; i < scene_.colliders.size(); ++i) {
+        const ColliderParams& collider = scene_.colliders[i];
         if (collider.shape != "mesh") continue;
         Result<std::string> path = findAsset(collider.mesh, scene_.folder);
         if (!path) return path.error();
@@ -48,7 +76,10 @@ Status Session::importColliders() {
         if (!mesh) return mesh.error();
         mat4 place = collider.fitSize > 0 ? Transform::fitted(mesh->bounds(), collider.fitSize, collider.position, collider.rotation)
                                           : Transform{collider.position, collider.rotation, collider.scale}.matrix();
+        // What moves has a frame of its own, whose origin it turns about.
+        if (collider.motion.moves()) place = glm::translate(mat4(1.0F), -collider.position) * place;
         meshes_.push_back(transformed(*mesh, place));
+        colliderOf_.push_back(i);
         Node node;
         node.name = collider.mesh;
         node.mesh = std::make_shared<const Mesh>(meshes_.back());
@@ -60,30 +91,105 @@ Status Session::importColliders() {
     return ok();
 }
 
-Status Session::bake(const Log& log) {
-    if (meshes_.empty()) return ok();
-    // Every mesh names the voxels along its own longest side; the one field takes the finest edge that any of them asks for.
-    VoxelFieldOptions options;
-    Bounds all;
-    float edge = std::numeric_limits<float>::max();
-    size_t next = 0;
+// One surface a collider while they suffice, so that each can be edited; else colliders that are alike share one.
+std::vector<Surface> Session::surfaces() {
+    std::vector<Surface> table;
+    surfaceOf_.clear();
     for (const ColliderParams& collider : scene_.colliders) {
-        if (collider.shape != "mesh") continue;
-        Bounds bounds = meshes_[next++].bounds();
-        if (float side = longest(bounds); side > 0) edge = std::min(edge, side / static_cast<float>(collider.resolution));
-        all.add(bounds.min);
-        all.add(bounds.max);
+        size_t at = table.size();
+        if (scene_.colliders.size() > kMostSurfaces) {
+            const auto same = std::find_if(table.begin(), table.end(), [&](const Surface& s) {
+                return s.friction == collider.friction && s.restitution == collider.restitution;
+            });
+            at = static_cast<size_t>(same - table.begin());
+        }
+        if (at == table.size()) table.push_back({collider.friction, collider.restitution});
+        surfaceOf_.push_back(static_cast<uint8_t>(std::min<size_t>(at, 255)));
     }
-    options.resolution = static_cast<int>(std::clamp(std::ceil(longest(all) / edge - 0.001F), 2.0F, 1.0e6F));
+    return table;
+}
+
+VoxelFieldOptions Session::fieldOptions(const Bounds& bounds, float edge) const {
+    VoxelFieldOptions options;
+    options.resolution = static_cast<int>(std::clamp(std::ceil(longest(bounds) / edge - 0.001F), 2.0F, 1.0e6F));
     // A particle must find the field before it touches: two spacings hold what a substep can move and the contact distance.
     options.band = 2 * scene_.fluid.spacing;
     options.padding = options.band;
-    std::vector<MeshView> views;
-    for (const Mesh& mesh : meshes_) views.push_back(mesh.view());
-    Result<VoxelField> field = cachedVoxelField(views, options, log);
+    return options;
+}
+
+// What a collider asks for; where it leaves the choice, a quarter of the spacing, or the finest that memory holds.
+float Session::voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const {
+    const float side = longest(bounds);
+    if (!(side > 0)) return 0.25F * scene_.fluid.spacing;
+    if (collider.resolution > 0) return side / static_cast<float>(std::max(collider.resolution, 2));
+    const float wanted = 0.25F * scene_.fluid.spacing;
+    float edge = std::min(wanted, 0.5F * side);
+    const VoxelFieldOptions options = fieldOptions(bounds, edge);
+    const auto bytes = [&] {
+        const dvec3 voxels = (dvec3(bounds.size()) + 2.0 * std::max(options.band, kBandVoxels * edge)) / static_cast<double>(edge) + 2.0;
+        return voxels.x * voxels.y * voxels.z * (sizeof(float) + sizeof(uint32_t) + 0.125);
+    };
+    while (bytes() > 0.9 * static_cast<double>(options.memoryLimit)) edge *= 1.05F;
+    if (edge > 1.01F * wanted)
+        log.notice(
+            fmt::format("{} is too large for voxels of a quarter of the spacing: they are {:.3g} m instead of {:.3g} m, and water "
+                        "rests {:.3g} m off it; a resolution would say otherwise",
+                        collider.mesh, edge, wanted, std::max(0.5F * scene_.fluid.spacing, kContactVoxels * edge)));
+    return edge;
+}
+
+Result<VoxelField> Session::bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge,
+                                       const Log& log) const {
+    Bounds all;
+    for (const MeshView& view : views)
+        for (const vec3& p : view.positions) all.add(p);
+    VoxelFieldOptions options = fieldOptions(all, edge);
+    options.surfaces = surfaces;
+    return cachedVoxelField(views, options, log);
+}
+
+Status Session::bake(const Log& log) {
+    // All that stands still becomes one field, whose voxels are the finest that any mesh asks for.
+    float edge = std::numeric_limits<float>::max();
+    std::vector<MeshView> still;
+    std::vector<uint8_t> stillSurfaces;
+    for (size_t m = 0; m < meshes_.size(); ++m) {
+        const size_t c = colliderOf_[m];
+        const ColliderParams& collider = scene_.colliders[c];
+        const uint8_t surface = surfaceOf_[c];
+        const Bounds bounds = meshes_[m].bounds();
+        const MeshView view = meshes_[m].view();
+        if (collider.motion.moves()) {
+            Result<VoxelField> field = bakeMeshes(std::span(&view, 1), std::span(&surface, 1), voxelEdge(collider, bounds, log), log);
+            if (!field) return field.error();
+            rigid_.push_back({c, m, std::make_unique<VoxelField>(std::move(*field)), 0.0});
+        } else if (collider.wave.amplitude > 0) {
+            const Bounds reach = waveReach(collider.wave, bounds);
+            VoxelFieldOptions options = fieldOptions(reach, voxelEdge(collider, reach, log));
+            options.surfaces = std::span(&surface, 1);
+            Result<DeformingField> field = DeformingField::create(std::span(&view, 1), reach, options);
+            if (!field) return field.error();
+            deforming_.push_back({c, m, std::make_unique<DeformingField>(std::move(*field)), meshes_[m].positions, {}});
+        } else {
+            if (longest(bounds) > 0) edge = std::min(edge, voxelEdge(collider, bounds, log));
+            still.push_back(view);
+            stillSurfaces.push_back(surface);
+        }
+    }
+    if (still.empty()) return ok();
+    Result<VoxelField> field = bakeMeshes(still, stillSurfaces, edge, log);
     if (!field) return field.error();
     field_ = std::move(*field);
     return ok();
+}
+
+SolidFields Session::fields() const {
+    SolidFields all;
+    if (!field_.empty()) all.still = &field_;
+    for (const Rigid& r : rigid_) all.rigid.push_back(r.field.get());
+    for (const Deforming& d : deforming_) all.deforming.push_back(&d.field->field());
+    return all;
 }
 
 Bounds Session::bounds() const {
@@ -98,25 +204,66 @@ void Session::apply(const SceneFile& scene) {
     scene_ = scene;
     scene_.folder = folder;
     world_->setParams(scene_.fluid);
-    size_t next = 0;
-    for (const ColliderParams& collider : scene_.colliders) {
-        if (collider.shape != "mesh" || next >= solids_.nodes().size()) continue;
-        Node& node = solids_.nodes()[next++];
+    world_->setSurfaces(surfaces());
+    for (size_t m = 0; m < meshes_.size() && m < solids_.nodes().size(); ++m) {
+        if (colliderOf_[m] >= scene_.colliders.size()) continue;
+        const ColliderParams& collider = scene_.colliders[colliderOf_[m]];
+        Node& node = solids_.nodes()[m];
         node.material.baseColour = collider.colour;
         node.material.roughness = collider.roughness;
         node.visible = collider.visible;
     }
 }
 
-double Session::step(double seconds, bool wait) {
-    auto start = std::chrono::steady_clock::now();
+// Steps the world with the solids where they are to be `seconds` from now.
+void Session::advance(double seconds) {
     FluidInputs inputs;
     inputs.gravity = scene_.fluid.gravity;
+    const double before = world_->time(), then = before + seconds;
+    std::vector<Pose> poses;
+    for (const Rigid& r : rigid_) {
+        const ColliderParams& collider = scene_.colliders[r.collider];
+        poses.push_back(colliderPose(collider, then, r.turned + double{collider.motion.spin} * seconds));
+    }
+    std::vector<std::span<const vec3>> shapes;
+    for (Deforming& d : deforming_) {
+        waveShape(scene_.colliders[d.collider].wave, d.rest, then, d.shape);
+        shapes.emplace_back(d.shape);
+    }
+    inputs.poses = poses;
+    inputs.shapes = shapes;
     world_->step(inputs, seconds);
+    const double gone = world_->time() - before;  // less than asked where time slows
+    for (Rigid& r : rigid_) r.turned = std::fmod(r.turned + double{scene_.colliders[r.collider].motion.spin} * gone, 360.0);
+}
+
+void Session::placeNodes() {
+    for (size_t k = 0; k < rigid_.size(); ++k) solids_.nodes()[rigid_[k].node].local = matrixOf(world_->poses()[k]);
+    for (const Deforming& d : deforming_) {
+        Mesh mesh = meshes_[d.node];
+        mesh.positions.assign(d.field->positions().begin(), d.field->positions().end());
+        recomputeNormals(mesh);
+        solids_.nodes()[d.node].mesh = std::make_shared<const Mesh>(std::move(mesh));
+    }
+}
+
+double Session::step(double seconds, bool wait) {
+    auto start = std::chrono::steady_clock::now();
+    // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
+    const bool moving = !rigid_.empty() || !deforming_.empty();
+    const int parts = moving && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
+    for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1));
     if (wait) world_->device().finish();
+    if (moving) placeNodes();
     double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     world_->device().poll();
     return ms;
+}
+
+void Session::reset() {
+    world_->reset();
+    for (Rigid& r : rigid_) r.turned = 0;
+    placeNodes();
 }
 
 }  // namespace rivulet

@@ -1,5 +1,5 @@
-// Session: a scene brought to life. Meshes imported and placed, the static field baked, a FluidWorld made on a Device. The window,
-// headless runs, benches and tests share it.
+// Session: a scene brought to life. Meshes imported and placed, their voxels baked, a FluidWorld made on a Device, solids moved. The
+// window, headless runs, benches and tests share it.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,19 @@
 #include "engine/scene/scene.h"
 #include "fluid/bridge/scene_file.h"
 #include "fluid/sim/fluid_world.h"
+#include "fluid/voxel/deforming_field.h"
 #include "fluid/voxel/voxel_field.h"
 
 namespace rivulet {
 
 inline constexpr int kFramesPerSecond = 60;  // of simulated time
+
+// The voxels of a scene's meshes. Pointers hold as long as the session.
+struct SolidFields {
+    const VoxelField* still = nullptr;     // of all meshes that stand still; null = none
+    std::vector<const VoxelField*> rigid;  // each in its own frame: FluidWorld::poses() has the frames
+    std::vector<const VoxelField*> deforming;
+};
 
 class Session {
   public:
@@ -24,26 +32,48 @@ class Session {
 
     const SceneFile& scene() const { return scene_; }
     FluidWorld& world() { return *world_; }
-    const VoxelField& field() const { return field_; }  // of all mesh colliders; empty = none
-    const Scene& solids() const { return solids_; }     // the visible colliders, to be drawn
-    Bounds bounds() const;                              // the fluid's box and the solids, m, world
+    const VoxelField& field() const { return field_; }  // of the mesh colliders that stand still; empty = none
+    SolidFields fields() const;
+    const Scene& solids() const { return solids_; }  // the visible colliders, to be drawn
+    Bounds bounds() const;                           // the fluid's box and the solids, m, world
 
     // Takes what may change between steps; what is `fixed` needs a new Session.
     void apply(const SceneFile& scene);
 
     // One frame. The wall time in ms: with `wait`, until the device has done it; without, only what the call took.
     double step(double seconds, bool wait);
-    void reset() { world_->reset(); }
+    void reset();
 
   private:
+    struct Rigid {
+        size_t collider = 0, node = 0;
+        std::unique_ptr<VoxelField> field;
+        double turned = 0;  // deg
+    };
+    struct Deforming {
+        size_t collider = 0, node = 0;
+        std::unique_ptr<DeformingField> field;
+        std::vector<vec3> rest, shape;
+    };
+
     Session() = default;
     Status importColliders();
     Status bake(const Log& log);
+    Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
+    VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;
+    float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
+    std::vector<Surface> surfaces();
+    void advance(double seconds);
+    void placeNodes();
 
     SceneFile scene_;
     Scene solids_;
-    std::vector<Mesh> meshes_;  // of the mesh colliders, in the world
+    std::vector<Mesh> meshes_;        // of the mesh colliders, in the order of the scene: in the world, or in a moving one's own frame
+    std::vector<size_t> colliderOf_;  // of each mesh
+    std::vector<uint8_t> surfaceOf_;  // of each collider
     VoxelField field_;
+    std::vector<Rigid> rigid_;
+    std::vector<Deforming> deforming_;
     std::unique_ptr<FluidWorld> world_;
 };
 

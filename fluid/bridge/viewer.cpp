@@ -188,7 +188,7 @@ void Viewer::step(double seconds) {
     if (recorder_) recorder_->frame(ms, 0, 1000 * seconds, passes, renderer_->times());
 }
 
-void Viewer::record() { recorder_.emplace(session_->world(), &session_->field(), true); }
+void Viewer::record() { recorder_.emplace(session_->world(), session_->fields(), true); }
 
 RunStats Viewer::finishRecord() {
     ASSERT(recorder_, "record() comes first");

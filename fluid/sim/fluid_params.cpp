@@ -24,8 +24,14 @@ void BoxParams::visit(ParamVisitor& v) {
 }
 
 void CollisionParams::visit(ParamVisitor& v) {
-    v.value({"friction", "", "Coulomb friction of walls and meshes: 0 = slips", 0, 10}, friction);
-    v.value({"restitution", "", "share of the speed into a mesh that comes back: 0 = stays, 1 = bounces", 0, 1}, restitution);
+    static const std::vector<std::string> walks = {"exact", "thesis"};
+    v.value({"friction", "", "Coulomb friction of walls, and of colliders that name none: 0 = slips", 0, 10}, friction);
+    v.value({"restitution", "", "share of the speed into a collider that comes back, where it names none: 0 = stays, 1 = bounces", 0, 1},
+            restitution);
+    v.choice({.name = "walk",
+              .doc = "exact: nothing passes a voxel; thesis: as the thesis walks and answers, leaks and sticking included",
+              .fixed = kFixed},
+             walk, walks);
 }
 
 void FluidParams::visit(ParamVisitor& v) {

@@ -22,8 +22,9 @@ struct BoxParams {
 };
 
 struct CollisionParams {
-    float friction = 0.0F;     // Coulomb, of mesh colliders and walls
-    float restitution = 0.0F;  // of mesh colliders
+    float friction = 0.0F;       // Coulomb, of mesh colliders and walls
+    float restitution = 0.0F;    // of mesh colliders
+    std::string walk = "exact";  // exact | thesis
     void visit(ParamVisitor& v);
 };
 

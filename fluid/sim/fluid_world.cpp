@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "fluid/sim/block.h"
 #include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/particles.h"
-#include "fluid/voxel/labels.h"
+#include "fluid/sim/solid_passes.h"
 #include "shaders/fluid/stats_row.h"
 
 namespace rivulet {
@@ -32,11 +31,9 @@ struct FluidWorld::Impl {
     std::unique_ptr<NeighborGrid> grid;
     Particles particles;
     std::vector<NewParticle> start;
-    Buffer planes, statsRows;
-    std::vector<PlaneSolid> planeSolids;
-    Kernel boundary, integrate, collide, stats;
-    const VoxelField* field = nullptr;  // null: no mesh in the scene, and no pass for one
-    Buffer fieldBlock, fieldBits, fieldDistance, fieldNormal;
+    SolidPasses solids;
+    Buffer statsRows;
+    Kernel integrate, stats;
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};
     vec3 gravity{0.0F};
@@ -44,16 +41,15 @@ struct FluidWorld::Impl {
     uint64_t frame = 0;
     int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
-    float fieldBlockDt = 0;  // fieldBlock was written for this step length
+    float fastestWall = 0;  // m/s, of moving solids so far
 
     Status prepare();
-    Status uploadField();
     void fillStart();
     void writeStart();
     float fastestFall() const;
     double stepLimit(double frameSeconds) const;
     void say(const std::string& sentence);
-    void substep(double dt);
+    void substep(double dt, double from, double to);
     void gatherStats(int substeps);
 };
 
@@ -63,6 +59,8 @@ const FluidParams& FluidWorld::params() const { return impl_->params; }
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 double FluidWorld::time() const { return impl_->time; }
 int FluidWorld::lastSubsteps() const { return impl_->lastSubsteps; }
+const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
+uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
 // The speed water of this scene reaches by falling from its highest block to the far side of the box, with what it starts with.
@@ -78,6 +76,7 @@ float FluidWorld::Impl::fastestFall() const {
         }
         fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
     }
+    fastest = std::max(fastest, fastestWall);
     // Still water without gravity has no speed of its own: the length it could be pushed over in a tenth of a second.
     return std::max(fastest, 10.0F * params.spacing);
 }
@@ -97,15 +96,9 @@ Status FluidWorld::Impl::prepare() {
     struct Wanted {
         Kernel* kernel;
         const char* path;
-        std::vector<Define> defines;
     };
-    std::vector<Wanted> kernels = {{&integrate, "fluid/integrate", {}}, {&stats, "fluid/stats", {}}, {&boundary, "fluid/boundary", {}}};
-    if (field != nullptr) {
-        kernels[2].defines = {{"FIELD", "1"}};
-        kernels.push_back({&collide, "fluid/collide", {}});
-    }
-    for (const Wanted& w : kernels) {
-        Result<Kernel> found = device->kernel(w.path, w.defines);
+    for (const Wanted& w : {Wanted{&integrate, "fluid/integrate"}, Wanted{&stats, "fluid/stats"}}) {
+        Result<Kernel> found = device->kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
     }
@@ -123,17 +116,6 @@ Status FluidWorld::Impl::prepare() {
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
     if (!rows) return rows.error();
     statsRows = std::move(*rows);
-    std::vector<vec4> planeList;
-    for (const PlaneSolid& p : planeSolids) {
-        const vec3 n = glm::normalize(p.normal);
-        planeList.emplace_back(n, -glm::dot(n, p.position));
-    }
-    Result<Buffer> planeBuffer = device->allocate(std::max<size_t>(planeList.size(), 1) * sizeof(vec4));
-    if (!planeBuffer) return planeBuffer.error();
-    planes = std::move(*planeBuffer);
-    device->writeAll<vec4>(planes, planeList);
-    if (field != nullptr)
-        if (Status s = uploadField(); !s) return s.error();
     if (count == 0) log.notice("the scene has no particles");
     writeStart();
     return ok();
@@ -142,32 +124,8 @@ Status FluidWorld::Impl::prepare() {
 // The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
 void FluidWorld::Impl::fillStart() {
     for (const BlockParams& b : params.blocks) fillBlock(b, params.spacing, start);
-    const float contact = field != nullptr ? fieldParams(*field, FieldContact{.spacing = params.spacing}).contact : 0.0F;
-    const std::vector<uint8_t> outside = field != nullptr ? reachableFromBorder(field->surface) : std::vector<uint8_t>{};
-    const size_t left = std::erase_if(start, [&](const NewParticle& p) {
-        for (const PlaneSolid& plane : planeSolids)
-            if (glm::dot(glm::normalize(plane.normal), p.position - plane.position) < 0.5F * params.spacing) return true;
-        if (field == nullptr) return false;
-        const ivec3 voxel = field->surface.cellOf(p.position);
-        return field->clearance(p.position) < contact || (field->surface.contains(voxel) && outside[field->surface.index(voxel)] == 0);
-    });
+    const size_t left = std::erase_if(start, [&](const NewParticle& p) { return !solids.mayBeBorn(p.position, params.spacing); });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
-}
-
-Status FluidWorld::Impl::uploadField() {
-    const std::tuple<Buffer*, const void*, size_t> parts[] = {
-        {&fieldBlock, nullptr, sizeof(FieldParams)},
-        {&fieldBits, field->surface.bits.data(), field->surface.bits.size()},
-        {&fieldDistance, field->distance.data(), field->distance.size() * sizeof(float)},
-        {&fieldNormal, field->normal.data(), field->normal.size() * sizeof(uint32_t)},
-    };
-    for (auto [buffer, data, bytes] : parts) {
-        Result<Buffer> made = device->allocate(bytes);
-        if (!made) return made.error();
-        *buffer = std::move(*made);
-        if (data != nullptr) device->write(*buffer, std::span(static_cast<const std::byte*>(data), bytes));
-    }
-    return ok();
 }
 
 void FluidWorld::Impl::writeStart() {
@@ -201,7 +159,8 @@ void FluidWorld::Impl::say(const std::string& sentence) {
 double FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
-    const double fastest = figures->maxSpeed + g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
+    const double fastest = std::max(figures->maxSpeed, double{solids.fastestWall()}) +
+                           g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
     double dt = params.cfl * hs / (c0 + fastest);
     const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
     if (nu > 0) dt = std::min(dt, 0.125 * hs * hs / nu);
@@ -209,42 +168,23 @@ double FluidWorld::Impl::stepLimit(double frameSeconds) const {
     return dt;
 }
 
-void FluidWorld::Impl::substep(double dt) {
+// `from`, `to`: the shares of the frame's time at which it begins and ends.
+void FluidWorld::Impl::substep(double dt, double from, double to) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = static_cast<float>(params.spacing / dt);
     if (Status built = grid->build(step, particles); !built) {
         say(built.error().message);
         return;
     }
-    FieldParams block{};
-    if (field != nullptr) {
-        block = fieldParams(*field, FieldContact{.spacing = params.spacing,
-                                                 .friction = params.collision.friction,
-                                                 .restitution = params.collision.restitution,
-                                                 .restSpeed = 2.0F * glm::length(gravity) * step.dt,
-                                                 .countIndex = step.cellCount});
-        if (fieldBlockDt != step.dt) device->write(fieldBlock, std::as_bytes(std::span(&block, 1)));
-        fieldBlockDt = step.dt;
-    }
-    if (method->wallsInDensity()) {
-        if (field != nullptr)
-            device->run(boundary, step,
-                        {&grid->cellStart(), &particles.position, &planes, &particles.boundary, &fieldBlock, &fieldDistance},
-                        particles.count);
-        else
-            device->run(boundary, step, {&grid->cellStart(), &particles.position, &planes, &particles.boundary}, particles.count);
-    }
+    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
+    if (method->wallsInDensity()) solids.boundary(step, *grid, particles);
     StepContext context{*device, step, *grid, particles};
     method->step(context);
     device->run(integrate, step,
-                {&grid->cellStart(), &particles.position, &particles.velocity, &particles.acceleration, &particles.density, &planes,
-                 &particles.positionNext, &particles.velocityNext},
+                {&grid->cellStart(), &particles.position, &particles.velocity, &particles.acceleration, &particles.density,
+                 &solids.planes(), &particles.positionNext, &particles.velocityNext},
                 particles.count);
-    if (field != nullptr)
-        device->run(collide, block,
-                    {&particles.position, &particles.positionNext, &particles.velocityNext, &grid->cellStart(), &fieldBits, &fieldDistance,
-                     &fieldNormal},
-                    particles.count);
+    solids.collide(*grid, particles);
 }
 
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
@@ -257,6 +197,8 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         return;
     }
     w.gravity = inputs.gravity;
+    if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, seconds); !asked) w.say(asked.error().message);
+    w.fastestWall = std::max(w.fastestWall, w.solids.fastestWall());
     const FluidParams& p = w.params;
     StepParams& s = w.step;
     s = StepParams{};
@@ -273,7 +215,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     s.restitution = p.box.restitution;
     s.friction = p.collision.friction;
     s.spacing = p.spacing;
-    s.planeCount = static_cast<uint32_t>(w.planeSolids.size());
+    s.planeCount = w.solids.planeCount();
     w.grid->fill(s);
     w.method->fill(p, w.method->soundSpeed(p, w.fastestFall()), s);
 
@@ -286,7 +228,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         dt = limit;
         w.say(fmt::format("a frame needed more than fluid.maxSubsteps = {} steps: simulated time runs slower than asked", p.maxSubsteps));
     }
-    for (int k = 0; k < substeps; ++k) w.substep(dt);
+    for (int k = 0; k < substeps; ++k) w.substep(dt, k * dt / seconds, (k + 1) * dt / seconds);
     w.lastSubsteps = substeps;
     w.time += dt * substeps;
     w.dtMin = w.dtMin == 0 ? dt : std::min(w.dtMin, dt);
@@ -333,7 +275,13 @@ void FluidWorld::Impl::gatherStats(int substeps) {
                       });
 }
 
-void FluidWorld::reset() { impl_->writeStart(); }
+void FluidWorld::reset() {
+    if (Status back = impl_->solids.reset(); !back) impl_->say(back.error().message);
+    impl_->fastestWall = 0;
+    impl_->writeStart();
+}
+
+void FluidWorld::setSurfaces(std::span<const Surface> surfaces) { impl_->solids.setSurfaces(surfaces); }
 
 void FluidWorld::setParams(const FluidParams& params) {
     FluidParams next = params;
@@ -345,6 +293,7 @@ void FluidWorld::setParams(const FluidParams& params) {
     next.box.min = old.box.min;
     next.box.max = old.box.max;
     next.blocks = old.blocks;
+    next.collision.walk = old.collision.walk;
     impl_->params = next;
 }
 
@@ -355,15 +304,14 @@ ParticleView FluidWorld::particles() const {
             w.params.spacing,          w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
 }
 
-Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const StaticSolids& solids, Log log) {
+Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log) {
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
-    w.field = solids.field != nullptr && !solids.field->empty() ? solids.field : nullptr;
-    w.planeSolids = solids.planes;
-    for (const PlaneSolid& p : w.planeSolids)
-        if (!(glm::length(p.normal) > 0.0F)) return badInput("a plane's normal is zero: give it a direction");
+    Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision);
+    if (!passes) return passes.error();
+    w.solids = std::move(*passes);
     w.log = std::move(log);
     w.gravity = params.gravity;
     if (Status s = w.prepare(); !s) return s.error();

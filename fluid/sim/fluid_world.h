@@ -25,12 +25,15 @@ struct ParticleView {
 // What the scene says to the fluid each frame.
 struct FluidInputs {
     vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2
+    // Where solids are when the frame's time has gone by; on the way there they move evenly. Empty: they stay.
+    std::span<const Pose> poses = {};                    // of Solids::rigid
+    std::span<const std::span<const vec3>> shapes = {};  // m, the vertices of Solids::deforming
 };
 
 class FluidWorld {
   public:
     // Error: a value that makes no sense together with another, out of memory. `device` must outlive the world.
-    static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const StaticSolids& solids, Log log);
+    static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log);
     ~FluidWorld();
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;
@@ -38,14 +41,17 @@ class FluidWorld {
     // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits ask. 0 or less: nothing happens.
     // A frame longer than maxSubsteps can cover advances less, and stats().limited says so: simulated time slows, steps do not grow.
     void step(const FluidInputs& inputs, double seconds);
-    void reset();                        // back to t = 0
-    void setParams(const FluidParams&);  // takes what can change between steps; `fixed` values wait for a new world
+    void reset();                                         // back to t = 0
+    void setParams(const FluidParams&);                   // takes what can change between steps; `fixed` values wait for a new world
+    void setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces
 
     const FluidParams& params() const;
     ParticleView particles() const;
-    const FluidStats& stats() const;  // late on a GPU
-    double time() const;              // s simulated
-    int lastSubsteps() const;         // of the last step(), not late
+    const FluidStats& stats() const;         // late on a GPU
+    double time() const;                     // s simulated
+    int lastSubsteps() const;                // of the last step(), not late
+    const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, short of what was asked
+    uint64_t voxelsRewritten() const;        // of deforming solids, since the start
     Device& device() const;
 
   private:

@@ -31,6 +31,7 @@ class DeformingField {
     // At every grid point within the band: how far (m) the nearest triangle's nearest point was moved by the last update: xyz, w 0. Zero
     // elsewhere, and after create. Over the update's time step it is the wall's velocity.
     std::span<const vec4> displacement() const { return displacement_; }
+    std::span<const vec3> positions() const { return positions_; }  // the latest, m
 
   private:
     DeformingField() = default;

@@ -33,9 +33,9 @@ class GridTriangles {
     }
     // Its corners in the mesh's own coordinates, and one of those in the grid's.
     std::array<dvec3, 3> corners(size_t k) const {
-        const size_t mine = owner(k);
-        const MeshView& mesh = meshes_[mine];
-        const size_t first = 3 * (k - (mine == 0 ? 0 : ends_[mine - 1]));
+        const size_t owner = this->owner(k);
+        const MeshView& mesh = meshes_[owner];
+        const size_t first = 3 * (k - (owner == 0 ? 0 : ends_[owner - 1]));
         return {dvec3(mesh.positions[mesh.indices[first]]), dvec3(mesh.positions[mesh.indices[first + 1]]),
                 dvec3(mesh.positions[mesh.indices[first + 2]])};
     }

@@ -151,9 +151,8 @@ FieldParams fieldParams(const VoxelField& field, const FieldContact& contact) {
     p.band = field.band;
     p.contact = std::max(0.5F * contact.spacing, kContactVoxels * grid.voxel);
     ASSERT(p.contact < field.band, "bake the field with a band wider than half a spacing");
-    p.friction = contact.friction;
-    p.restitution = contact.restitution;
     p.restSpeed = contact.restSpeed;
+    p.surfacesAt = static_cast<uint32_t>(field.normal.size());
     p.nudge = 1e-4F + 1e-6F * static_cast<float>(grid.size.x + grid.size.y + grid.size.z);
     return p;
 }

@@ -57,13 +57,11 @@ Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bound
 // How particles meet the field.
 struct FieldContact {
     float spacing = 0;        // m, rest distance of particles
-    float friction = 0;       // Coulomb coefficient
-    float restitution = 0;    // 0..1
     float restSpeed = 0;      // m/s, slower approaches do not bounce; 2 |gravity| dt is a good value
     uint32_t countIndex = 0;  // of the buffer whose element [countIndex] is the number of active particles
 };
 
-// The parameter block of shaders/fluid/collide.kernel.
+// The parameter block of shaders/fluid/collide.kernel. The surfaces' friction and restitution follow the normals in their buffer.
 FieldParams fieldParams(const VoxelField& field, const FieldContact& contact);
 
 }  // namespace rivulet

@@ -82,11 +82,8 @@ Result<VoxelGrid> layoutWithin(std::span<const MeshView> meshes, int resolution,
     grid.voxel = layout.voxel;
     const dvec3 low(extent.bounds.min), high(extent.bounds.max);
     const dvec3 side = layout.voxels * static_cast<double>(layout.voxel);
+    // The low corner is a float itself: the nearest to half the spare room below it is that corner, or no more than all that room below.
     grid.origin = vec3(0.5 * (low + high) - 0.5 * side);
-    for (int k = 0; k < 3; ++k) {  // where there is no room to spare, rounding must not take any
-        const auto origin = static_cast<double>(grid.origin[k]);
-        if (origin > low[k] || origin + side[k] < high[k]) grid.origin[k] = extent.bounds.min[k];
-    }
     grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
     return grid;
 }

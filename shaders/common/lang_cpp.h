@@ -29,7 +29,11 @@ namespace rivulet::RIVULET_KERNEL_UNIT {
 #define INLINE inline __attribute__((always_inline))
 
 using uint = unsigned;
-struct vec2 { float x, y; };
+struct vec2 {
+    float x, y;
+    vec2() = default;
+    INLINE vec2(float ax, float ay) : x(ax), y(ay) {}
+};
 struct vec3 {
     float x, y, z;
     vec3() = default;
@@ -197,9 +201,9 @@ template <class T> INLINE void STORE(T* b, uint i, const T& v) { b[i] = v; }
 
 #define FN INLINE
 #define STRUCT(n) struct n
-#define GLOBAL(T, n) const T* n,
+#define GLOBAL(T, n) [[maybe_unused]] const T* n,
 #define PASS(n) n,
-#define RO(b, N, T, n) , const T* __restrict n
+#define RO(b, N, T, n) , [[maybe_unused]] const T* __restrict n
 #define RW(b, N, T, n) , T* __restrict n
 #define RO_CAST(b, N, T, n) , static_cast<const T*>(buffers_[(b) - 1])
 #define RW_CAST(b, N, T, n) , static_cast<T*>(buffers_[(b) - 1])

@@ -14,12 +14,17 @@ STRUCT(Walls) {
     float distanceA;  // m, from the point
     float distanceB;
     float distanceC;
+    vec2  surfaceA;  // friction, restitution
+    vec2  surfaceB;
+    vec2  surfaceC;
     bool  corner;
 };
 
-// Response to all of them; what the answer to one pushes into another goes next time round.
-FN vec3 respondToAll(vec3 u, Walls w, float friction, float bounce) {
-    vec3 v = respond(respond(respond(u, w.normalA, friction, bounce), w.normalB, friction, bounce), w.normalC, friction, bounce);
+// Response to all of them, bouncing where `bounces` is 1; what the answer to one pushes into another goes next time round.
+FN vec3 respondToAll(vec3 u, Walls w, float bounces) {
+    vec3 v = respond(u, w.normalA, w.surfaceA.x, w.surfaceA.y * bounces);
+    v = respond(v, w.normalB, w.surfaceB.x, w.surfaceB.y * bounces);
+    v = respond(v, w.normalC, w.surfaceC.x, w.surfaceC.y * bounces);
     if (w.corner)
         for (int k = 0; k < 4; ++k) v = respond(respond(respond(v, w.normalA, 0.0f, 0.0f), w.normalB, 0.0f, 0.0f), w.normalC, 0.0f, 0.0f);
     return v;
@@ -40,6 +45,20 @@ FN uint wallSurface(uint code) {
     return code >> 28u;
 }
 
+// The index of the grid point nearest to `g`, cell coordinates; of the grid's border where `g` is beyond it.
+FN uint nearestPoint(FieldParams f, vec3 g) {
+    uint x = TO_UINT(clamp(g.x + 0.5f, 0.0f, TO_FLOAT(f.sizeX)));
+    uint y = TO_UINT(clamp(g.y + 0.5f, 0.0f, TO_FLOAT(f.sizeY)));
+    uint z = TO_UINT(clamp(g.z + 0.5f, 0.0f, TO_FLOAT(f.sizeZ)));
+    return (z * (TO_UINT(f.sizeY) + 1u) + y) * (TO_UINT(f.sizeX) + 1u) + x;
+}
+
+// What lies behind the distances of the surface that a grid point's normal names: friction and restitution.
+FN vec2 surfaceOf(GLOBAL(uint, bandNormal) FieldParams f, uint code) {
+    uint at = f.surfacesAt + 2u * wallSurface(code);
+    return vec2(BITS_FLOAT(bandNormal[at]), BITS_FLOAT(bandNormal[at + 1u]));
+}
+
 // Near where walls face each other the interpolated distance blends them: its gradient points between them, and a particle would be
 // led round the corner as in a bowl. The cell's own grid points tell the walls apart: each knows the direction to its nearest
 // triangle. From there the wall is extended as a plane. Round an outer edge such planes come nearer to the point than the mesh
@@ -52,8 +71,11 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
     w.distanceA = f.band;
     w.distanceB = f.band;
     w.distanceC = f.band;
+    w.surfaceA = vec2(0.0f, 0.0f);
+    w.surfaceB = w.surfaceA;
+    w.surfaceC = w.surfaceA;
+    vec3 g = toCells(f, p);
     if (!loneWall(here)) {
-        vec3 g = toCells(f, p);
         int cx = clamp(TO_INT(floor(g.x)), 0, f.sizeX - 1);
         int cy = clamp(TO_INT(floor(g.y)), 0, f.sizeY - 1);
         int cz = clamp(TO_INT(floor(g.z)), 0, f.sizeZ - 1);
@@ -63,7 +85,8 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
             int z = cz + (k >> 2);
             uint at = (TO_UINT(z) * (TO_UINT(f.sizeY) + 1u) + TO_UINT(y)) * (TO_UINT(f.sizeX) + 1u) + TO_UINT(x);
             float there = bandDistance[at];
-            vec3 n = unpackNormal(bandNormal[at]);
+            uint code = bandNormal[at];
+            vec3 n = unpackNormal(code);
             float distance_ = there + dot(n, g - vec3(TO_FLOAT(x), TO_FLOAT(y), TO_FLOAT(z))) * f.voxel;
             if (there >= f.band || distance_ < here.distance - 0.02f * f.voxel) continue;
             // The nearest of each direction, in the order they come.
@@ -71,15 +94,18 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
                 if (distance_ < w.distanceA) {
                     w.normalA = n;
                     w.distanceA = distance_;
+                    w.surfaceA = surfaceOf(PASS(bandNormal) f, code);
                 }
             } else if (dot(w.normalB, w.normalB) == 0.0f || dot(w.normalB, n) > 0.9f) {
                 if (distance_ < w.distanceB) {
                     w.normalB = n;
                     w.distanceB = distance_;
+                    w.surfaceB = surfaceOf(PASS(bandNormal) f, code);
                 }
             } else if (distance_ < w.distanceC) {
                 w.normalC = n;
                 w.distanceC = distance_;
+                w.surfaceC = surfaceOf(PASS(bandNormal) f, code);
             }
         }
     }
@@ -90,6 +116,7 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
         w.normalC = w.normalB;
         w.normalA = fieldNormal(here);
         w.distanceA = here.distance;
+        w.surfaceA = surfaceOf(PASS(bandNormal) f, bandNormal[nearestPoint(f, g)]);
     }
     return w;
 }
@@ -130,7 +157,7 @@ FN float enterGrid(FieldParams f, vec3 a, vec3 d) {
     return tIn <= tOut ? tIn : 2.0f;
 }
 
-// `start` touches no set voxel; nor does the position returned.
+// `start` touches no set voxel; nor does the position returned. MOVING: unless it did at the start.
 FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 start, vec3 end, vec3 velocity) {
     Slid s;
     s.position = start;
@@ -142,6 +169,16 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
     s.position = start + rest * enters;  // the grid's border is free of the mesh: it is padded
     rest = rest * (1.0f - enters);
     FieldSample here = fieldAt(PASS(bandDistance) f, s.position);
+#if defined(MOVING)
+    // Overrun by its wall, or squeezed into it by another: no way is walked; out, half a voxel a step, and no further in.
+    if (setVoxelNear(PASS(surfaceBits) f, toCells(f, s.position))) {
+        vec3 n = fieldNormal(here);
+        s.position = s.position + n * min(f.contact - here.distance, 0.5f * f.voxel);
+        s.velocity = respond(velocity, n, 0.0f, 0.0f);
+        s.touched = true;
+        return s;
+    }
+#endif
     for (int k = 0; k < CONTACT_STRETCHES; ++k) {
         float left = length(rest);
         if (!(left > 0.0f)) break;
@@ -161,14 +198,15 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
             if (!(depthB > 0.0f)) w.normalB = vec3(0.0f, 0.0f, 0.0f);
             if (!(depthC > 0.0f)) w.normalC = vec3(0.0f, 0.0f, 0.0f);
             float fast = -min(min(dot(s.velocity, w.normalA), dot(s.velocity, w.normalB)), dot(s.velocity, w.normalC));
-            float bounce = fast > f.restSpeed ? f.restitution : 0.0f;
-            vec3 ended = respondBeyond(respondBeyond(respondBeyond(stretch, w.normalA, depthA, f.friction, bounce), w.normalB, depthB, f.friction, bounce),
-                                       w.normalC, depthC, f.friction, bounce);
+            float bounces = fast > f.restSpeed ? 1.0f : 0.0f;
+            vec3 ended = respondBeyond(stretch, w.normalA, depthA, w.surfaceA.x, w.surfaceA.y * bounces);
+            ended = respondBeyond(ended, w.normalB, depthB, w.surfaceB.x, w.surfaceB.y * bounces);
+            ended = respondBeyond(ended, w.normalC, depthC, w.surfaceC.x, w.surfaceC.y * bounces);
             vec3 change = ended - stretch;
             if (fast > 0.0f || dot(change, change) > 0.0f) {
                 s.touched = true;
-                rest = respondToAll(rest, w, f.friction, bounce);
-                s.velocity = respondToAll(s.velocity, w, f.friction, bounce);
+                rest = respondToAll(rest, w, bounces);
+                s.velocity = respondToAll(s.velocity, w, bounces);
             }
             // Still nearer than contact, by curvature or from the start. In a corner: out of each wall.
             if (w.corner) {

@@ -30,7 +30,7 @@ STRUCT(StepParams) {
     float maxSpeed;        // m/s, above which the step would tunnel: speeds are limited to it and counted
     uint  planeCount;      // of the array of collider planes
     float wallOffset;      // m, added to a wall's distance in the density: a lattice half a spacing off a wall is then at rest density
-    float friction;        // Coulomb's, of the box and the planes
+    float friction;        // Coulomb's, of the box
     float padding1;
     float padding2;
 };

@@ -13,11 +13,11 @@ STRUCT(FieldParams) {
     float voxel;         // m, edge
     float band;          // m, distances are exact below it and equal to it beyond
     float contact;       // m, centres keep this far from the mesh: max(spacing / 2, kContactVoxels * voxel)
-    float friction;      // Coulomb coefficient, >= 0
-    float restitution;   // 0..1
     float restSpeed;     // m/s, a slower approach does not bounce: what lies still stays still
     float nudge;         // voxels, rounding's reach: a voxel nearer than this to a point counts as touched
-    float unused;
+    uint  surfacesAt;    // bandNormal[surfacesAt + 2 s], [.. + 1]: float bits of surface s's Coulomb friction (>= 0) and restitution (0..1)
+    float unused0;
+    float unused1;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FieldParams) % 16 == 0);

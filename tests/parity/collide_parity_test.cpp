@@ -2,6 +2,7 @@
 // device.
 #include <gtest/gtest.h>
 
+#include "fluid/sim/solids.h"
 #include "fluid/voxel/voxel_field.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
@@ -34,7 +35,7 @@ struct Collider {
     FieldParams params{};
     Buffer from, to, speed, cellStart, bits, distance, normal;
 
-    Collider(Device& d, const VoxelField& field, FieldContact contact) : device(d) {
+    Collider(Device& d, const VoxelField& field, FieldContact contact, Surface surface) : device(d) {
         const Result<Kernel> made = device.kernel("fluid/collide");
         EXPECT_TRUE(made) << (made ? "" : made.error().message);
         if (made) kernel = *made;
@@ -45,7 +46,9 @@ struct Collider {
         };
         hold(bits, field.surface.bits);
         hold(distance, field.distance);
-        hold(normal, field.normal);
+        std::vector<uint32_t> normals = field.normal;
+        for (uint32_t word : surfaceWords({}, surface)) normals.push_back(word);
+        hold(normal, normals);
         hold(cellStart, std::vector<uint32_t>{kCount});
         for (Buffer* b : {&from, &to, &speed}) *b = std::move(*device.allocate(kCount * sizeof(vec4)));
     }
@@ -78,8 +81,9 @@ TEST_P(CollideParity, AgreesWithTheCpuAndLetsNothingIn) {
     const Result<VoxelField> baked = bakeVoxelField(std::span(&view, 1), {.resolution = 64});
     ASSERT_TRUE(baked) << baked.error().message;
     const VoxelField& field = *baked;
-    const FieldContact contact{.spacing = kSpacing, .friction = 0.2F, .restitution = 0.3F, .restSpeed = 0.05F};
-    Collider here(*cpu, field, contact), there(*gpu->device, field, contact);
+    const FieldContact contact{.spacing = kSpacing, .restSpeed = 0.05F};
+    const Surface surface{0.2F, 0.3F};
+    Collider here(*cpu, field, contact, surface), there(*gpu->device, field, contact, surface);
 
     State start;
     std::mt19937 random(5);

@@ -95,9 +95,9 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
         if (!*k) return out;
     }
     if (!method || !grid || !particles) return out;
-    Buffer planes = std::move(*device.allocate(sizeof(vec4)));
-    const vec4 slope(0.0F, std::cos(0.2F), std::sin(0.2F), -0.06F);
-    device.writeAll<vec4>(planes, std::span(&slope, 1));
+    Buffer planes = std::move(*device.allocate(2 * sizeof(vec4)));
+    const vec4 slope[2] = {vec4(0.0F, std::cos(0.2F), std::sin(0.2F), -0.06F), vec4(0.3F, 0.4F, 0.0F, 0.0F)};
+    device.writeAll<vec4>(planes, slope);
     device.writeAll<vec4>(particles->positionNext, in.position);
     device.writeAll<vec4>(particles->velocityNext, in.velocity);
     device.writeAll<uint32_t>(particles->id, in.id);
@@ -136,15 +136,17 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     Buffer block, bits, distance, normal;
     FieldParams fieldBlock{};
     if (field != nullptr) {
-        fieldBlock = fieldParams(*field, {.spacing = kSpacing, .friction = 0.1F, .restitution = 0.2F, .countIndex = s.cellCount});
+        fieldBlock = fieldParams(*field, {.spacing = kSpacing, .countIndex = s.cellCount});
         block = std::move(*device.allocate(sizeof(FieldParams)));
         bits = std::move(*device.allocate(field->surface.bits.size()));
         distance = std::move(*device.allocate(field->distance.size() * sizeof(float)));
         device.write(block, std::as_bytes(std::span(&fieldBlock, 1)));
         device.writeAll<uint8_t>(bits, field->surface.bits);
-        normal = std::move(*device.allocate(field->normal.size() * sizeof(uint32_t)));
+        std::vector<uint32_t> normals = field->normal;
+        for (uint32_t word : surfaceWords({}, {0.1F, 0.2F})) normals.push_back(word);
+        normal = std::move(*device.allocate(normals.size() * sizeof(uint32_t)));
         device.writeAll<float>(distance, field->distance);
-        device.writeAll<uint32_t>(normal, field->normal);
+        device.writeAll<uint32_t>(normal, normals);
     }
     if ((*method)->wallsInDensity()) {
         if (field != nullptr)
@@ -256,9 +258,9 @@ TEST(SimSameness, ACpuRunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
         FluidParams p;
         p.spacing = kSpacing;
         p.blocks = {{vec3(0.0F, 0.3F, 0.0F), vec3(0.4F, 0.7F, 0.4F), vec3(0.0F)}};
-        auto world = FluidWorld::create(*device, p, {.field = &field, .planes = {}}, {});
+        auto world = FluidWorld::create(*device, p, {.field = &field}, {});
         ASSERT_TRUE(world) << world.error().message;
-        for (int frame = 0; frame < 12; ++frame) (*world)->step({p.gravity}, 1.0 / 60);
+        for (int frame = 0; frame < 12; ++frame) (*world)->step({.gravity = p.gravity}, 1.0 / 60);
         const uint64_t hash = hashOf(*device, **world);
         if (first == 0) first = hash;
         EXPECT_EQ(hash, first) << run.threads << " threads, " << isaName(run.isa);

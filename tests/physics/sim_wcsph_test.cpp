@@ -19,7 +19,7 @@ std::unique_ptr<CpuDevice> cpu() {
     return makeCpuDevice(rows);
 }
 
-std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, const StaticSolids& solids = {}) {
+std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, const Solids& solids = {}) {
     auto world = FluidWorld::create(device, params, solids, {});
     EXPECT_TRUE(world) << (world ? "" : world.error().message);
     return world ? std::move(*world) : nullptr;
@@ -159,7 +159,7 @@ TEST(Wcsph, ParticlesFarFromAllOthersFallAsGalileoSays) {
     auto world = make(*device, p);
     ASSERT_EQ(world->particles().count, 1U);
     const float start = device->readAll<vec4>(*world->particles().position, 1)[0].y;
-    for (int frame = 0; frame < 18; ++frame) world->step({p.gravity}, 1.0 / 60);
+    for (int frame = 0; frame < 18; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const float end = device->readAll<vec4>(*world->particles().position, 1)[0].y;
     EXPECT_NEAR(start - end, 0.5 * 9.81 * 0.3 * 0.3, 0.002) << "symplectic Euler is g t dt / 2 ahead at most";
     EXPECT_NEAR(world->time(), 0.3, 1e-9);
@@ -172,7 +172,7 @@ TEST(Wcsph, AColumnAtRestStaysAtRestUnderHydrostaticPressure) {
     p.box.max = vec3(0.5F, 1.0F, 0.5F);
     p.artificialViscosity = 0.2F;  // calm down quickly
     auto world = make(*device, p);
-    for (int frame = 0; frame < 90; ++frame) world->step({p.gravity}, 1.0 / 60);
+    for (int frame = 0; frame < 90; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const FluidStats& s = world->stats();
     EXPECT_EQ(s.lost, 0U);
     EXPECT_LT(s.avgCompression, 0.01);
@@ -202,7 +202,7 @@ TEST(Wcsph, ThesisModeRunsTheSameColumnAndKeepsEverythingInItsBox) {
     p.method = "wcsph_thesis";
     p.viscosity = 5.0e-3F;
     auto world = make(*device, p);
-    for (int frame = 0; frame < 30; ++frame) world->step({p.gravity}, 1.0 / 60);
+    for (int frame = 0; frame < 30; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_EQ(world->stats().lost, 0U);
     EXPECT_GT(world->stats().maxSpeed, 0.1);
     for (const vec4& x : device->readAll<vec4>(*world->particles().position, world->particles().count)) {
@@ -275,7 +275,7 @@ TEST(Wcsph, LostParticlesAreCountedFrozenAndReported) {
     x[5] = vec4(40.0F, 0.2F, 0.2F, 1.0F);
     x[7] = vec4(0.2F, -std::numeric_limits<float>::infinity(), 0.2F, 1.0F);
     device->writeAll<vec4>(const_cast<Buffer&>(*world.particles().position), x);
-    for (int frame = 0; frame < 10; ++frame) world.step({p.gravity}, 1.0 / 60);
+    for (int frame = 0; frame < 10; ++frame) world.step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_EQ(world.stats().lost, 3U);
     EXPECT_EQ(world.stats().nan, 2U);
     EXPECT_NE(said.find("lost"), std::string::npos) << said;
@@ -296,7 +296,7 @@ TEST(Wcsph, AFrameTooLongForItsSubstepsSlowsTimeInsteadOfGrowingSteps) {
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.3F));
     p.maxSubsteps = 5;
     auto world = make(*device, p);
-    world->step({p.gravity}, 0.25);
+    world->step({.gravity = p.gravity}, 0.25);
     EXPECT_LT(world->time(), 0.02);
     ASSERT_EQ(world->stats().limited.size(), 1U);
     EXPECT_NE(world->stats().limited[0].find("maxSubsteps"), std::string::npos);
@@ -307,8 +307,8 @@ TEST(Wcsph, APlaneHoldsWaterOnItsNormalsSide) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(0.6F, 0.6F, 0.6F));
     const PlaneSolid slope{vec3(0.0F, 0.2F, 0.0F), vec3(0.3F, 1.0F, 0.0F)};
-    auto world = make(*device, p, {.field = nullptr, .planes = {slope}});
-    for (int frame = 0; frame < 30; ++frame) world->step({p.gravity}, 1.0 / 60);
+    auto world = make(*device, p, {.planes = {slope}});
+    for (int frame = 0; frame < 30; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const vec3 n = glm::normalize(slope.normal);
     for (const vec4& x : device->readAll<vec4>(*world->particles().position, world->particles().count))
         EXPECT_GT(glm::dot(n, vec3(x) - slope.position), 0.4F * p.spacing);
@@ -325,7 +325,7 @@ TEST(Wcsph, WhatAClosedMeshEnclosesStaysEmpty) {
     ASSERT_TRUE(field) << field.error().message;
     auto device = cpu();
     const FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(1.0F));
-    auto world = make(*device, p, {.field = &*field, .planes = {}});
+    auto world = make(*device, p, {.field = &*field});
     const uint32_t n = world->particles().count;
     const float contact = fieldParams(*field, {.spacing = p.spacing}).contact, lo = 0.3F - contact, hi = 0.7F + contact;
     uint32_t expected = 0;
@@ -345,7 +345,7 @@ TEST(Wcsph, ResetIsTheStartAgainAndTheSameRunAgain) {
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.4F));
     auto world = make(*device, p);
     auto run = [&] {
-        for (int frame = 0; frame < 5; ++frame) world->step({p.gravity}, 1.0 / 60);
+        for (int frame = 0; frame < 5; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
         return device->readAll<vec4>(*world->particles().position, world->particles().count);
     };
     const auto first = run();

@@ -9,6 +9,8 @@ namespace {
 #include "shaders/voxel/walk.h"
 
 #include "shaders/fluid/contact.h"
+
+#include "shaders/fluid/contact_thesis.h"
 vec3 point(const float* p) { return vec3(p[0], p[1], p[2]); }
 }  // namespace
 }  // namespace rivulet::RIVULET_KERNEL_UNIT
@@ -21,6 +23,10 @@ using namespace voxel_test_unit;
 
 float walkVoxels(const void* params, const uint32_t* bits, const float* a, const float* b) {
     return voxel_test_unit::walkVoxels(bits, *static_cast<const FieldParams*>(params), point(a), point(b));
+}
+
+float walkThesis(const void* params, const uint32_t* bits, const float* a, const float* b) {
+    return voxel_test_unit::walkThesis(bits, *static_cast<const FieldParams*>(params), point(a), point(b));
 }
 
 float fieldAt(const void* params, const float* distance, const float* p, float* gradient) {

@@ -15,9 +15,37 @@ namespace boundary_field {
 namespace integrate_unit {
 #include "shaders/fluid/integrate.kernel"
 }
-namespace collide_unit {
+namespace boundary_moving_unit {
+#include "shaders/fluid/boundary_moving.kernel"
+}
+namespace collide_still {
 #include "shaders/fluid/collide.kernel"
 }
+#define MOVING 1
+namespace collide_moving {
+#include "shaders/fluid/collide.kernel"
+}
+#define DEFORMING 1
+namespace collide_deforming {
+#include "shaders/fluid/collide.kernel"
+}
+#undef DEFORMING
+#undef MOVING
+#define THESIS 1
+namespace collide_thesis {
+#include "shaders/fluid/collide.kernel"
+}
+#define MOVING 1
+namespace collide_moving_thesis {
+#include "shaders/fluid/collide.kernel"
+}
+#define DEFORMING 1
+namespace collide_deforming_thesis {
+#include "shaders/fluid/collide.kernel"
+}
+#undef DEFORMING
+#undef MOVING
+#undef THESIS
 namespace stats_unit {
 #include "shaders/fluid/stats.kernel"
 }
@@ -29,7 +57,13 @@ std::span<const CpuKernelRow> particleRows() {
         {"fluid/boundary", "", RIVULET_UNIT_ISA, boundary_walls::boundary, 1024},
         {"fluid/boundary", "FIELD=1", RIVULET_UNIT_ISA, boundary_field::boundary, 1024},
         {"fluid/integrate", "", RIVULET_UNIT_ISA, integrate_unit::integrate, 1024},
-        {"fluid/collide", "", RIVULET_UNIT_ISA, collide_unit::collide, 1024},
+        {"fluid/boundary_moving", "", RIVULET_UNIT_ISA, boundary_moving_unit::boundary_moving, 1024},
+        {"fluid/collide", "", RIVULET_UNIT_ISA, collide_still::collide, 1024},
+        {"fluid/collide", "MOVING=1", RIVULET_UNIT_ISA, collide_moving::collide, 1024},
+        {"fluid/collide", "DEFORMING=1;MOVING=1", RIVULET_UNIT_ISA, collide_deforming::collide, 1024},
+        {"fluid/collide", "THESIS=1", RIVULET_UNIT_ISA, collide_thesis::collide, 1024},
+        {"fluid/collide", "MOVING=1;THESIS=1", RIVULET_UNIT_ISA, collide_moving_thesis::collide, 1024},
+        {"fluid/collide", "DEFORMING=1;MOVING=1;THESIS=1", RIVULET_UNIT_ISA, collide_deforming_thesis::collide, 1024},
         {"fluid/stats", "", RIVULET_UNIT_ISA, stats_unit::stats, 128},
     };
     return rows;

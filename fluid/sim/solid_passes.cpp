@@ -1,0 +1,354 @@
+#include "fluid/sim/solid_passes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
+#include "fluid/voxel/labels.h"
+
+namespace rivulet {
+
+namespace {
+
+bool sound(const Pose& p) {
+    const float length = glm::dot(p.rotation, p.rotation);
+    return isFinite(p.position) && std::isfinite(length) && std::abs(length - 1.0F) < 1.0e-3F;
+}
+
+Pose between(const Pose& a, const Pose& b, double share) {
+    const auto t = static_cast<float>(share);
+    return {glm::mix(a.position, b.position, t), glm::normalize(glm::slerp(a.rotation, b.rotation, t))};
+}
+
+// World -> own frame, as rows.
+std::array<vec4, 3> rows(const Pose& p) {
+    const mat3 turn = glm::mat3_cast(p.rotation);  // own -> world: its columns are the rows of the way back
+    std::array<vec4, 3> r{};
+    for (int k = 0; k < 3; ++k) r[static_cast<size_t>(k)] = vec4(turn[k], -glm::dot(turn[k], p.position));
+    return r;
+}
+
+// The turn from `a` to `b` as an axis times an angle (rad), the short way round.
+vec3 turnBetween(const quat& a, const quat& b) {
+    quat q = b * glm::conjugate(a);
+    if (q.w < 0) q = -q;
+    const vec3 axis(q.x, q.y, q.z);
+    const float size = glm::length(axis);
+    return size > 0 ? axis * (2.0F * std::atan2(size, q.w) / size) : vec3(0.0F);
+}
+
+template <class T>
+Status hold(Device& device, Buffer& buffer, std::span<const T> items, size_t extra = 0) {
+    Result<Buffer> made = device.allocate(items.size_bytes() + extra);
+    if (!made) return made.error();
+    buffer = std::move(*made);
+    device.write(buffer, std::as_bytes(items));
+    return ok();
+}
+
+}  // namespace
+
+std::array<uint32_t, 2 * kMostSurfaces> surfaceWords(std::span<const Surface> surfaces, const Surface& otherwise) {
+    std::array<uint32_t, 2 * kMostSurfaces> words{};
+    for (size_t k = 0; k < kMostSurfaces; ++k) {
+        const Surface s = k < surfaces.size() ? surfaces[k] : Surface{};
+        const float values[2] = {s.friction >= 0 ? s.friction : otherwise.friction,
+                                 s.restitution >= 0 ? s.restitution : otherwise.restitution};
+        std::memcpy(&words[2 * k], values, sizeof values);
+    }
+    return words;
+}
+
+Status SolidPasses::Field::upload(Device& device) {
+    if (Status s = hold<uint8_t>(device, bits, field->surface.bits); !s) return s;
+    if (Status s = hold<float>(device, distance, field->distance); !s) return s;
+    return hold<uint32_t>(device, normal, field->normal, 2 * kMostSurfaces * sizeof(uint32_t));
+}
+
+Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const CollisionParams& collision) {
+    SolidPasses s;
+    s.device_ = &device;
+    s.planeSolids_ = solids.planes;
+    for (const PlaneSolid& p : s.planeSolids_)
+        if (!(glm::length(p.normal) > 0.0F)) return badInput("a plane's normal is zero: give it a direction");
+    if (solids.surfaces.size() > kMostSurfaces)
+        return badInput(
+            fmt::format("{} kinds of wall are more than the {} there may be: give some colliders the same friction and restitution",
+                        solids.surfaces.size(), kMostSurfaces));
+    s.surfaces_ = solids.surfaces;
+    Result<Buffer> planes = device.allocate(std::max<size_t>(s.planeSolids_.size(), 1) * 2 * sizeof(vec4));
+    if (!planes) return planes.error();
+    s.planes_ = std::move(*planes);
+
+    if (solids.field != nullptr && !solids.field->empty()) {
+        s.static_.field = solids.field;
+        s.outside_ = reachableFromBorder(solids.field->surface);
+        if (Status done = s.static_.upload(device); !done) return done.error();
+        Result<Buffer> block = device.allocate(sizeof(FieldParams));
+        if (!block) return block.error();
+        s.staticBlock_ = std::move(*block);
+    }
+    for (const RigidSolid& rigid : solids.rigid) {
+        if (!sound(rigid.pose)) return badInput("a moving solid's pose is not finite, or its rotation has no unit length");
+        Moving m;
+        m.on.field = rigid.field;
+        m.atStart = rigid.pose;
+        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
+    }
+    for (DeformingField* shape : solids.deforming) {
+        Moving m;
+        m.shape = shape;
+        m.on.field = &shape->field();
+        m.shapeAtStart.assign(shape->positions().begin(), shape->positions().end());
+        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
+    }
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+        std::vector<Define> defines;
+        bool wanted;
+    };
+    const bool thesis = collision.walk == "thesis", still = s.static_.field != nullptr;
+    const auto collide = [&](const char* motion) {
+        std::vector<Define> d;
+        if (*motion != 0) d.push_back({motion, "1"});
+        if (std::string_view(motion) == "DEFORMING") d.push_back({"MOVING", "1"});
+        if (thesis) d.push_back({"THESIS", "1"});
+        return d;
+    };
+    for (const Wanted& w :
+         {Wanted{&s.boundary_, "fluid/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
+          Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.collide_, "fluid/collide", collide(""), still},
+          Wanted{&s.collideRigid_, "fluid/collide", collide("MOVING"), !s.rigid_.empty()},
+          Wanted{&s.collideDeforming_, "fluid/collide", collide("DEFORMING"), !s.deforming_.empty()}}) {
+        if (!w.wanted) continue;
+        Result<Kernel> found = device.kernel(w.path, w.defines);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    if (Status done = s.reset(); !done) return done.error();
+    return s;
+}
+
+Status SolidPasses::addMoving(Moving m) {
+    if (m.on.field == nullptr || m.on.field->empty()) return badInput("a moving solid has no voxels: bake its mesh first");
+    if (Status done = m.on.upload(*device_); !done) return done;
+    Result<Buffer> block = device_->allocate(sizeof(MotionParams));
+    if (!block) return block.error();
+    m.block = std::move(*block);
+    const VoxelGrid& grid = m.on.field->surface;
+    for (int k = 0; k < 8; ++k) {
+        const vec3 corner = grid.origin + grid.voxel * vec3(grid.size) * vec3(k & 1, (k >> 1) & 1, k >> 2);
+        m.radius = std::max(m.radius, glm::length(corner));
+    }
+    if (m.shape != nullptr) {
+        Result<Buffer> displacement = device_->allocate(m.on.field->distance.size() * sizeof(vec4));
+        if (!displacement) return displacement.error();
+        m.displacement = std::move(*displacement);
+    }
+    (m.shape != nullptr ? deforming_ : rigid_).push_back(std::move(m));
+    return ok();
+}
+
+bool SolidPasses::mayBeBorn(const vec3& p, float spacing) const {
+    for (const PlaneSolid& plane : planeSolids_)
+        if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * spacing) return false;
+    const auto clear = [&](const VoxelField& field, const vec3& at) {
+        return field.clearance(at) >= fieldParams(field, FieldContact{.spacing = spacing}).contact;
+    };
+    for (const Moving& m : rigid_)
+        if (!clear(*m.on.field, m.atStart.toOwn(p))) return false;
+    for (const Moving& m : deforming_)
+        if (!clear(*m.on.field, p)) return false;
+    if (static_.field == nullptr) return true;
+    const VoxelGrid& grid = static_.field->surface;
+    const ivec3 voxel = grid.cellOf(p);
+    return clear(*static_.field, p) && (!grid.contains(voxel) || outside_[grid.index(voxel)] != 0);
+}
+
+void SolidPasses::setSurfaces(std::span<const Surface> surfaces) {
+    surfaces_.assign(surfaces.begin(), surfaces.begin() + static_cast<std::ptrdiff_t>(std::min(surfaces.size(), kMostSurfaces)));
+    surfacesChanged_ = true;
+}
+
+Status SolidPasses::reset() {
+    poses_.clear();
+    for (Moving& m : rigid_) {
+        m.from = m.target = m.atStart;
+        poses_.push_back(m.atStart);
+    }
+    for (Moving& m : deforming_) {
+        m.shapeFrom = m.shapeTarget = m.shapeNow = m.shapeAtStart;
+        m.updates = 1;
+        // Twice: the second time nothing has moved, and the wall's velocity is nought again.
+        for (int k = 0; k < 2; ++k) {
+            m.updated = 0;
+            if (Status done = deform(m, 1.0, 1.0); !done) return done;
+        }
+    }
+    fastestWall_ = 0;
+    voxelsRewritten_ = 0;
+    return ok();
+}
+
+Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) {
+    if (!poses.empty() && poses.size() != rigid_.size())
+        return badInput(fmt::format("{} poses were given for {} moving solids: give one for each", poses.size(), rigid_.size()));
+    if (!shapes.empty() && shapes.size() != deforming_.size())
+        return badInput(fmt::format("{} shapes were given for {} deforming solids: give one for each", shapes.size(), deforming_.size()));
+    for (size_t k = 0; k < poses.size(); ++k)
+        if (!sound(poses[k]))
+            return badInput(fmt::format("the pose of moving solid {} is not finite, or its rotation has no unit length", k));
+    for (size_t k = 0; k < shapes.size(); ++k)
+        if (shapes[k].size() != deforming_[k].shapeAtStart.size())
+            return badInput(fmt::format("{} vertices were given for deforming solid {}, which has {}", shapes[k].size(), k,
+                                        deforming_[k].shapeAtStart.size()));
+    frameSeconds_ = seconds;
+    fastestWall_ = 0;
+    for (size_t k = 0; k < rigid_.size(); ++k) {
+        Moving& m = rigid_[k];
+        m.from = poses_[k];
+        m.target = poses.empty() ? m.from : poses[k];
+        const float moved =
+            glm::length(m.target.position - m.from.position) + m.radius * glm::length(turnBetween(m.from.rotation, m.target.rotation));
+        fastestWall_ = std::max(fastestWall_, static_cast<float>(moved / seconds));
+    }
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        Moving& m = deforming_[k];
+        m.shapeFrom = m.shapeNow;
+        if (shapes.empty())
+            m.shapeTarget = m.shapeFrom;
+        else
+            m.shapeTarget.assign(shapes[k].begin(), shapes[k].end());
+        float moved2 = 0;
+        for (size_t i = 0; i < m.shapeTarget.size(); ++i) {
+            const vec3 way = m.shapeTarget[i] - m.shapeFrom[i];
+            moved2 = std::max(moved2, glm::dot(way, way));
+        }
+        const float moved = std::sqrt(moved2);
+        fastestWall_ = std::max(fastestWall_, static_cast<float>(moved / seconds));
+        // The way of a particle starts where the wall carries it: exact where the wall moves evenly. Some voxels at a time keep it so.
+        constexpr float kMostVoxels = 4.0F;
+        m.updates = std::max(1, static_cast<int>(std::ceil(std::min(moved / (kMostVoxels * m.on.field->surface.voxel), 64.0F))));
+        m.updated = 0;
+    }
+    return ok();
+}
+
+Status SolidPasses::deform(Moving& m, double share, double seconds) {
+    ++m.updated;
+    m.motion.perSecond = seconds > 0 ? static_cast<float>(m.updates / seconds) : 0.0F;
+    for (size_t i = 0; i < m.shapeNow.size(); ++i) m.shapeNow[i] = glm::mix(m.shapeFrom[i], m.shapeTarget[i], static_cast<float>(share));
+    Result<DeformingField::Change> changed = m.shape->update(m.shapeNow);
+    if (!changed) return changed.error();
+    voxelsRewritten_ += changed->voxels;
+    const VoxelGrid& grid = m.on.field->surface;
+    const size_t layer = (static_cast<size_t>(grid.size.x) + 1) * (static_cast<size_t>(grid.size.y) + 1);
+    const size_t first = layer * static_cast<size_t>(changed->firstLayer), end = layer * static_cast<size_t>(changed->endLayer);
+    if (first >= end) return ok();
+    const auto send = [&]<class T>(Buffer& to, std::span<const T> all, size_t from, size_t until) {
+        device_->write(to, std::as_bytes(all.subspan(from, until - from)), from * sizeof(T));
+    };
+    send(m.on.distance, std::span<const float>(m.on.field->distance), first, end);
+    send(m.on.normal, std::span<const uint32_t>(m.on.field->normal), first, end);
+    send(m.displacement, m.shape->displacement(), first, end);
+    // The bits of layers of voxels [firstLayer - 1, endLayer), in whole words.
+    const size_t voxels = static_cast<size_t>(grid.size.x) * static_cast<size_t>(grid.size.y);
+    const size_t firstBit = voxels * static_cast<size_t>(std::max(changed->firstLayer - 1, 0));
+    const size_t endBit = voxels * static_cast<size_t>(std::min(changed->endLayer, grid.size.z));
+    send(m.on.bits, std::span<const uint8_t>(grid.bits), firstBit / 32 * 4, std::min(grid.bits.size(), (endBit + 31) / 32 * 4));
+    return ok();
+}
+
+void SolidPasses::setMotion(Moving& m, const Pose& start, const Pose& end, float dt) {
+    const std::array<vec4, 3> a = rows(start), b = rows(end);
+    m.motion.startX = a[0];
+    m.motion.startY = a[1];
+    m.motion.startZ = a[2];
+    m.motion.endX = b[0];
+    m.motion.endY = b[1];
+    m.motion.endZ = b[2];
+    m.motion.velocity = vec4((end.position - start.position) / dt, 0.0F);
+    m.motion.spin = vec4(turnBetween(start.rotation, end.rotation) / dt, 0.0F);
+    m.motion.origin = vec4(end.position, 0.0F);
+}
+
+Status SolidPasses::advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to) {
+    const Surface otherwise{params.collision.friction, params.collision.restitution};
+    if (surfacesChanged_ || otherwise.friction != otherwise_.friction || otherwise.restitution != otherwise_.restitution) {
+        otherwise_ = otherwise;
+        surfacesChanged_ = false;
+        const auto words = surfaceWords(surfaces_, otherwise_);
+        const auto tell = [&](Field& f) {
+            device_->write(f.normal, std::as_bytes(std::span(words)), f.field->normal.size() * sizeof(uint32_t));
+        };
+        if (static_.field != nullptr) tell(static_);
+        for (Moving& m : rigid_) tell(m.on);
+        for (Moving& m : deforming_) tell(m.on);
+        std::vector<vec4> list;
+        for (const PlaneSolid& p : planeSolids_) {
+            const vec3 n = glm::normalize(p.normal);
+            list.emplace_back(n, -glm::dot(n, p.position));
+            float values[2];
+            std::memcpy(values, &words[2 * std::min<size_t>(p.surface, kMostSurfaces - 1)], sizeof values);
+            list.emplace_back(values[0], values[1], 0.0F, 0.0F);
+        }
+        device_->writeAll<vec4>(planes_, list);
+    }
+    const FieldContact contact{.spacing = params.spacing, .restSpeed = 2.0F * gravity * step.dt, .countIndex = step.cellCount};
+    if (static_.field != nullptr) {
+        block_ = fieldParams(*static_.field, contact);
+        if (blockDt_ != step.dt) device_->write(staticBlock_, std::as_bytes(std::span(&block_, 1)));
+        blockDt_ = step.dt;
+    }
+    for (size_t k = 0; k < rigid_.size(); ++k) {
+        Moving& m = rigid_[k];
+        const Pose start = poses_[k];
+        poses_[k] = between(m.from, m.target, to);
+        m.motion.field = fieldParams(*m.on.field, contact);
+        setMotion(m, start, poses_[k], step.dt);
+        device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
+    }
+    for (Moving& m : deforming_) {
+        m.motion.carried = 0.0F;
+        m.motion.field = fieldParams(*m.on.field, contact);
+        if (m.updated < m.updates && from * m.updates >= m.updated - 1.0e-6) {
+            m.motion.carried = 1.0F;
+            if (Status done = deform(m, static_cast<double>(m.updated + 1) / m.updates, frameSeconds_); !done) return done;
+        }
+        setMotion(m, {}, {}, step.dt);
+        device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
+    }
+    return ok();
+}
+
+void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
+    const uint32_t n = particles.count;
+    if (static_.field != nullptr)
+        device_->run(boundary_, step,
+                     {&grid.cellStart(), &particles.position, &planes_, &particles.boundary, &staticBlock_, &static_.distance}, n);
+    else
+        device_->run(boundary_, step, {&grid.cellStart(), &particles.position, &planes_, &particles.boundary}, n);
+    for (std::vector<Moving>* list : {&rigid_, &deforming_})
+        for (const Moving& m : *list)
+            device_->run(boundaryMoving_, step, {&grid.cellStart(), &particles.position, &particles.boundary, &m.block, &m.on.distance}, n);
+}
+
+void SolidPasses::collide(const NeighborGrid& grid, Particles& particles) {
+    const uint32_t n = particles.count;
+    const Buffer *from = &particles.position, *to = &particles.positionNext, *velocity = &particles.velocityNext,
+                 *start = &grid.cellStart();
+    for (const Moving& m : deforming_)
+        device_->run(collideDeforming_, m.motion, {from, to, velocity, start, &m.on.bits, &m.on.distance, &m.on.normal, &m.displacement},
+                     n);
+    for (const Moving& m : rigid_)
+        device_->run(collideRigid_, m.motion, {from, to, velocity, start, &m.on.bits, &m.on.distance, &m.on.normal}, n);
+    // Last: what stands still is never entered, whatever squeezes.
+    if (static_.field != nullptr)
+        device_->run(collide_, block_, {from, to, velocity, start, &static_.bits, &static_.distance, &static_.normal}, n);
+}
+
+}  // namespace rivulet

@@ -1,0 +1,88 @@
+// The passes of a step that know solids: what walls add to density, and what keeps particles out of them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "fluid/sim/fluid_params.h"
+#include "fluid/sim/neighbor_grid.h"
+#include "fluid/sim/particles.h"
+#include "fluid/sim/solids.h"
+#include "shaders/fluid/step_params.h"
+#include "shaders/voxel/motion_params.h"
+
+namespace rivulet {
+
+// The solids of a world, on its Device. Per frame: beginFrame, then a substep's advance, boundary, collide, each in that order.
+class SolidPasses {
+  public:
+    // Error (badInput): a plane without direction, too many surfaces, an unknown walk; (failed): out of memory. `device` and the solids'
+    // fields must outlive it.
+    static Result<SolidPasses> create(Device& device, const Solids& solids, const CollisionParams& collision);
+
+    // Whether a particle may be born at `p`: on the fluid's side of every plane, outside every mesh, and not nearer than it would rest.
+    bool mayBeBorn(const vec3& p, float spacing) const;
+    uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
+    const Buffer& planes() const { return planes_; }  // as integrate.kernel wants them
+
+    void setSurfaces(std::span<const Surface> surfaces);
+    // Back to where everything stood at t = 0.
+    Status reset();
+
+    // Where solids are to be `seconds` from now; empty spans: where they are. Error (badInput): not one pose a rigid solid, not one shape
+    // a deforming one, not finite, a vertex beyond its field's reach; then nothing moves.
+    Status beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds);
+    float fastestWall() const { return fastestWall_; }  // m/s, of the frame
+
+    // Moves the solids on to the frame's shares [from, to] of its time, 0..1. `gravity` m/s^2.
+    Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
+    void boundary(const StepParams& step, const NeighborGrid& grid, Particles& particles);  // fills particles.boundary
+    // Moves particles.positionNext and velocityNext out of the solids.
+    void collide(const NeighborGrid& grid, Particles& particles);
+
+    const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now
+    uint64_t voxelsRewritten() const { return voxelsRewritten_; }  // of the deforming ones, since the start
+
+  private:
+    struct Field {
+        const VoxelField* field = nullptr;
+        Buffer bits, distance, normal;
+        Status upload(Device& device);
+    };
+    struct Moving {
+        Field on;
+        DeformingField* shape = nullptr;  // null: rigid
+        MotionParams motion{};
+        Buffer block;  // a MotionParams, for the boundary pass
+        Pose atStart, from, target;
+        std::vector<vec3> shapeAtStart, shapeFrom, shapeTarget, shapeNow;
+        int updates = 1, updated = 0;  // of the frame
+        float radius = 0;              // m, about the frame's origin
+        Buffer displacement;
+    };
+
+    Status addMoving(Moving moving);
+    Status deform(Moving& moving, double share, double seconds);
+    void setMotion(Moving& moving, const Pose& start, const Pose& end, float dt);
+
+    Device* device_ = nullptr;
+    std::vector<PlaneSolid> planeSolids_;
+    std::vector<Surface> surfaces_;
+    Surface otherwise_;
+    bool surfacesChanged_ = true;
+    Buffer planes_;
+    Kernel boundary_, collide_, boundaryMoving_, collideRigid_, collideDeforming_;
+    Field static_;
+    std::vector<uint8_t> outside_;  // of the static field's voxels: reachable from its border
+    FieldParams block_{};
+    Buffer staticBlock_;
+    float blockDt_ = 0;  // staticBlock_ was written for this step length
+    std::vector<Moving> rigid_, deforming_;
+    std::vector<Pose> poses_;
+    double frameSeconds_ = 0;
+    float fastestWall_ = 0;
+    uint64_t voxelsRewritten_ = 0;
+};
+
+}  // namespace rivulet

@@ -33,6 +33,8 @@ std::string keyOf(std::span<const MeshView> meshes, const VoxelFieldOptions& opt
     takeOne(options.band);
     takeOne(options.padding);
     takeOne(options.memoryLimit);
+    takeOne(options.surfaces.size());
+    take(options.surfaces);
     takeOne(meshes.size());
     for (const MeshView& mesh : meshes) {
         takeOne(mesh.positions.size());

@@ -36,7 +36,7 @@ VoxelPicture drawBandSlice(std::span<const float> distance, float band, const iv
 VoxelPicture drawSlices(const VoxelLabels& labels, std::span<const float> distance = {}, float band = 0);
 
 struct VoxelViewOptions {
-    int width = 1200, height = 900;
+    int width = 1024, height = 768;
     int samples = 24;     // rays a pixel
     bool cutOpen = true;  // without the quarter that is nearest, so that what is inside can be seen
 };

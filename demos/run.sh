@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # From nothing to water: installs what is missing, builds, runs.
 #   bash demos/run.sh [--headless] [--seconds S] ...   the first scene, with further arguments of `rivulet run`
-#   bash demos/run.sh VERB [arguments]                 any verb of the program: run, list, info, bench
+#   bash demos/run.sh VERB [arguments]                 any verb of the program: run, list, info, voxelize, bench
 set -u
 . "$(dirname "${BASH_SOURCE[0]}")/../third_party/setup.sh"
 install_packages run || exit 1

@@ -28,6 +28,7 @@ Table<Verb> verbs();
 int runVerb(const Arguments& arguments);
 int listVerb(const Arguments& arguments);
 int infoVerb(const Arguments& arguments);
+int voxelizeVerb(const Arguments& arguments);
 int benchVerb(const Arguments& arguments);
 
 // "rivulet: sentence" on stderr; returns the exit code that the error's fault asks for.

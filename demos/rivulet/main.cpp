@@ -18,6 +18,7 @@ Table<Verb> verbs() {
         {"run", "run a scene: in a window, or headless to video, pictures and figures", runVerb},
         {"list", "list scenes, methods, renderers, devices, parameters", listVerb},
         {"info", "what this machine offers, what --backend auto would choose and why", infoVerb},
+        {"voxelize", "turn a mesh into voxels: a file, figures, pictures", voxelizeVerb},
         {"bench", "measure speed and memory", benchVerb},
     };
     return {rows};
@@ -27,7 +28,7 @@ namespace {
 
 void printHelp(FILE* to) {
     fmt::print(to, "rivulet {}: real-time water for OpenGL\n\nusage: rivulet VERB [arguments]\n\n", RIVULET_VERSION);
-    for (const Verb& verb : verbs().rows) fmt::print(to, "  {:<8}{}\n", verb.name, verb.doc);
+    for (const Verb& verb : verbs().rows) fmt::print(to, "  {:<10}{}\n", verb.name, verb.doc);
     fmt::print(to, "\n'rivulet VERB --help' says what a verb takes.\n");
 }
 

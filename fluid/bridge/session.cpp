@@ -10,6 +10,7 @@
 #include "engine/scene/import_assimp.h"
 #include "engine/scene/transform.h"
 #include "fluid/bridge/collider_motion.h"
+#include "fluid/voxel/voxel_cache.h"
 
 namespace rivulet {
 
@@ -138,13 +139,14 @@ float Session::voxelEdge(const ColliderParams& collider, const Bounds& bounds, c
     return edge;
 }
 
-Result<VoxelField> Session::bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge) const {
+Result<VoxelField> Session::bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge,
+                                       const Log& log) const {
     Bounds all;
     for (const MeshView& view : views)
         for (const vec3& p : view.positions) all.add(p);
     VoxelFieldOptions options = fieldOptions(all, edge);
     options.surfaces = surfaces;
-    return bakeVoxelField(views, options);
+    return cachedVoxelField(views, options, log);
 }
 
 Status Session::bake(const Log& log) {
@@ -159,7 +161,7 @@ Status Session::bake(const Log& log) {
         const Bounds bounds = meshes_[m].bounds();
         const MeshView view = meshes_[m].view();
         if (collider.motion.moves()) {
-            Result<VoxelField> field = bakeMeshes(std::span(&view, 1), std::span(&surface, 1), voxelEdge(collider, bounds, log));
+            Result<VoxelField> field = bakeMeshes(std::span(&view, 1), std::span(&surface, 1), voxelEdge(collider, bounds, log), log);
             if (!field) return field.error();
             rigid_.push_back({c, m, std::make_unique<VoxelField>(std::move(*field)), 0.0});
         } else if (collider.wave.amplitude > 0) {
@@ -176,7 +178,7 @@ Status Session::bake(const Log& log) {
         }
     }
     if (still.empty()) return ok();
-    Result<VoxelField> field = bakeMeshes(still, stillSurfaces, edge);
+    Result<VoxelField> field = bakeMeshes(still, stillSurfaces, edge, log);
     if (!field) return field.error();
     field_ = std::move(*field);
     return ok();

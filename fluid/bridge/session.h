@@ -22,6 +22,10 @@ struct SolidFields {
     const VoxelField* still = nullptr;     // of all meshes that stand still; null = none
     std::vector<const VoxelField*> rigid;  // each in its own frame: FluidWorld::poses() has the frames
     std::vector<const VoxelField*> deforming;
+    // One of them: that of what stands still, if there is one. null: there is no mesh.
+    const VoxelField* first() const {
+        return still != nullptr ? still : !rigid.empty() ? rigid[0] : !deforming.empty() ? deforming[0] : nullptr;
+    }
 };
 
 class Session {
@@ -61,7 +65,7 @@ class Session {
     Session() = default;
     Status importColliders();
     Status bake(const Log& log);
-    Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge) const;
+    Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
     VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
     std::vector<Surface> surfaces();

@@ -143,7 +143,12 @@ bool Viewer::drawPanels() {
     ImGui::SetNextWindowPos(ImVec2(display.x - kMargin, kMargin), ImGuiCond_Once, ImVec2(1, 0));
     float narrow = std::min(width, 320.0F);
     ImGui::SetNextWindowSizeConstraints(ImVec2(narrow, 0), ImVec2(narrow, tall));
-    if (ImGui::Begin("times", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) profiler_.draw(narrow - 2 * ImGui::GetStyle().WindowPadding.x);
+    if (ImGui::Begin("times", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+        const float across = narrow - 2 * ImGui::GetStyle().WindowPadding.x;
+        profiler_.draw(across);
+        ImGui::Spacing();
+        voxels_.draw(session_->fields().first(), std::min(across, ImGui::GetContentRegionAvail().x));
+    }
     ImGui::End();
     return recreate;
 }
@@ -168,6 +173,7 @@ void Viewer::takeEdits(bool recreate) {
         session_ = std::move(*fresh);
         message_.clear();
         profiler_.clear();
+        voxels_.clear();
         if (recorder_) record();
     } else {
         message_ = fresh.error().message;

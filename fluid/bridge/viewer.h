@@ -16,6 +16,7 @@
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
+#include "fluid/bridge/voxel_panel.h"
 
 namespace rivulet {
 
@@ -54,6 +55,7 @@ class Viewer {
     FluidUpload upload_;
     UiLayer ui_;
     ProfilerPanel profiler_;
+    VoxelPanel voxels_;
     gpu::Timer uiTimer_;
     GlFacts gl_;
     SceneFile draft_;  // what the panel edits; becomes the session's when it makes sense

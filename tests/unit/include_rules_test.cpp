@@ -70,6 +70,8 @@ const std::map<std::string, Names>& libraries() {
         {"tbb/", {"engine/compute", "fluid/voxel"}},
         {"oneapi/", {"engine/compute", "fluid/voxel"}},
         {"json/", {"engine/core", "fluid/bridge"}},
+        {"zstd", {"fluid/voxel"}},
+        {"xxh", {"fluid/voxel"}},
         {"stb", {"engine/scene", "engine/render", "engine/app"}},
         {"bullet", {"fluid/bridge"}},
         {"btBullet", {"fluid/bridge"}},

@@ -18,7 +18,7 @@ void expectRefusal(const Outcome& outcome, int code, const std::string& mentions
 TEST(ProgramCli, HelpSaysWhatEveryVerbTakes) {
     Outcome top = runProgram({"--help"});
     EXPECT_EQ(top.code, 0);
-    for (const char* verb : {"run", "list", "info", "bench"}) {
+    for (const char* verb : {"run", "list", "info", "voxelize", "bench"}) {
         EXPECT_NE(top.out.find(std::string("\n  ") + verb), std::string::npos) << verb;
         Outcome help = runProgram({verb, "--help"});
         EXPECT_EQ(help.code, 0) << verb;

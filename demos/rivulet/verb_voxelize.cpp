@@ -1,0 +1,229 @@
+#include <fmt/format.h>
+#include <json/json.h>
+
+#include <chrono>
+#include <filesystem>
+#include <limits>
+
+#include "demos/rivulet/cli.h"
+#include "demos/rivulet/interrupt.h"
+#include "engine/app/capture.h"
+#include "engine/app/context_egl.h"
+#include "engine/core/json.h"
+#include "engine/scene/import_assimp.h"
+#include "fluid/bridge/backend.h"
+#include "fluid/voxel/distance_band.h"
+#include "fluid/voxel/voxel_field.h"
+#include "fluid/voxel/voxel_file.h"
+#include "fluid/voxel/voxel_picture.h"
+#include "fluid/voxel/voxelize.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct VoxelizeRequest {
+    std::string mesh, out, mode = "solid", backend = "auto", stats, slices, picture;
+    std::optional<int> resolution;
+    bool thesisOrder = false, labels = false, band = false;
+};
+
+Status checkEnding(const char* option, const std::string& path, const char* ending) {
+    if (path.empty() || fs::path(path).extension() == ending) return ok();
+    return badInput(fmt::format("{} takes a file name that ends in {}; it was '{}'", option, ending, path));
+}
+
+// What makes no sense, and what could not be written later, is said before any work is done.
+Status checkRequest(VoxelizeRequest& request) {
+    static const std::vector<std::string> backendNames = backends().names();
+    if (Status known = checkWord("mode", request.mode, voxelModes().names()); !known) return known;
+    if (Status known = checkWord("backend", request.backend, backendNames); !known) return known;
+    if (request.thesisOrder && request.mode != "depth")
+        return badInput("--thesis-order is an order of mode depth's work; add --mode depth, or leave it out");
+    if (request.out.empty()) request.out = fs::path(request.mesh).stem().string() + ".rvox";
+    if (Status right = checkEnding("--out", request.out, ".rvox"); !right) return right;
+    if (Status right = checkEnding("--slices", request.slices, ".png"); !right) return right;
+    if (Status right = checkEnding("--picture", request.picture, ".png"); !right) return right;
+    const std::string* files[] = {&request.out, &request.stats, &request.slices, &request.picture};
+    for (const std::string* file : files) {
+        if (file->empty()) continue;
+        for (const std::string* other : files) {
+            if (file < other && *file == *other) return badInput(fmt::format("two outputs cannot have the same name '{}'", *file));
+        }
+        if (*file == request.mesh) return badInput(fmt::format("'{}' is the mesh; an output would overwrite it", *file));
+    }
+    std::error_code none;
+    if (!fs::exists(request.mesh, none)) return badInput(fmt::format("{} cannot be read: it does not exist", request.mesh));
+    for (const std::string* file : files) {
+        if (file->empty()) continue;
+        if (Status writable = checkWritable(*file); !writable) return writable;
+    }
+    return ok();
+}
+
+VoxelBand bandAround(const MeshView& mesh, const VoxelGrid& grid) {
+    VoxelBand band;
+    band.band = kBandVoxels * grid.voxel;
+    const auto points = static_cast<size_t>(grid.size.x + 1) * static_cast<size_t>(grid.size.y + 1) * static_cast<size_t>(grid.size.z + 1);
+    band.distance.assign(points, band.band);
+    band.normal.assign(points, 0);
+    DistanceBand(grid, band.band).bake(GridTriangles({&mesh, 1}, grid), {}, {}, {}, {}, {band.distance, band.normal, {}});
+    return band;
+}
+
+Status writeStats(const VoxelizeRequest& request, const VoxelModel& model, size_t bytes) {
+    Json::Value v(Json::objectValue);
+    v["mesh"] = request.mesh;
+    v["mode"] = request.mode;
+    for (int k = 0; k < 3; ++k) v["resolution"].append(model.bits.size[k]);
+    v["voxel"] = model.bits.voxel;
+    v["surface"] = Json::UInt64(model.labels.surface);
+    v["outside"] = Json::UInt64(model.labels.outside);
+    v["materials"] = Json::Value(Json::arrayValue);
+    for (size_t k = 0; k < model.labels.materials.size(); ++k) {
+        Json::Value& m = v["materials"].append(Json::objectValue);
+        m["id"] = Json::UInt64(k);
+        m["voxels"] = Json::UInt64(model.labels.materials[k].voxels);
+        m["volume"] = model.labels.materials[k].volume;
+    }
+    v["watertight"] = model.defects.watertight;
+    v["badEdges"] = Json::UInt64(model.defects.badEdges());
+    v["ms"] = model.milliseconds;
+    v["bytes"] = Json::UInt64(bytes);
+    Json::StreamWriterBuilder builder;
+    builder["indentation"] = "  ";
+    builder["precision"] = 9;
+    return writeFileAtomic(request.stats, Json::writeString(builder, v) + "\n");
+}
+
+std::string readable(double bytes) { return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3) : fmt::format("{:.1f} MB", bytes / 1e6); }
+
+void printMaterials(const std::vector<VoxelMaterial>& materials) {
+    constexpr size_t kMost = 12;
+    for (size_t k = 0; k < std::min(kMost, materials.size()); ++k) {
+        const VoxelMaterial& m = materials[k];
+        fmt::print("{:<11}{} voxels, volume {:.6g}{}\n", fmt::format("material {}", k), m.voxels, m.volume, m.solid ? "" : ", a cavity");
+    }
+    if (materials.size() <= kMost) return;
+    double volume = 0;
+    size_t voxels = 0;
+    for (size_t k = kMost; k < materials.size(); ++k) {
+        voxels += materials[k].voxels;
+        volume += materials[k].volume;
+    }
+    fmt::print("{:<11}{} materials more: {} voxels, volume {:.6g}\n", "", materials.size() - kMost, voxels, volume);
+}
+
+void printFigures(const VoxelizeRequest& request, const VoxelModel& model, const VoxelFile& file, size_t bytes, const Device& device,
+                  double wholeMs) {
+    const ivec3& size = model.bits.size;
+    fmt::print("{}\n", request.out);
+    fmt::print("{:<11}{} x {} x {}, mode {}\n", "voxels", size.x, size.y, size.z, request.mode);
+    fmt::print("{:<11}{:.6g} of the mesh's units\n", "edge", model.bits.voxel);
+    fmt::print("{:<11}{} voxels\n", "surface", model.labels.surface);
+    fmt::print("{:<11}{} voxels\n", "outside", model.labels.outside);
+    printMaterials(model.labels.materials);
+    std::string memory = fmt::format("bits {}, labels {}", readable(static_cast<double>(model.bits.bits.size())),
+                                     readable(static_cast<double>(model.labels.bytes())));
+    if (file.band)
+        memory += fmt::format(", band {}", readable(static_cast<double>(file.band->distance.size() * sizeof(float) +
+                                                                        file.band->normal.size() * sizeof(uint32_t))));
+    fmt::print("{:<11}{}; the file {}\n", "memory", memory, readable(static_cast<double>(bytes)));
+    fmt::print("{:<11}{:.1f} ms to voxelise on {}, {:.0f} ms in all\n", "time", model.milliseconds, backendName(device.backend()), wholeMs);
+}
+
+// Whole files, one after the other, none after Ctrl-C. The bytes of the first.
+Result<size_t> writeAll(const VoxelizeRequest& request, const VoxelModel& model, const VoxelFile& file, const VoxelPicture& slices,
+                        const VoxelPicture& picture, const Graceful& graceful) {
+    Result<size_t> bytes = writeVoxelFile(request.out, file);
+    if (!bytes) return bytes;
+    for (const auto& [path, image] : {std::pair(&request.slices, &slices), std::pair(&request.picture, &picture)}) {
+        if (path->empty() || graceful.interrupted()) continue;
+        if (Status written = writePng(*path, image->rgba, image->width, image->height); !written) return written.error();
+    }
+    if (request.stats.empty() || graceful.interrupted()) return bytes;
+    if (Status written = writeStats(request, model, *bytes); !written) return written.error();
+    return bytes;
+}
+
+int voxelizeAs(const VoxelizeRequest& request) {
+    const auto start = std::chrono::steady_clock::now();
+    const Log log = stderrLog();
+    Result<Mesh> mesh = importMesh(request.mesh);
+    if (!mesh) return report(mesh.error());
+    std::optional<ContextEgl> context;
+    GlFacts gl = noGl("no OpenGL was asked for");
+    if (request.backend == "gl" || request.backend == "auto") {
+        Result<ContextEgl> made = ContextEgl::create();
+        gl = made ? currentGlFacts() : noGl(made.error().message);
+        if (made) context = std::move(*made);
+    }
+    const std::unique_ptr<Device> device = makeDevice(request.backend, gl, log);
+
+    // Until files are written Ctrl-C leaves at once: there is nothing to tidy up.
+    const MeshView view = mesh->view();
+    std::optional<Progress> bar(std::in_place, "voxelising");
+    VoxelizeOptions options;
+    options.mode = voxelModes().find(request.mode)->mode;
+    options.resolution = request.resolution.value_or(options.resolution);
+    options.thesisOrder = request.thesisOrder;
+    options.progress = [&bar](double share) {
+        bar->show(share);
+        return true;
+    };
+    Result<VoxelModel> model = voxelizeMesh(*device, {&view, 1}, options);
+    bar.reset();
+    if (!model) return report(model.error());
+    for (const std::string& sentence : {model->defects.sentence(), lostFeatures({&view, 1}, model->bits)})
+        if (!sentence.empty()) log.warning(sentence);
+
+    VoxelFile file;
+    file.mode = model->mode;
+    file.bits = model->bits;
+    if (request.labels) file.labels = model->labels;
+    if (request.band) file.band = bandAround(view, model->bits);
+    VoxelPicture slices, picture;
+    if (!request.slices.empty())
+        slices = file.band ? drawSlices(model->labels, file.band->distance, file.band->band) : drawSlices(model->labels);
+    if (!request.picture.empty()) picture = drawVoxels(model->labels);
+
+    const Graceful graceful;
+    const Result<size_t> bytes = writeAll(request, *model, file, slices, picture, graceful);
+    if (!bytes) return report(bytes.error());
+    if (graceful.interrupted()) return kInterrupted;
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    printFigures(request, *model, file, *bytes, *device, ms);
+    return kDone;
+}
+
+}  // namespace
+
+int voxelizeVerb(const Arguments& arguments) {
+    ArgumentReader reader("voxelize", "Turns a mesh into voxels, and writes them to a file, with figures and pictures of them.");
+    VoxelizeRequest request;
+    std::string modes, modeList;
+    for (const VoxelModeRow& row : voxelModes().rows) {
+        modes += fmt::format("{}{}", modes.empty() ? "" : ", ", row.name);
+        modeList += fmt::format("\n  {:<10}{}", row.name, row.doc);
+    }
+    constexpr int kAny = std::numeric_limits<int>::max();  // what cannot be is said with the memory that it would need
+    reader.footer("Modes:" + modeList);
+    reader.positional("MESH", "OBJ, glTF, PLY, STL and more", request.mesh, true);
+    reader.option("--resolution", "N", "voxels along the mesh's longest side; default: 128", request.resolution, -kAny, kAny);
+    reader.option("--out", "FILE.rvox", "what to write; default: the mesh's name with .rvox, in this folder", request.out);
+    reader.option("--mode", "NAME", fmt::format("{}; default: solid", modes), request.mode);
+    reader.option("--backend", "NAME", "what computes: auto, cpu, gl or cl; the voxels are the same", request.backend);
+    reader.flag("--thesis-order", "mode depth: work in the thesis's order; the voxels are the same", request.thesisOrder);
+    reader.flag("--labels", "also keep which voxel belongs to which material", request.labels);
+    reader.flag("--band", "also keep exact distances and directions near the mesh", request.band);
+    reader.option("--stats", "FILE.json", "also write the figures to a file", request.stats);
+    reader.option("--slices", "FILE.png", "also draw a sheet of slices", request.slices);
+    reader.option("--picture", "FILE.png", "also draw the voxels, cut open", request.picture);
+    if (std::optional<int> code = reader.read(arguments)) return *code;
+    if (Status sense = checkRequest(request); !sense) return report(sense.error());
+    return voxelizeAs(request);
+}
+
+}  // namespace rivulet

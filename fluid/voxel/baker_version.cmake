@@ -1,0 +1,11 @@
+# cmake -DROOT=... -DOUT=... -P baker_version.cmake: a hash of every source that has a say in what a baked field holds. Part of the cache's
+# keys, so that a program never reads what another version of it would have baked differently.
+file(GLOB sources ${ROOT}/fluid/voxel/*.cpp ${ROOT}/fluid/voxel/*.h ${ROOT}/shaders/voxel/*)
+list(SORT sources)
+set(all "")
+foreach(source ${sources})
+    file(SHA256 ${source} hash)
+    string(APPEND all ${hash})
+endforeach()
+string(SHA256 all "${all}")
+file(WRITE ${OUT} "namespace rivulet {\nextern const char kBakerVersion[];\nconst char kBakerVersion[] = \"${all}\";\n}\n")

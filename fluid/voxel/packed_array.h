@@ -1,0 +1,71 @@
+// Arrays of plain numbers to compressed bytes (zstd) and back. Unpacking trusts nothing: memory grows with what the bytes have yielded.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "engine/core/result.h"
+
+namespace rivulet {
+
+// The most bytes that `packed` bytes of one zstd frame can hold: a block of at most 128 KiB takes at least 4.
+inline constexpr size_t kMostBytesPerPackedByte = 32768;
+
+// Appends one compressed frame to `out`: any number of put(), then finish(). Throws std::bad_alloc.
+class ArrayPacker {
+  public:
+    explicit ArrayPacker(std::string& out);
+    ~ArrayPacker();
+    ArrayPacker(const ArrayPacker&) = delete;
+    ArrayPacker& operator=(const ArrayPacker&) = delete;
+
+    template <class T>
+    void put(std::span<const T> items) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        feed(std::as_bytes(items), false);
+    }
+    void finish();
+
+  private:
+    void feed(std::span<const std::byte> bytes, bool last);
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+    std::string& out_;
+};
+
+// The same arrays, in the same order and of the same types, out of one frame. Throws std::bad_alloc.
+class ArrayUnpacker {
+  public:
+    explicit ArrayUnpacker(std::span<const std::byte> packed);
+    ~ArrayUnpacker();
+    ArrayUnpacker(const ArrayUnpacker&) = delete;
+    ArrayUnpacker& operator=(const ArrayUnpacker&) = delete;
+
+    // False: the bytes are no such array; why() says what is wrong with them. `to` has then at most twice as many items as there were.
+    template <class T>
+    bool take(size_t count, std::vector<T>& to) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        to.clear();
+        while (to.size() < count) {
+            const size_t first = to.size();
+            to.resize(first + std::min(count - first, std::max(first, kFirstBytes / sizeof(T))));
+            if (!takeBytes(std::as_writable_bytes(std::span(to).subspan(first)))) return false;
+        }
+        return true;
+    }
+    bool finish();  // false: there is more than was taken
+    const char* why() const { return why_; }
+
+  private:
+    static constexpr size_t kFirstBytes = size_t{1} << 18U;
+    bool takeBytes(std::span<std::byte> bytes);
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+    const char* why_ = "";
+};
+
+}  // namespace rivulet

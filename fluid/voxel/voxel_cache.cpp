@@ -1,0 +1,140 @@
+#include "fluid/voxel/voxel_cache.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <new>
+
+#include "fluid/voxel/voxel_file.h"
+
+namespace rivulet {
+
+extern const char kBakerVersion[];  // made by baker_version.cmake
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// 32 hexadecimal digits of everything that makes one field differ from another.
+std::string keyOf(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
+    const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(), XXH3_freeState);
+    if (!state) throw std::bad_alloc();
+    (void)XXH3_128bits_reset(state.get());
+    const auto take = [&state](auto items) { (void)XXH3_128bits_update(state.get(), items.data(), items.size_bytes()); };
+    const auto takeOne = [&take](auto value) { take(std::span(&value, 1)); };
+    take(std::span(std::string_view(kBakerVersion)));
+    takeOne(options.resolution);
+    takeOne(options.band);
+    takeOne(options.padding);
+    takeOne(options.memoryLimit);
+    takeOne(options.surfaces.size());
+    take(options.surfaces);
+    takeOne(meshes.size());
+    for (const MeshView& mesh : meshes) {
+        takeOne(mesh.positions.size());
+        takeOne(mesh.indices.size());
+        take(mesh.positions);
+        take(mesh.indices);
+    }
+    const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+VoxelFile fileOf(VoxelField field) {
+    return {VoxelMode::surface, std::move(field.surface), std::nullopt,
+            VoxelBand{field.band, std::move(field.distance), std::move(field.normal)}};
+}
+
+VoxelField fieldOf(VoxelFile file) {
+    return {std::move(file.bits), std::move(file.band->distance), std::move(file.band->normal), file.band->band};
+}
+
+// What may be asked of a field although the file it comes from may be anybody's.
+bool isFieldFor(const VoxelFile& file, const VoxelFieldOptions& options) {
+    return file.band && file.band->band >= options.band && file.band->band >= 0.999F * kBandVoxels * file.bits.voxel;
+}
+
+// Deletes what was used longest ago until the rest fits, and what a program that crashed has left half-written.
+void trim(const fs::path& folder) {
+    struct Entry {
+        fs::path path;
+        fs::file_time_type used;
+        size_t bytes;
+    };
+    std::vector<Entry> entries;
+    std::error_code ignored;
+    const auto longAgo = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    size_t total = 0;
+    for (fs::directory_iterator at(folder, ignored), end; at != end; at.increment(ignored)) {
+        std::error_code gone;  // by another program
+        Entry entry{at->path(), at->last_write_time(gone), 0};
+        if (!gone) entry.bytes = static_cast<size_t>(at->file_size(gone));
+        if (gone) continue;
+        if (entry.path.extension() == ".tmp" && entry.used < longAgo) fs::remove(entry.path, gone);
+        if (entry.path.extension() != ".rvox") continue;
+        total += entry.bytes;
+        entries.push_back(entry);
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+    for (const Entry& entry : entries) {
+        if (total <= kVoxelCacheBytes) return;
+        fs::remove(entry.path, ignored);
+        total -= entry.bytes;
+    }
+}
+
+// The field at `path`, if there is one that may be believed.
+std::optional<VoxelField> readField(const fs::path& path, const VoxelFieldOptions& options, const Log& log) {
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) return std::nullopt;
+    Result<VoxelFile> file = readVoxelFile(path.string(), options.memoryLimit);
+    if (!file) {
+        log.notice(fmt::format("the cached voxels are made anew: {}", file.error().message));
+        return std::nullopt;
+    }
+    if (!isFieldFor(*file, options)) {
+        log.notice(fmt::format("the cached voxels are made anew: {} is not what its name says", path.string()));
+        return std::nullopt;
+    }
+    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trim() keeps it longer
+    return fieldOf(std::move(*file));
+}
+
+// The field as it was, once it is on the disk or not.
+VoxelField writeField(const fs::path& path, VoxelField field, const Log& log) {
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    VoxelFile file = fileOf(std::move(field));
+    const Result<size_t> written = writeVoxelFile(path.string(), file);
+    if (!written) log.notice(fmt::format("the voxels of the scene's meshes are not kept for the next start: {}", written.error().message));
+    if (written) trim(path.parent_path());
+    return fieldOf(std::move(file));
+}
+
+}  // namespace
+
+std::string voxelCacheFolder() {
+    for (const auto& [variable, below] : {std::pair("XDG_CACHE_HOME", "rivulet/voxels"), std::pair("HOME", ".cache/rivulet/voxels")}) {
+        const char* root = std::getenv(variable);
+        if (root != nullptr && root[0] == '/') return (fs::path(root) / below).string();
+    }
+    return {};
+}
+
+Result<VoxelField> cachedVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options, const Log& log) {
+    const std::string folder = voxelCacheFolder();
+    if (folder.empty()) return bakeVoxelField(meshes, options);
+    const fs::path path = fs::path(folder) / (keyOf(meshes, options) + ".rvox");
+    if (std::optional<VoxelField> field = readField(path, options, log)) return std::move(*field);
+    Result<VoxelField> field = bakeVoxelField(meshes, options);
+    if (!field) return field;
+    return writeField(path, std::move(*field), log);
+}
+
+}  // namespace rivulet

@@ -218,10 +218,10 @@ VoxelPicture drawSlices(const VoxelLabels& labels, std::span<const float> distan
                 const float line = distance.empty() ? 0.0F : 0.4F * lineAt(away, toU(fx + 0.5F), toV(fy + 0.5F), band, perPixel);
                 vec3 sum(0.0F);
                 for (int s = 0; s < samples * samples; ++s) {
-                    const float across = (static_cast<float>(s % samples) + 0.5F) / static_cast<float>(samples);
-                    const float down = (static_cast<float>(s / samples) + 0.5F) / static_cast<float>(samples);
-                    const int u = std::min(static_cast<int>(toU(fx + across)), plane.width - 1);
-                    const int v = std::clamp(static_cast<int>(toV(fy + down)), 0, plane.height - 1);
+                    const ivec2 cell(s % samples, s / samples);
+                    const vec2 within = (vec2(cell) + 0.5F) / static_cast<float>(samples);
+                    const int u = std::min(static_cast<int>(toU(fx + within.x)), plane.width - 1);
+                    const int v = std::clamp(static_cast<int>(toV(fy + within.y)), 0, plane.height - 1);
                     const uint32_t label = plane.at(u, v);
                     const vec3& colour = colours[label];
                     sum += label == kInsideSurface ? colour : mix(colour, 0.35F * colour, line);

@@ -342,7 +342,7 @@ class View {
             else
                 sum += kGroundLight;
         }
-        const vec3 toSun = glm::normalize(kSun + 0.09F * aboutNormal(kSun, numbers.next()));
+        const vec3 toSun = glm::normalize(sun_ + 0.09F * aboutNormal(sun_, numbers.next()));
         const float facing = glm::dot(normal, toSun);
         if (facing > 0 && glm::dot(face, toSun) > 0 && cells_.trace(place, toSun).axis < 0) sum += kSunLight * facing;
         return sum;
@@ -354,7 +354,7 @@ class View {
     static constexpr vec3 kClay{0.70F, 0.665F, 0.61F}, kCutShell{0.045F, 0.055F, 0.07F}, kGround{0.90F, 0.895F, 0.88F};
     static constexpr vec3 kBounce{0.16F, 0.15F, 0.14F}, kGroundLight{0.42F, 0.41F, 0.40F}, kSunLight{0.80F, 0.74F, 0.64F};
     static constexpr vec3 kOpenLight{1.22F, 1.21F, 1.20F};  // on the ground with nothing around
-    const vec3 kSun = glm::normalize(vec3(-0.35F, 0.80F, 0.48F));
+    vec3 sun_ = glm::normalize(vec3(-0.35F, 0.80F, 0.48F));
 
     VoxelViewOptions options_;
     Cells cells_;

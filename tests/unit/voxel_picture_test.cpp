@@ -78,8 +78,8 @@ TEST(VoxelPicture, ASlicesPixelsAreItsVoxels) {
 TEST(VoxelPicture, TheBandDarkensTowardsTheMesh) {
     // A plane at x = 8 of 16 voxels; the band is 5 wide.
     const ivec3 size(16, 6, 4);
-    std::vector<float> distance;
-    for (int k = 0; k < 17 * 7 * 5; ++k) distance.push_back(std::min(5.0F, std::abs(static_cast<float>(k % 17) - 8.0F)));
+    std::vector<float> distance(size_t{17} * 7 * 5);
+    for (size_t k = 0; k < distance.size(); ++k) distance[k] = std::min(5.0F, std::abs(static_cast<float>(k % 17) - 8.0F));
     const VoxelPicture picture = drawBandSlice(distance, 5, size, 2, 1);
     ASSERT_EQ(picture.width, 48);
     ASSERT_EQ(picture.height, 18);
@@ -112,8 +112,8 @@ TEST(VoxelPicture, TheSheetShowsEverySixteenthOfTheMesh) {
 
 TEST(VoxelPicture, LinesOfEqualDistanceAreDrawn) {
     const VoxelLabels labels = makeNothing({32, 32, 4});
-    std::vector<float> distance;
-    for (int k = 0; k < 33 * 33 * 5; ++k) distance.push_back(std::abs(static_cast<float>(k % 33) - 16.0F));
+    std::vector<float> distance(size_t{33} * 33 * 5);
+    for (size_t k = 0; k < distance.size(); ++k) distance[k] = std::abs(static_cast<float>(k % 33) - 16.0F);
     const VoxelPicture with = drawSlices(labels, distance, 10), without = drawSlices(labels);
     size_t changed = 0;
     for (int x = 0; x < with.width; ++x) changed += rgbAt(with, x, 100) != rgbAt(without, x, 100) ? 1 : 0;

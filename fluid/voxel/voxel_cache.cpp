@@ -48,11 +48,11 @@ std::string keyOf(std::span<const MeshView> meshes, const VoxelFieldOptions& opt
 
 VoxelFile fileOf(VoxelField field) {
     return {VoxelMode::surface, std::move(field.surface), std::nullopt,
-            VoxelBand{field.band, std::move(field.distance), std::move(field.normal)}};
+            VoxelBand{field.band, field.closed, std::move(field.distance), std::move(field.normal)}};
 }
 
 VoxelField fieldOf(VoxelFile file) {
-    return {std::move(file.bits), std::move(file.band->distance), std::move(file.band->normal), file.band->band};
+    return {std::move(file.bits), std::move(file.band->distance), std::move(file.band->normal), file.band->band, file.band->closed};
 }
 
 // What may be asked of a field although the file it comes from may be anybody's.

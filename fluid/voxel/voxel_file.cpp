@@ -29,10 +29,12 @@ struct Header {
     std::array<float, 3> origin;
     float voxel;
     float band;          // 0: the file has none
+    uint32_t closed;     // 0 or 1: the band's distances have signs
+    uint32_t zero;
     uint64_t fileBytes;  // all of it
     uint64_t checksum;   // XXH3 of all above and of the table of sections below
 };
-static_assert(sizeof(Header) == 72 && std::is_trivially_copyable_v<Header>);
+static_assert(sizeof(Header) == 80 && std::is_trivially_copyable_v<Header>);
 
 // In the order of the file. What is in each, as arrays one after the other: see write() and read().
 enum class Kind : uint32_t { bits = 1, labels, materials, distance, normal, end };
@@ -99,6 +101,7 @@ class Writer {
         }
         header.voxel = file.bits.voxel;
         header.band = file.band ? file.band->band : 0.0F;
+        header.closed = file.band && file.band->closed ? 1 : 0;
         header.fileBytes = out_.size();
         const size_t tableBytes = table_.size() * sizeof(Section);
         std::memcpy(out_.data() + sizeof(Header), table_.data(), tableBytes);
@@ -240,6 +243,8 @@ class Reader {
             return damaged(offsetof(Header, voxel), fmt::format("a voxel's edge cannot be {}", grid.voxel));
         if (!std::isfinite(header_.band) || header_.band < 0)
             return damaged(offsetof(Header, band), fmt::format("a band's width cannot be {}", header_.band));
+        if (header_.closed > 1 || header_.zero != 0)
+            return damaged(offsetof(Header, closed), fmt::format("whether the band has signs cannot be {}", header_.closed));
         return true;
     }
 
@@ -404,11 +409,12 @@ class Reader {
         if (!(header_.band > 0)) return true;
         VoxelBand& band = file_.band.emplace();
         band.band = header_.band;
+        band.closed = header_.closed != 0;
         bool read = true;
         eachColumn(band, [&](Kind kind, auto& items) { read = read && unpack(*find(kind), items); });
         if (!read) return false;
         const auto wrong =
-            std::find_if_not(band.distance.begin(), band.distance.end(), [&band](float d) { return std::abs(d) <= band.band; });
+            std::find_if_not(band.distance.begin(), band.distance.end(), [&band](float d) { return std::abs(d) <= band.band && (band.closed || d >= 0); });
         return wrong == band.distance.end() ||
                damaged(*find(Kind::distance), fmt::format("distance {} is {}, which is outside the band of {} m",
                                                           wrong - band.distance.begin(), *wrong, band.band));

@@ -1,6 +1,6 @@
 // .rvox: voxels in a file. Bits always; labels and the distance band where there are any.
 //
-// Numbers are in the byte order of the machine that wrote them, which is named in the header; 72 bytes of header, 40 a section, then the
+// Numbers are in the byte order of the machine that wrote them, which is named in the header; 80 bytes of header, 40 a section, then the
 // sections one after the other with no gap, each one zstd frame of its arrays (packed_array.h). XXH3 checks the header with the table of
 // sections, and each section. Layout: voxel_file.cpp.
 #pragma once
@@ -22,6 +22,7 @@ namespace rivulet {
 // At the grid's (size + 1) points an axis, x fastest: as VoxelField holds it.
 struct VoxelBand {
     float band = 0;                // m, > 0
+    bool closed = false;           // negative distances are inside; else there are none
     std::vector<float> distance;   // m, |distance| <= band
     std::vector<uint32_t> normal;  // packNormal of distance_band.h
 };

@@ -6,4 +6,4 @@
 namespace rivulet::test {
 void collide(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
 void collideThesis(uint32_t begin, uint32_t end, const void* params, void* const* buffers);  // fluid.collision.walk "thesis"
-}
+}  // namespace rivulet::test

@@ -66,6 +66,8 @@ class VoxelCache : public ::testing::Test {
         EXPECT_EQ(got->surface.origin, baked->surface.origin);
         EXPECT_EQ(got->surface.voxel, baked->surface.voxel);
         EXPECT_EQ(got->band, baked->band);
+        EXPECT_TRUE(baked->closed);
+        EXPECT_EQ(got->closed, baked->closed);
         EXPECT_TRUE(got->surface.bits == baked->surface.bits);
         EXPECT_TRUE(got->distance == baked->distance);
         EXPECT_TRUE(got->normal == baked->normal);

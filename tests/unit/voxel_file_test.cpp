@@ -17,7 +17,7 @@
 namespace rivulet {
 namespace {
 
-constexpr size_t kHeaderBytes = 72, kSectionBytes = 40;
+constexpr size_t kHeaderBytes = 80, kSectionBytes = 40;
 
 // Labels from a function of the voxel, counted the plain way.
 template <class Fn>
@@ -81,7 +81,8 @@ VoxelFile makeFile(unsigned seed, const ivec3& size, bool labels, bool band) {
         VoxelBand& b = f.band.emplace();
         b.band = 0.05F;
         const size_t points = static_cast<size_t>(size.x + 1) * static_cast<size_t>(size.y + 1) * static_cast<size_t>(size.z + 1);
-        std::uniform_real_distribution<float> distance(-b.band, b.band);
+        b.closed = seed % 2 == 1;
+        std::uniform_real_distribution<float> distance(b.closed ? -b.band : 0.0F, b.band);
         for (size_t k = 0; k < points; ++k) {
             b.distance.push_back(k % 5 == 0 ? b.band : distance(random));
             b.normal.push_back(static_cast<uint32_t>(random()));
@@ -113,6 +114,7 @@ void expectSame(const VoxelFile& a, const VoxelFile& b) {
     ASSERT_EQ(a.band.has_value(), b.band.has_value());
     if (!a.band) return;
     EXPECT_EQ(a.band->band, b.band->band);
+    EXPECT_EQ(a.band->closed, b.band->closed);
     EXPECT_TRUE(a.band->distance == b.band->distance);
     EXPECT_TRUE(a.band->normal == b.band->normal);
 }
@@ -151,8 +153,8 @@ void seal(std::string& bytes) {
         const auto offset = valueAt<uint64_t>(bytes, row + 8), length = valueAt<uint64_t>(bytes, row + 16);
         if (offset <= bytes.size() && length <= bytes.size() - offset) setAt(bytes, row + 32, XXH3_64bits(bytes.data() + offset, length));
     }
-    const std::string head = bytes.substr(0, 64) + bytes.substr(kHeaderBytes, sections * kSectionBytes);
-    setAt(bytes, 64, XXH3_64bits(head.data(), head.size()));
+    const std::string head = bytes.substr(0, 72) + bytes.substr(kHeaderBytes, sections * kSectionBytes);
+    setAt(bytes, 72, XXH3_64bits(head.data(), head.size()));
 }
 
 // A file of one's own making: sections as they come, everything around them right.
@@ -164,6 +166,7 @@ struct Forgery {
     };
     ivec3 size{4, 2, 2};
     float voxel = 0.5F, band = 0;
+    uint32_t closed = 0;
     std::vector<Part> parts;
 
     template <class... T>
@@ -182,6 +185,8 @@ struct Forgery {
         for (float v : {0.0F, 0.0F, 0.0F, voxel, band}) put(v);
         uint64_t at = kHeaderBytes + parts.size() * kSectionBytes, end = at;
         for (const Part& part : parts) end += part.packed.size();
+        put(closed);
+        put(0U);
         for (uint64_t v : {end, uint64_t{0}}) put(v);
         for (const Part& part : parts) {
             put(part.kind);

@@ -28,8 +28,8 @@ struct Header {
     std::array<int32_t, 3> size;
     std::array<float, 3> origin;
     float voxel;
-    float band;          // 0: the file has none
-    uint32_t closed;     // 0 or 1: the band's distances have signs
+    float band;       // 0: the file has none
+    uint32_t closed;  // 0 or 1: the band's distances have signs
     uint32_t zero;
     uint64_t fileBytes;  // all of it
     uint64_t checksum;   // XXH3 of all above and of the table of sections below
@@ -413,8 +413,8 @@ class Reader {
         bool read = true;
         eachColumn(band, [&](Kind kind, auto& items) { read = read && unpack(*find(kind), items); });
         if (!read) return false;
-        const auto wrong =
-            std::find_if_not(band.distance.begin(), band.distance.end(), [&band](float d) { return std::abs(d) <= band.band && (band.closed || d >= 0); });
+        const auto wrong = std::find_if_not(band.distance.begin(), band.distance.end(),
+                                            [&band](float d) { return std::abs(d) <= band.band && (band.closed || d >= 0); });
         return wrong == band.distance.end() ||
                damaged(*find(Kind::distance), fmt::format("distance {} is {}, which is outside the band of {} m",
                                                           wrong - band.distance.begin(), *wrong, band.band));

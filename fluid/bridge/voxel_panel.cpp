@@ -96,7 +96,7 @@ void VoxelPanel::drawControls(const VoxelField& field, float width) {
         }
     }
     ImGui::SameLine(0, 3 * gap);
-    for (const auto& [name, what] : {std::pair("materials", Shown::materials), std::pair("distance", Shown::distance)}) {
+    for (const auto& [name, what] : {std::pair("materials", Shown::materials), std::pair("band", Shown::distance)}) {
         if (what != Shown::materials) ImGui::SameLine();
         if (ImGui::RadioButton(name, shown_ == what)) {
             shown_ = what;

@@ -42,6 +42,9 @@ std::string contradiction(const SceneFile& scene) {
             return fmt::format("colliders[{}].mesh is empty: name a mesh file, or make its shape a plane", i);
         if (collider.shape == "plane" && glm::length(collider.normal) < 1.0e-6F)
             return fmt::format("colliders[{}].normal is {}, must have a length", i, shown(collider.normal));
+        for (const auto& [name, value] : {std::pair("friction", collider.friction), std::pair("restitution", collider.restitution)})
+            if (value < 0 && value != -1)
+                return fmt::format("colliders[{}].{} is {}: give 0 or more, or -1 for what fluid.collision says", i, name, value);
         const ColliderMotion& motion = collider.motion;
         const ColliderWave& wave = collider.wave;
         if (collider.shape == "plane" && (motion.moves() || wave.amplitude > 0))

@@ -1,4 +1,5 @@
 // Scenes and meshes that make no sense: exit 2, one plain sentence that names file and place, in bounded time and memory, nothing written.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -69,6 +70,25 @@ TEST(ProgramBadScene, AHundredMegabytesOfBrackets) {
                                return text;
                            }()),
               {"objects.json"});
+}
+
+TEST(ProgramBadScene, CollidersThatCannotMoveSo) {
+    Scratch scratch;
+    scratch.file("good.obj", kTriangle);
+    const auto sceneOf = [&](const std::string& rest) {
+        return scratch.file("scene.json", smallScene(R"("colliders": [{"mesh": "good.obj", )" + rest + "}]"));
+    };
+    expectBad(scratch, sceneOf(R"("shape": "plane", "motion": {"spin": 10})"), {"scene.json", "colliders[0]", "plane"});
+    expectBad(scratch, sceneOf(R"("motion": {"spin": 10}, "wave": {"amplitude": 0.1})"), {"colliders[0]", "motion", "wave"});
+    expectBad(scratch, sceneOf(R"("motion": {"keys": [{"time": 2}, {"time": 1}]})"), {"colliders[0].motion.keys[1].time", "later"});
+    expectBad(scratch, sceneOf(R"("motion": {"spin": 10, "axis": [0, 0, 0]})"), {"colliders[0].motion.axis"});
+    expectBad(scratch, sceneOf(R"("wave": {"amplitude": 0.1, "along": [0, 0, 0]})"), {"colliders[0].wave.along"});
+    expectBad(scratch, sceneOf(R"("friction": -2)"), {"friction"});
+    expectBad(scratch, sceneOf(R"("restitution": -0.5)"), {"colliders[0].restitution", "-0.5"});
+    expectBad(scratch, sceneOf(R"("motion": {"spinn": 10})"), {"did you mean", "spin"});
+    std::string many = R"("colliders": [)";
+    for (int k = 0; k < 20; ++k) many += fmt::format(R"({}{{"shape": "plane", "friction": {}}})", k == 0 ? "" : ", ", 0.1 * k);
+    expectBad(scratch, scratch.file("scene.json", smallScene(many + "]")), {"20 kinds of wall", "16"});
 }
 
 TEST(ProgramBadScene, Meshes) {

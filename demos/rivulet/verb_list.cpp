@@ -6,6 +6,7 @@
 #include "fluid/bridge/scene_file.h"
 #include "fluid/render/renderers.h"
 #include "fluid/sim/method.h"
+#include "fluid/voxel/voxelize.h"
 
 namespace rivulet {
 
@@ -35,6 +36,7 @@ Table<ListRow> lists() {
         {"scenes", "scene files that come with the program, or lie in RIVULET_ASSETS", scenes},
         {"methods", "fluid.method: how pressure is found", [] { rows(methods()); }},
         {"renderers", "look.renderer: how the water is drawn", [] { rows(renderers()); }},
+        {"voxels", "voxelize --mode: how a mesh becomes voxels", [] { rows(voxelModes()); }},
         {"devices", "--backend: what can simulate", [] { rows(backends()); }},
     };
     return {table};

@@ -129,11 +129,14 @@ Status voxelizeInto(VoxelModel& model, Device& device, std::span<const MeshView>
     if (!goOn(0.4)) return failed(kCancelled);
     VoxelGrid inside{model.surface.size, model.surface.origin, model.surface.voxel, {}};
     inside.bits.assign(model.surface.bits.size(), 0);
-    if (Status status = voxelizeSolid(device, clean, inside); !status) return status;
+    std::function<bool(double)> progress;
+    if (options.progress) progress = [&](double done) { return options.progress(0.4 + 0.4 * done); };
+    if (Status status = voxelizeSolid(device, clean, inside, progress); !status) return status;
+    // The two grids of bits that everything else follows from; labels are counted by those who want them.
+    model.milliseconds = millisecondsSince(start);
     if (!goOn(0.8)) return failed(kCancelled);
     model.labels = labelRegions(model.surface, &inside);
     model.bits = solidBits(model.labels, model.surface);
-    model.milliseconds = millisecondsSince(start);
     return ok();
 }
 

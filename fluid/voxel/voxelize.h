@@ -41,7 +41,8 @@ struct VoxelModel {
     VoxelGrid bits;      // mode surface: the same; else 1 where not OUTSIDE (the thesis's storage)
     VoxelLabels labels;  // mode surface: by connectivity alone
     MeshDefects defects;
-    double milliseconds = 0;  // of the voxelising itself: mesh in memory to bits; without labels in mode surface
+    double milliseconds =
+        0;  // mesh in memory to bits (solid: surface and inside bits, cleaning included); without labels but in mode depth
 };
 
 // The grid of `resolution` voxels around the meshes' bounds, bits clear: the thesis's work box, without padding: exactly so many along the

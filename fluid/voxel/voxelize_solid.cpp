@@ -5,6 +5,7 @@
 #include <limits>
 #include <new>
 #include <optional>
+#include <thread>
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/voxel/crossings.h"
@@ -26,6 +27,7 @@ struct Closed {
         if (mesh.unmatched.empty()) return;
         caps.emplace(mesh, places);
         triangles.loose = caps->triangles();
+        if (caps->crossed() != nullptr) triangles.indices = *caps->crossed();
     }
     Closed(const Closed&) = delete;
     Closed& operator=(const Closed&) = delete;
@@ -35,29 +37,32 @@ void clear(VoxelGrid& grid) { grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
 
 }  // namespace
 
-void voxelizeSolid(const CleanMesh& mesh, VoxelGrid& inside) {
+bool voxelizeSolid(const CleanMesh& mesh, VoxelGrid& inside, const std::function<bool(double)>& progress) {
     clear(inside);
     const Closed closed(mesh, inside);
     const ColumnCrossings crossings = crossColumns(closed.triangles, inside);
-    if (closed.caps) closed.caps->correct(mesh, crossings, inside);
+    return !closed.caps || closed.caps->correct(mesh, crossings, inside, progress);
 }
 
-Status voxelizeSolid(Device& device, const CleanMesh& mesh, VoxelGrid& inside) {
+Status voxelizeSolid(Device& device, const CleanMesh& mesh, VoxelGrid& inside, const std::function<bool(double)>& progress) {
+    const auto told = [](bool done) { return done ? ok() : failed("Voxelising was cancelled."); };
     try {
         if (device.backend() == Backend::cpu) {
-            tbb::task_arena(static_cast<CpuDevice&>(device).threads()).execute([&] { voxelizeSolid(mesh, inside); });
-            return ok();
+            bool done = false;
+            // Where the caller finds no room in the arena, somebody else does its work, and may not call back.
+            const auto mine = [&, caller = std::this_thread::get_id()](double share) {
+                return !progress || std::this_thread::get_id() != caller || progress(share);
+            };
+            tbb::task_arena(static_cast<CpuDevice&>(device).threads()).execute([&] { done = voxelizeSolid(mesh, inside, mine); });
+            return told(done);
         }
-        if (inside.count() > std::numeric_limits<uint32_t>::max()) {  // kernels count voxels in 32 bits
-            voxelizeSolid(mesh, inside);
-            return ok();
-        }
+        if (inside.count() > std::numeric_limits<uint32_t>::max())  // kernels count voxels in 32 bits
+            return told(voxelizeSolid(mesh, inside, progress));
         clear(inside);
         const Closed closed(mesh, inside);
         const Result<ColumnCrossings> crossings = crossColumnsOn(device, closed.triangles, inside, closed.caps.has_value());
         if (!crossings) return crossings.error();
-        if (closed.caps) closed.caps->correct(mesh, *crossings, inside);
-        return ok();
+        return told(!closed.caps || closed.caps->correct(mesh, *crossings, inside, progress));
     } catch (const std::bad_alloc&) {
         return failed("Not enough memory for solid voxels; lower the resolution.");
     }

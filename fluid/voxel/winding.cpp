@@ -9,6 +9,7 @@
 
 #include "engine/core/assert.h"
 #include "fluid/voxel/voxelize_surface.h"
+#include "fluid/voxel/winding_tree.h"
 
 namespace rivulet {
 namespace {
@@ -108,7 +109,55 @@ class Occupied {
 }  // namespace
 
 BoundaryCaps::BoundaryCaps(const CleanMesh& mesh, std::span<const dvec3> places) {
-    eachLoop(mesh.unmatched, places.size(), [&](std::span<const uint32_t> loop) { addFan(loop, places); });
+    // Triangles that are a component each, by their lowest place.
+    std::vector<uint32_t> faces(mesh.defects.components, 0);
+    for (uint32_t component : mesh.component) ++faces[component];
+    struct Alone {
+        uint32_t lowest, face;
+    };
+    std::vector<Alone> alone;
+    for (uint32_t f = 0; f < mesh.source.size(); ++f) {
+        const uint32_t* corner = &mesh.indices[3 * size_t{f}];
+        if (faces[mesh.component[f]] == 1) alone.push_back({std::min({corner[0], corner[1], corner[2]}), f});
+    }
+    if (alone.size() < kFew) alone.clear();
+    std::sort(alone.begin(), alone.end(),
+              [](const Alone& a, const Alone& b) { return a.lowest != b.lowest ? a.lowest < b.lowest : a.face < b.face; });
+    std::vector<uint32_t> loose;  // faces
+    eachLoop(mesh.unmatched, places.size(), [&](std::span<const uint32_t> loop) {
+        if (loop.size() == 3 && !alone.empty()) {
+            const uint32_t lowest = std::min({loop[0], loop[1], loop[2]});
+            auto at = std::lower_bound(alone.begin(), alone.end(), lowest, [](const Alone& a, uint32_t place) { return a.lowest < place; });
+            for (; at != alone.end() && at->lowest == lowest; ++at) {
+                const uint32_t* corner = &mesh.indices[3 * size_t{at->face}];
+                for (size_t turn = 0; turn < 3; ++turn) {
+                    if (corner[0] != loop[turn] || corner[1] != loop[(turn + 1) % 3] || corner[2] != loop[(turn + 2) % 3]) continue;
+                    loose.push_back(at->face);
+                    return;
+                }
+            }
+        }
+        addFan(loop, places);
+    });
+    if (!loose.empty()) addLoose(mesh, places, loose);
+}
+
+// Each of these faces of the mesh is capped by its reverse.
+void BoundaryCaps::addLoose(const CleanMesh& mesh, std::span<const dvec3> places, std::span<const uint32_t> faces) {
+    std::vector<uint8_t> gone(mesh.source.size(), 0);
+    for (uint32_t f : faces) {
+        const uint32_t* corner = &mesh.indices[3 * size_t{f}];
+        Piece piece;
+        piece.first = static_cast<uint32_t>(triangles_.size());
+        piece.end = piece.first + 1;
+        triangles_.push_back({places[corner[1]], places[corner[0]], places[corner[2]]});
+        pieces_.push_back(piece);
+        gone[f] = 1;
+    }
+    loose_ = faces.size();
+    crossed_.reserve(mesh.indices.size() - 3 * faces.size());
+    for (size_t f = 0; f < gone.size(); ++f)
+        if (gone[f] == 0) crossed_.insert(crossed_.end(), &mesh.indices[3 * f], &mesh.indices[3 * f] + 3);
 }
 
 void BoundaryCaps::addFan(std::span<const uint32_t> loop, std::span<const dvec3> places) {
@@ -430,8 +479,17 @@ class BoundaryCaps::Descent {
     double tolerance_;
 };
 
-void BoundaryCaps::correct(const CleanMesh& mesh, const ColumnCrossings& crossings, VoxelGrid& grid) const {
-    if (!pieces_.empty()) Descent(*this, mesh, crossings, grid).run();
+bool BoundaryCaps::correct(const CleanMesh& mesh, const ColumnCrossings& crossings, VoxelGrid& grid,
+                           const std::function<bool(double)>& goOn) const {
+    if (pieces_.empty()) return true;
+    if (pieces_.size() < kFew) {
+        Descent(*this, mesh, crossings, grid).run();
+        return true;
+    }
+    std::vector<uint32_t> ends;
+    ends.reserve(pieces_.size());
+    for (const Piece& piece : pieces_) ends.push_back(piece.end);
+    return WindingTree(triangles_, ends).correct(crossings, grid, goOn);
 }
 
 }  // namespace rivulet

@@ -73,9 +73,9 @@ struct Wrong {
     std::string first;
 };
 
-void ask(const CleanMesh& mesh, const VoxelGrid& grid, const ivec3& c, Wrong& w) {
+void ask(const CleanMesh& mesh, const VoxelGrid& grid, const ivec3& c, Wrong& w, double tolerance = 1e-7) {
     const Oracle o = oracleAt(mesh, grid, c);
-    if (o.onSurface || std::abs(std::abs(o.winding) - 0.5) < 1e-7) return;
+    if (o.onSurface || std::abs(std::abs(o.winding) - 0.5) < tolerance) return;
     ++w.asked;
     w.inside += grid.test(c) ? 1 : 0;
     if (grid.test(c) == (std::abs(o.winding) > 0.5)) return;
@@ -186,6 +186,81 @@ TEST(VoxelSolid, OpenMeshesByWindingNumber) {
     expectRight(lone, gridAround(lone, 12, 1.0F), "one triangle");
 }
 
+// Triangles about as long as `size` each, that share no vertex: strewn about, or along a ball.
+Mesh strewn(int count, float size, bool ball) {
+    std::mt19937 random(17);
+    std::uniform_real_distribution<float> at(-1.0F, 1.0F);
+    const auto point = [&] { return vec3(at(random), at(random), at(random)); };
+    Mesh m;
+    for (int k = 0; k < count; ++k) {
+        const vec3 p = point();
+        if (!ball) {
+            const vec3 q = point(), r = point();
+            m.triangle(p, p + size * q, p + size * r);
+            continue;
+        }
+        const vec3 out = glm::normalize(p), u = glm::normalize(glm::cross(out, vec3(0.3F, 0.5F, 0.8F))), v = glm::cross(out, u);
+        m.triangle(out + size * u, out + size * v, out - size * (u + v));
+    }
+    return m;
+}
+
+TEST(VoxelSolid, ManyLoosePieces) {
+    struct Case {
+        int count;
+        float size;
+        bool ball;
+        int resolution;
+        double tolerance;
+    };
+    // The first three are exact; more than 1,024 pieces are reckoned to an accuracy.
+    for (const Case& c : {Case{400, 0.5F, false, 16, 1e-7}, Case{1000, 0.3F, false, 16, 1e-7}, Case{1000, 0.08F, true, 20, 1e-7},
+                          Case{6000, 0.3F, false, 24, 0.02}, Case{20000, 0.018F, true, 32, 0.02}}) {
+        const Mesh mesh = strewn(c.count, c.size, c.ball);
+        const CleanMesh clean = cleaned(mesh);
+        VoxelGrid grid = gridAround(mesh, c.resolution, 1.0F);
+        voxelizeSolid(clean, grid);
+        Wrong w;
+        std::mt19937 random(3);
+        const auto side = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+        for (int k = 0; k < 6'000'000 / c.count; ++k)
+            ask(clean, grid, {side(grid.size.x), side(grid.size.y), side(grid.size.z)}, w, c.tolerance);
+        EXPECT_GT(w.asked, 200U);
+        EXPECT_GT(w.inside, 0U) << c.count;
+        EXPECT_EQ(w.wrong, 0U) << c.count << " pieces: of " << w.asked << ", first: " << w.first;
+    }
+}
+
+// Holes in one mesh, more of them than are few, beside loose triangles that touch it and each other.
+TEST(VoxelSolid, ManyHolesAndLoosePieces) {
+    const Mesh ball = test::makeSphere(vec3(0.1F), 1.0F, 16);
+    const Mesh holes = without(ball, [](size_t t) { return t % 3 == 0; });
+    expectRight(holes, gridAround(holes, 18), "many holes");
+    Mesh both = joined(holes, strewn(400, 0.1F, false));
+    const auto centre = static_cast<uint32_t>(both.positions.size());
+    both.positions.emplace_back(0.0F);
+    for (uint32_t k = 0; k < 30; ++k) both.indices.insert(both.indices.end(), {centre, 7 * k, 7 * k + 3});
+    expectRight(both, gridAround(both, 18), "holes and loose pieces");
+}
+
+TEST(VoxelSolid, ManyLoosePiecesCanBeCancelled) {
+    const Mesh mesh = strewn(1000, 0.2F, false);
+    VoxelGrid grid = gridAround(mesh, 24);
+    double last = 0;
+    int calls = 0;
+    EXPECT_TRUE(voxelizeSolid(cleaned(mesh), grid, [&](double done) {
+        EXPECT_GE(done, last);
+        EXPECT_LE(done, 1.0);
+        last = done;
+        ++calls;
+        return true;
+    }));
+    EXPECT_GT(calls, 3);
+    int left = 2;
+    EXPECT_FALSE(voxelizeSolid(cleaned(mesh), grid, [&](double) { return --left > 0; }));
+    EXPECT_EQ(left, 0) << "it asks no more";
+}
+
 TEST(VoxelSolid, GridsThatCutTheMesh) {
     for (const Mesh& mesh :
          {test::makeSphere(vec3(0), 1.0F, 9), without(test::makeSphere(vec3(0), 1.0F, 9), [](size_t t) { return t % 5 == 0; })}) {
@@ -227,6 +302,14 @@ TEST(VoxelSolid, TheSameForAnyNumberOfThreads) {
     }
     voxelizeSolid(cleaned(mesh), many);
     EXPECT_EQ(one.bits, many.bits);
+    const Mesh loose = strewn(1500, 0.1F, false);
+    VoxelGrid oneOfLoose = gridAround(loose, 20), manyOfLoose = oneOfLoose;
+    {
+        const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+        voxelizeSolid(cleaned(loose), oneOfLoose);
+    }
+    voxelizeSolid(cleaned(loose), manyOfLoose);
+    EXPECT_EQ(oneOfLoose.bits, manyOfLoose.bits);
 }
 
 }  // namespace

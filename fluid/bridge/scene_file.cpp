@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/core/json.h"
+#include "fluid/sim/solids.h"
 
 namespace rivulet {
 
@@ -36,8 +37,14 @@ std::string contradiction(const SceneFile& scene) {
             return fmt::format("fluid.blocks[{}] from {} to {} reaches out of fluid.box from {} to {}", i, shown(block.min),
                                shown(block.max), shown(box.min), shown(box.max));
     }
+    std::set<std::pair<float, float>> kinds;
+    for (const ColliderParams& collider : scene.colliders) kinds.emplace(collider.friction, collider.restitution);
+    if (scene.colliders.size() > kMostSurfaces && kinds.size() > kMostSurfaces)
+        return fmt::format("colliders have {} different pairs of friction and restitution, there may be {}: give some the same",
+                           kinds.size(), kMostSurfaces);
     for (size_t i = 0; i < scene.colliders.size(); ++i) {
         const ColliderParams& collider = scene.colliders[i];
+        if (collider.resolution == 1) return fmt::format("colliders[{}].resolution is 1: give 2 or more, or 0 for what suits the fluid", i);
         if (collider.shape == "mesh" && collider.mesh.empty())
             return fmt::format("colliders[{}].mesh is empty: name a mesh file, or make its shape a plane", i);
         if (collider.shape == "plane" && glm::length(collider.normal) < 1.0e-6F)

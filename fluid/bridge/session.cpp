@@ -41,6 +41,29 @@ void recomputeNormals(Mesh& mesh) {
     }
 }
 
+// One surface a collider while they suffice, so that each can be edited; else colliders that are alike share one.
+std::vector<Surface> surfacesOf(const SceneFile& scene, std::vector<uint8_t>& surfaceOf) {
+    std::vector<Surface> table;
+    surfaceOf.clear();
+    for (const ColliderParams& collider : scene.colliders) {
+        size_t at = table.size();
+        if (scene.colliders.size() > kMostSurfaces) {
+            const auto same = std::find_if(table.begin(), table.end(), [&](const Surface& s) {
+                return s.friction == collider.friction && s.restitution == collider.restitution;
+            });
+            at = static_cast<size_t>(same - table.begin());
+        }
+        if (at == table.size()) table.push_back({collider.friction, collider.restitution});
+        surfaceOf.push_back(static_cast<uint8_t>(at));
+    }
+    return table;
+}
+
+// A sentence of the baker, with whose mesh it is about.
+Error about(const Error& error, size_t collider, const ColliderParams& params) {
+    return {fmt::format("colliders[{}] ({}): {}", collider, params.mesh, error.message), error.fault};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, const Log& log) {
@@ -49,7 +72,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     s.scene_ = std::move(scene);
     if (Status imported = s.importColliders(); !imported) return imported.error();
     Solids solids;
-    solids.surfaces = s.surfaces();
+    solids.surfaces = surfacesOf(s.scene_, s.surfaceOf_);
     if (Status baked = s.bake(log); !baked) return baked.error();
     if (!s.field_.empty()) solids.field = &s.field_;
     for (size_t i = 0; i < s.scene_.colliders.size(); ++i) {
@@ -91,24 +114,6 @@ Status Session::importColliders() {
     return ok();
 }
 
-// One surface a collider while they suffice, so that each can be edited; else colliders that are alike share one.
-std::vector<Surface> Session::surfaces() {
-    std::vector<Surface> table;
-    surfaceOf_.clear();
-    for (const ColliderParams& collider : scene_.colliders) {
-        size_t at = table.size();
-        if (scene_.colliders.size() > kMostSurfaces) {
-            const auto same = std::find_if(table.begin(), table.end(), [&](const Surface& s) {
-                return s.friction == collider.friction && s.restitution == collider.restitution;
-            });
-            at = static_cast<size_t>(same - table.begin());
-        }
-        if (at == table.size()) table.push_back({collider.friction, collider.restitution});
-        surfaceOf_.push_back(static_cast<uint8_t>(std::min<size_t>(at, 255)));
-    }
-    return table;
-}
-
 VoxelFieldOptions Session::fieldOptions(const Bounds& bounds, float edge) const {
     VoxelFieldOptions options;
     options.resolution = static_cast<int>(std::clamp(std::ceil(longest(bounds) / edge - 0.001F), 2.0F, 1.0e6F));
@@ -122,7 +127,8 @@ VoxelFieldOptions Session::fieldOptions(const Bounds& bounds, float edge) const 
 float Session::voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const {
     const float side = longest(bounds);
     if (!(side > 0)) return 0.25F * scene_.fluid.spacing;
-    if (collider.resolution > 0) return side / static_cast<float>(std::max(collider.resolution, 2));
+    if (collider.resolution > 0) return side / static_cast<float>(collider.resolution);
+    constexpr float kMostVoxels = 2047;  // along a side: what a field takes
     const float wanted = 0.25F * scene_.fluid.spacing;
     float edge = std::min(wanted, 0.5F * side);
     const VoxelFieldOptions options = fieldOptions(bounds, edge);
@@ -131,6 +137,7 @@ float Session::voxelEdge(const ColliderParams& collider, const Bounds& bounds, c
         return voxels.x * voxels.y * voxels.z * (sizeof(float) + sizeof(uint32_t) + 0.125);
     };
     while (bytes() > 0.9 * static_cast<double>(options.memoryLimit)) edge *= 1.05F;
+    edge = std::max(edge, side / kMostVoxels);
     if (edge > 1.01F * wanted)
         log.notice(
             fmt::format("{} is too large for voxels of a quarter of the spacing: they are {:.3g} m instead of {:.3g} m, and water "
@@ -154,6 +161,7 @@ Status Session::bake(const Log& log) {
     float edge = std::numeric_limits<float>::max();
     std::vector<MeshView> still;
     std::vector<uint8_t> stillSurfaces;
+    size_t one = 0;  // of those that stand still
     for (size_t m = 0; m < meshes_.size(); ++m) {
         const size_t c = colliderOf_[m];
         const ColliderParams& collider = scene_.colliders[c];
@@ -162,24 +170,25 @@ Status Session::bake(const Log& log) {
         const MeshView view = meshes_[m].view();
         if (collider.motion.moves()) {
             Result<VoxelField> field = bakeMeshes(std::span(&view, 1), std::span(&surface, 1), voxelEdge(collider, bounds, log), log);
-            if (!field) return field.error();
+            if (!field) return about(field.error(), c, collider);
             rigid_.push_back({c, m, std::make_unique<VoxelField>(std::move(*field)), 0.0});
         } else if (collider.wave.amplitude > 0) {
             const Bounds reach = waveReach(collider.wave, bounds);
             VoxelFieldOptions options = fieldOptions(reach, voxelEdge(collider, reach, log));
             options.surfaces = std::span(&surface, 1);
             Result<DeformingField> field = DeformingField::create(std::span(&view, 1), reach, options);
-            if (!field) return field.error();
+            if (!field) return about(field.error(), c, collider);
             deforming_.push_back({c, m, std::make_unique<DeformingField>(std::move(*field)), meshes_[m].positions, {}});
         } else {
             if (longest(bounds) > 0) edge = std::min(edge, voxelEdge(collider, bounds, log));
             still.push_back(view);
+            one = c;
             stillSurfaces.push_back(surface);
         }
     }
     if (still.empty()) return ok();
     Result<VoxelField> field = bakeMeshes(still, stillSurfaces, edge, log);
-    if (!field) return field.error();
+    if (!field) return still.size() == 1 ? about(field.error(), one, scene_.colliders[one]) : field.error();
     field_ = std::move(*field);
     return ok();
 }
@@ -205,7 +214,9 @@ bool Session::needsNew(const SceneFile& scene) const {
         const ColliderParams &a = scene_.colliders[i], &b = scene.colliders[i];
         if (a.motion.moves() != b.motion.moves() || (a.wave.amplitude > 0) != (b.wave.amplitude > 0)) return true;
     }
-    return false;
+    std::vector<uint8_t> surfaceOf;
+    (void)surfacesOf(scene, surfaceOf);
+    return surfaceOf != surfaceOf_;
 }
 
 void Session::apply(const SceneFile& scene) {
@@ -213,7 +224,8 @@ void Session::apply(const SceneFile& scene) {
     scene_ = scene;
     scene_.folder = folder;
     world_->setParams(scene_.fluid);
-    world_->setSurfaces(surfaces());
+    std::vector<uint8_t> unchanged;  // see needsNew
+    world_->setSurfaces(surfacesOf(scene_, unchanged));
     for (size_t m = 0; m < meshes_.size() && m < solids_.nodes().size(); ++m) {
         if (colliderOf_[m] >= scene_.colliders.size()) continue;
         const ColliderParams& collider = scene_.colliders[colliderOf_[m]];

@@ -68,7 +68,6 @@ class Session {
     Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
     VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
-    std::vector<Surface> surfaces();
     void advance(double seconds);
     void placeNodes();
 

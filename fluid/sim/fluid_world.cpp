@@ -41,7 +41,7 @@ struct FluidWorld::Impl {
     uint64_t frame = 0;
     int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
-    float fastestWall = 0;  // m/s, of moving solids so far
+    float fastestWall = 0;  // m/s, of moving solids, lately
 
     Status prepare();
     void fillStart();
@@ -184,7 +184,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to) {
                 {&grid->cellStart(), &particles.position, &particles.velocity, &particles.acceleration, &particles.density,
                  &solids.planes(), &particles.positionNext, &particles.velocityNext},
                 particles.count);
-    solids.collide(*grid, particles);
+    solids.collide(step, *grid, particles);
 }
 
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
@@ -198,7 +198,9 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
     w.gravity = inputs.gravity;
     if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, seconds); !asked) w.say(asked.error().message);
-    w.fastestWall = std::max(w.fastestWall, w.solids.fastestWall());
+    // Remembered for a while: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
+    constexpr double kForget = 0.5;  // s
+    w.fastestWall = std::max(w.fastestWall * static_cast<float>(std::exp(-seconds / kForget)), w.solids.fastestWall());
     const FluidParams& p = w.params;
     StepParams& s = w.step;
     s = StepParams{};

@@ -62,6 +62,8 @@ std::array<uint32_t, 2 * kMostSurfaces> surfaceWords(std::span<const Surface> su
 }
 
 Status SolidPasses::Field::upload(Device& device) {
+    // Where a mesh is not closed nobody knows which side of it is inside: what cannot be reached from the border counts as that.
+    if (!field->closed) outside = reachableFromBorder(field->surface);
     if (Status s = hold<uint8_t>(device, bits, field->surface.bits); !s) return s;
     if (Status s = hold<float>(device, distance, field->distance); !s) return s;
     return hold<uint32_t>(device, normal, field->normal, 2 * kMostSurfaces * sizeof(uint32_t));
@@ -84,7 +86,6 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
 
     if (solids.field != nullptr && !solids.field->empty()) {
         s.static_.field = solids.field;
-        if (!solids.field->closed) s.outside_ = reachableFromBorder(solids.field->surface);
         if (Status done = s.static_.upload(device); !done) return done.error();
         Result<Buffer> block = device.allocate(sizeof(FieldParams));
         if (!block) return block.error();
@@ -120,6 +121,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
     };
     for (const Wanted& w :
          {Wanted{&s.boundary_, "fluid/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
+          Wanted{&s.walls_, "fluid/walls", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.collide_, "fluid/collide", collide(""), still},
           Wanted{&s.collideRigid_, "fluid/collide", collide("MOVING"), !s.rigid_.empty()},
@@ -153,22 +155,20 @@ Status SolidPasses::addMoving(Moving m) {
     return ok();
 }
 
+bool SolidPasses::Field::mayBeBorn(const vec3& p, float spacing) const {
+    if (field->clearance(p) < fieldParams(*field, FieldContact{.spacing = spacing}).contact || field->inside(p)) return false;
+    const ivec3 voxel = field->surface.cellOf(p);
+    return field->closed || !field->surface.contains(voxel) || outside[field->surface.index(voxel)] != 0;
+}
+
 bool SolidPasses::mayBeBorn(const vec3& p, float spacing) const {
     for (const PlaneSolid& plane : planeSolids_)
         if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * spacing) return false;
-    // Not nearer than it would rest, and not inside where the mesh is closed.
-    const auto clear = [&](const VoxelField& field, const vec3& at) {
-        return field.clearance(at) >= fieldParams(field, FieldContact{.spacing = spacing}).contact && !field.inside(at);
-    };
     for (const Moving& m : rigid_)
-        if (!clear(*m.on.field, m.atStart.toOwn(p))) return false;
+        if (!m.on.mayBeBorn(m.atStart.toOwn(p), spacing)) return false;
     for (const Moving& m : deforming_)
-        if (!clear(*m.on.field, p)) return false;
-    if (static_.field == nullptr) return true;
-    const VoxelGrid& grid = static_.field->surface;
-    const ivec3 voxel = grid.cellOf(p);
-    // Where a mesh is not closed nobody knows which side of it is inside: what cannot be reached from the border counts as that.
-    return clear(*static_.field, p) && (static_.field->closed || !grid.contains(voxel) || outside_[grid.index(voxel)] != 0);
+        if (!m.on.mayBeBorn(p, spacing)) return false;
+    return static_.field == nullptr || static_.mayBeBorn(p, spacing);
 }
 
 void SolidPasses::setSurfaces(std::span<const Surface> surfaces) {
@@ -197,6 +197,15 @@ Status SolidPasses::reset() {
 }
 
 Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) {
+    // Refused or not: nothing moves but to where this frame asks.
+    frameSeconds_ = seconds;
+    fastestWall_ = 0;
+    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
+    for (Moving& m : deforming_) {
+        m.shapeFrom = m.shapeTarget = m.shapeNow;
+        m.updates = 1;
+        m.updated = 0;
+    }
     if (!poses.empty() && poses.size() != rigid_.size())
         return badInput(fmt::format("{} poses were given for {} moving solids: give one for each", poses.size(), rigid_.size()));
     if (!shapes.empty() && shapes.size() != deforming_.size())
@@ -208,23 +217,18 @@ Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std:
         if (shapes[k].size() != deforming_[k].shapeAtStart.size())
             return badInput(fmt::format("{} vertices were given for deforming solid {}, which has {}", shapes[k].size(), k,
                                         deforming_[k].shapeAtStart.size()));
-    frameSeconds_ = seconds;
-    fastestWall_ = 0;
+    for (size_t k = 0; k < shapes.size(); ++k)
+        if (Status fits = deforming_[k].shape->checkPlaces(shapes[k]); !fits) return fits;
     for (size_t k = 0; k < rigid_.size(); ++k) {
         Moving& m = rigid_[k];
-        m.from = poses_[k];
-        m.target = poses.empty() ? m.from : poses[k];
+        if (!poses.empty()) m.target = poses[k];
         const float moved =
             glm::length(m.target.position - m.from.position) + m.radius * glm::length(turnBetween(m.from.rotation, m.target.rotation));
         fastestWall_ = std::max(fastestWall_, static_cast<float>(moved / seconds));
     }
     for (size_t k = 0; k < deforming_.size(); ++k) {
         Moving& m = deforming_[k];
-        m.shapeFrom = m.shapeNow;
-        if (shapes.empty())
-            m.shapeTarget = m.shapeFrom;
-        else
-            m.shapeTarget.assign(shapes[k].begin(), shapes[k].end());
+        if (!shapes.empty()) m.shapeTarget.assign(shapes[k].begin(), shapes[k].end());
         float moved2 = 0;
         for (size_t i = 0; i < m.shapeTarget.size(); ++i) {
             const vec3 way = m.shapeTarget[i] - m.shapeFrom[i];
@@ -235,7 +239,6 @@ Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std:
         // The way of a particle starts where the wall carries it: exact where the wall moves evenly. Some voxels at a time keep it so.
         constexpr float kMostVoxels = 4.0F;
         m.updates = std::max(1, static_cast<int>(std::ceil(std::min(moved / (kMostVoxels * m.on.field->surface.voxel), 64.0F))));
-        m.updated = 0;
     }
     return ok();
 }
@@ -243,9 +246,11 @@ Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std:
 Status SolidPasses::deform(Moving& m, double share, double seconds) {
     ++m.updated;
     m.motion.perSecond = seconds > 0 ? static_cast<float>(m.updates / seconds) : 0.0F;
-    for (size_t i = 0; i < m.shapeNow.size(); ++i) m.shapeNow[i] = glm::mix(m.shapeFrom[i], m.shapeTarget[i], static_cast<float>(share));
-    Result<DeformingField::Change> changed = m.shape->update(m.shapeNow);
+    std::vector<vec3> next(m.shapeNow.size());
+    for (size_t i = 0; i < next.size(); ++i) next[i] = glm::mix(m.shapeFrom[i], m.shapeTarget[i], static_cast<float>(share));
+    Result<DeformingField::Change> changed = m.shape->update(next);
     if (!changed) return changed.error();
+    m.shapeNow = std::move(next);
     voxelsRewritten_ += changed->voxels;
     const VoxelGrid& grid = m.on.field->surface;
     const size_t layer = (static_cast<size_t>(grid.size.x) + 1) * (static_cast<size_t>(grid.size.y) + 1);
@@ -316,6 +321,8 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
     }
     for (Moving& m : deforming_) {
         m.motion.carried = 0.0F;
+        // A substep can take one update: where they are fewer, each goes further, and the wall is in time.
+        if (m.updated == 0) m.updates = std::clamp(static_cast<int>(std::lround(1.0 / std::max(to - from, 1.0e-6))), 1, m.updates);
         m.motion.field = fieldParams(*m.on.field, contact);
         if (m.updated < m.updates && from * m.updates >= m.updated - 1.0e-6) {
             m.motion.carried = 1.0F;
@@ -339,7 +346,7 @@ void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, Par
             device_->run(boundaryMoving_, step, {&grid.cellStart(), &particles.position, &particles.boundary, &m.block, &m.on.distance}, n);
 }
 
-void SolidPasses::collide(const NeighborGrid& grid, Particles& particles) {
+void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
     const uint32_t n = particles.count;
     const Buffer *from = &particles.position, *to = &particles.positionNext, *velocity = &particles.velocityNext,
                  *start = &grid.cellStart();
@@ -348,6 +355,7 @@ void SolidPasses::collide(const NeighborGrid& grid, Particles& particles) {
                      n);
     for (const Moving& m : rigid_)
         device_->run(collideRigid_, m.motion, {from, to, velocity, start, &m.on.bits, &m.on.distance, &m.on.normal}, n);
+    if (!rigid_.empty() || !deforming_.empty()) device_->run(walls_, step, {start, &planes_, to, velocity}, n);
     // Last: what stands still is never entered, whatever squeezes.
     if (static_.field != nullptr)
         device_->run(collide_, block_, {from, to, velocity, start, &static_.bits, &static_.distance, &static_.normal}, n);

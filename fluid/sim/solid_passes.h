@@ -39,7 +39,7 @@ class SolidPasses {
     Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
     void boundary(const StepParams& step, const NeighborGrid& grid, Particles& particles);  // fills particles.boundary
     // Moves particles.positionNext and velocityNext out of the solids.
-    void collide(const NeighborGrid& grid, Particles& particles);
+    void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);
 
     const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now
     uint64_t voxelsRewritten() const { return voxelsRewritten_; }  // of the deforming ones, since the start
@@ -48,7 +48,9 @@ class SolidPasses {
     struct Field {
         const VoxelField* field = nullptr;
         Buffer bits, distance, normal;
+        std::vector<uint8_t> outside;  // of its voxels: reachable from the grid's border; empty where the mesh is closed
         Status upload(Device& device);
+        bool mayBeBorn(const vec3& p, float spacing) const;  // in the field's frame
     };
     struct Moving {
         Field on;
@@ -72,9 +74,8 @@ class SolidPasses {
     Surface otherwise_;
     bool surfacesChanged_ = true;
     Buffer planes_;
-    Kernel boundary_, collide_, boundaryMoving_, collideRigid_, collideDeforming_;
+    Kernel boundary_, collide_, walls_, boundaryMoving_, collideRigid_, collideDeforming_;
     Field static_;
-    std::vector<uint8_t> outside_;  // of the static field's voxels: reachable from its border
     FieldParams block_{};
     Buffer staticBlock_;
     float blockDt_ = 0;  // staticBlock_ was written for this step length

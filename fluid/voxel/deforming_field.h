@@ -25,6 +25,8 @@ class DeformingField {
     // and normals are then bit for bit those of a bake from nothing. Error: another number of vertices, a vertex of a triangle
     // that is NaN or outside `reach` (nothing has changed then); out of memory (the next update makes good what is half done).
     Result<Change> update(std::span<const vec3> positions);
+    // What update would refuse them for.
+    Status checkPlaces(std::span<const vec3> positions) const;
 
     // At the latest places. Unsigned.
     const VoxelField& field() const { return field_; }
@@ -35,7 +37,6 @@ class DeformingField {
 
   private:
     DeformingField() = default;
-    Status checkPlaces(std::span<const vec3> positions) const;
     size_t findMoved(std::span<const vec3> positions);
     void bakeAll();
     void bakePart(const std::vector<vec3>& before);

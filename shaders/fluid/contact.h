@@ -176,7 +176,8 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
     if (within || setVoxelNear(PASS(surfaceBits) f, toCells(f, s.position))) {
         vec3 n = within ? fieldNormal(here) * -1.0f : fieldNormal(here);
         s.position = s.position + n * min(within ? f.contact + here.distance : f.contact - here.distance, 0.5f * f.voxel);
-        s.velocity = respond(velocity, n, 0.0f, 0.0f);
+        // Deep within, where no distance says which way is out, it goes with the solid.
+        s.velocity = dot(n, n) > 0.0f ? respond(velocity, n, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 0.0f);
         s.touched = true;
         return s;
     }

@@ -88,7 +88,7 @@ TEST(ProgramBadScene, CollidersThatCannotMoveSo) {
     expectBad(scratch, sceneOf(R"("motion": {"spinn": 10})"), {"did you mean", "spin"});
     std::string many = R"("colliders": [)";
     for (int k = 0; k < 20; ++k) many += fmt::format(R"({}{{"shape": "plane", "friction": {}}})", k == 0 ? "" : ", ", 0.1 * k);
-    expectBad(scratch, scratch.file("scene.json", smallScene(many + "]")), {"20 kinds of wall", "16"});
+    expectBad(scratch, scratch.file("scene.json", smallScene(many + "]")), {"20 different pairs", "16"});
 }
 
 TEST(ProgramBadScene, Meshes) {

@@ -15,6 +15,9 @@ namespace boundary_field {
 namespace integrate_unit {
 #include "shaders/fluid/integrate.kernel"
 }
+namespace walls_unit {
+#include "shaders/fluid/walls.kernel"
+}
 namespace boundary_moving_unit {
 #include "shaders/fluid/boundary_moving.kernel"
 }
@@ -57,6 +60,7 @@ std::span<const CpuKernelRow> particleRows() {
         {"fluid/boundary", "", RIVULET_UNIT_ISA, boundary_walls::boundary, 1024},
         {"fluid/boundary", "FIELD=1", RIVULET_UNIT_ISA, boundary_field::boundary, 1024},
         {"fluid/integrate", "", RIVULET_UNIT_ISA, integrate_unit::integrate, 1024},
+        {"fluid/walls", "", RIVULET_UNIT_ISA, walls_unit::walls, 1024},
         {"fluid/boundary_moving", "", RIVULET_UNIT_ISA, boundary_moving_unit::boundary_moving, 1024},
         {"fluid/collide", "", RIVULET_UNIT_ISA, collide_still::collide, 1024},
         {"fluid/collide", "MOVING=1", RIVULET_UNIT_ISA, collide_moving::collide, 1024},

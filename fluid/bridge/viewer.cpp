@@ -147,7 +147,7 @@ bool Viewer::drawPanels() {
         const float across = narrow - 2 * ImGui::GetStyle().WindowPadding.x;
         profiler_.draw(across);
         ImGui::Spacing();
-        voxels_.draw(session_->fields().first(), std::min(across, ImGui::GetContentRegionAvail().x));
+        voxels_.draw(session_->fields(), session_->world().time(), std::min(across, ImGui::GetContentRegionAvail().x));
     }
     ImGui::End();
     return recreate;

@@ -109,6 +109,7 @@ void Viewer::moveCamera(const InputEvents& input) {
 }
 
 bool Viewer::drawPanels() {
+    if (!ImGui::IsAnyItemActive()) settled_ = session_->scene();
     ImVec2 display = ImGui::GetIO().DisplaySize;
     constexpr float kMargin = 10;
     float width = std::clamp(display.x * 0.26F, 320.0F, 420.0F), tall = std::max(display.y - 2 * kMargin, 80.0F);
@@ -177,6 +178,7 @@ void Viewer::takeEdits(bool recreate) {
         if (recorder_) record();
     } else {
         message_ = fresh.error().message;
+        session_->apply(settled_);  // a drag has gone through it
         draft_ = session_->scene();
     }
 }

@@ -69,7 +69,10 @@ void ArgumentReader::positional(const std::string& name, const std::string& doc,
 void ArgumentReader::flag(const std::string& name, const std::string& doc, bool& value) { impl_->app.add_flag(name, value, doc); }
 
 void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::string& value) {
-    impl_->app.add_option(name, value, doc)->type_name(type);
+    impl_->app.add_option(name, value, doc)
+        ->type_name(type)
+        ->check(
+            CLI::Validator([](std::string& text) { return text.empty() ? std::string("it takes a name, not ''") : std::string(); }, ""));
 }
 
 void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::vector<std::string>& values) {
@@ -80,12 +83,12 @@ namespace {
 
 // A check that NaN fails too.
 template <class T>
-CLI::Validator within(T min, T max) {
+CLI::Validator within(T min, T max, bool strict = true) {
     return CLI::Validator(
-        [min, max](std::string& text) {
+        [min, max, strict](std::string& text) {
             T value{};
-            if (CLI::detail::lexical_cast(text, value) && value >= min && value <= max) return std::string();
-            return fmt::format("it takes a number from {} to {}, not '{}'", min, max, text);
+            if (CLI::detail::lexical_cast(text, value) && (!strict || (value >= min && value <= max))) return std::string();
+            return fmt::format("it takes a {}number from {} to {}, not '{}'", std::is_integral_v<T> ? "whole " : "", min, max, text);
         },
         "");
 }
@@ -93,8 +96,8 @@ CLI::Validator within(T min, T max) {
 }  // namespace
 
 void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::optional<int>& value, int min,
-                            int max) {
-    impl_->app.add_option(name, value, doc)->type_name(type)->check(within(min, max));
+                            int max, bool strict) {
+    impl_->app.add_option(name, value, doc)->type_name(type)->check(within(min, max, strict));
 }
 
 void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::optional<double>& value,

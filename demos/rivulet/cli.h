@@ -45,12 +45,13 @@ class ArgumentReader {
     // By position; `name` as help shows it.
     void positional(const std::string& name, const std::string& doc, std::string& value, bool required);
     void positional(const std::string& name, const std::string& doc, std::vector<std::string>& values);
-    // By name; `type` as help shows it: "FILE", "N".
+    // By name; `type` as help shows it: "FILE", "N". A text that is given must not be empty.
     void flag(const std::string& name, const std::string& doc, bool& value);
     void option(const std::string& name, const std::string& type, const std::string& doc, std::string& value);
     void option(const std::string& name, const std::string& type, const std::string& doc,
                 std::vector<std::string>& values);  // one each time
-    void option(const std::string& name, const std::string& type, const std::string& doc, std::optional<int>& value, int min, int max);
+    void option(const std::string& name, const std::string& type, const std::string& doc, std::optional<int>& value, int min, int max,
+                bool strict = true);  // not strict: a whole number beyond them is let through, for the verb to judge
     void option(const std::string& name, const std::string& type, const std::string& doc, std::optional<double>& value, double min,
                 double max);
     void exclude(const std::string& name, const std::string& other);  // not both

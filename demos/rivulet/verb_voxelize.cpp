@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <limits>
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
@@ -13,6 +12,7 @@
 #include "engine/scene/import_assimp.h"
 #include "fluid/bridge/backend.h"
 #include "fluid/voxel/distance_band.h"
+#include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/voxel_field.h"
 #include "fluid/voxel/voxel_file.h"
 #include "fluid/voxel/voxel_picture.h"
@@ -55,6 +55,9 @@ Status checkRequest(VoxelizeRequest& request) {
         if (*file == request.mesh) return badInput(fmt::format("'{}' is the mesh; an output would overwrite it", *file));
     }
     std::error_code none;
+    for (const std::string* file : files) {
+        if (fs::is_directory(*file, none)) return badInput(fmt::format("'{}' is a folder; an output takes a file name", *file));
+    }
     if (!fs::exists(request.mesh, none)) return badInput(fmt::format("{} cannot be read: it does not exist", request.mesh));
     for (const std::string* file : files) {
         if (file->empty()) continue;
@@ -98,13 +101,19 @@ Status writeStats(const VoxelizeRequest& request, const VoxelModel& model, size_
     return writeFileAtomic(request.stats, Json::writeString(builder, v) + "\n");
 }
 
-std::string readable(double bytes) { return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3) : fmt::format("{:.1f} MB", bytes / 1e6); }
+std::string readable(double bytes) {
+    if (bytes < 1e4) return fmt::format("{:.0f} bytes", bytes);
+    return bytes < 1e6 ? fmt::format("{:.0f} kB", bytes / 1e3) : readableBytes(bytes);
+}
+
+constexpr int kColumn = 14;  // of the names, "material 11" and some room
 
 void printMaterials(const std::vector<VoxelMaterial>& materials) {
     constexpr size_t kMost = 12;
     for (size_t k = 0; k < std::min(kMost, materials.size()); ++k) {
         const VoxelMaterial& m = materials[k];
-        fmt::print("{:<11}{} voxels, volume {:.6g}{}\n", fmt::format("material {}", k), m.voxels, m.volume, m.solid ? "" : ", a cavity");
+        fmt::print("{:<{}}{} voxels, volume {:.6g}{}\n", fmt::format("material {}", k), kColumn, m.voxels, m.volume,
+                   m.solid ? "" : ", a cavity");
     }
     if (materials.size() <= kMost) return;
     double volume = 0;
@@ -113,25 +122,26 @@ void printMaterials(const std::vector<VoxelMaterial>& materials) {
         voxels += materials[k].voxels;
         volume += materials[k].volume;
     }
-    fmt::print("{:<11}{} materials more: {} voxels, volume {:.6g}\n", "", materials.size() - kMost, voxels, volume);
+    fmt::print("{:<{}}{} materials more: {} voxels, volume {:.6g}\n", "", kColumn, materials.size() - kMost, voxels, volume);
 }
 
 void printFigures(const VoxelizeRequest& request, const VoxelModel& model, const VoxelFile& file, size_t bytes, const Device& device,
                   double wholeMs) {
     const ivec3& size = model.bits.size;
     fmt::print("{}\n", request.out);
-    fmt::print("{:<11}{} x {} x {}, mode {}\n", "voxels", size.x, size.y, size.z, request.mode);
-    fmt::print("{:<11}{:.6g} of the mesh's units\n", "edge", model.bits.voxel);
-    fmt::print("{:<11}{} voxels\n", "surface", model.labels.surface);
-    fmt::print("{:<11}{} voxels\n", "outside", model.labels.outside);
+    fmt::print("{:<{}}{} x {} x {}, mode {}\n", "voxels", kColumn, size.x, size.y, size.z, request.mode);
+    fmt::print("{:<{}}{:.6g} of the mesh's units\n", "edge", kColumn, model.bits.voxel);
+    fmt::print("{:<{}}{} voxels\n", "surface", kColumn, model.labels.surface);
+    fmt::print("{:<{}}{} voxels\n", "outside", kColumn, model.labels.outside);
     printMaterials(model.labels.materials);
     std::string memory = fmt::format("bits {}, labels {}", readable(static_cast<double>(model.bits.bits.size())),
                                      readable(static_cast<double>(model.labels.bytes())));
     if (file.band)
         memory += fmt::format(", band {}", readable(static_cast<double>(file.band->distance.size() * sizeof(float) +
                                                                         file.band->normal.size() * sizeof(uint32_t))));
-    fmt::print("{:<11}{}; the file {}\n", "memory", memory, readable(static_cast<double>(bytes)));
-    fmt::print("{:<11}{:.1f} ms to voxelise on {}, {:.0f} ms in all\n", "time", model.milliseconds, backendName(device.backend()), wholeMs);
+    fmt::print("{:<{}}{}; the file {}\n", "memory", kColumn, memory, readable(static_cast<double>(bytes)));
+    fmt::print("{:<{}}{:.1f} ms to voxelise on {}, {:.0f} ms in all\n", "time", kColumn, model.milliseconds, backendName(device.backend()),
+               wholeMs);
 }
 
 // Whole files, one after the other, none after Ctrl-C. The bytes of the first.
@@ -187,7 +197,13 @@ int voxelizeAs(const VoxelizeRequest& request) {
     VoxelPicture slices, picture;
     if (!request.slices.empty())
         slices = file.band ? drawSlices(model->labels, file.band->distance, file.band->band) : drawSlices(model->labels);
-    if (!request.picture.empty()) picture = drawVoxels(model->labels);
+    if (!request.picture.empty()) {
+        bar.emplace("drawing");
+        VoxelViewOptions look;
+        look.progress = [&bar](double share) { bar->show(share); };
+        picture = drawVoxels(model->labels, look);
+        bar.reset();
+    }
 
     const Graceful graceful;
     const Result<size_t> bytes = writeAll(request, *model, file, slices, picture, graceful);
@@ -208,10 +224,10 @@ int voxelizeVerb(const Arguments& arguments) {
         modes += fmt::format("{}{}", modes.empty() ? "" : ", ", row.name);
         modeList += fmt::format("\n  {:<10}{}", row.name, row.doc);
     }
-    constexpr int kAny = std::numeric_limits<int>::max();  // what cannot be is said with the memory that it would need
     reader.footer("Modes:" + modeList);
     reader.positional("MESH", "OBJ, glTF, PLY, STL and more", request.mesh, true);
-    reader.option("--resolution", "N", "voxels along the mesh's longest side; default: 128", request.resolution, -kAny, kAny);
+    reader.option("--resolution", "N", "voxels along the mesh's longest side; default: 128", request.resolution, kMinVoxelResolution,
+                  kMaxVoxelResolution, false);  // what cannot be is said with the memory that it would need
     reader.option("--out", "FILE.rvox", "what to write; default: the mesh's name with .rvox, in this folder", request.out);
     reader.option("--mode", "NAME", fmt::format("{}; default: solid", modes), request.mode);
     reader.option("--backend", "NAME", "what computes: auto, cpu, gl or cl; the voxels are the same", request.backend);

@@ -125,7 +125,11 @@ Result<Mesh> importMesh(const std::string& path) try {
     if (scene->mNumMeshes == 0) return about(path, "has no triangles");
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices |
                                          aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
-    if (scene == nullptr) return about(path, fmt::format("has no triangles, or they cannot be prepared ({})", importer.GetErrorString()));
+    if (scene == nullptr) {
+        const std::string why = importer.GetErrorString();
+        if (why.empty() || why.find("No output meshes") != std::string::npos) return about(path, "has no triangles");
+        return about(path, fmt::format("has no triangles, or they cannot be prepared ({})", why));
+    }
 
     Mesh mesh;
     mesh.name = std::filesystem::path(path).stem().string();

@@ -109,6 +109,7 @@ void Viewer::moveCamera(const InputEvents& input) {
 }
 
 bool Viewer::drawPanels() {
+    if (!ImGui::IsAnyItemActive()) settled_ = session_->scene();
     ImVec2 display = ImGui::GetIO().DisplaySize;
     constexpr float kMargin = 10;
     float width = std::clamp(display.x * 0.26F, 320.0F, 420.0F), tall = std::max(display.y - 2 * kMargin, 80.0F);
@@ -147,7 +148,7 @@ bool Viewer::drawPanels() {
         const float across = narrow - 2 * ImGui::GetStyle().WindowPadding.x;
         profiler_.draw(across);
         ImGui::Spacing();
-        voxels_.draw(session_->fields().first(), std::min(across, ImGui::GetContentRegionAvail().x));
+        voxels_.draw(session_->fields(), session_->world().time(), std::min(across, ImGui::GetContentRegionAvail().x));
     }
     ImGui::End();
     return recreate;
@@ -177,6 +178,7 @@ void Viewer::takeEdits(bool recreate) {
         if (recorder_) record();
     } else {
         message_ = fresh.error().message;
+        session_->apply(settled_);  // a drag has gone through it
         draft_ = session_->scene();
     }
 }

@@ -58,7 +58,8 @@ class Viewer {
     VoxelPanel voxels_;
     gpu::Timer uiTimer_;
     GlFacts gl_;
-    SceneFile draft_;  // what the panel edits; becomes the session's when it makes sense
+    SceneFile draft_;    // what the panel edits; becomes the session's when it makes sense
+    SceneFile settled_;  // as it was before the edit that is under way
     std::string message_;
     bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
     double waiting_ = 0;  // s on the wall that the water has not been stepped for

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -62,17 +63,26 @@ void VoxelPanel::clear() {
     slice_ = gpu::Texture();
     stale_ = true;
     complaint_.clear();
+    chosen_ = 0;
+    field_ = nullptr;
     std::fill(std::begin(at_), std::end(at_), -1);
 }
 
-void VoxelPanel::draw(const VoxelField* field, float width) {
+void VoxelPanel::draw(const SolidFields& fields, double time, float width) {
     open_ = ImGui::CollapsingHeader("voxels");
     if (!open_) return;
-    if (field == nullptr || field->empty()) {
-        ImGui::TextDisabled("the scene has no mesh that stands still");
+    const VoxelField* field = choose(fields, width);
+    if (field == nullptr) {
+        ImGui::TextDisabled("the scene has no mesh");
         return;
     }
-    if (!labels_) labels_ = labelRegions(field->surface, nullptr);
+    if (field != field_) {
+        clearShown(field);
+    } else if (std::find(fields.deforming.begin(), fields.deforming.end(), field) != fields.deforming.end() && time != labelledAt_ &&
+               ImGui::GetTime() >= nextLook_) {
+        labels_.reset();
+    }
+    if (!labels_) label(time);
     const ivec3& size = field->surface.size;
     for (int k = 0; k < 3; ++k) at_[k] = at_[k] < 0 ? size[k] / 2 : std::min(at_[k], size[k] - 1);
     fact("grid", fmt::format("{} x {} x {}", size.x, size.y, size.z));
@@ -83,6 +93,49 @@ void VoxelPanel::draw(const VoxelField* field, float width) {
     if (stale_) refresh(*field);
     drawSliceImage(*field, width);
     drawMaterials(width);
+}
+
+// What to show, with a list to choose from where there are several.
+const VoxelField* VoxelPanel::choose(const SolidFields& fields, float width) {
+    std::vector<const VoxelField*> all;
+    std::vector<std::string> names;
+    if (fields.still != nullptr && !fields.still->empty()) {
+        all.push_back(fields.still);
+        names.emplace_back("standing still");
+    }
+    for (const auto& [kind, list] : {std::pair("moving", &fields.rigid), std::pair("bending", &fields.deforming)}) {
+        for (size_t k = 0; k < list->size(); ++k) {
+            all.push_back((*list)[k]);
+            names.push_back(fmt::format("{} {}", kind, k + 1));
+        }
+    }
+    if (all.empty()) return nullptr;
+    chosen_ = std::min(chosen_, static_cast<int>(all.size()) - 1);
+    if (all.size() > 1) {
+        ImGui::SetNextItemWidth(width);
+        if (ImGui::BeginCombo("##field", names[static_cast<size_t>(chosen_)].c_str())) {
+            for (int k = 0; k < static_cast<int>(all.size()); ++k)
+                if (ImGui::Selectable(names[static_cast<size_t>(k)].c_str(), k == chosen_)) chosen_ = k;
+            ImGui::EndCombo();
+        }
+    }
+    return all[static_cast<size_t>(chosen_)];
+}
+
+// Looked at a few times a second at most, and for a tenth of the time at most where that is slow.
+void VoxelPanel::label(double time) {
+    const auto start = std::chrono::steady_clock::now();
+    labels_ = labelRegions(field_->surface, nullptr);
+    stale_ = true;
+    labelledAt_ = time;
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    nextLook_ = ImGui::GetTime() + std::max(0.25, 9 * spent);
+}
+
+void VoxelPanel::clearShown(const VoxelField* field) {
+    field_ = field;
+    labels_.reset();
+    std::fill(std::begin(at_), std::end(at_), -1);
 }
 
 void VoxelPanel::drawControls(const VoxelField& field, float width) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,8 +38,9 @@ VoxelPicture drawSlices(const VoxelLabels& labels, std::span<const float> distan
 
 struct VoxelViewOptions {
     int width = 1024, height = 768;
-    int samples = 24;     // rays a pixel
-    bool cutOpen = true;  // without the quarter that is nearest, so that what is inside can be seen
+    int samples = 4;      // rays a pixel, more at edges; 1..64
+    bool cutOpen = true;                   // without the quarter that is nearest, so that what is inside can be seen
+    std::function<void(double)> progress;  // the share that is done, 0..1; from any thread, one at a time
 };
 
 // The voxels on a pale ground, seen from three quarters and above, under a bright sky; materials in their colours where they are cut.

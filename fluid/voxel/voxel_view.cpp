@@ -1,11 +1,13 @@
 // The view from outside: rays through the grid, voxel by voxel where there is something near (Amanatides and Woo 1987), a brick of 16^3 at
-// a time where there is nothing. Light from a whole sky and one soft sun, by rays too.
+// a time where there is nothing. Light from a whole sky and one soft sun, by rays too: a few a pixel, shared among pixels of one face
+// (interleaved sampling, Keller and Heidrich 2001).
 #include <oneapi/tbb/blocked_range2d.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
 #include "fluid/voxel/voxel_picture.h"
 
@@ -176,27 +178,26 @@ class Cells {
     std::vector<uint8_t> cells_, full_;
 };
 
-// Numbers in 0..1 for one sample of one pixel: spread evenly over the samples (Roberts 2018), and moved by a hash of the pixel.
+// Numbers in 0..1 for one sample of one pixel. A tile of kNear x kNear pixels and their samples share one even sequence (Roberts 2018), so
+// that what is averaged over a pixel's neighbours is as smooth as if each pixel had sent all of its tile's rays.
+constexpr int kNear = 6;
+constexpr int kMostSamples = 64;
 class Numbers {
   public:
-    Numbers(int x, int y, int sample) : sample_(static_cast<double>(sample)) {
-        state_ = static_cast<uint32_t>(x) * 73856093U ^ static_cast<uint32_t>(y) * 19349663U ^ 0x9E3779B9U;
+    Numbers(int x, int y, int sample) {
+        // The tile's pixels in a scattered order, 36 and 23 having no factor in common: neighbours should differ much.
+        const int place = (x % kNear + kNear * (y % kNear)) * 23 % (kNear * kNear);
+        number_ = static_cast<double>(place + kNear * kNear * sample);
     }
     vec2 next() {
         constexpr double kA = 0.7548776662466927, kB = 0.5698402909980532;
-        const double x = hash() + kA * sample_, y = hash() + kB * sample_;
+        offset_ += 0.3819660112501051;
+        const double x = offset_ + kA * number_, y = 2 * offset_ + kB * number_;
         return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
     }
 
   private:
-    double hash() {  // Jarzynski and Olano 2020, pcg
-        state_ = state_ * 747796405U + 2891336453U;
-        uint32_t word = ((state_ >> ((state_ >> 28U) + 4U)) ^ state_) * 277803737U;
-        word = (word >> 22U) ^ word;
-        return static_cast<double>(word) / 4294967296.0;
-    }
-    double sample_;
-    uint32_t state_;
+    double number_, offset_ = 0;
 };
 
 // A direction about unit `n`: denser towards it, as light falls on a wall.
@@ -244,53 +245,171 @@ class View {
         }
     }
 
+    // First what each pixel sees, with little light; then the light of neighbours on the same face is shared.
     VoxelPicture draw() const {
+        std::vector<Pixel> pixels(static_cast<size_t>(options_.width) * static_cast<size_t>(options_.height));
+        const float unit = 2 * tall_ / static_cast<float>(options_.height);
+        Steps steps(options_);
+        forTiles([&](const auto& tile) {
+            Kept kept;
+            forPixels(tile, [&](int x, int y) { pixels[at(x, y)] = look(x, y, kept, unit); });
+            steps.done(tile, 0.85);
+        });
         VoxelPicture picture{options_.width, options_.height, {}};
-        picture.rgba.resize(4 * static_cast<size_t>(options_.width) * static_cast<size_t>(options_.height));
-        constexpr int kTile = 16;
-        tbb::parallel_for(tbb::blocked_range2d<int>(0, options_.height, kTile, 0, options_.width, kTile), [&](const auto& tile) {
-            for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
-                for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
-                    const uint32_t bytes = srgbBytes(pixel(x, y));
-                    const size_t at = 4 * (static_cast<size_t>(y) * static_cast<size_t>(options_.width) + static_cast<size_t>(x));
-                    for (size_t k = 0; k < 4; ++k) picture.rgba[at + k] = static_cast<uint8_t>(bytes >> (8 * k));
-                }
-            }
+        picture.rgba.resize(4 * pixels.size());
+        forTiles([&](const auto& tile) {
+            forPixels(tile, [&](int x, int y) {
+                const Pixel& pixel = pixels[at(x, y)];
+                const uint32_t bytes = srgbBytes(pixel.kind == kMixed ? pixel.colour : shaded(pixel, lightNear(pixels, x, y, unit)));
+                for (size_t k = 0; k < 4; ++k) picture.rgba[4 * at(x, y) + k] = static_cast<uint8_t>(bytes >> (8 * k));
+            });
+            steps.done(tile, 0.15);
         });
         return picture;
     }
 
   private:
-    // Of a pixel's samples so far.
+    static constexpr int kMixed = -2, kOpen = -1, kFloor = 0;  // more: what voxels, and whether they are cut
+
+    struct Seen {
+        vec3 colour{0.0F}, light{0.0F}, normal{0.0F}, place{0.0F};
+        int kind = kOpen;
+    };
+    using Pixel = Seen;  // the mean of its samples; of kind kMixed: `colour` is the outcome
+
+    // The smooth normal of the cell met last.
     struct Kept {
-        bool open = true;  // none met a voxel or the ground near them
         ivec3 cell{-1};
-        vec3 smooth{0.0F};  // of that cell
+        vec3 smooth{0.0F};
+    };
+
+    // How much of the work is done.
+    class Steps {
+      public:
+        explicit Steps(const VoxelViewOptions& options) : options_(options) {}
+        template <class Tile>
+        void done(const Tile& tile, double weight) {
+            if (!options_.progress) return;
+            const std::scoped_lock one(mutex_);
+            share_ += weight * static_cast<double>(tile.rows().size() * tile.cols().size()) /
+                      (static_cast<double>(options_.width) * static_cast<double>(options_.height));
+            options_.progress(std::min(share_, 1.0));
+        }
+
+      private:
+        const VoxelViewOptions& options_;
+        std::mutex mutex_;
+        double share_ = 0;
     };
 
     static vec3 corner(const vec3& low, const vec3& high, int k) {
         return {(k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y, (k & 4) != 0 ? high.z : low.z};
     }
 
-    vec3 pixel(int x, int y) const {
-        vec3 sum(0.0F);
-        Kept kept;
-        int taken = 0;
-        // A few samples tell that there is only open ground.
-        for (; taken < options_.samples && (taken < 4 || !kept.open); ++taken) {
-            Numbers numbers(x, y, taken);
-            const vec2 jitter = numbers.next();
-            const float across = (2 * (static_cast<float>(x) + jitter.x) / static_cast<float>(options_.width) - 1) * wide_;
-            const float along = (1 - 2 * (static_cast<float>(y) + jitter.y) / static_cast<float>(options_.height)) * tall_;
-            sum += seen(glm::normalize(forward_ + across * right_ + along * up_), numbers, kept, vec2(across / wide_, along / tall_));
-        }
-        return sum / static_cast<float>(std::max(taken, 1));
+    size_t at(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(options_.width) + static_cast<size_t>(x); }
+
+    template <class Body>
+    void forTiles(const Body& body) const {
+        constexpr int kTile = 16;
+        tbb::parallel_for(tbb::blocked_range2d<int>(0, options_.height, kTile, 0, options_.width, kTile), body);
+    }
+    template <class Tile, class Body>
+    static void forPixels(const Tile& tile, const Body& body) {
+        for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
+            for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) body(x, y);
     }
 
-    vec3 seen(const vec3& way, Numbers& numbers, Kept& kept, const vec2& screen) const {
+    Pixel look(int x, int y, Kept& kept, float unit) const {
+        std::array<Seen, kMostSamples> seen;
+        const int few = std::clamp(options_.samples, 1, kMostSamples), many = std::min(5 * few / 2, kMostSamples);
+        const int lit = (few + 1) / 2;  // of the first few the light of so many is enough, since neighbours share it
+        int taken = 0;
+        const auto take = [&](int to) {
+            for (; taken < to; ++taken) {
+                Numbers numbers(x, y, taken);
+                const vec2 jitter = numbers.next();
+                const float across = (2 * (static_cast<float>(x) + jitter.x) / static_cast<float>(options_.width) - 1) * wide_;
+                const float along = (1 - 2 * (static_cast<float>(y) + jitter.y) / static_cast<float>(options_.height)) * tall_;
+                seen[static_cast<size_t>(taken)] = sample(glm::normalize(forward_ + across * right_ + along * up_), numbers, kept,
+                                                          vec2(across / wide_, along / tall_), taken < lit || taken >= few);
+            }
+        };
+        take(few);
+        Pixel mean;
+        bool calm = true;
+        for (int k = 0; k < few; ++k) {
+            const Seen& s = seen[static_cast<size_t>(k)];
+            calm = calm && alike(seen[0], s, 2 * unit * glm::distance(eye_, seen[0].place));
+            mean.colour += s.colour;
+            mean.light += s.light;
+            mean.normal += s.normal;
+            mean.place += s.place;
+        }
+        if (calm) {
+            const auto n = static_cast<float>(few);
+            return {mean.colour / n, mean.light / static_cast<float>(lit), mean.normal / n, mean.place / n, seen[0].kind};
+        }
+        // An edge: more rays, and none of its neighbours' light.
+        take(many);
+        vec3 sum(0.0F);
+        Seen floor;
+        float onFloor = 0;
+        for (int k = 0; k < many; ++k) {
+            if (k == lit) k = few;
+            const Seen& s = seen[static_cast<size_t>(k)];
+            if (s.kind == kFloor) {
+                floor.colour += s.colour;
+                floor.light += s.light;
+                floor.place += s.place;
+                onFloor += 1;
+            } else {
+                sum += shaded(s, s.light);
+            }
+        }
+        if (onFloor > 0) sum += onFloor * shaded({floor.colour / onFloor, {}, {}, floor.place / onFloor, kFloor}, floor.light / onFloor);
+        mean.colour = sum / static_cast<float>(many - few + lit);
+        mean.kind = kMixed;
+        return mean;
+    }
+
+    // Whether two places are on one face, as far as light goes; `size`: of what may lie between, in cells.
+    static bool alike(const Seen& a, const Seen& b, float size) {
+        if (a.kind != b.kind) return false;
+        if (a.kind <= kFloor) return true;
+        const vec3 turn = a.normal - b.normal;
+        const float closeness = size > 1.0F ? 0.3F : 0.04F;  // where voxels are smaller than pixels their faces are not told apart
+        return glm::dot(turn, turn) < closeness && std::abs(glm::dot(a.place - b.place, a.normal)) < std::max(0.4F, 2 * size);
+    }
+
+    vec3 lightNear(const std::vector<Pixel>& pixels, int x, int y, float unit) const {
+        const Pixel& here = pixels[at(x, y)];
+        if (here.kind == kOpen) return here.light;
+        const float size = 2 * unit * glm::distance(eye_, here.place);
+        const int x0 = std::max(x - (kNear / 2 - 1), 0), x1 = std::min(x + kNear / 2, options_.width - 1);
+        const int y0 = std::max(y - (kNear / 2 - 1), 0), y1 = std::min(y + kNear / 2, options_.height - 1);
+        vec3 sum(0.0F);
+        float weight = 0;
+        for (int v = y0; v <= y1; ++v) {
+            for (int u = x0; u <= x1; ++u) {
+                const Pixel& there = pixels[at(u, v)];
+                if (!alike(here, there, size)) continue;
+                sum += there.light;
+                weight += 1;
+            }
+        }
+        return sum / std::max(weight, 1.0F);
+    }
+
+    vec3 shaded(const Seen& s, const vec3& light) const {
+        if (s.kind == kOpen) return s.colour;
+        if (s.kind != kFloor) return s.colour * light;
+        // The ground is as pale as the backdrop but where something keeps the light from it.
+        return s.colour * mix3(vec3(1.0F), glm::min(light / kOpenLight, vec3(1.0F)), nearness(s.place));
+    }
+
+    Seen sample(const vec3& way, Numbers& numbers, Kept& kept, const vec2& screen, bool lit) const {
         const Hit hit = cells_.trace(eye_, way);
         if (hit.axis >= 0) {
-            kept.open = false;
             vec3 face(0.0F);
             face[hit.axis] = hit.side;
             ivec3 before = hit.cell;
@@ -299,27 +418,19 @@ class View {
             const bool cut = cells_.cutAway(before);
             vec3 normal = face;
             if (!cut) {
-                if (hit.cell != kept.cell) {
-                    kept.cell = hit.cell;
-                    kept.smooth = cells_.smoothNormal(hit.cell);
-                }
-                const vec3 smooth = kept.smooth;
-                const float length = glm::length(smooth);
-                if (length > 1.0F) normal = glm::normalize(0.35F * face + smooth / length);
+                if (hit.cell != kept.cell) kept = {hit.cell, cells_.smoothNormal(hit.cell)};
+                const float length = glm::length(kept.smooth);
+                if (length > 1.0F) normal = glm::normalize(0.35F * face + kept.smooth / length);
             }
             const vec3 colour = kind != kShell ? colours_[kind - kFirstColour] : cut ? kCutShell : kClay;
-            return colour * light(hit.place + 0.02F * face, face, normal, numbers);
+            return {colour, lit ? light(hit.place + 0.02F * face, face, normal, numbers) : vec3(0.0F), normal, hit.place,
+                    2 * kind + (cut ? 1 : 0)};
         }
         const vec3 backdrop = kGround * (1.0F - 0.06F * glm::dot(screen, screen));
-        if (way.y >= 0) return backdrop;
-        const vec3 place = eye_ + way * ((floor_ - eye_.y) / way.y);
-        // The ground is as pale as the backdrop but where something keeps the light from it.
-        const vec3 up(0, 1, 0);
-        const float dark = nearness(place);
-        if (!(dark > 0)) return backdrop;
-        const vec3 lit = light(place + 0.02F * up, up, up, numbers);
-        kept.open = false;
-        return backdrop * mix3(vec3(1.0F), glm::min(lit / kOpenLight, vec3(1.0F)), dark);
+        if (way.y >= 0) return {backdrop, {}, {}, {}, kOpen};
+        const vec3 up(0, 1, 0), place = eye_ + way * ((floor_ - eye_.y) / way.y);
+        if (!(nearness(place) > 0)) return {backdrop, {}, {}, {}, kOpen};
+        return {backdrop, lit ? light(place + 0.02F * up, up, up, numbers) : vec3(0.0F), up, place, kFloor};
     }
 
     // 1 on the ground near the voxels, 0 so far away that little light is kept from it there.

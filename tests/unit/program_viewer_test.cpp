@@ -13,6 +13,7 @@
 #include "engine/gpu/framebuffer.h"
 #include "engine/ui/param_panel.h"
 #include "fluid/bridge/viewer.h"
+#include "tests/unit/program_runner.h"
 
 namespace rivulet {
 namespace {
@@ -92,6 +93,16 @@ class Person : public ::testing::Test {
             ImGuiID id = window->ID;
             for (const char* name : path) id = ImHashStr(name, 0, id);
             window->StateStorage.SetInt(ImHashStr(std::data(path)[path.size() - 1], 0, id), 1);
+        }
+    }
+    static void foldAllButColliders() {
+        for (ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            if (std::string_view(window->Name).find("parameters") == std::string_view::npos) continue;
+            const auto set = [window](const char* group, const char* header, int open) {
+                window->StateStorage.SetInt(ImHashStr(header, 0, ImHashStr(group, 0, window->ID)), open);
+            };
+            for (const char* group : {"fluid", "look", "camera", "light", "background"}) set(group, group, 0);
+            set("colliders", "###list", 1);
         }
     }
     static void unfoldAll() {
@@ -205,6 +216,60 @@ TEST_F(Person, EverySliderMayBeDragged) {
     EXPECT_TRUE(recreated) << "the spacing's slider makes a new world when it is let go of";
     key(GLFW_KEY_PERIOD);
     EXPECT_TRUE(std::isfinite(viewer_->session().world().stats().kinetic));
+}
+
+// An edit that asks for more memory than voxels may take is refused, and all stays as it was: the session, its water, the values.
+TEST_F(Person, WhatMemoryDoesNotHoldLeavesTheOldSession) {
+    const testing::Scratch scratch;
+    scratch.file("box.obj",
+                 "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\n"
+                 "f 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
+    SceneFile scene = viewer_->scene();
+    scene.folder = scratch.path().string();
+    scene.colliders.resize(1);
+    scene.colliders[0].shape = "mesh";
+    scene.colliders[0].mesh = "box.obj";
+    scene.colliders[0].position = vec3(0.7F, 0.1F, 0.7F);
+    scene.colliders[0].fitSize = 0.2F;
+    scene.colliders[0].resolution = 16;
+    viewer_.reset();
+    auto viewer = Viewer::create(scene, "cpu", {});
+    ASSERT_TRUE(viewer) << viewer.error().message;
+    viewer_ = std::move(*viewer);
+    for (int i = 0; i < 5; ++i) frame(1.0 / 60);
+    key(GLFW_KEY_SPACE);
+    input_.framebuffer = ivec2(0);  // the panels alone
+    frame();
+    const auto textOf = [this] {
+        SceneFile now = viewer_->scene();
+        return writeJson([&now](ParamVisitor& v) { now.visit(v); });
+    };
+    // The row of the resolution is dragged far to the right, and let go of; which row that is, the refusal tells.
+    bool refused = false;
+    for (float y = 200; y < 900 && !refused; y += 10) {
+        foldAllButColliders();
+        frame();
+        const Session* const session = &viewer_->session();
+        const double time = viewer_->session().world().time(), kinetic = viewer_->session().world().stats().kinetic;
+        const std::vector<uint8_t> bits = session->field().surface.bits;
+        const std::string text = textOf();
+        drag(MouseButton::left, {210, y}, {880, y});
+        key(GLFW_KEY_ESCAPE);
+        const std::string& message = viewer_->message();
+        if (message.find("GB") == std::string::npos) continue;
+        refused = true;
+        EXPECT_NE(message.find("resolution"), std::string::npos) << message;
+        EXPECT_EQ(&viewer_->session(), session);
+        EXPECT_GT(time, 0) << "the water has moved";
+        EXPECT_EQ(viewer_->session().world().time(), time);
+        EXPECT_EQ(viewer_->session().world().stats().kinetic, kinetic);
+        EXPECT_FALSE(bits.empty());
+        EXPECT_EQ(viewer_->session().field().surface.bits, bits);
+        EXPECT_EQ(textOf(), text);
+        key(GLFW_KEY_PERIOD);
+        EXPECT_GT(viewer_->session().world().time(), time) << "and moves on";
+    }
+    EXPECT_TRUE(refused) << viewer_->message();
 }
 
 // A pixel of the panel's background is dark, whatever the scene behind: the panels are drawn, over the picture.

@@ -154,6 +154,7 @@ TEST(ProgramVoxelize, WhatMakesNoSenseIsRefusedAndNothingIsWritten) {
     scratch.file("ball.obj", objOf(test::makeSphere(vec3(0), 1, 4)));
     scratch.file("blocker", "a file, not a folder");
     scratch.file("nothing.obj", "v 0 0 0\n");
+    scratch.file("cut.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n");  // its end is missing
     const std::vector<std::string> before = scratch.contents();
     const auto with = [&](std::vector<std::string> more, const std::string& mesh = "ball.obj") {
         std::vector<std::string> words = {"voxelize", mesh, "--backend", "cpu"};
@@ -163,6 +164,9 @@ TEST(ProgramVoxelize, WhatMakesNoSenseIsRefusedAndNothingIsWritten) {
     expectRefusal(runProgram({"voxelize"}), 2, "MESH");
     expectRefusal(with({}, "none.obj"), 2, "none.obj");
     expectRefusal(with({}, "nothing.obj"), 2, "nothing.obj");
+    const Outcome cut = with({}, "cut.obj");
+    expectRefusal(cut, 2, "cut.obj");
+    EXPECT_EQ(cut.err.find("orphaned"), std::string::npos) << cut.err;
     expectRefusal(with({"--mode", "sold"}), 2, "did you mean 'solid'");
     expectRefusal(runProgram({"voxelize", "ball.obj", "--backend", "cpuu"}, in(scratch)), 2, "did you mean 'cpu'");
     expectRefusal(with({"--out", "x.png"}), 2, ".rvox");
@@ -174,7 +178,48 @@ TEST(ProgramVoxelize, WhatMakesNoSenseIsRefusedAndNothingIsWritten) {
     expectRefusal(with({"--resolution", "5000"}), 2, "GB");
     expectRefusal(with({"--out", "none/x.rvox"}), 1, "none/x.rvox");
     expectRefusal(with({"--picture", "blocker/x.png"}), 1, "blocker/x.png");
+    for (const char* resolution : {"abc", "1.5", "1e3", "99999999999"})
+        expectRefusal(with({"--resolution", resolution}), 2, "a whole number from 2 to 4096");
+    fs::create_directory(scratch.path() / "folder.rvox");
+    for (const char* option : {"--out", "--stats", "--slices", "--picture"}) expectRefusal(with({option, ""}), 2, option);
+    expectRefusal(with({"--out", "folder.rvox"}), 2, "is a folder");
+    fs::remove(scratch.path() / "folder.rvox");
     EXPECT_EQ(scratch.contents(), before);
+}
+
+// Twelve boxes: the figures of material 10 and 11 stand apart from their names, and small sizes are not 0.0 of something.
+TEST(ProgramVoxelize, FiguresStandApart) {
+    Scratch scratch;
+    test::Mesh boxes;
+    for (int k = 0; k < 12; ++k)
+        boxes = joined(boxes, test::makeBox(vec3(2.0F * static_cast<float>(k), 0, 0), vec3(2.0F * static_cast<float>(k) + 1, 1, 1)));
+    scratch.file("boxes.obj", objOf(boxes));
+    const Outcome outcome = runProgram({"voxelize", "boxes.obj", "--resolution", "161", "--backend", "cpu"}, in(scratch));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("material 10 "), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("material 11 "), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.out.find(" 0.0 "), std::string::npos) << outcome.out;
+}
+
+TEST(ProgramVoxelize, WhatMemoryDoesNotHoldLeavesTheOldFile) {
+    Scratch scratch;
+    scratch.file("ball.obj", objOf(test::makeSphere(vec3(0), 1, 4)));
+    const std::vector<std::string> words = {"voxelize", "ball.obj", "--backend", "cpu", "--resolution"};
+    const auto at = [&](const char* resolution) {
+        std::vector<std::string> all = words;
+        all.emplace_back(resolution);
+        return runProgram(all, in(scratch));
+    };
+    const auto content = [&] {
+        std::ifstream stream(scratch.path() / "ball.rvox", std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    ASSERT_EQ(at("20").code, 0);
+    const std::string old = content();
+    ASSERT_GT(old.size(), 100U);
+    expectRefusal(at("4096"), 2, "A resolution of 4096 needs");
+    EXPECT_TRUE(content() == old);
+    EXPECT_EQ(scratch.contents(), (std::vector<std::string>{"ball.obj", "ball.rvox"}));
 }
 
 TEST(ProgramVoxelize, CtrlCLeavesNothing) {

@@ -62,7 +62,7 @@ class VoxelPanelTest : public ::testing::Test {
         ImGui::SetNextWindowSize(ImVec2(320, 760));
         ImGui::Begin("test");
         ImGui::GetCurrentWindow()->StateStorage.SetInt(ImGui::GetID("voxels"), unfold ? 1 : 0);
-        panel_->draw(field, ImGui::GetContentRegionAvail().x);
+        panel_->draw({.still = field, .rigid = rigid_, .deforming = deforming_}, time_, ImGui::GetContentRegionAvail().x);
         ImGui::End();
         glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
         glViewport(0, 0, kWindow.x, kWindow.y);
@@ -112,6 +112,8 @@ class VoxelPanelTest : public ::testing::Test {
     gpu::Framebuffer target_;
     InputEvents input_;
     VoxelField field_;
+    std::vector<const VoxelField*> rigid_, deforming_;
+    double time_ = 0;
 };
 
 TEST_F(VoxelPanelTest, UnfoldedItShowsTheMiddleSlice) {
@@ -164,6 +166,48 @@ TEST_F(VoxelPanelTest, AxisSliceAndDistanceMayBeChosen) {
     EXPECT_NE(first, pixels());
     if (const char* to = std::getenv("RIVULET_TEST_PICTURES"))
         ASSERT_TRUE(writePng(std::string(to) + "/voxel_panel_distance.png", pixels(), kWindow.x, kWindow.y));
+}
+
+// What bends is shown as it is, not as it was when the panel was unfolded; but not labelled anew for each picture.
+TEST_F(VoxelPanelTest, WhatBendsIsLookedAtAgain) {
+    const test::Mesh box = test::makeBox(vec3(0), vec3(1)), ball = test::makeSphere(vec3(0.5F), 0.25F);
+    const MeshView hollow[] = {box.view()}, both[] = {box.view(), ball.view()};
+    Result<VoxelField> bending = bakeVoxelField(hollow, {.resolution = 32}), later = bakeVoxelField(both, {.resolution = 32});
+    ASSERT_TRUE(bending && later);
+    deforming_ = {&*bending};
+    for (int k = 0; k < 3; ++k) frame(nullptr, true);
+    EXPECT_GT(count(materialColour(0)), 1000U);
+    EXPECT_LT(count(materialColour(1)), 100U);
+    *bending = *later;
+    for (int k = 0; k < 40; ++k) frame(nullptr, true);
+    EXPECT_LT(count(materialColour(1)), 100U) << "no time has passed";
+    time_ += 0.1;
+    for (int k = 0; k < 600 && count(materialColour(1)) < 1000; ++k) frame(nullptr, true);
+    EXPECT_GT(count(materialColour(1)), 1000U);
+}
+
+TEST_F(VoxelPanelTest, OneOfSeveralFieldsMayBeChosen) {
+    const test::Mesh box = test::makeBox(vec3(0), vec3(1));
+    const MeshView hollow[] = {box.view()};
+    Result<VoxelField> moving = bakeVoxelField(hollow, {.resolution = 32});
+    ASSERT_TRUE(moving) << moving.error().message;
+    rigid_ = {&*moving};
+    for (int k = 0; k < 3; ++k) frame(&field_, true);
+    EXPECT_GT(count(materialColour(1)), 1000U) << "what stands still comes first";
+    if (const char* to = std::getenv("RIVULET_TEST_PICTURES"))
+        ASSERT_TRUE(writePng(std::string(to) + "/voxel_panel_choice.png", pixels(), kWindow.x, kWindow.y));
+    // The list opens under a click on it, and its second row is the mesh that moves, which holds no ball.
+    bool other = false;
+    for (float row = 92; row < 140 && !other; row += 6) {
+        click(vec2(150, 75));
+        click(vec2(150, row));
+        other = count(materialColour(0)) > 1000 && count(materialColour(1)) < 100;
+    }
+    EXPECT_TRUE(other);
+    rigid_.clear();
+    frame(&field_, true);
+    frame(&field_, true);
+    EXPECT_GT(count(materialColour(1)), 1000U) << "the last there is";
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ struct LocalField {
 class WindingTree {
   public:
     // Up to so many patches a voxel that the model leaves open is decided by all of them, which is exact. Beyond, the model's word counts:
-    // nobody's part is wrong by more than kTolerance / sqrt(patches). What that adds up to has been within kAccuracy, as the signs differ
-    // (20,000 patches: 0.003 where they are strewn about, 0.01 where they make up a sphere); it is no bound.
+    // nobody's part is wrong by more than kTolerance / sqrt(patches). What that adds up to has been about kAccuracy, as the signs differ
+    // (20,000 patches, settings beside this one: 0.008 strewn about, 0.023 along a sphere); it is no bound.
     static constexpr size_t kExact = 1024;
     static constexpr double kTolerance = 0.15, kAccuracy = 0.02;  // turns
 

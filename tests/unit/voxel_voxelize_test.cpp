@@ -248,7 +248,7 @@ TEST(VoxelizeMesh, SaysWhichFeaturesAreLost) {
     const Mesh small = test::makeBox(vec3(0), vec3(1e-3F));
     for (uint32_t k : small.indices) plain.indices.push_back(k + 36);
     plain.positions.insert(plain.positions.end(), small.positions.begin(), small.positions.end());
-    expectSays(sentence(plain, 256), {"1e+06 wide", "features of 0.001:", "a voxel of 3906", "a resolution of 2e+09", "1e+18 GB"});
+    expectSays(sentence(plain, 256), {"1e+06 wide", "features of 0.001:", "a voxel of 3906", "a resolution of 2e+09", "over 1000 TB"});
     VoxelizeOptions options = optionsOf(VoxelMode::surface, 64);
     EXPECT_EQ(errorOf(plain, options), "no error") << "it is voxelised all the same";
     EXPECT_EQ(sentence(test::makeSphere(vec3(0), 1.0F, 200), 64), "") << "a smooth mesh loses nothing";

@@ -58,7 +58,8 @@ void waveShape(const ColliderWave& wave, std::span<const vec3> rest, double time
 
 Bounds waveReach(const ColliderWave& wave, const Bounds& rest) {
     // A little more on every side, for what floats round.
-    const vec3 lift = glm::abs(glm::normalize(wave.direction)) * wave.amplitude + vec3(1.0e-3F * (wave.amplitude + glm::length(rest.size())));
+    const vec3 lift =
+        glm::abs(glm::normalize(wave.direction)) * wave.amplitude + vec3(1.0e-3F * (wave.amplitude + glm::length(rest.size())));
     Bounds reach = rest;
     reach.min -= lift;
     reach.max += lift;

@@ -38,7 +38,7 @@ VoxelPicture drawSlices(const VoxelLabels& labels, std::span<const float> distan
 
 struct VoxelViewOptions {
     int width = 1024, height = 768;
-    int samples = 4;      // rays a pixel, more at edges; 1..64
+    int samples = 4;                       // rays a pixel, more at edges; 1..64
     bool cutOpen = true;                   // without the quarter that is nearest, so that what is inside can be seen
     std::function<void(double)> progress;  // the share that is done, 0..1; from any thread, one at a time
 };

@@ -51,13 +51,28 @@ std::string processorName() {
     return "CPU";
 }
 
-std::string joinDefines(std::span<const Define> defines) {
-    std::vector<std::string> parts;
-    for (const Define& d : defines) parts.push_back(d.name + "=" + d.value);
+std::string joined(std::vector<std::string> parts) {
     std::sort(parts.begin(), parts.end());
     std::string all;
     for (const std::string& part : parts) all += (all.empty() ? "" : ";") + part;
     return all;
+}
+
+std::string joinDefines(std::span<const Define> defines) {
+    std::vector<std::string> parts;
+    for (const Define& d : defines) parts.push_back(d.name + "=" + d.value);
+    return joined(std::move(parts));
+}
+
+// "B=2;A=1;" as "A=1;B=2".
+std::string inOrder(std::string_view defines) {
+    std::vector<std::string> parts;
+    while (!defines.empty()) {
+        const size_t end = std::min(defines.find(';'), defines.size());
+        if (end > 0) parts.emplace_back(defines.substr(0, end));
+        defines.remove_prefix(std::min(end + 1, defines.size()));
+    }
+    return joined(std::move(parts));
 }
 
 // A cache line, and the widest vector.
@@ -99,7 +114,7 @@ Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> 
     // The best instruction set this device may use that the kernel was compiled for.
     const CpuKernelRow* best = nullptr;
     for (const CpuKernelRow& row : impl_->rows)
-        if (path == row.path && wanted == row.defines && row.isa <= isa_ && (best == nullptr || row.isa > best->isa)) best = &row;
+        if (path == row.path && wanted == inOrder(row.defines) && row.isa <= isa_ && (best == nullptr || row.isa > best->isa)) best = &row;
     if (best == nullptr)
         return failed(
             fmt::format("the kernel {} with defines '{}' was not compiled for the CPU: add it to fluid/sim/kernels", path, wanted));

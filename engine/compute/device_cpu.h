@@ -11,7 +11,7 @@ enum class Isa { generic, avx2, avx512 };
 const char* isaName(Isa isa);
 Isa bestIsa();  // what this machine runs
 
-// One compiled kernel. `defines` as "A=1;B=2", sorted by name, empty for none.
+// One compiled kernel. `defines` as "A=1;B=2", empty for none.
 using CpuKernelFn = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
 struct CpuKernelRow {
     const char* path;  // "fluid/wcsph_density"

@@ -15,6 +15,7 @@
 
 namespace rivulet {
 
+using glm::bvec3;
 using glm::dvec3;
 using glm::ivec2;
 using glm::ivec3;

@@ -21,6 +21,26 @@ void BoxParams::visit(ParamVisitor& v) {
     v.value({"min", "m", "low corner", -kFar, kFar, kLinear, kFixed}, min);
     v.value({"max", "m", "high corner", -kFar, kFar, kLinear, kFixed}, max);
     v.value({"restitution", "", "share of the speed into a wall that comes back: 0 = stays, 1 = bounces", 0, 1}, restitution);
+    v.value({.name = "periodicX", .doc = "whether the box has no walls along x: what leaves on one side comes in on the other", .fixed = kFixed}, periodicX);
+    v.value({.name = "periodicY", .doc = "the same along y", .fixed = kFixed}, periodicY);
+    v.value({.name = "periodicZ", .doc = "the same along z", .fixed = kFixed}, periodicZ);
+}
+
+void PbfParams::visit(ParamVisitor& v) {
+    v.value({"iterations", "", "corrections a step: more is stiffer and slower", 1, 50}, iterations);
+    v.value({"relaxation", "", "share of a correction that is made: more converges faster, too much trembles", 0.05, 1.5}, relaxation);
+    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
+    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: water is stiffer with more", 1, 100}, minSubsteps);
+}
+
+void DfsphParams::visit(ParamVisitor& v) {
+    v.value({"tolerance", "", "mean compression that a step may leave, as a fraction: 1e-4 is 0.01 %", 1.0e-6, 0.1, kLog}, tolerance);
+    v.value({.name = "divergence", .doc = "whether the flow is kept from compressing as well as the density: steadier, and slower"}, divergence);
+    v.value({"divergenceTolerance", "1/s", "mean rate of compression that may be left", 1.0e-3, 100, kLog}, divergenceTolerance);
+    v.value({"maxIterations", "", "of each solver in a step", 1, 1000, kLog}, maxIterations);
+    v.value({"warmStart", "", "share of the last step's pressure that the next begins with", 0, 1}, warmStart);
+    v.value({"relaxation", "", "share of a Jacobi correction that is made; above 0.5 it may not converge", 0.05, 1}, relaxation);
+    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
 }
 
 void CollisionParams::visit(ParamVisitor& v) {
@@ -37,6 +57,9 @@ void CollisionParams::visit(ParamVisitor& v) {
 void FluidParams::visit(ParamVisitor& v) {
     const std::vector<std::string> names = methods().names();
     v.choice({.name = "method", .doc = "how pressure is found; rivulet list says what each is", .fixed = kFixed}, method, names);
+    static const std::vector<std::string> kernels = {"wendland", "cubic_spline"};
+    v.choice({.name = "kernel", .doc = "how neighbours are weighed; the cubic spline, for comparison, in method wcsph alone", .fixed = kFixed}, kernel,
+             kernels);
     v.value({"spacing", "m", "distance between particles at rest: halving it makes eight times as many", 0.0005, 1, kLog, kFixed}, spacing);
     v.value(
         {"supportSpacings", "", "reach of a particle (support radius), in spacings: more is smoother and slower", 1.5, 4, kLinear, kFixed},
@@ -53,6 +76,8 @@ void FluidParams::visit(ParamVisitor& v) {
     v.value({"gravity", "m/s^2", "acceleration of everything", -1000, 1000}, gravity);
     v.value({"cfl", "", "a step's length, as a share of the time that sound takes across a smoothing length", 0.01, 4, kLog}, cfl);
     v.value({"maxSubsteps", "", "steps in one frame at most; beyond that simulated time slows down", 1, 100000, kLog}, maxSubsteps);
+    v.group({.name = "pbf", .doc = "of method pbf"}, pbf);
+    v.group({.name = "dfsph", .doc = "of method dfsph"}, dfsph);
     v.group({.name = "box", .doc = "walls around the fluid; what leaves them is lost"}, box);
     v.group({.name = "collision", .doc = "how fluid meets what is solid"}, collision);
     v.list({.name = "blocks", .doc = "boxes of fluid that are there at the start", .fixed = kFixed}, blocks);

@@ -18,6 +18,8 @@ struct BlockParams {
 struct BoxParams {
     vec3 min{0.0F}, max{1.0F};
     float restitution = 0.0F;
+    bool periodicX = false, periodicY = false, periodicZ = false;
+    bvec3 periodic() const { return {periodicX, periodicY, periodicZ}; }
     void visit(ParamVisitor& v);
 };
 
@@ -28,8 +30,28 @@ struct CollisionParams {
     void visit(ParamVisitor& v);
 };
 
+struct PbfParams {
+    int iterations = 3;       // a step
+    float relaxation = 1.0F;  // of a correction
+    float reach = 0.6F;       // spacings a step
+    int minSubsteps = 4;      // a frame of 1/60 s
+    void visit(ParamVisitor& v);
+};
+
+struct DfsphParams {
+    float tolerance = 1.0e-4F;           // mean compression after a step, a fraction
+    bool divergence = true;              // whether the flow is kept from compressing, too
+    float divergenceTolerance = 0.1F;    // 1/s
+    int maxIterations = 50;
+    float warmStart = 0.7F;              // 0..1
+    float relaxation = 0.5F;             // of an iteration
+    float reach = 0.4F;                  // spacings a step
+    void visit(ParamVisitor& v);
+};
+
 struct FluidParams {
-    std::string method = "wcsph";  // a row of methods()
+    std::string method = "wcsph";     // a row of methods()
+    std::string kernel = "wendland";  // wendland | cubic_spline
     float spacing = 0.02F;         // m
     float supportSpacings = 2.0F;  // h = this * spacing
     float restDensity = 1000.0F;   // kg/m^3
@@ -40,6 +62,8 @@ struct FluidParams {
     vec3 gravity{0.0F, -9.81F, 0.0F};
     float cfl = 0.4F;        // dt <= cfl * hs / (c0 + v)
     int maxSubsteps = 1000;  // a frame
+    PbfParams pbf;
+    DfsphParams dfsph;
     BoxParams box;
     CollisionParams collision;
     std::vector<BlockParams> blocks;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fluid/sim/block.h"
+#include "fluid/sim/force.h"
 #include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/particles.h"
@@ -32,8 +33,16 @@ struct FluidWorld::Impl {
     Particles particles;
     std::vector<NewParticle> start;
     SolidPasses solids;
-    Buffer statsRows;
-    Kernel integrate, stats;
+    Buffer statsRows, corner;
+    Kernel stats, wrap, wrapFromPositions, gatherMatter;
+    PairTraits traits;
+    struct ForceState {
+        const ForceRow* row;
+        ForcePass pass;  // made when it is first on
+        bool on = false;
+    };
+    std::vector<ForceState> forcePasses;
+    SolveFigures solve;
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};
     vec3 gravity{0.0F};
@@ -49,6 +58,8 @@ struct FluidWorld::Impl {
     float fastestFall() const;
     double stepLimit(double frameSeconds) const;
     void say(const std::string& sentence);
+    void findForces();
+    bool build(bool fromPositions, double from, double to);
     void substep(double dt, double from, double to);
     void gatherStats(int substeps);
 };
@@ -96,21 +107,36 @@ Status FluidWorld::Impl::prepare() {
     struct Wanted {
         Kernel* kernel;
         const char* path;
+        std::vector<Define> defines;
+        bool wanted;
     };
-    for (const Wanted& w : {Wanted{&integrate, "fluid/integrate"}, Wanted{&stats, "fluid/stats"}}) {
-        Result<Kernel> found = device->kernel(w.path);
+    const Define fromPositions{"FROM_POSITIONS", "1"};
+    traits.periodic = params.box.periodic();
+    for (const Wanted& w : {Wanted{&stats, "fluid/stats", {}, true}, Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
+                            Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
+                            Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter}}) {
+        if (!w.wanted) continue;
+        Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    Result<std::unique_ptr<Method>> made = row->make(*device);
+    const uint32_t count = static_cast<uint32_t>(start.size());
+    Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
     if (!made) return made.error();
     method = std::move(*made);
+    for (const ForceRow& force : forces().rows) forcePasses.push_back({&force, nullptr});
 
-    const uint32_t count = static_cast<uint32_t>(start.size());
-    Result<NeighborGrid> newGrid = NeighborGrid::create(*device, Bounds{params.box.min, params.box.max}, h, count);
+    Result<NeighborGrid> newGrid = NeighborGrid::create(*device, Bounds{params.box.min, params.box.max}, h, count, traits);
     if (!newGrid) return newGrid.error();
     grid = std::make_unique<NeighborGrid>(std::move(*newGrid));
-    Result<Particles> newParticles = Particles::create(*device, count);
+    if (glm::any(traits.periodic)) {
+        Result<Buffer> low = device->allocate(sizeof(vec4));
+        if (!low) return low.error();
+        corner = std::move(*low);
+        const vec4 value(params.box.min, 0.0F);
+        device->write(corner, std::as_bytes(std::span(&value, 1)));
+    }
+    Result<Particles> newParticles = Particles::create(*device, count, traits.matter);
     if (!newParticles) return newParticles.error();
     particles = std::move(*newParticles);
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
@@ -145,6 +171,7 @@ void FluidWorld::Impl::writeStart() {
     time = 0;
     frame = 0;
     dtMin = dtMax = 0;
+    method->reset();
     figures = std::make_shared<FluidStats>();
     figures->particles = particles.count;
 }
@@ -155,36 +182,80 @@ void FluidWorld::Impl::say(const std::string& sentence) {
     log.notice(sentence);
 }
 
-// The largest stable step: acoustic CFL, viscous and body-force limits (Monaghan 1992, with the constants of Morris et al. 1997).
+// The largest stable step: acoustic CFL or how far the fastest may go, viscous and body-force limits (Monaghan 1992, with the constants of
+// Morris et al. 1997).
 double FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
-    const double fastest = std::max(figures->maxSpeed, double{solids.fastestWall()}) +
-                           g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
-    double dt = params.cfl * hs / (c0 + fastest);
+    double fastest = std::max(figures->maxSpeed, double{solids.fastestWall()}) +
+                     g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
+    double dt = frameSeconds;
+    if (c0 > 0) {
+        dt = params.cfl * hs / (c0 + fastest);
+    } else {
+        dt = std::min(dt, double{method->reach(params)} * params.spacing / std::max(fastest, 1.0e-9));
+        if (params.method == "pbf") dt = std::min(dt, 1.0 / 60 / params.pbf.minSubsteps);
+    }
+    // Explicit viscosity alone has a limit; an implicit solver has none.
     const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
     if (nu > 0) dt = std::min(dt, 0.125 * hs * hs / nu);
     if (g > 0) dt = std::min(dt, 0.25 * std::sqrt(hs / g));
     return dt;
 }
 
+// Passes of what is on from now; one that cannot be made stays off, and is said.
+void FluidWorld::Impl::findForces() {
+    for (ForceState& f : forcePasses) {
+        f.on = f.row->on(params, method->doesViscosity());
+        if (!f.on || f.pass) continue;
+        Result<ForcePass> made = f.row->make(*device, {params, particles.count, traits});
+        if (made)
+            f.pass = std::move(*made);
+        else
+            say(made.error().message);
+        f.on = static_cast<bool>(made);
+    }
+}
+
+bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
+    if (glm::any(traits.periodic) && fromPositions)
+        device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, particles.count);
+    else if (glm::any(traits.periodic))
+        device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
+    if (Status built = grid->build(step, particles); !built) {
+        say(built.error().message);
+        return false;
+    }
+    if (traits.matter)
+        device->run(gatherMatter, step,
+                    {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure}, particles.count);
+    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
+    return true;
+}
+
 // `from`, `to`: the shares of the frame's time at which it begins and ends.
 void FluidWorld::Impl::substep(double dt, double from, double to) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = static_cast<float>(params.spacing / dt);
-    if (Status built = grid->build(step, particles); !built) {
-        say(built.error().message);
-        return;
-    }
-    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
-    if (method->wallsInDensity()) solids.boundary(step, *grid, particles);
-    StepContext context{*device, step, *grid, particles};
+    bool built = false;
+    StepContext context{.device = *device,
+                        .fluid = params,
+                        .params = step,
+                        .grid = *grid,
+                        .particles = particles,
+                        .solve = solve,
+                        .build = [&](bool fromPositions) { return built = build(fromPositions, from, to); },
+                        .pushSamples = [](const Buffer&, const Buffer&, float) {},
+                        .planes = solids.planes(),
+                        .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
+                        .forces = {}};
+    for (const ForceState& f : forcePasses) context.hasForces |= f.on;
+    context.forces = [&] {
+        for (const ForceState& f : forcePasses)
+            if (f.on) f.pass(context);
+    };
     method->step(context);
-    device->run(integrate, step,
-                {&grid->cellStart(), &particles.position, &particles.velocity, &particles.acceleration, &particles.density,
-                 &solids.planes(), &particles.positionNext, &particles.velocityNext},
-                particles.count);
-    solids.collide(step, *grid, particles);
+    if (built) solids.collide(step, *grid, particles);
 }
 
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
@@ -207,6 +278,12 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     s.gravity = vec4(inputs.gravity, 0.0F);
     s.boxMin = vec4(p.box.min, 1.0F);
     s.boxMax = vec4(p.box.max, 0.0F);
+    constexpr float kNoWall = 1.0e15F;  // m away
+    for (int k = 0; k < 3; ++k)
+        if (w.traits.periodic[k]) {
+            s.boxMin[k] = -kNoWall;
+            s.boxMax[k] = kNoWall;
+        }
     s.count = w.particles.count;
     s.h = p.supportSpacings * p.spacing;
     s.invH = 1.0F / s.h;
@@ -221,6 +298,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.grid->fill(s);
     w.method->fill(p, w.method->soundSpeed(p, w.fastestFall()), s);
 
+    w.findForces();
     const double limit = w.stepLimit(seconds);
     int substeps = static_cast<int>(std::min(std::ceil(seconds / limit - 1e-6), 1.0e9));
     substeps = std::max(substeps, 1);
@@ -246,7 +324,7 @@ void FluidWorld::Impl::gatherStats(int substeps) {
                       [now, into = figures, mass = double{step.mass}, g = gravity, this](std::span<const std::byte> bytes) {
                           const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
                           FluidStats f = now;
-                          double centre[3] = {0, 0, 0}, inside = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, fastest2 = 0;
+                          double centre[3] = {0, 0, 0}, inside = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
                           for (uint32_t k = 0; k < STATS_THREADS; ++k) {
                               for (int axis = 0; axis < 3; ++axis) centre[axis] += double{rows[k].centre[axis]};
                               inside += double{rows[k].centre.w};
@@ -254,10 +332,11 @@ void FluidWorld::Impl::gatherStats(int substeps) {
                               speed2 += double{rows[k].speed2Sum};
                               limited += double{rows[k].limited};
                               nan += double{rows[k].nans};
+                              lost += double{rows[k].lost};
                               f.maxCompression = std::max(f.maxCompression, double{rows[k].worst});
                               fastest2 = std::max(fastest2, double{rows[k].speed2Max});
                           }
-                          f.lost = now.particles - static_cast<uint32_t>(inside);
+                          f.lost = static_cast<uint32_t>(lost);
                           f.nan = static_cast<uint32_t>(nan);
                           f.speedLimited = static_cast<uint32_t>(limited);
                           f.maxSpeed = std::sqrt(fastest2);
@@ -290,10 +369,14 @@ void FluidWorld::setParams(const FluidParams& params) {
     // What sizes arrays or picks kernels stays as it was made.
     const FluidParams& old = impl_->params;
     next.method = old.method;
+    next.kernel = old.kernel;
     next.spacing = old.spacing;
     next.supportSpacings = old.supportSpacings;
     next.box.min = old.box.min;
     next.box.max = old.box.max;
+    next.box.periodicX = old.box.periodicX;
+    next.box.periodicY = old.box.periodicY;
+    next.box.periodicZ = old.box.periodicZ;
     next.blocks = old.blocks;
     next.collision.walk = old.collision.walk;
     impl_->params = next;

@@ -1,23 +1,18 @@
-// A Method advances velocities for one substep: pressure, viscosity, gravity. Methods are rows of methods().
+// A Method advances particles by one substep: where they would be, and how fast, if no solid were in the way. Methods are rows of methods().
 #pragma once
 
 #include <memory>
 
-#include "engine/compute/device.h"
 #include "engine/core/table.h"
-#include "fluid/sim/fluid_params.h"
-#include "fluid/sim/neighbor_grid.h"
-#include "fluid/sim/particles.h"
-#include "shaders/fluid/step_params.h"
+#include "fluid/sim/step_context.h"
 
 namespace rivulet {
 
-// Everything a step needs is handed to it.
-struct StepContext {
-    Device& device;
-    const StepParams& params;
-    const NeighborGrid& grid;  // built for this step
-    Particles& particles;      // boundary is filled when the method uses walls in its density
+// What a Method is made for.
+struct MethodSetup {
+    const FluidParams& params;
+    uint32_t count;  // slots of particles
+    PairTraits traits;
 };
 
 class Method {
@@ -25,17 +20,23 @@ class Method {
     virtual ~Method() = default;
     // Fills the method's part of StepParams (kernel factors, stiffness). `soundSpeed` m/s.
     virtual void fill(const FluidParams& params, float soundSpeed, StepParams& step) const = 0;
-    // Speed of sound of its equation of state, m/s; `fastest`: the speed the scene's water can reach by falling, m/s.
+    // Speed of sound of its equation of state, m/s, 0 where there is none; `fastest`: the speed the scene's water can reach by falling.
     virtual float soundSpeed(const FluidParams& params, float fastest) const = 0;
-    virtual bool wallsInDensity() const = 0;
-    // Reads position, velocity; writes acceleration and density (what else it needs is its own).
+    // Whether it does explicit viscosity among its own pair forces; else the row of forces() does.
+    virtual bool doesViscosity() const { return false; }
+    // How far the fastest particle may go in a step, in spacings.
+    virtual float reach(const FluidParams& params) const = 0;
+    // positionNext, velocityNext as they are -> a substep later, in sorted order; positionNext's w the density ratio. It calls build, once.
     virtual void step(StepContext& context) = 0;
+    // Forgets what it remembers of earlier steps.
+    virtual void reset() {}
 };
 
 struct MethodRow {
     const char* name;
     const char* doc;
-    Result<std::unique_ptr<Method>> (*make)(Device& device);
+    // Error (badInput): it cannot do what the world asks for.
+    Result<std::unique_ptr<Method>> (*make)(Device& device, const MethodSetup& setup);
 };
 Table<MethodRow> methods();
 

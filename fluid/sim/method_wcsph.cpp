@@ -1,8 +1,9 @@
 // Weakly compressible SPH (Monaghan 1994; Mueller et al. 2003).
 #include "fluid/sim/method_wcsph.h"
 
-#include <array>
 #include <cmath>
+
+#include "fluid/sim/smoothing.h"
 
 namespace rivulet {
 
@@ -10,31 +11,14 @@ namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
 
-double wendlandShape(double q) {
-    const double a = std::max(1.0 - q, 0.0);
-    return a * a * a * a * (4.0 * q + 1.0);
-}
-
-// Sum over lattice planes from..to along one axis, without the kernel's factor.
-double latticeSum(double support, int from, int to) {
-    const int n = static_cast<int>(std::ceil(support));
-    double sum = 0;
-    for (int z = from; z <= to; ++z)
-        for (int y = -n; y <= n; ++y)
-            for (int x = -n; x <= n; ++x) sum += wendlandShape(std::sqrt(double(x * x + y * y + z * z)) / support);
-    return sum;
-}
-
-double wallShare(double distanceOverH) {
-    const double s = std::clamp(1.0 - distanceOverH, 0.0, 1.0);
-    return std::pow(s, 6) * (3.5 - 4.5 * s + 1.5 * s * s);
-}
-
 class Wcsph final : public Method {
   public:
-    Wcsph(Kernel density, Kernel forces, bool thesis) : density_(density), forces_(forces), thesis_(thesis) {}
+    explicit Wcsph(bool thesis) : thesis_(thesis) {}
+    PairKernel density, forces;
+    Kernel integrate;
 
-    bool wallsInDensity() const override { return !thesis_; }
+    bool doesViscosity() const override { return true; }
+    float reach(const FluidParams&) const override { return 1.0F; }  // sound is far slower than that
 
     float soundSpeed(const FluidParams& p, float fastest) const override {
         if (thesis_) return std::sqrt(p.stiffness);  // dp/drho of (4)
@@ -51,62 +35,58 @@ class Wcsph final : public Method {
             s.restitution = 1.0F;  // the thesis's box turns the velocity round
             return;
         }
-        const double lattice = wendlandLatticeSum(p.supportSpacings);
-        s.kernelK = static_cast<float>(21.0 / (2.0 * kPiD * h * h * h) / lattice);
-        s.gradientK = static_cast<float>(-210.0 / (kPiD * std::pow(h, 5)) / lattice);
+        fillSmoothing(p, s);
         s.stiffness = soundSpeed * soundSpeed * p.restDensity / 7.0F;
         s.artificial = p.artificialViscosity * soundSpeed * 0.5F * s.h;
-        s.wallOffset = static_cast<float>(wendlandWallOffset(p.supportSpacings)) * p.spacing;
     }
 
     void step(StepContext& c) override {
+        if (!c.build(false)) return;
         Particles& p = c.particles;
         const uint32_t threads = c.grid.pairThreads();
         const Buffer& neighbors = c.grid.neighbors();
         if (thesis_) {
-            c.device.run(density_, c.params, {&neighbors, &p.position, &p.density, &p.pressure}, threads);
-            c.device.run(forces_, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.density}, threads);
+            density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure}, threads);
+            forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.density}, threads);
         } else {
-            c.device.run(density_, c.params, {&neighbors, &p.position, &p.density, &p.pressure, &p.boundary}, threads);
-            c.device.run(forces_, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.boundary}, threads);
+            c.boundary(p.position);
+            density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure, &p.boundary}, threads);
+            forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.boundary}, threads);
+            // At a sample the pair has the fluid's pressure twice; one over rho^2 is in the pressures already.
+            c.pushSamples(p.position, p.pressure, 2.0F * c.params.restDensity);
         }
+        c.forces();
+        c.device.run(integrate, c.params,
+                     {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
+                     p.count);
     }
 
   private:
-    Kernel density_, forces_;
     bool thesis_;
 };
 
-Result<std::unique_ptr<Method>> make(Device& device, bool thesis) {
+Result<std::unique_ptr<Method>> make(Device& device, const MethodSetup& setup, bool thesis) {
+    if (thesis && (setup.traits.matter || glm::any(setup.traits.periodic)))
+        return badInput("method wcsph_thesis knows one liquid, no floating bodies and no periodic axes: choose another method for this scene");
+    auto method = std::make_unique<Wcsph>(thesis);
     std::vector<Define> defines;
     if (thesis) defines.push_back({"THESIS", "1"});
-    Result<Kernel> density = device.kernel("fluid/wcsph_density", defines);
+    if (!thesis && setup.params.kernel == "cubic_spline") defines.push_back({"CUBIC", "1"});
+    Result<PairKernel> density = PairKernel::find(device, "fluid/wcsph_density", setup.traits, defines);
     if (!density) return density.error();
-    Result<Kernel> forces = device.kernel("fluid/wcsph_forces", defines);
+    Result<PairKernel> forces = PairKernel::find(device, "fluid/wcsph_forces", setup.traits, defines);
     if (!forces) return forces.error();
-    return std::unique_ptr<Method>(std::make_unique<Wcsph>(*density, *forces, thesis));
+    Result<Kernel> integrate = device.kernel("fluid/integrate");
+    if (!integrate) return integrate.error();
+    method->density = *density;
+    method->forces = *forces;
+    method->integrate = *integrate;
+    return std::unique_ptr<Method>(std::move(method));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Method>> makeWcsph(Device& device) { return make(device, false); }
-Result<std::unique_ptr<Method>> makeWcsphThesis(Device& device) { return make(device, true); }
-
-double wendlandLatticeSum(double support) {
-    const int n = static_cast<int>(std::ceil(support));
-    return 21.0 / (2.0 * kPiD * support * support * support) * latticeSum(support, -n, n);
-}
-
-double wendlandWallOffset(double support) {
-    const int n = static_cast<int>(std::ceil(support));
-    const double missing = latticeSum(support, -n, -1) / latticeSum(support, -n, n);
-    // wallShare falls monotonically with distance: bisection.
-    double near = 0, far = 1;
-    for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (near + far);
-        (wallShare(middle) > missing ? near : far) = middle;
-    }
-    return near * support - 0.5;
-}
+Result<std::unique_ptr<Method>> makeWcsph(Device& device, const MethodSetup& setup) { return make(device, setup, false); }
+Result<std::unique_ptr<Method>> makeWcsphThesis(Device& device, const MethodSetup& setup) { return make(device, setup, true); }
 
 }  // namespace rivulet

@@ -38,12 +38,14 @@ struct NeighborGrid::Impl {
     vec3 origin{0.0F};
     float h = 0;
     ivec3 cells{0};  // padded
+    vec3 scale{0.0F}, period{0.0F};
     uint32_t count = 0;
+    PairTraits traits;
     Buffer cellStart, cellOf;
 
     // CPU
     uint32_t chunks = 1;
-    uint32_t groupCount = 0;
+    uint32_t groupCount = 0, fluidGroups = 0;
     uint32_t listCapacity = 0;
     Buffer x, y, z, histogram, segmentSum, groups, list, listCursor, lists;
     Kernel sortCount, sortSegments, sortOffsets, sortScatter, neighborList;
@@ -57,6 +59,8 @@ struct NeighborGrid::Impl {
         return static_cast<uint32_t>(cells.x) * static_cast<uint32_t>(cells.y) * static_cast<uint32_t>(cells.z);
     }
     uint32_t sortedCells() const { return onCpu() ? 2 * coarseCells() : coarseCells(); }
+    uint32_t totalCells() const { return traits.samples > 0 ? 2 * sortedCells() : sortedCells(); }
+    uint32_t firstSample() const { return count - traits.samples; }
     Status allocate();
     Status findKernels();
     CpuGridJob job(Particles& p) const;
@@ -67,26 +71,26 @@ struct NeighborGrid::Impl {
 
 Status NeighborGrid::Impl::allocate() {
     Allocator take{*device};
-    const size_t sorted = sortedCells();
-    cellStart = take((sorted + 2) * sizeof(uint32_t));
+    const size_t sorted = totalCells();
+    cellStart = take((sorted + 4) * sizeof(uint32_t));
     cellOf = take(count * sizeof(uint32_t));
     if (onCpu()) {
         chunks = static_cast<uint32_t>(std::clamp(static_cast<CpuDevice*>(device)->threads(), 1, 16));
         for (Buffer* b : {&x, &y, &z}) *b = take((count + 8) * sizeof(float));
-        histogram = take(chunks * (sorted + 1) * sizeof(uint32_t));
+        histogram = take(chunks * (sorted + 3) * sizeof(uint32_t));
         segmentSum = take(kScanSegments * sizeof(uint32_t));
         // A row's last group may be short: at most one such a row.
-        groups =
-            take((count / 8 + std::min<size_t>(count, static_cast<size_t>(cells.y) * static_cast<size_t>(cells.z)) + 1) * sizeof(CpuGroup));
+        const size_t rows = sorted / (2 * static_cast<size_t>(cells.x));
+        groups = take((count / 8 + std::min<size_t>(count, rows) + 1) * sizeof(CpuGroup));
         listCursor = take(sizeof(uint32_t));
         lists = take(sizeof(CpuNeighborLists));
         listCapacity = count * 14 + 64 * kListRegion / 8;
         list = take(size_t{listCapacity} * sizeof(uint32_t));
     } else {
-        cellCounts = take((sorted + 2) * sizeof(uint32_t));
+        cellCounts = take((sorted + 4) * sizeof(uint32_t));
         rank = take(count * sizeof(uint32_t));
         order = take(count * sizeof(uint32_t));
-        blockSum = take(((sorted + 2) / SCAN_BLOCK + 1) * sizeof(uint32_t));
+        blockSum = take(((sorted + 4) / SCAN_BLOCK + 1) * sizeof(uint32_t));
     }
     return take.status;
 }
@@ -98,12 +102,14 @@ Status NeighborGrid::Impl::findKernels() {
         std::vector<Define> defines;
     };
     std::vector<Wanted> wanted;
+    std::vector<Define> listDefines;
+    if (glm::any(traits.periodic)) listDefines.push_back({"PERIODIC", "1"});
     if (onCpu())
         wanted = {{&sortCount, "fluid/cpu_sort_count", {}},
                   {&sortSegments, "fluid/cpu_sort_segments", {}},
                   {&sortOffsets, "fluid/cpu_sort_offsets", {}},
                   {&sortScatter, "fluid/cpu_sort_scatter", {}},
-                  {&neighborList, "fluid/cpu_neighbor_list", {}}};
+                  {&neighborList, "fluid/cpu_neighbor_list", listDefines}};
     else {
         const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
         wanted = {{&cellCount, "fluid/cell_count", {}},
@@ -127,8 +133,15 @@ CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
     j.originX = origin.x;
     j.originY = origin.y;
     j.originZ = origin.z;
+    j.scaleX = scale.x;
+    j.scaleY = scale.y;
+    j.scaleZ = scale.z;
+    j.periodX = period.x;
+    j.periodY = period.y;
+    j.periodZ = period.z;
     j.h = h;
-    j.invH = 1.0F / h;
+    j.totalCells = totalCells();
+    j.firstSample = firstSample();
     j.cellsX = cells.x;
     j.cellsY = cells.y;
     j.cellsZ = cells.z;
@@ -159,13 +172,15 @@ CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
 void NeighborGrid::Impl::buildGroups() {
     const uint32_t* start = hostPointer<uint32_t>(cellStart);
     CpuGroup* group = hostPointer<CpuGroup>(groups);
-    const size_t rowLength = 2 * static_cast<size_t>(cells.x), rows = static_cast<size_t>(cells.y) * static_cast<size_t>(cells.z);
-    groupCount = 0;
+    const size_t rowLength = 2 * static_cast<size_t>(cells.x), rows = totalCells() / rowLength;
+    groupCount = fluidGroups = 0;
     for (size_t row = 0; row < rows; ++row) {
+        if (row * rowLength == sortedCells()) fluidGroups = groupCount;
         const uint32_t end = start[(row + 1) * rowLength];
         for (uint32_t first = start[row * rowLength]; first < end; first += 8)
             group[groupCount++] = {first, std::min(8U, end - first), 0, 0};
     }
+    if (traits.samples == 0) fluidGroups = groupCount;
 }
 
 Status NeighborGrid::Impl::buildCpu(Particles& p) {
@@ -191,40 +206,63 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
         if (!larger) return larger.error();
         list = std::move(*larger);
     }
-    *hostPointer<CpuNeighborLists>(lists) = {hostPointer<CpuGroup>(groups), hostPointer<uint32_t>(list)};
+    *hostPointer<CpuNeighborLists>(lists) = {hostPointer<CpuGroup>(groups), hostPointer<uint32_t>(list),
+                                                    hostPointer<CpuGroup>(groups) + fluidGroups};
     return ok();
 }
 
 void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
     device->fill(cellCounts, 0);
-    device->run(cellCount, params, {&p.positionNext, &cellCounts, &cellOf, &rank}, count);
-    const ScanParams scan{sortedCells() + 2, (sortedCells() + 2 + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
+    device->run(cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank}, count);
+    const uint32_t counts = totalCells() + 4;
+    const ScanParams scan{counts, (counts + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
     device->run(scanReduce, scan, {&cellCounts, &blockSum}, scan.blocks * SCAN_THREADS);
     device->run(scanBlocks, scan, {&blockSum}, SCAN_THREADS);
     device->run(scanApply, scan, {&cellCounts, &blockSum, &cellStart}, scan.blocks * SCAN_THREADS);
     device->run(cellScatter, params, {&cellStart, &cellOf, &rank, &order}, count);
-    device->run(cellSort, params, {&cellStart, &p.id, &order}, sortedCells());
+    device->run(cellSort, params, {&cellStart, &p.id, &order}, totalCells());
     device->run(reorder, params, {&order, &p.positionNext, &p.velocityNext, &p.id, &p.position, &p.velocity, &p.idNext}, count);
     p.id.swap(p.idNext);
 }
 
-Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count) {
+std::vector<Define> PairTraits::defines() const {
+    std::vector<Define> d;
+    if (matter) d.push_back({"MATTER", "1"});
+    if (glm::any(periodic)) d.push_back({"PERIODIC", "1"});
+    return d;
+}
+
+Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits) {
     ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");
     auto impl = std::make_unique<Impl>();
     impl->device = &device;
     impl->h = h;
     impl->count = count;
-    // One empty cell on every side: rows need no bounds checks.
-    impl->origin = inside.min - vec3(h);
+    impl->traits = traits;
     const vec3 size = inside.size() / h;
     const double cells = (std::ceil(double{size.x}) + 3) * (std::ceil(double{size.y}) + 3) * (std::ceil(double{size.z}) + 3);
     if (cells > kMostCells)
         return badInput(fmt::format(
             "the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
             inside.size().x, inside.size().y, inside.size().z, cells, h, h / 2 * std::cbrt(cells / kMostCells)));
-    // The last interior cell may be cut by the bounds; a wall's own coordinate still lies inside.
-    impl->cells =
-        ivec3(static_cast<int>(std::floor(size.x)) + 3, static_cast<int>(std::floor(size.y)) + 3, static_cast<int>(std::floor(size.z)) + 3);
+    for (int k = 0; k < 3; ++k) {
+        // One empty cell on every side: rows need no bounds checks.
+        if (traits.periodic[k]) {
+            // As many cells as fit, so that they meet where the axis wraps.
+            const auto n = static_cast<int>(std::floor(size[k] * 1.0001F));
+            if (n < 2)
+                return badInput(fmt::format("the box is {:.3g} m along the periodic axis {}, must be two support radii, {:.3g} m, or more",
+                                            inside.size()[k], "xyz"[k], 2 * h));
+            impl->cells[k] = n + 2;
+            impl->period[k] = inside.size()[k];
+            impl->scale[k] = static_cast<float>(n) / inside.size()[k];
+        } else {
+            // The last interior cell may be cut by the bounds; a wall's own coordinate still lies inside.
+            impl->cells[k] = static_cast<int>(std::floor(size[k])) + 3;
+            impl->scale[k] = 1.0F / h;
+        }
+        impl->origin[k] = inside.min[k] - 1.0F / impl->scale[k];
+    }
     if (Status s = impl->findKernels(); !s) return s.error();
     if (Status s = impl->allocate(); !s) return s.error();
     return NeighborGrid(std::move(impl));
@@ -236,11 +274,17 @@ NeighborGrid& NeighborGrid::operator=(NeighborGrid&&) noexcept = default;
 NeighborGrid::~NeighborGrid() = default;
 
 void NeighborGrid::fill(StepParams& params) const {
-    params.gridOrigin = vec4(impl_->origin, 1.0F / impl_->h);
-    params.cellsX = impl_->cells.x;
-    params.cellsY = impl_->cells.y;
-    params.cellsZ = impl_->cells.z;
-    params.cellCount = impl_->sortedCells();
+    const Impl& g = *impl_;
+    params.gridOrigin = vec4(g.origin, 0.0F);
+    params.gridScale = vec4(g.scale, 0.0F);
+    params.period = vec4(g.period, 0.0F);
+    for (int k = 0; k < 3; ++k) params.invPeriod[k] = g.period[k] > 0 ? 1.0F / g.period[k] : 0.0F;
+    params.cellsX = g.cells.x;
+    params.cellsY = g.cells.y;
+    params.cellsZ = g.cells.z;
+    params.cellCount = g.sortedCells();
+    params.totalCells = g.totalCells();
+    params.firstSample = g.firstSample();
 }
 
 Status NeighborGrid::build(const StepParams& params, Particles& particles) {
@@ -251,6 +295,9 @@ Status NeighborGrid::build(const StepParams& params, Particles& particles) {
 
 const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }
 const Buffer& NeighborGrid::cellStart() const { return impl_->cellStart; }
-uint32_t NeighborGrid::pairThreads() const { return impl_->onCpu() ? impl_->groupCount : impl_->count; }
+uint32_t NeighborGrid::pairThreads() const { return impl_->onCpu() ? impl_->fluidGroups : impl_->count; }
+uint32_t NeighborGrid::sampleThreads() const {
+    return impl_->onCpu() ? impl_->groupCount - impl_->fluidGroups : impl_->traits.samples;
+}
 
 }  // namespace rivulet

@@ -1,5 +1,6 @@
 // The neighbour grid: particles sorted by cell (edge = support radius h), so that a row of cells is contiguous in memory.
-// Particles outside the bounds, or with NaN, are sorted behind all others and indexed nowhere.
+// Behind the fluid come the samples on bodies, in cells of their own; then what is indexed nowhere: particles outside the bounds or with NaN,
+// and free slots. shaders/fluid/grid.h says where each begins.
 //
 // GPU: atomics count, a three-dispatch prefix sum, a sort by id inside each cell (the same order in every run); kernels sweep rows.
 // CPU: a stable counting sort, groups of 8 particles, and a list of candidate neighbours for each group.
@@ -14,10 +15,19 @@
 
 namespace rivulet {
 
+// What decides which form of the pair kernels a world needs.
+struct PairTraits {
+    bvec3 periodic{false};           // axes on which the bounds wrap round
+    bool matter = false;             // particles differ: several liquids, or samples on bodies
+    uint32_t samples = 0;            // on bodies: the last ids
+    std::vector<Define> defines() const;  // MATTER, PERIODIC: of every kernel with FOR_NEIGHBORS
+};
+
 class NeighborGrid {
   public:
-    // `inside`: where particles may be (m). Error: so many cells that memory would not hold them, with what spacing would fit.
-    static Result<NeighborGrid> create(Device& device, const Bounds& inside, float h, uint32_t count);
+    // `inside`: where particles may be (m); `count`: slots, samples with them. Error: so many cells that memory would not hold them, with
+    // what spacing would fit; a periodic axis shorter than 2 h.
+    static Result<NeighborGrid> create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits = {});
     NeighborGrid(NeighborGrid&&) noexcept;
     NeighborGrid& operator=(NeighborGrid&&) noexcept;
     ~NeighborGrid();
@@ -27,8 +37,9 @@ class NeighborGrid {
     Status build(const StepParams& params, Particles& particles);
 
     const Buffer& neighbors() const;  // binding 1 of a kernel with FOR_NEIGHBORS
-    const Buffer& cellStart() const;  // [params.cellCount] = how many particles are inside
-    uint32_t pairThreads() const;     // threads of a kernel with FOR_NEIGHBORS: groups on the CPU, particles on a GPU
+    const Buffer& cellStart() const;  // [params.cellCount] = how many particles of the fluid are inside
+    uint32_t pairThreads() const;     // threads of a kernel with FOR_NEIGHBORS over the fluid: groups on the CPU, particles on a GPU
+    uint32_t sampleThreads() const;   // the same over the samples on bodies
 
   private:
     struct Impl;

@@ -1,5 +1,6 @@
 // Every array that belongs to a particle. Between steps the newest state is positionNext, velocityNext, id; a step sorts it into
 // position, velocity, id (sorted by cell), computes, and integrates back into positionNext, velocityNext in the sorted order.
+// What stays with a particle for its life is a table by id, and is gathered into sorted order after each sort.
 #pragma once
 
 #include "engine/compute/device.h"
@@ -7,16 +8,21 @@
 namespace rivulet {
 
 struct Particles {
-    uint32_t count = 0;
+    uint32_t count = 0;                 // slots: particles, free slots and the samples on bodies, whose ids are the last
     Buffer position, velocity;          // vec4: m, m/s; sorted, at the step's start
-    Buffer positionNext, velocityNext;  // vec4; w: density / rest density, 1 where the speed was limited
+    Buffer positionNext, velocityNext;  // vec4; w: density / rest density (negative: a free slot), 1 where the speed was limited
     Buffer id, idNext;                  // uint; id goes with the newest state
-    Buffer density;                     // float, kg/m^3
+    Buffer density;                     // float, density / rest density
     Buffer pressure;                    // float, what the method makes of it
-    Buffer acceleration;                // vec4, m/s^2
+    Buffer acceleration;                // vec4, m/s^2; of a sample: what it would be for a particle of the fluid
     Buffer boundary;                    // vec4: gradient (1/m) and share of the walls
+    // Where particles differ (PairTraits::matter). vec4: x volume / spacing^3; y reference rest density / own; z dynamic viscosity, Pa s;
+    // w the liquid's row, or of a sample on body k: -1 - k.
+    Buffer matterOf;  // by id
+    Buffer matter;    // sorted
 
-    static Result<Particles> create(Device& device, uint32_t count);
+    // `matter`: whether particles differ.
+    static Result<Particles> create(Device& device, uint32_t count, bool matter = false);
 };
 
 }  // namespace rivulet

@@ -334,16 +334,16 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
     return ok();
 }
 
-void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
-    const uint32_t n = particles.count;
+void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary) {
+    const uint32_t n = step.count;
+    const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
-        device_->run(boundary_, step,
-                     {&grid.cellStart(), &particles.position, &planes_, &particles.boundary, &staticBlock_, &static_.distance}, n);
+        device_->run(boundary_, step, {&start, &position, &planes_, &boundary, &staticBlock_, &static_.distance}, n);
     else
-        device_->run(boundary_, step, {&grid.cellStart(), &particles.position, &planes_, &particles.boundary}, n);
+        device_->run(boundary_, step, {&start, &position, &planes_, &boundary}, n);
     for (std::vector<Moving>* list : {&rigid_, &deforming_})
         for (const Moving& m : *list)
-            device_->run(boundaryMoving_, step, {&grid.cellStart(), &particles.position, &particles.boundary, &m.block, &m.on.distance}, n);
+            device_->run(boundaryMoving_, step, {&start, &position, &boundary, &m.block, &m.on.distance}, n);
 }
 
 void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {

@@ -37,7 +37,8 @@ class SolidPasses {
 
     // Moves the solids on to the frame's shares [from, to] of its time, 0..1. `gravity` m/s^2.
     Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
-    void boundary(const StepParams& step, const NeighborGrid& grid, Particles& particles);  // fills particles.boundary
+    // Fills `boundary` with the walls' share at `position`, sorted.
+    void boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary);
     // Moves particles.positionNext and velocityNext out of the solids.
     void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);
 

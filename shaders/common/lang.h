@@ -77,6 +77,9 @@ typedef float real; typedef float3 real3;
 #define NEIGHBOR_TYPE uint  // see fluid/neighbors.h
 #define LOAD(b, i) b[i]
 #define LOAD3(b, i) b[i].xyz
+#define LOADX(b, i) b[i].x
+#define LOADY(b, i) b[i].y
+#define LOADZ(b, i) b[i].z
 #define LOADW(b, i) b[i].w
 #define STORE(b, i, v) b[i] = (v)
 #define STORE4(b, i, v, w) b[i] = vec4(v, w)

@@ -117,6 +117,7 @@ INLINE LaneMask operator>=(real a, real b) { return a.v >= b.v; }
 INLINE real max(real a, real b) { return real(static_cast<Lanes>(_mm256_max_ps(a.v, b.v))); }  // a NaN in a gives b
 INLINE real min(real a, real b) { return real(static_cast<Lanes>(_mm256_min_ps(a.v, b.v))); }
 INLINE real sqrt(real a) { return real(static_cast<Lanes>(_mm256_sqrt_ps(a.v))); }
+INLINE real floor(real a) { return real(static_cast<Lanes>(_mm256_floor_ps(a.v))); }
 INLINE bool anyLane(LaneMask m) { return _mm256_movemask_ps(reinterpret_cast<__m256>(m)) != 0; }
 INLINE real select(LaneMask m, real a, real b) { return real(static_cast<Lanes>(_mm256_blendv_ps(b.v, a.v, reinterpret_cast<__m256>(m)))); }
 #else
@@ -124,12 +125,14 @@ INLINE real perLane(real a, float (*f)(float)) { for (int k = 0; k < 8; ++k) a.v
 INLINE real max(real a, real b) { for (int k = 0; k < 8; ++k) a.v[k] = a.v[k] > b.v[k] ? a.v[k] : b.v[k]; return a; }
 INLINE real min(real a, real b) { for (int k = 0; k < 8; ++k) a.v[k] = a.v[k] < b.v[k] ? a.v[k] : b.v[k]; return a; }
 INLINE real sqrt(real a) { for (int k = 0; k < 8; ++k) a.v[k] = __builtin_sqrtf(a.v[k]); return a; }
+INLINE real floor(real a) { for (int k = 0; k < 8; ++k) a.v[k] = __builtin_floorf(a.v[k]); return a; }
 INLINE bool anyLane(LaneMask m) { int any = 0; for (int k = 0; k < 8; ++k) any |= m[k]; return any != 0; }
 INLINE real select(LaneMask m, real a, real b) { for (int k = 0; k < 8; ++k) a.v[k] = m[k] ? a.v[k] : b.v[k]; return a; }
 #endif
 INLINE real max0(real a) { return max(a, real(0.0f)); }
 INLINE float max0(float a) { return a > 0.0f ? a : 0.0f; }
 INLINE float select(bool c, float a, float b) { return c ? a : b; }
+INLINE real select(bool c, real a, real b) { return c ? a : b; }
 #define SELECT(condition, a, b) select(condition, a, b)
 
 struct real3 {
@@ -152,11 +155,14 @@ INLINE real dot(const real3& a, const real3& b) { return a.x * b.x + a.y * b.y +
 
 // A group: up to 8 consecutive particles of one row of cells. Lanes beyond `lanes` repeat the last particle and are never stored.
 struct Group { uint first, lanes, listBegin, listCount; };
-struct NeighborLists { const Group* groups; uint* list; };
+struct NeighborLists { const Group* groups; uint* list; const Group* samples; };
 INLINE float LOAD(const float* b, uint j) { return b[j]; }
 INLINE uint LOAD(const uint* b, uint j) { return b[j]; }
 INLINE vec4 LOAD(const vec4* b, uint j) { return b[j]; }
 INLINE vec3 LOAD3(const vec4* b, uint j) { return b[j].xyz; }
+INLINE float LOADX(const vec4* b, uint j) { return b[j].x; }
+INLINE float LOADY(const vec4* b, uint j) { return b[j].y; }
+INLINE float LOADZ(const vec4* b, uint j) { return b[j].z; }
 INLINE float LOADW(const vec4* b, uint j) { return b[j].w; }
 INLINE uint laneOf(const Group& g, uint k) { return g.first + (k < g.lanes ? k : g.lanes - 1); }
 INLINE real LOAD(const float* b, const Group& g) {
@@ -186,6 +192,9 @@ INLINE real4 loadLanes(const vec4* b, const Group& g) {
     return r;
 }
 INLINE real3 LOAD3(const vec4* b, const Group& g) { return loadLanes(b, g).xyz; }
+INLINE real LOADX(const vec4* b, const Group& g) { return loadLanes(b, g).xyz.x; }
+INLINE real LOADY(const vec4* b, const Group& g) { return loadLanes(b, g).xyz.y; }
+INLINE real LOADZ(const vec4* b, const Group& g) { return loadLanes(b, g).xyz.z; }
 INLINE real LOADW(const vec4* b, const Group& g) { return loadLanes(b, g).w; }
 INLINE void STORE(float* b, const Group& g, real v) {
     if (g.lanes == 8) { memcpy(b + g.first, &v.v, sizeof v.v); return; }
@@ -223,7 +232,8 @@ template <class T> INLINE void STORE(T* b, uint i, const T& v) { b[i] = v; }
 // Neighbours on the CPU: the group's list, built by fluid/sim/neighbor_grid.cpp.
 #define NEIGHBOR_TYPE NeighborLists
 #define SELF(i) const Group& i = neighbors->groups[THREAD_ID]
-#define FOR_NEIGHBORS(i, xi, j) { const uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
+#define SELF_SAMPLE(i) const Group& i = neighbors->samples[THREAD_ID]
+#define FOR_NEIGHBORS(i, home, j) { const uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
 #define END_NEIGHBORS }}
 }  // namespace rivulet::RIVULET_KERNEL_UNIT
 #endif

@@ -1,15 +1,25 @@
 // The padded grid: which cell a position is in. One empty cell on every side, so that a particle's 27 cells always exist.
+// Particles are sorted by cell: first those of the fluid, then the samples on bodies in cells of their own, then, from cell totalCells on,
+// samples outside the grid (+ 0), lost particles (+ 1: outside, NaN or infinite), free slots (+ 2), and at + 3 the count of all.
 #if !defined(RIVULET_GRID_H)
 #define RIVULET_GRID_H
-// The cell of `x` (m), x fastest, or cellsX * cellsY * cellsZ ("limbo") where x is outside the unpadded cells, NaN or infinite.
-// `origin`: StepParams.gridOrigin. The conditions are true for what is inside, so that a NaN, of which every comparison is false, is outside.
-FN uint cellOf(vec3 x, vec4 origin, int cellsX, int cellsY, int cellsZ) {
-    float gx = (x.x - origin.x) * origin.w;
-    float gy = (x.y - origin.y) * origin.w;
-    float gz = (x.z - origin.z) * origin.w;
-    int cell = cellsX * cellsY * cellsZ;
-    if (gx >= 1.0f && gx < TO_FLOAT(cellsX - 1) && gy >= 1.0f && gy < TO_FLOAT(cellsY - 1) && gz >= 1.0f && gz < TO_FLOAT(cellsZ - 1))
-        cell = (TO_INT(gz) * cellsY + TO_INT(gy)) * cellsX + TO_INT(gx);
+// The cell of `x` (m), x fastest, or cellsX * cellsY * cellsZ where x is outside the unpadded cells, NaN or infinite.
+// The conditions are true for what is inside, so that a NaN, of which every comparison is false, is outside.
+FN uint cellOf(vec3 x, StepParams p) {
+    float gx = (x.x - p.gridOrigin.x) * p.gridScale.x;
+    float gy = (x.y - p.gridOrigin.y) * p.gridScale.y;
+    float gz = (x.z - p.gridOrigin.z) * p.gridScale.z;
+    int cell = p.cellsX * p.cellsY * p.cellsZ;
+    if (gx >= 1.0f && gx < TO_FLOAT(p.cellsX - 1) && gy >= 1.0f && gy < TO_FLOAT(p.cellsY - 1) && gz >= 1.0f && gz < TO_FLOAT(p.cellsZ - 1))
+        cell = (TO_INT(gz) * p.cellsY + TO_INT(gy)) * p.cellsX + TO_INT(gx);
     return TO_UINT(cell);
+}
+// Where the particle is sorted to. A slot is free where w, the density ratio of everything else, is negative.
+FN uint sortedCell(vec4 x, uint id, StepParams p) {
+    uint cell = cellOf(x.xyz, p);
+    bool inside = cell < p.cellCount;
+    if (id >= p.firstSample) return inside ? cell + p.cellCount : p.totalCells;
+    if (x.w < 0.0f) return p.totalCells + 2u;
+    return inside ? cell : p.totalCells + 1u;
 }
 #endif

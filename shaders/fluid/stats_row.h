@@ -13,8 +13,8 @@ STRUCT(StatsRow) {
     float speed2Max;    // m^2/s^2
     float limited;      // particles whose speed was limited in the last step
     float nans;         // of the lost ones: NaN or infinite
+    float lost;         // particles outside the grid or NaN
     float pad0;
-    float pad1;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StatsRow) == 48);

@@ -6,14 +6,19 @@ namespace rivulet {
 #endif
 STRUCT(StepParams) {
     vec4  gravity;         // m/s^2, w unused
-    vec4  gridOrigin;      // m, the low corner of the padded grid's cell (0,0,0); w = 1 / cell edge (1/m)
+    vec4  gridOrigin;      // m, the low corner of the padded grid's cell (0,0,0)
+    vec4  gridScale;       // 1/m, cells a metre along x, y, z: an edge is h, or a little more on a periodic axis
+    vec4  period;          // m; 0 = the axis is not periodic
+    vec4  invPeriod;       // 1/m; 0 = the axis is not periodic
     vec4  boxMin;          // m, the walls; w = 1 if there are walls, else 0
     vec4  boxMax;          // m
     int   cellsX;          // padded: one empty cell on every side
     int   cellsY;
     int   cellsZ;
-    uint  cellCount;       // cellsX * cellsY * cellsZ; cellStart[cellCount] = particles inside the grid
-    uint  count;           // particles, frozen ones (outside the grid, NaN) last
+    uint  cellCount;       // of fluid: cellsX * cellsY * cellsZ (cpu: twice that); cellStart[cellCount] = fluid particles inside the grid
+    uint  totalCells;      // with those of body samples: cellCount, or twice it. Behind them in cellStart: see grid.h
+    uint  count;           // slots of particles, body samples with them
+    uint  firstSample;     // ids from here on are samples on the surface of bodies
     float h;               // m, support radius = cell edge
     float invH;            // 1/m
     float dt;              // s
@@ -31,8 +36,10 @@ STRUCT(StepParams) {
     uint  planeCount;      // of the array of collider planes
     float wallOffset;      // m, added to a wall's distance in the density: a lattice half a spacing off a wall is then at rest density
     float friction;        // Coulomb's, of the box
+    float relaxation;      // of an iteration of the pressure solvers
+    float warmStart;       // share of the last step's pressures that the next begins with
+    uint  iteration;       // of a pressure solver, from 0
     float padding1;
-    float padding2;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StepParams) % 16 == 0);

@@ -82,15 +82,14 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     const Input in = disturbedBlock(field);
     const uint32_t count = static_cast<uint32_t>(in.id.size());
     Fields out;
-    auto method = methods().find(methodName)->make(device);
+    auto method = methods().find(methodName)->make(device, {p, count, {}});
     EXPECT_TRUE(method) << (method ? "" : method.error().message);
     auto grid = NeighborGrid::create(device, Bounds{p.box.min, p.box.max}, 2 * kSpacing, count);
     auto particles = Particles::create(device, count);
     std::vector<Define> defines;
     if (field != nullptr) defines.push_back({"FIELD", "1"});
-    auto boundary = device.kernel("fluid/boundary", defines), integrate = device.kernel("fluid/integrate"),
-         collide = device.kernel("fluid/collide"), stats = device.kernel("fluid/stats");
-    for (const Result<Kernel>* k : {&boundary, &integrate, &collide, &stats}) {
+    auto boundary = device.kernel("fluid/boundary", defines), collide = device.kernel("fluid/collide"), stats = device.kernel("fluid/stats");
+    for (const Result<Kernel>* k : {&boundary, &collide, &stats}) {
         EXPECT_TRUE(*k) << (*k ? "" : k->error().message);
         if (!*k) return out;
     }
@@ -121,8 +120,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     s.planeCount = 1;
     grid->fill(s);
     (*method)->fill(p, (*method)->soundSpeed(p, 1.0F), s);
-    EXPECT_TRUE(grid->build(s, *particles));
-    const std::vector<uint32_t> id = device.readAll<uint32_t>(particles->id, count);
+    std::vector<uint32_t> id;
     auto keep = [&](const char* name, const Buffer& b, bool vector) {
         std::vector<vec4> values;
         if (vector)
@@ -131,8 +129,6 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
             for (float f : device.readAll<float>(b, count)) values.emplace_back(f, 0, 0, 0);
         out[name] = byId(id, values);
     };
-    keep("reorder position", particles->position, true);
-    keep("reorder velocity", particles->velocity, true);
     Buffer block, bits, distance, normal;
     FieldParams fieldBlock{};
     if (field != nullptr) {
@@ -148,22 +144,37 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
         device.writeAll<float>(distance, field->distance);
         device.writeAll<uint32_t>(normal, normals);
     }
-    if ((*method)->wallsInDensity()) {
-        if (field != nullptr)
-            device.run(*boundary, s, {&grid->cellStart(), &particles->position, &planes, &particles->boundary, &block, &distance}, count);
-        else
-            device.run(*boundary, s, {&grid->cellStart(), &particles->position, &planes, &particles->boundary}, count);
-        keep("boundary", particles->boundary, true);
-    }
-    StepContext context{device, s, *grid, *particles};
+    SolveFigures solve;
+    StepContext context{.device = device,
+                        .fluid = p,
+                        .params = s,
+                        .grid = *grid,
+                        .particles = *particles,
+                        .solve = solve,
+                        .build =
+                            [&](bool) {
+                                EXPECT_TRUE(grid->build(s, *particles));
+                                id = device.readAll<uint32_t>(particles->id, count);
+                                keep("reorder position", particles->position, true);
+                                keep("reorder velocity", particles->velocity, true);
+                                return true;
+                            },
+                        .pushSamples = [](const Buffer&, const Buffer&, float) {},
+                        .planes = planes,
+                        .boundary =
+                            [&](const Buffer& position) {
+                                if (field != nullptr)
+                                    device.run(*boundary, s, {&grid->cellStart(), &position, &planes, &particles->boundary, &block, &distance},
+                                               count);
+                                else
+                                    device.run(*boundary, s, {&grid->cellStart(), &position, &planes, &particles->boundary}, count);
+                            },
+                        .forces = [] {}};
     (*method)->step(context);
+    if (std::string_view(methodName) != "wcsph_thesis") keep("boundary", particles->boundary, true);
     keep("density", particles->density, false);
     keep("pressure", particles->pressure, false);
-    keep("acceleration", particles->acceleration, true);
-    device.run(*integrate, s,
-               {&grid->cellStart(), &particles->position, &particles->velocity, &particles->acceleration, &particles->density, &planes,
-                &particles->positionNext, &particles->velocityNext},
-               count);
+    if (std::string_view(methodName) != "pbf") keep("acceleration", particles->acceleration, true);
     keep("integrate position", particles->positionNext, true);
     keep("integrate velocity", particles->velocityNext, true);
     if (field != nullptr) {
@@ -228,6 +239,8 @@ TEST_P(SimParity, EveryKernelAgreesWithTheCpuToOnePartInAHundredThousand) {
 
 INSTANTIATE_TEST_SUITE_P(Devices, SimParity,
                          testing::Values(Case{"cl", "wcsph", false}, Case{"cl", "wcsph", true}, Case{"cl", "wcsph_thesis", false},
+                                         Case{"cl", "pbf", false}, Case{"cl", "pbf", true}, Case{"cl", "dfsph", true},
+                                         Case{"gl", "pbf", false}, Case{"gl", "pbf", true}, Case{"gl", "dfsph", true},
                                          Case{"gl", "wcsph", false}, Case{"gl", "wcsph", true}, Case{"gl", "wcsph_thesis", false}),
                          [](const testing::TestParamInfo<Case>& row) {
                              return std::string(row.param.device) + "_" + row.param.method + (row.param.field ? "_over_a_mesh" : "");

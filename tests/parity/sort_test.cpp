@@ -41,22 +41,24 @@ struct Particles {
 // A grid of 12 x 8 x 10 cells of 0.1 m whose unpadded corner is at (-0.2, 0.3, 1).
 StepParams gridParams(uint32_t count) {
     StepParams p{};
-    p.gridOrigin = vec4(-0.3F, 0.2F, 0.9F, 10.0F);
+    p.gridOrigin = vec4(-0.3F, 0.2F, 0.9F, 0.0F);
+    p.gridScale = vec4(10.0F);
     p.cellsX = 14;
     p.cellsY = 10;
     p.cellsZ = 12;
-    p.cellCount = 14 * 10 * 12;
+    p.cellCount = p.totalCells = 14 * 10 * 12;
+    p.firstSample = UINT32_MAX;
     p.count = count;
     return p;
 }
 
 // The reference's own reading of "strictly inside the unpadded cells", cell by cell, in the order of the definition.
 uint32_t referenceCell(const vec4& x, const StepParams& p) {
-    const float g[3] = {(x.x - p.gridOrigin.x) * p.gridOrigin.w, (x.y - p.gridOrigin.y) * p.gridOrigin.w,
-                        (x.z - p.gridOrigin.z) * p.gridOrigin.w};
+    const float g[3] = {(x.x - p.gridOrigin.x) * p.gridScale.x, (x.y - p.gridOrigin.y) * p.gridScale.x,
+                        (x.z - p.gridOrigin.z) * p.gridScale.x};
     const int cells[3] = {p.cellsX, p.cellsY, p.cellsZ};
     for (int a = 0; a < 3; ++a)
-        if (!std::isfinite(g[a]) || std::floor(g[a]) < 1 || std::floor(g[a]) > static_cast<float>(cells[a] - 2)) return p.cellCount;
+        if (!std::isfinite(g[a]) || std::floor(g[a]) < 1 || std::floor(g[a]) > static_cast<float>(cells[a] - 2)) return p.totalCells + 1;  // lost
     return static_cast<uint32_t>((std::floor(g[2]) * static_cast<float>(p.cellsY) + std::floor(g[1])) * static_cast<float>(p.cellsX) +
                                  std::floor(g[0]));
 }
@@ -80,23 +82,23 @@ Particles randomParticles(uint32_t count, uint32_t seed) {
 uint32_t expectSorted(Device& device, const Particles& in, bool byId = true) {
     const uint32_t count = static_cast<uint32_t>(in.id.size());
     const StepParams params = gridParams(count);
-    const uint32_t cells = params.cellCount;
+    const uint32_t cells = params.totalCells;
     Buffer position = upload(device, in.position), velocity = upload(device, in.velocity), id = upload(device, in.id);
     const auto words = [&](size_t n) { return std::move(*device.allocate(n * sizeof(uint32_t))); };
-    Buffer cellParticles = words(cells + 2), cellStart = words(cells + 2), cell = words(count), rank = words(count), order = words(count);
+    Buffer cellParticles = words(cells + 4), cellStart = words(cells + 4), cell = words(count), rank = words(count), order = words(count);
     Buffer positionOut = std::move(*device.allocate(count * sizeof(vec4))), velocityOut = std::move(*device.allocate(count * sizeof(vec4))),
            idOut = words(count);
 
     device.fill(cellParticles, 0);
-    device.run(*device.kernel("fluid/cell_count"), params, {&position, &cellParticles, &cell, &rank}, count);
-    const std::vector<uint32_t> starts = scanOnDevice(device, cellParticles, cells + 2, cellStart);
+    device.run(*device.kernel("fluid/cell_count"), params, {&position, &id, &cellParticles, &cell, &rank}, count);
+    const std::vector<uint32_t> starts = scanOnDevice(device, cellParticles, cells + 4, cellStart);
     device.run(*device.kernel("fluid/cell_scatter"), params, {&cellStart, &cell, &rank, &order}, count);
     device.run(*device.kernel("fluid/cell_sort"), params, {&cellStart, &id, &order}, cells);
     device.run(*device.kernel("fluid/reorder"), params, {&order, &position, &velocity, &id, &positionOut, &velocityOut, &idOut}, count);
 
     std::vector<uint32_t> reference(count);
     std::iota(reference.begin(), reference.end(), 0U);
-    std::vector<uint32_t> cellOfParticle(count), expectedStarts(cells + 2, 0);
+    std::vector<uint32_t> cellOfParticle(count), expectedStarts(cells + 4, 0);
     for (uint32_t i = 0; i < count; ++i) {
         cellOfParticle[i] = referenceCell(in.position[i], params);
         ++expectedStarts[cellOfParticle[i] + 1];

@@ -9,7 +9,7 @@
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/sim/fluid_world.h"
 #include "fluid/sim/method.h"
-#include "fluid/sim/method_wcsph.h"
+#include "fluid/sim/smoothing.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet {

@@ -18,24 +18,26 @@ INLINE Range part(uint32_t count, uint32_t parts, uint32_t k) {
 // One thread a chunk of particles: their cells and the chunk's histogram.
 void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
-    const uint32_t cells = job.cells();
+    const uint32_t cells = job.cells(), total = job.totalCells;
     const float limitX = static_cast<float>(job.cellsX - 1), limitY = static_cast<float>(job.cellsY - 1),
                 limitZ = static_cast<float>(job.cellsZ - 1);
     for (uint32_t c = begin; c < end; ++c) {
-        uint32_t* histogram = job.histogram + size_t{c} * (cells + 1);
-        memset(histogram, 0, (cells + 1) * sizeof(uint32_t));
+        uint32_t* histogram = job.histogram + size_t{c} * (total + 3);
+        memset(histogram, 0, (total + 3) * sizeof(uint32_t));
         const Range r = part(job.count, job.chunks, c);
         for (uint32_t i = r.begin; i < r.end; ++i) {
             const Float4& p = job.position[i];
-            const float gx = (p.x - job.originX) * job.invH, gy = (p.y - job.originY) * job.invH, gz = (p.z - job.originZ) * job.invH;
-            // Outside the unpadded cells, or NaN (every comparison false): limbo.
+            const float gx = (p.x - job.originX) * job.scaleX, gy = (p.y - job.originY) * job.scaleY, gz = (p.z - job.originZ) * job.scaleZ;
+            // Outside the unpadded cells, or NaN (every comparison false): lost.
             const bool inside = (gx >= 1.0F) & (gx < limitX) & (gy >= 1.0F) & (gy < limitY) & (gz >= 1.0F) & (gz < limitZ);
-            uint32_t cell = cells;
+            const bool sample = job.id[i] >= job.firstSample;
+            uint32_t cell = total + (sample ? 0U : 1U);
             if (inside)
                 cell = (static_cast<uint32_t>(static_cast<int>(gz)) * static_cast<uint32_t>(job.cellsY) +
                         static_cast<uint32_t>(static_cast<int>(gy))) *
                            static_cast<uint32_t>(2 * job.cellsX) +
-                       static_cast<uint32_t>(static_cast<int>(2.0F * gx));
+                       static_cast<uint32_t>(static_cast<int>(2.0F * gx)) + (sample ? cells : 0U);
+            if (p.w < 0.0F && !sample) cell = total + 2;
             job.cell[i] = cell;
             ++histogram[cell];
         }
@@ -45,12 +47,12 @@ void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
 // One thread a segment of cells: how many particles it holds, over all chunks.
 void sortSegmentSums(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
-    const uint32_t cells = job.cells();
+    const uint32_t cells = job.totalCells;
     for (uint32_t s = begin; s < end; ++s) {
         const Range r = part(cells, kScanSegments, s);
         uint32_t sum = 0;
         for (uint32_t c = 0; c < job.chunks; ++c) {
-            const uint32_t* histogram = job.histogram + size_t{c} * (cells + 1);
+            const uint32_t* histogram = job.histogram + size_t{c} * (cells + 3);
             for (uint32_t cell = r.begin; cell < r.end; ++cell) sum += histogram[cell];
         }
         job.segmentSum[s] = sum;
@@ -60,39 +62,30 @@ void sortSegmentSums(uint32_t begin, uint32_t end, const void* params, void* con
 // One thread a segment: turns histograms into where each chunk's particles of a cell go, and writes cellStart.
 void sortOffsets(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
-    const uint32_t cells = job.cells();
+    const uint32_t cells = job.totalCells;
     for (uint32_t s = begin; s < end; ++s) {
-        const Range r = part(cells, kScanSegments, s);
+        Range r = part(cells, kScanSegments, s);
+        if (s + 1 == kScanSegments) r.end = cells + 3;  // what is in no cell, last
         uint32_t sum = 0;
         for (uint32_t k = 0; k < s; ++k) sum += job.segmentSum[k];
         for (uint32_t cell = r.begin; cell < r.end; ++cell) {
             job.cellStart[cell] = sum;
             for (uint32_t c = 0; c < job.chunks; ++c) {
-                uint32_t& slot = job.histogram[size_t{c} * (cells + 1) + cell];
+                uint32_t& slot = job.histogram[size_t{c} * (cells + 3) + cell];
                 const uint32_t held = slot;
                 slot = sum;
                 sum += held;
             }
         }
-        if (s + 1 == kScanSegments) {
-            job.cellStart[cells] = sum;
-            for (uint32_t c = 0; c < job.chunks; ++c) {
-                uint32_t& slot = job.histogram[size_t{c} * (cells + 1) + cells];
-                const uint32_t held = slot;
-                slot = sum;
-                sum += held;
-            }
-            job.cellStart[cells + 1] = sum;
-        }
+        if (s + 1 == kScanSegments) job.cellStart[cells + 3] = sum;
     }
 }
 
 // One thread a chunk: a stable scatter, so that the order does not depend on how many chunks there are.
 void sortScatter(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
-    const uint32_t cells = job.cells();
     for (uint32_t c = begin; c < end; ++c) {
-        uint32_t* next = job.histogram + size_t{c} * (cells + 1);
+        uint32_t* next = job.histogram + size_t{c} * (job.totalCells + 3);
         const Range r = part(job.count, job.chunks, c);
         for (uint32_t i = r.begin; i < r.end; ++i) {
             const uint32_t to = next[job.cell[i]]++;
@@ -147,70 +140,164 @@ INLINE float minLane(const real& r) {
 }
 INLINE float maxLane(const real& r) { return -minLane(-r); }
 
-// One thread a group: every particle within h of the box around the group's particles. The first sweep drops what no lane needs.
-void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*) {
-    const Job& job = *static_cast<const Job*>(params);
+// The box around a group's particles.
+struct GroupBox {
+    float loX, loY, loZ, hiX, hiY, hiZ;
+    int cy, cz;
+};
+INLINE GroupBox boxOf(const Job& job, const CpuGroup& group) {
+    real px = load8(job.x + group.first), py = load8(job.y + group.first), pz = load8(job.z + group.first);
+    if (group.lanes < 8) {
+        const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
+        const LaneMask used = lane < static_cast<int>(group.lanes);
+        px = select(used, px, real(px.v[0]));
+        py = select(used, py, real(py.v[0]));
+        pz = select(used, pz, real(pz.v[0]));
+    }
+    return {minLane(px),
+            minLane(py),
+            minLane(pz),
+            maxLane(px),
+            maxLane(py),
+            maxLane(pz),
+            static_cast<int>((py.v[0] - job.originY) * job.scaleY),
+            static_cast<int>((pz.v[0] - job.originZ) * job.scaleZ)};
+}
+
+// Up to this many stretches of sorted particles hold a group's candidates: nine rows, each in two pieces where it wraps, fluid and samples.
+constexpr uint32_t kMostStretches = 36;
+struct Stretches {
+    uint32_t from[kMostStretches], to[kMostStretches], count = 0, atMost = 0;
+    INLINE void add(const uint32_t* row, int x0, int x1) {
+        from[count] = row[x0];
+        to[count] = row[x1 + 1];
+        atMost += to[count] - from[count];
+        ++count;
+    }
+};
+
+INLINE const uint32_t* rowOf(const Job& job, uint32_t firstCell, int y, int z) {
+    return job.cellStart + firstCell +
+           (static_cast<size_t>(z) * static_cast<size_t>(job.cellsY) + static_cast<size_t>(y)) * static_cast<size_t>(2 * job.cellsX);
+}
+
+INLINE void findStretches(const Job& job, const GroupBox& b, uint32_t firstCell, Stretches& to) {
     const int rowLength = 2 * job.cellsX;
-    const float h2 = job.h * job.h;
+    const float h2 = job.h * job.h, edgeY = 1.0F / job.scaleY, edgeZ = 1.0F / job.scaleZ;
+    for (int dz = -1; dz <= 1; ++dz)
+        for (int dy = -1; dy <= 1; ++dy) {
+            // The row's distance from the group's box narrows the stretch of x that can hold neighbours.
+            const float rowY = job.originY + static_cast<float>(b.cy + dy) * edgeY, rowZ = job.originZ + static_cast<float>(b.cz + dz) * edgeZ;
+            const float gapY = dy < 0 ? b.loY - (rowY + edgeY) : dy > 0 ? rowY - b.hiY : 0.0F;
+            const float gapZ = dz < 0 ? b.loZ - (rowZ + edgeZ) : dz > 0 ? rowZ - b.hiZ : 0.0F;
+            const float gap2 = max0(gapY) * max0(gapY) + max0(gapZ) * max0(gapZ);
+            if (gap2 >= h2) continue;
+            // A hair wider than exact: rounding of the cell index must not lose a neighbour.
+            const float reach = sqrt(h2 - gap2) + 1.0e-4F * job.h;
+            const int x0 = max(static_cast<int>((b.loX - reach - job.originX) * 2.0F * job.scaleX), 0);
+            const int x1 = min(static_cast<int>((b.hiX + reach - job.originX) * 2.0F * job.scaleX), rowLength - 1);
+            to.add(rowOf(job, firstCell, b.cy + dy, b.cz + dz), x0, x1);
+        }
+}
+
+// As findStretches where an axis is periodic: rows and their ends wrap round, and no cell comes twice.
+INLINE void findWrapped(const Job& job, const GroupBox& b, uint32_t firstCell, Stretches& to) {
+    const auto around = [](int c, int n, bool periodic, int cells[3]) {
+        int count = 0;
+        for (int d = -1; d <= 1; ++d) {
+            int k = c + d;
+            if (periodic) k = k < 1 ? n - 2 : k > n - 2 ? 1 : k;
+            bool known = false;
+            for (int m = 0; m < count; ++m) known = known || cells[m] == k;
+            if (!known) cells[count++] = k;
+        }
+        return count;
+    };
+    int ys[3], zs[3];
+    const int ny = around(b.cy, job.cellsY, job.periodY > 0, ys), nz = around(b.cz, job.cellsZ, job.periodZ > 0, zs);
+    const float reach = job.h * 1.0001F;
+    int x0 = static_cast<int>(floor((b.loX - reach - job.originX) * 2.0F * job.scaleX));
+    int x1 = static_cast<int>(floor((b.hiX + reach - job.originX) * 2.0F * job.scaleX));
+    const int first = 2, last = 2 * job.cellsX - 3, turn = last - first + 1;  // the half cells that are not padding
+    for (int z = 0; z < nz; ++z)
+        for (int y = 0; y < ny; ++y) {
+            const uint32_t* row = rowOf(job, firstCell, ys[y], zs[z]);
+            if (!(job.periodX > 0)) {
+                to.add(row, max(x0, 0), min(x1, 2 * job.cellsX - 1));
+            } else if (x1 - x0 + 1 >= turn) {
+                to.add(row, first, last);
+            } else {
+                to.add(row, max(x0, first), min(x1, last));
+                if (x0 < first) to.add(row, x0 + turn, last);
+                if (x1 > last) to.add(row, first, x1 - turn);
+            }
+        }
+}
+
+// How far (m) `x` is outside of [lo, hi], by the shortest way round where the axis is periodic.
+INLINE real outside(real x, float lo, float hi, float period, float invPeriod) {
+    const real d = x - real(0.5F * (lo + hi));
+    const real near = d - floor(d * real(invPeriod) + real(0.5F)) * real(period);
+    return max0(max(near, -near) - real(0.5F * (hi - lo)));
+}
+
+// One thread a group: every particle within h of the box around the group's particles. The first sweep drops what no lane needs.
+template <bool periodic>
+INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
+    const float h2 = periodic ? job.h * job.h * 1.0001F : job.h * job.h;
+    const uint32_t cells = job.cells();
+    const float invX = job.periodX > 0 ? 1.0F / job.periodX : 0.0F, invY = job.periodY > 0 ? 1.0F / job.periodY : 0.0F,
+                invZ = job.periodZ > 0 ? 1.0F / job.periodZ : 0.0F;
     uint32_t at = 0, regionEnd = 0;
     for (uint32_t g = begin; g < end; ++g) {
         CpuGroup& group = job.groups[g];
-        real px = load8(job.x + group.first), py = load8(job.y + group.first), pz = load8(job.z + group.first);
-        if (group.lanes < 8) {
-            const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
-            const LaneMask used = lane < static_cast<int>(group.lanes);
-            px = select(used, px, real(px.v[0]));
-            py = select(used, py, real(py.v[0]));
-            pz = select(used, pz, real(pz.v[0]));
+        const GroupBox b = boxOf(job, group);
+        Stretches s;
+        const bool ofFluid = group.first < job.cellStart[cells];
+        for (uint32_t firstCell = 0; firstCell < job.totalCells; firstCell += cells) {
+            if (firstCell > 0 && !ofFluid) break;  // samples do not push each other
+            if (periodic)
+                findWrapped(job, b, firstCell, s);
+            else
+                findStretches(job, b, firstCell, s);
         }
-        const float loX = minLane(px), hiX = maxLane(px), loY = minLane(py), hiY = maxLane(py), loZ = minLane(pz), hiZ = maxLane(pz);
-        const int cy = static_cast<int>((py.v[0] - job.originY) * job.invH), cz = static_cast<int>((pz.v[0] - job.originZ) * job.invH);
-        uint32_t from[9], to[9], rows = 0, atMost = 0;
-        for (int dz = -1; dz <= 1; ++dz)
-            for (int dy = -1; dy <= 1; ++dy) {
-                // The row's distance from the group's box narrows the stretch of x that can hold neighbours.
-                const float rowY = job.originY + static_cast<float>(cy + dy) * job.h,
-                            rowZ = job.originZ + static_cast<float>(cz + dz) * job.h;
-                const float gapY = dy < 0 ? loY - (rowY + job.h) : dy > 0 ? rowY - hiY : 0.0F;
-                const float gapZ = dz < 0 ? loZ - (rowZ + job.h) : dz > 0 ? rowZ - hiZ : 0.0F;
-                const float gap2 = max0(gapY) * max0(gapY) + max0(gapZ) * max0(gapZ);
-                if (gap2 >= h2) continue;
-                // A hair wider than exact: rounding of the cell index must not lose a neighbour.
-                const float reach = sqrt(h2 - gap2) + 1.0e-4F * job.h;
-                const int x0 = max(static_cast<int>((loX - reach - job.originX) * 2.0F * job.invH), 0);
-                const int x1 = min(static_cast<int>((hiX + reach - job.originX) * 2.0F * job.invH), rowLength - 1);
-                const uint32_t* row =
-                    job.cellStart + (static_cast<size_t>(cz + dz) * static_cast<size_t>(job.cellsY) + static_cast<size_t>(cy + dy)) *
-                                        static_cast<size_t>(rowLength);
-                from[rows] = row[x0];
-                to[rows] = row[x1 + 1];
-                atMost += to[rows] - from[rows];
-                ++rows;
-            }
-        if (at + atMost + 8 > regionEnd) {
-            const uint32_t take = atMost + 8 > kListRegion ? atMost + 8 : kListRegion;
+        if (at + s.atMost + 8 > regionEnd) {
+            const uint32_t take = s.atMost + 8 > kListRegion ? s.atMost + 8 : kListRegion;
             at = __atomic_fetch_add(job.listCursor, take, __ATOMIC_RELAXED);
             regionEnd = at + take;
         }
         group.listBegin = at;
         group.listCount = 0;
         if (regionEnd > job.listCapacity || regionEnd < at) continue;  // the host sees the cursor beyond the capacity, and builds again
-        for (uint32_t r = 0; r < rows; ++r)
-            for (uint32_t j = from[r]; j < to[r]; j += 8) {
+        for (uint32_t r = 0; r < s.count; ++r)
+            for (uint32_t j = s.from[r]; j < s.to[r]; j += 8) {
                 const real x = load8(job.x + j), y = load8(job.y + j), z = load8(job.z + j);
-                const real dx = max0(max(real(loX) - x, x - real(hiX)));
-                const real dy = max0(max(real(loY) - y, y - real(hiY)));
-                const real dz = max0(max(real(loZ) - z, z - real(hiZ)));
+                real dx, dy, dz;
+                if (periodic) {
+                    dx = outside(x, b.loX, b.hiX, job.periodX, invX);
+                    dy = outside(y, b.loY, b.hiY, job.periodY, invY);
+                    dz = outside(z, b.loZ, b.hiZ, job.periodZ, invZ);
+                } else {
+                    dx = max0(max(real(b.loX) - x, x - real(b.hiX)));
+                    dy = max0(max(real(b.loY) - y, y - real(b.hiY)));
+                    dz = max0(max(real(b.loZ) - z, z - real(b.hiZ)));
+                }
                 const real d2 = dx * dx + dy * dy + dz * dz;
                 LaneMask keep = d2 < real(h2);
-                if (j + 8 > to[r]) {
+                if (j + 8 > s.to[r]) {
                     const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
-                    keep &= lane < static_cast<int>(to[r] - j);
+                    keep &= lane < static_cast<int>(s.to[r] - j);
                 }
                 at += appendLanes(job.list + at, j, keep);
             }
         group.listCount = at - group.listBegin;
     }
+}
+void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*) {
+    listNeighbors<false>(begin, end, *static_cast<const Job*>(params));
+}
+void neighborListPeriodic(uint32_t begin, uint32_t end, const void* params, void* const*) {
+    listNeighbors<true>(begin, end, *static_cast<const Job*>(params));
 }
 
 }  // namespace
@@ -222,6 +309,7 @@ std::span<const CpuKernelRow> gridRows() {
         {"fluid/cpu_sort_offsets", "", RIVULET_UNIT_ISA, sortOffsets, 1},
         {"fluid/cpu_sort_scatter", "", RIVULET_UNIT_ISA, sortScatter, 1},
         {"fluid/cpu_neighbor_list", "", RIVULET_UNIT_ISA, neighborList, 64},
+        {"fluid/cpu_neighbor_list", "PERIODIC=1", RIVULET_UNIT_ISA, neighborListPeriodic, 64},
     };
     return rows;
 }

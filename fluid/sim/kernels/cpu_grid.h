@@ -2,6 +2,7 @@
 // These passes have no GPU twin (a GPU sorts by atomics and sweeps rows), so they are plain C++, compiled once an instruction set.
 //
 // Cells are h wide in y and z and h / 2 in x: the sort along a row is then fine enough that 8 consecutive particles lie close together.
+// Where bodies have samples, theirs are a second set of cells behind the fluid's; see shaders/fluid/grid.h for what follows.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +21,17 @@ struct CpuGroup {
 struct CpuNeighborLists {
     const CpuGroup* groups;
     uint32_t* list;
+    const CpuGroup* samples;  // the groups from the first of samples on
 };
 
 struct CpuGridJob {
     float originX, originY, originZ;
-    float h, invH;
-    int cellsX, cellsY, cellsZ;  // padded cells of edge h, as in StepParams; the sort has 2 * cellsX along x
+    float scaleX, scaleY, scaleZ;     // 1/m, as StepParams.gridScale
+    float periodX, periodY, periodZ;  // m; 0 = not periodic
+    float h;
+    int cellsX, cellsY, cellsZ;  // padded cells, as in StepParams; the sort has 2 * cellsX along x
+    uint32_t totalCells;         // cells(), or twice that with body samples
+    uint32_t firstSample;        // ids from here on are samples
     uint32_t count;              // particles
     uint32_t chunks;             // of the two-histogram sort
     uint32_t groupCount;
@@ -37,9 +43,9 @@ struct CpuGridJob {
     uint32_t* idOut;
     float *x, *y, *z;      // sorted positions again, one array each; 8 beyond the end may be read
     uint32_t* cell;        // of each unsorted particle
-    uint32_t* histogram;   // chunks * (cells + 1)
+    uint32_t* histogram;   // chunks * (totalCells + 3)
     uint32_t* segmentSum;  // kScanSegments
-    uint32_t* cellStart;   // cells + 2: [cells] = particles inside, [cells + 1] = all
+    uint32_t* cellStart;   // totalCells + 4, see shaders/fluid/grid.h
     CpuGroup* groups;
     uint32_t* list;
     uint32_t* listCursor;  // entries taken; above listCapacity: the lists did not fit

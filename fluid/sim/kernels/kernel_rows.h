@@ -11,6 +11,7 @@
     std::span<const CpuKernelRow> gridRows();     \
     std::span<const CpuKernelRow> particleRows(); \
     std::span<const CpuKernelRow> wcsphRows();    \
+    std::span<const CpuKernelRow> solverRows();   \
     }
 #if defined(RIVULET_KERNEL_UNIT)
 #define RIVULET_ISA_OF_kernels_generic Isa::generic

@@ -15,6 +15,22 @@ namespace boundary_field {
 namespace integrate_unit {
 #include "shaders/fluid/integrate.kernel"
 }
+#define COAST 1
+namespace integrate_coast {
+#include "shaders/fluid/integrate.kernel"
+}
+#undef COAST
+namespace gather_matter_unit {
+#include "shaders/fluid/gather_matter.kernel"
+}
+namespace wrap_unit {
+#include "shaders/fluid/wrap.kernel"
+}
+#define FROM_POSITIONS 1
+namespace wrap_from_positions {
+#include "shaders/fluid/wrap.kernel"
+}
+#undef FROM_POSITIONS
 namespace walls_unit {
 #include "shaders/fluid/walls.kernel"
 }
@@ -60,6 +76,10 @@ std::span<const CpuKernelRow> particleRows() {
         {"fluid/boundary", "", RIVULET_UNIT_ISA, boundary_walls::boundary, 1024},
         {"fluid/boundary", "FIELD=1", RIVULET_UNIT_ISA, boundary_field::boundary, 1024},
         {"fluid/integrate", "", RIVULET_UNIT_ISA, integrate_unit::integrate, 1024},
+        {"fluid/integrate", "COAST=1", RIVULET_UNIT_ISA, integrate_coast::integrate, 1024},
+        {"fluid/gather_matter", "", RIVULET_UNIT_ISA, gather_matter_unit::gather_matter, 1024},
+        {"fluid/wrap", "", RIVULET_UNIT_ISA, wrap_unit::wrap, 1024},
+        {"fluid/wrap", "FROM_POSITIONS=1", RIVULET_UNIT_ISA, wrap_from_positions::wrap, 1024},
         {"fluid/walls", "", RIVULET_UNIT_ISA, walls_unit::walls, 1024},
         {"fluid/boundary_moving", "", RIVULET_UNIT_ISA, boundary_moving_unit::boundary_moving, 1024},
         {"fluid/collide", "", RIVULET_UNIT_ISA, collide_still::collide, 1024},

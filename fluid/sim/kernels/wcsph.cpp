@@ -2,14 +2,24 @@
 #include "shaders/common/lang.h"
 
 namespace rivulet::RIVULET_KERNEL_UNIT {
-namespace tait {
-#include "shaders/fluid/wcsph_density.kernel"
-}
-namespace tait_forces {
-#include "shaders/fluid/wcsph_forces.kernel"
-}
+namespace {
+
+#define PAIR_KERNEL "shaders/fluid/wcsph_density.kernel"
+#define PAIR_UNIT density
+#include "fluid/sim/kernels/pair_forms.h"
+#define PAIR_KERNEL "shaders/fluid/wcsph_forces.kernel"
+#define PAIR_UNIT forces
+#include "fluid/sim/kernels/pair_forms.h"
+#define CUBIC 1
+#define PAIR_KERNEL "shaders/fluid/wcsph_density.kernel"
+#define PAIR_UNIT cubic_density
+#include "fluid/sim/kernels/pair_forms.h"
+#define PAIR_KERNEL "shaders/fluid/wcsph_forces.kernel"
+#define PAIR_UNIT cubic_forces
+#include "fluid/sim/kernels/pair_forms.h"
+#undef CUBIC
 #define THESIS 1
-namespace thesis {
+namespace thesis_density {
 #include "shaders/fluid/wcsph_density.kernel"
 }
 namespace thesis_forces {
@@ -17,11 +27,15 @@ namespace thesis_forces {
 }
 #undef THESIS
 
+}  // namespace
+
 std::span<const CpuKernelRow> wcsphRows() {
     static const CpuKernelRow rows[] = {
-        {"fluid/wcsph_density", "", RIVULET_UNIT_ISA, tait::wcsph_density, 64},
-        {"fluid/wcsph_forces", "", RIVULET_UNIT_ISA, tait_forces::wcsph_forces, 64},
-        {"fluid/wcsph_density", "THESIS=1", RIVULET_UNIT_ISA, thesis::wcsph_density, 64},
+        PAIR_ROWS(density, wcsph_density, ""),
+        PAIR_ROWS(forces, wcsph_forces, ""),
+        PAIR_ROWS(cubic_density, wcsph_density, "CUBIC=1"),
+        PAIR_ROWS(cubic_forces, wcsph_forces, "CUBIC=1"),
+        {"fluid/wcsph_density", "THESIS=1", RIVULET_UNIT_ISA, thesis_density::wcsph_density, 64},
         {"fluid/wcsph_forces", "THESIS=1", RIVULET_UNIT_ISA, thesis_forces::wcsph_forces, 64},
     };
     return rows;

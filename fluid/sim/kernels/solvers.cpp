@@ -1,0 +1,69 @@
+#include "fluid/sim/kernels/kernel_rows.h"
+#include "shaders/common/lang.h"
+
+namespace rivulet::RIVULET_KERNEL_UNIT {
+namespace {
+
+#define PAIR_KERNEL "shaders/fluid/pbf_lambda.kernel"
+#define PAIR_UNIT lambda
+#include "fluid/sim/kernels/pair_forms.h"
+#define PAIR_KERNEL "shaders/fluid/pbf_shift.kernel"
+#define PAIR_UNIT shift
+#include "fluid/sim/kernels/pair_forms.h"
+#define PAIR_KERNEL "shaders/fluid/dfsph_density.kernel"
+#define PAIR_UNIT density
+#include "fluid/sim/kernels/pair_forms.h"
+#define PAIR_KERNEL "shaders/fluid/dfsph_rate.kernel"
+#define PAIR_UNIT rate
+#include "fluid/sim/kernels/pair_forms.h"
+#define DIVERGENCE 1
+#define PAIR_KERNEL "shaders/fluid/dfsph_rate.kernel"
+#define PAIR_UNIT divergence
+#include "fluid/sim/kernels/pair_forms.h"
+#undef DIVERGENCE
+#define PAIR_KERNEL "shaders/fluid/dfsph_push.kernel"
+#define PAIR_UNIT push
+#include "fluid/sim/kernels/pair_forms.h"
+namespace predict {
+#include "shaders/fluid/pbf_predict.kernel"
+}
+namespace finish {
+#include "shaders/fluid/pbf_finish.kernel"
+}
+namespace begin {
+#include "shaders/fluid/dfsph_begin.kernel"
+}
+namespace end {
+#include "shaders/fluid/dfsph_end.kernel"
+}
+namespace residual_unit {
+#include "shaders/fluid/residual.kernel"
+}
+namespace kick_unit {
+#include "shaders/fluid/kick.kernel"
+}
+namespace weigh_unit {
+#include "shaders/fluid/weigh.kernel"
+}
+
+}  // namespace
+
+std::span<const CpuKernelRow> solverRows() {
+    static const CpuKernelRow rows[] = {
+        PAIR_ROWS(lambda, pbf_lambda, ""),
+        PAIR_ROWS(shift, pbf_shift, ""),
+        PAIR_ROWS(density, dfsph_density, ""),
+        PAIR_ROWS(rate, dfsph_rate, ""),
+        PAIR_ROWS(divergence, dfsph_rate, "DIVERGENCE=1"),
+        PAIR_ROWS(push, dfsph_push, ""),
+        {"fluid/pbf_predict", "", RIVULET_UNIT_ISA, predict::pbf_predict, 1024},
+        {"fluid/pbf_finish", "", RIVULET_UNIT_ISA, finish::pbf_finish, 1024},
+        {"fluid/dfsph_begin", "", RIVULET_UNIT_ISA, begin::dfsph_begin, 1024},
+        {"fluid/dfsph_end", "", RIVULET_UNIT_ISA, end::dfsph_end, 1024},
+        {"fluid/residual", "", RIVULET_UNIT_ISA, residual_unit::residual, 128},
+        {"fluid/kick", "", RIVULET_UNIT_ISA, kick_unit::kick, 1024},
+        {"fluid/weigh", "", RIVULET_UNIT_ISA, weigh_unit::weigh, 1024},
+    };
+    return rows;
+}
+}  // namespace rivulet::RIVULET_KERNEL_UNIT

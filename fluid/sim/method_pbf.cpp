@@ -1,0 +1,79 @@
+// Position Based Fluids (Macklin and Mueller 2013).
+#include "fluid/sim/method_pbf.h"
+
+#include <array>
+
+#include "fluid/sim/smoothing.h"
+
+namespace rivulet {
+
+namespace {
+
+class Pbf final : public Method {
+  public:
+    Kernel predict, finish, kick, weigh;
+    PairKernel lambda, shift;
+    Buffer corrected[2];
+
+    float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
+    float reach(const FluidParams& p) const override { return p.pbf.reach; }
+
+    void fill(const FluidParams& p, float, StepParams& s) const override {
+        fillSmoothing(p, s);
+        s.relaxation = p.pbf.relaxation;
+    }
+
+    void step(StepContext& c) override {
+        Particles& p = c.particles;
+        c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
+        if (!c.build(true)) return;
+        // p.position: predicted; p.velocity: where each particle comes from.
+        const uint32_t threads = c.grid.pairThreads();
+        const Buffer& neighbors = c.grid.neighbors();
+        const Buffer* at = &p.position;
+        for (int k = 0; k < c.fluid.pbf.iterations; ++k) {
+            c.boundary(*at);
+            lambda.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.density, &p.pressure}, threads);
+            shift.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2]}, threads);
+            c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt));
+            at = &corrected[k % 2];
+        }
+        c.solve.iterations = c.fluid.pbf.iterations;
+        c.device.run(finish, c.params,
+                     {&c.grid.cellStart(), &p.position, at, &p.velocity, &p.density, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
+        // The other forces act on the velocity that came out; the next step's prediction follows it.
+        if (c.hasForces) {
+            p.velocity.swap(p.velocityNext);
+            c.device.run(weigh, c.noGravity(), {&c.grid.cellStart(), &p.acceleration}, p.count);
+            c.forces();
+            c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, p.count);
+            p.velocity.swap(p.velocityNext);
+        }
+        p.position.swap(p.velocity);  // what follows walks from where the step began
+    }
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
+    auto m = std::make_unique<Pbf>();
+    for (auto [kernel, path] : {std::pair(&m->predict, "fluid/pbf_predict"), std::pair(&m->finish, "fluid/pbf_finish"),
+                                std::pair(&m->kick, "fluid/kick"), std::pair(&m->weigh, "fluid/weigh")}) {
+        Result<Kernel> found = device.kernel(path);
+        if (!found) return found.error();
+        *kernel = *found;
+    }
+    for (auto [kernel, path] : {std::pair(&m->lambda, "fluid/pbf_lambda"), std::pair(&m->shift, "fluid/pbf_shift")}) {
+        Result<PairKernel> found = PairKernel::find(device, path, setup.traits);
+        if (!found) return found.error();
+        *kernel = *found;
+    }
+    for (Buffer& b : m->corrected) {
+        Result<Buffer> made = device.allocate(size_t{setup.count} * sizeof(vec4));
+        if (!made) return made.error();
+        b = std::move(*made);
+    }
+    return std::unique_ptr<Method>(std::move(m));
+}
+
+}  // namespace rivulet

@@ -1,0 +1,60 @@
+// Everything a substep needs, handed to the Method and the forces.
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "fluid/sim/fluid_params.h"
+#include "fluid/sim/neighbor_grid.h"
+#include "fluid/sim/particles.h"
+#include "shaders/fluid/step_params.h"
+
+namespace rivulet {
+
+// What a pressure solver did. On a GPU the figures come some frames late.
+struct SolveFigures {
+    double iterations = 0;  // of the last substep
+    double residual = 0;    // what it stopped at: mean compression it predicts, a fraction
+};
+
+struct StepContext {
+    Device& device;
+    const FluidParams& fluid;
+    const StepParams& params;
+    NeighborGrid& grid;
+    Particles& particles;
+    SolveFigures& solve;
+    // Sorts the newest state into position and velocity, and moves solids and bodies on. false: it could not, and the substep ends here.
+    // `fromPositions`: velocityNext holds where particles come from, m.
+    std::function<bool(bool fromPositions)> build;
+    // Adds to the forces on bodies what fluid does to their samples; a world without bodies has none. `pressures`: of the fluid, as the
+    // pair terms of the method have them; `scale`: an acceleration of one particle (m/s^2) over pressure * gradient (1/m).
+    std::function<void(const Buffer& position, const Buffer& pressures, float scale)> pushSamples;
+    const Buffer& planes;  // as integrate.kernel wants them
+    // Fills particles.boundary for these positions (in sorted order). Methods whose density knows no walls do not ask.
+    std::function<void(const Buffer& position)> boundary;
+    // Whether any row of forces() is on.
+    bool hasForces = false;
+    // Adds what the rows of forces() ask for to particles.acceleration, from position and velocity, as sorted.
+    std::function<void()> forces;
+
+    // The params of a world where nothing weighs anything.
+    StepParams noGravity() const {
+        StepParams p = params;
+        p.gravity = vec4(0.0F);
+        return p;
+    }
+};
+
+// A kernel with FOR_NEIGHBORS, in the form that the world's particles need. It binds particles.matter by itself, where it is used.
+struct PairKernel {
+    Kernel kernel;
+    bool matter = false;
+    // `extra`: further defines.
+    static Result<PairKernel> find(Device& device, std::string_view path, const PairTraits& traits, std::span<const Define> extra = {});
+    void run(StepContext& context, const StepParams& params, std::initializer_list<const Buffer*> buffers, uint32_t threads) const;
+};
+
+}  // namespace rivulet

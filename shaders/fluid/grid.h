@@ -3,16 +3,17 @@
 // samples outside the grid (+ 0), lost particles (+ 1: outside, NaN or infinite), free slots (+ 2), and at + 3 the count of all.
 #if !defined(RIVULET_GRID_H)
 #define RIVULET_GRID_H
-// The cell of `x` (m), x fastest, or cellsX * cellsY * cellsZ where x is outside the unpadded cells, NaN or infinite.
+// The cell of `x` (m), x fastest, or cellCount where x is outside the unpadded cells, NaN or infinite. (The cpu's sort has finer cells of its
+// own: there only whether it is cellCount means anything.)
 // The conditions are true for what is inside, so that a NaN, of which every comparison is false, is outside.
 FN uint cellOf(vec3 x, StepParams p) {
     float gx = (x.x - p.gridOrigin.x) * p.gridScale.x;
     float gy = (x.y - p.gridOrigin.y) * p.gridScale.y;
     float gz = (x.z - p.gridOrigin.z) * p.gridScale.z;
-    int cell = p.cellsX * p.cellsY * p.cellsZ;
+    uint cell = p.cellCount;
     if (gx >= 1.0f && gx < TO_FLOAT(p.cellsX - 1) && gy >= 1.0f && gy < TO_FLOAT(p.cellsY - 1) && gz >= 1.0f && gz < TO_FLOAT(p.cellsZ - 1))
-        cell = (TO_INT(gz) * p.cellsY + TO_INT(gy)) * p.cellsX + TO_INT(gx);
-    return TO_UINT(cell);
+        cell = TO_UINT((TO_INT(gz) * p.cellsY + TO_INT(gy)) * p.cellsX + TO_INT(gx));
+    return cell;
 }
 // Where the particle is sorted to. A slot is free where w, the density ratio of everything else, is negative.
 FN uint sortedCell(vec4 x, uint id, StepParams p) {

@@ -79,6 +79,10 @@ std::vector<vec4> byId(const std::vector<uint32_t>& id, const std::vector<vec4>&
 Fields oneStep(Device& device, const char* methodName, const VoxelField* field) {
     FluidParams p;
     p.spacing = kSpacing;
+    // As many iterations on every device.
+    p.dfsph.maxIterations = 3;
+    p.dfsph.tolerance = 1.0e-9F;
+    p.dfsph.divergence = false;
     const Input in = disturbedBlock(field);
     const uint32_t count = static_cast<uint32_t>(in.id.size());
     Fields out;
@@ -95,7 +99,9 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field) 
     }
     if (!method || !grid || !particles) return out;
     Buffer planes = std::move(*device.allocate(2 * sizeof(vec4)));
-    const vec4 slope[2] = {vec4(0.0F, std::cos(0.2F), std::sin(0.2F), -0.06F), vec4(0.3F, 0.4F, 0.0F, 0.0F)};
+    // The plane cuts into the block. A solver would throw those behind it so far that neighbours are not what they were: it has it a little lower.
+    const bool solver = std::string_view(methodName) == "pbf" || std::string_view(methodName) == "dfsph";
+    const vec4 slope[2] = {vec4(0.0F, std::cos(0.2F), std::sin(0.2F), solver ? -0.01F : -0.06F), vec4(0.3F, 0.4F, 0.0F, 0.0F)};
     device.writeAll<vec4>(planes, slope);
     device.writeAll<vec4>(particles->positionNext, in.position);
     device.writeAll<vec4>(particles->velocityNext, in.velocity);

@@ -21,7 +21,10 @@ void BoxParams::visit(ParamVisitor& v) {
     v.value({"min", "m", "low corner", -kFar, kFar, kLinear, kFixed}, min);
     v.value({"max", "m", "high corner", -kFar, kFar, kLinear, kFixed}, max);
     v.value({"restitution", "", "share of the speed into a wall that comes back: 0 = stays, 1 = bounces", 0, 1}, restitution);
-    v.value({.name = "periodicX", .doc = "whether the box has no walls along x: what leaves on one side comes in on the other", .fixed = kFixed}, periodicX);
+    v.value({.name = "periodicX",
+             .doc = "whether the box has no walls along x: what leaves on one side comes in on the other",
+             .fixed = kFixed},
+            periodicX);
     v.value({.name = "periodicY", .doc = "the same along y", .fixed = kFixed}, periodicY);
     v.value({.name = "periodicZ", .doc = "the same along z", .fixed = kFixed}, periodicZ);
 }
@@ -35,12 +38,17 @@ void PbfParams::visit(ParamVisitor& v) {
 
 void DfsphParams::visit(ParamVisitor& v) {
     v.value({"tolerance", "", "mean compression that a step may leave, as a fraction: 1e-4 is 0.01 %", 1.0e-6, 0.1, kLog}, tolerance);
-    v.value({.name = "divergence", .doc = "whether the flow is kept from compressing as well as the density: steadier, and slower"}, divergence);
+    v.value({.name = "divergence", .doc = "whether the flow is kept from compressing as well as the density: steadier, and slower"},
+            divergence);
     v.value({"divergenceTolerance", "1/s", "mean rate of compression that may be left", 1.0e-3, 100, kLog}, divergenceTolerance);
     v.value({"maxIterations", "", "of each solver in a step", 1, 1000, kLog}, maxIterations);
     v.value({"warmStart", "", "share of the last step's pressure that the next begins with", 0, 1}, warmStart);
     v.value({"relaxation", "", "share of a Jacobi correction that is made; above 0.5 it may not converge", 0.05, 1}, relaxation);
+    v.value({"warmGate", "", "density, over that at rest, above which a particle begins with it", 0, 1.1}, warmGate);
+    v.value({"momentum", "", "share of the last iteration's change that is made once more: fewer iterations, too much trembles", 0, 0.95},
+            momentum);
     v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
+    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: density keeps better with more", 1, 100}, minSubsteps);
 }
 
 void CollisionParams::visit(ParamVisitor& v) {
@@ -58,8 +66,9 @@ void FluidParams::visit(ParamVisitor& v) {
     const std::vector<std::string> names = methods().names();
     v.choice({.name = "method", .doc = "how pressure is found; rivulet list says what each is", .fixed = kFixed}, method, names);
     static const std::vector<std::string> kernels = {"wendland", "cubic_spline"};
-    v.choice({.name = "kernel", .doc = "how neighbours are weighed; the cubic spline, for comparison, in method wcsph alone", .fixed = kFixed}, kernel,
-             kernels);
+    v.choice(
+        {.name = "kernel", .doc = "how neighbours are weighed; the cubic spline, for comparison, in method wcsph alone", .fixed = kFixed},
+        kernel, kernels);
     v.value({"spacing", "m", "distance between particles at rest: halving it makes eight times as many", 0.0005, 1, kLog, kFixed}, spacing);
     v.value(
         {"supportSpacings", "", "reach of a particle (support radius), in spacings: more is smoother and slower", 1.5, 4, kLinear, kFixed},

@@ -39,23 +39,26 @@ struct PbfParams {
 };
 
 struct DfsphParams {
-    float tolerance = 1.0e-4F;           // mean compression after a step, a fraction
-    bool divergence = true;              // whether the flow is kept from compressing, too
-    float divergenceTolerance = 0.1F;    // 1/s
+    float tolerance = 1.0e-4F;         // mean compression after a step, a fraction
+    bool divergence = true;            // whether the flow is kept from compressing, too
+    float divergenceTolerance = 0.1F;  // 1/s
     int maxIterations = 50;
-    float warmStart = 0.7F;              // 0..1
-    float relaxation = 0.5F;             // of an iteration
-    float reach = 0.4F;                  // spacings a step
+    float warmStart = 0.9F;   // 0..1
+    float warmGate = 0.97F;   // density ratio
+    float relaxation = 0.6F;  // of an iteration
+    float momentum = 0.3F;
+    float reach = 0.3F;   // spacings a step
+    int minSubsteps = 8;  // a frame of 1/60 s
     void visit(ParamVisitor& v);
 };
 
 struct FluidParams {
     std::string method = "wcsph";     // a row of methods()
     std::string kernel = "wendland";  // wendland | cubic_spline
-    float spacing = 0.02F;         // m
-    float supportSpacings = 2.0F;  // h = this * spacing
-    float restDensity = 1000.0F;   // kg/m^3
-    float viscosity = 1.0e-6F;     // m^2/s, kinematic
+    float spacing = 0.02F;            // m
+    float supportSpacings = 2.0F;     // h = this * spacing
+    float restDensity = 1000.0F;      // kg/m^3
+    float viscosity = 1.0e-6F;        // m^2/s, kinematic
     float artificialViscosity = 0.02F;
     float soundSpeed = 0.0F;  // m/s; 0 = ten times the fastest speed the scene can fall to
     float stiffness = 20.0F;  // thesis mode: k of (4), m^2/s^2

@@ -43,6 +43,7 @@ struct FluidWorld::Impl {
     };
     std::vector<ForceState> forcePasses;
     SolveFigures solve;
+    double iterations = 0;                                                 // of a frame, all substeps
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};
     vec3 gravity{0.0F};
@@ -60,7 +61,8 @@ struct FluidWorld::Impl {
     void say(const std::string& sentence);
     void findForces();
     bool build(bool fromPositions, double from, double to);
-    void substep(double dt, double from, double to);
+    // `last`: of its frame.
+    void substep(double dt, double from, double to, bool last);
     void gatherStats(int substeps);
 };
 
@@ -193,8 +195,8 @@ double FluidWorld::Impl::stepLimit(double frameSeconds) const {
     if (c0 > 0) {
         dt = params.cfl * hs / (c0 + fastest);
     } else {
-        dt = std::min(dt, double{method->reach(params)} * params.spacing / std::max(fastest, 1.0e-9));
-        if (params.method == "pbf") dt = std::min(dt, 1.0 / 60 / params.pbf.minSubsteps);
+        const Method::StepLimit limit = method->stepLimit(params);
+        dt = std::min({dt, limit.longest, double{limit.reach} * params.spacing / std::max(fastest, 1.0e-9)});
     }
     // Explicit viscosity alone has a limit; an implicit solver has none.
     const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
@@ -227,14 +229,14 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
         return false;
     }
     if (traits.matter)
-        device->run(gatherMatter, step,
-                    {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure}, particles.count);
+        device->run(gatherMatter, step, {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure},
+                    particles.count);
     if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
     return true;
 }
 
 // `from`, `to`: the shares of the frame's time at which it begins and ends.
-void FluidWorld::Impl::substep(double dt, double from, double to) {
+void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = static_cast<float>(params.spacing / dt);
     bool built = false;
@@ -255,7 +257,10 @@ void FluidWorld::Impl::substep(double dt, double from, double to) {
             if (f.on) f.pass(context);
     };
     method->step(context);
-    if (built) solids.collide(step, *grid, particles);
+    iterations += solve.iterations;
+    if (!built) return;
+    solids.collide(step, *grid, particles);
+    if (last) method->measure(context);
 }
 
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
@@ -308,7 +313,8 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         dt = limit;
         w.say(fmt::format("a frame needed more than fluid.maxSubsteps = {} steps: simulated time runs slower than asked", p.maxSubsteps));
     }
-    for (int k = 0; k < substeps; ++k) w.substep(dt, k * dt / seconds, (k + 1) * dt / seconds);
+    w.iterations = 0;
+    for (int k = 0; k < substeps; ++k) w.substep(dt, k * dt / seconds, (k + 1) * dt / seconds, k + 1 == substeps);
     w.lastSubsteps = substeps;
     w.time += dt * substeps;
     w.dtMin = w.dtMin == 0 ? dt : std::min(w.dtMin, dt);
@@ -318,42 +324,50 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
 
 void FluidWorld::Impl::gatherStats(int substeps) {
     device->run(stats, step, {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows}, STATS_THREADS);
-    const FluidStats now{
-        .frame = frame, .time = time, .particles = particles.count, .substeps = substeps, .dtMin = dtMin, .dtMax = dtMax, .limited = {}};
-    device->readLater(statsRows, STATS_THREADS * sizeof(StatsRow),
-                      [now, into = figures, mass = double{step.mass}, g = gravity, this](std::span<const std::byte> bytes) {
-                          const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
-                          FluidStats f = now;
-                          double centre[3] = {0, 0, 0}, inside = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
-                          for (uint32_t k = 0; k < STATS_THREADS; ++k) {
-                              for (int axis = 0; axis < 3; ++axis) centre[axis] += double{rows[k].centre[axis]};
-                              inside += double{rows[k].centre.w};
-                              compression += double{rows[k].compression};
-                              speed2 += double{rows[k].speed2Sum};
-                              limited += double{rows[k].limited};
-                              nan += double{rows[k].nans};
-                              lost += double{rows[k].lost};
-                              f.maxCompression = std::max(f.maxCompression, double{rows[k].worst});
-                              fastest2 = std::max(fastest2, double{rows[k].speed2Max});
-                          }
-                          f.lost = static_cast<uint32_t>(lost);
-                          f.nan = static_cast<uint32_t>(nan);
-                          f.speedLimited = static_cast<uint32_t>(limited);
-                          f.maxSpeed = std::sqrt(fastest2);
-                          f.kinetic = 0.5 * mass * speed2;
-                          if (inside > 0) {
-                              f.avgCompression = compression / inside;
-                              for (int axis = 0; axis < 3; ++axis) {
-                                  f.centreOfMass[axis] = centre[axis] / inside;
-                                  f.potential -= mass * double{g[axis]} * centre[axis];
-                              }
-                          }
-                          f.limited = std::move(into->limited);
-                          *into = std::move(f);
-                          if (into != figures) return;  // the world was reset meanwhile
-                          if (into->lost > 0) say("particles left the grid or became NaN: they are frozen and counted as lost");
-                          if (into->speedLimited > 0) say("the fastest particles were slowed to one spacing a step");
-                      });
+    const FluidStats now{.frame = frame,
+                         .time = time,
+                         .particles = particles.count,
+                         .substeps = substeps,
+                         .iterations = iterations / substeps,
+                         .residual = solve.residual,
+                         .dtMin = dtMin,
+                         .dtMax = dtMax,
+                         .limited = {}};
+    device->readLater(
+        statsRows, STATS_THREADS * sizeof(StatsRow),
+        [now, into = figures, mass = double{step.mass}, g = gravity, this](std::span<const std::byte> bytes) {
+            const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
+            FluidStats f = now;
+            double centre[3] = {0, 0, 0}, inside = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
+            for (uint32_t k = 0; k < STATS_THREADS; ++k) {
+                for (int axis = 0; axis < 3; ++axis) centre[axis] += double{rows[k].centre[axis]};
+                inside += double{rows[k].centre.w};
+                compression += double{rows[k].compression};
+                speed2 += double{rows[k].speed2Sum};
+                limited += double{rows[k].limited};
+                nan += double{rows[k].nans};
+                lost += double{rows[k].lost};
+                f.maxCompression = std::max(f.maxCompression, double{rows[k].worst});
+                fastest2 = std::max(fastest2, double{rows[k].speed2Max});
+            }
+            f.lost = static_cast<uint32_t>(lost);
+            f.nan = static_cast<uint32_t>(nan);
+            f.speedLimited = static_cast<uint32_t>(limited);
+            f.maxSpeed = std::sqrt(fastest2);
+            f.kinetic = 0.5 * mass * speed2;
+            if (inside > 0) {
+                f.avgCompression = compression / inside;
+                for (int axis = 0; axis < 3; ++axis) {
+                    f.centreOfMass[axis] = centre[axis] / inside;
+                    f.potential -= mass * double{g[axis]} * centre[axis];
+                }
+            }
+            f.limited = std::move(into->limited);
+            *into = std::move(f);
+            if (into != figures) return;  // the world was reset meanwhile
+            if (into->lost > 0) say("particles left the grid or became NaN: they are frozen and counted as lost");
+            if (into->speedLimited > 0) say("the fastest particles were slowed to one spacing a step");
+        });
 }
 
 void FluidWorld::reset() {

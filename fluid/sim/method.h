@@ -1,4 +1,5 @@
-// A Method advances particles by one substep: where they would be, and how fast, if no solid were in the way. Methods are rows of methods().
+// A Method advances particles by one substep: where they would be, and how fast, if no solid were in the way. Methods are rows of
+// methods().
 #pragma once
 
 #include <memory>
@@ -24,10 +25,16 @@ class Method {
     virtual float soundSpeed(const FluidParams& params, float fastest) const = 0;
     // Whether it does explicit viscosity among its own pair forces; else the row of forces() does.
     virtual bool doesViscosity() const { return false; }
-    // How far the fastest particle may go in a step, in spacings.
-    virtual float reach(const FluidParams& params) const = 0;
+    // How far the fastest particle may go in a step, in spacings, and the longest step, s.
+    struct StepLimit {
+        float reach = 1;
+        double longest = 1;
+    };
+    virtual StepLimit stepLimit(const FluidParams& params) const = 0;
     // positionNext, velocityNext as they are -> a substep later, in sorted order; positionNext's w the density ratio. It calls build, once.
     virtual void step(StepContext& context) = 0;
+    // Called at a frame's end: makes w of positionNext the density ratio of the positions as they are, where step() left an earlier one.
+    virtual void measure(StepContext&) {}
     // Forgets what it remembers of earlier steps.
     virtual void reset() {}
 };

@@ -2,6 +2,8 @@
 #include "fluid/sim/method_dfsph.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 #include "fluid/sim/smoothing.h"
@@ -24,12 +26,14 @@ class Dfsph final : public Method {
     Buffer solve, remembered, rows;
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
-    float reach(const FluidParams& p) const override { return p.dfsph.reach; }
+    StepLimit stepLimit(const FluidParams& p) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
 
     void fill(const FluidParams& p, float, StepParams& s) const override {
         fillSmoothing(p, s);
         s.relaxation = p.dfsph.relaxation;
         s.warmStart = p.dfsph.warmStart;
+        s.warmGate = p.dfsph.warmGate;
+        s.momentum = p.dfsph.momentum;
     }
 
     void reset() override { forget_ = true; }
@@ -46,16 +50,24 @@ class Dfsph final : public Method {
         c.device.run(weigh, c.params, {&c.grid.cellStart(), &p.acceleration}, p.count);
         c.forces();
         c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, p.count);
-        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &remembered, &solve}, p.count);
-        c.solve.iterations = iterate(c, rate, d.tolerance, 2, planned_, residual_);
+        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &remembered, &solve, &p.pressure}, p.count);
+        pushOn(c);
+        c.solve.iterations = iterate(c, rate, d.tolerance, 1, planned_, residual_);
         c.solve.residual = residual_->value;
         c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &remembered}, p.count);
-        c.device.run(integrate, c.params,
-                     {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
-                     p.count);
+        c.device.run(
+            integrate, c.params,
+            {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
+            p.count);
     }
 
   private:
+    // Velocities follow the change in p.pressure.
+    void pushOn(StepContext& c) {
+        Particles& p = c.particles;
+        push.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure}, c.grid.pairThreads());
+        c.pushSamples(p.position, p.pressure, 1.0F / c.params.dt);
+    }
     // Runs one solver to its tolerance (compression a step, a fraction); returns the number of iterations.
     int iterate(StepContext& c, const PairKernel& measure, double tolerance, int atLeast, int& planned, std::shared_ptr<Residual>& last) {
         Particles& p = c.particles;
@@ -74,13 +86,13 @@ class Dfsph final : public Method {
         while (true) {
             s.iteration = static_cast<uint32_t>(k);
             measure.run(c, s, {&neighbors, &p.position, &p.velocity, &p.boundary, &solve, &p.pressure}, threads);
-            push.run(c, s, {&neighbors, &p.position, &p.velocity, &p.boundary, &p.pressure}, threads);
-            c.pushSamples(p.position, p.pressure, 1.0F / s.dt);
+            pushOn(c);
             ++k;
             if (cpu) {
                 const double r = readResidual(c, *last);
                 // What has just been applied will leave about as much of it as the iteration before left.
                 const double kept = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
+                if (getenv("DBG")) fprintf(stderr, "%s%.3e ", k == 1 ? "\n" : "", r);
                 before = r;
                 if ((k >= atLeast && r * kept <= tolerance) || k >= most) break;
             } else if (k >= std::max(planned, atLeast)) {
@@ -122,9 +134,9 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         const char* path;
         std::vector<Define> defines;
     };
-    for (const Wanted& w : {Wanted{&m->kick, "fluid/kick", {}}, Wanted{&m->weigh, "fluid/weigh", {}},
-                            Wanted{&m->integrate, "fluid/integrate", {coast}}, Wanted{&m->begin, "fluid/dfsph_begin", {}},
-                            Wanted{&m->end, "fluid/dfsph_end", {}}, Wanted{&m->residual, "fluid/residual", {}}}) {
+    for (const Wanted& w :
+         {Wanted{&m->kick, "fluid/kick", {}}, Wanted{&m->weigh, "fluid/weigh", {}}, Wanted{&m->integrate, "fluid/integrate", {coast}},
+          Wanted{&m->begin, "fluid/dfsph_begin", {}}, Wanted{&m->end, "fluid/dfsph_end", {}}, Wanted{&m->residual, "fluid/residual", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -134,8 +146,9 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         const char* path;
         std::vector<Define> defines;
     };
-    for (const WantedPair& w : {WantedPair{&m->density, "fluid/dfsph_density", {}}, WantedPair{&m->rate, "fluid/dfsph_rate", {}},
-                                WantedPair{&m->divergence, "fluid/dfsph_rate", {divergence}}, WantedPair{&m->push, "fluid/dfsph_push", {}}}) {
+    for (const WantedPair& w :
+         {WantedPair{&m->density, "fluid/dfsph_density", {}}, WantedPair{&m->rate, "fluid/dfsph_rate", {}},
+          WantedPair{&m->divergence, "fluid/dfsph_rate", {divergence}}, WantedPair{&m->push, "fluid/dfsph_push", {}}}) {
         Result<PairKernel> found = PairKernel::find(device, w.path, setup.traits, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;

@@ -11,12 +11,12 @@ namespace {
 
 class Pbf final : public Method {
   public:
-    Kernel predict, finish, kick, weigh;
+    Kernel predict, finish, kick, weigh, setRatio;
     PairKernel lambda, shift;
     Buffer corrected[2];
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
-    float reach(const FluidParams& p) const override { return p.pbf.reach; }
+    StepLimit stepLimit(const FluidParams& p) const override { return {p.pbf.reach, 1.0 / (60 * p.pbf.minSubsteps)}; }
 
     void fill(const FluidParams& p, float, StepParams& s) const override {
         fillSmoothing(p, s);
@@ -51,14 +51,24 @@ class Pbf final : public Method {
         }
         p.position.swap(p.velocity);  // what follows walks from where the step began
     }
+
+    void measure(StepContext& c) override {
+        Particles& p = c.particles;
+        c.boundary(p.positionNext);
+        // p.velocity: where the grid was built, see the end of step().
+        lambda.run(c, c.params, {&c.grid.neighbors(), &p.velocity, &p.positionNext, &p.boundary, &p.density, &p.pressure},
+                   c.grid.pairThreads());
+        c.device.run(setRatio, c.params, {&c.grid.cellStart(), &p.density, &p.positionNext}, p.count);
+    }
 };
 
 }  // namespace
 
 Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
     auto m = std::make_unique<Pbf>();
-    for (auto [kernel, path] : {std::pair(&m->predict, "fluid/pbf_predict"), std::pair(&m->finish, "fluid/pbf_finish"),
-                                std::pair(&m->kick, "fluid/kick"), std::pair(&m->weigh, "fluid/weigh")}) {
+    for (auto [kernel, path] :
+         {std::pair(&m->predict, "fluid/pbf_predict"), std::pair(&m->finish, "fluid/pbf_finish"), std::pair(&m->kick, "fluid/kick"),
+          std::pair(&m->weigh, "fluid/weigh"), std::pair(&m->setRatio, "fluid/set_ratio")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;

@@ -1,4 +1,5 @@
-// Position Based Fluids (Macklin and Mueller 2013): a few corrections of predicted positions a step. Fast, unconditionally bounded, a little soft.
+// Position Based Fluids (Macklin and Mueller 2013): a few corrections of predicted positions a step. Fast, unconditionally bounded, a
+// little soft.
 #pragma once
 
 #include "fluid/sim/method.h"

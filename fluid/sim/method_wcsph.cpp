@@ -18,7 +18,7 @@ class Wcsph final : public Method {
     Kernel integrate;
 
     bool doesViscosity() const override { return true; }
-    float reach(const FluidParams&) const override { return 1.0F; }  // sound is far slower than that
+    StepLimit stepLimit(const FluidParams&) const override { return {}; }  // sound's is far shorter
 
     float soundSpeed(const FluidParams& p, float fastest) const override {
         if (thesis_) return std::sqrt(p.stiffness);  // dp/drho of (4)
@@ -56,9 +56,10 @@ class Wcsph final : public Method {
             c.pushSamples(p.position, p.pressure, 2.0F * c.params.restDensity);
         }
         c.forces();
-        c.device.run(integrate, c.params,
-                     {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
-                     p.count);
+        c.device.run(
+            integrate, c.params,
+            {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
+            p.count);
     }
 
   private:
@@ -67,7 +68,8 @@ class Wcsph final : public Method {
 
 Result<std::unique_ptr<Method>> make(Device& device, const MethodSetup& setup, bool thesis) {
     if (thesis && (setup.traits.matter || glm::any(setup.traits.periodic)))
-        return badInput("method wcsph_thesis knows one liquid, no floating bodies and no periodic axes: choose another method for this scene");
+        return badInput(
+            "method wcsph_thesis knows one liquid, no floating bodies and no periodic axes: choose another method for this scene");
     auto method = std::make_unique<Wcsph>(thesis);
     std::vector<Define> defines;
     if (thesis) defines.push_back({"THESIS", "1"});

@@ -207,7 +207,7 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
         list = std::move(*larger);
     }
     *hostPointer<CpuNeighborLists>(lists) = {hostPointer<CpuGroup>(groups), hostPointer<uint32_t>(list),
-                                                    hostPointer<CpuGroup>(groups) + fluidGroups};
+                                             hostPointer<CpuGroup>(groups) + fluidGroups};
     return ok();
 }
 
@@ -296,8 +296,6 @@ Status NeighborGrid::build(const StepParams& params, Particles& particles) {
 const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }
 const Buffer& NeighborGrid::cellStart() const { return impl_->cellStart; }
 uint32_t NeighborGrid::pairThreads() const { return impl_->onCpu() ? impl_->fluidGroups : impl_->count; }
-uint32_t NeighborGrid::sampleThreads() const {
-    return impl_->onCpu() ? impl_->groupCount - impl_->fluidGroups : impl_->traits.samples;
-}
+uint32_t NeighborGrid::sampleThreads() const { return impl_->onCpu() ? impl_->groupCount - impl_->fluidGroups : impl_->traits.samples; }
 
 }  // namespace rivulet

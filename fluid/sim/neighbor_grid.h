@@ -1,6 +1,6 @@
 // The neighbour grid: particles sorted by cell (edge = support radius h), so that a row of cells is contiguous in memory.
-// Behind the fluid come the samples on bodies, in cells of their own; then what is indexed nowhere: particles outside the bounds or with NaN,
-// and free slots. shaders/fluid/grid.h says where each begins.
+// Behind the fluid come the samples on bodies, in cells of their own; then what is indexed nowhere: particles outside the bounds or with
+// NaN, and free slots. shaders/fluid/grid.h says where each begins.
 //
 // GPU: atomics count, a three-dispatch prefix sum, a sort by id inside each cell (the same order in every run); kernels sweep rows.
 // CPU: a stable counting sort, groups of 8 particles, and a list of candidate neighbours for each group.
@@ -17,9 +17,9 @@ namespace rivulet {
 
 // What decides which form of the pair kernels a world needs.
 struct PairTraits {
-    bvec3 periodic{false};           // axes on which the bounds wrap round
-    bool matter = false;             // particles differ: several liquids, or samples on bodies
-    uint32_t samples = 0;            // on bodies: the last ids
+    bvec3 periodic{false};                // axes on which the bounds wrap round
+    bool matter = false;                  // particles differ: several liquids, or samples on bodies
+    uint32_t samples = 0;                 // on bodies: the last ids
     std::vector<Define> defines() const;  // MATTER, PERIODIC: of every kernel with FOR_NEIGHBORS
 };
 

@@ -342,8 +342,7 @@ void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, con
     else
         device_->run(boundary_, step, {&start, &position, &planes_, &boundary}, n);
     for (std::vector<Moving>* list : {&rigid_, &deforming_})
-        for (const Moving& m : *list)
-            device_->run(boundaryMoving_, step, {&start, &position, &boundary, &m.block, &m.on.distance}, n);
+        for (const Moving& m : *list) device_->run(boundaryMoving_, step, {&start, &position, &boundary, &m.block, &m.on.distance}, n);
 }
 
 void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {

@@ -23,6 +23,8 @@ struct FluidStats {
     double maxSpeed = 0;               // m/s
     uint32_t speedLimited = 0;         // particles whose speed the step had to limit
     int substeps = 0;                  // of that frame
+    double iterations = 0;             // of the pressure solver, mean of that frame's substeps
+    double residual = 0;               // what it stopped at in the last: mean compression it predicts, a fraction
     double dtMin = 0, dtMax = 0;       // s, since the start
     std::vector<std::string> limited;  // plain sentences: what the program limited, each once
 };

@@ -235,5 +235,9 @@ template <class T> INLINE void STORE(T* b, uint i, const T& v) { b[i] = v; }
 #define SELF_SAMPLE(i) const Group& i = neighbors->samples[THREAD_ID]
 #define FOR_NEIGHBORS(i, home, j) { const uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
 #define END_NEIGHBORS }}
+// As FOR_NEIGHBORS in a step's first sweep: only the entries with a lane for which KEEP's condition held stay in the list.
+#define FOR_ALL_NEIGHBORS(i, home, j) { uint* list_ = neighbors->list + i.listBegin; const uint n_ = i.listCount; uint kept_ = 0; for (uint k_ = 0; k_ < n_; ++k_) { const uint j = list_[k_];
+#define KEEP(condition) list_[kept_] = j; kept_ += anyLane(condition) ? 1U : 0U
+#define END_ALL_NEIGHBORS(i) } const_cast<Group&>(i).listCount = kept_; }
 }  // namespace rivulet::RIVULET_KERNEL_UNIT
 #endif

@@ -6,6 +6,10 @@
 #define SELF(i) uint i = THREAD_ID; if (i >= neighbors[PARAMS.cellCount]) return
 #define SELF_SAMPLE(i) uint i = neighbors[PARAMS.cellCount] + THREAD_ID; if (i >= neighbors[PARAMS.totalCells]) return  /* a thread a sample */
 #define END_NEIGHBORS }}}
+// In a step's first sweep: KEEP says which neighbours later sweeps need; a GPU keeps no list.
+#define FOR_ALL_NEIGHBORS(i, home, j) FOR_NEIGHBORS(i, home, j)
+#define KEEP(condition)
+#define END_ALL_NEIGHBORS(i) END_NEIGHBORS
 #endif
 #if !defined(__cplusplus)
 #undef FOR_NEIGHBORS

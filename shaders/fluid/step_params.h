@@ -39,7 +39,11 @@ STRUCT(StepParams) {
     float relaxation;      // of an iteration of the pressure solvers
     float warmStart;       // share of the last step's pressures that the next begins with
     uint  iteration;       // of a pressure solver, from 0
+    float warmGate;        // density ratio above which that is done
     float padding1;
+    float padding2;
+    float padding3;
+    float momentum;        // share of the last iteration's change that is made again (heavy ball)
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StepParams) % 16 == 0);

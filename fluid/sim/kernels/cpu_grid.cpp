@@ -187,7 +187,8 @@ INLINE void findStretches(const Job& job, const GroupBox& b, uint32_t firstCell,
     for (int dz = -1; dz <= 1; ++dz)
         for (int dy = -1; dy <= 1; ++dy) {
             // The row's distance from the group's box narrows the stretch of x that can hold neighbours.
-            const float rowY = job.originY + static_cast<float>(b.cy + dy) * edgeY, rowZ = job.originZ + static_cast<float>(b.cz + dz) * edgeZ;
+            const float rowY = job.originY + static_cast<float>(b.cy + dy) * edgeY,
+                        rowZ = job.originZ + static_cast<float>(b.cz + dz) * edgeZ;
             const float gapY = dy < 0 ? b.loY - (rowY + edgeY) : dy > 0 ? rowY - b.hiY : 0.0F;
             const float gapZ = dz < 0 ? b.loZ - (rowZ + edgeZ) : dz > 0 ? rowZ - b.hiZ : 0.0F;
             const float gap2 = max0(gapY) * max0(gapY) + max0(gapZ) * max0(gapZ);

@@ -1,4 +1,5 @@
-// A kernel with FOR_NEIGHBORS in its four forms: MATTER where particles differ, PERIODIC where the box wraps round. Included once a kernel, after
+// A kernel with FOR_NEIGHBORS in its four forms: MATTER where particles differ, PERIODIC where the box wraps round. Included once a kernel,
+// after
 //     #define PAIR_KERNEL "shaders/fluid/NAME.kernel"
 //     #define PAIR_UNIT a name of its own
 // PAIR_ROWS lists them in a table of CpuKernelRow.
@@ -23,9 +24,10 @@ namespace RIVULET_PASTE(PAIR_UNIT, _periodic) {
 
 #if !defined(PAIR_ROWS)
 // `extra`: other defines, as "CUBIC=1".
-#define PAIR_ROWS(unit, name, extra)                                                       \
-    {"fluid/" #name, extra, RIVULET_UNIT_ISA, unit##_plain::name, 64},                     \
-    {"fluid/" #name, "MATTER=1;" extra, RIVULET_UNIT_ISA, unit##_matter::name, 64},        \
-    {"fluid/" #name, "MATTER=1;PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_matter_periodic::name, 64}, \
-    {"fluid/" #name, "PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_periodic::name, 64}
+#define PAIR_ROWS(unit, name, extra)                                                                          \
+    {"fluid/" #name, extra, RIVULET_UNIT_ISA, unit##_plain::name, 64},                                        \
+        {"fluid/" #name, "MATTER=1;" extra, RIVULET_UNIT_ISA, unit##_matter::name, 64},                       \
+        {"fluid/" #name, "MATTER=1;PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_matter_periodic::name, 64}, { \
+        "fluid/" #name, "PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_periodic::name, 64                      \
+    }
 #endif

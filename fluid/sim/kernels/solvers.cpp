@@ -39,6 +39,9 @@ namespace end {
 namespace residual_unit {
 #include "shaders/fluid/residual.kernel"
 }
+namespace set_ratio_unit {
+#include "shaders/fluid/set_ratio.kernel"
+}
 namespace kick_unit {
 #include "shaders/fluid/kick.kernel"
 }
@@ -61,6 +64,7 @@ std::span<const CpuKernelRow> solverRows() {
         {"fluid/dfsph_begin", "", RIVULET_UNIT_ISA, begin::dfsph_begin, 1024},
         {"fluid/dfsph_end", "", RIVULET_UNIT_ISA, end::dfsph_end, 1024},
         {"fluid/residual", "", RIVULET_UNIT_ISA, residual_unit::residual, 128},
+        {"fluid/set_ratio", "", RIVULET_UNIT_ISA, set_ratio_unit::set_ratio, 1024},
         {"fluid/kick", "", RIVULET_UNIT_ISA, kick_unit::kick, 1024},
         {"fluid/weigh", "", RIVULET_UNIT_ISA, weigh_unit::weigh, 1024},
     };

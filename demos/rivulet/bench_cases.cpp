@@ -171,6 +171,8 @@ Status benchSeries(const BenchContext& context) {
 Table<BenchCase> benchCases() {
     static constexpr BenchCase rows[] = {
         {"step", "a whole WCSPH step on the cpu, column of 8k, 31k and 128k particles, t = 0 to 0.1 s", benchStep},
+        {"methods", "wall seconds a simulated second against the compression left, column of 8k, 31k and 128k, t = 0 to 0.2 s",
+         benchMethods},
         {"density", "the density pass on every device, column of 31k", benchDensity},
         {"memory", "bytes a particle on every device, column of 128k", benchMemory},
         {"series", "the thesis's falling column, 16,384 i particles, i = 1 to 8, on every device", benchSeries},

@@ -222,8 +222,6 @@ void FluidWorld::Impl::findForces() {
 bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
     if (glm::any(traits.periodic) && fromPositions)
         device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, particles.count);
-    else if (glm::any(traits.periodic))
-        device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (Status built = grid->build(step, particles); !built) {
         say(built.error().message);
         return false;
@@ -260,6 +258,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     iterations += solve.iterations;
     if (!built) return;
     solids.collide(step, *grid, particles);
+    if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
 }
 

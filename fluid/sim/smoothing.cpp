@@ -60,7 +60,9 @@ double cubicLatticeSum(double support) {
 
 double wendlandWallOffset(double support) { return wallOffset(wendlandShape, support); }
 
-void fillSmoothing(const FluidParams& p, StepParams& s) {
+namespace {
+
+void fillFactors(const FluidParams& p, StepParams& s) {
     const double h = s.h;
     if (p.kernel == "cubic_spline") {
         const double lattice = cubicLatticeSum(p.supportSpacings);
@@ -74,6 +76,13 @@ void fillSmoothing(const FluidParams& p, StepParams& s) {
     s.kernelK = static_cast<float>(21.0 / (2.0 * kPiD * h * h * h) / lattice);
     s.gradientK = static_cast<float>(-210.0 / (kPiD * std::pow(h, 8)) / lattice);
     s.wallOffset = static_cast<float>(wendlandWallOffset(p.supportSpacings)) * p.spacing;
+}
+
+}  // namespace
+
+void fillSmoothing(const FluidParams& p, StepParams& s) {
+    fillFactors(p, s);
+    s.wallShare = static_cast<float>(0.98 * wallShare(double{s.contact + s.wallOffset} / double{s.h}));
 }
 
 }  // namespace rivulet

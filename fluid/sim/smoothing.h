@@ -13,7 +13,7 @@ double cubicLatticeSum(double supportSpacings);  // the same of the cubic spline
 // How far (in spacings) to push a wall back in the density so that a lattice half a spacing off it is at rest density exactly.
 double wendlandWallOffset(double supportSpacings);
 
-// Fills kernelK, gradientK and wallOffset for fluid.kernel: "wendland" or "cubic_spline".
+// Fills kernelK, gradientK, wallOffset and wallShare (h and contact are there) for fluid.kernel: "wendland" or "cubic_spline".
 void fillSmoothing(const FluidParams& params, StepParams& step);
 
 }  // namespace rivulet

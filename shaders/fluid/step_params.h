@@ -40,9 +40,9 @@ STRUCT(StepParams) {
     float warmStart;       // share of the last step's pressures that the next begins with
     uint  iteration;       // of a pressure solver, from 0
     float warmGate;        // density ratio above which that is done
+    float wallShare;       // of a wall at the distance at which particles rest on it, less a hair: above it none moves nearer
     float padding1;
     float padding2;
-    float padding3;
     float momentum;        // share of the last iteration's change that is made again (heavy ball)
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)

@@ -1,0 +1,103 @@
+// Methods against each other on the column of 0.5 x 0.5 x 1 m in a 1 m box: wall seconds per simulated second beside the compression they
+// leave.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "demos/rivulet/bench_cases.h"
+#include "engine/compute/device_cpu.h"
+#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr double kSeconds = 0.2;  // simulated, from rest
+
+struct Setting {
+    const char* name;
+    const char* column;
+    float spacing;
+    FluidParams (*params)();
+};
+
+FluidParams pbf(int substeps, int iterations) {
+    FluidParams p;
+    p.method = "pbf";
+    p.pbf.minSubsteps = substeps;
+    p.pbf.iterations = iterations;
+    return p;
+}
+FluidParams dfsph(int substeps, float tolerance, float reach) {
+    FluidParams p;
+    p.method = "dfsph";
+    p.dfsph.minSubsteps = substeps;
+    p.dfsph.tolerance = tolerance;
+    p.dfsph.reach = reach;
+    return p;
+}
+
+constexpr Setting kSettings[] = {
+    {"dfsph, 20 substeps, tolerance 1e-4", "31k", 0.02F, [] { return dfsph(20, 1.0e-4F, 0.12F); }},
+    {"dfsph, as it comes", "31k", 0.02F, [] { return dfsph(8, 1.0e-3F, 0.3F); }},
+    {"pbf, as it comes", "31k", 0.02F, [] { return pbf(4, 3); }},
+    {"dfsph, as it comes", "8k", 0.03125F, [] { return dfsph(8, 1.0e-3F, 0.3F); }},
+    {"pbf, as it comes", "8k", 0.03125F, [] { return pbf(4, 3); }},
+    {"dfsph, as it comes", "128k", 0.0125F, [] { return dfsph(8, 1.0e-3F, 0.3F); }},
+    {"pbf, as it comes", "128k", 0.0125F, [] { return pbf(4, 3); }},
+};
+
+}  // namespace
+
+// The figure is wall seconds a simulated second; beside it, in the row's name, the mean compression over particles and frames, and the
+// steps.
+Status benchMethods(const BenchContext& context) {
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    auto device = makeCpuDevice(rows);
+    for (const Setting& setting : kSettings) {
+        if (context.interrupted()) return ok();
+        FluidParams p = setting.params();
+        p.spacing = setting.spacing;
+        p.box.max = vec3(1.0F, 1.2F, 1.0F);
+        p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
+        Status status = ok();
+        double compression = 0, worst = 0;
+        int substeps = 0;
+        const Spread spread = repeat(context, [&] {
+            Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(*device, p, {}, {});
+            if (!world) {
+                status = world.error();
+                return 0.0;
+            }
+            double wall = 0;
+            int frames = 0;
+            compression = worst = 0;
+            substeps = 0;
+            while ((*world)->time() < kSeconds - 1.0e-9) {
+                const auto begin = std::chrono::steady_clock::now();
+                (*world)->step({.gravity = p.gravity}, 1.0 / 60);
+                wall += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+                compression += (*world)->stats().avgCompression;
+                worst = std::max(worst, (*world)->stats().maxCompression);
+                substeps += (*world)->lastSubsteps();
+                ++frames;
+            }
+            compression /= frames;
+            return wall / (*world)->time();
+        });
+        if (!status) return status;
+        BenchRow row{
+            .name = fmt::format("column {}, {}: {:.3g} % compressed, {} steps", setting.column, setting.name, 100 * compression, substeps),
+            .unit = "s/s",
+            .value = spread,
+            .passes = {}};
+        const int runs = static_cast<int>(spread.count) + 1;
+        for (const PassTime& t : device->takeTimes()) row.passes[t.name] = t.ms / runs / kSeconds;
+        if (!context.interrupted()) context.report(row);
+    }
+    return ok();
+}
+
+}  // namespace rivulet

@@ -43,7 +43,7 @@ struct DfsphParams {
     bool divergence = true;            // whether the flow is kept from compressing, too
     float divergenceTolerance = 0.1F;  // 1/s
     int maxIterations = 50;
-    float warmStart = 0.9F;   // 0..1
+    float warmStart = 0.7F;   // 0..1
     float warmGate = 0.97F;   // density ratio
     float relaxation = 0.6F;  // of an iteration
     float momentum = 0.3F;

@@ -300,7 +300,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     s.spacing = p.spacing;
     s.planeCount = w.solids.planeCount();
     w.grid->fill(s);
-    w.method->fill(p, w.method->soundSpeed(p, w.fastestFall()), s);
+    w.method->fill(p, w.fastestFall(), s);
 
     w.findForces();
     const double limit = w.stepLimit(seconds);

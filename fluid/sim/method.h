@@ -19,9 +19,9 @@ struct MethodSetup {
 class Method {
   public:
     virtual ~Method() = default;
-    // Fills the method's part of StepParams (kernel factors, stiffness). `soundSpeed` m/s.
-    virtual void fill(const FluidParams& params, float soundSpeed, StepParams& step) const = 0;
-    // Speed of sound of its equation of state, m/s, 0 where there is none; `fastest`: the speed the scene's water can reach by falling.
+    // Fills the method's part of StepParams (kernel factors, stiffness). `fastest`: the speed the scene's water can reach by falling, m/s.
+    virtual void fill(const FluidParams& params, float fastest, StepParams& step) const = 0;
+    // Speed of sound of its equation of state, m/s, 0 where there is none.
     virtual float soundSpeed(const FluidParams& params, float fastest) const = 0;
     // Whether it does explicit viscosity among its own pair forces; else the row of forces() does.
     virtual bool doesViscosity() const { return false; }

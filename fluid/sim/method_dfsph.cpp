@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 
 #include "fluid/sim/smoothing.h"
@@ -21,15 +20,18 @@ struct Residual {
 
 class Dfsph final : public Method {
   public:
-    Kernel kick, weigh, integrate, begin, end, residual;
+    Kernel kick, integrate, begin, end, residual;
     PairKernel density, rate, divergence, push;
     Buffer solve, remembered, rows;
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
+    bool doesViscosity() const override { return true; }
     StepLimit stepLimit(const FluidParams& p) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
 
-    void fill(const FluidParams& p, float, StepParams& s) const override {
+    void fill(const FluidParams& p, float fastest, StepParams& s) const override {
         fillSmoothing(p, s);
+        // There is no sound: the flow's own speed is what the damping is measured by.
+        s.artificial = p.artificialViscosity * fastest * 0.5F * s.h;
         s.relaxation = p.dfsph.relaxation;
         s.warmStart = p.dfsph.warmStart;
         s.warmGate = p.dfsph.warmGate;
@@ -45,9 +47,9 @@ class Dfsph final : public Method {
         Particles& p = c.particles;
         const DfsphParams& d = c.fluid.dfsph;
         c.boundary(p.position);
-        density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve}, c.grid.pairThreads());
+        density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
+                    c.grid.pairThreads());
         if (d.divergence) iterate(c, divergence, d.divergenceTolerance * c.params.dt, 1, plannedDivergence_, divergenceResidual_);
-        c.device.run(weigh, c.params, {&c.grid.cellStart(), &p.acceleration}, p.count);
         c.forces();
         c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, p.count);
         c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &remembered, &solve, &p.pressure}, p.count);
@@ -135,8 +137,8 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         std::vector<Define> defines;
     };
     for (const Wanted& w :
-         {Wanted{&m->kick, "fluid/kick", {}}, Wanted{&m->weigh, "fluid/weigh", {}}, Wanted{&m->integrate, "fluid/integrate", {coast}},
-          Wanted{&m->begin, "fluid/dfsph_begin", {}}, Wanted{&m->end, "fluid/dfsph_end", {}}, Wanted{&m->residual, "fluid/residual", {}}}) {
+         {Wanted{&m->kick, "fluid/kick", {}}, Wanted{&m->integrate, "fluid/integrate", {coast}}, Wanted{&m->begin, "fluid/dfsph_begin", {}},
+          Wanted{&m->end, "fluid/dfsph_end", {}}, Wanted{&m->residual, "fluid/residual", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;

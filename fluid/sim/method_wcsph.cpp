@@ -26,8 +26,9 @@ class Wcsph final : public Method {
         return p.soundSpeed > 0 ? p.soundSpeed : 10.0F * fastest;
     }
 
-    void fill(const FluidParams& p, float soundSpeed, StepParams& s) const override {
+    void fill(const FluidParams& p, float fastest, StepParams& s) const override {
         const double h = s.h;
+        const float c0 = soundSpeed(p, fastest);
         if (thesis_) {
             s.kernelK = static_cast<float>(315.0 / (64.0 * kPiD * std::pow(h, 9)));
             s.gradientK = static_cast<float>(-45.0 / (kPiD * std::pow(h, 6)));
@@ -36,8 +37,8 @@ class Wcsph final : public Method {
             return;
         }
         fillSmoothing(p, s);
-        s.stiffness = soundSpeed * soundSpeed * p.restDensity / 7.0F;
-        s.artificial = p.artificialViscosity * soundSpeed * 0.5F * s.h;
+        s.stiffness = c0 * c0 * p.restDensity / 7.0F;
+        s.artificial = p.artificialViscosity * c0 * 0.5F * s.h;
     }
 
     void step(StepContext& c) override {

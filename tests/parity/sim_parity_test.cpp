@@ -128,7 +128,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     s.maxSpeed = 1.5F;
     s.planeCount = 1;
     grid->fill(s);
-    (*method)->fill(p, (*method)->soundSpeed(p, 1.0F), s);
+    (*method)->fill(p, 1.0F, s);
     std::vector<uint32_t> id;
     auto keep = [&](const char* name, const Buffer& b, bool vector) {
         std::vector<vec4> values;

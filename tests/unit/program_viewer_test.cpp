@@ -7,12 +7,10 @@
 
 #include <optional>
 
-#include "engine/app/context_egl.h"
 #include "engine/core/json.h"
-#include "engine/gpu/debug.h"
-#include "engine/gpu/framebuffer.h"
 #include "engine/ui/param_panel.h"
 #include "fluid/bridge/viewer.h"
+#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet {
@@ -20,15 +18,11 @@ namespace {
 
 // A person at a window of 900 x 1600: the panels lie in its left part, the scene is to be seen at its right. The picture has few pixels,
 // for the sake of machines without a GPU.
-class Person : public ::testing::Test {
+class Person : public testing::FramebufferFixture {
   protected:
     void SetUp() override {
-        Result<ContextEgl> made = ContextEgl::create();
-        ASSERT_TRUE(made) << made.error().message;
-        context_.emplace(std::move(*made));
-        messages_.emplace(Log{});
-        input_.size = kWindow;
-        input_.framebuffer = kPixels;
+        open(kWindow, kPixels);
+        ASSERT_TRUE(context_ && target_.name() != 0);
         input_.mouse = vec2(700, 1200);
         SceneFile scene;
         scene.name = "small";
@@ -38,30 +32,18 @@ class Person : public ::testing::Test {
         auto viewer = Viewer::create(scene, "cpu", {});
         ASSERT_TRUE(viewer) << viewer.error().message;
         viewer_ = std::move(*viewer);
-        gpu::TextureDesc desc;
-        desc.width = input_.framebuffer.x;
-        desc.height = input_.framebuffer.y;
-        auto picture = gpu::Texture::create(desc);
-        ASSERT_TRUE(picture) << picture.error().message;
-        picture_ = std::move(*picture);
-        target_ = gpu::Framebuffer(picture_, nullptr);
     }
 
     void TearDown() override {
-        if (messages_) {
-            EXPECT_EQ(messages_->errors(), 0) << messages_->lastError();
-        }
+        FramebufferFixture::TearDown();
         viewer_.reset();
     }
 
-    // One frame of the input so far; presses, wheel and text hold for one frame.
+    // One frame of the input so far.
     void frame(double seconds = 0) {
         Status drawn = viewer_->frame(input_, seconds, target_.name());
         ASSERT_TRUE(drawn) << drawn.error().message;
-        input_.mouseDelta = input_.wheel = vec2(0.0F);
-        input_.keysPressed.clear();
-        input_.text.clear();
-        for (bool* each : {input_.buttonPressed, input_.buttonReleased}) std::fill(each, each + 3, false);
+        endFrame();
     }
     void key(int which) {
         input_.keysPressed = {which};
@@ -114,12 +96,7 @@ class Person : public ::testing::Test {
     float distance() const { return glm::length(camera().position - camera().target); }
 
     static constexpr ivec2 kWindow{900, 1600}, kPixels{90, 160};
-    std::optional<ContextEgl> context_;
-    std::optional<gpu::DebugMessages> messages_;
     std::unique_ptr<Viewer> viewer_;
-    gpu::Texture picture_;
-    gpu::Framebuffer target_;
-    InputEvents input_;
 };
 
 TEST_F(Person, KeysPauseStepAndReset) {

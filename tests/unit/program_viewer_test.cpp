@@ -99,6 +99,29 @@ class Person : public testing::FramebufferFixture {
     std::unique_ptr<Viewer> viewer_;
 };
 
+// With fixed steps the world is told of every frame as it comes, and keeps what is left over.
+TEST_F(Person, FixedStepsTakeFramesAsTheyCome) {
+    SceneFile scene = viewer_->scene();
+    scene.fluid.fixedStep = 0.01F;
+    viewer_->session().apply(scene);
+    FluidWorld& world = viewer_->session().world();
+    double asked = 0;
+    for (const double seconds : {0.004, 0.0071, 0.0235, 0.003}) {
+        frame(seconds);
+        asked += seconds;
+        EXPECT_NEAR(world.time() + world.pending(), asked, 1e-9);
+    }
+    EXPECT_NEAR(world.time(), 0.03, 1e-6);
+    EXPECT_NE(world.particles().drawn, world.particles().position);
+    // A frame after a breakpoint is no more than the longest there may be.
+    frame(10);
+    EXPECT_NEAR(world.time() + world.pending(), asked + 0.1, 1e-6);
+    key(GLFW_KEY_SPACE);
+    const double paused = world.time();
+    frame(0.05);
+    EXPECT_EQ(world.time(), paused);
+}
+
 TEST_F(Person, KeysPauseStepAndReset) {
     for (int i = 0; i < 3; ++i) frame(1.0 / 60);
     EXPECT_EQ(viewer_->steps(), 3U);

@@ -40,10 +40,11 @@ std::string refusal(const std::string& bytes) {
 }
 
 TEST(StateFile, GivesBackWhatWasPacked) {
-    Result<WorldState> state = unpackState(std::as_bytes(std::span(packed())), "a.rstate");
+    const std::string bytes = packed();
+    Result<WorldState> state = unpackState(std::as_bytes(std::span(bytes)), "a.rstate");
     ASSERT_TRUE(state) << state.error().message;
     EXPECT_EQ(state->sections(), sample().sections());
-    EXPECT_EQ(packed(), packed());
+    EXPECT_EQ(bytes, packed());
     Result<std::vector<double>> numbers = state->take<double>("world.numbers", 3);
     ASSERT_TRUE(numbers);
     EXPECT_EQ((*numbers)[1], 1e300);

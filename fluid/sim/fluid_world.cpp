@@ -218,13 +218,10 @@ StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const auto atMost = [&limit](double dt, const char* why) {
         if (dt < limit.dt) limit = {dt, why};
     };
-    if (c0 > 0) {
-        atMost(params.cfl * hs / (c0 + fastest), "the speed of sound (fluid.cfl)");
-    } else {
-        const Method::StepLimit own = method->stepLimit(params);
-        atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
-        atMost(own.longest, "the method's fewest steps a frame (minSubsteps)");
-    }
+    const Method::StepLimit own = method->stepLimit(params);
+    if (c0 > 0) atMost(params.cfl * hs / (c0 + fastest), "the speed of sound (fluid.cfl)");
+    atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
+    atMost(own.longest, "the method's fewest steps a frame (minSubsteps)");
     // Explicit viscosity alone has a limit; an implicit solver has none.
     const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
     if (nu > 0) atMost(0.125 * hs * hs / nu, "viscosity");

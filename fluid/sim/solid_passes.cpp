@@ -1,13 +1,13 @@
 #include "fluid/sim/solid_passes.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cstring>
 #include <tuple>
 
 #include "fluid/voxel/labels.h"
+#include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
 
@@ -202,10 +202,10 @@ uint64_t SolidPasses::voxelsHash() const {
     const auto add = [&hash](const Field& f) {
         if (f.field == nullptr) return;
         const VoxelGrid& grid = f.field->surface;
-        hash = XXH3_64bits_withSeed(&grid.size, sizeof grid.size, hash);
-        hash = XXH3_64bits_withSeed(&grid.origin, sizeof grid.origin, hash);
-        hash = XXH3_64bits_withSeed(&grid.voxel, sizeof grid.voxel, hash);
-        hash = XXH3_64bits_withSeed(grid.bits.data(), grid.bits.size(), hash);
+        hash = checksum(std::as_bytes(std::span(&grid.size, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(&grid.origin, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(&grid.voxel, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(grid.bits)), hash);
     };
     add(static_);
     for (const Moving& m : rigid_) add(m.on);

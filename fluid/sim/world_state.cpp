@@ -1,7 +1,6 @@
 #include "fluid/sim/world_state.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <array>
 #include <new>
@@ -39,7 +38,7 @@ uint64_t checksumOfHead(std::span<const std::byte> bytes, size_t sections) {
     std::vector<std::byte> head(bytes.begin(), bytes.begin() + offsetof(Header, checksum));
     const auto table = bytes.subspan(sizeof(Header), sections * sizeof(Section));
     head.insert(head.end(), table.begin(), table.end());
-    return XXH3_64bits(head.data(), head.size());
+    return checksum(head);
 }
 
 // Writes "path.to.param = value" for what is fixed.
@@ -98,8 +97,7 @@ class Reader {
             held += s.bytes;
             if (held > memoryLimit_) return failed(fmt::format("{}: it holds more than {} bytes of memory", name_, memoryLimit_));
             const auto packed = bytes_.subspan(at, s.packedBytes);
-            if (XXH3_64bits(packed.data(), packed.size()) != s.checksum)
-                return damaged(fmt::format("section {} was damaged: its checksum is wrong", title));
+            if (checksum(packed) != s.checksum) return damaged(fmt::format("section {} was damaged: its checksum is wrong", title));
             WorldState::Bytes numbers;
             ArrayUnpacker unpacker(packed);
             if (!unpacker.take(s.bytes, numbers) || !unpacker.finish())
@@ -208,7 +206,7 @@ Result<std::string> packState(const WorldState& state) {
             packer.put(std::span<const std::byte>(bytes));
             packer.finish();
             section.packedBytes = out.size() - section.offset;
-            section.checksum = XXH3_64bits(out.data() + section.offset, section.packedBytes);
+            section.checksum = checksum(std::as_bytes(std::span(out)).subspan(section.offset));
             table.push_back(section);
         }
         Header header{kMagic, kByteOrder, kVersion, static_cast<uint32_t>(table.size()), 0, out.size(), 0};

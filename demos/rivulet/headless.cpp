@@ -48,6 +48,8 @@ struct Outputs {
         if (options.render || options.stats.empty())
             if (Status made = makeFolder(options.out); !made) return made.error();
         if (Status writable = checkWritable(to.stats); !writable) return writable.error();
+        if (!options.save.empty())
+            if (Status writable = checkWritable(options.save); !writable) return writable.error();
         if (!options.render) return to;
         Result<VideoWriter> video = VideoWriter::open(to.video, options.width, options.height, kFramesPerSecond);
         if (!video) return video.error();
@@ -124,6 +126,8 @@ int runHeadless(const RunOptions& options) {
     std::unique_ptr<Device> device = makeDevice(options.backend, gl, options.log);
     auto session = Session::create(options.scene, *device, options.log);
     if (!session) return report(session.error());
+    if (!options.resume.empty())
+        if (Status resumed = resumeFrom(options.resume, **session); !resumed) return report(resumed.error());
     Painter painter;
     if (options.render) {
         auto renderer = SceneRenderer::create(ShaderFiles::developer());
@@ -134,7 +138,8 @@ int runHeadless(const RunOptions& options) {
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 
-    int frames = options.frames.value_or(static_cast<int>(std::lround(static_cast<double>(options.scene.duration) * kFramesPerSecond)));
+    const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
+    int frames = options.frames.value_or(static_cast<int>(std::lround(left * kFramesPerSecond)));
     Loop loop{options, graceful, **session, *to, painter, RunRecorder((*session)->world(), (*session)->fields(), true)};
     if (Status done = loop.run(frames); !done) return report(done.error());
     if (to->writer)
@@ -142,9 +147,13 @@ int runHeadless(const RunOptions& options) {
     RunStats stats = loop.recorder.finish(options.scene.name);
     if (Status written = writeFileAtomic(to->stats, writeRunStats(stats)); !written) return report(written.error());
 
+    if (!options.save.empty())
+        if (Status saved = saveTo(options.save, **session); !saved) return report(saved.error());
+
     std::string where = to->stats;
     if (options.render && stats.frames > 0)
         where = fmt::format("{}, {} pictures {}_*.png and {}", to->video, loop.pictures, to->picturePrefix, to->stats);
+    if (!options.save.empty()) where += fmt::format(" and {}", options.save);
     fmt::print("{}\n", where);
     return graceful.interrupted() ? kInterrupted : kDone;
 }

@@ -7,6 +7,7 @@
 
 #include "engine/core/log.h"
 #include "fluid/bridge/scene_file.h"
+#include "fluid/bridge/session.h"
 
 namespace rivulet {
 
@@ -19,12 +20,17 @@ struct RunOptions {
     std::string out = "out";         // folder of what is written
     std::string video;               // file; empty: out/NAME.mp4
     std::string stats;               // file; empty: out/stats.json, or none in the window
+    std::string save, resume;        // files of a state; empty: none
     Log log;
 };
 
 // Each returns an ExitCode.
 int runHeadless(const RunOptions& options);
 int runWindow(const RunOptions& options);
+
+// A state from and to a file. Error: what is wrong with it, or why it cannot be written.
+Status resumeFrom(const std::string& path, Session& session);
+Status saveTo(const std::string& path, Session& session);
 
 // The scene's name as a file's: letters, digits, '-' and '_' stay, all else becomes '_'.
 std::string fileNameOf(const std::string& sceneName);

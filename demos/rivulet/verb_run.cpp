@@ -33,6 +33,22 @@ std::string fileNameOf(const std::string& sceneName) {
     return name.empty() ? "scene" : name.substr(0, kLongest);
 }
 
+Status resumeFrom(const std::string& path, Session& session) {
+    Result<WorldState> state = readState(path);
+    if (!state) return state.error();
+    Status done = session.restore(*state);
+    if (!done) return Error{fmt::format("{}: {}", path, done.error().message), done.error().fault};
+    return ok();
+}
+
+Status saveTo(const std::string& path, Session& session) {
+    WorldState state;
+    session.save(state);
+    Result<size_t> written = writeState(path, state);
+    if (!written) return written.error();
+    return ok();
+}
+
 int runVerb(const Arguments& arguments) {
     ArgumentReader reader(
         "run", "Runs a scene: in a window where there is a display, else (or with --headless) to a video, pictures and figures.");
@@ -53,6 +69,8 @@ int runVerb(const Arguments& arguments) {
     reader.option("--out", "DIR", "folder that the video, pictures and figures go to", options.out);
     reader.option("--video", "FILE.mp4", "the video's file, instead of DIR/NAME.mp4", options.video);
     reader.option("--stats", "FILE.json", "the figures' file, instead of DIR/stats.json", options.stats);
+    reader.option("--save", "FILE", "the whole state at the run's end, for --resume", options.save);
+    reader.option("--resume", "FILE", "go on from a state that --save wrote, of the same scene", options.resume);
     reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 

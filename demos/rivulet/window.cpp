@@ -21,6 +21,10 @@ int runWindow(const RunOptions& options) {
     auto viewer = Viewer::create(options.scene, options.backend, options.log, window->handle());
     if (!viewer) return report(viewer.error());
     Viewer& v = **viewer;
+    if (!options.resume.empty())
+        if (Status resumed = resumeFrom(options.resume, v.session()); !resumed) return report(resumed.error());
+    if (!options.save.empty())
+        if (Status writable = checkWritable(options.save); !writable) return report(writable.error());
     if (!options.stats.empty()) {
         if (Status writable = checkWritable(options.stats); !writable) return report(writable.error());
         v.record();
@@ -41,6 +45,8 @@ int runWindow(const RunOptions& options) {
     }
     if (!options.stats.empty())
         if (Status written = writeFileAtomic(options.stats, writeRunStats(v.finishRecord())); !written) return report(written.error());
+    if (!options.save.empty())
+        if (Status saved = saveTo(options.save, v.session()); !saved) return report(saved.error());
     return graceful.interrupted() ? kInterrupted : kDone;
 }
 

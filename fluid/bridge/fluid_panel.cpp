@@ -45,6 +45,9 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     fact("particles", stats.lost > 0 ? fmt::format("{}, {} of them lost", world.particles().count, stats.lost)
                                      : fmt::format("{}", world.particles().count));
     fact("compression", fmt::format("{:.2f} % mean, {:.1f} % most", 100 * stats.avgCompression, 100 * stats.maxCompression));
+    if (stats.iterations > 0)
+        fact("pressure", stats.residual ? fmt::format("{:.1f} iterations a substep, {:.3f} % left", stats.iterations, 100 * *stats.residual)
+                                        : fmt::format("{:.1f} iterations a substep", stats.iterations));
     fact("frame", fmt::format("{:.1f} ms, of it simulation {:.1f} ms", state.frameMs, state.simulateMs));
 
     const ImVec4 red(0.98F, 0.55F, 0.45F, 1), amber(0.95F, 0.78F, 0.45F, 1);

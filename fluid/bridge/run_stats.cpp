@@ -104,6 +104,7 @@ void RunRecorder::frame(double simulateMs, double renderMs, double frameMs, std:
     for (const PassTime& pass : simulatePasses) passes_[pass.name].push_back(pass.ms);
     for (const PassTime& pass : renderPasses) passes_["render: " + pass.name].push_back(pass.ms);
     substeps_ += static_cast<uint64_t>(world_->lastSubsteps());
+    iterations_ += world_->stats().iterations * world_->lastSubsteps();
     if (!readBack_) return;
 
     HostParticles now = readParticles(*world_);
@@ -168,6 +169,10 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.nan = late.nan;
     stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));
     stats.substeps = substeps_;
+    stats.iterations = substeps_ > 0 ? iterations_ / static_cast<double>(substeps_) : 0.0;
+    stats.residual = late.residual;
+    stats.origin = world.origin();
+    stats.dropped = world.dropped();
     stats.voxelsRewritten = world.voxelsRewritten();
     const auto offStand = [&](const VoxelField& field) {
         const float spacing = world.particles().spacing;
@@ -232,6 +237,11 @@ std::string writeRunStats(const RunStats& stats) {
     v["standOff"] = stats.standOff ? Json::Value(*stats.standOff) : Json::Value();
     v["voxelsRewritten"] = Json::UInt64(stats.voxelsRewritten);
     v["substeps"] = Json::UInt64(stats.substeps);
+    v["iterations"] = number(stats.iterations);
+    v["residual"] = stats.residual ? number(*stats.residual) : Json::Value();
+    v["origin"] = Json::Value(Json::arrayValue);
+    for (int axis = 0; axis < 3; ++axis) v["origin"].append(number(stats.origin[axis]));
+    v["dropped"] = number(stats.dropped);
     v["dt"]["min"] = number(stats.dtMin);
     v["dt"]["max"] = number(stats.dtMax);
     v["limited"] = Json::Value(Json::arrayValue);

@@ -54,7 +54,11 @@ struct RunStats {
     std::optional<double>
         standOff;  // m, of centres at rest on a mesh beyond half a spacing, the largest of the fields; nothing without a mesh
     uint64_t substeps = 0;
-    double dtMin = 0, dtMax = 0;  // s
+    double iterations = 0;           // of the pressure solver, mean over substeps
+    std::optional<double> residual;  // mean compression that the last one left, as the solver predicts it; nothing: it does not
+    dvec3 origin{0.0};               // m: positions above are relative to it
+    double dropped = 0;              // s asked for that were not simulated
+    double dtMin = 0, dtMax = 0;     // s
     std::vector<std::string> limited;
 };
 std::string writeRunStats(const RunStats& stats);  // one JSON object, ends in a newline
@@ -80,6 +84,7 @@ class RunRecorder {
     std::map<std::string, std::vector<double>> passes_;
     double compressionSum_ = 0, maxCompression_ = 0, wallMs_ = 0;
     uint64_t compressionFrames_ = 0, substeps_ = 0;
+    double iterations_ = 0;         // of all substeps
     std::vector<bool> penetrated_;  // by id
 };
 

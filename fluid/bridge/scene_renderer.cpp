@@ -67,14 +67,14 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     if (out.count == 0) return out;
     Device& device = world.device();
     if (device.backend() == Backend::gl) {
-        out.position = static_cast<unsigned>(particles.position->handle());
+        out.position = static_cast<unsigned>(particles.drawn->handle());
         out.velocity = static_cast<unsigned>(particles.velocity->handle());
         out.id = static_cast<unsigned>(particles.id->handle());
         return out;
     }
     vectors_.resize(out.count);
     ids_.resize(out.count);
-    const std::pair<const Buffer*, gpu::Buffer*> both[] = {{particles.position, &position_}, {particles.velocity, &velocity_}};
+    const std::pair<const Buffer*, gpu::Buffer*> both[] = {{particles.drawn, &position_}, {particles.velocity, &velocity_}};
     for (const auto& [from, to] : both) {
         device.read(*from, std::as_writable_bytes(std::span(vectors_)));
         if (Status s = uploadTo(*to, std::as_bytes(std::span(vectors_))); !s) return s.error();

@@ -237,14 +237,15 @@ void Session::apply(const SceneFile& scene) {
 }
 
 // Steps the world with the solids where they are to be `seconds` from now.
-void Session::advance(double seconds) {
+void Session::advance(double seconds, double deviceMs) {
     FluidInputs inputs;
     inputs.gravity = scene_.fluid.gravity;
-    const double before = world_->time(), then = before + seconds;
+    inputs.deviceMs = deviceMs;
+    const double before = world_->time(), ahead = world_->pending() + seconds, then = before + ahead;
     std::vector<Pose> poses;
     for (const Rigid& r : rigid_) {
         const ColliderParams& collider = scene_.colliders[r.collider];
-        poses.push_back(colliderPose(collider, then, r.turned + double{collider.motion.spin} * seconds));
+        poses.push_back(colliderPose(collider, then, r.turned + double{collider.motion.spin} * ahead));
     }
     std::vector<std::span<const vec3>> shapes;
     for (Deforming& d : deforming_) {
@@ -259,7 +260,8 @@ void Session::advance(double seconds) {
 }
 
 void Session::placeNodes() {
-    for (size_t k = 0; k < rigid_.size(); ++k) solids_.nodes()[rigid_[k].node].local = matrixOf(world_->poses()[k]);
+    const std::vector<Pose> poses = world_->drawnPoses();
+    for (size_t k = 0; k < rigid_.size(); ++k) solids_.nodes()[rigid_[k].node].local = matrixOf(poses[k]);
     for (const Deforming& d : deforming_) {
         Mesh mesh = meshes_[d.node];
         mesh.positions.assign(d.field->positions().begin(), d.field->positions().end());
@@ -268,12 +270,13 @@ void Session::placeNodes() {
     }
 }
 
-double Session::step(double seconds, bool wait) {
+double Session::step(double asked, bool wait, double deviceMs) {
     auto start = std::chrono::steady_clock::now();
+    const double seconds = world_->taken(asked);
     // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
     const bool moving = !rigid_.empty() || !deforming_.empty();
     const int parts = moving && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
-    for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1));
+    for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
     if (wait) world_->device().finish();
     if (moving) placeNodes();
     double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -285,6 +288,28 @@ void Session::reset() {
     world_->reset();
     for (Rigid& r : rigid_) r.turned = 0;
     placeNodes();
+}
+
+void Session::save(WorldState& state) {
+    state.putText("session.params", fixedValues([this](ParamVisitor& v) { scene_.visit(v); }));
+    std::vector<double> turned;
+    for (const Rigid& r : rigid_) turned.push_back(r.turned);
+    state.put<double>("session.turned", turned);
+    world_->save(state);
+}
+
+Status Session::restore(WorldState& state) {
+    Result<std::string> params = state.takeText("session.params");
+    if (!params) return params.error();
+    if (Status same = sameFixedValues(*params, fixedValues([this](ParamVisitor& v) { scene_.visit(v); })); !same) return same;
+    Result<std::vector<double>> turned = state.take<double>("session.turned", rigid_.size());
+    if (!turned) return turned.error();
+    for (double degrees : *turned)
+        if (!std::isfinite(degrees)) return badInput("the saved state's angles make no sense: save it again");
+    if (Status done = world_->restore(state); !done) return done;
+    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].turned = (*turned)[k];
+    placeNodes();
+    return ok();
 }
 
 }  // namespace rivulet

@@ -47,8 +47,13 @@ class Session {
     void apply(const SceneFile& scene);
 
     // One frame. The wall time in ms: with `wait`, until the device has done it; without, only what the call took.
-    double step(double seconds, bool wait);
+    // `deviceMs`: as FluidInputs.
+    double step(double seconds, bool wait, double deviceMs = 0);
     void reset();
+
+    // The world and what the session knows of its solids. Error: as FluidWorld::restore; all is then as it was.
+    void save(WorldState& state);
+    Status restore(WorldState& state);
 
   private:
     struct Rigid {
@@ -68,7 +73,7 @@ class Session {
     Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
     VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
-    void advance(double seconds);
+    void advance(double seconds, double deviceMs);
     void placeNodes();
 
     SceneFile scene_;

@@ -188,11 +188,19 @@ void Viewer::step(double seconds) {
     waiting_ = std::min(waiting_ + std::max(seconds, 0.0), 2 * kStep);
     bool due = waiting_ >= kStep;
     if (due) waiting_ -= kStep;
+    // With fixed steps the world keeps what is left over of frames, and shows what is between: it is told of each frame as it comes.
+    const bool fixed = session_->scene().fluid.fixedStep > 0 && !stepOnce_;
+    if (fixed) {
+        due = seconds > 0;
+        waiting_ = 0;
+    }
     if ((paused_ || !due) && !stepOnce_) return;
     stepOnce_ = false;
-    double ms = session_->step(kStep, false);
+    double ms = session_->step(fixed ? seconds : kStep, false, deviceMs_);
     ++steps_;
     std::vector<PassTime> passes = device_->takeTimes();
+    deviceMs_ = 0;
+    for (const PassTime& pass : passes) deviceMs_ += pass.ms;
     profiler_.add("simulate", passes);
     if (recorder_) recorder_->frame(ms, 0, 1000 * seconds, passes, renderer_->times());
 }

@@ -26,7 +26,8 @@ class Viewer {
     static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard = nullptr);
 
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
-    // machine shows slow water, not fewer pictures. A window of 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.
+    // machine shows slow water, not fewer pictures. With fluid.fixedStep the water has all of the time, but fluid.longestFrame. A window of
+    // 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.
     Status frame(const InputEvents& input, double seconds, GLuint framebuffer);
 
     bool paused() const { return paused_; }
@@ -64,6 +65,7 @@ class Viewer {
     bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
     double waiting_ = 0;  // s on the wall that the water has not been stepped for
     double uiMs_ = 0;
+    double deviceMs_ = 0;  // of the passes last heard of
     std::optional<RunRecorder> recorder_;
     uint64_t steps_ = 0;
 

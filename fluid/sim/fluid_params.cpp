@@ -85,6 +85,19 @@ void FluidParams::visit(ParamVisitor& v) {
     v.value({"gravity", "m/s^2", "acceleration of everything", -1000, 1000}, gravity);
     v.value({"cfl", "", "a step's length, as a share of the time that sound takes across a smoothing length", 0.01, 4, kLog}, cfl);
     v.value({"maxSubsteps", "", "steps in one frame at most; beyond that simulated time slows down", 1, 100000, kLog}, maxSubsteps);
+    v.value({"longestFrame", "s", "of a longer frame only this is simulated: the rest is dropped", 0.001, 10, kLog}, longestFrame);
+    v.value({"fixedStep", "s",
+             "time goes on in whole steps of this length (each of as many substeps as it needs), and pictures show what is between; 0 = as "
+             "frames come",
+             0, 0.1},
+            fixedStep);
+    v.value({"frameBudget", "ms", "what a frame's steps may take; where they would take longer, simulated time slows down; 0 = no limit", 0,
+             1000},
+            frameBudget);
+    vec3 place(origin);
+    v.value({"origin", "m", "where the scene's (0, 0, 0) is in the host's world; all else in a scene is relative to it", -1.0e9, 1.0e9},
+            place);
+    if (place != vec3(origin)) origin = dvec3(place);  // a host's double stays
     v.group({.name = "pbf", .doc = "of method pbf"}, pbf);
     v.group({.name = "dfsph", .doc = "of method dfsph"}, dfsph);
     v.group({.name = "box", .doc = "walls around the fluid; what leaves them is lost"}, box);

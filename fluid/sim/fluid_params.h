@@ -63,8 +63,12 @@ struct FluidParams {
     float soundSpeed = 0.0F;  // m/s; 0 = ten times the fastest speed the scene can fall to
     float stiffness = 20.0F;  // thesis mode: k of (4), m^2/s^2
     vec3 gravity{0.0F, -9.81F, 0.0F};
-    float cfl = 0.4F;        // dt <= cfl * hs / (c0 + v)
-    int maxSubsteps = 1000;  // a frame
+    float cfl = 0.4F;           // dt <= cfl * hs / (c0 + v)
+    int maxSubsteps = 1000;     // a frame
+    float longestFrame = 0.1F;  // s
+    float fixedStep = 0.0F;     // s; 0 = none
+    float frameBudget = 0.0F;   // ms; 0 = none
+    dvec3 origin{0.0};          // m: where the scene's (0, 0, 0) is in the host's world. A scene file gives it as floats
     PbfParams pbf;
     DfsphParams dfsph;
     BoxParams box;

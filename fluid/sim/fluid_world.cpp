@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "fluid/sim/block.h"
+#include "fluid/sim/drawn_positions.h"
 #include "fluid/sim/force.h"
 #include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
+#include "fluid/sim/pace.h"
 #include "fluid/sim/particles.h"
 #include "fluid/sim/solid_passes.h"
 #include "shaders/fluid/stats_row.h"
@@ -21,6 +23,12 @@ namespace {
 constexpr double kMostParticles = 64.0e6;
 // GPU figures come this many frames late at most: speeds may have grown by gravity since.
 constexpr double kLateFrames = 3;
+
+// The longest step that is stable, s, and what says so.
+struct StepLimit {
+    double dt;
+    const char* why;
+};
 
 }  // namespace
 
@@ -43,27 +51,34 @@ struct FluidWorld::Impl {
     };
     std::vector<ForceState> forcePasses;
     SolveFigures solve;
-    double iterations = 0;                                                 // of a frame, all substeps
+    double iterations = 0;  // of this frame's substeps, all of them
+    Pace pace;
+    DrawnPositions drawn;
+    std::vector<Pose> posesBefore;                                         // the rigid solids', before the last fixed step
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};
     vec3 gravity{0.0F};
-    double time = 0;
+    double time = 0, dropped = 0;
     uint64_t frame = 0;
     int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
     float fastestWall = 0;  // m/s, of moving solids, lately
+    bool budgetSaid = false;
+    int lastPiece = 0;  // substeps
 
     Status prepare();
     void fillStart();
     void writeStart();
     float fastestFall() const;
-    double stepLimit(double frameSeconds) const;
+    StepLimit stepLimit(double frameSeconds) const;
+    void fillStep();
+    double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
     void say(const std::string& sentence);
     void findForces();
     bool build(bool fromPositions, double from, double to);
-    // `last`: of its frame.
+    // `last`: of a piece of its frame.
     void substep(double dt, double from, double to, bool last);
-    void gatherStats(int substeps);
+    void gatherStats(int substeps, double until);
 };
 
 FluidWorld::FluidWorld() : impl_(std::make_unique<Impl>()) {}
@@ -71,6 +86,10 @@ FluidWorld::~FluidWorld() = default;
 const FluidParams& FluidWorld::params() const { return impl_->params; }
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 double FluidWorld::time() const { return impl_->time; }
+double FluidWorld::pending() const { return impl_->pace.pending(); }
+double FluidWorld::dropped() const { return impl_->dropped; }
+const dvec3& FluidWorld::origin() const { return impl_->params.origin; }
+void FluidWorld::setOrigin(const dvec3& origin) { impl_->params.origin = origin; }
 int FluidWorld::lastSubsteps() const { return impl_->lastSubsteps; }
 const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
@@ -170,10 +189,14 @@ void FluidWorld::Impl::writeStart() {
     device->writeAll<vec4>(particles.positionNext, position);
     device->writeAll<vec4>(particles.velocityNext, velocity);
     device->writeAll<uint32_t>(particles.id, id);
-    time = 0;
+    time = dropped = 0;
     frame = 0;
     dtMin = dtMax = 0;
-    method->reset();
+    budgetSaid = false;
+    pace.reset();
+    drawn.forget();
+    posesBefore.clear();
+    for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
     figures = std::make_shared<FluidStats>();
     figures->particles = particles.count;
 }
@@ -186,23 +209,24 @@ void FluidWorld::Impl::say(const std::string& sentence) {
 
 // The largest stable step: acoustic CFL or how far the fastest may go, viscous and body-force limits (Monaghan 1992, with the constants of
 // Morris et al. 1997).
-double FluidWorld::Impl::stepLimit(double frameSeconds) const {
+StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
     double fastest = std::max(figures->maxSpeed, double{solids.fastestWall()}) +
                      g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
-    double dt = frameSeconds;
-    if (c0 > 0) {
-        dt = params.cfl * hs / (c0 + fastest);
-    } else {
-        const Method::StepLimit limit = method->stepLimit(params);
-        dt = std::min({dt, limit.longest, double{limit.reach} * params.spacing / std::max(fastest, 1.0e-9)});
-    }
+    StepLimit limit{frameSeconds, "the frame"};
+    const auto atMost = [&limit](double dt, const char* why) {
+        if (dt < limit.dt) limit = {dt, why};
+    };
+    const Method::StepLimit own = method->stepLimit(params);
+    if (c0 > 0) atMost(params.cfl * hs / (c0 + fastest), "the speed of sound (fluid.cfl)");
+    atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
+    atMost(own.longest, "the method's fewest steps a frame (minSubsteps)");
     // Explicit viscosity alone has a limit; an implicit solver has none.
     const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
-    if (nu > 0) dt = std::min(dt, 0.125 * hs * hs / nu);
-    if (g > 0) dt = std::min(dt, 0.25 * std::sqrt(hs / g));
-    return dt;
+    if (nu > 0) atMost(0.125 * hs * hs / nu, "viscosity");
+    if (g > 0) atMost(0.25 * std::sqrt(hs / g), "gravity");
+    return limit;
 }
 
 // Passes of what is on from now; one that cannot be made stays off, and is said.
@@ -262,69 +286,144 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     if (last) method->measure(context);
 }
 
+double FluidWorld::taken(double seconds) {
+    Impl& w = *impl_;
+    if (!(seconds > 0)) return 0;
+    const double most = w.params.longestFrame;
+    if (seconds <= most) return seconds;
+    w.dropped += seconds - most;
+    w.say(fmt::format("a frame was longer than fluid.longestFrame = {} s: what was beyond it has been dropped", w.params.longestFrame));
+    return most;
+}
+
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     Impl& w = *impl_;
     w.device->poll();
     if (!(seconds > 0)) return;
+    const double now = taken(seconds);
     ++w.frame;
     if (w.particles.count == 0) {
-        w.time += seconds;
+        w.time += now;
         return;
     }
+    const FluidParams& p = w.params;
+    const bool cpu = w.device->backend() == Backend::cpu;
+    if (!cpu) w.pace.know(inputs.deviceMs, w.lastSubsteps);
+    const Pace::Frame frame = w.pace.begin(now, double{p.fixedStep}, double{p.frameBudget});
+    const double span = frame.before + seconds;  // until the solids are where they are to be
     w.gravity = inputs.gravity;
-    if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, seconds); !asked) w.say(asked.error().message);
+    if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.say(asked.error().message);
     // Remembered for a while: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
     constexpr double kForget = 0.5;  // s
-    w.fastestWall = std::max(w.fastestWall * static_cast<float>(std::exp(-seconds / kForget)), w.solids.fastestWall());
-    const FluidParams& p = w.params;
-    StepParams& s = w.step;
-    s = StepParams{};
-    s.gravity = vec4(inputs.gravity, 0.0F);
-    s.boxMin = vec4(p.box.min, 1.0F);
-    s.boxMax = vec4(p.box.max, 0.0F);
-    constexpr float kNoWall = 1.0e15F;  // m away
-    for (int k = 0; k < 3; ++k)
-        if (w.traits.periodic[k]) {
-            s.boxMin[k] = -kNoWall;
-            s.boxMax[k] = kNoWall;
-        }
-    s.count = w.particles.count;
-    s.h = p.supportSpacings * p.spacing;
-    s.invH = 1.0F / s.h;
-    s.mass = p.restDensity * p.spacing * p.spacing * p.spacing;
-    s.restDensity = p.restDensity;
-    s.viscosity = p.viscosity;
-    s.contact = 0.5F * p.spacing;
-    s.restitution = p.box.restitution;
-    s.friction = p.collision.friction;
-    s.spacing = p.spacing;
-    s.planeCount = w.solids.planeCount();
-    w.grid->fill(s);
-    w.method->fill(p, w.fastestFall(), s);
-
+    w.fastestWall = std::max(w.fastestWall * static_cast<float>(std::exp(-now / kForget)), w.solids.fastestWall());
     w.findForces();
-    const double limit = w.stepLimit(seconds);
-    int substeps = static_cast<int>(std::min(std::ceil(seconds / limit - 1e-6), 1.0e9));
-    substeps = std::max(substeps, 1);
-    double dt = seconds / substeps;
-    if (substeps > p.maxSubsteps) {
-        substeps = p.maxSubsteps;
-        dt = limit;
-        w.say(fmt::format("a frame needed more than fluid.maxSubsteps = {} steps: simulated time runs slower than asked", p.maxSubsteps));
-    }
     w.iterations = 0;
-    for (int k = 0; k < substeps; ++k) w.substep(dt, k * dt / seconds, (k + 1) * dt / seconds, k + 1 == substeps);
+    double stepped = 0;
+    int substeps = 0, done = 0;
+    bool stop = false;
+    while (done < frame.pieces && !stop) {
+        if (p.fixedStep > 0) {
+            if (Status ready = w.drawn.prepare(*w.device, w.particles.count); !ready) w.say(ready.error().message);
+            w.drawn.remember(*w.device, w.particles);
+            w.posesBefore = w.solids.poses();
+        }
+        stepped += w.stepPiece(frame.length, stepped, span, substeps, stop);
+        ++done;
+        if (done == frame.pieces || stop) break;
+        if (p.fixedStep > 0)
+            stop = !(cpu ? w.pace.mayGoOn(done) : w.pace.mayPlan(substeps + w.lastPiece - 1));
+        else
+            stop = !(cpu ? w.pace.mayGoOn(substeps) : w.pace.mayPlan(substeps));
+    }
     w.lastSubsteps = substeps;
-    w.time += dt * substeps;
-    w.dtMin = w.dtMin == 0 ? dt : std::min(w.dtMin, dt);
-    w.dtMax = std::max(w.dtMax, dt);
-    w.gatherStats(substeps);
+    w.time += stepped;
+    const double lost = w.pace.end(stepped);
+    // What rounding leaves of a whole frame is no loss.
+    if (lost > 1.0e-9 * seconds) {
+        w.dropped += lost;
+        if (substeps < p.maxSubsteps && p.frameBudget > 0 && !w.budgetSaid) {
+            w.budgetSaid = true;
+            w.say(
+                fmt::format("a frame's steps take longer than fluid.frameBudget = {} ms, their length limited by {}: simulated time runs "
+                            "slower than asked",
+                            p.frameBudget, w.stepLimit(frame.length).why));
+        }
+    }
+    if (p.fixedStep > 0)
+        w.drawn.draw(*w.device, w.particles, w.pace.share(), static_cast<float>(std::max(w.lastPiece, 1) + 1) * p.spacing);
+    else
+        w.drawn.forget();
 }
 
-void FluidWorld::Impl::gatherStats(int substeps) {
+// What a step knows beside its length.
+void FluidWorld::Impl::fillStep() {
+    const FluidParams& p = params;
+    step = StepParams{};
+    step.gravity = vec4(gravity, 0.0F);
+    step.boxMin = vec4(p.box.min, 1.0F);
+    step.boxMax = vec4(p.box.max, 0.0F);
+    constexpr float kNoWall = 1.0e15F;  // m away
+    for (int k = 0; k < 3; ++k)
+        if (traits.periodic[k]) {
+            step.boxMin[k] = -kNoWall;
+            step.boxMax[k] = kNoWall;
+        }
+    step.count = particles.count;
+    step.h = p.supportSpacings * p.spacing;
+    step.invH = 1.0F / step.h;
+    step.mass = p.restDensity * p.spacing * p.spacing * p.spacing;
+    step.restDensity = p.restDensity;
+    step.viscosity = p.viscosity;
+    step.contact = 0.5F * p.spacing;
+    step.restitution = p.box.restitution;
+    step.friction = p.collision.friction;
+    step.spacing = p.spacing;
+    step.planeCount = solids.planeCount();
+    grid->fill(step);
+    method->fill(p, fastestFall(), step);
+}
+
+// Steps `length` s on, from `begin` s after the start of a frame whose solids need `span` s for their way. Returns how far it came:
+// less where maxSubsteps or the budget end it, and then nothing more of the frame is to be stepped.
+double FluidWorld::Impl::stepPiece(double length, double begin, double span, int& substeps, bool& stop) {
+    fillStep();
+    const StepLimit limit = stepLimit(length);
+    int count = static_cast<int>(std::min(std::ceil(length / limit.dt - 1e-6), 1.0e9));
+    count = std::max(count, 1);
+    double dt = length / count;
+    if (substeps + count > params.maxSubsteps) {
+        count = params.maxSubsteps - substeps;
+        dt = limit.dt;
+        stop = true;
+        say(
+            fmt::format("a frame needed more than fluid.maxSubsteps = {} steps, their length limited by {}: simulated time runs slower "
+                        "than asked",
+                        params.maxSubsteps, limit.why));
+    }
+    const bool cpu = device->backend() == Backend::cpu;
+    int done = 0;
+    while (done < count) {
+        substep(dt, (begin + done * dt) / span, (begin + (done + 1) * dt) / span, done + 1 == count);
+        ++done;
+        ++substeps;
+        // A fixed step is not left half done.
+        if (!(params.fixedStep > 0) && done < count && !(cpu ? pace.mayGoOn(substeps) : pace.mayPlan(substeps))) {
+            stop = true;
+            break;
+        }
+    }
+    if (done == 0) return 0;
+    lastPiece = done;
+    dtMin = dtMin == 0 ? dt : std::min(dtMin, dt);
+    dtMax = std::max(dtMax, dt);
+    gatherStats(substeps, time + begin + dt * done);
+    return dt * done;
+}
+
+void FluidWorld::Impl::gatherStats(int substeps, double until) {
     device->run(stats, step, {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows}, STATS_THREADS);
     const FluidStats now{.frame = frame,
-                         .time = time,
+                         .time = until,
                          .particles = particles.count,
                          .substeps = substeps,
                          .iterations = iterations / substeps,
@@ -392,14 +491,102 @@ void FluidWorld::setParams(const FluidParams& params) {
     next.box.periodicZ = old.box.periodicZ;
     next.blocks = old.blocks;
     next.collision.walk = old.collision.walk;
+    // A scene gives the origin in floats: it says nothing new of a double that rounds to them.
+    if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
     impl_->params = next;
+}
+
+std::vector<Pose> FluidWorld::drawnPoses() const {
+    const Impl& w = *impl_;
+    std::vector<Pose> poses = w.solids.poses();
+    if (w.params.fixedStep > 0 && w.posesBefore.size() == poses.size())
+        for (size_t k = 0; k < poses.size(); ++k) poses[k] = between(w.posesBefore[k], poses[k], double{w.pace.share()});
+    return poses;
+}
+
+void FluidWorld::save(WorldState& state) {
+    Impl& w = *impl_;
+    w.device->finish();
+    w.device->poll();
+    state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
+    const FluidStats& f = *w.figures;
+    const double numbers[] = {w.time,
+                              w.pace.pending(),
+                              w.dropped,
+                              w.dtMin,
+                              w.dtMax,
+                              f.maxSpeed,
+                              w.fastestWall,
+                              static_cast<double>(w.frame),
+                              w.params.origin.x,
+                              w.params.origin.y,
+                              w.params.origin.z};
+    state.put<double>("world.numbers", numbers);
+    state.putText("world.limited", fmt::format("{}", fmt::join(f.limited, "\n")));
+    w.particles.save(*w.device, state);
+    for (const NamedBuffer& b : w.method->remembered())
+        state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
+    w.solids.save(state);
+}
+
+Status FluidWorld::restore(WorldState& state) {
+    Impl& w = *impl_;
+    // All of it is taken and judged before anything changes.
+    Result<std::string> params = state.takeText("world.params");
+    if (!params) return params.error();
+    if (Status same = sameFixedValues(*params, fixedValues([&w](ParamVisitor& v) { w.params.visit(v); })); !same) return same;
+    Result<std::vector<double>> numbers = state.take<double>("world.numbers", 11);
+    if (!numbers) return numbers.error();
+    const std::vector<double>& n = *numbers;
+    if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
+        std::any_of(n.begin(), n.begin() + 8, [](double v) { return v < 0; }))
+        return badInput("the saved state's numbers make no sense: save it again");
+    Result<std::string> limited = state.takeText("world.limited");
+    if (!limited) return limited.error();
+    Result<Particles::Saved> saved = w.particles.take(state);
+    if (!saved) return saved.error();
+    const std::vector<NamedBuffer> remembered = w.method->remembered();
+    std::vector<std::vector<float>> memory;
+    for (const NamedBuffer& b : remembered) {
+        Result<std::vector<float>> values = state.take<float>(fmt::format("method.{}", b.name), b.buffer->bytes() / sizeof(float));
+        if (!values) return values.error();
+        memory.push_back(std::move(*values));
+    }
+    Result<SolidPasses::Places> places = w.solids.take(state);
+    if (!places) return places.error();
+    if (Status all = state.allTaken(); !all) return all;
+
+    w.writeStart();
+    w.particles.restore(*w.device, *saved);
+    for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
+    w.time = n[0];
+    w.pace.reset(n[1]);
+    w.dropped = n[2];
+    w.dtMin = n[3];
+    w.dtMax = n[4];
+    w.figures->maxSpeed = n[5];
+    w.fastestWall = static_cast<float>(n[6]);
+    w.frame = static_cast<uint64_t>(n[7]);
+    w.params.origin = dvec3(n[8], n[9], n[10]);
+    w.figures->frame = w.frame;
+    w.figures->time = w.time;
+    for (size_t at = 0; at < limited->size();) {
+        const size_t end = std::min(limited->find('\n', at), limited->size());
+        w.figures->limited.push_back(limited->substr(at, end - at));
+        at = end + 1;
+    }
+    return w.solids.restore(*places);
 }
 
 ParticleView FluidWorld::particles() const {
     const Impl& w = *impl_;
-    return {&w.particles.positionNext, &w.particles.velocityNext,
-            &w.particles.id,           w.particles.count,
-            w.params.spacing,          w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
+    return {&w.particles.positionNext,
+            &w.particles.velocityNext,
+            &w.particles.id,
+            w.particles.count,
+            w.params.spacing,
+            w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
+            &w.drawn.positions(w.particles)};
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log) {

@@ -9,6 +9,7 @@
 #include "fluid/sim/fluid_params.h"
 #include "fluid/sim/solids.h"
 #include "fluid/sim/stats.h"
+#include "fluid/sim/world_state.h"
 
 namespace rivulet {
 
@@ -20,6 +21,8 @@ struct ParticleView {
     uint32_t count = 0;                // lost ones last
     float spacing = 0;                 // m
     float mass = 0;                    // kg, of one
+    // Positions at the time that has been asked for: with fluid.fixedStep between the last two steps, one step late; else `position`.
+    const Buffer* drawn = nullptr;  // vec4: as position
 };
 
 // What the scene says to the fluid each frame.
@@ -28,6 +31,8 @@ struct FluidInputs {
     // Where solids are when the frame's time has gone by; on the way there they move evenly. Empty: they stay.
     std::span<const Pose> poses = {};                    // of Solids::rigid
     std::span<const std::span<const vec3>> shapes = {};  // m, the vertices of Solids::deforming
+    // Of a GPU, for fluid.frameBudget: what the passes of a frame took, some frames ago (Device::takeTimes), ms; 0: not known.
+    double deviceMs = 0;
 };
 
 class FluidWorld {
@@ -39,8 +44,11 @@ class FluidWorld {
     FluidWorld& operator=(const FluidWorld&) = delete;
 
     // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits ask. 0 or less: nothing happens.
-    // A frame longer than maxSubsteps can cover advances less, and stats().limited says so: simulated time slows, steps do not grow.
+    // A frame longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited says so: simulated time
+    // slows, steps do not grow. time() + pending() + dropped() is all that was asked for.
     void step(const FluidInputs& inputs, double seconds);
+    // What step would simulate of a frame, s: what is beyond fluid.longestFrame is dropped, and said. For hosts that cut frames.
+    double taken(double seconds);
     void reset();                                         // back to t = 0
     void setParams(const FluidParams&);                   // takes what can change between steps; `fixed` values wait for a new world
     void setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces
@@ -49,10 +57,25 @@ class FluidWorld {
     ParticleView particles() const;
     const FluidStats& stats() const;         // late on a GPU
     double time() const;                     // s simulated
+    double pending() const;                  // s asked for that wait for a whole fluid.fixedStep
+    double dropped() const;                  // s asked for that were not and will not be simulated
     int lastSubsteps() const;                // of the last step(), not late
     const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, short of what was asked
+    std::vector<Pose> drawnPoses() const;    // the same, as ParticleView::drawn
     uint64_t voxelsRewritten() const;        // of deforming solids, since the start
     Device& device() const;
+
+    // Everything in a world is float and relative to its origin, a place (m) in the host's world. Moving it moves all there is.
+    const dvec3& origin() const;
+    void setOrigin(const dvec3& origin);
+    dvec3 toHost(const vec3& p) const { return origin() + dvec3(p); }
+    vec3 fromHost(const dvec3& p) const { return {p - origin()}; }
+
+    // All that the next step depends on, into sections of `state`; bit for bit what a cpu goes on with. Waits for the device.
+    void save(WorldState& state);
+    // Goes on from there, on whichever device. Others who have sections in `state` take theirs before. Error: as WorldState::take and
+    // allTaken; the params that are `fixed` or the solids are others. The world is then as it was.
+    Status restore(WorldState& state);
 
   private:
     FluidWorld();

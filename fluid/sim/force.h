@@ -8,7 +8,8 @@
 
 namespace rivulet {
 
-// Adds to particles.acceleration (m/s^2) of the fluid and of the samples on bodies. What it owns lives in the closure.
+// Adds to particles.acceleration (m/s^2) of the fluid and of the samples on bodies. What it owns lives in the closure; of earlier steps it
+// remembers nothing that its sums depend on: a saved state would lack it.
 using ForcePass = std::function<void(StepContext&)>;
 
 struct ForceRow {

@@ -16,6 +16,12 @@ struct MethodSetup {
     PairTraits traits;
 };
 
+// What a method remembers of earlier steps, by a name of its own: at most 20 letters.
+struct NamedBuffer {
+    const char* name;
+    Buffer* buffer;  // of floats; by id of the particles, or in no particle's order
+};
+
 class Method {
   public:
     virtual ~Method() = default;
@@ -35,8 +41,8 @@ class Method {
     virtual void step(StepContext& context) = 0;
     // Called at a frame's end: makes w of positionNext the density ratio of the positions as they are, where step() left an earlier one.
     virtual void measure(StepContext&) {}
-    // Forgets what it remembers of earlier steps.
-    virtual void reset() {}
+    // All that a step depends on beside particles, params and solids. The world saves it, puts it back, and fills it with 0 at t = 0.
+    virtual std::vector<NamedBuffer> remembered() { return {}; }
 };
 
 struct MethodRow {

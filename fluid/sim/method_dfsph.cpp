@@ -22,7 +22,7 @@ class Dfsph final : public Method {
   public:
     Kernel kick, integrate, begin, end, residual;
     PairKernel density, rate, divergence, push;
-    Buffer solve, remembered, rows;
+    Buffer solve, pressures, rows;  // pressures: remembered, by id
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
     bool doesViscosity() const override { return true; }
@@ -38,11 +38,9 @@ class Dfsph final : public Method {
         s.momentum = p.dfsph.momentum;
     }
 
-    void reset() override { forget_ = true; }
+    std::vector<NamedBuffer> remembered() override { return {{"pressure", &pressures}}; }
 
     void step(StepContext& c) override {
-        if (forget_) c.device.fill(remembered, 0);
-        forget_ = false;
         if (!c.build(false)) return;
         Particles& p = c.particles;
         const DfsphParams& d = c.fluid.dfsph;
@@ -52,11 +50,11 @@ class Dfsph final : public Method {
         if (d.divergence) iterate(c, divergence, d.divergenceTolerance * c.params.dt, 1, plannedDivergence_, divergenceResidual_);
         c.forces();
         c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, p.count);
-        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &remembered, &solve, &p.pressure}, p.count);
+        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &pressures, &solve, &p.pressure}, p.count);
         pushOn(c);
         c.solve.iterations = iterate(c, rate, d.tolerance, 1, planned_, residual_);
         c.solve.residual = residual_->value;
-        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &remembered}, p.count);
+        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &pressures}, p.count);
         c.device.run(
             integrate, c.params,
             {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
@@ -121,7 +119,6 @@ class Dfsph final : public Method {
         return {total / std::max(1.0, double{values[STATS_THREADS]}), true};
     }
 
-    bool forget_ = false;
     int planned_ = 3, plannedDivergence_ = 1;
     std::shared_ptr<Residual> residual_ = std::make_shared<Residual>(), divergenceResidual_ = std::make_shared<Residual>();
 };
@@ -156,7 +153,7 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         *w.kernel = *found;
     }
     const size_t count = setup.count;
-    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->remembered, count * sizeof(float)),
+    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->pressures, count * sizeof(float)),
                                  std::pair(&m->rows, (STATS_THREADS + 1) * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();

@@ -31,4 +31,38 @@ Result<Particles> Particles::create(Device& device, uint32_t count, bool matter)
     return p;
 }
 
+void Particles::save(Device& device, WorldState& state) const {
+    state.put<vec4>("particles.position", device.readAll<vec4>(positionNext, count));
+    state.put<vec4>("particles.velocity", device.readAll<vec4>(velocityNext, count));
+    state.put<uint32_t>("particles.id", device.readAll<uint32_t>(id, count));
+    if (matterOf.bytes() > 0) state.put<vec4>("particles.matter", device.readAll<vec4>(matterOf, count));
+}
+
+Result<Particles::Saved> Particles::take(WorldState& state) const {
+    Saved saved;
+    for (auto [name, values] : {std::pair("particles.position", &saved.position), std::pair("particles.velocity", &saved.velocity),
+                                std::pair("particles.matter", &saved.matter)}) {
+        if (values == &saved.matter && matterOf.bytes() == 0) continue;
+        Result<std::vector<vec4>> taken = state.take<vec4>(name, count);
+        if (!taken) return taken.error();
+        *values = std::move(*taken);
+    }
+    Result<std::vector<uint32_t>> ids = state.take<uint32_t>("particles.id", count);
+    if (!ids) return ids.error();
+    saved.id = std::move(*ids);
+    std::vector<bool> seen(count);  // kernels write to where ids say
+    for (const uint32_t one : saved.id) {
+        if (one >= count || seen[one]) return badInput("the saved state's particles are not each there once: save it again");
+        seen[one] = true;
+    }
+    return saved;
+}
+
+void Particles::restore(Device& device, const Saved& saved) {
+    device.writeAll<vec4>(positionNext, saved.position);
+    device.writeAll<vec4>(velocityNext, saved.velocity);
+    device.writeAll<uint32_t>(id, saved.id);
+    if (matterOf.bytes() > 0) device.writeAll<vec4>(matterOf, saved.matter);
+}
+
 }  // namespace rivulet

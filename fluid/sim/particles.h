@@ -4,6 +4,8 @@
 #pragma once
 
 #include "engine/compute/device.h"
+#include "engine/core/math.h"
+#include "fluid/sim/world_state.h"
 
 namespace rivulet {
 
@@ -23,6 +25,15 @@ struct Particles {
 
     // `matter`: whether particles differ.
     static Result<Particles> create(Device& device, uint32_t count, bool matter = false);
+
+    // The newest state.
+    struct Saved {
+        std::vector<vec4> position, velocity, matter;
+        std::vector<uint32_t> id;
+    };
+    void save(Device& device, WorldState& state) const;
+    Result<Saved> take(WorldState& state) const;  // error: as WorldState::take; ids that are not each there once
+    void restore(Device& device, const Saved& saved);
 };
 
 }  // namespace rivulet

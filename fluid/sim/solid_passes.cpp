@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "fluid/voxel/labels.h"
+#include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
 
@@ -15,11 +16,6 @@ namespace {
 bool sound(const Pose& p) {
     const float length = glm::dot(p.rotation, p.rotation);
     return isFinite(p.position) && std::isfinite(length) && std::abs(length - 1.0F) < 1.0e-3F;
-}
-
-Pose between(const Pose& a, const Pose& b, double share) {
-    const auto t = static_cast<float>(share);
-    return {glm::mix(a.position, b.position, t), glm::normalize(glm::slerp(a.rotation, b.rotation, t))};
 }
 
 // World -> own frame, as rows.
@@ -177,23 +173,74 @@ void SolidPasses::setSurfaces(std::span<const Surface> surfaces) {
 }
 
 Status SolidPasses::reset() {
-    poses_.clear();
-    for (Moving& m : rigid_) {
-        m.from = m.target = m.atStart;
-        poses_.push_back(m.atStart);
-    }
-    for (Moving& m : deforming_) {
-        m.shapeFrom = m.shapeTarget = m.shapeNow = m.shapeAtStart;
+    Places start;
+    for (const Moving& m : rigid_) start.poses.push_back(m.atStart);
+    for (const Moving& m : deforming_) start.shapes.push_back(m.shapeAtStart);
+    return restore(start);
+}
+
+Status SolidPasses::restore(const Places& places) {
+    poses_ = places.poses;
+    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        Moving& m = deforming_[k];
+        m.shapeFrom = m.shapeTarget = m.shapeNow = places.shapes[k];
         m.updates = 1;
         // Twice: the second time nothing has moved, and the wall's velocity is nought again.
-        for (int k = 0; k < 2; ++k) {
+        for (int twice = 0; twice < 2; ++twice) {
             m.updated = 0;
             if (Status done = deform(m, 1.0, 1.0); !done) return done;
         }
     }
     fastestWall_ = 0;
-    voxelsRewritten_ = 0;
+    voxelsRewritten_ = places.voxelsRewritten;
     return ok();
+}
+
+uint64_t SolidPasses::voxelsHash() const {
+    uint64_t hash = 0;
+    const auto add = [&hash](const Field& f) {
+        if (f.field == nullptr) return;
+        const VoxelGrid& grid = f.field->surface;
+        hash = checksum(std::as_bytes(std::span(&grid.size, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(&grid.origin, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(&grid.voxel, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(grid.bits)), hash);
+    };
+    add(static_);
+    for (const Moving& m : rigid_) add(m.on);
+    return hash;
+}
+
+void SolidPasses::save(WorldState& state) const {
+    const uint64_t numbers[] = {voxelsHash(), rigid_.size(), deforming_.size(), voxelsRewritten_};
+    state.put<uint64_t>("solids.numbers", numbers);
+    state.put<Pose>("solids.poses", poses_);
+    for (size_t k = 0; k < deforming_.size(); ++k) state.put<vec3>(fmt::format("solids.shape.{}", k), deforming_[k].shapeNow);
+}
+
+Result<SolidPasses::Places> SolidPasses::take(WorldState& state) const {
+    Result<std::vector<uint64_t>> numbers = state.take<uint64_t>("solids.numbers", 4);
+    if (!numbers) return numbers.error();
+    const std::vector<uint64_t>& n = *numbers;
+    if (n[1] != rigid_.size() || n[2] != deforming_.size())
+        return badInput(fmt::format("the state was saved with {} moving and {} deforming solids, this scene has {} and {}", n[1], n[2],
+                                    rigid_.size(), deforming_.size()));
+    if (n[0] != voxelsHash())
+        return badInput("the state was saved among other voxels: a mesh, its place or its resolution is not what it was");
+    Result<std::vector<Pose>> poses = state.take<Pose>("solids.poses", rigid_.size());
+    if (!poses) return poses.error();
+    Places places{std::move(*poses), {}, n[3]};
+    for (size_t k = 0; k < places.poses.size(); ++k)
+        if (!sound(places.poses[k])) return badInput(fmt::format("the saved pose of moving solid {} is none", k));
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        const std::string name = fmt::format("solids.shape.{}", k);
+        Result<std::vector<vec3>> shape = state.take<vec3>(name, deforming_[k].shapeAtStart.size());
+        if (!shape) return shape.error();
+        if (Status fits = deforming_[k].shape->checkPlaces(*shape); !fits) return fits.error();
+        places.shapes.push_back(std::move(*shape));
+    }
+    return places;
 }
 
 Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) {

@@ -9,6 +9,7 @@
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/particles.h"
 #include "fluid/sim/solids.h"
+#include "fluid/sim/world_state.h"
 #include "shaders/fluid/step_params.h"
 #include "shaders/voxel/motion_params.h"
 
@@ -29,6 +30,17 @@ class SolidPasses {
     void setSurfaces(std::span<const Surface> surfaces);
     // Back to where everything stood at t = 0.
     Status reset();
+
+    // Where everything stands.
+    struct Places {
+        std::vector<Pose> poses;
+        std::vector<std::vector<vec3>> shapes;
+        uint64_t voxelsRewritten = 0;
+    };
+    void save(WorldState& state) const;
+    // Error: as WorldState::take; or the voxels are others than those that it was saved with.
+    Result<Places> take(WorldState& state) const;
+    Status restore(const Places& places);
 
     // Where solids are to be `seconds` from now; empty spans: where they are. Error (badInput): not one pose a rigid solid, not one shape
     // a deforming one, not finite, a vertex beyond its field's reach; then nothing moves.
@@ -66,6 +78,7 @@ class SolidPasses {
     };
 
     Status addMoving(Moving moving);
+    uint64_t voxelsHash() const;  // of what was baked and stays
     Status deform(Moving& moving, double share, double seconds);
     void setMotion(Moving& moving, const Pose& start, const Pose& end, float dt);
 

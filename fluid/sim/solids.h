@@ -33,6 +33,12 @@ struct Pose {
     vec3 toOwn(const vec3& p) const { return glm::conjugate(rotation) * (p - position); }
 };
 
+// The straight way, and the short way round.
+inline Pose between(const Pose& a, const Pose& b, double share) {
+    const auto t = static_cast<float>(share);
+    return {glm::mix(a.position, b.position, t), glm::normalize(glm::slerp(a.rotation, b.rotation, t))};
+}
+
 // Moves as a whole. Its voxels were baked in its own frame and stay there; the frame's origin is what it turns about.
 struct RigidSolid {
     const VoxelField* field = nullptr;  // m; must outlive the world

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,8 @@ struct FluidStats {
     double maxSpeed = 0;               // m/s
     uint32_t speedLimited = 0;         // particles whose speed the step had to limit
     int substeps = 0;                  // of that frame
-    double iterations = 0;             // of the pressure solver, mean of that frame's substeps
-    double residual = 0;               // what it stopped at in the last: mean compression it predicts, a fraction
+    double iterations = 0;             // of the pressure solver, mean over those substeps
+    std::optional<double> residual;    // mean compression that the last of them left, as the solver predicts it; nothing: it does not
     double dtMin = 0, dtMax = 0;       // s, since the start
     std::vector<std::string> limited;  // plain sentences: what the program limited, each once
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace rivulet {
 
 // What a pressure solver did. On a GPU the figures come some frames late.
 struct SolveFigures {
-    double iterations = 0;  // of the last substep
-    double residual = 0;    // what it stopped at: mean compression it predicts, a fraction
+    double iterations = 0;           // of the last substep
+    std::optional<double> residual;  // what it stopped at: mean compression it predicts, a fraction; of a method that knows
 };
 
 struct StepContext {

@@ -1,5 +1,6 @@
 #include "fluid/voxel/packed_array.h"
 
+#include <xxhash.h>
 #include <zstd.h>
 #include <zstd_errors.h>
 
@@ -17,6 +18,8 @@ void require(size_t code) {
 }
 
 }  // namespace
+
+uint64_t checksum(std::span<const std::byte> bytes, uint64_t seed) { return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed); }
 
 struct ArrayPacker::Impl {
     std::unique_ptr<ZSTD_CCtx, size_t (*)(ZSTD_CCtx*)> context{ZSTD_createCCtx(), ZSTD_freeCCtx};

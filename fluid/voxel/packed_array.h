@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +12,9 @@
 #include "engine/core/result.h"
 
 namespace rivulet {
+
+// XXH3, of 64 bits. `seed`: what was summed before.
+uint64_t checksum(std::span<const std::byte> bytes, uint64_t seed = 0);
 
 // The most bytes that `packed` bytes of one zstd frame can hold: a block of at most 128 KiB takes at least 4.
 inline constexpr size_t kMostBytesPerPackedByte = 32768;

@@ -32,7 +32,7 @@ struct VoxelFieldOptions {
     float band = 0;                         // m, at least this wide (and at least kBandVoxels voxels)
     float padding = 0;                      // m, around the bounds: at least the band, so that whoever comes near is inside the grid
     size_t memoryLimit = size_t{1} << 30U;  // bytes the field may take
-    // Of each mesh, 0..kMaxSurface: what wallSurface of shaders/fluid/contact.h says of its walls. Empty: all 0.
+    // Of each mesh, 0..kMaxSurface: what wallSurface of shaders/fluid/contact_walls.h says of its walls. Empty: all 0.
     std::span<const uint8_t> surfaces = {};
 };
 

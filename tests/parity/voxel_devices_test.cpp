@@ -13,24 +13,6 @@ struct Voxels {
     std::vector<uint8_t> surface, solid;
 };
 
-VoxelGrid emptyGrid(const ivec3& size, const vec3& low, float voxel) {
-    VoxelGrid grid;
-    grid.size = size;
-    grid.origin = low;
-    grid.voxel = voxel;
-    grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
-    return grid;
-}
-
-// The grid around a mesh, `resolution` voxels along its longest side.
-VoxelGrid gridAround(const test::Mesh& mesh, int resolution) {
-    Bounds bounds;
-    for (uint32_t index : mesh.indices) bounds.add(mesh.positions[index]);
-    const vec3 size = bounds.size();
-    const float voxel = std::max({size.x, size.y, size.z}) / static_cast<float>(resolution);
-    return emptyGrid(glm::max(ivec3(glm::ceil(size / voxel)), ivec3(1)), bounds.min, voxel);
-}
-
 Voxels onHost(const test::Mesh& mesh, VoxelGrid grid) {
     const MeshView view = mesh.view();
     VoxelGrid solid = grid;
@@ -89,14 +71,14 @@ class VoxelDevices : public ::testing::TestWithParam<const char*> {
 
 TEST_P(VoxelDevices, GeneratedMeshes) {
     const test::Mesh ball = test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 1.0F, 16);
-    for (int resolution : {1, 2, 5, 31, 32, 70}) expectSame(device(), ball, gridAround(ball, resolution), "ball");
-    expectSame(device(), holed(ball, 9), gridAround(ball, 45), "ball with holes");
+    for (int resolution : {1, 2, 5, 31, 32, 70}) expectSame(device(), ball, test::gridAround(ball, resolution), "ball");
+    expectSame(device(), holed(ball, 9), test::gridAround(ball, 45), "ball with holes");
     const test::Mesh box = test::makeBox(vec3(0), vec3(1, 0.5F, 0.25F));
-    for (int resolution : {8, 64, 300}) expectSame(device(), box, gridAround(box, resolution), "box");
+    for (int resolution : {8, 64, 300}) expectSame(device(), box, test::gridAround(box, resolution), "box");
     for (unsigned seed = 1; seed <= 3; ++seed) {
         const test::Mesh jumble = test::makeJumble(seed, 60);
-        expectSame(device(), jumble, gridAround(jumble, 40), "jumble");
-        expectSame(device(), jumble, emptyGrid(ivec3(17, 9, 23), vec3(-0.3F, -0.2F, -0.1F), 0.02F), "part of a jumble");
+        expectSame(device(), jumble, test::gridAround(jumble, 40), "jumble");
+        expectSame(device(), jumble, test::gridOf(ivec3(17, 9, 23), vec3(-0.3F, -0.2F, -0.1F), 0.02F), "part of a jumble");
     }
 }
 
@@ -109,7 +91,7 @@ TEST_P(VoxelDevices, ManyLayersOfOneColumn) {
         for (uint32_t i : box.indices) nested.indices.push_back(i + static_cast<uint32_t>(nested.positions.size()));
         nested.positions.insert(nested.positions.end(), box.positions.begin(), box.positions.end());
     }
-    expectSame(device(), nested, gridAround(nested, 20), "nested boxes");
+    expectSame(device(), nested, test::gridAround(nested, 20), "nested boxes");
 }
 
 TEST_P(VoxelDevices, SharedMeshes) {
@@ -118,14 +100,14 @@ TEST_P(VoxelDevices, SharedMeshes) {
         for (const auto& entry : std::filesystem::directory_iterator(test::sharedMesh(folder))) {
             if (entry.path().extension() != ".obj") continue;
             const test::Mesh mesh = test::readObj(entry.path());
-            expectSame(device(), mesh, gridAround(mesh, 37), entry.path().stem());
+            expectSame(device(), mesh, test::gridAround(mesh, 37), entry.path().stem());
         }
     }
 }
 
 TEST_P(VoxelDevices, BitsThatWereSetStay) {
     const test::Mesh ball = test::makeSphere(vec3(0), 1.0F, 8);
-    VoxelGrid grid = gridAround(ball, 16);
+    VoxelGrid grid = test::gridAround(ball, 16);
     std::fill(grid.bits.begin(), grid.bits.end(), uint8_t{0x11});
     const MeshView view = ball.view();
     VoxelGrid host = grid;

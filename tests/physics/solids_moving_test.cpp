@@ -239,6 +239,7 @@ TEST(MovingSolid, AThinCupHoldsItsWater) {
     ASSERT_TRUE(scene) << scene.error().message;
     scene->fluid.spacing = 0.02F;
     scene->fluid.soundSpeed = 15;
+    scene->fluid.longestFrame = 0.25F;
     ColliderMotion& motion = scene->colliders[0].motion;
     motion.keys.clear();
     for (int k = 0; k <= 10; ++k) {  // tipped to and fro, not so far that it pours
@@ -376,6 +377,7 @@ TEST(MovingSolid, AThinHollowBallKeepsEveryParticle) {
     ASSERT_GT(field.surface.voxel, outer - inner);
     auto device = cpu();
     FluidParams p = fluid(vec3(-1), vec3(1), spacing, vec3(-0.28F, -0.28F, -0.28F), vec3(0.28F, 0.0F, 0.28F));
+    p.longestFrame = 0.25F;
     p.soundSpeed = 15;
     Pose pose{vec3(0), quat(1, 0, 0, 0)};
     Solids solids{.rigid = {{&field, pose}}};

@@ -6,15 +6,6 @@
 namespace rivulet::testing {
 namespace {
 
-// One plain sentence on stderr, nothing on stdout, the given exit code.
-void expectRefusal(const Outcome& outcome, int code, const std::string& mentions) {
-    EXPECT_EQ(outcome.code, code) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_TRUE(outcome.err.starts_with("rivulet: ")) << outcome.err;
-    EXPECT_EQ(linesIn(outcome.err), 1U) << outcome.err;
-    EXPECT_NE(outcome.err.find(mentions), std::string::npos) << "'" << mentions << "' is not in: " << outcome.err;
-}
-
 TEST(ProgramCli, HelpSaysWhatEveryVerbTakes) {
     Outcome top = runProgram({"--help"});
     EXPECT_EQ(top.code, 0);

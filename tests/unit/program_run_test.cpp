@@ -50,6 +50,31 @@ TEST(ProgramRun, HeadlessLeavesVideoPicturesAndFigures) {
     EXPECT_GT(stats["renderMs"]["median"].asDouble(), 0);
 }
 
+// A solver that iterates says how often, and what it left; one that does not says 0 and null.
+TEST(ProgramRun, StatsSayWhatThePressureSolverDid) {
+    Scratch scratch;
+    const std::string scene = scratch.file("small.json", smallScene());
+    const auto stats = [&](const std::string& method) {
+        const Outcome outcome = runProgram({"run", scene, "--no-render", "--backend", "cpu", "--frames", "12", "--stats", "s.json", "--set",
+                                            "fluid.method=" + method, "--set", "fluid.origin=10000,0,-2"},
+                                           in(scratch));
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return readJson(scratch.path() / "s.json");
+    };
+    const Json::Value dfsph = stats("dfsph"), pbf = stats("pbf"), wcsph = stats("wcsph");
+    EXPECT_GE(dfsph["iterations"].asDouble(), 2);
+    EXPECT_LE(dfsph["iterations"].asDouble(), 50);
+    ASSERT_TRUE(dfsph["residual"].isDouble());
+    EXPECT_GE(dfsph["residual"].asDouble(), 0);
+    EXPECT_LT(dfsph["residual"].asDouble(), 0.01);
+    EXPECT_GE(pbf["iterations"].asDouble(), 1);
+    EXPECT_EQ(wcsph["iterations"].asDouble(), 0);
+    EXPECT_TRUE(wcsph["residual"].isNull());
+    EXPECT_EQ(dfsph["origin"][0].asDouble(), 10000);
+    EXPECT_LT(dfsph["centreOfMass"][0].asDouble(), 0.4) << "relative to the origin";
+    EXPECT_EQ(dfsph["dropped"].asDouble(), 0);
+}
+
 TEST(ProgramRun, StatsHoldWhatTheyMust) {
     Scratch scratch;
     std::string scene = scratch.file("small.json", smallScene());
@@ -58,9 +83,9 @@ TEST(ProgramRun, StatsHoldWhatTheyMust) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     Json::Value stats = readJson(scratch.path() / "s.json");
     for (const char* key :
-         {"version",     "scene",      "machine",      "device",  "backend",  "method",  "particles", "frames",       "seconds",
-          "wallSeconds", "simulateMs", "renderMs",     "frameMs", "passes",   "density", "energy",    "centreOfMass", "front",
-          "volume",      "lost",       "penetrations", "nan",     "substeps", "dt",      "limited"})
+         {"version",      "scene",    "machine",  "device", "backend", "method",     "particles",    "frames", "seconds", "wallSeconds",
+          "simulateMs",   "renderMs", "frameMs",  "passes", "density", "energy",     "centreOfMass", "front",  "volume",  "lost",
+          "penetrations", "nan",      "substeps", "dt",     "limited", "iterations", "residual",     "origin", "dropped"})
         EXPECT_TRUE(stats.isMember(key)) << key;
     for (const char* group : {"simulateMs", "renderMs", "frameMs"})
         for (const char* key : {"min", "median", "p95"}) EXPECT_TRUE(stats[group].isMember(key)) << group << "." << key;

@@ -101,4 +101,12 @@ std::string smallScene(const std::string& more) {
 
 size_t linesIn(const std::string& text) { return static_cast<size_t>(std::count(text.begin(), text.end(), '\n')); }
 
+void expectRefusal(const Outcome& outcome, int code, const std::string& mentions) {
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_TRUE(outcome.err.starts_with("rivulet: ")) << outcome.err;
+    EXPECT_EQ(linesIn(outcome.err), 1U) << outcome.err;
+    EXPECT_NE(outcome.err.find(mentions), std::string::npos) << "'" << mentions << "' is not in: " << outcome.err;
+}
+
 }  // namespace rivulet::testing

@@ -48,4 +48,7 @@ std::string smallScene(const std::string& more = {});
 
 size_t linesIn(const std::string& text);
 
+// It ended with `code`, wrote nothing to stdout, and one line to stderr that begins with "rivulet: " and holds `mentions`.
+void expectRefusal(const Outcome& outcome, int code, const std::string& mentions);
+
 }  // namespace rivulet::testing

@@ -7,12 +7,10 @@
 
 #include <optional>
 
-#include "engine/app/context_egl.h"
 #include "engine/core/json.h"
-#include "engine/gpu/debug.h"
-#include "engine/gpu/framebuffer.h"
 #include "engine/ui/param_panel.h"
 #include "fluid/bridge/viewer.h"
+#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet {
@@ -20,15 +18,11 @@ namespace {
 
 // A person at a window of 900 x 1600: the panels lie in its left part, the scene is to be seen at its right. The picture has few pixels,
 // for the sake of machines without a GPU.
-class Person : public ::testing::Test {
+class Person : public testing::FramebufferFixture {
   protected:
     void SetUp() override {
-        Result<ContextEgl> made = ContextEgl::create();
-        ASSERT_TRUE(made) << made.error().message;
-        context_.emplace(std::move(*made));
-        messages_.emplace(Log{});
-        input_.size = kWindow;
-        input_.framebuffer = kPixels;
+        open(kWindow, kPixels);
+        ASSERT_TRUE(context_ && target_.name() != 0);
         input_.mouse = vec2(700, 1200);
         SceneFile scene;
         scene.name = "small";
@@ -38,30 +32,18 @@ class Person : public ::testing::Test {
         auto viewer = Viewer::create(scene, "cpu", {});
         ASSERT_TRUE(viewer) << viewer.error().message;
         viewer_ = std::move(*viewer);
-        gpu::TextureDesc desc;
-        desc.width = input_.framebuffer.x;
-        desc.height = input_.framebuffer.y;
-        auto picture = gpu::Texture::create(desc);
-        ASSERT_TRUE(picture) << picture.error().message;
-        picture_ = std::move(*picture);
-        target_ = gpu::Framebuffer(picture_, nullptr);
     }
 
     void TearDown() override {
-        if (messages_) {
-            EXPECT_EQ(messages_->errors(), 0) << messages_->lastError();
-        }
+        FramebufferFixture::TearDown();
         viewer_.reset();
     }
 
-    // One frame of the input so far; presses, wheel and text hold for one frame.
+    // One frame of the input so far.
     void frame(double seconds = 0) {
         Status drawn = viewer_->frame(input_, seconds, target_.name());
         ASSERT_TRUE(drawn) << drawn.error().message;
-        input_.mouseDelta = input_.wheel = vec2(0.0F);
-        input_.keysPressed.clear();
-        input_.text.clear();
-        for (bool* each : {input_.buttonPressed, input_.buttonReleased}) std::fill(each, each + 3, false);
+        endFrame();
     }
     void key(int which) {
         input_.keysPressed = {which};
@@ -114,13 +96,31 @@ class Person : public ::testing::Test {
     float distance() const { return glm::length(camera().position - camera().target); }
 
     static constexpr ivec2 kWindow{900, 1600}, kPixels{90, 160};
-    std::optional<ContextEgl> context_;
-    std::optional<gpu::DebugMessages> messages_;
     std::unique_ptr<Viewer> viewer_;
-    gpu::Texture picture_;
-    gpu::Framebuffer target_;
-    InputEvents input_;
 };
+
+// With fixed steps the world is told of every frame as it comes, and keeps what is left over.
+TEST_F(Person, FixedStepsTakeFramesAsTheyCome) {
+    SceneFile scene = viewer_->scene();
+    scene.fluid.fixedStep = 0.01F;
+    viewer_->session().apply(scene);
+    FluidWorld& world = viewer_->session().world();
+    double asked = 0;
+    for (const double seconds : {0.004, 0.0071, 0.0235, 0.003}) {
+        frame(seconds);
+        asked += seconds;
+        EXPECT_NEAR(world.time() + world.pending(), asked, 1e-9);
+    }
+    EXPECT_NEAR(world.time(), 0.03, 1e-6);
+    EXPECT_NE(world.particles().drawn, world.particles().position);
+    // A frame after a breakpoint is no more than the longest there may be.
+    frame(10);
+    EXPECT_NEAR(world.time() + world.pending(), asked + 0.1, 1e-6);
+    key(GLFW_KEY_SPACE);
+    const double paused = world.time();
+    frame(0.05);
+    EXPECT_EQ(world.time(), paused);
+}
 
 TEST_F(Person, KeysPauseStepAndReset) {
     for (int i = 0; i < 3; ++i) frame(1.0 / 60);

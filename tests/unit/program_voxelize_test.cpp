@@ -44,14 +44,6 @@ Json::Value readJson(const fs::path& path) {
     return value;
 }
 
-void expectRefusal(const Outcome& outcome, int code, const std::string& mentions) {
-    EXPECT_EQ(outcome.code, code) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_TRUE(outcome.err.starts_with("rivulet: ")) << outcome.err;
-    EXPECT_EQ(linesIn(outcome.err), 1U) << outcome.err;
-    EXPECT_NE(outcome.err.find(mentions), std::string::npos) << "'" << mentions << "' is not in: " << outcome.err;
-}
-
 // Two boxes apart, 2 x 1 x 1 and 1 x 1 x 1, in one mesh 4 long: two materials of known volume.
 TEST(ProgramVoxelize, FileFiguresAndPictures) {
     Scratch scratch;

@@ -10,12 +10,8 @@
 namespace rivulet {
 namespace {
 
+using test::cleaned;
 using test::Mesh;
-
-CleanMesh cleaned(const Mesh& mesh) {
-    const MeshView view = mesh.view();
-    return cleanMesh(std::span(&view, 1));
-}
 
 double signedVolume(const CleanMesh& mesh) {
     double six = 0;

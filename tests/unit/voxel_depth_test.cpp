@@ -16,7 +16,7 @@ namespace {
 using test::Mesh;
 
 // `resolution` voxels on the longest side, the mesh's bounds amid.
-VoxelGrid gridAround(const Mesh& mesh, int resolution) {
+VoxelGrid gridAmid(const Mesh& mesh, int resolution) {
     Bounds bounds;
     for (uint32_t k : mesh.indices) bounds.add(mesh.positions[k]);
     const vec3 size = bounds.size();
@@ -153,7 +153,7 @@ DepthVoxels expectRight(const Mesh& mesh, const VoxelGrid& grid) {
     return own;
 }
 
-DepthVoxels expectRight(const Mesh& mesh, int resolution) { return expectRight(mesh, gridAround(mesh, resolution)); }
+DepthVoxels expectRight(const Mesh& mesh, int resolution) { return expectRight(mesh, gridAmid(mesh, resolution)); }
 
 void append(Mesh& to, const Mesh& from) {
     for (uint32_t k : from.indices) to.indices.push_back(k + static_cast<uint32_t>(to.positions.size()));
@@ -191,7 +191,7 @@ TEST(VoxelDepth, ClosedMeshesAreClosed) {
                 p = vec3(std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y, p.z);
                 p = vec3(p.x, std::cos(b) * p.y - std::sin(b) * p.z, std::sin(b) * p.y + std::cos(b) * p.z);
             }
-            const DepthVoxels made = voxelize(mesh, gridAround(mesh, resolution));
+            const DepthVoxels made = voxelize(mesh, gridAmid(mesh, resolution));
             ASSERT_EQ(made.labels.materials.size(), 1U) << resolution << ' ' << turn;
             const double volume = 2.0 * 1.8 * 1.9, area = 2.0 * (2.0 * 1.8 + 2.0 * 1.9 + 1.8 * 1.9);
             EXPECT_LE(made.labels.materials[0].volume, volume);
@@ -234,7 +234,7 @@ TEST(VoxelDepth, HiddenChannelsLeadOutside) {
 TEST(VoxelDepth, IsWithinTheSurface) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
         const Mesh mesh = test::makeJumble(seed, 140);
-        VoxelGrid grid = gridAround(mesh, 40);
+        VoxelGrid grid = gridAmid(mesh, 40);
         const DepthVoxels made = voxelize(mesh, grid);
         const MeshView view = mesh.view();
         voxelizeSurface(GridTriangles(std::span(&view, 1), grid), grid);
@@ -256,7 +256,7 @@ TEST(VoxelDepth, ThinGridsAndBothOrders) {
 
 TEST(VoxelDepth, SameForAnyNumberOfThreads) {
     const Mesh mesh = test::makeJumble(3, 210);
-    const VoxelGrid grid = gridAround(mesh, 48);
+    const VoxelGrid grid = gridAmid(mesh, 48);
     const DepthVoxels many = voxelize(mesh, grid);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const DepthVoxels alone = voxelize(mesh, grid);
@@ -270,7 +270,7 @@ TEST(VoxelDepth, CanBeCancelled) {
     const auto cpu = makeCpuDevice({}, {});
     int calls = 0;
     const auto stop = [&](double) { return ++calls < 3; };
-    const Result<DepthVoxels> made = voxelizeDepth(*cpu, std::span(&view, 1), gridAround(mesh, 20), {true, stop});
+    const Result<DepthVoxels> made = voxelizeDepth(*cpu, std::span(&view, 1), gridAmid(mesh, 20), {true, stop});
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().fault, Fault::failed);
     EXPECT_NE(made.error().message.find("cancelled"), std::string::npos);
@@ -287,8 +287,8 @@ TEST(VoxelDepth, TheOpenBunnyIsOutsideTheClosedOneIsNot) {
         return static_cast<double>(most) / static_cast<double>(made.surface.count());
     };
     const Mesh bunny = test::readObj(open), whole = test::readObj(closed);
-    EXPECT_LT(largest(voxelize(bunny, gridAround(bunny, 128))), 0.01);
-    EXPECT_GT(largest(voxelize(whole, gridAround(whole, 128))), 0.15);
+    EXPECT_LT(largest(voxelize(bunny, gridAmid(bunny, 128))), 0.01);
+    EXPECT_GT(largest(voxelize(whole, gridAmid(whole, 128))), 0.15);
 }
 
 }  // namespace

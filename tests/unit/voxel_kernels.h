@@ -11,7 +11,7 @@ float walkThesis(const void* params, const uint32_t* bits, const float* a, const
 // In metres; see shaders/voxel/field.h. Returns the distance.
 float fieldAt(const void* params, const float* distance, const float* point, float* gradient);
 bool farFromField(const void* params, const float* distance, const float* a, const float* b);
-// See shaders/fluid/contact.h. Returns the surface.
+// See shaders/fluid/contact_walls.h. Returns the surface.
 uint32_t unpackWall(uint32_t code, float* direction);
 
 }  // namespace rivulet::test

@@ -9,35 +9,23 @@
 #include <optional>
 
 #include "engine/app/capture.h"
-#include "engine/app/context_egl.h"
 #include "engine/app/ui_layer.h"
-#include "engine/gpu/debug.h"
-#include "engine/gpu/framebuffer.h"
 #include "fluid/voxel/voxel_picture.h"
+#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet {
 namespace {
 
-class VoxelPanelTest : public ::testing::Test {
+class VoxelPanelTest : public testing::FramebufferFixture {
   protected:
     void SetUp() override {
-        Result<ContextEgl> made = ContextEgl::create();
-        ASSERT_TRUE(made) << made.error().message;
-        context_.emplace(std::move(*made));
-        messages_.emplace(Log{});
+        open(kWindow, kWindow);
+        ASSERT_TRUE(context_ && target_.name() != 0);
         auto ui = UiLayer::create();
         ASSERT_TRUE(ui) << ui.error().message;
         ui_.emplace(std::move(*ui));
-        input_.size = input_.framebuffer = kWindow;
         input_.mouse = vec2(-100);
-        gpu::TextureDesc desc;
-        desc.width = kWindow.x;
-        desc.height = kWindow.y;
-        auto picture = gpu::Texture::create(desc);
-        ASSERT_TRUE(picture) << picture.error().message;
-        picture_ = std::move(*picture);
-        target_ = gpu::Framebuffer(picture_, nullptr);
         // A ball in a box: between them is one material, in the ball another.
         const test::Mesh box = test::makeBox(vec3(0), vec3(1)), ball = test::makeSphere(vec3(0.5F), 0.25F);
         const MeshView views[] = {box.view(), ball.view()};
@@ -48,12 +36,8 @@ class VoxelPanelTest : public ::testing::Test {
     void TearDown() override {
         panel_.emplace();  // its texture goes before the context
         panel_.reset();
-        if (messages_) {
-            EXPECT_EQ(messages_->errors(), 0) << messages_->lastError();
-        }
-        target_ = gpu::Framebuffer();
-        picture_ = gpu::Texture();
         ui_.reset();
+        FramebufferFixture::TearDown();
     }
 
     void frame(const VoxelField* field, bool unfold) {
@@ -69,8 +53,7 @@ class VoxelPanelTest : public ::testing::Test {
         glClearColor(0.4F, 0.4F, 0.4F, 1);
         glClear(GL_COLOR_BUFFER_BIT);
         ui_->draw();
-        input_.mouseDelta = vec2(0);
-        for (bool* each : {input_.buttonPressed, input_.buttonReleased}) std::fill(each, each + 3, false);
+        endFrame();
     }
     void click(vec2 place) {
         input_.mouse = place;
@@ -104,13 +87,8 @@ class VoxelPanelTest : public ::testing::Test {
     }
 
     static constexpr ivec2 kWindow{340, 780};
-    std::optional<ContextEgl> context_;
-    std::optional<gpu::DebugMessages> messages_;
     std::optional<UiLayer> ui_;
     std::optional<VoxelPanel> panel_{std::in_place};
-    gpu::Texture picture_;
-    gpu::Framebuffer target_;
-    InputEvents input_;
     VoxelField field_;
     std::vector<const VoxelField*> rigid_, deforming_;
     double time_ = 0;

@@ -11,24 +11,9 @@
 namespace rivulet {
 namespace {
 
+using test::cleaned;
+using test::gridAround;
 using test::Mesh;
-
-CleanMesh cleaned(const Mesh& mesh) {
-    const MeshView view = mesh.view();
-    return cleanMesh(std::span(&view, 1));
-}
-
-// `resolution` voxels along the mesh's longest side, its low corner `margin` voxels inside the grid.
-VoxelGrid gridAround(const Mesh& mesh, int resolution, float margin = 0.0F) {
-    Bounds bounds;
-    for (uint32_t index : mesh.indices) bounds.add(mesh.positions[index]);
-    const vec3 size = bounds.size();
-    VoxelGrid grid;
-    grid.voxel = std::max({size.x, size.y, size.z}) / static_cast<float>(resolution);
-    grid.origin = bounds.min - margin * grid.voxel;
-    grid.size = glm::max(ivec3(glm::ceil(size / grid.voxel + 2.0F * margin)), ivec3(1));
-    return grid;
-}
 
 struct Oracle {
     double winding = 0;

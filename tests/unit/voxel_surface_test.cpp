@@ -8,6 +8,8 @@
 namespace rivulet {
 namespace {
 
+using test::gridAround;
+using test::gridOf;
 using test::Mesh;
 using Real = long double;
 
@@ -56,23 +58,6 @@ class Oracle {
     }
     std::vector<Row> rows_;
 };
-
-VoxelGrid gridOf(const ivec3& size, const vec3& low, float voxel) {
-    VoxelGrid grid;
-    grid.size = size;
-    grid.origin = low;
-    grid.voxel = voxel;
-    grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
-    return grid;
-}
-
-VoxelGrid gridAround(const Mesh& mesh, int resolution, float margin = 0.0F) {
-    Bounds bounds;
-    for (uint32_t index : mesh.indices) bounds.add(mesh.positions[index]);
-    const vec3 size = bounds.size();
-    const float voxel = std::max({size.x, size.y, size.z}) / static_cast<float>(resolution);
-    return gridOf(glm::max(ivec3(glm::ceil(size / voxel + 2.0F * margin)), ivec3(1)), bounds.min - margin * voxel, voxel);
-}
 
 void voxelize(const Mesh& mesh, VoxelGrid& grid) {
     const MeshView view = mesh.view();

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "engine/core/mesh_view.h"
+#include "fluid/voxel/mesh_defects.h"
+#include "fluid/voxel/voxel_grid.h"
 
 namespace rivulet::test {
 
@@ -99,6 +101,30 @@ inline Mesh makeJumble(unsigned seed, int count) {
         }
     }
     return m;
+}
+
+inline CleanMesh cleaned(const Mesh& mesh) {
+    const MeshView view = mesh.view();
+    return cleanMesh(std::span(&view, 1));
+}
+
+// No voxel set.
+inline VoxelGrid gridOf(const ivec3& size, const vec3& low, float voxel) {
+    VoxelGrid grid;
+    grid.size = size;
+    grid.origin = low;
+    grid.voxel = voxel;
+    grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
+    return grid;
+}
+
+// `resolution` voxels along the mesh's longest side, its low corner `margin` voxels inside the grid.
+inline VoxelGrid gridAround(const Mesh& mesh, int resolution, float margin = 0.0F) {
+    Bounds bounds;
+    for (uint32_t index : mesh.indices) bounds.add(mesh.positions[index]);
+    const vec3 size = bounds.size();
+    const float voxel = std::max({size.x, size.y, size.z}) / static_cast<float>(resolution);
+    return gridOf(glm::max(ivec3(glm::ceil(size / voxel + 2.0F * margin)), ivec3(1)), bounds.min - margin * voxel, voxel);
 }
 
 inline std::filesystem::path sharedMesh(const std::string& name) {

@@ -65,6 +65,12 @@ namespace collide_deforming_thesis {
 #undef DEFORMING
 #undef MOVING
 #undef THESIS
+namespace remember_unit {
+#include "shaders/fluid/remember.kernel"
+}
+namespace blend_unit {
+#include "shaders/fluid/blend.kernel"
+}
 namespace stats_unit {
 #include "shaders/fluid/stats.kernel"
 }
@@ -88,6 +94,8 @@ std::span<const CpuKernelRow> particleRows() {
         {"fluid/collide", "THESIS=1", RIVULET_UNIT_ISA, collide_thesis::collide, 1024},
         {"fluid/collide", "MOVING=1;THESIS=1", RIVULET_UNIT_ISA, collide_moving_thesis::collide, 1024},
         {"fluid/collide", "DEFORMING=1;MOVING=1;THESIS=1", RIVULET_UNIT_ISA, collide_deforming_thesis::collide, 1024},
+        {"fluid/remember", "", RIVULET_UNIT_ISA, remember_unit::remember, 1024},
+        {"fluid/blend", "", RIVULET_UNIT_ISA, blend_unit::blend, 1024},
         {"fluid/stats", "", RIVULET_UNIT_ISA, stats_unit::stats, 128},
     };
     return rows;

@@ -1,0 +1,47 @@
+// How the time of a host's frames becomes steps: fixed steps and what is left over of them, and the budget that a frame's steps have.
+#pragma once
+
+#include <chrono>
+
+namespace rivulet {
+
+class Pace {
+  public:
+    // A frame as it is stepped: so many pieces of the same length, each with a step limit of its own.
+    struct Frame {
+        int pieces = 0;
+        double length = 0;  // s, of a piece
+        double before = 0;  // s, what was left over of frames before: the frame's end is before + seconds from the newest state
+    };
+    // `seconds` > 0; `fixedStep` s, 0: none, and the whole frame is stepped. `budgetMs`: what its steps may take, 0: as long as they do.
+    Frame begin(double seconds, double fixedStep, double budgetMs);
+    // Whether another piece of work may follow `done` (>= 1) pieces alike; asked between them, on the cpu.
+    bool mayGoOn(int done) const { return budgetMs_ <= 0 || fits(elapsedMs(), done); }
+    // The same before the work, from what is known of earlier frames' substeps: of a GPU, whose work is not done when it has been asked
+    // for.
+    bool mayPlan(int done) const { return budgetMs_ <= 0 || workSubsteps_ <= 0 || (done + 1) * workMs_ <= budgetMs_ * workSubsteps_; }
+    // What a Device took for so many substeps, ms. They need not be the same frame's: a share of each frame is forgotten.
+    void know(double ms, int substeps);
+    // `stepped` s of the frame were. Of fixed steps a part stays for the next frame; whole ones that were not made are dropped.
+    // Returns what was dropped, s.
+    double end(double stepped);
+
+    double pending() const { return pending_; }  // s asked for, and kept for the next frame
+    // 0..1: how far the present lies between the last fixed step's start and its end, seen one step late. 1 without fixed steps.
+    float share() const { return fixedStep_ > 0 ? static_cast<float>(pending_ / fixedStep_) : 1.0F; }
+    void reset(double pending = 0) {
+        pending_ = pending;
+        workMs_ = workSubsteps_ = 0;
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double elapsedMs() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+    bool fits(double ms, int done) const { return ms + ms / done <= budgetMs_; }
+
+    Clock::time_point start_;
+    double budgetMs_ = 0, seconds_ = 0, fixedStep_ = 0, pending_ = 0;
+    double workMs_ = 0, workSubsteps_ = 0;
+};
+
+}  // namespace rivulet

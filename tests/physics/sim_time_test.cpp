@@ -1,0 +1,318 @@
+// Time: frames that are too long, too slow or of another rate than the steps; pictures between two states; worlds far from the origin.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/compute/device_cpu.h"
+#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/pace.h"
+#include "tests/unit/voxel_test_meshes.h"
+
+namespace rivulet {
+namespace {
+
+std::unique_ptr<CpuDevice> cpu() {
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    return makeCpuDevice(rows);
+}
+
+std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, const Solids& solids = {}) {
+    auto world = FluidWorld::create(device, params, solids, {});
+    EXPECT_TRUE(world) << (world ? "" : world.error().message);
+    return world ? std::move(*world) : nullptr;
+}
+
+FluidParams column(const char* method) {
+    FluidParams p;
+    p.method = method;
+    p.spacing = 0.05F;
+    p.blocks = {{vec3(0.0F), vec3(0.4F, 0.6F, 0.4F), vec3(0.0F)}};
+    return p;
+}
+
+std::vector<vec4> byId(FluidWorld& world, const Buffer& buffer) {
+    const uint32_t n = world.particles().count;
+    const std::vector<vec4> values = world.device().readAll<vec4>(buffer, n);
+    const std::vector<uint32_t> id = world.device().readAll<uint32_t>(*world.particles().id, n);
+    std::vector<vec4> sorted(n);
+    for (uint32_t i = 0; i < n; ++i) sorted[id[i]] = values[i];
+    return sorted;
+}
+
+size_t saying(const FluidWorld& world, const char* words) {
+    const auto& all = world.stats().limited;
+    return static_cast<size_t>(
+        std::count_if(all.begin(), all.end(), [&](const std::string& s) { return s.find(words) != std::string::npos; }));
+}
+
+class Time : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Time, testing::Values("wcsph", "pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
+
+// 250 ms after 4 ms frames: no step grows beyond those of a run of 4 ms frames by more than the falling water asks, nothing is lost, nobody
+// jumps further than the fastest of that run could in the time that was taken, and every second asked for is accounted for.
+TEST_P(Time, ASpikeIsNoLargeStep) {
+    auto device = cpu();
+    const FluidParams p = column(GetParam());
+    auto world = make(*device, p), steady = make(*device, p);
+    for (int k = 0; k < 10; ++k) world->step({.gravity = p.gravity}, 0.004);
+    for (int k = 0; k < 35; ++k) steady->step({.gravity = p.gravity}, 0.004);
+    const std::vector<vec4> before = byId(*world, *world->particles().position);
+    world->step({.gravity = p.gravity}, 0.25);
+    const std::vector<vec4> after = byId(*world, *world->particles().position);
+    EXPECT_NEAR(world->time(), 0.04 + 0.1, 1e-8);
+    EXPECT_NEAR(world->dropped(), 0.15, 1e-8);
+    EXPECT_NEAR(steady->time(), 0.14, 1e-12);
+    EXPECT_EQ(saying(*world, "longestFrame"), 1U);
+    EXPECT_EQ(world->stats().lost, 0U);
+    EXPECT_LE(world->stats().dtMax, 1.0 / 60 + 1e-8);
+    EXPECT_GE(world->lastSubsteps(), 6);
+    double furthest = 0;
+    for (size_t i = 0; i < before.size(); ++i) furthest = std::max(furthest, double{glm::length(vec3(after[i] - before[i]))});
+    const double fall = 9.81 * (0.04 * 0.1 + 0.5 * 0.1 * 0.1);
+    EXPECT_LT(furthest, 4 * fall) << "no farther than pressure and gravity throw it in a tenth of a second";
+    EXPECT_GT(furthest, 0.25 * fall);
+    // What a steady run has come to at that time, the spike has, too.
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(world->stats().centreOfMass[axis], steady->stats().centreOfMass[axis], 0.01);
+    EXPECT_NEAR(world->stats().kinetic, steady->stats().kinetic, 0.15 * steady->stats().kinetic);
+
+    // After a breakpoint it goes on; said once.
+    world->step({.gravity = p.gravity}, 10);
+    EXPECT_NEAR(world->time() + world->dropped(), 0.04 + 0.25 + 10, 1e-9);
+    EXPECT_NEAR(world->time(), 0.24, 1e-8);
+    EXPECT_EQ(saying(*world, "longestFrame"), 1U);
+}
+
+// A budget that nothing can keep: one substep a frame, time slows, one sentence says so; without it, it recovers.
+TEST_P(Time, ABudgetSlowsTimeAndNotTheProgram) {
+    auto device = cpu();
+    FluidParams p = column(GetParam());
+    auto world = make(*device, p);
+    for (int k = 0; k < 3; ++k) world->step({.gravity = p.gravity}, 1.0 / 60);
+    EXPECT_NEAR(world->time(), 0.05, 1e-12);
+    EXPECT_EQ(world->dropped(), 0);
+    p.frameBudget = 1.0e-5F;
+    world->setParams(p);
+    for (int k = 0; k < 5; ++k) {
+        world->step({.gravity = p.gravity}, 0.1);
+        EXPECT_EQ(world->lastSubsteps(), 1);
+    }
+    EXPECT_LT(world->time(), 0.05 + 5.0 / 60 + 1e-8);
+    EXPECT_NEAR(world->time() + world->dropped(), 0.55, 1e-9);
+    EXPECT_EQ(saying(*world, "frameBudget"), 1U);
+    p.frameBudget = 0;
+    world->setParams(p);
+    const double slowed = world->time();
+    world->step({.gravity = p.gravity}, 0.1);
+    EXPECT_NEAR(world->time() - slowed, 0.1, 1e-8);
+    EXPECT_GE(world->lastSubsteps(), 6);
+    EXPECT_EQ(world->stats().lost, 0U);
+}
+
+TEST_P(Time, WhatLimitsTheStepIsNamed) {
+    auto device = cpu();
+    FluidParams p = column(GetParam());
+    p.maxSubsteps = 1;
+    p.gravity = vec3(0, -1000, 0);
+    auto world = make(*device, p);
+    for (int k = 0; k < 2; ++k) world->step({.gravity = p.gravity}, 1.0 / 60);
+    EXPECT_GE(saying(*world, "maxSubsteps"), 1U);
+    EXPECT_GE(saying(*world, std::string(GetParam()) == "wcsph" ? "speed of sound" : "fastest"), 1U);
+    EXPECT_NEAR(world->time() + world->dropped(), 2.0 / 60, 1e-12);
+}
+
+// Frames of any length, steps of one: after as much time the same bits, whatever the frames were.
+TEST_P(Time, FixedStepsDoNotDependOnFrames) {
+    auto device = cpu();
+    FluidParams p = column(GetParam());
+    p.fixedStep = 0.01F;
+    auto even = make(*device, p), uneven = make(*device, p);
+    for (int k = 0; k < 12; ++k) even->step({.gravity = p.gravity}, double{p.fixedStep});
+    double asked = 0;
+    for (int k = 0; uneven->time() < 0.1195; ++k) {
+        const double seconds = k % 3 == 0 ? 0.0037 : k % 3 == 1 ? 0.0131 : 0.0009;
+        uneven->step({.gravity = p.gravity}, seconds);
+        asked += seconds;
+        EXPECT_NEAR(uneven->time() + uneven->pending(), asked, 1e-9);
+        EXPECT_LT(uneven->pending(), double{p.fixedStep});
+    }
+    EXPECT_NEAR(even->time(), 0.12, 1e-6);
+    EXPECT_EQ(even->time(), uneven->time());
+    EXPECT_TRUE(byId(*even, *even->particles().position) == byId(*uneven, *uneven->particles().position));
+    EXPECT_TRUE(byId(*even, *even->particles().velocity) == byId(*uneven, *uneven->particles().velocity));
+}
+
+// Uniform motion is drawn where it is, one step late: a straight line in time, to rounding. Order changes every step, ids do not.
+TEST(Drawn, UniformMotionIsDrawnExactly) {
+    auto device = cpu();
+    FluidParams p;
+    p.method = "dfsph";
+    p.spacing = 0.05F;
+    p.gravity = vec3(0.0F);
+    p.fixedStep = 0.02F;
+    const vec3 v(0.5F, 0.3F, -0.4F);
+    p.blocks = {{vec3(0.3F, 0.3F, 0.6F), vec3(0.35F, 0.35F, 0.65F), v}};  // one particle
+    auto world = make(*device, p);
+    ASSERT_EQ(world->particles().count, 1U);
+    EXPECT_EQ(world->particles().drawn, world->particles().position) << "before the first step there is nothing between";
+    const dvec3 from(byId(*world, *world->particles().position)[0]);
+    double asked = 0;
+    for (int k = 0; k < 40; ++k) {
+        const double seconds = 0.004 + 0.003 * (k % 4);
+        world->step({.gravity = p.gravity}, seconds);
+        asked += seconds;
+        if (world->time() == 0) continue;
+        const dvec3 drawn(byId(*world, *world->particles().drawn)[0]);
+        const dvec3 expected = from + dvec3(v) * (asked - double{p.fixedStep});
+        EXPECT_LT(glm::length(drawn - expected), 1e-5) << asked << ": what floats of a position add up to in some hundred substeps";
+    }
+}
+
+// Between two states otherwise: on the straight way of each particle, at the share of the step that has gone by.
+TEST(Drawn, LiesBetweenTheLastTwoStates) {
+    auto device = cpu();
+    FluidParams p = column("wcsph");
+    p.fixedStep = 0.01F;
+    auto world = make(*device, p);
+    for (int k = 0; k < 20; ++k) world->step({.gravity = p.gravity}, double{p.fixedStep});
+    const std::vector<vec4> before = byId(*world, *world->particles().position);
+    world->step({.gravity = p.gravity}, double{p.fixedStep});
+    const std::vector<vec4> after = byId(*world, *world->particles().position);
+    const std::vector<uint32_t> order = device->readAll<uint32_t>(*world->particles().id, world->particles().count);
+    EXPECT_FALSE(std::is_sorted(order.begin(), order.end())) << "else the test would not see an order that is not followed";
+    for (const double share : {0.3, 0.7}) {
+        world->step({.gravity = p.gravity}, share * double{p.fixedStep} - world->pending());
+        const std::vector<vec4> drawn = byId(*world, *world->particles().drawn);
+        double worst = 0, moved = 0;
+        for (size_t i = 0; i < drawn.size(); ++i) {
+            const dvec3 expected = dvec3(before[i]) + share * (dvec3(after[i]) - dvec3(before[i]));
+            worst = std::max(worst, glm::length(dvec3(drawn[i]) - expected));
+            moved = std::max(moved, glm::length(dvec3(after[i]) - dvec3(before[i])));
+        }
+        EXPECT_GT(moved, 1e-3);
+        EXPECT_LT(worst, 1e-6) << share;
+    }
+}
+
+// What wraps round in a periodic box does not fly back across the picture.
+TEST(Drawn, NobodyFliesAcrossAPeriodicBox) {
+    auto device = cpu();
+    FluidParams p;
+    p.method = "dfsph";
+    p.spacing = 0.05F;
+    p.gravity = vec3(0.0F);
+    p.fixedStep = 0.02F;
+    p.box.periodicX = true;
+    p.blocks = {{vec3(0.9F, 0.5F, 0.5F), vec3(0.95F, 0.55F, 0.55F), vec3(1, 0, 0)}};
+    auto world = make(*device, p);
+    bool wrapped = false;
+    for (int k = 0; k < 30; ++k) {
+        world->step({.gravity = p.gravity}, 0.007);
+        const double x = double{byId(*world, *world->particles().position)[0].x},
+                     drawn = double{byId(*world, *world->particles().drawn)[0].x};
+        EXPECT_LT(std::abs(x - drawn), 0.021);
+        wrapped = wrapped || x < 0.3;
+    }
+    EXPECT_TRUE(wrapped);
+}
+
+// A moving wall is where the water is, however frames and steps fall.
+TEST(Drawn, SolidsKeepStepWithFixedSteps) {
+    auto device = cpu();
+    FluidParams p = column("pbf");
+    p.fixedStep = 0.01F;
+    const test::Mesh plate = test::makeBox(vec3(-0.05F, -0.5F, -0.5F), vec3(0.05F, 0.5F, 0.5F));
+    const MeshView view = plate.view();
+    Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 40, .band = 0.1F, .padding = 0.1F});
+    ASSERT_TRUE(field) << field.error().message;
+    const Pose start{vec3(0.7F, 0.5F, 0.5F), quat(1, 0, 0, 0)};
+    auto world = make(*device, p, {.rigid = {{&*field, start}}});
+    const double speed = -1.5;
+    double asked = 0;
+    for (int k = 0; k < 30; ++k) {
+        const double seconds = 0.003 + 0.002 * (k % 3);
+        asked += seconds;
+        Pose pose = start;
+        pose.position.x += static_cast<float>(speed * asked);
+        world->step({.gravity = p.gravity, .poses = std::span(&pose, 1)}, seconds);
+        EXPECT_NEAR(double{world->poses()[0].position.x}, 0.7 + speed * world->time(), 1e-5);
+        if (world->time() > 0) {
+            EXPECT_NEAR(double{world->drawnPoses()[0].position.x}, 0.7 + speed * (asked - double{p.fixedStep}), 1e-5);
+        }
+    }
+}
+
+// On a GPU the budget is kept from what is known late.
+TEST(Pace, PlansFromWhatEarlierFramesTook) {
+    Pace pace;
+    (void)pace.begin(1.0 / 60, 0, 8);
+    EXPECT_TRUE(pace.mayPlan(1000)) << "nothing is known yet";
+    for (int k = 0; k < 50; ++k) pace.know(k % 2 == 0 ? 24 : 0, 6);  // 24 ms that come every second frame: 2 ms a substep
+    (void)pace.begin(1.0 / 60, 0, 8);
+    EXPECT_TRUE(pace.mayPlan(2));
+    EXPECT_TRUE(pace.mayPlan(3));
+    EXPECT_FALSE(pace.mayPlan(4)) << "five of 2 ms are more than 8";
+    for (int k = 0; k < 50; ++k) pace.know(3, 6);
+    EXPECT_TRUE(pace.mayPlan(14)) << "recovers";
+    (void)pace.begin(1.0 / 60, 0, 0);
+    EXPECT_TRUE(pace.mayPlan(100000)) << "no budget";
+}
+
+TEST(Pace, WholeStepsThatWereNotMadeAreDropped) {
+    Pace pace;
+    EXPECT_EQ(pace.begin(0.055, 0.01, 0).pieces, 5);
+    EXPECT_NEAR(pace.end(0.02), 0.03, 1e-12);
+    EXPECT_NEAR(pace.pending(), 0.005, 1e-12);
+    EXPECT_NEAR(double{pace.share()}, 0.5, 1e-6);
+    EXPECT_EQ(pace.begin(0.005, 0.01, 0).pieces, 1) << "rounding does not cost a step";
+    EXPECT_NEAR(pace.end(0.01), 0, 1e-12);
+}
+
+// ---- origin ----
+
+TEST_P(Time, TenKilometresAwayAreTheSameBits) {
+    auto device = cpu();
+    FluidParams p = column(GetParam());
+    auto here = make(*device, p);
+    p.origin = dvec3(10000.1, -3.7, 12345.678901);
+    auto there = make(*device, p);
+    EXPECT_EQ(there->origin(), p.origin);
+    for (int k = 0; k < 12; ++k)
+        for (FluidWorld* world : {here.get(), there.get()}) world->step({.gravity = p.gravity}, 1.0 / 60);
+    const std::vector<vec4> a = byId(*here, *here->particles().position), b = byId(*there, *there->particles().position);
+    EXPECT_TRUE(a == b);
+    EXPECT_TRUE(byId(*here, *here->particles().velocity) == byId(*there, *there->particles().velocity));
+    for (const vec4& x : b) {
+        EXPECT_NEAR(there->toHost(vec3(x)).x - 10000.1, double{x.x}, 1e-11);
+        EXPECT_EQ(there->fromHost(there->toHost(vec3(x))), vec3(x));
+    }
+    there->setParams(column(GetParam()));  // a scene that says nothing of it
+    EXPECT_EQ(there->origin(), dvec3(0.0));
+}
+
+// What float alone would do: v dt below half a float's spacing at 10 km (0.98 mm) does not move anything.
+TEST(Origin, FloatAloneLosesMotionFarAway) {
+    auto device = cpu();
+    const auto moved = [&](const vec3& low, const dvec3& origin) {
+        FluidParams p;
+        p.method = "dfsph";
+        p.spacing = 0.05F;
+        p.gravity = vec3(0.0F);
+        p.origin = origin;
+        p.box.min = low;
+        p.box.max = low + 1.0F;
+        p.blocks = {{low + 0.5F, low + 0.57F, vec3(0.1F, 0, 0)}};
+        auto world = make(*device, p);
+        EXPECT_EQ(world->particles().count, 1U);
+        const double before = double{byId(*world, *world->particles().position)[0].x};
+        for (int k = 0; k < 100; ++k) world->step({.gravity = p.gravity}, 0.004);  // 0.4 mm a step
+        return double{byId(*world, *world->particles().position)[0].x} - before;
+    };
+    EXPECT_EQ(moved(vec3(10000, 0, 0), dvec3(0.0)), 0.0);
+    EXPECT_NEAR(moved(vec3(0.0F), dvec3(10000, 0, 0)), 0.04, 1e-5);
+}
+
+}  // namespace
+}  // namespace rivulet

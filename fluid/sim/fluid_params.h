@@ -12,6 +12,9 @@ namespace rivulet {
 struct BlockParams {
     vec3 min{0.0F}, max{0.0F};
     vec3 velocity{0.0F};
+    std::string liquid = {};  // a row of liquids(); "" = the world's
+    vec3 dye{1.0F};           // linear; white = none
+    float dyeAmount = 20.0F;  // 1/m
     void visit(ParamVisitor& v);
 };
 
@@ -57,6 +60,7 @@ struct FluidParams {
     std::string kernel = "wendland";  // wendland | cubic_spline
     float spacing = 0.02F;            // m
     float supportSpacings = 2.0F;     // h = this * spacing
+    std::string liquid = {};          // a row of liquids(), which then says restDensity and viscosity; "" = as given
     float restDensity = 1000.0F;      // kg/m^3
     float viscosity = 1.0e-6F;        // m^2/s, kinematic
     float artificialViscosity = 0.02F;
@@ -65,6 +69,7 @@ struct FluidParams {
     vec3 gravity{0.0F, -9.81F, 0.0F};
     float cfl = 0.4F;        // dt <= cfl * hs / (c0 + v)
     int maxSubsteps = 1000;  // a frame
+    int maxParticles = 0;    // 0 = what blocks and emitters need
     PbfParams pbf;
     DfsphParams dfsph;
     BoxParams box;

@@ -68,6 +68,11 @@ namespace collide_deforming_thesis {
 namespace stats_unit {
 #include "shaders/fluid/stats.kernel"
 }
+#define MATTER 1
+namespace stats_matter {
+#include "shaders/fluid/stats.kernel"
+}
+#undef MATTER
 
 }  // namespace
 
@@ -89,6 +94,7 @@ std::span<const CpuKernelRow> particleRows() {
         {"fluid/collide", "MOVING=1;THESIS=1", RIVULET_UNIT_ISA, collide_moving_thesis::collide, 1024},
         {"fluid/collide", "DEFORMING=1;MOVING=1;THESIS=1", RIVULET_UNIT_ISA, collide_deforming_thesis::collide, 1024},
         {"fluid/stats", "", RIVULET_UNIT_ISA, stats_unit::stats, 128},
+        {"fluid/stats", "MATTER=1", RIVULET_UNIT_ISA, stats_matter::stats, 128},
     };
     return rows;
 }

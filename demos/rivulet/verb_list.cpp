@@ -5,6 +5,7 @@
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/scene_file.h"
 #include "fluid/render/renderers.h"
+#include "fluid/sim/liquids.h"
 #include "fluid/sim/method.h"
 #include "fluid/voxel/voxelize.h"
 
@@ -26,6 +27,15 @@ void scenes() {
     }
 }
 
+void liquidRows() {
+    for (const LiquidRow& l : liquids().rows) {
+        row(l.name, l.doc);
+        fmt::print("{:<18}{} kg/m^3, {} Pa s, {} N/m, absorbs {}, {}, {} 1/m, refracts {}\n", "", l.density, l.viscosity, l.surfaceTension,
+                   l.absorption.x, l.absorption.y, l.absorption.z, l.refractiveIndex);
+        fmt::print("{:<18}{}\n", "", l.source);
+    }
+}
+
 struct ListRow {
     const char* name;
     const char* doc;
@@ -35,6 +45,7 @@ Table<ListRow> lists() {
     static const ListRow table[] = {
         {"scenes", "scene files that come with the program, or lie in RIVULET_ASSETS", scenes},
         {"methods", "fluid.method: how pressure is found", [] { rows(methods()); }},
+        {"liquids", "fluid.liquid: what flows, in SI units, with its source", liquidRows},
         {"renderers", "look.renderer: how the water is drawn", [] { rows(renderers()); }},
         {"voxels", "voxelize --mode: how a mesh becomes voxels", [] { rows(voxelModes()); }},
         {"devices", "--backend: what can simulate", [] { rows(backends()); }},

@@ -42,8 +42,8 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     fact("simulated by", state.backend);
     fact("drawn by", state.renderer);
     fact("time", fmt::format("{:.2f} s, {} substeps a frame", world.time(), world.lastSubsteps()));
-    fact("particles", stats.lost > 0 ? fmt::format("{}, {} of them lost", world.particles().count, stats.lost)
-                                     : fmt::format("{}", world.particles().count));
+    fact("particles",
+         stats.lost > 0 ? fmt::format("{}, {} of them lost", stats.particles, stats.lost) : fmt::format("{}", stats.particles));
     fact("compression", fmt::format("{:.2f} % mean, {:.1f} % most", 100 * stats.avgCompression, 100 * stats.maxCompression));
     if (stats.iterations > 0)
         fact("pressure", stats.residual ? fmt::format("{:.1f} iterations a substep, {:.3f} % left", stats.iterations, 100 * *stats.residual)

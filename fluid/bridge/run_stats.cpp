@@ -31,6 +31,21 @@ HostParticles readParticles(const FluidWorld& world) {
     host.position = device.readAll<vec4>(*view.position, view.count);
     host.velocity = device.readAll<vec4>(*view.velocity, view.count);
     host.id = device.readAll<uint32_t>(*view.id, view.count);
+    size_t kept = 0;
+    for (size_t i = 0; i < host.position.size(); ++i) {
+        if (host.position[i].w < 0) continue;  // a free slot
+        host.position[kept] = host.position[i];
+        host.velocity[kept] = host.velocity[i];
+        host.id[kept++] = host.id[i];
+    }
+    host.position.resize(kept);
+    host.velocity.resize(kept);
+    host.id.resize(kept);
+    host.mass.assign(kept, view.mass);
+    if (view.matterOf != nullptr) {
+        const std::vector<vec4> matter = device.readAll<vec4>(*view.matterOf, view.count);
+        for (size_t i = 0; i < kept; ++i) host.mass[i] = view.mass / matter[host.id[i]].y;
+    }
     return host;
 }
 
@@ -132,7 +147,6 @@ RunStats RunRecorder::finish(std::string scene) {
     HostParticles now = readParticles(world);
     const FluidStats& late = world.stats();
     const FluidParams& params = world.params();
-    double mass = static_cast<double>(world.particles().mass);
 
     RunStats stats;
     stats.scene = std::move(scene);
@@ -141,7 +155,7 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.device = device.driver.empty() ? device.name : fmt::format("{}, {}", device.name, device.driver);
     stats.backend = backendName(world.device().backend());
     stats.method = params.method;
-    stats.particles = world.particles().count;
+    stats.particles = static_cast<uint32_t>(now.position.size());
     stats.frames = frame_.size();
     stats.seconds = world.time();
     stats.wallSeconds = wallMs_ * 1e-3;
@@ -151,20 +165,34 @@ RunStats RunRecorder::finish(std::string scene) {
     for (const auto& [name, ms] : passes_) stats.passes[name] = spreadOf(ms);
 
     dvec3 sum(0.0);
-    size_t counted = 0;
+    double counted = 0;
     for (size_t i = 0; i < now.position.size(); ++i) {
         vec3 p(now.position[i]), v(now.velocity[i]);
         if (!isFinite(p) || !isFinite(v)) continue;
-        sum += dvec3(p);
+        const auto mass = static_cast<double>(now.mass[i]);
+        sum += mass * dvec3(p);
         stats.kinetic += 0.5 * mass * glm::dot(dvec3(v), dvec3(v));
         stats.potential -= mass * glm::dot(dvec3(params.gravity), dvec3(p));
-        ++counted;
+        counted += mass;
     }
-    if (counted > 0) stats.centreOfMass = sum / static_cast<double>(counted);
+    if (counted > 0) stats.centreOfMass = sum / counted;
     stats.avgCompression = compressionFrames_ > 0 ? compressionSum_ / static_cast<double>(compressionFrames_) : late.avgCompression;
     stats.maxCompression = readBack_ ? maxCompression_ : late.maxCompression;
     stats.front = bulkFront(now.position, params.box, world.particles().spacing);
-    stats.volume = mass * stats.particles / static_cast<double>(params.restDensity);
+    stats.volume = stats.particles * std::pow(static_cast<double>(world.particles().spacing), 3);
+    // What is in the world is counted from positions; what came and went, by the passes that let it.
+    const double volumeOfOne = std::pow(static_cast<double>(world.particles().spacing), 3);
+    const vec3 slack(2 * world.particles().spacing);
+    size_t within = 0;
+    for (const vec4& p : now.position) {
+        const vec3 x(p);
+        within += isFinite(x) && glm::clamp(x, params.box.min - slack, params.box.max + slack) == x ? 1 : 0;
+    }
+    RunStats::Ledger& l = stats.ledger;
+    l.emitted = late.emitted;
+    l.drained = late.drained;
+    l.inWorld = static_cast<double>(within) * volumeOfOne;
+    l.error = l.emitted > 0 ? std::abs(l.emitted - l.inWorld - l.drained) / l.emitted : 0;
     stats.lost = late.lost;
     stats.nan = late.nan;
     stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));
@@ -244,6 +272,11 @@ std::string writeRunStats(const RunStats& stats) {
     v["dropped"] = number(stats.dropped);
     v["dt"]["min"] = number(stats.dtMin);
     v["dt"]["max"] = number(stats.dtMax);
+    const RunStats::Ledger& l = stats.ledger;
+    for (const auto& [name, value] : {std::pair("emitted", l.emitted), std::pair("onSurface", l.onSurface), std::pair("inAir", l.inAir),
+                                      std::pair("inWorld", l.inWorld), std::pair("evaporated", l.evaporated),
+                                      std::pair("drained", l.drained), std::pair("error", l.error)})
+        v["ledger"][name] = number(value);
     v["limited"] = Json::Value(Json::arrayValue);
     for (const std::string& sentence : stats.limited) v["limited"].append(sentence);
 

@@ -24,8 +24,9 @@ Spread spreadOf(std::vector<double> values);
 
 // Particles read back from a Device.
 struct HostParticles {
-    std::vector<vec4> position, velocity;  // as in ParticleView
+    std::vector<vec4> position, velocity;  // as in ParticleView, without free slots
     std::vector<uint32_t> id;
+    std::vector<float> mass;  // kg
 };
 HostParticles readParticles(const FluidWorld& world);
 
@@ -39,7 +40,7 @@ bool inSetVoxel(const VoxelGrid& surface, const vec4& p);
 
 struct RunStats {
     std::string scene, machine, device, backend, method;
-    uint32_t particles = 0;
+    uint32_t particles = 0;  // there at the end, lost ones too
     uint64_t frames = 0;
     double seconds = 0, wallSeconds = 0;  // simulated; on the wall, of all the frames
     Spread simulateMs, renderMs, frameMs;
@@ -60,6 +61,10 @@ struct RunStats {
     double dropped = 0;              // s asked for that were not simulated
     double dtMin = 0, dtMax = 0;     // s
     std::vector<std::string> limited;
+    // m^3; emitted: blocks, and what emitters let out. error: what is not where the rest is, over emitted.
+    struct Ledger {
+        double emitted = 0, onSurface = 0, inAir = 0, inWorld = 0, evaporated = 0, drained = 0, error = 0;
+    } ledger;
 };
 std::string writeRunStats(const RunStats& stats);  // one JSON object, ends in a newline
 

@@ -67,6 +67,17 @@ std::string contradiction(const SceneFile& scene) {
         if (wave.amplitude > 0 && (glm::length(wave.along) < 1.0e-6F || glm::length(wave.direction) < 1.0e-6F))
             return fmt::format("colliders[{}].wave.along and direction must have a length", i);
     }
+    for (size_t i = 0; i < scene.emitters.size(); ++i) {
+        const EmitterParams& emitter = scene.emitters[i];
+        if (const std::string wrong = contradiction(emitter); !wrong.empty()) return fmt::format("emitters[{}].{}", i, wrong);
+        if (emitter.shape == "mesh" && emitter.mesh.empty())
+            return fmt::format("emitters[{}].mesh is empty: name a mesh file, or make its shape a nozzle or a box", i);
+        if (emitter.shape != "mesh" && !inside(emitter.position, box))
+            return fmt::format("emitters[{}].position {} is out of fluid.box from {} to {}", i, shown(emitter.position), shown(box.min),
+                               shown(box.max));
+    }
+    if (scene.look.refractiveIndex != 0 && scene.look.refractiveIndex < 1)
+        return fmt::format("look.refractiveIndex is {}: give 1 or more, or 0 for the liquid's", scene.look.refractiveIndex);
     const vec3 sight = scene.camera.target - scene.camera.position;
     if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must not be where the camera is", shown(scene.camera.target));
     if (glm::length(scene.light.direction) < 1.0e-6F)
@@ -173,13 +184,18 @@ void BackgroundParams::visit(ParamVisitor& v) {
 
 void FluidLookParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> renderers = {"points", "screen_space"};
-    static const std::vector<std::string> colourings = {"speed", "density", "id"};
+    static const std::vector<std::string> colourings = {"speed", "density", "id", "dye"};
     v.choice({.name = "renderer", .doc = "particles as points, or a water surface found on the screen"}, renderer, renderers);
     v.choice({.name = "colourBy", .doc = "what the colour of points shows"}, colourBy, colourings);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
     v.value({"smoothing", "", "reach of the surface's smoothing, in drawn radii; 0 = none", 0, 20}, smoothing);
-    v.value({"absorption", "1/m", "how fast red, green and blue fade in the fluid (Beer-Lambert)", 0, 1000}, absorption);
-    v.value({"refractiveIndex", "", "of the fluid; water 1.333", 1, 3}, refractiveIndex);
+    v.value({"absorption", "1/m",
+             "how fast red, green and blue fade in the fluid (Beer-Lambert); -1 = as the row of fluid.liquid says, or 4.5, 1.1, 0.5 where "
+             "none is named",
+             -1, 1.0e5},
+            absorption);
+    v.value({"refractiveIndex", "", "of the fluid; 0 = as the row of fluid.liquid says, or 1.333 where none is named", 0, 3},
+            refractiveIndex);
 }
 
 void SceneFile::visit(ParamVisitor& v) {
@@ -188,6 +204,8 @@ void SceneFile::visit(ParamVisitor& v) {
     v.value({"duration", "s", "simulated time of a run that is given no other", 0, 3600}, duration);
     v.group({.name = "fluid", .doc = "what flows, and how it is simulated"}, fluid);
     v.list({.name = "colliders", .doc = "what is solid", .fixed = kFixed}, colliders);
+    v.list({.name = "emitters", .doc = "where fluid comes in"}, emitters);
+    v.list({.name = "sinks", .doc = "where fluid goes"}, sinks);
     v.group({.name = "look", .doc = "how the fluid is drawn"}, look);
     v.group({.name = "camera", .doc = "where the picture is taken from"}, camera);
     v.group({.name = "light", .doc = "the sun"}, light);

@@ -8,6 +8,7 @@
 
 #include "engine/core/params.h"
 #include "engine/core/result.h"
+#include "fluid/sim/emitter.h"
 #include "fluid/sim/fluid_params.h"
 
 namespace rivulet {
@@ -88,11 +89,11 @@ struct BackgroundParams {
 // How the fluid is drawn.
 struct FluidLookParams {
     std::string renderer = "screen_space";  // a row of renderers(): points | screen_space
-    std::string colourBy = "speed";         // points: speed | density | id
+    std::string colourBy = "speed";         // points: speed | density | id | dye
     float radiusSpacings = 0.6F;            // drawn radius = this * spacing
     float smoothing = 3.0F;                 // reach of the smoothing, in drawn radii
-    vec3 absorption{4.5F, 1.1F, 0.5F};      // 1/m, Beer-Lambert per channel
-    float refractiveIndex = 1.333F;
+    vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = as the liquid's
+    float refractiveIndex = 0.0F;           // 0 = as the liquid's
     void visit(ParamVisitor& v);
 };
 
@@ -102,6 +103,8 @@ struct SceneFile {
     float duration = 5.0F;  // s
     FluidParams fluid;
     std::vector<ColliderParams> colliders;
+    std::vector<EmitterParams> emitters;
+    std::vector<SinkParams> sinks;
     FluidLookParams look;
     CameraParams camera;
     LightParams light;

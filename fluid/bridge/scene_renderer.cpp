@@ -7,6 +7,7 @@
 
 #include "engine/scene/light.h"
 #include "engine/scene/transform.h"
+#include "fluid/sim/liquids.h"
 
 namespace rivulet {
 namespace {
@@ -17,7 +18,8 @@ Result<ColourBy> colourByName(const std::string& name) {
     if (name == "speed") return ColourBy::speed;
     if (name == "density") return ColourBy::density;
     if (name == "id") return ColourBy::id;
-    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density or id", name));
+    if (name == "dye") return ColourBy::dye;
+    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density, id or dye", name));
 }
 
 Status uploadTo(gpu::Buffer& buffer, std::span<const std::byte> bytes) {
@@ -39,6 +41,22 @@ Camera cameraOf(const CameraParams& params, const Bounds& bounds) {
     camera.fieldOfView = params.fieldOfView;
     camera.setPlanes(bounds);
     return camera;
+}
+
+Result<FluidLook> fluidLookOf(const SceneFile& scene) {
+    Result<ColourBy> colourBy = colourByName(scene.look.colourBy);
+    if (!colourBy) return colourBy.error();
+    FluidLook look{.colourBy = *colourBy, .smoothing = scene.look.smoothing};
+    const LiquidRow* liquid = liquids().find(scene.fluid.liquid);
+    const bool own = glm::all(glm::greaterThanEqual(scene.look.absorption, vec3(0.0F)));
+    if (own) look.absorption = scene.look.absorption;
+    if (!own && liquid != nullptr) look.absorption = liquid->absorption;
+    if (scene.look.refractiveIndex > 0 || liquid != nullptr)
+        look.refractiveIndex = scene.look.refractiveIndex > 0 ? scene.look.refractiveIndex : liquid->refractiveIndex;
+    // What a liquid absorbs least it throws back most; the default is that of the default absorption.
+    const float most = std::max({look.absorption.x, look.absorption.y, look.absorption.z, 1.0e-6F});
+    if (liquid != nullptr) look.scatter = 0.1F * glm::exp(-2.0F * look.absorption / most);
+    return look;
 }
 
 FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time) {
@@ -70,12 +88,15 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         out.position = static_cast<unsigned>(particles.drawn->handle());
         out.velocity = static_cast<unsigned>(particles.velocity->handle());
         out.id = static_cast<unsigned>(particles.id->handle());
+        if (particles.absorption != nullptr) out.absorption = static_cast<unsigned>(particles.absorption->handle());
         return out;
     }
     vectors_.resize(out.count);
     ids_.resize(out.count);
-    const std::pair<const Buffer*, gpu::Buffer*> both[] = {{particles.drawn, &position_}, {particles.velocity, &velocity_}};
-    for (const auto& [from, to] : both) {
+    const std::pair<const Buffer*, gpu::Buffer*> all[] = {
+        {particles.drawn, &position_}, {particles.velocity, &velocity_}, {particles.absorption, &absorption_}};
+    for (const auto& [from, to] : all) {
+        if (from == nullptr) continue;
         device.read(*from, std::as_writable_bytes(std::span(vectors_)));
         if (Status s = uploadTo(*to, std::as_bytes(std::span(vectors_))); !s) return s.error();
     }
@@ -84,6 +105,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.position = position_.name();
     out.velocity = velocity_.name();
     out.id = id_.name();
+    if (particles.absorption != nullptr) out.absorption = absorption_.name();
     return out;
 }
 
@@ -157,8 +179,8 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
 Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings) {
     const RendererRow* row = renderers().find(settings.look.renderer);
     if (row == nullptr) return badInput(fmt::format("look.renderer '{}' is not known", settings.look.renderer));
-    Result<ColourBy> colourBy = colourByName(settings.look.colourBy);
-    if (!colourBy) return colourBy.error();
+    Result<FluidLook> look = fluidLookOf(settings);
+    if (!look) return look.error();
     if (Status s = prepare(view, scene); !s) return s;
 
     std::vector<DrawnMesh> meshes;
@@ -185,17 +207,19 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     gpu::FrameGraph graph(pool_);
     const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());
     const gpu::TextureHandle nothing = graph.importTexture("nothing", nothing_);
-    LightMaps light{nothing, nothing, nothing, settings.look.absorption};
+    LightMaps light{nothing, nothing, nothing, look->absorption};
     if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, light);
     FluidDraw draw;
     draw.view = view;
     draw.fluid = fluid;
-    draw.look = {*colourBy, 3.0F, settings.look.smoothing, settings.look.absorption, settings.look.refractiveIndex};
+    draw.look = *look;
     draw.frame = frame;
     if (fluid.count > 0) {
         draw.position = graph.importBuffer("positions", fluid.position, size_t{fluid.count} * sizeof(vec4));
         draw.velocity = graph.importBuffer("velocities", fluid.velocity, size_t{fluid.count} * sizeof(vec4));
         draw.id = graph.importBuffer("ids", fluid.id, size_t{fluid.count} * sizeof(uint32_t));
+        if (fluid.absorption != 0)
+            draw.absorption = graph.importBuffer("absorptions", fluid.absorption, size_t{fluid.count} * sizeof(vec4));
     }
     if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through

@@ -22,6 +22,8 @@ namespace rivulet {
 
 // The scene file's camera, with planes that hold `bounds` (m, world).
 Camera cameraOf(const CameraParams& params, const Bounds& bounds);
+// How the scene's fluid looks: what it leaves to the liquid, as the liquid's row says. Error (badInput): an unknown colouring.
+Result<FluidLook> fluidLookOf(const SceneFile& scene);
 // A window of 0 pixels gives a view of 1.
 FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time);
 
@@ -32,7 +34,7 @@ class FluidUpload {
     Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look);
 
   private:
-    gpu::Buffer position_, velocity_, id_;
+    gpu::Buffer position_, velocity_, id_, absorption_;
     std::vector<vec4> vectors_;
     std::vector<uint32_t> ids_;
 };

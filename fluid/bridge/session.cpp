@@ -81,11 +81,14 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     }
     for (const Rigid& r : s.rigid_) solids.rigid.push_back({r.field.get(), colliderPose(s.scene_.colliders[r.collider], 0, 0)});
     for (const Deforming& d : s.deforming_) solids.deforming.push_back(d.field.get());
-    auto world = FluidWorld::create(device, s.scene_.fluid, solids, log);
+    Result<Sources> sources = s.importEmitters();
+    if (!sources) return sources.error();
+    auto world = FluidWorld::create(device, s.scene_.fluid, solids, log, *sources);
     if (!world) return Error{fmt::format("{}: {}", s.scene_.name, world.error().message), world.error().fault};
     s.world_ = std::move(*world);
     s.placeNodes();
-    if (s.world_->particles().count == 0) log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", s.scene_.name));
+    if (s.world_->particles().count == 0 && s.scene_.emitters.empty())
+        log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", s.scene_.name));
     return session;
 }
 
@@ -112,6 +115,25 @@ Status Session::importColliders() {
         solids_.add(std::move(node));
     }
     return ok();
+}
+
+Result<Sources> Session::importEmitters() const {
+    Sources sources{.sinks = scene_.sinks, .seconds = static_cast<double>(scene_.duration)};
+    for (const EmitterParams& params : scene_.emitters) {
+        Emitter emitter{params, {}};
+        if (params.shape == "mesh") {
+            Result<std::string> path = findAsset(params.mesh, scene_.folder);
+            if (!path) return path.error();
+            Result<Mesh> mesh = importMesh(*path);
+            if (!mesh) return mesh.error();
+            const mat4 place = params.fitSize > 0 ? Transform::fitted(mesh->bounds(), params.fitSize, params.position, params.rotation)
+                                                  : Transform{params.position, params.rotation, 1.0F}.matrix();
+            const Mesh placed = transformed(*mesh, place);
+            for (const uint32_t i : placed.indices) emitter.triangles.push_back(placed.positions[i]);
+        }
+        sources.emitters.push_back(std::move(emitter));
+    }
+    return sources;
 }
 
 VoxelFieldOptions Session::fieldOptions(const Bounds& bounds, float edge) const {
@@ -214,6 +236,7 @@ bool Session::needsNew(const SceneFile& scene) const {
         const ColliderParams &a = scene_.colliders[i], &b = scene.colliders[i];
         if (a.motion.moves() != b.motion.moves() || (a.wave.amplitude > 0) != (b.wave.amplitude > 0)) return true;
     }
+    if (scene.emitters.size() != scene_.emitters.size() || scene.sinks.size() != scene_.sinks.size()) return true;
     std::vector<uint8_t> surfaceOf;
     (void)surfacesOf(scene, surfaceOf);
     return surfaceOf != surfaceOf_;
@@ -224,6 +247,9 @@ void Session::apply(const SceneFile& scene) {
     scene_ = scene;
     scene_.folder = folder;
     world_->setParams(scene_.fluid);
+    Sources sources{.sinks = scene_.sinks};
+    for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
+    world_->setSources(sources);
     std::vector<uint8_t> unchanged;  // see needsNew
     world_->setSurfaces(surfacesOf(scene_, unchanged));
     for (size_t m = 0; m < meshes_.size() && m < solids_.nodes().size(); ++m) {

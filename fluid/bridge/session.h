@@ -69,6 +69,7 @@ class Session {
 
     Session() = default;
     Status importColliders();
+    Result<Sources> importEmitters() const;
     Status bake(const Log& log);
     Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
     VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;

@@ -13,6 +13,9 @@ struct FluidView {
     unsigned position = 0;  // GL buffer name, vec4: xyz m, w = density / rest density
     unsigned velocity = 0;  // GL buffer name, vec4: xyz m/s
     unsigned id = 0;        // GL buffer name, uint
+    // GL buffer name, vec4: xyz what red, green and blue fade by in its liquid and dye, 1/m; w how much of FluidLook::absorption is to be
+    // added. 0: all particles are alike.
+    unsigned absorption = 0;
     uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
     float radius = 0.01F;   // m, of a drawn sphere
     float spacing = 0.02F;  // m

@@ -11,20 +11,24 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
     const gpu::TextureHandle surface = graph.texture("points surface", size);
     size.format = gpu::Format::rg16f;
     const gpu::TextureHandle normal = graph.texture("points normal", size);
-    graph.pass("points",
-               {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, {d.velocity, Usage::attribute}, {d.id, Usage::attribute}},
-               {surface, normal, d.depth}, [=, &programs](PassContext& c) {
-                   const gpu::Framebuffer& target = c.drawTo({surface, normal}, d.depth);
-                   target.clearColour(vec4(0.0F), 0);
-                   glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
-                   glEnable(GL_DEPTH_TEST);
-                   gpu::Program& p = programs.points;
-                   p.use();
-                   p.set("radius", d.fluid.radius);
-                   p.set("colourBy", static_cast<int>(d.look.colourBy));
-                   p.set("fullSpeed", d.look.fullSpeed);
-                   programs.drawParticles(d.fluid);
-               });
+    std::vector<gpu::Read> reads = {
+        {d.frame, Usage::uniform}, {d.position, Usage::attribute}, {d.velocity, Usage::attribute}, {d.id, Usage::attribute}};
+    if (d.absorption) reads.emplace_back(d.absorption, Usage::attribute);
+    graph.pass("points", reads, {surface, normal, d.depth}, [=, &programs](PassContext& c) {
+        const gpu::Framebuffer& target = c.drawTo({surface, normal}, d.depth);
+        target.clearColour(vec4(0.0F), 0);
+        glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+        glEnable(GL_DEPTH_TEST);
+        gpu::Program& p = programs.points;
+        p.use();
+        p.set("radius", d.fluid.radius);
+        p.set("colourBy", static_cast<int>(d.look.colourBy));
+        p.set("fullSpeed", d.look.fullSpeed);
+        p.set("alike", d.fluid.absorption == 0 ? 1 : 0);
+        p.set("ownAbsorption", d.look.absorption);
+        p.set("dyeDepth", 5.0F * d.fluid.spacing);
+        programs.drawParticles(d.fluid);
+    });
     const gpu::TextureHandle tiles = addTiles(graph, programs, d);
     graph.pass("points shade", {{d.frame, Usage::uniform}, surface, normal, d.depth, tiles, d.shadowSharp, d.shadowSoft, d.waterLight},
                {d.colour}, [=, &programs](PassContext& c) {

@@ -6,7 +6,7 @@ namespace rivulet {
 
 namespace {
 constexpr RendererRow kRows[] = {
-    {"points", "every particle as a lit sphere, coloured by speed, density or id", true, addPoints},
+    {"points", "every particle as a lit sphere, coloured by speed, density, id or dye", true, addPoints},
     {"screen_space", "a water surface from the particles' smoothed depth: refraction, absorption, reflection", false, addScreenSpace},
 };
 constexpr Table<RendererRow> kRenderers{kRows};
@@ -15,9 +15,9 @@ constexpr int kTile = 32;  // pixels
 
 const Table<RendererRow>& renderers() { return kRenderers; }
 
-std::array<gpu::Program*, 13> FluidPrograms::all() {
-    return {&points,    &pointsShade, &occluder, &markTiles,  &depth,           &smooth,        &smoothLast,
-            &thickness, &blur,        &shade,    &lightWater, &lightWaterFirst, &lightWaterLast};
+std::array<gpu::Program*, 15> FluidPrograms::all() {
+    return {&points, &pointsShade, &occluder,   &markTiles,       &depth,          &smooth,       &smoothLast, &thickness,
+            &blur,   &shade,       &lightWater, &lightWaterFirst, &lightWaterLast, &thicknessInk, &shadeInk};
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
@@ -39,6 +39,8 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         {&p.lightWater, Program::create(files, {folder + "light_water.vert", folder + "light_water.frag"})},
         {&p.lightWaterFirst, Program::create(files, {full, folder + "light_water_blur.frag"})},
         {&p.lightWaterLast, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"LAST", "1"}})},
+        {&p.thicknessInk, Program::create(files, {sphere, folder + "thickness.frag"}, {{"INK", "1"}})},
+        {&p.shadeInk, Program::create(files, {tile, folder + "shade.frag"}, {{"INK", "1"}})},
     };
     for (auto& [into, program] : made) {
         if (!program) return program.error();
@@ -59,6 +61,7 @@ void FluidPrograms::drawParticles(const FluidView& fluid) {
     particles.attribute(0, fluid.position, 4, GL_FLOAT, 16, 0, 1);
     particles.attribute(1, fluid.velocity, 4, GL_FLOAT, 16, 0, 1);
     particles.integerAttribute(2, fluid.id, 1, GL_UNSIGNED_INT, 4, 0, 1);
+    particles.attribute(3, fluid.absorption != 0 ? fluid.absorption : fluid.position, 4, GL_FLOAT, 16, 0, 1);
     particles.bind();
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(fluid.count));
 }

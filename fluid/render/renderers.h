@@ -14,20 +14,21 @@
 
 namespace rivulet {
 
-enum class ColourBy { speed, density, id };
+enum class ColourBy { speed, density, id, dye };
 
 struct FluidLook {
-    ColourBy colourBy = ColourBy::speed;  // points
-    float fullSpeed = 3.0F;               // m/s: the end of the colour map
-    float smoothing = 2.5F;               // reach of the smoothing, in drawn radii
-    vec3 absorption{4.5F, 1.1F, 0.5F};    // 1/m, Beer-Lambert per channel
-    float refractiveIndex = 1.333F;       // > 1
+    ColourBy colourBy = ColourBy::speed;   // points
+    float fullSpeed = 3.0F;                // m/s: the end of the colour map
+    float smoothing = 2.5F;                // reach of the smoothing, in drawn radii
+    vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
+    vec3 scatter{0.008F, 0.060F, 0.085F};  // what deep water throws back
+    float refractiveIndex = 1.333F;        // > 1
 };
 
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
     gpu::Program points, pointsShade, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
-        lightWaterLast;
+        lightWaterLast, thicknessInk, shadeInk;  // Ink: particles differ in absorption
     gpu::VertexArray particles, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
@@ -36,7 +37,7 @@ struct FluidPrograms {
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 
   private:
-    std::array<gpu::Program*, 13> all();
+    std::array<gpu::Program*, 15> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.
@@ -45,7 +46,7 @@ struct FluidDraw {
     FluidView fluid;
     FluidLook look;
     gpu::BufferHandle frame;                                 // a FrameParams (shaders/render/frame.h)
-    gpu::BufferHandle position, velocity, id;                // fluid's, imported
+    gpu::BufferHandle position, velocity, id, absorption;    // fluid's, imported
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps

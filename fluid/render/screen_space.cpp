@@ -112,32 +112,50 @@ TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidD
     return depth;
 }
 
-TextureHandle addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
+// Thickness, and where particles differ in absorption what each channel fades by.
+struct Thick {
+    TextureHandle thickness, depths;
+};
+Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
     const TextureDesc size{.width = (d.view.width + kThicknessScale - 1) / kThicknessScale,
                            .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
                            .format = Format::rg16f};
-    TextureHandle thickness = graph.texture("thickness", size);
-    graph.pass("thickness", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth}, {thickness},
-               [=, &programs](PassContext& c) {
-                   c.drawTo({thickness}).clearColour(vec4(0.0F));
-                   useFrame(c, d);
-                   glEnable(GL_BLEND);
-                   glBlendFunc(GL_ONE, GL_ONE);
-                   Program& p = programs.thickness;
-                   p.use();
-                   p.set("radius", d.fluid.radius);
-                   p.set("spacing", d.fluid.spacing);
-                   p.set("scale", kThicknessScale);
-                   p.texture("sceneDepth", 0, c.texture(d.depth));
-                   programs.drawParticles(d.fluid);
-               });
-    for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
-        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F,
-                              [=](Program& p, const PassContext&) {
-                                  p.set("axis", axis);
-                                  p.set("reach", kThicknessBlur);
-                              });
-    return thickness;
+    const bool ink = d.fluid.absorption != 0;
+    TextureDesc inkSize = size;
+    inkSize.format = Format::rgba16f;
+    TextureHandle thickness = graph.texture("thickness", size), depths;
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth};
+    std::vector<gpu::Write> writes = {thickness};
+    if (ink) {
+        depths = graph.texture("ink depths", inkSize);
+        reads.emplace_back(d.absorption, Usage::attribute);
+        writes.emplace_back(depths);
+    }
+    graph.pass("thickness", reads, writes, [=, &programs](PassContext& c) {
+        const gpu::Framebuffer& target = ink ? c.drawTo({thickness, depths}) : c.drawTo({thickness});
+        target.clearColour(vec4(0.0F), 0);
+        if (ink) target.clearColour(vec4(0.0F), 1);
+        useFrame(c, d);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE);
+        Program& p = ink ? programs.thicknessInk : programs.thickness;
+        p.use();
+        if (ink) p.set("ownAbsorption", d.look.absorption);
+        p.set("radius", d.fluid.radius);
+        p.set("spacing", d.fluid.spacing);
+        p.set("scale", kThicknessScale);
+        p.texture("sceneDepth", 0, c.texture(d.depth));
+        programs.drawParticles(d.fluid);
+    });
+    for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
+        const auto setup = [=](Program& p, const PassContext&) {
+            p.set("axis", axis);
+            p.set("reach", kThicknessBlur);
+        };
+        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
+        if (ink) depths = addFilter(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
+    }
+    return {thickness, depths};
 }
 
 }  // namespace
@@ -182,31 +200,37 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     if (d.fluid.count == 0) return {d.colour, {}};
     const TextureHandle tiles = addTiles(graph, programs, d);
     const TextureHandle depth = addSmooth(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
-    const TextureHandle thickness = addThickness(graph, programs, d, tiles);
+    const Thick made = addThickness(graph, programs, d, tiles);
+    const TextureHandle thick = made.thickness, fades = made.depths;
+    const bool ink = d.fluid.absorption != 0;
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
     graph.pass("copy scene", {{d.colour, Usage::copy}}, {{colour, Usage::copy}}, [=](PassContext& c) {
         const gpu::Texture &from = c.texture(d.colour), &to = c.texture(colour);
         glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
     });
-    graph.pass("shade", {{d.frame, Usage::uniform}, tiles, d.colour, d.depth, depth, thickness, d.shadowSharp, d.shadowSoft, d.waterLight},
-               {colour}, [=, &programs](PassContext& c) {
-                   c.drawTo({colour});
-                   useFrame(c, d);
-                   Program& p = programs.shade;
-                   p.use();
-                   p.texture("sceneColour", 0, c.texture(d.colour));
-                   p.texture("sceneDepth", 1, c.texture(d.depth));
-                   p.texture("fluidDepth", 2, c.texture(depth));
-                   p.texture("thickness", 3, c.texture(thickness));
-                   p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
-                   p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
-                   p.texture("waterLight", 6, c.texture(d.waterLight));
-                   p.set("waterAbsorption", d.look.absorption);
-                   p.set("radius", d.fluid.radius);
-                   p.set("absorption", d.look.absorption);
-                   p.set("refractiveIndex", d.look.refractiveIndex);
-                   programs.drawTiles(p, c.texture(tiles), 7);
-               });
+    std::vector<gpu::Read> reads = {
+        {d.frame, Usage::uniform}, tiles, d.colour, d.depth, depth, thick, d.shadowSharp, d.shadowSoft, d.waterLight};
+    if (ink) reads.emplace_back(fades);
+    graph.pass("shade", reads, {colour}, [=, &programs](PassContext& c) {
+        c.drawTo({colour});
+        useFrame(c, d);
+        Program& p = ink ? programs.shadeInk : programs.shade;
+        p.use();
+        p.texture("sceneColour", 0, c.texture(d.colour));
+        p.texture("sceneDepth", 1, c.texture(d.depth));
+        p.texture("fluidDepth", 2, c.texture(depth));
+        p.texture("thickness", 3, c.texture(thick));
+        if (ink) p.texture("depths", 8, c.texture(fades));
+        p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
+        p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
+        p.texture("waterLight", 6, c.texture(d.waterLight));
+        p.set("waterAbsorption", d.look.absorption);
+        p.set("radius", d.fluid.radius);
+        if (!ink) p.set("absorption", d.look.absorption);
+        if (!ink) p.set("scatter", d.look.scatter);
+        p.set("refractiveIndex", d.look.refractiveIndex);
+        programs.drawTiles(p, c.texture(tiles), 7);
+    });
     return {colour, depth};
 }
 

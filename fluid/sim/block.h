@@ -8,8 +8,9 @@
 namespace rivulet {
 
 struct NewParticle {
-    vec3 position;  // m
-    vec3 velocity;  // m/s
+    vec3 position;       // m
+    vec3 velocity;       // m/s
+    uint32_t block = 0;  // which one it is of
 };
 
 // How many particles a block holds, without making them: a block too large for memory is refused before it is built.

@@ -1,5 +1,6 @@
 #include "fluid/sim/fluid_params.h"
 
+#include "fluid/sim/liquids.h"
 #include "fluid/sim/method.h"
 
 namespace rivulet {
@@ -15,6 +16,9 @@ void BlockParams::visit(ParamVisitor& v) {
     v.value({"min", "m", "low corner", -kFar, kFar, kLinear, kFixed}, min);
     v.value({"max", "m", "high corner", -kFar, kFar, kLinear, kFixed}, max);
     v.value({"velocity", "m/s", "at the start", -kFast, kFast, kLinear, kFixed}, velocity);
+    v.value({.name = "liquid", .doc = "what it is of, a row of rivulet list liquids; empty = as fluid.liquid", .fixed = kFixed}, liquid);
+    v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
+    v.value({"dyeAmount", "1/m", "how much dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed}, dyeAmount);
 }
 
 void BoxParams::visit(ParamVisitor& v) {
@@ -73,6 +77,11 @@ void FluidParams::visit(ParamVisitor& v) {
     v.value(
         {"supportSpacings", "", "reach of a particle (support radius), in spacings: more is smoother and slower", 1.5, 4, kLinear, kFixed},
         supportSpacings);
+    v.value(
+        {.name = "liquid",
+         .doc = "a row of rivulet list liquids, whose density and viscosity hold instead of restDensity and viscosity; empty = these hold",
+         .fixed = kFixed},
+        liquid);
     v.value({"restDensity", "kg/m^3", "density at rest; water 1000", 1, 20000, kLog}, restDensity);
     v.value({"viscosity", "m^2/s", "kinematic viscosity; water 1e-6, honey about 5e-3", 0, 10, kLog}, viscosity);
     v.value({"artificialViscosity", "", "damping between particles that approach (Monaghan's alpha): 0.02 keeps a free surface calm", 0, 1},
@@ -98,6 +107,10 @@ void FluidParams::visit(ParamVisitor& v) {
     v.value({"origin", "m", "where the scene's (0, 0, 0) is in the host's world; all else in a scene is relative to it", -1.0e9, 1.0e9},
             place);
     if (place != vec3(origin)) origin = dvec3(place);  // a host's double stays
+    v.value({"maxParticles", "",
+             "room for so many; what more would come in waits. 0 = what blocks hold and emitters let out in the scene's duration", 0,
+             64.0e6, kLog, kFixed},
+            maxParticles);
     v.group({.name = "pbf", .doc = "of method pbf"}, pbf);
     v.group({.name = "dfsph", .doc = "of method dfsph"}, dfsph);
     v.group({.name = "box", .doc = "walls around the fluid; what leaves them is lost"}, box);

@@ -12,6 +12,9 @@ namespace rivulet {
 struct BlockParams {
     vec3 min{0.0F}, max{0.0F};
     vec3 velocity{0.0F};
+    std::string liquid = {};  // a row of liquids(); "" = the world's
+    vec3 dye{1.0F};           // linear; white = none
+    float dyeAmount = 20.0F;  // 1/m
     void visit(ParamVisitor& v);
 };
 
@@ -57,6 +60,7 @@ struct FluidParams {
     std::string kernel = "wendland";  // wendland | cubic_spline
     float spacing = 0.02F;            // m
     float supportSpacings = 2.0F;     // h = this * spacing
+    std::string liquid = {};          // a row of liquids(), which then says restDensity and viscosity; "" = as given
     float restDensity = 1000.0F;      // kg/m^3
     float viscosity = 1.0e-6F;        // m^2/s, kinematic
     float artificialViscosity = 0.02F;
@@ -69,6 +73,7 @@ struct FluidParams {
     float fixedStep = 0.0F;     // s; 0 = none
     float frameBudget = 0.0F;   // ms; 0 = none
     dvec3 origin{0.0};          // m: where the scene's (0, 0, 0) is in the host's world. A scene file gives it as floats
+    int maxParticles = 0;       // 0 = what blocks and emitters need
     PbfParams pbf;
     DfsphParams dfsph;
     BoxParams box;

@@ -8,11 +8,13 @@
 #include "fluid/sim/block.h"
 #include "fluid/sim/drawn_positions.h"
 #include "fluid/sim/force.h"
+#include "fluid/sim/liquids.h"
 #include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/pace.h"
 #include "fluid/sim/particles.h"
 #include "fluid/sim/solid_passes.h"
+#include "fluid/sim/source_passes.h"
 #include "shaders/fluid/stats_row.h"
 
 namespace rivulet {
@@ -41,8 +43,13 @@ struct FluidWorld::Impl {
     Particles particles;
     std::vector<NewParticle> start;
     SolidPasses solids;
+    Sources asked;  // emitters and sinks
+    SourcePasses sources;
+    uint32_t slots = 0;     // of particles: those of the blocks and room for more
+    bool coloured = false;  // particles differ to the eye
+    float mostViscous = 0;  // m^2/s, of the world's liquids
     Buffer statsRows, corner;
-    Kernel stats, wrap, wrapFromPositions, gatherMatter;
+    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
     PairTraits traits;
     struct ForceState {
         const ForceRow* row;
@@ -59,6 +66,7 @@ struct FluidWorld::Impl {
     StepParams step{};
     vec3 gravity{0.0F};
     double time = 0, dropped = 0;
+    double frameLength = 0;  // s, of the frame under way: what the substeps' shares are of
     uint64_t frame = 0;
     int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
@@ -68,7 +76,10 @@ struct FluidWorld::Impl {
 
     Status prepare();
     void fillStart();
+    Status findSlots();
+    void findLiquids();
     void writeStart();
+    void gatherColours();
     float fastestFall() const;
     StepLimit stepLimit(double frameSeconds) const;
     void fillStep();
@@ -108,6 +119,13 @@ float FluidWorld::Impl::fastestFall() const {
         }
         fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
     }
+    for (const Emitter& e : asked.emitters) {
+        float fall = 0.0F;
+        for (int k = 0; k < 3; ++k)
+            fall += std::abs(gravity[k]) *
+                    (gravity[k] < 0 ? e.params.position[k] - params.box.min[k] : params.box.max[k] - e.params.position[k]);
+        fastest = std::max(fastest, std::sqrt(2.0F * std::max(fall, 0.0F) + sources.fastest() * sources.fastest()));
+    }
     fastest = std::max(fastest, fastestWall);
     // Still water without gravity has no speed of its own: the length it could be pushed over in a tenth of a second.
     return std::max(fastest, 10.0F * params.spacing);
@@ -124,6 +142,8 @@ Status FluidWorld::Impl::prepare() {
             "fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
             params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
     fillStart();
+    if (Status s = findSlots(); !s) return s;
+    findLiquids();
 
     struct Wanted {
         Kernel* kernel;
@@ -133,15 +153,18 @@ Status FluidWorld::Impl::prepare() {
     };
     const Define fromPositions{"FROM_POSITIONS", "1"};
     traits.periodic = params.box.periodic();
-    for (const Wanted& w : {Wanted{&stats, "fluid/stats", {}, true}, Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
-                            Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
-                            Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter}}) {
+    for (const Wanted& w :
+         {Wanted{&stats, "fluid/stats", traits.matter ? std::vector<Define>{{"MATTER", "1"}} : std::vector<Define>{}, true},
+          Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
+          Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
+          Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter},
+          Wanted{&gatherAbsorption, "fluid/gather_absorption", {}, coloured}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    const uint32_t count = static_cast<uint32_t>(start.size());
+    const uint32_t count = slots;
     Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
     if (!made) return made.error();
     method = std::move(*made);
@@ -157,12 +180,15 @@ Status FluidWorld::Impl::prepare() {
         const vec4 value(params.box.min, 0.0F);
         device->write(corner, std::as_bytes(std::span(&value, 1)));
     }
-    Result<Particles> newParticles = Particles::create(*device, count, traits.matter);
+    Result<Particles> newParticles = Particles::create(*device, count, traits.matter, coloured);
     if (!newParticles) return newParticles.error();
     particles = std::move(*newParticles);
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
     if (!rows) return rows.error();
     statsRows = std::move(*rows);
+    Result<SourcePasses> passes = SourcePasses::create(*device, asked, params, traits.matter, coloured);
+    if (!passes) return passes.error();
+    sources = std::move(*passes);
     if (count == 0) log.notice("the scene has no particles");
     writeStart();
     return ok();
@@ -170,9 +196,50 @@ Status FluidWorld::Impl::prepare() {
 
 // The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
 void FluidWorld::Impl::fillStart() {
-    for (const BlockParams& b : params.blocks) fillBlock(b, params.spacing, start);
+    for (size_t k = 0; k < params.blocks.size(); ++k) {
+        const size_t first = start.size();
+        fillBlock(params.blocks[k], params.spacing, start);
+        for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
+    }
     const size_t left = std::erase_if(start, [&](const NewParticle& p) { return !solids.mayBeBorn(p.position, params.spacing); });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
+}
+
+// How many particles there is room for.
+Status FluidWorld::Impl::findSlots() {
+    const double held = static_cast<double>(start.size()), wanted = SourcePasses::slotsFor(asked, params);
+    double room = held + wanted;
+    if (params.maxParticles > 0) {
+        room = params.maxParticles;
+        if (room < held)
+            return badInput(fmt::format("fluid.maxParticles is {}, but the blocks hold {} particles: raise it, or 0 makes room for all",
+                                        params.maxParticles, start.size()));
+    } else if (!asked.emitters.empty()) {
+        room = std::min(room, kMostParticles);
+        log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
+                               static_cast<uint64_t>(room), start.size(), asked.seconds));
+    }
+    slots = static_cast<uint32_t>(room);
+    return ok();
+}
+
+// Whether particles differ, in what they are or in what they look like.
+void FluidWorld::Impl::findLiquids() {
+    std::vector<LiquidOf> all = {liquidOf(params, "")};
+    const auto add = [&](const std::string& name, const vec3& dye, float amount) {
+        if (liquids().find(name) == nullptr && !name.empty()) return;  // said when sources are made
+        all.push_back(liquidOf(params, name));
+        if (all.back().row != 0) traits.matter = coloured = true;
+        if (dye != vec3(1.0F) && amount > 0) coloured = true;
+    };
+    for (const BlockParams& b : params.blocks) add(b.liquid, b.dye, b.dyeAmount);
+    for (const Emitter& e : asked.emitters) add(e.params.liquid, e.params.dye, e.params.dyeAmount);
+    // A pair has the harmonic mean of the two.
+    mostViscous = 0;
+    for (const LiquidOf& a : all)
+        for (const LiquidOf& b : all)
+            mostViscous =
+                std::max(mostViscous, 2 * a.viscosity * b.viscosity / std::max((a.viscosity + b.viscosity) * a.density, 1.0e-30F));
 }
 
 void FluidWorld::Impl::writeStart() {
@@ -186,9 +253,25 @@ void FluidWorld::Impl::writeStart() {
         velocity.emplace_back(p.velocity, 0.0F);
         id.push_back(static_cast<uint32_t>(id.size()));
     }
+    for (uint32_t k = static_cast<uint32_t>(start.size()); k < slots; ++k) {
+        position.emplace_back(params.box.min, -1.0F);
+        velocity.emplace_back(0.0F);
+        id.push_back(k);
+    }
+    std::vector<vec4> matterOf, absorptionOf;
+    for (const NewParticle& p : start) {
+        const BlockParams& b = params.blocks[p.block];
+        const LiquidOf liquid = liquidOf(params, b.liquid);
+        if (traits.matter) matterOf.emplace_back(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
+        if (coloured) absorptionOf.push_back(liquid.absorption + vec4(dyeAbsorption(b.dye, b.dyeAmount), 0.0F));
+    }
+    if (traits.matter) device->writeAll<vec4>(particles.matterOf, matterOf);
+    if (coloured) device->writeAll<vec4>(particles.absorptionOf, absorptionOf);
     device->writeAll<vec4>(particles.positionNext, position);
     device->writeAll<vec4>(particles.velocityNext, velocity);
     device->writeAll<uint32_t>(particles.id, id);
+    sources.reset();
+    gatherColours();
     time = dropped = 0;
     frame = 0;
     dtMin = dtMax = 0;
@@ -198,7 +281,15 @@ void FluidWorld::Impl::writeStart() {
     posesBefore.clear();
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
     figures = std::make_shared<FluidStats>();
-    figures->particles = particles.count;
+    figures->particles = static_cast<uint32_t>(start.size());
+    figures->emitted = static_cast<double>(start.size()) * std::pow(double{params.spacing}, 3);
+}
+
+void FluidWorld::Impl::gatherColours() {
+    if (!coloured) return;
+    StepParams all{};
+    all.count = particles.count;
+    device->run(gatherAbsorption, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
 }
 
 void FluidWorld::Impl::say(const std::string& sentence) {
@@ -212,7 +303,7 @@ void FluidWorld::Impl::say(const std::string& sentence) {
 StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
-    double fastest = std::max(figures->maxSpeed, double{solids.fastestWall()}) +
+    double fastest = std::max({figures->maxSpeed, double{solids.fastestWall()}, double{sources.fastest()}}) +
                      g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
     StepLimit limit{frameSeconds, "the frame"};
     const auto atMost = [&limit](double dt, const char* why) {
@@ -223,7 +314,7 @@ StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
     atMost(own.longest, "the method's fewest steps a frame (minSubsteps)");
     // Explicit viscosity alone has a limit; an implicit solver has none.
-    const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
+    const double nu = double{std::max(step.viscosity, traits.matter ? mostViscous : 0.0F)} + 0.1 * double{step.artificial};
     if (nu > 0) atMost(0.125 * hs * hs / nu, "viscosity");
     if (g > 0) atMost(0.25 * std::sqrt(hs / g), "gravity");
     return limit;
@@ -284,6 +375,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     solids.collide(step, *grid, particles);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
+    sources.run(step, params, *grid, particles, solids, time + to * frameLength, dt, last);
 }
 
 double FluidWorld::taken(double seconds) {
@@ -311,6 +403,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     if (!cpu) w.pace.know(inputs.deviceMs, w.lastSubsteps);
     const Pace::Frame frame = w.pace.begin(now, double{p.fixedStep}, double{p.frameBudget});
     const double span = frame.before + seconds;  // until the solids are where they are to be
+    w.frameLength = span;
     w.gravity = inputs.gravity;
     if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.say(asked.error().message);
     // Remembered for a while: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
@@ -337,6 +430,8 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
     w.lastSubsteps = substeps;
     w.time += stepped;
+    w.sources.report();
+    w.gatherColours();
     const double lost = w.pace.end(stepped);
     // What rounding leaves of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
@@ -421,7 +516,9 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
 }
 
 void FluidWorld::Impl::gatherStats(int substeps, double until) {
-    device->run(stats, step, {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows}, STATS_THREADS);
+    std::vector<const Buffer*> buffers = {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows};
+    if (traits.matter) buffers.insert(buffers.end(), {&particles.id, &particles.matterOf});
+    device->dispatch(stats, std::as_bytes(std::span(&step, 1)), buffers, STATS_THREADS);
     const FluidStats now{.frame = frame,
                          .time = until,
                          .particles = particles.count,
@@ -433,13 +530,15 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                          .limited = {}};
     device->readLater(
         statsRows, STATS_THREADS * sizeof(StatsRow),
-        [now, into = figures, mass = double{step.mass}, g = gravity, this](std::span<const std::byte> bytes) {
+        [now, into = figures, count = start.size(), volume = std::pow(double{params.spacing}, 3), mass = double{step.mass}, g = gravity,
+         this](std::span<const std::byte> bytes) {
             const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
             FluidStats f = now;
-            double centre[3] = {0, 0, 0}, inside = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
+            double centre[3] = {0, 0, 0}, inside = 0, masses = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
             for (uint32_t k = 0; k < STATS_THREADS; ++k) {
                 for (int axis = 0; axis < 3; ++axis) centre[axis] += double{rows[k].centre[axis]};
-                inside += double{rows[k].centre.w};
+                masses += double{rows[k].centre.w};
+                inside += double{rows[k].inside};
                 compression += double{rows[k].compression};
                 speed2 += double{rows[k].speed2Sum};
                 limited += double{rows[k].limited};
@@ -448,6 +547,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                 f.maxCompression = std::max(f.maxCompression, double{rows[k].worst});
                 fastest2 = std::max(fastest2, double{rows[k].speed2Max});
             }
+            f.particles = static_cast<uint32_t>(inside + lost);
             f.lost = static_cast<uint32_t>(lost);
             f.nan = static_cast<uint32_t>(nan);
             f.speedLimited = static_cast<uint32_t>(limited);
@@ -456,13 +556,22 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
             if (inside > 0) {
                 f.avgCompression = compression / inside;
                 for (int axis = 0; axis < 3; ++axis) {
-                    f.centreOfMass[axis] = centre[axis] / inside;
+                    f.centreOfMass[axis] = centre[axis] / masses;
                     f.potential -= mass * double{g[axis]} * centre[axis];
                 }
             }
             f.limited = std::move(into->limited);
+            const bool current = into == figures;  // else the world was reset meanwhile
+            if (current) {
+                f.emitted = (static_cast<double>(count) + static_cast<double>(sources.given())) * volume;
+                f.drained = static_cast<double>(sources.drained()) * volume;
+                f.owed = sources.owed() * volume;
+            }
             *into = std::move(f);
-            if (into != figures) return;  // the world was reset meanwhile
+            if (!current) return;
+            if (sources.full())
+                say(fmt::format(
+                    "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles says how many", slots));
             if (into->lost > 0) say("particles left the grid or became NaN: they are frozen and counted as lost");
             if (into->speedLimited > 0) say("the fastest particles were slowed to one spacing a step");
         });
@@ -475,6 +584,12 @@ void FluidWorld::reset() {
 }
 
 void FluidWorld::setSurfaces(std::span<const Surface> surfaces) { impl_->solids.setSurfaces(surfaces); }
+
+void FluidWorld::setSources(const Sources& next) {
+    Impl& w = *impl_;
+    if (Status s = w.sources.set(next); !s) return w.say(s.error().message);
+    for (size_t k = 0; k < next.emitters.size(); ++k) w.asked.emitters[k].params = next.emitters[k].params;
+}
 
 void FluidWorld::setParams(const FluidParams& params) {
     FluidParams next = params;
@@ -490,6 +605,13 @@ void FluidWorld::setParams(const FluidParams& params) {
     next.box.periodicY = old.box.periodicY;
     next.box.periodicZ = old.box.periodicZ;
     next.blocks = old.blocks;
+    next.liquid = old.liquid;
+    next.maxParticles = old.maxParticles;
+    if (Status s = takeLiquid(next); !s) return impl_->say(s.error().message);
+    if (impl_->traits.matter) {  // particles have theirs for life
+        next.restDensity = old.restDensity;
+        next.viscosity = old.viscosity;
+    }
     next.collision.walk = old.collision.walk;
     // A scene gives the origin in floats: it says nothing new of a double that rounds to them.
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
@@ -580,20 +702,25 @@ Status FluidWorld::restore(WorldState& state) {
 
 ParticleView FluidWorld::particles() const {
     const Impl& w = *impl_;
-    return {&w.particles.positionNext,
-            &w.particles.velocityNext,
-            &w.particles.id,
-            w.particles.count,
-            w.params.spacing,
-            w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
-            &w.drawn.positions(w.particles)};
+    return {.position = &w.particles.positionNext,
+            .velocity = &w.particles.velocityNext,
+            .id = &w.particles.id,
+            .count = w.particles.count,
+            .absorption = w.coloured ? &w.particles.absorption : nullptr,
+            .matterOf = w.traits.matter ? &w.particles.matterOf : nullptr,
+            .spacing = w.params.spacing,
+            .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
+            .drawn = &w.drawn.positions(w.particles)};
 }
 
-Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log) {
+Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
+                                                       const Sources& sources) {
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
+    w.asked = sources;
+    if (Status s = takeLiquid(w.params); !s) return s.error();
     Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision);
     if (!passes) return passes.error();
     w.solids = std::move(*passes);

@@ -6,6 +6,7 @@
 #include "engine/compute/device.h"
 #include "engine/core/log.h"
 #include "engine/core/result.h"
+#include "fluid/sim/emitter.h"
 #include "fluid/sim/fluid_params.h"
 #include "fluid/sim/solids.h"
 #include "fluid/sim/stats.h"
@@ -18,9 +19,13 @@ struct ParticleView {
     const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density
     const Buffer* velocity = nullptr;  // vec4: xyz m/s, w unused
     const Buffer* id = nullptr;        // uint
-    uint32_t count = 0;                // lost ones last
+    uint32_t count = 0;                // slots; one with position.w < 0 is free, and nothing there
+    // vec4: xyz 1/m that red, green and blue fade in its liquid and dye; w 1: and as much as in the world's own liquid, 0: instead of that.
+    // Null where all particles are alike.
+    const Buffer* absorption = nullptr;
+    const Buffer* matterOf = nullptr;  // by id, as Particles::matterOf; null where all particles are alike
     float spacing = 0;                 // m
-    float mass = 0;                    // kg, of one
+    float mass = 0;                    // kg, of one of the world's own liquid
     // Positions at the time that has been asked for: with fluid.fixedStep between the last two steps, one step late; else `position`.
     const Buffer* drawn = nullptr;  // vec4: as position
 };
@@ -38,7 +43,8 @@ struct FluidInputs {
 class FluidWorld {
   public:
     // Error: a value that makes no sense together with another, out of memory. `device` must outlive the world.
-    static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log);
+    static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
+                                                      const Sources& sources = {});
     ~FluidWorld();
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;
@@ -52,6 +58,7 @@ class FluidWorld {
     void reset();                                         // back to t = 0
     void setParams(const FluidParams&);                   // takes what can change between steps; `fixed` values wait for a new world
     void setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces
+    void setSources(const Sources& sources);              // as many emitters and sinks as there are; shapes and meshes stay as they were
 
     const FluidParams& params() const;
     ParticleView particles() const;

@@ -2,7 +2,6 @@
 #include "fluid/sim/method_dfsph.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 #include "fluid/sim/smoothing.h"
@@ -92,7 +91,6 @@ class Dfsph final : public Method {
                 const double r = readResidual(c, *last);
                 // What has just been applied will leave about as much of it as the iteration before left.
                 const double kept = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
-                if (getenv("DBG")) fprintf(stderr, "%s%.3e ", k == 1 ? "\n" : "", r);
                 before = r;
                 if ((k >= atLeast && r * kept <= tolerance) || k >= most) break;
             } else if (k >= std::max(planned, atLeast)) {

@@ -5,7 +5,7 @@
 
 namespace rivulet {
 
-Result<Particles> Particles::create(Device& device, uint32_t count, bool matter) {
+Result<Particles> Particles::create(Device& device, uint32_t count, bool matter, bool absorption) {
     Particles p;
     p.count = count;
     const size_t vector = size_t{count} * 16, scalar = size_t{count} * 4;
@@ -22,6 +22,8 @@ Result<Particles> Particles::create(Device& device, uint32_t count, bool matter)
         {&p.pressure, scalar},
         {&p.matterOf, matter ? vector : 0},
         {&p.matter, matter ? vector : 0},
+        {&p.absorptionOf, absorption ? vector : 0},
+        {&p.absorption, absorption ? vector : 0},
     };
     for (auto [buffer, bytes] : wanted) {
         Result<Buffer> made = device.allocate(bytes);

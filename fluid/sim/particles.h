@@ -22,9 +22,12 @@ struct Particles {
     // w the liquid's row, or of a sample on body k: -1 - k.
     Buffer matterOf;  // by id
     Buffer matter;    // sorted
+    // Where liquids or dyes differ, for drawing; as ParticleView::absorption.
+    Buffer absorptionOf;  // by id
+    Buffer absorption;    // in the order of the newest state, as of the last frame's end
 
-    // `matter`: whether particles differ.
-    static Result<Particles> create(Device& device, uint32_t count, bool matter = false);
+    // `matter`: whether particles differ; `absorption`: whether they do to the eye.
+    static Result<Particles> create(Device& device, uint32_t count, bool matter = false, bool absorption = false);
 
     // The newest state.
     struct Saved {

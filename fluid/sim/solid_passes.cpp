@@ -160,8 +160,8 @@ bool SolidPasses::Field::mayBeBorn(const vec3& p, float spacing) const {
 bool SolidPasses::mayBeBorn(const vec3& p, float spacing) const {
     for (const PlaneSolid& plane : planeSolids_)
         if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * spacing) return false;
-    for (const Moving& m : rigid_)
-        if (!m.on.mayBeBorn(m.atStart.toOwn(p), spacing)) return false;
+    for (size_t k = 0; k < rigid_.size(); ++k)
+        if (!rigid_[k].on.mayBeBorn(poses_[k].toOwn(p), spacing)) return false;
     for (const Moving& m : deforming_)
         if (!m.on.mayBeBorn(p, spacing)) return false;
     return static_.field == nullptr || static_.mayBeBorn(p, spacing);

@@ -22,7 +22,8 @@ class SolidPasses {
     // fields must outlive it.
     static Result<SolidPasses> create(Device& device, const Solids& solids, const CollisionParams& collision);
 
-    // Whether a particle may be born at `p`: on the fluid's side of every plane, outside every mesh, and not nearer than it would rest.
+    // Whether a particle may be born at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not nearer
+    // than it would rest.
     bool mayBeBorn(const vec3& p, float spacing) const;
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
     const Buffer& planes() const { return planes_; }  // as integrate.kernel wants them

@@ -13,9 +13,12 @@ namespace rivulet {
 struct FluidStats {
     uint64_t frame = 0;         // of the figures below
     double time = 0;            // s simulated
-    uint32_t particles = 0;     // all of them, frozen ones too
+    uint32_t particles = 0;     // all of them, frozen ones too; not free slots
     uint32_t lost = 0;          // left the grid or NaN: counted, frozen, indexed nowhere
     uint32_t nan = 0;           // of those, NaN or infinite
+    double emitted = 0;         // m^3, put in so far: blocks, and what emitters let out
+    double drained = 0;         // m^3, taken by sinks
+    double owed = 0;            // m^3, due from emitters and held back: no room where they let it out, or no slot
     double avgCompression = 0;  // mean of max(rho / rho0 - 1, 0) over particles
     double maxCompression = 0;
     double kinetic = 0;    // J

@@ -3,7 +3,11 @@
 #include "shaders/screen_space/ramp.glsl"
 layout(location = 1) in vec4 velocity;
 layout(location = 2) in uint id;
-uniform int colourBy;     // 0 speed, 1 density, 2 id
+layout(location = 3) in vec4 absorption;  // xyz 1/m, w share of ownAbsorption added
+uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye
+uniform int alike;        // 1: absorption is not given
+uniform vec3 ownAbsorption;  // 1/m
+uniform float dyeDepth;      // m, of liquid and dye that a sphere's colour stands for
 uniform float fullSpeed;  // m/s, the colour map's end
 flat out vec4 centreView;  // w: radius
 flat out vec3 baseColour;
@@ -12,5 +16,9 @@ void main() {
     gl_Position = lost(particle) ? kNowhere : sphereQuad(centreView.xyz, centreView.w);
     if (colourBy == 0) baseColour = ramp(length(velocity.xyz) / fullSpeed);
     else if (colourBy == 1) baseColour = ramp(0.5 + 5.0 * (particle.w - 1.0));  // 0.9 .. 1.1 of the rest density
-    else baseColour = ramp(fract(float((id * 2654435769u) >> 8) / 16777216.0));
+    else if (colourBy == 3) {
+        vec3 a = (alike == 1 ? ownAbsorption : absorption.xyz + absorption.w * ownAbsorption) * dyeDepth;
+        // Of what lets next to nothing through the hue is left.
+        baseColour = 0.9 * exp(-(a - max(min(a.x, min(a.y, a.z)) - 1.0, 0.0)));
+    } else baseColour = ramp(fract(float((id * 2654435769u) >> 8) / 16777216.0));
 }

@@ -8,6 +8,10 @@ uniform sampler2D fluidDepth;   // m
 uniform sampler2D thickness;    // m: of water, of that as spray
 uniform float radius;           // m
 uniform vec3 absorption;        // 1/m
+#if defined(INK)
+uniform sampler2D depths;       // what red, green and blue fade by, instead: e^-depth is left
+#endif
+uniform vec3 scatter;           // what deep water throws back
 uniform float refractiveIndex;
 layout(location = 0) out vec4 colour;
 
@@ -80,6 +84,9 @@ void main() {
     // wholly, a prism not at all.
     vec2 water = texture(thickness, gl_FragCoord.xy * frame.viewport.zw).rg;
     float through = water.x;
+#if defined(INK)
+    vec3 fades = texture(depths, gl_FragCoord.xy * frame.viewport.zw).rgb;
+#endif
     vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
     vec3 back = colour.rgb;
     float air = clamp((behind - depth) * length(p) / depth - through, 0.0, 60.0 * radius);
@@ -91,6 +98,9 @@ void main() {
         if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else something in front of the water would leak into it
             back = texture(sceneColour, inside).rgb;
             through = mix(through, texture(thickness, inside).r, 0.5);
+#if defined(INK)
+            fades = mix(fades, texture(depths, inside).rgb, 0.5);
+#endif
             break;
         }
         stretch *= 0.4;
@@ -98,10 +108,17 @@ void main() {
     vec3 posWorld = toWorld(p);
     vec3 nWorld = directionToWorld(n), eyeWorld = directionToWorld(toEye);
     float lit = meshShadow(posWorld, nWorld);
+#if defined(INK)
+    vec3 passed = exp(-fades);
+    // Thrown back is what fades least.
+    vec3 thrown = 0.1 * exp(-2.0 * fades / max(max(fades.r, max(fades.g, fades.b)), 1.0e-6));
+#else
     vec3 passed = exp(-absorption * through);
+    vec3 thrown = scatter;
+#endif
     // A little of what is absorbed comes back scattered, so that deep water has a colour of its own.
     vec3 glow = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
-    vec3 scattered = vec3(0.008, 0.060, 0.085) * glow * (1.0 - exp(-2.5 * through));
+    vec3 scattered = thrown * glow * (1.0 - exp(-2.5 * through));
     vec3 transmitted = back * passed + scattered;
     float white = 1.0 - exp(-water.y * 0.24 / radius);
     transmitted = mix(transmitted, 0.9 * (ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * (0.35 + 0.65 * max(dot(nWorld, frame.lightDir.xyz), 0.0)))), 0.75 * white);

@@ -7,6 +7,10 @@ uniform sampler2D sceneDepth;
 flat in vec4 centreView;
 flat in float sprayed;
 layout(location = 0) out vec2 thickness;
+#if defined(INK)
+flat in vec3 ink;                  // 1/m
+layout(location = 1) out vec4 depths;  // what red, green and blue fade by: e^-depth is left
+#endif
 void main() {
     vec2 pixel = gl_FragCoord.xy * float(scale);
     float front, through;
@@ -16,4 +20,7 @@ void main() {
     float share = min(0.2387324 / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
     float water = share * clamp(scene - front, 0.0, through);
     thickness = vec2(water, water * sprayed);
+#if defined(INK)
+    depths = vec4(min(ink * water, vec3(600.0)), 0.0);  // a half float holds the sum of a hundred such
+#endif
 }

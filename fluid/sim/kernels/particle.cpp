@@ -74,6 +74,11 @@ namespace blend_unit {
 namespace stats_unit {
 #include "shaders/fluid/stats.kernel"
 }
+#define MATTER 1
+namespace stats_matter {
+#include "shaders/fluid/stats.kernel"
+}
+#undef MATTER
 
 }  // namespace
 
@@ -97,6 +102,7 @@ std::span<const CpuKernelRow> particleRows() {
         {"fluid/remember", "", RIVULET_UNIT_ISA, remember_unit::remember, 1024},
         {"fluid/blend", "", RIVULET_UNIT_ISA, blend_unit::blend, 1024},
         {"fluid/stats", "", RIVULET_UNIT_ISA, stats_unit::stats, 128},
+        {"fluid/stats", "MATTER=1", RIVULET_UNIT_ISA, stats_matter::stats, 128},
     };
     return rows;
 }

@@ -1,0 +1,92 @@
+// Emitters and sinks: what comes into a world and what leaves it. Here is what a scene says of them, and the candidates an emitter makes;
+// source_passes.* puts those among the particles.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/core/params.h"
+#include "engine/core/result.h"
+#include "shaders/fluid/emit_params.h"
+
+namespace rivulet {
+
+struct EmitterParams {
+    std::string shape = "nozzle";  // nozzle | box | mesh
+    float litresPerSecond = 1.0F;
+    float speed = 0.0F;                 // m/s; of a nozzle 0 = what the rate needs through its opening
+    vec3 position{0.0F, 1.0F, 0.0F};    // m, the opening's centre, or the box's; mesh: where its origin goes
+    vec3 direction{0.0F, -1.0F, 0.0F};  // nozzle, box; any length but 0
+    float radius = 0.05F;               // m, nozzle
+    vec3 size{0.2F};                    // m, box
+    std::string mesh = {};              // file, as of a collider
+    float fitSize = 0.0F;               // m, mesh: its longest side; 0 = as it is
+    vec3 rotation{0.0F};                // deg, mesh
+    float start = 0.0F, stop = 0.0F;    // s; stop 0 = never
+    std::string liquid = {};            // a row of liquids(); "" = the world's
+    vec3 dye{1.0F};                     // linear; white = none
+    float dyeAmount = 20.0F;            // 1/m
+    void visit(ParamVisitor& v);
+};
+
+// A volume in which particles vanish.
+struct SinkParams {
+    std::string shape = "box";  // box | sphere
+    vec3 position{0.0F};        // m, its centre
+    vec3 size{0.1F};            // m, box
+    float radius = 0.05F;       // m, sphere
+    void visit(ParamVisitor& v);
+};
+
+// An emitter with what it needs beyond its Params.
+struct Emitter {
+    EmitterParams params;
+    std::vector<vec3> triangles;  // m, world: three corners each, of shape mesh; it lets water out on the side that sees them anticlockwise
+};
+
+struct Sources {
+    std::vector<Emitter> emitters = {};
+    std::vector<SinkParams> sinks = {};
+    double seconds = 10;  // how long emitters are expected to run: what fluid.maxParticles = 0 makes room for
+};
+
+// Volume an emitter has let out after `seconds`, m^3, if nothing is in its way.
+double volumeAfter(const EmitterParams& params, double seconds);
+
+// "", or why it cannot be: a nozzle too narrow for its rate at its speed, a direction without length.
+std::string contradiction(const EmitterParams& params);
+
+// Makes an emitter's candidates, and keeps its accounts: every particle that is due is offered until it is taken.
+class EmitterFeed {
+  public:
+    EmitterFeed(const Emitter& emitter, uint32_t index, float spacing);
+
+    // Appends what is due when `seconds` more have gone by since `time` (s), at most `most`, as the end of that time finds it.
+    void offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to);
+    // `count` of the offered were not taken: they stay owed.
+    void refuse(uint64_t count) { refused_ += count; }
+    void take(const EmitterParams& params);  // what can change while it runs: all but shape and mesh
+    void reset();
+
+    const Emitter& emitter() const { return emitter_; }
+    vec4 matter{1.0F, 1.0F, 0.0F, 0.0F}, absorption{0.0F};  // of its particles
+    double due() const { return due_; }                     // particles, since the start
+    float speed() const { return speed_; }                  // m/s, where they come out
+
+  private:
+    void layOut();
+    vec3 onBox(uint64_t k) const;
+    void onMesh(uint64_t k, vec3& p, vec3& normal) const;
+
+    Emitter emitter_;
+    uint32_t index_;
+    float spacing_;
+    float speed_ = 0;
+    double due_ = 0;  // particles, since the start
+    uint64_t offered_ = 0, refused_ = 0;
+    std::vector<vec3> layers_[2];  // m, nozzle: offsets of a layer's particles in the opening, one layer after the other in turn
+    std::vector<double> areas_;    // mesh: running sum over the triangles
+};
+
+}  // namespace rivulet

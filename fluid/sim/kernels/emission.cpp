@@ -1,0 +1,48 @@
+#include "fluid/sim/kernels/kernel_rows.h"
+#include "shaders/common/lang.h"
+
+namespace rivulet::RIVULET_KERNEL_UNIT {
+namespace {
+
+// grid.h is included once a unit: here once a form, with the form's own StepParams.
+#undef RIVULET_GRID_H
+namespace emit_plain {
+#include "shaders/fluid/emit.kernel"
+}
+#undef RIVULET_GRID_H
+#define MATTER 1
+namespace emit_matter {
+#include "shaders/fluid/emit.kernel"
+}
+#undef RIVULET_GRID_H
+#define ABSORPTION 1
+namespace emit_matter_absorption {
+#include "shaders/fluid/emit.kernel"
+}
+#undef MATTER
+#undef RIVULET_GRID_H
+namespace emit_absorption {
+#include "shaders/fluid/emit.kernel"
+}
+#undef ABSORPTION
+namespace drain_unit {
+#include "shaders/fluid/drain.kernel"
+}
+namespace gather_unit {
+#include "shaders/fluid/gather_absorption.kernel"
+}
+
+}  // namespace
+
+std::span<const CpuKernelRow> emissionRows() {
+    static const CpuKernelRow rows[] = {
+        {"fluid/emit", "", RIVULET_UNIT_ISA, emit_plain::emit, 64},
+        {"fluid/emit", "MATTER=1", RIVULET_UNIT_ISA, emit_matter::emit, 64},
+        {"fluid/emit", "ABSORPTION=1", RIVULET_UNIT_ISA, emit_absorption::emit, 64},
+        {"fluid/emit", "ABSORPTION=1;MATTER=1", RIVULET_UNIT_ISA, emit_matter_absorption::emit, 64},
+        {"fluid/drain", "", RIVULET_UNIT_ISA, drain_unit::drain, 1024},
+        {"fluid/gather_absorption", "", RIVULET_UNIT_ISA, gather_unit::gather_absorption, 1024},
+    };
+    return rows;
+}
+}  // namespace rivulet::RIVULET_KERNEL_UNIT

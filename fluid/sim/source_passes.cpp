@@ -1,0 +1,224 @@
+#include "fluid/sim/source_passes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "fluid/sim/liquids.h"
+#include "fluid/sim/smoothing.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr uint32_t kMostCandidates = 16384;  // at once
+constexpr float kNearest = 0.8F;             // spacings
+// The density ratio that a new particle may have, and give its neighbours: beyond it they would be pushed away with force.
+constexpr float kCrowded = 1.01F;
+
+Status check(const Sources& sources) {
+    for (size_t k = 0; k < sources.emitters.size(); ++k) {
+        const Emitter& e = sources.emitters[k];
+        if (const std::string wrong = contradiction(e.params); !wrong.empty()) return badInput(fmt::format("emitters[{}].{}", k, wrong));
+        if (!e.params.liquid.empty() && liquids().find(e.params.liquid) == nullptr)
+            return badInput(fmt::format("emitters[{}].liquid '{}' is not a liquid; there are {}", k, e.params.liquid,
+                                        fmt::join(liquids().names(), ", ")));
+    }
+    return ok();
+}
+
+}  // namespace
+
+Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources, const FluidParams& params, bool matter, bool absorption) {
+    if (Status s = check(sources); !s) return s.error();
+    for (size_t k = 0; k < sources.emitters.size(); ++k)
+        if (sources.emitters[k].params.shape == "mesh" && sources.emitters[k].triangles.size() < 3)
+            return badInput(fmt::format("emitters[{}] has a mesh without triangles", k));
+    SourcePasses s;
+    s.device_ = &device;
+    s.matter_ = matter;
+    s.absorption_ = absorption;
+    s.spacing_ = params.spacing;
+    for (size_t k = 0; k < sources.emitters.size(); ++k) {
+        const EmitterParams& e = sources.emitters[k].params;
+        const LiquidOf liquid = liquidOf(params, e.liquid);
+        EmitterFeed feed(sources.emitters[k], static_cast<uint32_t>(k), params.spacing);
+        feed.matter = vec4(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
+        feed.absorption = liquid.absorption + vec4(dyeAbsorption(e.dye, e.dyeAmount), 0.0F);
+        s.feeds_.push_back(std::move(feed));
+    }
+    s.sinkCount_ = sources.sinks.size();
+    s.late_ = std::make_shared<Late>();
+    if (!s.any()) return s;
+    std::vector<Define> defines;
+    if (absorption) defines.push_back({"ABSORPTION", "1"});
+    if (matter) defines.push_back({"MATTER", "1"});
+    Result<Kernel> emit = device.kernel("fluid/emit", defines), drain = device.kernel("fluid/drain");
+    for (const Result<Kernel>* k : {&emit, &drain})
+        if (!*k) return k->error();
+    s.emit_ = *emit;
+    s.drain_ = *drain;
+    const size_t counters = s.feeds_.size() * EMITTER_COUNTERS + s.sinkCount_;
+    for (auto [buffer, bytes] :
+         {std::pair(&s.candidates_, s.feeds_.empty() ? 0 : kMostCandidates * sizeof(Candidate)),
+          std::pair(&s.sinks_, s.sinkCount_ * sizeof(SinkVolume)), std::pair(&s.counters_, counters * sizeof(uint32_t))}) {
+        Result<Buffer> made = device.allocate(bytes);
+        if (!made) return made.error();
+        *buffer = std::move(*made);
+    }
+    s.writeSinks(sources.sinks);
+    s.reset();
+    return s;
+}
+
+double SourcePasses::slotsFor(const Sources& sources, const FluidParams& params) {
+    const double volume = std::pow(double{params.spacing}, 3);
+    double slots = 0;
+    for (const Emitter& e : sources.emitters) slots += std::ceil(volumeAfter(e.params, sources.seconds) / volume) + 1;
+    const dvec3 size(params.box.max - params.box.min);
+    // A box that is full takes no more; a tenth for what is denser.
+    return std::min(slots, std::ceil(1.1 * size.x * size.y * size.z / volume) + 64);
+}
+
+void SourcePasses::writeSinks(const std::vector<SinkParams>& sinks) {
+    std::vector<SinkVolume> volumes;
+    for (const SinkParams& s : sinks) {
+        if (s.shape == "sphere")
+            volumes.push_back({vec4(s.position, 1.0F), vec4(s.radius, 0.0F, 0.0F, 0.0F)});
+        else
+            volumes.push_back({vec4(s.position - 0.5F * s.size, 0.0F), vec4(s.position + 0.5F * s.size, 0.0F)});
+    }
+    if (!volumes.empty()) device_->writeAll<SinkVolume>(sinks_, volumes);
+}
+
+Status SourcePasses::set(const Sources& sources) {
+    if (sources.emitters.size() != feeds_.size() || sources.sinks.size() != sinkCount_)
+        return badInput("emitters and sinks were added or taken away: that needs a new world");
+    if (Status s = check(sources); !s) return s;
+    for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].take(sources.emitters[k].params);
+    writeSinks(sources.sinks);
+    return ok();
+}
+
+void SourcePasses::reset() {
+    for (EmitterFeed& feed : feeds_) feed.reset();
+    heard_.assign(feeds_.size(), 0);
+    late_ = std::make_shared<Late>();
+    late_->counters.assign(feeds_.size() * EMITTER_COUNTERS + sinkCount_, 0);
+    waited_ = 0;
+    if (any()) device_->fill(counters_, 0);
+}
+
+float SourcePasses::fastest() const {
+    float v = 0;
+    for (const EmitterFeed& feed : feeds_) v = std::max(v, feed.speed());
+    return v;
+}
+
+void SourcePasses::hearCounts() {
+    for (size_t k = 0; k < feeds_.size(); ++k) {
+        const uint32_t* c = &late_->counters[k * EMITTER_COUNTERS];
+        const uint64_t refused = uint64_t{c[1]} + c[2];
+        feeds_[k].refuse(refused - heard_[k]);
+        heard_[k] = refused;
+    }
+}
+
+// Takes from the list what would be born in a wall or too near to another of the list.
+void SourcePasses::dropUnfit(const FluidParams& params, const SolidPasses& solids) {
+    const float contact = 0.5F * spacing_, nearest2 = kNearest * kNearest * spacing_ * spacing_;
+    const bvec3 periodic = params.box.periodic();
+    const auto keyOf = [](const ivec3& c) {
+        return (static_cast<uint64_t>(static_cast<uint32_t>(c.x)) * 73856093U) ^
+               (static_cast<uint64_t>(static_cast<uint32_t>(c.y)) * 19349663U) ^
+               (static_cast<uint64_t>(static_cast<uint32_t>(c.z)) * 83492791U);
+    };
+    std::unordered_multimap<uint64_t, vec3> taken;
+    std::erase_if(list_, [&](const Candidate& c) {
+        const vec3 p(c.position);
+        bool fits = isFinite(p);
+        for (int axis = 0; axis < 3 && fits; ++axis)
+            fits = periodic[axis] ? p[axis] >= params.box.min[axis] && p[axis] < params.box.max[axis]
+                                  : p[axis] >= params.box.min[axis] + 0.99F * contact && p[axis] <= params.box.max[axis] - 0.99F * contact;
+        if (fits) {
+            const ivec3 cell(glm::floor((p - params.box.min) / spacing_));
+            for (int k = 0; k < 27 && fits; ++k) {
+                const auto [from, to] = taken.equal_range(keyOf(cell + ivec3(k % 3, k / 3 % 3, k / 9) - 1));
+                for (auto it = from; it != to && fits; ++it) fits = glm::dot(it->second - p, it->second - p) >= nearest2;
+            }
+            fits = fits && solids.mayBeBorn(p, spacing_);
+            if (fits) taken.emplace(keyOf(cell), p);
+        }
+        if (!fits) feeds_[static_cast<size_t>(c.position.w)].refuse(1);
+        return !fits;
+    });
+}
+
+void SourcePasses::run(const StepParams& step, const FluidParams& params, const NeighborGrid& grid, Particles& particles,
+                       const SolidPasses& solids, double time, double dt, bool last) {
+    if (!any()) return;
+    EmitParams block{};
+    block.step = step;
+    block.sinks = static_cast<uint32_t>(sinkCount_);
+    block.sinkCounters = static_cast<uint32_t>(feeds_.size()) * EMITTER_COUNTERS;
+    block.nearest = kNearest * spacing_;
+    const double support = double{step.h} / double{spacing_};
+    block.weight = static_cast<float>(21.0 / (2.0 * 3.14159265358979323846 * support * support * support) / wendlandLatticeSum(support));
+    block.crowded = kCrowded;
+    if (sinkCount_ > 0)
+        device_->run(drain_, block, {&grid.cellStart(), &sinks_, &particles.positionNext, &particles.velocityNext, &counters_},
+                     particles.count);
+    waited_ += dt;
+    // Often enough that nothing comes out further than a spacing from where it should, give or take.
+    if (feeds_.empty() || (!last && static_cast<double>(fastest()) * waited_ < static_cast<double>(spacing_))) return;
+    hearCounts();
+    list_.clear();
+    for (EmitterFeed& feed : feeds_) feed.offer(time - waited_, waited_, vec3(step.gravity), kMostCandidates - list_.size(), list_);
+    waited_ = 0;
+    dropUnfit(params, solids);
+    if (list_.empty()) return;
+    block.candidates = static_cast<uint32_t>(list_.size());
+    device_->writeAll<Candidate>(candidates_, list_);
+    std::vector<const Buffer*> buffers = {&grid.cellStart(),       &candidates_, &particles.id, &particles.positionNext,
+                                          &particles.velocityNext, &counters_};
+    if (matter_) buffers.push_back(&particles.matterOf);
+    if (absorption_) buffers.push_back(&particles.absorptionOf);
+    device_->dispatch(emit_, std::as_bytes(std::span(&block, 1)), buffers, block.candidates);
+    if (device_->backend() == Backend::cpu) report();
+}
+
+void SourcePasses::report() {
+    if (!any()) return;
+    device_->readLater(counters_, counters_.bytes(), [into = late_](std::span<const std::byte> bytes) {
+        const auto* words = reinterpret_cast<const uint32_t*>(bytes.data());
+        into->counters.assign(words, words + into->counters.size());
+    });
+}
+
+uint64_t SourcePasses::given() const {
+    uint64_t sum = 0;
+    for (size_t k = 0; k < feeds_.size(); ++k) sum += late_->counters[k * EMITTER_COUNTERS];
+    return sum;
+}
+
+uint64_t SourcePasses::drained() const {
+    uint64_t sum = 0;
+    for (size_t k = 0; k < sinkCount_; ++k) sum += late_->counters[feeds_.size() * EMITTER_COUNTERS + k];
+    return sum;
+}
+
+bool SourcePasses::full() const {
+    for (size_t k = 0; k < feeds_.size(); ++k)
+        if (late_->counters[k * EMITTER_COUNTERS + 2] > 0) return true;
+    return false;
+}
+
+double SourcePasses::owed() const {
+    double sum = 0;
+    for (const EmitterFeed& feed : feeds_) sum += feed.due();
+    return sum - static_cast<double>(given());
+}
+
+}  // namespace rivulet

@@ -1,0 +1,64 @@
+// The passes of a step that know emitters and sinks: what makes particles of free slots, and free slots of particles.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "fluid/sim/emitter.h"
+#include "fluid/sim/fluid_params.h"
+#include "fluid/sim/neighbor_grid.h"
+#include "fluid/sim/particles.h"
+#include "fluid/sim/solid_passes.h"
+
+namespace rivulet {
+
+class SourcePasses {
+  public:
+    // Error (badInput): an emitter that makes no sense, a liquid that is not known; (failed): out of memory. `traits.matter` and
+    // `absorption`: whether particles have those tables. `device` must outlive it.
+    static Result<SourcePasses> create(Device& device, const Sources& sources, const FluidParams& params, bool matter, bool absorption);
+
+    // Slots that emitters would ever fill by the end of sources.seconds, and the box could hold.
+    static double slotsFor(const Sources& sources, const FluidParams& params);
+
+    bool any() const { return !feeds_.empty() || sinkCount_ > 0; }
+    float fastest() const;  // m/s, that emitters let water out with
+    // Takes what can change between steps. Error (badInput): it makes no sense; then all stays as it was.
+    Status set(const Sources& sources);
+    void reset();  // back to t = 0
+
+    // After a substep of `dt` that ended at `time`; `last` of its frame. Particles are sorted as the substep sorted them.
+    void run(const StepParams& step, const FluidParams& params, const NeighborGrid& grid, Particles& particles, const SolidPasses& solids,
+             double time, double dt, bool last);
+    // Has the counts read, late on a GPU.
+    void report();
+
+    // As far as is known.
+    uint64_t given() const;    // particles, by all emitters
+    uint64_t drained() const;  // particles
+    bool full() const;         // whether one had to wait because no slot was free
+    double owed() const;       // particles due, and not taken yet
+
+  private:
+    struct Late {
+        std::vector<uint32_t> counters;
+    };
+    void hearCounts();
+    void writeSinks(const std::vector<SinkParams>& sinks);
+    void dropUnfit(const FluidParams& params, const SolidPasses& solids);
+
+    Device* device_ = nullptr;
+    bool matter_ = false, absorption_ = false;
+    float spacing_ = 0;
+    std::vector<EmitterFeed> feeds_;
+    std::vector<uint64_t> heard_;  // refused by the device, of each, that its feed knows of
+    size_t sinkCount_ = 0;
+    Kernel emit_, drain_;
+    Buffer candidates_, sinks_, counters_;
+    std::vector<Candidate> list_;
+    double waited_ = 0;  // s since emitters last ran
+    std::shared_ptr<Late> late_;
+};
+
+}  // namespace rivulet

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fluid/sim/block.h"
+#include "fluid/sim/body_passes.h"
 #include "fluid/sim/force.h"
 #include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
@@ -33,6 +34,7 @@ struct FluidWorld::Impl {
     Particles particles;
     std::vector<NewParticle> start;
     SolidPasses solids;
+    BodyPasses bodies;
     Buffer statsRows, corner;
     Kernel stats, wrap, wrapFromPositions, gatherMatter;
     PairTraits traits;
@@ -56,6 +58,7 @@ struct FluidWorld::Impl {
     Status prepare();
     void fillStart();
     void writeStart();
+    void writeMatter();
     float fastestFall() const;
     double stepLimit(double frameSeconds) const;
     void say(const std::string& sentence);
@@ -73,6 +76,8 @@ const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 double FluidWorld::time() const { return impl_->time; }
 int FluidWorld::lastSubsteps() const { return impl_->lastSubsteps; }
 const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
+const std::vector<BodyState>& FluidWorld::bodies() const { return impl_->bodies.states(); }
+const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodies.loads(); }
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
@@ -114,6 +119,8 @@ Status FluidWorld::Impl::prepare() {
     };
     const Define fromPositions{"FROM_POSITIONS", "1"};
     traits.periodic = params.box.periodic();
+    traits.samples = bodies.sampleCount();
+    traits.matter = bodies.any();
     for (const Wanted& w : {Wanted{&stats, "fluid/stats", {}, true}, Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
                             Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
                             Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter}}) {
@@ -122,7 +129,7 @@ Status FluidWorld::Impl::prepare() {
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    const uint32_t count = static_cast<uint32_t>(start.size());
+    const uint32_t count = static_cast<uint32_t>(start.size()) + traits.samples;
     Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
     if (!made) return made.error();
     method = std::move(*made);
@@ -144,7 +151,8 @@ Status FluidWorld::Impl::prepare() {
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
     if (!rows) return rows.error();
     statsRows = std::move(*rows);
-    if (count == 0) log.notice("the scene has no particles");
+    if (Status room = bodies.allocate(count); !room) return room.error();
+    if (start.empty()) log.notice("the scene has no particles");
     writeStart();
     return ok();
 }
@@ -152,19 +160,27 @@ Status FluidWorld::Impl::prepare() {
 // The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
 void FluidWorld::Impl::fillStart() {
     for (const BlockParams& b : params.blocks) fillBlock(b, params.spacing, start);
-    const size_t left = std::erase_if(start, [&](const NewParticle& p) { return !solids.mayBeBorn(p.position, params.spacing); });
+    const size_t left = std::erase_if(start, [&](const NewParticle& p) {
+        return !solids.mayBeBorn(p.position, params.spacing) || !bodies.mayBeBorn(p.position, params.spacing);
+    });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }
 
 void FluidWorld::Impl::writeStart() {
     std::vector<vec4> position, velocity;
     std::vector<uint32_t> id;
-    position.reserve(start.size());
-    velocity.reserve(start.size());
-    id.reserve(start.size());
+    position.reserve(particles.count);
+    velocity.reserve(particles.count);
+    id.reserve(particles.count);
     for (const NewParticle& p : start) {
         position.emplace_back(p.position, 1.0F);
         velocity.emplace_back(p.velocity, 0.0F);
+        id.push_back(static_cast<uint32_t>(id.size()));
+    }
+    // Samples on bodies come last; each substep puts them where they are.
+    for (uint32_t k = 0; k < traits.samples; ++k) {
+        position.emplace_back(0.0F, 0.0F, 0.0F, -1.0F);
+        velocity.emplace_back(0.0F);
         id.push_back(static_cast<uint32_t>(id.size()));
     }
     device->writeAll<vec4>(particles.positionNext, position);
@@ -175,7 +191,17 @@ void FluidWorld::Impl::writeStart() {
     dtMin = dtMax = 0;
     method->reset();
     figures = std::make_shared<FluidStats>();
-    figures->particles = particles.count;
+    figures->particles = static_cast<uint32_t>(start.size());
+    writeMatter();
+}
+
+// What each particle is, for its life.
+void FluidWorld::Impl::writeMatter() {
+    if (!traits.matter) return;
+    std::vector<vec4> rows(start.size(), vec4(1.0F, 1.0F, params.viscosity * params.restDensity, 0.0F));
+    const std::vector<vec4> samples = bodies.matter();
+    rows.insert(rows.end(), samples.begin(), samples.end());
+    device->writeAll<vec4>(particles.matterOf, rows);
 }
 
 void FluidWorld::Impl::say(const std::string& sentence) {
@@ -189,7 +215,7 @@ void FluidWorld::Impl::say(const std::string& sentence) {
 double FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
-    double fastest = std::max(figures->maxSpeed, double{solids.fastestWall()}) +
+    double fastest = std::max({figures->maxSpeed, double{solids.fastestWall()}, double{bodies.fastest()}}) +
                      g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
     double dt = frameSeconds;
     if (c0 > 0) {
@@ -222,6 +248,7 @@ void FluidWorld::Impl::findForces() {
 bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
     if (glm::any(traits.periodic) && fromPositions)
         device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, particles.count);
+    bodies.place(step, particles);
     if (Status built = grid->build(step, particles); !built) {
         say(built.error().message);
         return false;
@@ -229,6 +256,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
     if (traits.matter)
         device->run(gatherMatter, step, {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure},
                     particles.count);
+    bodies.index(step, *grid, particles);
     if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
     return true;
 }
@@ -245,7 +273,8 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .particles = particles,
                         .solve = solve,
                         .build = [&](bool fromPositions) { return built = build(fromPositions, from, to); },
-                        .pushSamples = [](const Buffer&, const Buffer&, float) {},
+                        .pushSamples = [&](const Buffer& position, const Buffer& pressures,
+                                           float scale) { bodies.push(step, *grid, particles, position, pressures, scale); },
                         .planes = solids.planes(),
                         .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
                         .forces = {}};
@@ -260,6 +289,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     solids.collide(step, *grid, particles);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
+    bodies.advance(step, particles, dt);
 }
 
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
@@ -325,7 +355,7 @@ void FluidWorld::Impl::gatherStats(int substeps) {
     device->run(stats, step, {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows}, STATS_THREADS);
     const FluidStats now{.frame = frame,
                          .time = time,
-                         .particles = particles.count,
+                         .particles = static_cast<uint32_t>(start.size()),
                          .substeps = substeps,
                          .iterations = iterations / substeps,
                          .residual = solve.residual,
@@ -371,6 +401,7 @@ void FluidWorld::Impl::gatherStats(int substeps) {
 
 void FluidWorld::reset() {
     if (Status back = impl_->solids.reset(); !back) impl_->say(back.error().message);
+    impl_->bodies.reset();
     impl_->fastestWall = 0;
     impl_->writeStart();
 }
@@ -392,14 +423,20 @@ void FluidWorld::setParams(const FluidParams& params) {
     next.box.periodicZ = old.box.periodicZ;
     next.blocks = old.blocks;
     next.collision.walk = old.collision.walk;
+    const bool other = next.viscosity != old.viscosity;
     impl_->params = next;
+    if (other) impl_->writeMatter();
 }
 
 ParticleView FluidWorld::particles() const {
     const Impl& w = *impl_;
-    return {&w.particles.positionNext, &w.particles.velocityNext,
-            &w.particles.id,           w.particles.count,
-            w.params.spacing,          w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
+    return {&w.particles.positionNext,
+            &w.particles.velocityNext,
+            &w.particles.id,
+            static_cast<uint32_t>(w.start.size()),
+            w.particles.count,
+            w.params.spacing,
+            w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log) {
@@ -410,6 +447,9 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision);
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
+    Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, params, {.periodic = params.box.periodic()});
+    if (!bodies) return bodies.error();
+    w.bodies = std::move(*bodies);
     w.log = std::move(log);
     w.gravity = params.gravity;
     if (Status s = w.prepare(); !s) return s.error();

@@ -13,11 +13,13 @@
 namespace rivulet {
 
 // Where the particles are on the Device. Valid until the next step(), reset() or destruction. Order changes every step; ids do not.
+// Among the slots are `count` particles; where the position's w is negative there is none (a free slot, or a sample on a body).
 struct ParticleView {
-    const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density
+    const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density; negative: no particle
     const Buffer* velocity = nullptr;  // vec4: xyz m/s, w unused
     const Buffer* id = nullptr;        // uint
-    uint32_t count = 0;                // lost ones last
+    uint32_t count = 0;                // particles, lost ones with them
+    uint32_t slots = 0;                // of the arrays
     float spacing = 0;                 // m
     float mass = 0;                    // kg, of one
 };
@@ -51,7 +53,9 @@ class FluidWorld {
     double time() const;                     // s simulated
     int lastSubsteps() const;                // of the last step(), not late
     const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, short of what was asked
-    uint64_t voxelsRewritten() const;        // of deforming solids, since the start
+    const std::vector<BodyState>& bodies() const;
+    const std::vector<BodyLoad>& bodyLoads() const;  // of the last substep
+    uint64_t voxelsRewritten() const;                // of deforming solids, since the start
     Device& device() const;
 
   private:

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "engine/compute/device_cpu.h"
+#include "fluid/bridge/session.h"
 #include "fluid/sim/body_shapes.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/sim/fluid_world.h"
@@ -367,6 +368,46 @@ TEST(TwoWay, TheSameBitsForAnyThreads) {
         EXPECT_EQ(world->bodies()[0].spin, body0.spin);
         EXPECT_GT(glm::length(world->bodies()[0].spin - vec3(1, 2, 3)), 0.1F);
     }
+}
+
+// ---- contact ----
+
+// Heavy bodies of every shape in a dry box: a box on the floor, a ball on that, a hull and a mesh beside them. They come to rest on each
+// other.
+TEST(Contact, BodiesRestOnTheFloorAndOnEachOther) {
+    auto device = cpu();
+    SceneFile scene;
+    scene.fluid.method = "wcsph";
+    scene.fluid.spacing = 0.02F;
+    scene.fluid.soundSpeed = 20;
+    scene.fluid.blocks = {{vec3(0.9F, 0, 0.9F), vec3(1.0F, 0.04F, 1.0F), vec3(0.0F)}};
+    BodyParams body;
+    body.density = 2000;
+    body.size = vec3(0.2F, 0.1F, 0.2F);
+    body.position = vec3(0.3F, 0.07F, 0.3F);
+    scene.bodies.push_back(body);
+    body.shape = "sphere";
+    body.position = vec3(0.3F, 0.2F, 0.3F);
+    scene.bodies.push_back(body);
+    for (const char* shape : {"hull", "mesh"}) {
+        body.shape = shape;
+        body.mesh = "meshes/sphere.obj";
+        body.fitSize = 0.12F;
+        body.position = vec3(shape[0] == 'h' ? 0.6F : 0.8F, 0.1F, 0.4F);
+        scene.bodies.push_back(body);
+    }
+    // The ball's distance is asked for every particle near it: a coarse one does.
+    auto session = Session::create(scene, *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    for (int frame = 0; frame < 60; ++frame) (*session)->step(1.0 / 60, true);
+    const std::vector<BodyState>& b = (*session)->world().bodies();
+    EXPECT_NEAR(b[0].pose.position.y, 0.05F, 0.002F);
+    EXPECT_NEAR(b[1].pose.position.y, 0.15F, 0.004F);
+    EXPECT_NEAR(b[2].pose.position.y, 0.06F, 0.004F);
+    EXPECT_NEAR(b[3].pose.position.y, 0.06F, 0.008F);  // of boxes a twelfth of it
+    for (const BodyState& s : b) EXPECT_LT(glm::length(s.velocity), 0.1F);
+    (*session)->reset();
+    EXPECT_EQ((*session)->world().bodies()[1].pose.position, vec3(0.3F, 0.2F, 0.3F));
 }
 
 }  // namespace

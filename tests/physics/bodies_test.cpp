@@ -240,7 +240,7 @@ TEST(TwoWay, NothingIsLostBetweenFluidAndBody) {
 // floor.
 TEST(Floating, AHundredTimesAsLightAndAsHeavy) {
     for (const char* method : {"wcsph", "dfsph"})
-        for (const double ratio : {0.01, 0.1, 2.0, 100.0}) {
+        for (const double ratio : {0.01, 100.0}) {
             auto device = cpu();
             const float s = 0.0125F, radius = 0.05F;
             FluidParams p = tank(method, s, vec3(0.2F, 0.4F, 0.2F), 0.125F);

@@ -28,12 +28,13 @@ HostParticles readParticles(const FluidWorld& world) {
     HostParticles host;
     if (view.count == 0) return host;
     Device& device = world.device();
-    host.position = device.readAll<vec4>(*view.position, view.count);
-    host.velocity = device.readAll<vec4>(*view.velocity, view.count);
-    host.id = device.readAll<uint32_t>(*view.id, view.count);
+    host.position = device.readAll<vec4>(*view.position, view.slots);
+    host.velocity = device.readAll<vec4>(*view.velocity, view.slots);
+    host.id = device.readAll<uint32_t>(*view.id, view.slots);
+    // Free slots and samples on bodies are no particles.
     size_t kept = 0;
-    for (size_t i = 0; i < host.position.size(); ++i) {
-        if (host.position[i].w < 0) continue;  // a free slot
+    for (size_t i = 0; i < host.id.size(); ++i) {
+        if (host.position[i].w < 0) continue;
         host.position[kept] = host.position[i];
         host.velocity[kept] = host.velocity[i];
         host.id[kept++] = host.id[i];
@@ -43,7 +44,7 @@ HostParticles readParticles(const FluidWorld& world) {
     host.id.resize(kept);
     host.mass.assign(kept, view.mass);
     if (view.matterOf != nullptr) {
-        const std::vector<vec4> matter = device.readAll<vec4>(*view.matterOf, view.count);
+        const std::vector<vec4> matter = device.readAll<vec4>(*view.matterOf, view.slots);
         for (size_t i = 0; i < kept; ++i) host.mass[i] = view.mass / matter[host.id[i]].y;
     }
     return host;

@@ -78,6 +78,16 @@ std::string contradiction(const SceneFile& scene) {
     }
     if (scene.look.refractiveIndex != 0 && scene.look.refractiveIndex < 1)
         return fmt::format("look.refractiveIndex is {}: give 1 or more, or 0 for the liquid's", scene.look.refractiveIndex);
+    for (size_t i = 0; i < scene.bodies.size(); ++i) {
+        const BodyParams& body = scene.bodies[i];
+        if ((body.shape == "mesh" || body.shape == "hull") && body.mesh.empty())
+            return fmt::format("bodies[{}].mesh is empty: name a mesh file, or make its shape a box or a sphere", i);
+        if (!body.parts.empty() && body.shape != "mesh" && body.shape != "hull")
+            return fmt::format("bodies[{}] is a {}: parts are drawn with a hull or mesh alone", i, body.shape);
+        if (!inside(body.position, box))
+            return fmt::format("bodies[{}].position {} must lie in fluid.box from {} to {}", i, shown(body.position), shown(box.min),
+                               shown(box.max));
+    }
     const vec3 sight = scene.camera.target - scene.camera.position;
     if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must not be where the camera is", shown(scene.camera.target));
     if (glm::length(scene.light.direction) < 1.0e-6F)
@@ -161,6 +171,42 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.value({.name = "visible", .doc = "whether it is drawn; it is solid either way"}, visible);
 }
 
+void BodyPartParams::visit(ParamVisitor& v) {
+    v.value({.name = "mesh", .doc = "mesh file, found as a collider's; scaled and turned as the body's own", .fixed = kFixed}, mesh);
+    v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
+    v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
+}
+
+void BodyParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> shapes = {"box", "sphere", "hull", "mesh"};
+    v.choice({.name = "shape", .doc = "a box, a sphere, the convex hull of a mesh, or a closed mesh", .fixed = kFixed}, shape, shapes);
+    v.value({.name = "mesh", .doc = "mesh file of a hull or mesh, found as a collider's", .fixed = kFixed}, mesh);
+    v.value({"size", "m", "of a box", 1.0e-4, kFar, kLog, kFixed}, size);
+    v.value({"radius", "m", "of a sphere", 1.0e-4, kFar, kLog, kFixed}, radius);
+    v.value({"scale", "", "of a hull or mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
+    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to, instead of scale; 0 = scale holds", 0, kFar, kLog, kFixed},
+            fitSize);
+    v.value({"position", "m", "of its middle; of a hull or mesh: where the mesh's origin goes (with fitSize: its middle)", -kFar, kFar,
+             kLinear, kFixed},
+            position);
+    v.value({"rotation", "deg", "about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
+    v.value({"velocity", "m/s", "at t = 0", -1000, 1000, kLinear, kFixed}, velocity);
+    v.value({"spin", "deg/s", "at t = 0, about its centre of mass", -36000, 36000, kLinear, kFixed}, spin);
+    v.value({"density", "kg/m^3", "mean, of what it is made of; water has about 1000", 0.01, 1.0e5, kLog, kFixed}, density);
+    v.value({"mass", "kg", "instead of a density; 0 = as density says", 0, 1.0e9, kLog, kFixed}, mass);
+    v.value({"ballast", "m", "from the middle of its volume to its centre of mass, before it is turned: a keel's weight", -1000, 1000,
+             kLinear, kFixed},
+            ballast);
+    v.value({"friction", "", "Coulomb friction with walls and other bodies", 0, 10, kLinear, kFixed}, friction);
+    v.value({"restitution", "", "share of the speed that comes back from walls and other bodies", 0, 1, kLinear, kFixed}, restitution);
+    v.value({.name = "fixed", .doc = "whether it stands still: a wall of boundary particles", .fixed = kFixed}, fixed);
+    v.value({.name = "sticks", .doc = "whether fluid sticks to it (no-slip) or slips along", .fixed = kFixed}, sticks);
+    v.list({.name = "parts", .doc = "meshes that are drawn with a hull or mesh", .fixed = kFixed}, parts);
+    v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
+    v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
+    v.value({.name = "visible", .doc = "whether it is drawn"}, visible);
+}
+
 void CameraParams::visit(ParamVisitor& v) {
     v.value({"position", "m", "where the eye is", -kFar, kFar}, position);
     v.value({"target", "m", "the point looked at", -kFar, kFar}, target);
@@ -206,6 +252,7 @@ void SceneFile::visit(ParamVisitor& v) {
     v.list({.name = "colliders", .doc = "what is solid", .fixed = kFixed}, colliders);
     v.list({.name = "emitters", .doc = "where fluid comes in"}, emitters);
     v.list({.name = "sinks", .doc = "where fluid goes"}, sinks);
+    v.list({.name = "bodies", .doc = "what floats or sinks, and is pushed by the fluid", .fixed = kFixed}, bodies);
     v.group({.name = "look", .doc = "how the fluid is drawn"}, look);
     v.group({.name = "camera", .doc = "where the picture is taken from"}, camera);
     v.group({.name = "light", .doc = "the sun"}, light);

@@ -77,7 +77,7 @@ FrameView frameViewOf(const Camera& camera, const LightParams& light, int width,
 Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look) {
     const ParticleView particles = world.particles();
     FluidView out;
-    out.count = particles.count;
+    out.count = particles.count > 0 ? particles.slots : 0;
     out.spacing = particles.spacing;
     out.radius = look.radiusSpacings * particles.spacing;
     out.bounds.add(world.params().box.min);

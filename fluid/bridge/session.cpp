@@ -10,6 +10,7 @@
 #include "engine/scene/import_assimp.h"
 #include "engine/scene/transform.h"
 #include "fluid/bridge/collider_motion.h"
+#include "fluid/bridge/scene_bodies.h"
 #include "fluid/voxel/voxel_cache.h"
 
 namespace rivulet {
@@ -81,6 +82,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     }
     for (const Rigid& r : s.rigid_) solids.rigid.push_back({r.field.get(), colliderPose(s.scene_.colliders[r.collider], 0, 0)});
     for (const Deforming& d : s.deforming_) solids.deforming.push_back(d.field.get());
+    if (Status added = s.addBodies(solids); !added) return added.error();
     Result<Sources> sources = s.importEmitters();
     if (!sources) return sources.error();
     auto world = FluidWorld::create(device, s.scene_.fluid, solids, log, *sources);
@@ -134,6 +136,53 @@ Result<Sources> Session::importEmitters() const {
         sources.emitters.push_back(std::move(emitter));
     }
     return sources;
+}
+
+Status Session::addBodies(Solids& solids) {
+    if (scene_.bodies.empty()) return ok();
+    Result<std::vector<SceneBody>> made = sceneBodies(scene_);
+    if (!made) return made.error();
+    std::vector<BodyForm> forms;
+    for (size_t i = 0; i < made->size(); ++i) {
+        SceneBody& b = (*made)[i];
+        const BodyParams& params = scene_.bodies[i];
+        Node node;
+        node.name = params.mesh.empty() ? params.shape : params.mesh;
+        node.local = matrixOf(b.body.state.pose);
+        node.mesh = std::make_shared<const Mesh>(std::move(b.mesh));
+        node.material.baseColour = params.colour;
+        node.material.roughness = params.roughness;
+        node.visible = params.visible;
+        const int main = solids_.add(std::move(node));
+        bodyNodes_.push_back(static_cast<size_t>(main));
+        for (size_t p = 0; p < b.parts.size(); ++p) {
+            Node part;
+            part.name = params.parts[p].mesh;
+            part.parent = main;
+            part.mesh = std::make_shared<const Mesh>(std::move(b.parts[p]));
+            part.material.baseColour = params.parts[p].colour;
+            part.material.roughness = params.parts[p].roughness;
+            solids_.add(std::move(part));
+        }
+        forms.push_back(std::move(b.form));
+        solids.bodies.push_back(std::move(b.body));
+    }
+    // What bends is passed through by bodies, as by one another nothing is.
+    std::vector<MeshView> still, moving;
+    std::vector<Pose> poses;
+    for (size_t m = 0; m < meshes_.size(); ++m) {
+        const ColliderParams& collider = scene_.colliders[colliderOf_[m]];
+        if (!collider.motion.moves() && !(collider.wave.amplitude > 0)) still.push_back(meshes_[m].view());
+    }
+    for (const Rigid& r : rigid_) {
+        moving.push_back(meshes_[r.node].view());
+        poses.push_back(colliderPose(scene_.colliders[r.collider], 0, 0));
+    }
+    contacts_ = std::make_unique<BulletSolids>(
+        BulletSolids::Scene{.box = scene_.fluid.box, .planes = solids.planes, .still = still, .moving = moving, .poses = poses},
+        solids.bodies, forms);
+    solids.bodyHost = contacts_->host();
+    return ok();
 }
 
 VoxelFieldOptions Session::fieldOptions(const Bounds& bounds, float edge) const {
@@ -231,7 +280,7 @@ Bounds Session::bounds() const {
 }
 
 bool Session::needsNew(const SceneFile& scene) const {
-    if (scene.colliders.size() != scene_.colliders.size()) return true;
+    if (scene.colliders.size() != scene_.colliders.size() || scene.bodies.size() != scene_.bodies.size()) return true;
     for (size_t i = 0; i < scene.colliders.size(); ++i) {
         const ColliderParams &a = scene_.colliders[i], &b = scene.colliders[i];
         if (a.motion.moves() != b.motion.moves() || (a.wave.amplitude > 0) != (b.wave.amplitude > 0)) return true;
@@ -260,6 +309,12 @@ void Session::apply(const SceneFile& scene) {
         node.material.roughness = collider.roughness;
         node.visible = collider.visible;
     }
+    for (size_t k = 0; k < bodyNodes_.size() && k < scene_.bodies.size(); ++k) {
+        Node& node = solids_.nodes()[bodyNodes_[k]];
+        node.material.baseColour = scene_.bodies[k].colour;
+        node.material.roughness = scene_.bodies[k].roughness;
+        node.visible = scene_.bodies[k].visible;
+    }
 }
 
 // Steps the world with the solids where they are to be `seconds` from now.
@@ -278,6 +333,7 @@ void Session::advance(double seconds, double deviceMs) {
         waveShape(scene_.colliders[d.collider].wave, d.rest, then, d.shape);
         shapes.emplace_back(d.shape);
     }
+    if (contacts_) contacts_->moveTo(poses, seconds);
     inputs.poses = poses;
     inputs.shapes = shapes;
     world_->step(inputs, seconds);
@@ -288,6 +344,7 @@ void Session::advance(double seconds, double deviceMs) {
 void Session::placeNodes() {
     const std::vector<Pose> poses = world_->drawnPoses();
     for (size_t k = 0; k < rigid_.size(); ++k) solids_.nodes()[rigid_[k].node].local = matrixOf(poses[k]);
+    for (size_t k = 0; k < bodyNodes_.size(); ++k) solids_.nodes()[bodyNodes_[k]].local = matrixOf(world_->bodies()[k].pose);
     for (const Deforming& d : deforming_) {
         Mesh mesh = meshes_[d.node];
         mesh.positions.assign(d.field->positions().begin(), d.field->positions().end());
@@ -304,7 +361,7 @@ double Session::step(double asked, bool wait, double deviceMs) {
     const int parts = moving && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
     for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
     if (wait) world_->device().finish();
-    if (moving) placeNodes();
+    if (moving || contacts_) placeNodes();
     double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     world_->device().poll();
     return ms;
@@ -313,6 +370,7 @@ double Session::step(double asked, bool wait, double deviceMs) {
 void Session::reset() {
     world_->reset();
     for (Rigid& r : rigid_) r.turned = 0;
+    if (contacts_) contacts_->moveTo(world_->poses(), 0);
     placeNodes();
 }
 

@@ -1,5 +1,5 @@
-// Session: a scene brought to life. Meshes imported and placed, their voxels baked, a FluidWorld made on a Device, solids moved. The
-// window, headless runs, benches and tests share it.
+// Session: a scene brought to life. Meshes imported and placed, their voxels baked, a FluidWorld made on a Device, solids and bodies moved.
+// The window, headless runs, benches and tests share it.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 #include "engine/core/log.h"
 #include "engine/scene/scene.h"
 #include "fluid/bridge/scene_file.h"
+#include "fluid/bridge/solids_bullet.h"
 #include "fluid/sim/fluid_world.h"
 #include "fluid/voxel/deforming_field.h"
 #include "fluid/voxel/voxel_field.h"
@@ -71,6 +72,7 @@ class Session {
     Status importColliders();
     Result<Sources> importEmitters() const;
     Status bake(const Log& log);
+    Status addBodies(Solids& solids);
     Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
     VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
@@ -85,6 +87,8 @@ class Session {
     VoxelField field_;
     std::vector<Rigid> rigid_;
     std::vector<Deforming> deforming_;
+    std::vector<size_t> bodyNodes_;           // of each body
+    std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
     std::unique_ptr<FluidWorld> world_;
 };
 

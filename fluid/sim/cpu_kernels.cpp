@@ -23,6 +23,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::wcsphRows());
     add(kernels_generic::solverRows());
     add(kernels_generic::emissionRows());
+    add(kernels_generic::bodyRows());
 #endif
 #if defined(RIVULET_HAS_AVX2)
     add(kernels_avx2::gridRows());
@@ -30,6 +31,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx2::wcsphRows());
     add(kernels_avx2::solverRows());
     add(kernels_avx2::emissionRows());
+    add(kernels_avx2::bodyRows());
 #endif
 #if defined(RIVULET_HAS_AVX512)
     add(kernels_avx512::gridRows());
@@ -37,6 +39,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx512::wcsphRows());
     add(kernels_avx512::solverRows());
     add(kernels_avx512::emissionRows());
+    add(kernels_avx512::bodyRows());
 #endif
     return all;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fluid/sim/block.h"
+#include "fluid/sim/body_passes.h"
 #include "fluid/sim/drawn_positions.h"
 #include "fluid/sim/force.h"
 #include "fluid/sim/liquids.h"
@@ -48,6 +49,7 @@ struct FluidWorld::Impl {
     uint32_t slots = 0;     // of particles: those of the blocks and room for more
     bool coloured = false;  // particles differ to the eye
     float mostViscous = 0;  // m^2/s, of the world's liquids
+    BodyPasses bodies;
     Buffer statsRows, corner;
     Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
     PairTraits traits;
@@ -103,6 +105,8 @@ const dvec3& FluidWorld::origin() const { return impl_->params.origin; }
 void FluidWorld::setOrigin(const dvec3& origin) { impl_->params.origin = origin; }
 int FluidWorld::lastSubsteps() const { return impl_->lastSubsteps; }
 const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
+const std::vector<BodyState>& FluidWorld::bodies() const { return impl_->bodies.states(); }
+const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodies.loads(); }
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
 
@@ -153,6 +157,8 @@ Status FluidWorld::Impl::prepare() {
     };
     const Define fromPositions{"FROM_POSITIONS", "1"};
     traits.periodic = params.box.periodic();
+    traits.samples = bodies.sampleCount();
+    traits.matter = traits.matter || bodies.any();
     for (const Wanted& w :
          {Wanted{&stats, "fluid/stats", traits.matter ? std::vector<Define>{{"MATTER", "1"}} : std::vector<Define>{}, true},
           Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
@@ -164,7 +170,7 @@ Status FluidWorld::Impl::prepare() {
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    const uint32_t count = slots;
+    const uint32_t count = slots + traits.samples;
     Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
     if (!made) return made.error();
     method = std::move(*made);
@@ -186,6 +192,7 @@ Status FluidWorld::Impl::prepare() {
     Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
     if (!rows) return rows.error();
     statsRows = std::move(*rows);
+    if (Status room = bodies.allocate(count); !room) return room.error();
     Result<SourcePasses> passes = SourcePasses::create(*device, asked, params, traits.matter, coloured);
     if (!passes) return passes.error();
     sources = std::move(*passes);
@@ -201,7 +208,9 @@ void FluidWorld::Impl::fillStart() {
         fillBlock(params.blocks[k], params.spacing, start);
         for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
     }
-    const size_t left = std::erase_if(start, [&](const NewParticle& p) { return !solids.mayBeBorn(p.position, params.spacing); });
+    const size_t left = std::erase_if(start, [&](const NewParticle& p) { 
+        return !solids.mayBeBorn(p.position, params.spacing) || !bodies.mayBeBorn(p.position, params.spacing);
+    });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }
 
@@ -245,9 +254,9 @@ void FluidWorld::Impl::findLiquids() {
 void FluidWorld::Impl::writeStart() {
     std::vector<vec4> position, velocity;
     std::vector<uint32_t> id;
-    position.reserve(start.size());
-    velocity.reserve(start.size());
-    id.reserve(start.size());
+    position.reserve(particles.count);
+    velocity.reserve(particles.count);
+    id.reserve(particles.count);
     for (const NewParticle& p : start) {
         position.emplace_back(p.position, 1.0F);
         velocity.emplace_back(p.velocity, 0.0F);
@@ -258,6 +267,12 @@ void FluidWorld::Impl::writeStart() {
         velocity.emplace_back(0.0F);
         id.push_back(k);
     }
+    // Samples on bodies come last; each substep puts them where they are.
+    for (uint32_t k = 0; k < traits.samples; ++k) {
+        position.emplace_back(0.0F, 0.0F, 0.0F, -1.0F);
+        velocity.emplace_back(0.0F);
+        id.push_back(static_cast<uint32_t>(id.size()));
+    }
     std::vector<vec4> matterOf, absorptionOf;
     for (const NewParticle& p : start) {
         const BlockParams& b = params.blocks[p.block];
@@ -265,7 +280,12 @@ void FluidWorld::Impl::writeStart() {
         if (traits.matter) matterOf.emplace_back(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
         if (coloured) absorptionOf.push_back(liquid.absorption + vec4(dyeAbsorption(b.dye, b.dyeAmount), 0.0F));
     }
-    if (traits.matter) device->writeAll<vec4>(particles.matterOf, matterOf);
+    if (traits.matter) {
+        matterOf.resize(slots, vec4(1.0F, 1.0F, params.viscosity * params.restDensity, 0.0F));
+        const std::vector<vec4> samples = bodies.matter();
+        matterOf.insert(matterOf.end(), samples.begin(), samples.end());
+        device->writeAll<vec4>(particles.matterOf, matterOf);
+    }
     if (coloured) device->writeAll<vec4>(particles.absorptionOf, absorptionOf);
     device->writeAll<vec4>(particles.positionNext, position);
     device->writeAll<vec4>(particles.velocityNext, velocity);
@@ -303,7 +323,7 @@ void FluidWorld::Impl::say(const std::string& sentence) {
 StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
-    double fastest = std::max({figures->maxSpeed, double{solids.fastestWall()}, double{sources.fastest()}}) +
+    double fastest = std::max({figures->maxSpeed, double{solids.fastestWall()}, double{sources.fastest()}, double{bodies.fastest()}}) +
                      g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
     StepLimit limit{frameSeconds, "the frame"};
     const auto atMost = [&limit](double dt, const char* why) {
@@ -337,6 +357,7 @@ void FluidWorld::Impl::findForces() {
 bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
     if (glm::any(traits.periodic) && fromPositions)
         device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, particles.count);
+    bodies.place(step, particles);
     if (Status built = grid->build(step, particles); !built) {
         say(built.error().message);
         return false;
@@ -344,6 +365,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
     if (traits.matter)
         device->run(gatherMatter, step, {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure},
                     particles.count);
+    bodies.index(step, *grid, particles);
     if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
     return true;
 }
@@ -360,7 +382,8 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .particles = particles,
                         .solve = solve,
                         .build = [&](bool fromPositions) { return built = build(fromPositions, from, to); },
-                        .pushSamples = [](const Buffer&, const Buffer&, float) {},
+                        .pushSamples = [&](const Buffer& position, const Buffer& pressures,
+                                           float scale) { bodies.push(step, *grid, particles, position, pressures, scale); },
                         .planes = solids.planes(),
                         .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
                         .forces = {}};
@@ -375,6 +398,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     solids.collide(step, *grid, particles);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
+    bodies.advance(step, particles, dt);
     sources.run(step, params, *grid, particles, solids, time + to * frameLength, dt, last);
 }
 
@@ -579,6 +603,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
 
 void FluidWorld::reset() {
     if (Status back = impl_->solids.reset(); !back) impl_->say(back.error().message);
+    impl_->bodies.reset();
     impl_->fastestWall = 0;
     impl_->writeStart();
 }
@@ -705,7 +730,8 @@ ParticleView FluidWorld::particles() const {
     return {.position = &w.particles.positionNext,
             .velocity = &w.particles.velocityNext,
             .id = &w.particles.id,
-            .count = w.particles.count,
+            .count = w.slots,
+            .slots = w.particles.count,
             .absorption = w.coloured ? &w.particles.absorption : nullptr,
             .matterOf = w.traits.matter ? &w.particles.matterOf : nullptr,
             .spacing = w.params.spacing,
@@ -724,6 +750,9 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision);
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
+    Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, params, {.periodic = params.box.periodic()});
+    if (!bodies) return bodies.error();
+    w.bodies = std::move(*bodies);
     w.log = std::move(log);
     w.gravity = params.gravity;
     if (Status s = w.prepare(); !s) return s.error();

@@ -15,11 +15,13 @@
 namespace rivulet {
 
 // Where the particles are on the Device. Valid until the next step(), reset() or destruction. Order changes every step; ids do not.
+// Among the slots are `count` particles; where the position's w is negative there is none (a free slot, or a sample on a body).
 struct ParticleView {
-    const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density
+    const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density; negative: no particle
     const Buffer* velocity = nullptr;  // vec4: xyz m/s, w unused
     const Buffer* id = nullptr;        // uint
-    uint32_t count = 0;                // slots; one with position.w < 0 is free, and nothing there
+    uint32_t count = 0;                // slots of the fluid; one with position.w < 0 is free, or a sample on a body: nothing to draw
+    uint32_t slots = 0;                // of the arrays, samples with them
     // vec4: xyz 1/m that red, green and blue fade in its liquid and dye; w 1: and as much as in the world's own liquid, 0: instead of that.
     // Null where all particles are alike.
     const Buffer* absorption = nullptr;
@@ -68,6 +70,8 @@ class FluidWorld {
     double dropped() const;                  // s asked for that were not and will not be simulated
     int lastSubsteps() const;                // of the last step(), not late
     const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, short of what was asked
+    const std::vector<BodyState>& bodies() const;
+    const std::vector<BodyLoad>& bodyLoads() const;  // of the last substep
     std::vector<Pose> drawnPoses() const;    // the same, as ParticleView::drawn
     uint64_t voxelsRewritten() const;        // of deforming solids, since the start
     Device& device() const;

@@ -1,4 +1,4 @@
-// The solids a world is made among: walls that stand still, solids that move as a whole, meshes that change their shape.
+// The solids a world is made among: walls that stand still, solids that move as a whole, meshes that change their shape, floating bodies.
 #pragma once
 
 #include <array>
@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/core/math.h"
+#include "fluid/sim/bodies.h"
+#include "fluid/sim/pose.h"
 #include "fluid/voxel/deforming_field.h"
 #include "fluid/voxel/voxel_field.h"
 
@@ -25,20 +27,6 @@ struct PlaneSolid {
     uint32_t surface = 0;
 };
 
-// Where a solid is: its own frame -> world.
-struct Pose {
-    vec3 position{0.0F};                    // m, of the frame's origin
-    quat rotation{1.0F, 0.0F, 0.0F, 0.0F};  // unit
-    vec3 toWorld(const vec3& p) const { return position + rotation * p; }
-    vec3 toOwn(const vec3& p) const { return glm::conjugate(rotation) * (p - position); }
-};
-
-// The straight way, and the short way round.
-inline Pose between(const Pose& a, const Pose& b, double share) {
-    const auto t = static_cast<float>(share);
-    return {glm::mix(a.position, b.position, t), glm::normalize(glm::slerp(a.rotation, b.rotation, t))};
-}
-
 // Moves as a whole. Its voxels were baked in its own frame and stay there; the frame's origin is what it turns about.
 struct RigidSolid {
     const VoxelField* field = nullptr;  // m; must outlive the world
@@ -51,6 +39,8 @@ struct Solids {
     std::vector<RigidSolid> rigid = {};
     std::vector<DeformingField*> deforming = {};  // in the world's frame; the world updates them. Must outlive it
     std::vector<Surface> surfaces = {};           // kMostSurfaces at most; those left out are as fluid.collision says
+    std::vector<Body> bodies = {};                // floating, or made of boundary particles and standing still
+    BodyHost bodyHost = {};                       // who moves them; empty: they move freely
 };
 
 // What follows a field's normals in their buffer: friction and restitution of every surface, as float bits.

@@ -41,7 +41,7 @@ STRUCT(StepParams) {
     uint  iteration;       // of a pressure solver, from 0
     float warmGate;        // density ratio above which that is done
     float wallShare;       // of a wall at the distance at which particles rest on it, less a hair: above it none moves nearer
-    float padding1;
+    float sampleScale;     // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)
     float padding2;
     float momentum;        // share of the last iteration's change that is made again (heavy ball)
 };

@@ -8,7 +8,8 @@ vec2 corner() { return vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)); }
 // Spray is finer than the particles that stand for it: those with few neighbours are drawn smaller.
 float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
 float drawnRadius(vec4 p) { return radius * mix(1.35, 0.5, spray(p)); }
-bool lost(vec4 p) { return !(dot(p.xyz, p.xyz) < 1.0e12) || p.w < 0.0; }  // NaN too, and free slots
+// NaN, too; and where there is no particle: a free slot, or a sample on a body.
+bool lost(vec4 p) { return p.w < 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
 
 // Slopes (x / depth) between which a circle around (x, depth) is seen: its two tangents through the origin.
 vec2 tangents(float x, float depth, float r) {

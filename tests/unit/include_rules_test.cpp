@@ -75,6 +75,7 @@ const std::map<std::string, Names>& libraries() {
         {"stb", {"engine/scene", "engine/render", "engine/app"}},
         {"bullet", {"fluid/bridge"}},
         {"btBullet", {"fluid/bridge"}},
+        {"LinearMath/", {"fluid/bridge"}},
     };
     return table;
 }

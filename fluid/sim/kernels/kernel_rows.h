@@ -13,6 +13,7 @@
     std::span<const CpuKernelRow> wcsphRows();    \
     std::span<const CpuKernelRow> solverRows();   \
     std::span<const CpuKernelRow> emissionRows(); \
+    std::span<const CpuKernelRow> bodyRows();     \
     }
 #if defined(RIVULET_KERNEL_UNIT)
 #define RIVULET_ISA_OF_kernels_generic Isa::generic

@@ -1,0 +1,278 @@
+#include "fluid/bridge/solids_bullet.h"
+
+#include <algorithm>
+#include <cmath>
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wextra"
+#endif
+#include <LinearMath/btConvexHullComputer.h>
+#include <btBulletDynamicsCommon.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+#include "engine/core/assert.h"
+
+namespace rivulet {
+
+namespace {
+
+btVector3 to(const vec3& v) { return {v.x, v.y, v.z}; }
+btVector3 to(const dvec3& v) { return to(vec3(v)); }
+vec3 from(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+btTransform to(const Pose& p) { return btTransform(btQuaternion(p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w), to(p.position)); }
+Pose from(const btTransform& t) {
+    const btQuaternion q = t.getRotation();
+    return {from(t.getOrigin()), glm::normalize(quat(q.w(), q.x(), q.y(), q.z()))};
+}
+
+// Bullet's own margin, 4 cm, is as large as many a body here.
+constexpr float kMargin = 0.02F;  // of the smallest side
+float marginOf(const vec3& size) { return kMargin * std::min({size.x, size.y, size.z}); }
+
+}  // namespace
+
+std::vector<std::pair<vec3, vec3>> cellsOf(const BodyShape& shape, const Bounds& bounds, int across) {
+    std::vector<std::pair<vec3, vec3>> boxes;
+    const vec3 size = bounds.size();
+    const float edge = std::max({size.x, size.y, size.z}) / static_cast<float>(across);
+    if (!(edge > 0)) return boxes;
+    const ivec3 n = glm::max(ivec3(glm::ceil(size / edge - 0.01F)), ivec3(1));
+    const vec3 cell = size / vec3(n);
+    for (int z = 0; z < n.z; ++z)
+        for (int y = 0; y < n.y; ++y) {
+            // Cells that follow each other along x are one box.
+            int begin = -1;
+            for (int x = 0; x <= n.x; ++x) {
+                const vec3 middle = bounds.min + cell * (vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) + 0.5F);
+                const bool inside = x < n.x && shape.distance(middle) < 0;
+                if (inside && begin < 0) begin = x;
+                if (inside || begin < 0) continue;
+                const float length = static_cast<float>(x - begin) * cell.x;
+                boxes.emplace_back(vec3(middle.x - 0.5F * cell.x - 0.5F * length, middle.y, middle.z), vec3(length, cell.y, cell.z));
+                begin = -1;
+            }
+        }
+    return boxes;
+}
+
+HullMesh convexHull(std::span<const vec3> points) {
+    HullMesh mesh;
+    if (points.size() < 4) return mesh;
+    btConvexHullComputer hull;
+    hull.compute(&points[0].x, sizeof(vec3), static_cast<int>(points.size()), 0, 0);
+    for (int k = 0; k < hull.vertices.size(); ++k) mesh.positions.push_back(from(hull.vertices[k]));
+    for (int f = 0; f < hull.faces.size(); ++f) {
+        const btConvexHullComputer::Edge* first = &hull.edges[hull.faces[f]];
+        const int a = first->getSourceVertex();
+        for (const auto* e = first->getNextEdgeOfFace(); e->getTargetVertex() != a; e = e->getNextEdgeOfFace())
+            for (const int v : {a, e->getSourceVertex(), e->getTargetVertex()}) mesh.indices.push_back(static_cast<uint32_t>(v));
+    }
+    return mesh;
+}
+
+struct BulletSolids::Impl {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+    struct MeshData {
+        std::vector<vec3> positions;
+        std::vector<int> indices;
+        std::unique_ptr<btTriangleIndexVertexArray> array;
+    };
+    std::vector<std::unique_ptr<MeshData>> meshes;
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::unique_ptr<btRigidBody>> all, bodies;  // the scene's, the floating ones
+    std::vector<btRigidBody*> moving;
+    std::vector<Pose> now, target;  // of those that move
+    double left = 0;                // s until they are there
+
+    ~Impl() {
+        for (auto* list : {&all, &bodies})
+            for (auto& b : *list) world.removeRigidBody(b.get());
+    }
+    template <class Shape, class... Args>
+    Shape* shape(Args&&... args) {
+        auto made = std::make_unique<Shape>(std::forward<Args>(args)...);
+        Shape* raw = made.get();
+        shapes.push_back(std::move(made));
+        return raw;
+    }
+    // Friction and restitution of a pair are products: the scene's are 1, so that the body's hold.
+    btRigidBody* addStill(btCollisionShape* form, const Pose& pose) {
+        auto body = std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, form));
+        body->setWorldTransform(to(pose));
+        body->setFriction(1);
+        body->setRestitution(1);
+        world.addRigidBody(body.get());
+        all.push_back(std::move(body));
+        return all.back().get();
+    }
+    btCollisionShape* meshOf(const MeshView& view) {
+        auto data = std::make_unique<MeshData>();
+        data->positions.assign(view.positions.begin(), view.positions.end());
+        data->indices.assign(view.indices.begin(), view.indices.end());
+        data->array = std::make_unique<btTriangleIndexVertexArray>(
+            static_cast<int>(data->indices.size() / 3), data->indices.data(), static_cast<int>(3 * sizeof(int)),
+            static_cast<int>(data->positions.size()), &data->positions[0].x, static_cast<int>(sizeof(vec3)));
+        auto* made = shape<btBvhTriangleMeshShape>(data->array.get(), true);
+        made->setMargin(0);
+        meshes.push_back(std::move(data));
+        return made;
+    }
+    btCollisionShape* formOf(const BodyForm& f, float size) {
+        switch (f.kind) {
+            case BodyForm::Kind::sphere:
+                return at(shape<btSphereShape>(f.radius), f.centre);
+            case BodyForm::Kind::hull: {
+                auto* hull = shape<btConvexHullShape>(&f.points[0].x, static_cast<int>(f.points.size()), static_cast<int>(sizeof(vec3)));
+                hull->setMargin(0.2F * kMargin * size);
+                return hull;
+            }
+            case BodyForm::Kind::cells: {
+                auto* compound = shape<btCompoundShape>();
+                for (const auto& [centre, extent] : f.cells) {
+                    auto* box = shape<btBoxShape>(to(0.5F * extent));
+                    box->setMargin(marginOf(extent));
+                    compound->addChildShape(btTransform(btQuaternion::getIdentity(), to(centre)), box);
+                }
+                return compound;
+            }
+            case BodyForm::Kind::box:
+                break;
+        }
+        auto* box = shape<btBoxShape>(to(0.5F * f.size));
+        box->setMargin(marginOf(f.size));
+        return at(box, f.centre);
+    }
+    btCollisionShape* at(btCollisionShape* form, const vec3& centre) {
+        if (centre == vec3(0.0F)) return form;
+        auto* compound = shape<btCompoundShape>();
+        compound->addChildShape(btTransform(btQuaternion::getIdentity(), to(centre)), form);
+        return compound;
+    }
+    void put(std::span<const BodyState> states) {
+        for (size_t k = 0; k < bodies.size(); ++k) {
+            btRigidBody& b = *bodies[k];
+            b.setWorldTransform(to(states[k].pose));
+            b.setInterpolationWorldTransform(b.getWorldTransform());
+            b.setLinearVelocity(to(states[k].velocity));
+            b.setAngularVelocity(to(states[k].spin));
+            b.setInterpolationLinearVelocity(b.getLinearVelocity());
+            b.setInterpolationAngularVelocity(b.getAngularVelocity());
+            b.updateInertiaTensor();
+        }
+    }
+    void advance(std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
+        put(states);
+        for (size_t k = 0; k < bodies.size(); ++k) {
+            btRigidBody& b = *bodies[k];
+            b.clearForces();
+            if (b.getMass() > 0) b.applyCentralForce(to(loads[k].force + dvec3(gravity) * double{b.getMass()}));
+            if (b.getMass() > 0) b.applyTorque(to(loads[k].torque));
+        }
+        const double share = left > 0 ? std::min(seconds / left, 1.0) : 1.0;
+        left = std::max(left - seconds, 0.0);
+        for (size_t k = 0; k < moving.size(); ++k) {
+            const auto s = static_cast<float>(share);
+            const Pose next{glm::mix(now[k].position, target[k].position, s),
+                            glm::normalize(glm::slerp(now[k].rotation, target[k].rotation, s))};
+            moving[k]->setInterpolationWorldTransform(to(now[k]));
+            moving[k]->setWorldTransform(to(next));
+            btVector3 linear, angular;
+            btTransformUtil::calculateVelocity(to(now[k]), to(next), static_cast<btScalar>(seconds), linear, angular);
+            moving[k]->setLinearVelocity(linear);
+            moving[k]->setAngularVelocity(angular);
+            now[k] = next;
+        }
+        world.stepSimulation(static_cast<btScalar>(seconds), 0);
+        for (size_t k = 0; k < bodies.size(); ++k) {
+            if (!(bodies[k]->getMass() > 0)) continue;
+            states[k].pose = from(bodies[k]->getWorldTransform());
+            states[k].velocity = from(bodies[k]->getLinearVelocity());
+            states[k].spin = from(bodies[k]->getAngularVelocity());
+        }
+    }
+};
+
+BulletSolids::BulletSolids(const Scene& scene, std::span<const Body> bodies, std::span<const BodyForm> forms)
+    : impl_(std::make_unique<Impl>()) {
+    ASSERT(bodies.size() == forms.size(), "one form a body");
+    Impl& w = *impl_;
+    w.world.setGravity(btVector3(0, 0, 0));  // a load like the others
+    w.world.getSolverInfo().m_splitImpulse = 1;
+    const bvec3 periodic = scene.box.periodic();
+    const Pose origin;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float side : {1.0F, -1.0F}) {
+            if (periodic[axis]) continue;
+            vec3 normal(0.0F);
+            normal[axis] = side;
+            w.addStill(w.shape<btStaticPlaneShape>(to(normal), side > 0 ? scene.box.min[axis] : -scene.box.max[axis]), origin);
+        }
+    for (const PlaneSolid& p : scene.planes) {
+        const vec3 normal = glm::normalize(p.normal);
+        w.addStill(w.shape<btStaticPlaneShape>(to(normal), glm::dot(normal, p.position)), origin);
+    }
+    for (const MeshView& mesh : scene.still)
+        if (mesh.triangleCount() > 0) w.addStill(w.meshOf(mesh), origin);
+    for (size_t k = 0; k < scene.moving.size(); ++k) {
+        if (scene.moving[k].triangleCount() == 0) continue;
+        btRigidBody* body = w.addStill(w.meshOf(scene.moving[k]), scene.poses[k]);
+        body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+        body->setActivationState(DISABLE_DEACTIVATION);
+        w.moving.push_back(body);
+        w.now.push_back(scene.poses[k]);
+    }
+    w.target = w.now;
+    std::vector<BodyState> states;
+    for (size_t k = 0; k < bodies.size(); ++k) {
+        const BodyShape& s = bodies[k].shape;
+        Bounds bounds;
+        for (const vec3& p : s.samples) bounds.add(p);
+        const vec3 size = bounds.size();
+        btRigidBody::btRigidBodyConstructionInfo info(s.mass, nullptr, w.formOf(forms[k], std::max({size.x, size.y, size.z})),
+                                                      to(s.inertia));
+        info.m_friction = forms[k].friction;
+        info.m_restitution = forms[k].restitution;
+        info.m_linearDamping = info.m_angularDamping = 0;
+        auto body = std::make_unique<btRigidBody>(info);
+        body->setActivationState(DISABLE_DEACTIVATION);
+        w.world.addRigidBody(body.get());
+        w.bodies.push_back(std::move(body));
+        states.push_back(bodies[k].state);
+    }
+    w.put(states);
+}
+
+BulletSolids::~BulletSolids() = default;
+
+BodyHost BulletSolids::host() {
+    BodyHost h;
+    h.self = impl_.get();
+    h.advance = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
+        static_cast<Impl*>(self)->advance(loads, gravity, seconds, states);
+    };
+    h.reset = [](void* self, std::span<const BodyState> states) {
+        Impl& w = *static_cast<Impl*>(self);
+        w.put(states);
+        // What touched before touches no more.
+        for (auto& b : w.bodies) w.broadphase.getOverlappingPairCache()->cleanProxyFromPairs(b->getBroadphaseProxy(), &w.dispatcher);
+        w.solver.reset();
+    };
+    return h;
+}
+
+void BulletSolids::moveTo(std::span<const Pose> poses, double seconds) {
+    if (poses.size() != impl_->moving.size()) return;
+    impl_->target.assign(poses.begin(), poses.end());
+    impl_->left = seconds;
+    if (!(seconds > 0)) impl_->now = impl_->target;
+}
+
+}  // namespace rivulet

@@ -22,18 +22,21 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::particleRows());
     add(kernels_generic::wcsphRows());
     add(kernels_generic::solverRows());
+    add(kernels_generic::forceRows());
 #endif
 #if defined(RIVULET_HAS_AVX2)
     add(kernels_avx2::gridRows());
     add(kernels_avx2::particleRows());
     add(kernels_avx2::wcsphRows());
     add(kernels_avx2::solverRows());
+    add(kernels_avx2::forceRows());
 #endif
 #if defined(RIVULET_HAS_AVX512)
     add(kernels_avx512::gridRows());
     add(kernels_avx512::particleRows());
     add(kernels_avx512::wcsphRows());
     add(kernels_avx512::solverRows());
+    add(kernels_avx512::forceRows());
 #endif
     return all;
 }

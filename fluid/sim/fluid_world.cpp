@@ -199,8 +199,9 @@ double FluidWorld::Impl::stepLimit(double frameSeconds) const {
         dt = std::min({dt, limit.longest, double{limit.reach} * params.spacing / std::max(fastest, 1.0e-9)});
     }
     // Explicit viscosity alone has a limit; an implicit solver has none.
-    const double nu = double{step.viscosity} + 0.1 * double{step.artificial};
+    const double nu = explicitViscosity(params, method->doesViscosity()) + 0.1 * double{step.artificial};
     if (nu > 0) dt = std::min(dt, 0.125 * hs * hs / nu);
+    dt = std::min(dt, capillaryLimit(params));
     if (g > 0) dt = std::min(dt, 0.25 * std::sqrt(hs / g));
     return dt;
 }
@@ -210,7 +211,7 @@ void FluidWorld::Impl::findForces() {
     for (ForceState& f : forcePasses) {
         f.on = f.row->on(params, method->doesViscosity());
         if (!f.on || f.pass) continue;
-        Result<ForcePass> made = f.row->make(*device, {params, particles.count, traits});
+        Result<ForcePass> made = f.row->make(*device, {params, particles.count, traits, method->doesViscosity()});
         if (made)
             f.pass = std::move(*made);
         else
@@ -248,7 +249,9 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .pushSamples = [](const Buffer&, const Buffer&, float) {},
                         .planes = solids.planes(),
                         .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
-                        .forces = {}};
+                        .forces = {},
+                        .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
+                        .wallAdhesion = [&](const StepParams& s) { solids.adhesion(s, *grid, particles); }};
     for (const ForceState& f : forcePasses) context.hasForces |= f.on;
     context.forces = [&] {
         for (const ForceState& f : forcePasses)
@@ -397,9 +400,13 @@ void FluidWorld::setParams(const FluidParams& params) {
 
 ParticleView FluidWorld::particles() const {
     const Impl& w = *impl_;
-    return {&w.particles.positionNext, &w.particles.velocityNext,
-            &w.particles.id,           w.particles.count,
-            w.params.spacing,          w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
+    return {&w.particles.positionNext,
+            &w.particles.velocityNext,
+            &w.particles.id,
+            w.particles.normal ? &w.particles.normal : nullptr,
+            w.particles.count,
+            w.params.spacing,
+            w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log) {

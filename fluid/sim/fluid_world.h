@@ -17,6 +17,7 @@ struct ParticleView {
     const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density
     const Buffer* velocity = nullptr;  // vec4: xyz m/s, w unused
     const Buffer* id = nullptr;        // uint
+    const Buffer* normal = nullptr;    // vec4: of the surface, w its length; null unless fluid.forces.normals asks for them
     uint32_t count = 0;                // lost ones last
     float spacing = 0;                 // m
     float mass = 0;                    // kg, of one

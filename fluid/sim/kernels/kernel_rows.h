@@ -12,6 +12,7 @@
     std::span<const CpuKernelRow> particleRows(); \
     std::span<const CpuKernelRow> wcsphRows();    \
     std::span<const CpuKernelRow> solverRows();   \
+    std::span<const CpuKernelRow> forceRows();    \
     }
 #if defined(RIVULET_KERNEL_UNIT)
 #define RIVULET_ISA_OF_kernels_generic Isa::generic

@@ -17,7 +17,9 @@ Result<ColourBy> colourByName(const std::string& name) {
     if (name == "speed") return ColourBy::speed;
     if (name == "density") return ColourBy::density;
     if (name == "id") return ColourBy::id;
-    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density or id", name));
+    if (name == "normal") return ColourBy::normal;
+    if (name == "surface") return ColourBy::surface;
+    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density, id, normal or surface", name));
 }
 
 Status uploadTo(gpu::Buffer& buffer, std::span<const std::byte> bytes) {
@@ -65,16 +67,19 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);
     if (out.count == 0) return out;
+    // The points' shader reads normals where it else reads velocities. There are none before the first step.
+    const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
+    const Buffer& velocity = normals ? *particles.normal : *particles.velocity;
     Device& device = world.device();
     if (device.backend() == Backend::gl) {
         out.position = static_cast<unsigned>(particles.position->handle());
-        out.velocity = static_cast<unsigned>(particles.velocity->handle());
+        out.velocity = static_cast<unsigned>(velocity.handle());
         out.id = static_cast<unsigned>(particles.id->handle());
         return out;
     }
     vectors_.resize(out.count);
     ids_.resize(out.count);
-    const std::pair<const Buffer*, gpu::Buffer*> both[] = {{particles.position, &position_}, {particles.velocity, &velocity_}};
+    const std::pair<const Buffer*, gpu::Buffer*> both[] = {{particles.position, &position_}, {&velocity, &velocity_}};
     for (const auto& [from, to] : both) {
         device.read(*from, std::as_writable_bytes(std::span(vectors_)));
         if (Status s = uploadTo(*to, std::as_bytes(std::span(vectors_))); !s) return s.error();

@@ -16,6 +16,14 @@ namespace rivulet {
 
 namespace {
 
+// The scene's fluid, with the normals that its look wants to show.
+FluidParams simulated(const SceneFile& scene) {
+    FluidParams fluid = scene.fluid;
+    const bool shown = scene.look.colourBy == "normal" || scene.look.colourBy == "surface";
+    if (shown && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
+    return fluid;
+}
+
 float longest(const Bounds& bounds) {
     vec3 size = bounds.size();
     return std::max({size.x, size.y, size.z});
@@ -81,7 +89,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     }
     for (const Rigid& r : s.rigid_) solids.rigid.push_back({r.field.get(), colliderPose(s.scene_.colliders[r.collider], 0, 0)});
     for (const Deforming& d : s.deforming_) solids.deforming.push_back(d.field.get());
-    auto world = FluidWorld::create(device, s.scene_.fluid, solids, log);
+    auto world = FluidWorld::create(device, simulated(s.scene_), solids, log);
     if (!world) return Error{fmt::format("{}: {}", s.scene_.name, world.error().message), world.error().fault};
     s.world_ = std::move(*world);
     s.placeNodes();
@@ -223,7 +231,7 @@ void Session::apply(const SceneFile& scene) {
     std::string folder = scene_.folder;
     scene_ = scene;
     scene_.folder = folder;
-    world_->setParams(scene_.fluid);
+    world_->setParams(simulated(scene_));
     std::vector<uint8_t> unchanged;  // see needsNew
     world_->setSurfaces(surfacesOf(scene_, unchanged));
     for (size_t m = 0; m < meshes_.size() && m < solids_.nodes().size(); ++m) {

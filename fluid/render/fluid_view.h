@@ -11,7 +11,7 @@ namespace rivulet {
 
 struct FluidView {
     unsigned position = 0;  // GL buffer name, vec4: xyz m, w = density / rest density
-    unsigned velocity = 0;  // GL buffer name, vec4: xyz m/s
+    unsigned velocity = 0;  // GL buffer name, vec4: xyz m/s; coloured by normal or surface: normals, w their length
     unsigned id = 0;        // GL buffer name, uint
     uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
     float radius = 0.01F;   // m, of a drawn sphere

@@ -14,7 +14,7 @@
 
 namespace rivulet {
 
-enum class ColourBy { speed, density, id };
+enum class ColourBy { speed, density, id, normal, surface };
 
 struct FluidLook {
     ColourBy colourBy = ColourBy::speed;  // points

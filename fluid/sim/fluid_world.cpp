@@ -403,7 +403,7 @@ ParticleView FluidWorld::particles() const {
     return {&w.particles.positionNext,
             &w.particles.velocityNext,
             &w.particles.id,
-            w.particles.normal ? &w.particles.normal : nullptr,
+            w.params.forces.normals != "none" && w.particles.normal ? &w.particles.normal : nullptr,
             w.particles.count,
             w.params.spacing,
             w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing};

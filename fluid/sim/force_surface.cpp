@@ -157,7 +157,7 @@ Result<ForcePass> makeVorticity(Device& device, const MethodSetup& setup) {
     return ForcePass([curl = *curl, confine = *confine, vorticity = std::make_shared<Buffer>(std::move(*buffer))](StepContext& c) {
         StepParams s = paramsOf(c, vec4(0.0F));
         const float volume = c.fluid.spacing * c.fluid.spacing * c.fluid.spacing;
-        // (v_j - v_i) x grad W is gradientK (v_j - v_i) x d.
+        // grad W is gradientK slope d.
         s.force = vec4(volume * s.gradientK, c.fluid.forces.vorticity, 0.0F, 0.0F);
         Particles& p = c.particles;
         const uint32_t threads = c.grid.pairThreads();
@@ -176,7 +176,7 @@ Result<ForcePass> makeAir(Device& device, const MethodSetup& setup) {
     return ForcePass([air = *air, differ = setup.traits.matter](StepContext& c) {
         // 1/2 rho C A |u| u of a sphere with the particle's volume, over its mass.
         constexpr double kAirDensity = 1.2, kShape = 1.2089939655;  // kg/m^3; (pi / 4) (6 / pi)^(2/3)
-        StepParams s = c.params;
+        StepParams s = paramsOf(c, vec4(0.0F));
         s.force = vec4(c.fluid.forces.wind, static_cast<float>(0.5 * kAirDensity * kShape * double{c.fluid.forces.airDrag} /
                                                                (double{c.params.restDensity} * double{c.fluid.spacing})));
         Particles& p = c.particles;

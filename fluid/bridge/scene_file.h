@@ -123,7 +123,7 @@ struct BackgroundParams {
 // How the fluid is drawn.
 struct FluidLookParams {
     std::string renderer = "screen_space";  // a row of renderers(): points | screen_space
-    std::string colourBy = "speed";         // points: speed | density | id | dye
+    std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
     float radiusSpacings = 0.6F;            // drawn radius = this * spacing
     float smoothing = 3.0F;                 // reach of the smoothing, in drawn radii
     vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = as the liquid's

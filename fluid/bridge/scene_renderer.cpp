@@ -19,7 +19,9 @@ Result<ColourBy> colourByName(const std::string& name) {
     if (name == "density") return ColourBy::density;
     if (name == "id") return ColourBy::id;
     if (name == "dye") return ColourBy::dye;
-    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density, id or dye", name));
+    if (name == "normal") return ColourBy::normal;
+    if (name == "surface") return ColourBy::surface;
+    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density, id, dye, normal or surface", name));
 }
 
 Status uploadTo(gpu::Buffer& buffer, std::span<const std::byte> bytes) {
@@ -83,10 +85,13 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);
     if (out.count == 0) return out;
+    // The points' shader reads normals where it else reads velocities. There are none before the first step.
+    const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
+    const Buffer& velocity = normals ? *particles.normal : *particles.velocity;
     Device& device = world.device();
     if (device.backend() == Backend::gl) {
         out.position = static_cast<unsigned>(particles.drawn->handle());
-        out.velocity = static_cast<unsigned>(particles.velocity->handle());
+        out.velocity = static_cast<unsigned>(velocity.handle());
         out.id = static_cast<unsigned>(particles.id->handle());
         if (particles.absorption != nullptr) out.absorption = static_cast<unsigned>(particles.absorption->handle());
         return out;
@@ -94,7 +99,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     vectors_.resize(out.count);
     ids_.resize(out.count);
     const std::pair<const Buffer*, gpu::Buffer*> all[] = {
-        {particles.drawn, &position_}, {particles.velocity, &velocity_}, {particles.absorption, &absorption_}};
+        {particles.drawn, &position_}, {&velocity, &velocity_}, {particles.absorption, &absorption_}};
     for (const auto& [from, to] : all) {
         if (from == nullptr) continue;
         device.read(*from, std::as_writable_bytes(std::span(vectors_)));

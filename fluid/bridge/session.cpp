@@ -17,6 +17,14 @@ namespace rivulet {
 
 namespace {
 
+// The scene's fluid, with the normals that its look wants to show.
+FluidParams simulated(const SceneFile& scene) {
+    FluidParams fluid = scene.fluid;
+    const bool shown = scene.look.colourBy == "normal" || scene.look.colourBy == "surface";
+    if (shown && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
+    return fluid;
+}
+
 float longest(const Bounds& bounds) {
     vec3 size = bounds.size();
     return std::max({size.x, size.y, size.z});
@@ -85,7 +93,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     if (Status added = s.addBodies(solids); !added) return added.error();
     Result<Sources> sources = s.importEmitters();
     if (!sources) return sources.error();
-    auto world = FluidWorld::create(device, s.scene_.fluid, solids, log, *sources);
+    auto world = FluidWorld::create(device, simulated(s.scene_), solids, log, *sources);
     if (!world) return Error{fmt::format("{}: {}", s.scene_.name, world.error().message), world.error().fault};
     s.world_ = std::move(*world);
     s.placeNodes();
@@ -295,7 +303,7 @@ void Session::apply(const SceneFile& scene) {
     std::string folder = scene_.folder;
     scene_ = scene;
     scene_.folder = folder;
-    world_->setParams(scene_.fluid);
+    world_->setParams(simulated(scene_));
     Sources sources{.sinks = scene_.sinks};
     for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
     world_->setSources(sources);

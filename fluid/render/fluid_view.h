@@ -11,7 +11,7 @@ namespace rivulet {
 
 struct FluidView {
     unsigned position = 0;  // GL buffer name, vec4: xyz m, w = density / rest density; negative: not drawn
-    unsigned velocity = 0;  // GL buffer name, vec4: xyz m/s
+    unsigned velocity = 0;  // GL buffer name, vec4: xyz m/s; coloured by normal or surface: normals, w their length
     unsigned id = 0;        // GL buffer name, uint
     // GL buffer name, vec4: xyz what red, green and blue fade by in its liquid and dye, 1/m; w how much of FluidLook::absorption is to be
     // added. 0: all particles are alike.

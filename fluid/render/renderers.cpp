@@ -6,7 +6,7 @@ namespace rivulet {
 
 namespace {
 constexpr RendererRow kRows[] = {
-    {"points", "every particle as a lit sphere, coloured by speed, density, id or dye", true, addPoints},
+    {"points", "every particle as a lit sphere, coloured by speed, density, id, dye, normal or surface", true, addPoints},
     {"screen_space", "a water surface from the particles' smoothed depth: refraction, absorption, reflection", false, addScreenSpace},
 };
 constexpr Table<RendererRow> kRenderers{kRows};

@@ -14,7 +14,7 @@
 
 namespace rivulet {
 
-enum class ColourBy { speed, density, id, dye };
+enum class ColourBy { speed, density, id, dye, normal, surface };
 
 struct FluidLook {
     ColourBy colourBy = ColourBy::speed;   // points

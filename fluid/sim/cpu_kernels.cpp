@@ -24,6 +24,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::solverRows());
     add(kernels_generic::emissionRows());
     add(kernels_generic::bodyRows());
+    add(kernels_generic::forceRows());
 #endif
 #if defined(RIVULET_HAS_AVX2)
     add(kernels_avx2::gridRows());
@@ -32,6 +33,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx2::solverRows());
     add(kernels_avx2::emissionRows());
     add(kernels_avx2::bodyRows());
+    add(kernels_avx2::forceRows());
 #endif
 #if defined(RIVULET_HAS_AVX512)
     add(kernels_avx512::gridRows());
@@ -40,6 +42,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx512::solverRows());
     add(kernels_avx512::emissionRows());
     add(kernels_avx512::bodyRows());
+    add(kernels_avx512::forceRows());
 #endif
     return all;
 }

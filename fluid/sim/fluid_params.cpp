@@ -64,6 +64,44 @@ void CollisionParams::visit(ParamVisitor& v) {
               .doc = "exact: nothing passes a voxel; thesis: as the thesis walks and answers, leaks and sticking included",
               .fixed = kFixed},
              walk, walks);
+    static const std::vector<std::string> kinds = {"slip", "no-slip"};
+    v.choice({.name = "walls", .doc = "what viscosity does at walls: slip: nothing; no-slip: the fluid's velocity there is the wall's"},
+             walls, kinds);
+}
+
+void ForcesParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> ways = {"auto", "explicit", "implicit", "none"};
+    v.choice(
+        {.name = "viscosity",
+         .doc =
+             "of methods pbf and dfsph. explicit: a sweep a step, and steps no longer than 0.125 hs^2 / viscosity; implicit: solved for, "
+             "steps "
+             "of any length; auto: explicit where the step keeps that limit anyhow, else implicit, and none where viscosity evens out less "
+             "than a tenth of the support radius in a second"},
+        viscosity, ways);
+    v.value({"viscosityTolerance", "", "what the implicit solver may leave, as a share of the velocities and of what viscosity changes",
+             1.0e-5, 0.5, kLog},
+            viscosityTolerance);
+    v.value({"viscosityIterations", "", "of the implicit solver in a step, at most", 1, 1000, kLog}, viscosityIterations);
+    v.value({"tension", "N/m",
+             "surface tension (Akinci et al. 2013): 0 = none; water 0.072; steps are kept shorter than capillary waves need", 0, 100},
+            tension);
+    v.value(
+        {"adhesion", "N/m", "how walls and bodies pull the fluid, in the measure of tension: about the same value makes it stick", 0, 100},
+        adhesion);
+    v.value({"thesisTension", "m/s^2",
+             "the thesis's surface tension (8), as the acceleration at a flat surface: < 0 pulls inward, 0 = none", -1000, 1000},
+            thesisTension);
+    static const std::vector<std::string> kinds = {"none", "thesis", "gradient"};
+    v.choice({.name = "normals",
+              .doc = "normals of the surface, to look at (look.colourBy normal or surface): thesis: its (7), which sees walls as air; "
+                     "gradient: of the "
+                     "density, walls counted as fluid"},
+             normals, kinds);
+    v.value({"vorticity", "1/s", "vorticity confinement (Macklin and Mueller 2013): how strongly whirls are kept up; 0 = none", 0, 100},
+            vorticity);
+    v.value({"airDrag", "", "drag coefficient of drops in air of 1.2 kg/m^3: a sphere 0.47; 0 = there is no air", 0, 10}, airDrag);
+    v.value({"wind", "m/s", "velocity of the air; does nothing where airDrag is 0", -kFast, kFast}, wind);
 }
 
 void FluidParams::visit(ParamVisitor& v) {
@@ -113,6 +151,7 @@ void FluidParams::visit(ParamVisitor& v) {
             maxParticles);
     v.group({.name = "pbf", .doc = "of method pbf"}, pbf);
     v.group({.name = "dfsph", .doc = "of method dfsph"}, dfsph);
+    v.group({.name = "forces", .doc = "beside pressure and gravity"}, forces);
     v.group({.name = "box", .doc = "walls around the fluid; what leaves them is lost"}, box);
     v.group({.name = "collision", .doc = "how fluid meets what is solid"}, collision);
     v.list({.name = "blocks", .doc = "boxes of fluid that are there at the start", .fixed = kFixed}, blocks);

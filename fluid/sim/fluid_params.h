@@ -30,6 +30,7 @@ struct CollisionParams {
     float friction = 0.0F;       // Coulomb, of mesh colliders and walls
     float restitution = 0.0F;    // of mesh colliders
     std::string walk = "exact";  // exact | thesis
+    std::string walls = "slip";  // slip | no-slip
     void visit(ParamVisitor& v);
 };
 
@@ -55,6 +56,20 @@ struct DfsphParams {
     void visit(ParamVisitor& v);
 };
 
+struct ForcesParams {
+    std::string viscosity = "auto";    // auto | explicit | implicit | none
+    float viscosityTolerance = 0.01F;  // of the implicit solver, a share
+    int viscosityIterations = 100;     // at most, a step
+    float tension = 0.0F;              // N/m; 0 = none
+    float adhesion = 0.0F;             // N/m, to walls and bodies; 0 = none
+    float thesisTension = 0.0F;        // m/s^2 at a flat surface; < 0 pulls inward; 0 = none
+    std::string normals = "none";      // none | thesis | gradient
+    float vorticity = 0.0F;            // 1/s; 0 = none
+    float airDrag = 0.0F;              // drag coefficient; 0 = no air
+    vec3 wind{0.0F};                   // m/s
+    void visit(ParamVisitor& v);
+};
+
 struct FluidParams {
     std::string method = "wcsph";     // a row of methods()
     std::string kernel = "wendland";  // wendland | cubic_spline
@@ -76,6 +91,7 @@ struct FluidParams {
     int maxParticles = 0;       // 0 = what blocks and emitters need
     PbfParams pbf;
     DfsphParams dfsph;
+    ForcesParams forces;
     BoxParams box;
     CollisionParams collision;
     std::vector<BlockParams> blocks;

@@ -334,8 +334,10 @@ StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
     atMost(own.longest, "the method's fewest steps a frame (minSubsteps)");
     // Explicit viscosity alone has a limit; an implicit solver has none.
-    const double nu = double{std::max(step.viscosity, traits.matter ? mostViscous : 0.0F)} + 0.1 * double{step.artificial};
+    const double own = explicitViscosity(params, method->doesViscosity());
+    const double nu = (own > 0 && traits.matter ? std::max(own, double{mostViscous}) : own) + 0.1 * double{step.artificial};
     if (nu > 0) atMost(0.125 * hs * hs / nu, "viscosity");
+    atMost(capillaryLimit(params), "surface tension");
     if (g > 0) atMost(0.25 * std::sqrt(hs / g), "gravity");
     return limit;
 }
@@ -345,7 +347,7 @@ void FluidWorld::Impl::findForces() {
     for (ForceState& f : forcePasses) {
         f.on = f.row->on(params, method->doesViscosity());
         if (!f.on || f.pass) continue;
-        Result<ForcePass> made = f.row->make(*device, {params, particles.count, traits});
+        Result<ForcePass> made = f.row->make(*device, {params, particles.count, traits, method->doesViscosity()});
         if (made)
             f.pass = std::move(*made);
         else
@@ -386,7 +388,9 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                                            float scale) { bodies.push(step, *grid, particles, position, pressures, scale); },
                         .planes = solids.planes(),
                         .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
-                        .forces = {}};
+                        .forces = {},
+                        .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
+                        .wallAdhesion = [&](const StepParams& s) { solids.adhesion(s, *grid, particles); }};
     for (const ForceState& f : forcePasses) context.hasForces |= f.on;
     context.forces = [&] {
         for (const ForceState& f : forcePasses)
@@ -730,6 +734,7 @@ ParticleView FluidWorld::particles() const {
     return {.position = &w.particles.positionNext,
             .velocity = &w.particles.velocityNext,
             .id = &w.particles.id,
+            .normal = w.params.forces.normals != "none" && w.particles.normal ? &w.particles.normal : nullptr,
             .count = w.slots,
             .slots = w.particles.count,
             .absorption = w.coloured ? &w.particles.absorption : nullptr,

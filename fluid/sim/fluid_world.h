@@ -20,6 +20,7 @@ struct ParticleView {
     const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density; negative: no particle
     const Buffer* velocity = nullptr;  // vec4: xyz m/s, w unused
     const Buffer* id = nullptr;        // uint
+    const Buffer* normal = nullptr;    // vec4: of the surface, w its length; null unless fluid.forces.normals asks for them
     uint32_t count = 0;                // slots of the fluid; one with position.w < 0 is free, or a sample on a body: nothing to draw
     uint32_t slots = 0;                // of the arrays, samples with them
     // vec4: xyz 1/m that red, green and blue fade in its liquid and dye; w 1: and as much as in the world's own liquid, 0: instead of that.

@@ -22,4 +22,12 @@ struct ForceRow {
 };
 Table<ForceRow> forces();
 
+// The longest step (s) with which explicit viscosity is stable: 0.125 hs^2 / nu (Morris et al. 1997).
+double explicitViscousLimit(const FluidParams& params);
+// The viscosity (m^2/s) whose explicit limit a step must keep; 0 where it is solved for implicitly, or left out. `doesViscosity`: see
+// above.
+double explicitViscosity(const FluidParams& params, bool doesViscosity);
+// The longest step (s) with which surface tension is stable: 0.25 sqrt(rho hs^3 / (2 pi sigma)) (Brackbill et al. 1992).
+double capillaryLimit(const FluidParams& params);
+
 }  // namespace rivulet

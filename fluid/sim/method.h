@@ -14,6 +14,7 @@ struct MethodSetup {
     const FluidParams& params;
     uint32_t count;  // slots of particles
     PairTraits traits;
+    bool doesViscosity = false;  // of forces: whether the method has viscosity among its own pair forces
 };
 
 // What a method remembers of earlier steps, by a name of its own: at most 20 letters.

@@ -24,7 +24,6 @@ class Dfsph final : public Method {
     Buffer solve, pressures, rows;  // pressures: remembered, by id
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
-    bool doesViscosity() const override { return true; }
     StepLimit stepLimit(const FluidParams& p) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
 
     void fill(const FluidParams& p, float fastest, StepParams& s) const override {

@@ -117,6 +117,9 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
     };
     for (const Wanted& w :
          {Wanted{&s.boundary_, "fluid/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
+          Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
+          Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
+          Wanted{&s.frictionMoving_, "fluid/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.walls_, "fluid/walls", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.collide_, "fluid/collide", collide(""), still},
@@ -390,6 +393,25 @@ void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, con
         device_->run(boundary_, step, {&start, &position, &planes_, &boundary}, n);
     for (std::vector<Moving>* list : {&rigid_, &deforming_})
         for (const Moving& m : *list) device_->run(boundaryMoving_, step, {&start, &position, &boundary, &m.block, &m.on.distance}, n);
+}
+
+void SolidPasses::friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction) {
+    const uint32_t n = step.count;
+    const Buffer& start = grid.cellStart();
+    if (static_.field != nullptr)
+        device_->run(friction_, step, {&start, &position, &planes_, &friction, &staticBlock_, &static_.distance}, n);
+    else
+        device_->run(friction_, step, {&start, &position, &planes_, &friction}, n);
+    for (std::vector<Moving>* list : {&rigid_, &deforming_})
+        for (const Moving& m : *list) device_->run(frictionMoving_, step, {&start, &position, &friction, &m.block, &m.on.distance}, n);
+}
+
+void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Particles& p) {
+    const Buffer& start = grid.cellStart();
+    if (static_.field != nullptr)
+        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration, &staticBlock_, &static_.distance}, step.count);
+    else
+        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration}, step.count);
 }
 
 void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {

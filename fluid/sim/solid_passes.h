@@ -52,6 +52,10 @@ class SolidPasses {
     Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
     // Fills `boundary` with the walls' share at `position`, sorted.
     void boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary);
+    // Fills `friction` with what no-slip walls do at `position`, sorted: see StepContext::wallFriction. Bending ones count as at rest.
+    void friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction);
+    // Adds the adhesion of walls that stand still to particles.acceleration; step.force.w as fluid/wall_adhesion wants it.
+    void adhesion(const StepParams& step, const NeighborGrid& grid, Particles& particles);
     // Moves particles.positionNext and velocityNext out of the solids.
     void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);
 
@@ -89,7 +93,7 @@ class SolidPasses {
     Surface otherwise_;
     bool surfacesChanged_ = true;
     Buffer planes_;
-    Kernel boundary_, collide_, walls_, boundaryMoving_, collideRigid_, collideDeforming_;
+    Kernel boundary_, friction_, frictionMoving_, adhesion_, collide_, walls_, boundaryMoving_, collideRigid_, collideDeforming_;
     Field static_;
     FieldParams block_{};
     Buffer staticBlock_;

@@ -40,6 +40,11 @@ struct StepContext {
     bool hasForces = false;
     // Adds what the rows of forces() ask for to particles.acceleration, from position and velocity, as sorted.
     std::function<void()> forces;
+    // What no-slip walls do at these positions (in sorted order): w sum of k (1/m^2), xyz sum of k times the wall's velocity; the
+    // acceleration is nu (xyz - w v). Empty: there are none.
+    std::function<void(const Buffer& position, Buffer& friction)> wallFriction = {};
+    // Adds what walls at rest pull at particles by adhesion to particles.acceleration; `params`.force.w as fluid/wall_adhesion wants it.
+    std::function<void(const StepParams& params)> wallAdhesion = {};
 
     // The params of a world where nothing weighs anything.
     StepParams noGravity() const {

@@ -7,6 +7,7 @@
 #undef VOLUME
 #undef MIRRORED
 #undef INERT
+#undef FLUID_ONLY
 #undef LIGHTNESS
 #undef PAIR_VISCOSITY
 #if defined(MATTER)
@@ -17,6 +18,8 @@
 #define VOLUME(term) ((term) * other_.x)
 // How often a pair counts a particle's own pressure: at a sample for the sample, too.
 #define MIRRORED(own) ((own) * (other_.w < 0.0f ? 2.0f : 1.0f))
+// Nothing at a sample.
+#define FLUID_ONLY(term) ((term) * (other_.w < 0.0f ? 0.0f : 1.0f))
 // Times how readily the other one moves.
 #define INERT(term) ((term) * other_.y)
 // What a force over the mass of a particle of the reference liquid is multiplied with to be this one's acceleration.
@@ -29,5 +32,6 @@
 #define VOLUME(term) (term)
 #define MIRRORED(own) (own)
 #define INERT(term) (term)
+#define FLUID_ONLY(term) (term)
 #define LIGHTNESS 1.0f
 #endif

@@ -12,6 +12,7 @@ STRUCT(StepParams) {
     vec4  invPeriod;       // 1/m; 0 = the axis is not periodic
     vec4  boxMin;          // m, the walls; w = 1 if there are walls, else 0
     vec4  boxMax;          // m
+    vec4  force;           // what a row of forces() wants to know: its kernels say
     int   cellsX;          // padded: one empty cell on every side
     int   cellsY;
     int   cellsZ;

@@ -1,10 +1,10 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 #include "shaders/screen_space/ramp.glsl"
-layout(location = 1) in vec4 velocity;
+layout(location = 1) in vec4 velocity;  // normal, surface: normals, w their length
 layout(location = 2) in uint id;
 layout(location = 3) in vec4 absorption;  // xyz 1/m, w share of ownAbsorption added
-uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye
+uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye, 4 normal, 5 surface
 uniform int alike;        // 1: absorption is not given
 uniform vec3 ownAbsorption;  // 1/m
 uniform float dyeDepth;      // m, of liquid and dye that a sphere's colour stands for
@@ -20,5 +20,8 @@ void main() {
         vec3 a = (alike == 1 ? ownAbsorption : absorption.xyz + absorption.w * ownAbsorption) * dyeDepth;
         // Of what lets next to nothing through the hue is left.
         baseColour = 0.9 * exp(-(a - max(min(a.x, min(a.y, a.z)) - 1.0, 0.0)));
-    } else baseColour = ramp(fract(float((id * 2654435769u) >> 8) / 16777216.0));
+    }
+    else if (colourBy == 4) baseColour = abs(velocity.xyz) / max(length(velocity.xyz), 1.0e-6);  // the thesis's (9)
+    else if (colourBy == 5) baseColour = velocity.w > 0.5 ? vec3(0.05, 0.15, 0.9) : vec3(0.9, 0.75, 0.05);
+    else baseColour = ramp(fract(float((id * 2654435769u) >> 8) / 16777216.0));
 }

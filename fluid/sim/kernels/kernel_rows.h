@@ -14,6 +14,7 @@
     std::span<const CpuKernelRow> solverRows();   \
     std::span<const CpuKernelRow> emissionRows(); \
     std::span<const CpuKernelRow> bodyRows();     \
+    std::span<const CpuKernelRow> forceRows();    \
     }
 #if defined(RIVULET_KERNEL_UNIT)
 #define RIVULET_ISA_OF_kernels_generic Isa::generic

@@ -31,6 +31,9 @@ class Pbf final : public Method {
         const uint32_t threads = c.grid.pairThreads();
         const Buffer& neighbors = c.grid.neighbors();
         const Buffer* at = &p.position;
+        // Samples on bodies are never corrected, but looked at there.
+        if (c.params.firstSample < c.params.count)
+            for (Buffer& b : corrected) c.device.copy(p.position, b, size_t{p.count} * sizeof(vec4));
         for (int k = 0; k < c.fluid.pbf.iterations; ++k) {
             c.boundary(*at);
             lambda.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.density, &p.pressure}, threads);

@@ -334,8 +334,8 @@ StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
     atMost(own.longest, "the method's fewest steps a frame (minSubsteps)");
     // Explicit viscosity alone has a limit; an implicit solver has none.
-    const double own = explicitViscosity(params, method->doesViscosity());
-    const double nu = (own > 0 && traits.matter ? std::max(own, double{mostViscous}) : own) + 0.1 * double{step.artificial};
+    const double laminar = explicitViscosity(params, method->doesViscosity());
+    const double nu = (laminar > 0 && traits.matter ? std::max(laminar, double{mostViscous}) : laminar) + 0.1 * double{step.artificial};
     if (nu > 0) atMost(0.125 * hs * hs / nu, "viscosity");
     atMost(capillaryLimit(params), "surface tension");
     if (g > 0) atMost(0.25 * std::sqrt(hs / g), "gravity");

@@ -232,7 +232,9 @@ void FluidLookParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> renderers = {"points", "screen_space"};
     static const std::vector<std::string> colourings = {"speed", "density", "id", "dye", "normal", "surface"};
     v.choice({.name = "renderer", .doc = "particles as points, or a water surface found on the screen"}, renderer, renderers);
-    v.choice({.name = "colourBy", .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"}, colourBy, colourings);
+    v.choice({.name = "colourBy",
+              .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"},
+             colourBy, colourings);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
     v.value({"smoothing", "", "reach of the surface's smoothing, in drawn radii; 0 = none", 0, 20}, smoothing);
     v.value({"absorption", "1/m",

@@ -208,7 +208,7 @@ void FluidWorld::Impl::fillStart() {
         fillBlock(params.blocks[k], params.spacing, start);
         for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
     }
-    const size_t left = std::erase_if(start, [&](const NewParticle& p) { 
+    const size_t left = std::erase_if(start, [&](const NewParticle& p) {
         return !solids.mayBeBorn(p.position, params.spacing) || !bodies.mayBeBorn(p.position, params.spacing);
     });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
@@ -458,7 +458,6 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
     w.lastSubsteps = substeps;
     w.time += stepped;
-    w.sources.report();
     w.gatherColours();
     const double lost = w.pace.end(stepped);
     // What rounding leaves of a whole frame is no loss.
@@ -539,6 +538,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
     lastPiece = done;
     dtMin = dtMin == 0 ? dt : std::min(dtMin, dt);
     dtMax = std::max(dtMax, dt);
+    sources.report();
     gatherStats(substeps, time + begin + dt * done);
     return dt * done;
 }

@@ -73,8 +73,8 @@ class FluidWorld {
     const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, short of what was asked
     const std::vector<BodyState>& bodies() const;
     const std::vector<BodyLoad>& bodyLoads() const;  // of the last substep
-    std::vector<Pose> drawnPoses() const;    // the same, as ParticleView::drawn
-    uint64_t voxelsRewritten() const;        // of deforming solids, since the start
+    std::vector<Pose> drawnPoses() const;            // the same, as ParticleView::drawn
+    uint64_t voxelsRewritten() const;                // of deforming solids, since the start
     Device& device() const;
 
     // Everything in a world is float and relative to its origin, a place (m) in the host's world. Moving it moves all there is.

@@ -100,7 +100,7 @@ class Viscosity {
         if (!cpu)
             device.readLater(result, result.bytes(),
                              [into = last_, tolerance](std::span<const std::byte> b) { *into = read(b, tolerance); });
-        device.run(finish, c.params, {&cells, &p.velocity, &solved, &p.acceleration}, p.count);
+        device.run(finish, c.params, {&cells, &p.velocity, &solved, &left, &p.acceleration}, p.count);
         pushSamples(c, solved);
     }
 

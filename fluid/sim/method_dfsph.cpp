@@ -75,9 +75,10 @@ class Dfsph final : public Method {
         const int most = std::max(c.fluid.dfsph.maxIterations, atLeast);
         // On a GPU nothing waits for the residual: as many iterations as the last one known asked for, one more or fewer.
         if (!cpu && last->known) {
-            planned = std::clamp(planned + (last->value > tolerance ? 1 : last->value < 0.5 * tolerance ? -1 : 0), atLeast, most);
+            planned += last->value > tolerance ? 1 : last->value < 0.5 * tolerance ? -1 : 0;
             last->known = false;
         }
+        planned = std::clamp(planned, atLeast, most);
         double before = 0;
         StepParams s = c.params;
         int k = 0;
@@ -92,7 +93,7 @@ class Dfsph final : public Method {
                 const double kept = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
                 before = r;
                 if ((k >= atLeast && r * kept <= tolerance) || k >= most) break;
-            } else if (k >= std::max(planned, atLeast)) {
+            } else if (k >= planned) {
                 askResidual(c, last);
                 break;
             }
@@ -116,13 +117,15 @@ class Dfsph final : public Method {
         return {total / std::max(1.0, double{values[STATS_THREADS]}), true};
     }
 
-    int planned_ = 3, plannedDivergence_ = 1;
+    int planned_ = 3, plannedDivergence_ = 3;  // until a residual is known
     std::shared_ptr<Residual> residual_ = std::make_shared<Residual>(), divergenceResidual_ = std::make_shared<Residual>();
 };
 
 }  // namespace
 
 Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& setup) {
+    if (setup.params.kernel != "wendland")
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method dfsph works with wendland");
     auto m = std::make_unique<Dfsph>();
     const Define coast{"COAST", "1"}, divergence{"DIVERGENCE", "1"};
     struct Wanted {

@@ -26,6 +26,7 @@ class Pbf final : public Method {
     void step(StepContext& c) override {
         Particles& p = c.particles;
         c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
+        c.grid.setMargin(1.05F);  // as pbf_lambda keeps
         if (!c.build(true)) return;
         // p.position: predicted; p.velocity: where each particle comes from.
         const uint32_t threads = c.grid.pairThreads();
@@ -68,6 +69,8 @@ class Pbf final : public Method {
 }  // namespace
 
 Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
+    if (setup.params.kernel != "wendland")
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method pbf works with wendland");
     auto m = std::make_unique<Pbf>();
     for (auto [kernel, path] :
          {std::pair(&m->predict, "fluid/pbf_predict"), std::pair(&m->finish, "fluid/pbf_finish"), std::pair(&m->kick, "fluid/kick"),

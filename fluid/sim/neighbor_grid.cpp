@@ -36,7 +36,7 @@ struct Allocator {
 struct NeighborGrid::Impl {
     Device* device = nullptr;
     vec3 origin{0.0F};
-    float h = 0;
+    float h = 0, margin = 1;
     ivec3 cells{0};  // padded
     vec3 scale{0.0F}, period{0.0F};
     uint32_t count = 0;
@@ -139,7 +139,7 @@ CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
     j.periodX = period.x;
     j.periodY = period.y;
     j.periodZ = period.z;
-    j.h = h;
+    j.reach = h * margin;
     j.totalCells = totalCells();
     j.firstSample = firstSample();
     j.cellsX = cells.x;
@@ -293,6 +293,7 @@ Status NeighborGrid::build(const StepParams& params, Particles& particles) {
     return ok();
 }
 
+void NeighborGrid::setMargin(float margin) { impl_->margin = margin; }
 const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }
 const Buffer& NeighborGrid::cellStart() const { return impl_->cellStart; }
 uint32_t NeighborGrid::pairThreads() const { return impl_->onCpu() ? impl_->fluidGroups : impl_->count; }

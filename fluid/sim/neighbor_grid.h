@@ -33,6 +33,8 @@ class NeighborGrid {
     ~NeighborGrid();
 
     void fill(StepParams& params) const;  // the grid's part of it
+    // For who moves particles before the next build: lists reach this times h.
+    void setMargin(float margin);
     // Sorts the newest state into position, velocity, id, and prepares neighbours. Error: out of memory for the lists.
     Status build(const StepParams& params, Particles& particles);
 

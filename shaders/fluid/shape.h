@@ -1,6 +1,7 @@
 // The smoothing kernel without its factor: Wendland C2 (Wendland 1995), or with CUBIC the cubic spline (Monaghan 1992) as a sum of truncated
 // powers, both zero from h on. W = kernelK * shape(r / h); grad W = gradientK * slope(r) * d.
 #undef VISCOUS_WEIGHT
+#undef SHAPE_AND_SLOPE
 #if defined(CUBIC)
 #define VISCOUS_WEIGHT 2.66666667f  /* h^2 times what 1 / r^2 in a viscous pair term is replaced by: the same fourth moment */
 FN real shape(real q) {
@@ -26,3 +27,9 @@ FN real slope(real r, float h) {
     return t * t * t;
 }
 #endif
+// Both at once, of Wendland C2: slope(r) is h^3 times the second.
+#define SHAPE_AND_SLOPE(r, invH, w, g)          \
+    real q_ = (r) * (invH);                     \
+    real a_ = max0(1.0f - q_);                  \
+    real g = a_ * a_ * a_;                      \
+    real w = g * a_ * (4.0f * q_ + 1.0f);

@@ -6,7 +6,7 @@
 #define VISCOUS_K (PARAMS.mass * PARAMS.gradientK / PARAMS.restDensity * 10.0f * VISCOUS_WEIGHT * PARAMS.invH * PARAMS.invH)  /* 2 (dimension + 2) */
 #if defined(MATTER)
 #if defined(SAMPLES)
-#define VISCOUS_OWN real mu_ = LOADZ(matter, i); float viscousFactor_ = VISCOUS_K / PARAMS.restDensity;
+#define VISCOUS_OWN real mu_ = LOADZ(matter, i); real viscousFactor_ = LOADX(matter, i) * (VISCOUS_K / PARAMS.restDensity);  /* the whole of it: a force */
 #define VISCOUS_PAIR(approach) ((approach) * (mu_ * (other_.w < 0.0f ? 0.0f : other_.z)))
 #else
 #define VISCOUS_OWN real mu_ = LOADZ(matter, i); real viscousFactor_ = LIGHTNESS * (VISCOUS_K / PARAMS.restDensity);

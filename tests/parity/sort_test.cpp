@@ -58,7 +58,8 @@ uint32_t referenceCell(const vec4& x, const StepParams& p) {
                         (x.z - p.gridOrigin.z) * p.gridScale.x};
     const int cells[3] = {p.cellsX, p.cellsY, p.cellsZ};
     for (int a = 0; a < 3; ++a)
-        if (!std::isfinite(g[a]) || std::floor(g[a]) < 1 || std::floor(g[a]) > static_cast<float>(cells[a] - 2)) return p.totalCells + 1;  // lost
+        if (!std::isfinite(g[a]) || std::floor(g[a]) < 1 || std::floor(g[a]) > static_cast<float>(cells[a] - 2))
+            return p.totalCells + 1;  // lost
     return static_cast<uint32_t>((std::floor(g[2]) * static_cast<float>(p.cellsY) + std::floor(g[1])) * static_cast<float>(p.cellsX) +
                                  std::floor(g[0]));
 }

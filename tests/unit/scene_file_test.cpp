@@ -150,7 +150,7 @@ TEST_F(SceneTest, WhatMakesNoSenseTogetherIsRefusedByName) {
         {R"({"fluid": {"spacingg": 0.1}})", "x.json:1:12: fluid.spacingg is not a parameter; did you mean fluid.spacing?"},
         {R"({"fluid": {"spacing": -1}})", "x.json:1:23: fluid.spacing is -1 m, must be between 0.0005 and 1 m"},
         {R"({"fluid": {"method": "wcsp"}})",
-         "x.json:1:22: fluid.method is \"wcsp\", must be one of wcsph, wcsph_thesis; did you mean wcsph?"},
+         "x.json:1:22: fluid.method is \"wcsp\", must be one of pbf, dfsph, wcsph, wcsph_thesis; did you mean wcsph?"},
     };
     for (const auto& [text, error] : refusals) EXPECT_EQ(errorOf(text), error) << text;
 }

@@ -183,7 +183,7 @@ INLINE const uint32_t* rowOf(const Job& job, uint32_t firstCell, int y, int z) {
 
 INLINE void findStretches(const Job& job, const GroupBox& b, uint32_t firstCell, Stretches& to) {
     const int rowLength = 2 * job.cellsX;
-    const float h2 = job.h * job.h, edgeY = 1.0F / job.scaleY, edgeZ = 1.0F / job.scaleZ;
+    const float h2 = job.reach * job.reach, edgeY = 1.0F / job.scaleY, edgeZ = 1.0F / job.scaleZ;
     for (int dz = -1; dz <= 1; ++dz)
         for (int dy = -1; dy <= 1; ++dy) {
             // The row's distance from the group's box narrows the stretch of x that can hold neighbours.
@@ -194,7 +194,7 @@ INLINE void findStretches(const Job& job, const GroupBox& b, uint32_t firstCell,
             const float gap2 = max0(gapY) * max0(gapY) + max0(gapZ) * max0(gapZ);
             if (gap2 >= h2) continue;
             // A hair wider than exact: rounding of the cell index must not lose a neighbour.
-            const float reach = sqrt(h2 - gap2) + 1.0e-4F * job.h;
+            const float reach = sqrt(h2 - gap2) + 1.0e-4F * job.reach;
             const int x0 = max(static_cast<int>((b.loX - reach - job.originX) * 2.0F * job.scaleX), 0);
             const int x1 = min(static_cast<int>((b.hiX + reach - job.originX) * 2.0F * job.scaleX), rowLength - 1);
             to.add(rowOf(job, firstCell, b.cy + dy, b.cz + dz), x0, x1);
@@ -216,7 +216,7 @@ INLINE void findWrapped(const Job& job, const GroupBox& b, uint32_t firstCell, S
     };
     int ys[3], zs[3];
     const int ny = around(b.cy, job.cellsY, job.periodY > 0, ys), nz = around(b.cz, job.cellsZ, job.periodZ > 0, zs);
-    const float reach = job.h * 1.0001F;
+    const float reach = job.reach * 1.0001F;
     int x0 = static_cast<int>(floor((b.loX - reach - job.originX) * 2.0F * job.scaleX));
     int x1 = static_cast<int>(floor((b.hiX + reach - job.originX) * 2.0F * job.scaleX));
     const int first = 2, last = 2 * job.cellsX - 3, turn = last - first + 1;  // the half cells that are not padding
@@ -242,10 +242,10 @@ INLINE real outside(real x, float lo, float hi, float period, float invPeriod) {
     return max0(max(near, -near) - real(0.5F * (hi - lo)));
 }
 
-// One thread a group: every particle within h of the box around the group's particles. The first sweep drops what no lane needs.
+// One thread a group: every particle within reach of the box around the group's particles. The first sweep drops what no lane needs.
 template <bool periodic>
 INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
-    const float h2 = periodic ? job.h * job.h * 1.0001F : job.h * job.h;
+    const float h2 = periodic ? job.reach * job.reach * 1.0001F : job.reach * job.reach;
     const uint32_t cells = job.cells();
     const float invX = job.periodX > 0 ? 1.0F / job.periodX : 0.0F, invY = job.periodY > 0 ? 1.0F / job.periodY : 0.0F,
                 invZ = job.periodZ > 0 ? 1.0F / job.periodZ : 0.0F;

@@ -28,12 +28,12 @@ struct CpuGridJob {
     float originX, originY, originZ;
     float scaleX, scaleY, scaleZ;     // 1/m, as StepParams.gridScale
     float periodX, periodY, periodZ;  // m; 0 = not periodic
-    float h;
-    int cellsX, cellsY, cellsZ;  // padded cells, as in StepParams; the sort has 2 * cellsX along x
-    uint32_t totalCells;         // cells(), or twice that with body samples
-    uint32_t firstSample;        // ids from here on are samples
-    uint32_t count;              // particles
-    uint32_t chunks;             // of the two-histogram sort
+    float reach;                      // m, of the lists: h, or more where positions change before they are built anew
+    int cellsX, cellsY, cellsZ;       // padded cells, as in StepParams; the sort has 2 * cellsX along x
+    uint32_t totalCells;              // cells(), or twice that with body samples
+    uint32_t firstSample;             // ids from here on are samples
+    uint32_t count;                   // particles
+    uint32_t chunks;                  // of the two-histogram sort
     uint32_t groupCount;
     uint32_t listCapacity;  // entries
     // Input (unsorted) and output (sorted).

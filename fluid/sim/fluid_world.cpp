@@ -655,6 +655,12 @@ std::vector<Pose> FluidWorld::drawnPoses() const {
     return poses;
 }
 
+Status FluidWorld::savable() const {
+    if (impl_->sources.any()) return failed("a scene with emitters or sinks cannot be saved or resumed: run it from its start");
+    if (impl_->bodies.any()) return failed("a scene with bodies cannot be saved or resumed: run it from its start");
+    return ok();
+}
+
 void FluidWorld::save(WorldState& state) {
     Impl& w = *impl_;
     w.device->finish();
@@ -682,6 +688,7 @@ void FluidWorld::save(WorldState& state) {
 
 Status FluidWorld::restore(WorldState& state) {
     Impl& w = *impl_;
+    if (Status can = savable(); !can) return can;
     // All of it is taken and judged before anything changes.
     Result<std::string> params = state.takeText("world.params");
     if (!params) return params.error();

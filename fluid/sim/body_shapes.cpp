@@ -120,6 +120,7 @@ double thickness(const std::vector<Triangle>& triangles, size_t own, const dvec3
 // Darts thrown at the surface and sunk half a spacing, or to the middle of what is thin.
 std::vector<vec3> meshSamples(const std::vector<Triangle>& triangles, float spacing) {
     std::vector<double> area;
+    area.reserve(triangles.size());
     double total = 0;
     for (const Triangle& f : triangles) area.push_back(total += 0.5 * glm::length(glm::cross(f.b - f.a, f.c - f.a)));
     std::vector<vec3> kept;

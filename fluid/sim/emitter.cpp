@@ -115,10 +115,10 @@ void EmitterFeed::layOut() {
     if (p.shape != "nozzle" || !(p.litresPerSecond > 0)) return;
     const double s = spacing_, a = kLoose * std::pow(2.0, 1.0 / 6) * s, gap = std::sqrt(2.0 / 3) * a, v = nozzleSpeed(p);
     speed_ = static_cast<float>(v);
-    const double across_ = 1.0e-3 * double{p.litresPerSecond} / v;  // m^2, of the jet
-    const auto n = static_cast<size_t>(std::max(std::round(across_ * gap / (s * s * s)), 1.0));
+    const double sideways = 1.0e-3 * double{p.litresPerSecond} / v;  // m^2, of the jet
+    const auto n = static_cast<size_t>(std::max(std::round(sideways * gap / (s * s * s)), 1.0));
     const auto [u, w] = across(glm::normalize(p.direction));
-    const int reach = static_cast<int>(std::ceil(std::sqrt(across_ / kPiD) / (0.8 * a))) + 2;
+    const int reach = static_cast<int>(std::ceil(std::sqrt(sideways / kPiD) / (0.8 * a))) + 2;
     for (int layer = 0; layer < 2; ++layer) {
         struct Place {
             double x, y;

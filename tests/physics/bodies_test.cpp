@@ -133,6 +133,7 @@ TEST(Samples, AMeshIsTheBoxItShows) {
     const BodyShape box = boxShape(size, 700, s);
     const quat turn = glm::angleAxis(0.7F, glm::normalize(vec3(1, 2, 0.5F)));
     std::vector<vec3> corners;
+    corners.reserve(8);
     for (int k = 0; k < 8; ++k)
         corners.push_back(
             vec3(3, -2, 1) +

@@ -1,0 +1,87 @@
+// FluidWorld::Impl: what a world is made of. For fluid_world*.cpp alone: made in _start, stepped in fluid_world.cpp, kept in _state.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fluid/sim/block.h"
+#include "fluid/sim/body_passes.h"
+#include "fluid/sim/drawn_positions.h"
+#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/force.h"
+#include "fluid/sim/method.h"
+#include "fluid/sim/neighbor_grid.h"
+#include "fluid/sim/pace.h"
+#include "fluid/sim/particles.h"
+#include "fluid/sim/solid_passes.h"
+#include "fluid/sim/source_passes.h"
+
+namespace rivulet {
+
+// The longest step that is stable, s, and what says so.
+struct StepLimit {
+    double dt;
+    const char* why;
+};
+
+struct FluidWorld::Impl {
+    Device* device = nullptr;
+    FluidParams params;
+    Log log;
+    std::unique_ptr<Method> method;
+    std::unique_ptr<NeighborGrid> grid;
+    Particles particles;
+    std::vector<NewParticle> start;
+    SolidPasses solids;
+    Sources asked;  // emitters and sinks
+    SourcePasses sources;
+    uint32_t slots = 0;     // of particles: those of the blocks and room for more
+    bool coloured = false;  // particles differ to the eye
+    float mostViscous = 0;  // m^2/s, of the world's liquids
+    BodyPasses bodies;
+    Buffer statsRows, corner;
+    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
+    PairTraits traits;
+    struct ForceState {
+        const ForceRow* row;
+        ForcePass pass;  // made when it is first on
+        bool on = false;
+    };
+    std::vector<ForceState> forcePasses;
+    SolveFigures solve;
+    double iterations = 0;  // of this frame's substeps, all of them
+    Pace pace;
+    DrawnPositions drawn;
+    std::vector<Pose> posesBefore;                                         // the rigid solids', before the last fixed step
+    std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
+    StepParams step{};
+    vec3 gravity{0.0F};
+    double time = 0, dropped = 0;
+    double frameLength = 0;  // s, of the frame under way: what the substeps' shares are of
+    uint64_t frame = 0;
+    int lastSubsteps = 0;
+    double dtMin = 0, dtMax = 0;
+    float fastestWall = 0;  // m/s, of moving solids, lately
+    bool budgetSaid = false;
+    int lastPiece = 0;  // substeps
+
+    Status prepare();
+    void fillStart();
+    Status findSlots();
+    void findLiquids();
+    void writeStart();
+    void gatherColours();
+    float fastestFall() const;
+    StepLimit stepLimit(double frameSeconds) const;
+    void fillStep();
+    double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
+    void say(const std::string& sentence);
+    void findForces();
+    bool build(bool fromPositions, double from, double to);
+    // `last`: of a piece of its frame.
+    void substep(double dt, double from, double to, bool last);
+    void gatherStats(int substeps, double until);
+};
+
+}  // namespace rivulet

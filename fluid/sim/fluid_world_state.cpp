@@ -1,0 +1,93 @@
+// A world's state, put away and taken up again.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/sim/fluid_world_impl.h"
+
+namespace rivulet {
+
+Status FluidWorld::savable() const {
+    if (impl_->sources.any()) return failed("a scene with emitters or sinks cannot be saved or resumed: run it from its start");
+    if (impl_->bodies.any()) return failed("a scene with bodies cannot be saved or resumed: run it from its start");
+    return ok();
+}
+
+void FluidWorld::save(WorldState& state) {
+    Impl& w = *impl_;
+    w.device->finish();
+    w.device->poll();
+    state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
+    const FluidStats& f = *w.figures;
+    const double numbers[] = {w.time,
+                              w.pace.pending(),
+                              w.dropped,
+                              w.dtMin,
+                              w.dtMax,
+                              f.maxSpeed,
+                              w.fastestWall,
+                              static_cast<double>(w.frame),
+                              w.params.origin.x,
+                              w.params.origin.y,
+                              w.params.origin.z};
+    state.put<double>("world.numbers", numbers);
+    state.putText("world.limited", fmt::format("{}", fmt::join(f.limited, "\n")));
+    w.particles.save(*w.device, state);
+    for (const NamedBuffer& b : w.method->remembered())
+        state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
+    w.solids.save(state);
+}
+
+Status FluidWorld::restore(WorldState& state) {
+    Impl& w = *impl_;
+    if (Status can = savable(); !can) return can;
+    // All of it is taken and judged before anything changes.
+    Result<std::string> params = state.takeText("world.params");
+    if (!params) return params.error();
+    if (Status same = sameFixedValues(*params, fixedValues([&w](ParamVisitor& v) { w.params.visit(v); })); !same) return same;
+    Result<std::vector<double>> numbers = state.take<double>("world.numbers", 11);
+    if (!numbers) return numbers.error();
+    const std::vector<double>& n = *numbers;
+    if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
+        std::any_of(n.begin(), n.begin() + 8, [](double v) { return v < 0; }))
+        return badInput("the saved state's numbers make no sense: save it again");
+    Result<std::string> limited = state.takeText("world.limited");
+    if (!limited) return limited.error();
+    Result<Particles::Saved> saved = w.particles.take(state);
+    if (!saved) return saved.error();
+    const std::vector<NamedBuffer> remembered = w.method->remembered();
+    std::vector<std::vector<float>> memory;
+    for (const NamedBuffer& b : remembered) {
+        Result<std::vector<float>> values = state.take<float>(fmt::format("method.{}", b.name), b.buffer->bytes() / sizeof(float));
+        if (!values) return values.error();
+        memory.push_back(std::move(*values));
+    }
+    Result<SolidPasses::Places> places = w.solids.take(state);
+    if (!places) return places.error();
+    if (Status all = state.allTaken(); !all) return all;
+
+    w.writeStart();
+    w.particles.restore(*w.device, *saved);
+    for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
+    w.time = n[0];
+    w.pace.reset(n[1]);
+    w.dropped = n[2];
+    w.dtMin = n[3];
+    w.dtMax = n[4];
+    w.figures->maxSpeed = n[5];
+    w.fastestWall = static_cast<float>(n[6]);
+    w.frame = static_cast<uint64_t>(n[7]);
+    w.params.origin = dvec3(n[8], n[9], n[10]);
+    w.figures->frame = w.frame;
+    w.figures->time = w.time;
+    for (size_t at = 0; at < limited->size();) {
+        const size_t end = std::min(limited->find('\n', at), limited->size());
+        w.figures->limited.push_back(limited->substr(at, end - at));
+        at = end + 1;
+    }
+    return w.solids.restore(*places);
+}
+
+}  // namespace rivulet

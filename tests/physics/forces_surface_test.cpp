@@ -6,20 +6,10 @@
 #include "engine/compute/device_cpu.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/sim/fluid_world.h"
+#include "tests/physics/worlds.h"
 
 namespace rivulet {
 namespace {
-
-std::unique_ptr<CpuDevice> cpu() {
-    const std::vector<CpuKernelRow> rows = cpuKernels();
-    return makeCpuDevice(rows);
-}
-
-std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, const Solids& solids = {}) {
-    auto world = FluidWorld::create(device, params, solids, {});
-    EXPECT_TRUE(world) << (world ? "" : world.error().message);
-    return world ? std::move(*world) : nullptr;
-}
 
 struct State {
     std::vector<vec4> position, velocity, normal;

@@ -9,21 +9,11 @@
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/sim/fluid_world.h"
 #include "fluid/sim/pace.h"
+#include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet {
 namespace {
-
-std::unique_ptr<CpuDevice> cpu() {
-    const std::vector<CpuKernelRow> rows = cpuKernels();
-    return makeCpuDevice(rows);
-}
-
-std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, const Solids& solids = {}) {
-    auto world = FluidWorld::create(device, params, solids, {});
-    EXPECT_TRUE(world) << (world ? "" : world.error().message);
-    return world ? std::move(*world) : nullptr;
-}
 
 FluidParams column(const char* method) {
     FluidParams p;

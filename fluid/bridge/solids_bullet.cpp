@@ -8,6 +8,7 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wextra"
 #endif
+#include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 #include <LinearMath/btConvexHullComputer.h>
 #include <btBulletDynamicsCommon.h>
 #if defined(__GNUC__)
@@ -32,6 +33,36 @@ Pose from(const btTransform& t) {
 // Bullet's own margin, 4 cm, is as large as many a body here.
 constexpr float kMargin = 0.02F;  // of the smallest side
 float marginOf(const vec3& size) { return kMargin * std::min({size.x, size.y, size.z}); }
+
+// Contacts of a body with a plane: its corners, which its user pointer has, below or near it. Bullet's own algorithm finds one a step,
+// and each box of a mesh meets every plane, however far it is.
+using Corners = std::vector<btVector3>;
+void touchPlane(const btCollisionObject& plane, const btCollisionObject& body, btCollisionDispatcher& dispatcher) {
+    const auto& shape = static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape());  // in the world: see addStill
+    const btVector3& n = shape.getPlaneNormal();
+    const btVector3 &low = body.getBroadphaseHandle()->m_aabbMin, &high = body.getBroadphaseHandle()->m_aabbMax;
+    if (n.dot(btVector3(n.x() > 0 ? low.x() : high.x(), n.y() > 0 ? low.y() : high.y(), n.z() > 0 ? low.z() : high.z())) >
+        shape.getPlaneConstant())
+        return;
+    const btCollisionObjectWrapper on(nullptr, plane.getCollisionShape(), &plane, plane.getWorldTransform(), -1, -1),
+        of(nullptr, body.getCollisionShape(), &body, body.getWorldTransform(), -1, -1);
+    btManifoldResult result(&of, &on);
+    result.setPersistentManifold(dispatcher.getNewManifold(&body, &plane));
+    for (const btVector3& corner : *static_cast<const Corners*>(body.getUserPointer())) {
+        const btVector3 p = body.getWorldTransform() * corner;
+        const btScalar distance = n.dot(p) - shape.getPlaneConstant();
+        result.addContactPoint(n, p - n * distance, distance);
+    }
+}
+
+void meet(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+    const auto& a = *static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+    const auto& b = *static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+    for (const auto& [plane, body] : {std::pair(&a, &b), std::pair(&b, &a)})
+        if (plane->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE && body->getUserPointer() != nullptr)
+            return touchPlane(*plane, *body, dispatcher);
+    btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+}
 
 }  // namespace
 
@@ -77,7 +108,7 @@ HullMesh convexHull(std::span<const vec3> points) {
 struct BulletSolids::Impl {
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
-    btDbvtBroadphase broadphase;
+    btSimpleBroadphase broadphase;
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
     struct MeshData {
@@ -88,6 +119,7 @@ struct BulletSolids::Impl {
     std::vector<std::unique_ptr<MeshData>> meshes;
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> all, bodies;  // the scene's, the floating ones
+    std::vector<std::unique_ptr<Corners>> corners;          // of bodies
     std::vector<btRigidBody*> moving;
     std::vector<Pose> now, target;  // of those that move
     double left = 0;                // s until they are there
@@ -150,11 +182,37 @@ struct BulletSolids::Impl {
         box->setMargin(marginOf(f.size));
         return at(box, f.centre);
     }
+    // The farthest points of what touches, in the own frame; null where it is round.
+    Corners* cornersOf(const BodyForm& f) {
+        std::vector<vec3> points = f.points;
+        const auto addBox = [&points](const vec3& centre, const vec3& size) {
+            for (int k = 0; k < 8; ++k) points.push_back(centre + size * (vec3(k & 1, (k >> 1) & 1, k >> 2) - 0.5F));
+        };
+        if (f.kind == BodyForm::Kind::sphere) return nullptr;
+        if (f.kind == BodyForm::Kind::box) addBox(f.centre, f.size);
+        for (const auto& [centre, size] : f.cells) addBox(centre, size);
+        if (f.kind == BodyForm::Kind::cells) points = convexHull(points).positions;
+        corners.push_back(std::make_unique<Corners>());
+        for (const vec3& p : points) corners.back()->push_back(to(p));
+        return corners.back().get();
+    }
     btCollisionShape* at(btCollisionShape* form, const vec3& centre) {
         if (centre == vec3(0.0F)) return form;
         auto* compound = shape<btCompoundShape>();
         compound->addChildShape(btTransform(btQuaternion::getIdentity(), to(centre)), form);
         return compound;
+    }
+    // Bullet would keep contacts and their forces for the next step, in an order of their own; what a state keeps are the bodies. So
+    // nothing is kept: a step depends on nothing but where bodies and solids are. Stacks stand as well as with Bullet's memory: more
+    // iterations make up for it.
+    void forget() {
+        btOverlappingPairCache& pairs = *broadphase.getOverlappingPairCache();
+        for (int n = pairs.getNumOverlappingPairs(); n > 0; --n) {
+            const btBroadphasePair& last = pairs.getOverlappingPairArray()[n - 1];
+            pairs.removeOverlappingPair(last.m_pProxy0, last.m_pProxy1, &dispatcher);
+        }
+        for (int n = dispatcher.getNumManifolds(); n > 0; --n) dispatcher.releaseManifold(dispatcher.getManifoldByIndexInternal(n - 1));
+        solver.reset();
     }
     void put(std::span<const BodyState> states) {
         for (size_t k = 0; k < bodies.size(); ++k) {
@@ -191,6 +249,7 @@ struct BulletSolids::Impl {
             now[k] = next;
         }
         world.stepSimulation(static_cast<btScalar>(seconds), 0);
+        forget();
         for (size_t k = 0; k < bodies.size(); ++k) {
             if (!(bodies[k]->getMass() > 0)) continue;
             states[k].pose = from(bodies[k]->getWorldTransform());
@@ -204,8 +263,12 @@ BulletSolids::BulletSolids(const Scene& scene, std::span<const Body> bodies, std
     : impl_(std::make_unique<Impl>()) {
     ASSERT(bodies.size() == forms.size(), "one form a body");
     Impl& w = *impl_;
+    w.dispatcher.setNearCallback(meet);
     w.world.setGravity(btVector3(0, 0, 0));  // a load like the others
     w.world.getSolverInfo().m_splitImpulse = 1;
+    // All contacts of a step are found at once, and their forces from nothing: see forget.
+    w.configuration.setConvexConvexMultipointIterations(8, 4);
+    w.world.getSolverInfo().m_numIterations = 30;
     const bvec3 periodic = scene.box.periodic();
     const Pose origin;
     for (int axis = 0; axis < 3; ++axis)
@@ -243,6 +306,7 @@ BulletSolids::BulletSolids(const Scene& scene, std::span<const Body> bodies, std
         info.m_linearDamping = info.m_angularDamping = 0;
         auto body = std::make_unique<btRigidBody>(info);
         body->setActivationState(DISABLE_DEACTIVATION);
+        body->setUserPointer(w.cornersOf(forms[k]));
         w.world.addRigidBody(body.get());
         w.bodies.push_back(std::move(body));
         states.push_back(bodies[k].state);
@@ -258,13 +322,7 @@ BodyHost BulletSolids::host() {
     h.advance = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
         static_cast<Impl*>(self)->advance(loads, gravity, seconds, states);
     };
-    h.reset = [](void* self, std::span<const BodyState> states) {
-        Impl& w = *static_cast<Impl*>(self);
-        w.put(states);
-        // What touched before touches no more.
-        for (auto& b : w.bodies) w.broadphase.getOverlappingPairCache()->cleanProxyFromPairs(b->getBroadphaseProxy(), &w.dispatcher);
-        w.solver.reset();
-    };
+    h.reset = [](void* self, std::span<const BodyState> states) { static_cast<Impl*>(self)->put(states); };
     return h;
 }
 

@@ -411,5 +411,63 @@ TEST(Contact, BodiesRestOnTheFloorAndOnEachOther) {
     EXPECT_EQ((*session)->world().bodies()[1].pose.position, vec3(0.3F, 0.2F, 0.3F));
 }
 
+// Without a fluid in the way: contacts alone. A stack stands, a box on a slope stays or slides as Coulomb says.
+struct Contacts {
+    std::vector<Body> bodies;
+    std::vector<BodyForm> forms;
+    std::vector<PlaneSolid> planes;
+    void add(const vec3& position, float friction, const quat& turn = quat(1, 0, 0, 0)) {
+        const vec3 size(0.1F);
+        Body b;
+        b.shape = boxShape(size, 500, 0.02F);
+        b.state.pose = {position, turn};
+        bodies.push_back(b);
+        BodyForm form;
+        form.size = size;
+        form.friction = friction;
+        forms.push_back(form);
+    }
+    std::vector<BodyState> after(double seconds, double dt) const {
+        BoxParams room;
+        room.min = vec3(-5, 0, -5);
+        room.max = vec3(5);
+        BulletSolids solids({.box = room, .planes = planes, .still = {}, .moving = {}, .poses = {}}, bodies, forms);
+        const BodyHost host = solids.host();
+        std::vector<BodyState> states;
+        for (const Body& b : bodies) states.push_back(b.state);
+        const std::vector<BodyLoad> none(bodies.size());
+        for (int k = 0; k < std::lround(seconds / dt); ++k) host.advance(host.self, none, vec3(0, -9.81F, 0), dt, states);
+        return states;
+    }
+};
+
+TEST(Contact, AStackStandsThoughNothingOfItIsRemembered) {
+    for (const double dt : {1.0 / 120, 1.0 / 480, 1.0 / 2000}) {
+        Contacts stack;
+        for (int k = 0; k < 5; ++k) stack.add(vec3(0, 0.05F + 0.1F * static_cast<float>(k), 0), 0.5F);
+        const std::vector<BodyState> end = stack.after(3, dt);
+        for (size_t k = 0; k < end.size(); ++k) {
+            const vec3 moved = end[k].pose.position - stack.bodies[k].state.pose.position;
+            EXPECT_LT(std::abs(moved.y), 0.001F) << k << ", dt " << dt;
+            EXPECT_LT(glm::length(moved), 0.025F) << k << ", dt " << dt;
+            EXPECT_GT((end[k].pose.rotation * vec3(0, 1, 0)).y, 0.999F) << k << ", dt " << dt;
+        }
+    }
+}
+
+TEST(Contact, ABoxOnASlopeStaysOrSlidesAsCoulombSays) {
+    const double angle = 20 * M_PI / 180;
+    const vec3 normal(static_cast<float>(std::sin(angle)), static_cast<float>(std::cos(angle)), 0);
+    for (const float friction : {0.5F, 0.2F}) {  // tan 20 degrees is 0.364
+        Contacts slope;
+        slope.planes = {{vec3(0, 1, 0), normal, 0}};
+        slope.add(vec3(0, 1, 0) + 0.05F * normal, friction, glm::angleAxis(static_cast<float>(-angle), vec3(0, 0, 1)));
+        const double down = 9.81 * std::max(std::sin(angle) - double{friction} * std::cos(angle), 0.0);
+        const vec3 moved = slope.after(0.5, 1.0 / 480)[0].pose.position - slope.bodies[0].state.pose.position;
+        const double expected = friction > 0.364F ? 0 : 0.5 * down * 0.25;
+        EXPECT_NEAR(double{glm::length(moved)}, expected, 0.01 * expected + 1.0e-4) << friction;
+    }
+}
+
 }  // namespace
 }  // namespace rivulet

@@ -139,7 +139,8 @@ void ColliderMotion::visit(ParamVisitor& v) {
 }
 
 void ColliderWave::visit(ParamVisitor& v) {
-    v.value({"amplitude", "m", "height of the wave; 0 = none", 0, 100, kLinear, kFixed}, amplitude);
+    v.value({"amplitude", "m", "height of the wave; 0 = none, as beside bodies, which would pass through", 0, 100, kLinear, kFixed},
+            amplitude);
     v.value({"length", "m", "from crest to crest", 0.001, kFar, kLog}, length);
     v.value({"period", "s", "from crest to crest; it rises to its height in the first", 0.01, 3600, kLog}, period);
     v.value({"along", "", "the way it runs, of any length", -1.0e6, 1.0e6}, along);

@@ -148,6 +148,11 @@ Result<Sources> Session::importEmitters() const {
 
 Status Session::addBodies(Solids& solids) {
     if (scene_.bodies.empty()) return ok();
+    if (!deforming_.empty())
+        return badInput(
+            fmt::format("colliders[{}] has a wave, and bodies would pass through what bends: give it a motion instead, or leave the bodies "
+                        "out",
+                        deforming_[0].collider));
     Result<std::vector<SceneBody>> made = sceneBodies(scene_);
     if (!made) return made.error();
     std::vector<BodyForm> forms;
@@ -175,12 +180,11 @@ Status Session::addBodies(Solids& solids) {
         forms.push_back(std::move(b.form));
         solids.bodies.push_back(std::move(b.body));
     }
-    // What bends is passed through by bodies, as by one another nothing is.
     std::vector<MeshView> still, moving;
     std::vector<Pose> poses;
     for (size_t m = 0; m < meshes_.size(); ++m) {
         const ColliderParams& collider = scene_.colliders[colliderOf_[m]];
-        if (!collider.motion.moves() && !(collider.wave.amplitude > 0)) still.push_back(meshes_[m].view());
+        if (!collider.motion.moves()) still.push_back(meshes_[m].view());
     }
     for (const Rigid& r : rigid_) {
         moving.push_back(meshes_[r.node].view());

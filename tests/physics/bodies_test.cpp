@@ -469,5 +469,29 @@ TEST(Contact, ABoxOnASlopeStaysOrSlidesAsCoulombSays) {
     }
 }
 
+// What bends would be passed through: that is said, not done.
+TEST(Contact, AScenesBendingColliderIsRefusedBesideBodies) {
+    auto device = cpu();
+    SceneFile scene;
+    scene.fluid.spacing = 0.05F;
+    ColliderParams sheet;
+    sheet.mesh = "meshes/sheet.obj";
+    sheet.fitSize = 0.3F;
+    sheet.resolution = 16;
+    sheet.position = vec3(0.3F, 0.4F, 0.3F);
+    sheet.wave.amplitude = 0.05F;
+    scene.colliders = {sheet};
+    EXPECT_TRUE(Session::create(scene, *device, {}));
+    BodyParams body;
+    body.position = vec3(0.5F);
+    scene.bodies = {body};
+    const auto session = Session::create(scene, *device, {});
+    ASSERT_FALSE(session);
+    EXPECT_EQ(session.error().fault, Fault::badInput);
+    EXPECT_NE(session.error().message.find("colliders[0]"), std::string::npos) << session.error().message;
+    scene.colliders[0].wave.amplitude = 0;
+    EXPECT_TRUE(Session::create(scene, *device, {}));
+}
+
 }  // namespace
 }  // namespace rivulet

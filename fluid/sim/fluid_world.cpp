@@ -157,7 +157,8 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
     bodies.advance(step, particles, dt);
-    sources.run(step, params, *grid, particles, solids, time + to * frameLength, dt, last);
+    const std::vector<NamedBuffer> remembered = method->remembered();
+    sources.run({step, params, *grid, particles, solids, bodies, remembered}, time + to * frameLength, dt, last);
 }
 
 double FluidWorld::taken(double seconds) {

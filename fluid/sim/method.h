@@ -20,7 +20,8 @@ struct MethodSetup {
 // What a method remembers of earlier steps, by a name of its own: at most 20 letters.
 struct NamedBuffer {
     const char* name;
-    Buffer* buffer;  // of floats; by id of the particles, or in no particle's order
+    Buffer* buffer;    // of floats
+    bool byId = true;  // of the particles: 0 for one that is born; else in no particle's order
 };
 
 class Method {

@@ -55,11 +55,13 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
     std::vector<Define> defines;
     if (absorption) defines.push_back({"ABSORPTION", "1"});
     if (matter) defines.push_back({"MATTER", "1"});
-    Result<Kernel> emit = device.kernel("fluid/emit", defines), drain = device.kernel("fluid/drain");
-    for (const Result<Kernel>* k : {&emit, &drain})
+    Result<Kernel> emit = device.kernel("fluid/emit", defines), drain = device.kernel("fluid/drain"),
+                   forget = device.kernel("fluid/forget");
+    for (const Result<Kernel>* k : {&emit, &drain, &forget})
         if (!*k) return k->error();
     s.emit_ = *emit;
     s.drain_ = *drain;
+    s.forget_ = *forget;
     const size_t counters = s.feeds_.size() * EMITTER_COUNTERS + s.sinkCount_;
     for (auto [buffer, bytes] :
          {std::pair(&s.candidates_, s.feeds_.empty() ? 0 : kMostCandidates * sizeof(Candidate)),
@@ -120,14 +122,15 @@ float SourcePasses::fastest() const {
 void SourcePasses::hearCounts() {
     for (size_t k = 0; k < feeds_.size(); ++k) {
         const uint32_t* c = &late_->counters[k * EMITTER_COUNTERS];
-        const uint64_t refused = uint64_t{c[1]} + c[2];
+        const uint32_t refused = c[1] + c[2];
         feeds_[k].refuse(refused - heard_[k]);
         heard_[k] = refused;
     }
 }
 
-// Takes from the list what would be born in a wall or too near to another of the list.
-void SourcePasses::dropUnfit(const FluidParams& params, const SolidPasses& solids) {
+// Takes from the list what would be born in a wall or a body, or too near to another of the list.
+void SourcePasses::dropUnfit(const World& world) {
+    const FluidParams& params = world.params;
     const float contact = 0.5F * spacing_, nearest2 = kNearest * kNearest * spacing_ * spacing_;
     const bvec3 periodic = params.box.periodic();
     const auto keyOf = [](const ivec3& c) {
@@ -148,7 +151,7 @@ void SourcePasses::dropUnfit(const FluidParams& params, const SolidPasses& solid
                 const auto [from, to] = taken.equal_range(keyOf(cell + ivec3(k % 3, k / 3 % 3, k / 9) - 1));
                 for (auto it = from; it != to && fits; ++it) fits = glm::dot(it->second - p, it->second - p) >= nearest2;
             }
-            fits = fits && solids.mayBeBorn(p, spacing_);
+            fits = fits && world.solids.mayBeBorn(p, spacing_) && world.bodies.mayBeBorn(p, spacing_);
             if (fits) taken.emplace(keyOf(cell), p);
         }
         if (!fits) feeds_[static_cast<size_t>(c.position.w)].refuse(1);
@@ -156,9 +159,11 @@ void SourcePasses::dropUnfit(const FluidParams& params, const SolidPasses& solid
     });
 }
 
-void SourcePasses::run(const StepParams& step, const FluidParams& params, const NeighborGrid& grid, Particles& particles,
-                       const SolidPasses& solids, double time, double dt, bool last) {
+void SourcePasses::run(const World& world, double time, double dt, bool last) {
     if (!any()) return;
+    const StepParams& step = world.step;
+    const NeighborGrid& grid = world.grid;
+    Particles& particles = world.particles;
     EmitParams block{};
     block.step = step;
     block.sinks = static_cast<uint32_t>(sinkCount_);
@@ -167,9 +172,12 @@ void SourcePasses::run(const StepParams& step, const FluidParams& params, const 
     const double support = double{step.h} / double{spacing_};
     block.weight = static_cast<float>(21.0 / (2.0 * 3.14159265358979323846 * support * support * support) / wendlandLatticeSum(support));
     block.crowded = kCrowded;
-    if (sinkCount_ > 0)
+    if (sinkCount_ > 0) {
         device_->run(drain_, block, {&grid.cellStart(), &sinks_, &particles.positionNext, &particles.velocityNext, &counters_},
                      particles.count);
+        for (const NamedBuffer& b : world.remembered)
+            if (b.byId) device_->run(forget_, step, {&grid.cellStart(), &particles.positionNext, &particles.id, b.buffer}, particles.count);
+    }
     waited_ += dt;
     // Often enough that nothing comes out further than a spacing from where it should, give or take.
     if (feeds_.empty() || (!last && static_cast<double>(fastest()) * waited_ < static_cast<double>(spacing_))) return;
@@ -177,7 +185,7 @@ void SourcePasses::run(const StepParams& step, const FluidParams& params, const 
     list_.clear();
     for (EmitterFeed& feed : feeds_) feed.offer(time - waited_, waited_, vec3(step.gravity), kMostCandidates - list_.size(), list_);
     waited_ = 0;
-    dropUnfit(params, solids);
+    dropUnfit(world);
     if (list_.empty()) return;
     block.candidates = static_cast<uint32_t>(list_.size());
     device_->writeAll<Candidate>(candidates_, list_);

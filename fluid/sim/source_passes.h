@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "engine/compute/device.h"
+#include "fluid/sim/body_passes.h"
 #include "fluid/sim/emitter.h"
 #include "fluid/sim/fluid_params.h"
+#include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/particles.h"
 #include "fluid/sim/solid_passes.h"
@@ -28,9 +30,18 @@ class SourcePasses {
     Status set(const Sources& sources);
     void reset();  // back to t = 0
 
-    // After a substep of `dt` that ended at `time`; `last` of its frame. Particles are sorted as the substep sorted them.
-    void run(const StepParams& step, const FluidParams& params, const NeighborGrid& grid, Particles& particles, const SolidPasses& solids,
-             double time, double dt, bool last);
+    // What a step of it needs to know of the world.
+    struct World {
+        const StepParams& step;
+        const FluidParams& params;
+        const NeighborGrid& grid;
+        Particles& particles;  // sorted as the substep sorted them
+        const SolidPasses& solids;
+        const BodyPasses& bodies;
+        std::span<const NamedBuffer> remembered;  // of the method: what it knows of a particle goes with the particle
+    };
+    // After a substep of `dt` that ended at `time`; `last` of its frame.
+    void run(const World& world, double time, double dt, bool last);
     // Has the counts read, late on a GPU.
     void report();
 
@@ -46,15 +57,15 @@ class SourcePasses {
     };
     void hearCounts();
     void writeSinks(const std::vector<SinkParams>& sinks);
-    void dropUnfit(const FluidParams& params, const SolidPasses& solids);
+    void dropUnfit(const World& world);
 
     Device* device_ = nullptr;
     bool matter_ = false, absorption_ = false;
     float spacing_ = 0;
     std::vector<EmitterFeed> feeds_;
-    std::vector<uint64_t> heard_;  // refused by the device, of each, that its feed knows of
+    std::vector<uint32_t> heard_;  // refused by the device, of each, that its feed knows of; it turns over with the counters
     size_t sinkCount_ = 0;
-    Kernel emit_, drain_;
+    Kernel emit_, drain_, forget_;
     Buffer candidates_, sinks_, counters_;
     std::vector<Candidate> list_;
     double waited_ = 0;  // s since emitters last ran

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "fluid/sim/body_shapes.h"
 #include "fluid/sim/fluid_world.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
@@ -206,6 +207,75 @@ TEST(Emitter, NothingIsBornInASolid) {
     for (const vec3& x : f.position) EXPECT_GT(glm::length(x), 0.2F);
     EXPECT_LT(f.fastest, 0.5F + 9.81F * 0.5F);
     EXPECT_EQ(world->stats().lost, 0U);
+}
+
+// Nor in a body, wherever it has got to.
+TEST(Emitter, NothingIsBornInABody) {
+    FluidParams p = boxWorld(0.02F);
+    p.box.min = vec3(-0.5F);
+    p.box.max = vec3(0.5F);
+    Body ball;
+    ball.shape = sphereShape(0.2F, 1000, p.spacing);
+    ball.shape.mass = 0;
+    auto device = makeTestCpu();
+    auto world = make(*device, p, {.emitters = {nozzle(1.0F, 0.5F, 0.08F, vec3(0.0F))}}, {.bodies = {ball}});
+    run(*world, 0.5);
+    EXPECT_EQ(found(*world).position.size(), 0U);
+    EXPECT_NEAR(world->stats().owed, 0.5e-3, 8.0e-6) << "it is still due";
+    // One that moves on makes room: after 0.2 m of 1 m/s the nozzle's places are out of it.
+    ball.shape = sphereShape(0.12F, 1.0e5, p.spacing);
+    ball.state.velocity = vec3(1.0F, 0, 0);
+    world = make(*device, p, {.emitters = {nozzle(1.0F, 0.5F, 0.03F, vec3(-0.1F, 0, 0))}}, {.bodies = {ball}});
+    std::set<uint32_t> seen;
+    for (int frame = 1; frame <= 24; ++frame) {
+        world->step({.gravity = vec3(0.0F)}, kFrame);
+        const Found f = found(*world);
+        const vec3 middle = world->bodies()[0].pose.position;
+        for (size_t i = 0; i < f.position.size(); ++i)
+            if (seen.insert(f.id[i]).second) EXPECT_GT(glm::length(f.position[i] - middle), 0.12F + 0.49F * p.spacing) << frame;
+    }
+    EXPECT_GT(seen.size(), 20U);
+    EXPECT_EQ(world->stats().lost, 0U);
+}
+
+// What a method remembers of a particle goes with it: whoever is born with its id begins without.
+TEST(Emitter, WhoIsBornWithAnotherParticlesIdRemembersNothing) {
+    auto device = makeTestCpu();
+    FluidParams p = boxWorld(0.03F, "dfsph");
+    p.box.max = vec3(0.48F, 0.6F, 0.48F);
+    p.blocks = {{vec3(0.0F), vec3(0.48F, 0.45F, 0.48F)}};
+    SinkParams sink;
+    sink.position = vec3(0.06F, 0.06F, 0.24F);
+    sink.size = vec3(0.12F, 0.12F, 0.48F);
+    auto world = make(*device, p, {.sinks = {sink}});
+    const auto remembered = [&](WorldState& state) {
+        world->save(state);
+        auto pressure = state.take<float>("method.pressure", world->particles().slots);
+        EXPECT_TRUE(pressure);
+        return *pressure;
+    };
+    // Whoever stood at the bottom of the pool at first was pressed, and is let out later.
+    SinkParams away = sink;
+    away.position.y = -5;
+    world->setSources({.sinks = {away}});
+    run(*world, 0.1);
+    WorldState before, after;
+    const std::vector<float> pressed = remembered(before);
+    world->setSources({.sinks = {sink}});
+    run(*world, 0.1);
+    const std::vector<float> left = remembered(after);
+    const ParticleView view = world->particles();
+    const auto x = device->readAll<vec4>(*view.position, view.count);
+    const auto id = device->readAll<uint32_t>(*view.id, view.count);
+    size_t gone = 0, pressedOnce = 0;
+    for (size_t i = 0; i < x.size(); ++i) {
+        if (x[i].w >= 0) continue;
+        ++gone;
+        pressedOnce += pressed[id[i]] > 0 ? 1 : 0;
+        EXPECT_EQ(left[id[i]], 0.0F) << id[i];
+    }
+    EXPECT_GT(gone, 100U);
+    EXPECT_GT(pressedOnce, 100U);
 }
 
 // Under water there is no room: what is refused stays due, and what comes out does not explode.

@@ -28,6 +28,9 @@ namespace emit_absorption {
 namespace drain_unit {
 #include "shaders/fluid/drain.kernel"
 }
+namespace forget_unit {
+#include "shaders/fluid/forget.kernel"
+}
 namespace gather_unit {
 #include "shaders/fluid/gather_absorption.kernel"
 }
@@ -41,6 +44,7 @@ std::span<const CpuKernelRow> emissionRows() {
         {"fluid/emit", "ABSORPTION=1", RIVULET_UNIT_ISA, emit_absorption::emit, 64},
         {"fluid/emit", "ABSORPTION=1;MATTER=1", RIVULET_UNIT_ISA, emit_matter_absorption::emit, 64},
         {"fluid/drain", "", RIVULET_UNIT_ISA, drain_unit::drain, 1024},
+        {"fluid/forget", "", RIVULET_UNIT_ISA, forget_unit::forget, 1024},
         {"fluid/gather_absorption", "", RIVULET_UNIT_ISA, gather_unit::gather_absorption, 1024},
     };
     return rows;

@@ -85,15 +85,6 @@ int runVerb(const Arguments& arguments) {
     Result<SceneFile> loaded = loadScene(scene, assignments);
     if (!loaded) return report(loaded.error());
     options.scene = std::move(*loaded);
-    if (!options.save.empty() || !options.resume.empty()) {
-        const SceneFile& wanted = options.scene;
-        const char* part = !wanted.bodies.empty()     ? "bodies"
-                           : !wanted.emitters.empty() ? "emitters"
-                           : !wanted.sinks.empty()    ? "sinks"
-                                                      : nullptr;
-        if (part != nullptr)
-            return report(badInput(fmt::format("{} has {}: such a scene cannot be saved or resumed, run it from its start", scene, part)));
-    }
     options.render = !noRender;
     if (seconds) options.frames = static_cast<int>(std::lround(*seconds * kFramesPerSecond));
     options.log = stderrLog();

@@ -1,7 +1,10 @@
 #include "fluid/bridge/solids_bullet.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -323,6 +326,40 @@ BodyHost BulletSolids::host() {
         static_cast<Impl*>(self)->advance(loads, gravity, seconds, states);
     };
     h.reset = [](void* self, std::span<const BodyState> states) { static_cast<Impl*>(self)->put(states); };
+    // Of the solids that move: where they are, and are to be.
+    h.save = [](void* self) {
+        const Impl& w = *static_cast<Impl*>(self);
+        std::vector<std::byte> bytes;
+        const auto add = [&bytes](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+        add(std::as_bytes(std::span(w.now)));
+        add(std::as_bytes(std::span(w.target)));
+        add(std::as_bytes(std::span(&w.left, 1)));
+        return bytes;
+    };
+    h.restore = [](void* self, std::span<const std::byte> bytes, std::span<const BodyState> states) -> Status {
+        Impl& w = *static_cast<Impl*>(self);
+        const size_t poses = w.now.size() * sizeof(Pose);
+        if (bytes.size() != 2 * poses + sizeof(double))
+            return badInput(
+                fmt::format("the saved state has other moving solids than the {} that bodies touch in this scene", w.now.size()));
+        std::vector<Pose> now(w.now.size()), target(w.now.size());
+        double left = 0;
+        if (poses > 0) {
+            std::memcpy(now.data(), bytes.data(), poses);
+            std::memcpy(target.data(), bytes.data() + poses, poses);
+        }
+        std::memcpy(&left, bytes.data() + 2 * poses, sizeof left);
+        const auto sound = [](const Pose& p) {
+            return isFinite(p.position) && std::abs(glm::dot(p.rotation, p.rotation) - 1.0F) < 1.0e-3F;
+        };
+        if (!std::all_of(now.begin(), now.end(), sound) || !std::all_of(target.begin(), target.end(), sound) || !(left >= 0))
+            return badInput("the saved places of the solids that bodies touch are none: save the state again");
+        w.now = std::move(now);
+        w.target = std::move(target);
+        w.left = left;
+        w.put(states);
+        return ok();
+    };
     return h;
 }
 

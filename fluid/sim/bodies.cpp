@@ -97,6 +97,7 @@ FreeBodies::FreeBodies(std::span<const Body> bodies) {
 BodyHost FreeBodies::host() {
     BodyHost h;
     h.self = this;
+    h.remembersNothing = true;
     h.reset = [](void*, std::span<const BodyState>) {};
     h.advance = [](void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
         const std::vector<Own>& own = static_cast<FreeBodies*>(self)->own_;
@@ -136,6 +137,10 @@ BodyLoad BodyLoads::give(size_t body, const dvec3& force, const dvec3& torque, d
     const dvec3 impulse = force * seconds + l.impulseOwed, turn = torque * seconds + l.turnOwed;
     l = {impulse * (share / seconds), turn * (share / seconds), impulse * (1 - share), turn * (1 - share)};
     return l;
+}
+
+void BodyLoads::restore(std::span<const BodyLoad> last) {
+    for (size_t k = 0; k < own_.size(); ++k) own_[k].last = last[k];
 }
 
 void BodyLoads::reset() {

@@ -1,11 +1,13 @@
 // Bodies that the fluid pushes, and that push it: boundary particles on their surface (Akinci et al. 2012), and who moves them.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "engine/core/math.h"
+#include "engine/core/result.h"
 #include "fluid/sim/fluid_params.h"
 #include "fluid/sim/pose.h"
 
@@ -40,7 +42,7 @@ struct BodyLoad {
     dvec3 impulseOwed{0.0}, turnOwed{0.0};  // N s, N m s: done to it already, to be handed over in later substeps, see BodyLoads
 };
 
-// Who moves the bodies: functions that a host fills in, called once a substep. All three or none.
+// Who moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither.
 struct BodyHost {
     void* self = nullptr;
     // Moves all bodies on by `seconds` under the fluid's `loads`, its own contacts and `gravity` (m/s^2). `states`: as they are -> as they
@@ -49,6 +51,13 @@ struct BodyHost {
                     std::span<BodyState> states) = nullptr;
     // Back to `states`, those at t = 0.
     void (*reset)(void* self, std::span<const BodyState> states) = nullptr;
+    // For a world that is saved. Whether advance depends on nothing but what it is given; else the host has the other two, or its world
+    // cannot be saved.
+    bool remembersNothing = false;
+    // All that advance depends on beside what it is given.
+    std::vector<std::byte> (*save)(void* self) = nullptr;
+    // Goes on from there; the bodies are in `states`. Error (badInput): the bytes make no sense; then nothing has changed.
+    Status (*restore)(void* self, std::span<const std::byte> bytes, std::span<const BodyState> states) = nullptr;
 };
 
 // A host for worlds where bodies meet nothing but fluid: rigid motion, symplectic Euler, momentum and angular momentum kept.
@@ -74,6 +83,7 @@ class BodyLoads {
     explicit BodyLoads(std::span<const Body> bodies, double restDensity);
     // Of a substep of `seconds`; `wet`: share of the surface that is in the fluid, 0..1.
     BodyLoad give(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds);
+    void restore(std::span<const BodyLoad> last);  // what give returned last, of each
     void reset();
 
   private:

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/assert.h"
+#include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
 
@@ -199,6 +200,66 @@ void BodyPasses::reset() {
     std::fill(loads_.begin(), loads_.end(), BodyLoad{});
     giving_.reset();
     if (any()) host_.reset(host_.self, states_);
+}
+
+Status BodyPasses::savable() const {
+    if (!any() || host_.remembersNothing || (host_.save != nullptr && host_.restore != nullptr)) return ok();
+    return failed("this host of bodies does not say what it remembers of them: a world with it cannot be saved or resumed");
+}
+
+uint64_t BodyPasses::shapesHash() const {
+    uint64_t hash = 0;
+    for (const Body& b : bodies_) {
+        const float numbers[] = {b.shape.mass, b.shape.inertia.x, b.shape.inertia.y, b.shape.inertia.z, b.shape.volume, b.shape.sticks};
+        hash = checksum(std::as_bytes(std::span(numbers)), hash);
+        hash = checksum(std::as_bytes(std::span(b.shape.samples)), hash);
+    }
+    return hash;
+}
+
+void BodyPasses::save(WorldState& state) const {
+    if (!any()) return;
+    const uint64_t numbers[] = {bodies_.size(), shapesHash()};
+    state.put<uint64_t>("bodies.numbers", numbers);
+    state.put<BodyState>("bodies.states", states_);
+    state.put<BodyLoad>("bodies.loads", loads_);
+    if (host_.save != nullptr) state.putBytes("bodies.host", host_.save(host_.self));
+}
+
+Result<BodyPasses::Saved> BodyPasses::take(WorldState& state) const {
+    if (!any()) return Saved{};
+    Result<std::vector<uint64_t>> numbers = state.take<uint64_t>("bodies.numbers", 2);
+    if (!numbers) return numbers.error();
+    if ((*numbers)[0] != bodies_.size())
+        return badInput(fmt::format("the state was saved with {} bodies, this scene has {}", (*numbers)[0], bodies_.size()));
+    if ((*numbers)[1] != shapesHash())
+        return badInput("the state was saved with other bodies: a shape, a mesh or a mass is not what it was");
+    Result<std::vector<BodyState>> states = state.take<BodyState>("bodies.states", bodies_.size());
+    if (!states) return states.error();
+    Result<std::vector<BodyLoad>> loads = state.take<BodyLoad>("bodies.loads", bodies_.size());
+    if (!loads) return loads.error();
+    for (size_t k = 0; k < bodies_.size(); ++k) {
+        const BodyLoad& l = (*loads)[k];
+        if (!isFinite((*states)[k]) || !isFinite(l.force) || !isFinite(l.torque) || !isFinite(l.impulseOwed) || !isFinite(l.turnOwed))
+            return badInput(fmt::format("the saved state of body {} is none: save it again", k));
+    }
+    Saved saved{std::move(*states), std::move(*loads), {}};
+    if (host_.save != nullptr) {
+        Result<WorldState::Bytes> bytes = state.takeBytes("bodies.host");
+        if (!bytes) return bytes.error();
+        saved.host = std::move(*bytes);
+    }
+    return saved;
+}
+
+Status BodyPasses::restore(const Saved& saved) {
+    if (!any()) return ok();
+    if (host_.save != nullptr)
+        if (Status done = host_.restore(host_.self, saved.host, saved.states); !done) return done;
+    states_ = saved.states;
+    loads_ = saved.loads;
+    giving_.restore(loads_);
+    return ok();
 }
 
 }  // namespace rivulet

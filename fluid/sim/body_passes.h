@@ -8,6 +8,7 @@
 #include "fluid/sim/bodies.h"
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/particles.h"
+#include "fluid/sim/world_state.h"
 #include "shaders/fluid/body_state.h"
 #include "shaders/fluid/step_params.h"
 
@@ -48,7 +49,23 @@ class BodyPasses {
     // Back to t = 0.
     void reset();
 
+    // Where bodies are, what they are still owed, and what their host remembers.
+    struct Saved {
+        std::vector<BodyState> states;
+        std::vector<BodyLoad> loads;
+        std::vector<std::byte> host;
+    };
+    // Error (failed): the host remembers something, and does not say what.
+    Status savable() const;
+    void save(WorldState& state) const;
+    // Error: as WorldState::take; other bodies, or what no body can be.
+    Result<Saved> take(WorldState& state) const;
+    // Error (badInput), by the host; then nothing has changed.
+    Status restore(const Saved& saved);
+
   private:
+    uint64_t shapesHash() const;
+
     Device* device_ = nullptr;
     std::vector<Body> bodies_;
     std::vector<BodyState> states_;

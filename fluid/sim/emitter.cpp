@@ -101,10 +101,7 @@ void EmitterFeed::take(const EmitterParams& params) {
     layOut();
 }
 
-void EmitterFeed::reset() {
-    due_ = 0;
-    offered_ = refused_ = 0;
-}
+void EmitterFeed::reset() { account_ = {}; }
 
 // The closest packing of spheres as layers across the jet, stretched by a hair: the smoothing kernel finds that lattice 1.3 % denser than
 // the cubic one it is calibrated on, and a jet that is born compressed bursts. So many a layer that at the jet's speed layers follow each
@@ -178,9 +175,9 @@ void EmitterFeed::offer(double time, double seconds, const vec3& gravity, size_t
     const EmitterParams& p = emitter_.params;
     const double perSecond = 1.0e-3 * double{p.litresPerSecond} / std::pow(double{spacing_}, 3);
     const double regular = (volumeAfter(p, time + seconds) - volumeAfter(p, time)) / std::pow(double{spacing_}, 3);
-    due_ += regular;
-    const double whole = std::floor(due_ + 1.0e-6);
-    const double want = whole - static_cast<double>(offered_ - refused_);
+    account_.due += regular;
+    const double whole = std::floor(account_.due + 1.0e-6);
+    const double want = whole - static_cast<double>(account_.offered - account_.refused);
     if (!(want >= 1) || !(perSecond > 0)) return;
     const bool nozzle = p.shape == "nozzle", mesh = p.shape == "mesh";
     if (mesh && areas_.empty()) return;
@@ -195,11 +192,11 @@ void EmitterFeed::offer(double time, double seconds, const vec3& gravity, size_t
     const auto count = static_cast<uint64_t>(limit);
     const vec3 way = glm::length(p.direction) > 0 ? glm::normalize(p.direction) : vec3(0.0F);
     // How far the counting of layers is, at the end of this time.
-    const double head = static_cast<double>(offered_ + count) + (limit == want ? std::max(due_ - whole, 0.0) : 0.0);
+    const double head = static_cast<double>(account_.offered + count) + (limit == want ? std::max(account_.due - whole, 0.0) : 0.0);
     const double hurry = nozzle && want > regular + 2 ? kCatchUp : 1.0;
     const double pace = hurry * perSecond;
     const float speed = speed_ * static_cast<float>(hurry);
-    for (uint64_t k = offered_; k < offered_ + count; ++k) {
+    for (uint64_t k = account_.offered; k < account_.offered + count; ++k) {
         vec3 at, velocity;
         if (nozzle) {
             const uint64_t n = layers_[0].size(), layer = k / n;
@@ -217,7 +214,7 @@ void EmitterFeed::offer(double time, double seconds, const vec3& gravity, size_t
         }
         to.push_back({vec4(at, static_cast<float>(index_)), vec4(velocity, 0.0F), matter, absorption});
     }
-    offered_ += count;
+    account_.offered += count;
 }
 
 }  // namespace rivulet

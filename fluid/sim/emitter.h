@@ -65,13 +65,21 @@ class EmitterFeed {
     // Appends what is due when `seconds` more have gone by since `time` (s), at most `most`, as the end of that time finds it.
     void offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to);
     // `count` of the offered were not taken: they stay owed.
-    void refuse(uint64_t count) { refused_ += count; }
+    void refuse(uint64_t count) { account_.refused += count; }
     void take(const EmitterParams& params);  // what can change while it runs: all but shape and mesh
     void reset();
 
+    // Its accounts, for a saved state.
+    struct Account {
+        double due = 0;  // particles, since the start
+        uint64_t offered = 0, refused = 0;
+    };
+    const Account& account() const { return account_; }
+    void restore(const Account& account) { account_ = account; }
+
     const Emitter& emitter() const { return emitter_; }
     vec4 matter{1.0F, 1.0F, 0.0F, 0.0F}, absorption{0.0F};  // of its particles
-    double due() const { return due_; }                     // particles, since the start
+    double due() const { return account_.due; }             // particles, since the start
     float speed() const { return speed_; }                  // m/s, where they come out
 
   private:
@@ -83,8 +91,7 @@ class EmitterFeed {
     uint32_t index_;
     float spacing_;
     float speed_ = 0;
-    double due_ = 0;  // particles, since the start
-    uint64_t offered_ = 0, refused_ = 0;
+    Account account_;
     std::vector<vec3> layers_[2];  // m, nozzle: offsets of a layer's particles in the opening, one layer after the other in turn
     std::vector<double> areas_;    // mesh: running sum over the triangles
 };

@@ -84,7 +84,7 @@ class FluidWorld {
     vec3 fromHost(const dvec3& p) const { return {p - origin()}; }
 
     // All that the next step depends on, into sections of `state`; bit for bit what a cpu goes on with. Waits for the device.
-    // Error (failed): the world has emitters, sinks or bodies, whose part of a state is not kept.
+    // Error (failed): the host of the bodies remembers something that it cannot save.
     Status savable() const;
     void save(WorldState& state);  // of a savable world
     // Goes on from there, on whichever device. Others who have sections in `state` take theirs before. Error: as WorldState::take and

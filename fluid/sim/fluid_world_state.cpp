@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/assert.h"
 #include "fluid/sim/fluid_world_impl.h"
 
 namespace rivulet {
 
-Status FluidWorld::savable() const {
-    if (impl_->sources.any()) return failed("a scene with emitters or sinks cannot be saved or resumed: run it from its start");
-    if (impl_->bodies.any()) return failed("a scene with bodies cannot be saved or resumed: run it from its start");
-    return ok();
-}
+Status FluidWorld::savable() const { return impl_->bodies.savable(); }
 
 void FluidWorld::save(WorldState& state) {
     Impl& w = *impl_;
+    ASSERT(savable(), "a world whose bodies cannot be saved");
+    w.sources.report();
     w.device->finish();
     w.device->poll();
     state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
@@ -38,6 +37,8 @@ void FluidWorld::save(WorldState& state) {
     for (const NamedBuffer& b : w.method->remembered())
         state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
     w.solids.save(state);
+    w.sources.save(state);
+    w.bodies.save(state);
 }
 
 Status FluidWorld::restore(WorldState& state) {
@@ -66,10 +67,17 @@ Status FluidWorld::restore(WorldState& state) {
     }
     Result<SolidPasses::Places> places = w.solids.take(state);
     if (!places) return places.error();
+    Result<SourcePasses::Saved> sources = w.sources.take(state);
+    if (!sources) return sources.error();
+    Result<BodyPasses::Saved> bodies = w.bodies.take(state);
+    if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
+    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the last one who can object
 
     w.writeStart();
     w.particles.restore(*w.device, *saved);
+    w.gatherColours();
+    w.sources.restore(*sources);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
     w.time = n[0];
     w.pace.reset(n[1]);
@@ -80,11 +88,18 @@ Status FluidWorld::restore(WorldState& state) {
     w.fastestWall = static_cast<float>(n[6]);
     w.frame = static_cast<uint64_t>(n[7]);
     w.params.origin = dvec3(n[8], n[9], n[10]);
-    w.figures->frame = w.frame;
-    w.figures->time = w.time;
+    FluidStats& f = *w.figures;
+    const double volume = std::pow(double{w.params.spacing}, 3);
+    f.frame = w.frame;
+    f.time = w.time;
+    f.particles =
+        static_cast<uint32_t>(std::count_if(saved->position.begin(), saved->position.end(), [](const vec4& p) { return !(p.w < 0); }));
+    f.emitted = (static_cast<double>(w.start.size()) + static_cast<double>(w.sources.given())) * volume;
+    f.drained = static_cast<double>(w.sources.drained()) * volume;
+    f.owed = w.sources.owed() * volume;
     for (size_t at = 0; at < limited->size();) {
         const size_t end = std::min(limited->find('\n', at), limited->size());
-        w.figures->limited.push_back(limited->substr(at, end - at));
+        f.limited.push_back(limited->substr(at, end - at));
         at = end + 1;
     }
     return w.solids.restore(*places);

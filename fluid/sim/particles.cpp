@@ -38,13 +38,15 @@ void Particles::save(Device& device, WorldState& state) const {
     state.put<vec4>("particles.velocity", device.readAll<vec4>(velocityNext, count));
     state.put<uint32_t>("particles.id", device.readAll<uint32_t>(id, count));
     if (matterOf.bytes() > 0) state.put<vec4>("particles.matter", device.readAll<vec4>(matterOf, count));
+    if (absorptionOf.bytes() > 0) state.put<vec4>("particles.absorption", device.readAll<vec4>(absorptionOf, count));
 }
 
 Result<Particles::Saved> Particles::take(WorldState& state) const {
     Saved saved;
     for (auto [name, values] : {std::pair("particles.position", &saved.position), std::pair("particles.velocity", &saved.velocity),
-                                std::pair("particles.matter", &saved.matter)}) {
+                                std::pair("particles.matter", &saved.matter), std::pair("particles.absorption", &saved.absorption)}) {
         if (values == &saved.matter && matterOf.bytes() == 0) continue;
+        if (values == &saved.absorption && absorptionOf.bytes() == 0) continue;
         Result<std::vector<vec4>> taken = state.take<vec4>(name, count);
         if (!taken) return taken.error();
         *values = std::move(*taken);
@@ -65,6 +67,7 @@ void Particles::restore(Device& device, const Saved& saved) {
     device.writeAll<vec4>(velocityNext, saved.velocity);
     device.writeAll<uint32_t>(id, saved.id);
     if (matterOf.bytes() > 0) device.writeAll<vec4>(matterOf, saved.matter);
+    if (absorptionOf.bytes() > 0) device.writeAll<vec4>(absorptionOf, saved.absorption);
 }
 
 }  // namespace rivulet

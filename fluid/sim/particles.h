@@ -32,7 +32,7 @@ struct Particles {
 
     // The newest state.
     struct Saved {
-        std::vector<vec4> position, velocity, matter;
+        std::vector<vec4> position, velocity, matter, absorption;
         std::vector<uint32_t> id;
     };
     void save(Device& device, WorldState& state) const;

@@ -8,6 +8,7 @@
 
 #include "fluid/sim/liquids.h"
 #include "fluid/sim/smoothing.h"
+#include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
 
@@ -227,6 +228,64 @@ double SourcePasses::owed() const {
     double sum = 0;
     for (const EmitterFeed& feed : feeds_) sum += feed.due();
     return sum - static_cast<double>(given());
+}
+
+uint64_t SourcePasses::meshesHash() const {
+    uint64_t hash = 0;
+    for (const EmitterFeed& feed : feeds_) hash = checksum(std::as_bytes(std::span(feed.emitter().triangles)), hash);
+    return hash;
+}
+
+void SourcePasses::save(WorldState& state) const {
+    if (!any()) return;
+    const uint64_t numbers[] = {feeds_.size(), sinkCount_, meshesHash()};
+    state.put<uint64_t>("sources.numbers", numbers);
+    std::vector<EmitterFeed::Account> accounts;
+    for (const EmitterFeed& feed : feeds_) accounts.push_back(feed.account());
+    state.put<EmitterFeed::Account>("sources.accounts", accounts);
+    state.put<uint32_t>("sources.heard", heard_);
+    state.put<uint32_t>("sources.counters", late_->counters);
+    state.put<double>("sources.waited", std::span(&waited_, 1));
+}
+
+Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
+    if (!any()) return Saved{};
+    Result<std::vector<uint64_t>> numbers = state.take<uint64_t>("sources.numbers", 3);
+    if (!numbers) return numbers.error();
+    const std::vector<uint64_t>& n = *numbers;
+    if (n[0] != feeds_.size() || n[1] != sinkCount_)
+        return badInput(fmt::format("the state was saved with {} emitters and {} sinks, this scene has {} and {}", n[0], n[1],
+                                    feeds_.size(), sinkCount_));
+    if (n[2] != meshesHash())
+        return badInput("the state was saved with another mesh to let water out of: resume it with the scene it is of");
+    Result<std::vector<EmitterFeed::Account>> accounts = state.take<EmitterFeed::Account>("sources.accounts", feeds_.size());
+    if (!accounts) return accounts.error();
+    Result<std::vector<uint32_t>> heard = state.take<uint32_t>("sources.heard", feeds_.size());
+    if (!heard) return heard.error();
+    Result<std::vector<uint32_t>> counters = state.take<uint32_t>("sources.counters", late_->counters.size());
+    if (!counters) return counters.error();
+    Result<std::vector<double>> waited = state.take<double>("sources.waited", 1);
+    if (!waited) return waited.error();
+    bool sound = std::isfinite((*waited)[0]) && (*waited)[0] >= 0;
+    for (size_t k = 0; k < feeds_.size(); ++k) {
+        const EmitterFeed::Account& a = (*accounts)[k];
+        const uint32_t* c = &(*counters)[k * EMITTER_COUNTERS];
+        // What was offered has been taken or refused: the feed knows of it, or will when it next hears.
+        const auto taken = static_cast<uint32_t>(a.offered - a.refused) - (c[1] + c[2] - (*heard)[k]);
+        sound = sound && std::isfinite(a.due) && a.due >= 0 && a.refused <= a.offered && a.offered < uint64_t{1} << 53U && taken == c[0];
+    }
+    if (!sound) return badInput("the saved state's accounts of the emitters do not add up: save it again");
+    return Saved{std::move(*accounts), std::move(*heard), std::move(*counters), (*waited)[0]};
+}
+
+void SourcePasses::restore(const Saved& saved) {
+    if (!any()) return;
+    reset();
+    for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].restore(saved.accounts[k]);
+    heard_ = saved.heard;
+    late_->counters = saved.counters;
+    waited_ = saved.waited;
+    device_->writeAll<uint32_t>(counters_, saved.counters);
 }
 
 }  // namespace rivulet

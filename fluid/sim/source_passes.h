@@ -12,6 +12,7 @@
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/particles.h"
 #include "fluid/sim/solid_passes.h"
+#include "fluid/sim/world_state.h"
 
 namespace rivulet {
 
@@ -51,6 +52,17 @@ class SourcePasses {
     bool full() const;         // whether one had to wait because no slot was free
     double owed() const;       // particles due, and not taken yet
 
+    // The emitters' accounts and what is counted. Before save, report and wait for the device.
+    struct Saved {
+        std::vector<EmitterFeed::Account> accounts;
+        std::vector<uint32_t> heard, counters;
+        double waited = 0;
+    };
+    void save(WorldState& state) const;
+    // Error: as WorldState::take; other emitters or sinks, or accounts that do not add up.
+    Result<Saved> take(WorldState& state) const;
+    void restore(const Saved& saved);
+
   private:
     struct Late {
         std::vector<uint32_t> counters;
@@ -58,6 +70,7 @@ class SourcePasses {
     void hearCounts();
     void writeSinks(const std::vector<SinkParams>& sinks);
     void dropUnfit(const World& world);
+    uint64_t meshesHash() const;
 
     Device* device_ = nullptr;
     bool matter_ = false, absorption_ = false;

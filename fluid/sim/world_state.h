@@ -49,8 +49,10 @@ class WorldState {
     const std::map<std::string, Bytes>& sections() const { return sections_; }
     void putBytes(const std::string& name, Bytes bytes);
 
-  private:
+    // Of any size.
     Result<Bytes> takeBytes(const std::string& name);
+
+  private:
     static Error otherSize(const std::string& name, size_t bytes, size_t expected);
     std::map<std::string, Bytes> sections_;  // in the order of their names
 };

@@ -91,6 +91,47 @@ TEST_P(EmitterParity, AsManyAreBornAndDrainedAndInTheSamePlaces) {
     EXPECT_LT(worst, 0.1 * 0.025);  // a tenth of a spacing, after 120 steps of splashing
 }
 
+// What DFSPH remembers of a particle by its id goes with it, there as here.
+TEST_P(EmitterParity, WhoIsDrainedIsForgotten) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    Device& device = *gpu->device;
+    FluidParams p;
+    p.method = "dfsph";
+    p.spacing = 0.04F;
+    p.box.max = vec3(0.4F);
+    p.blocks = {{vec3(0.0F), vec3(0.4F, 0.32F, 0.4F)}};
+    SinkParams sink, away;
+    sink.position = vec3(0.1F, 0.1F, 0.2F);
+    sink.size = vec3(0.2F, 0.2F, 0.4F);
+    away.position = vec3(0, -5, 0);
+    auto world = FluidWorld::create(device, p, {}, {}, {.sinks = {away}});
+    ASSERT_TRUE(world) << world.error().message;
+    const auto remembered = [&] {
+        WorldState state;
+        (*world)->save(state);
+        auto pressure = state.take<float>("method.pressure", (*world)->particles().slots);
+        EXPECT_TRUE(pressure);
+        return *pressure;
+    };
+    for (int k = 0; k < 2; ++k) (*world)->step({}, 1.0 / 60);
+    const std::vector<float> before = remembered();
+    (*world)->setSources({.sinks = {sink}});
+    (*world)->step({}, 1.0 / 60);
+    const std::vector<float> after = remembered();
+    const ParticleView view = (*world)->particles();
+    const auto x = device.readAll<vec4>(*view.position, view.count);
+    const auto id = device.readAll<uint32_t>(*view.id, view.count);
+    size_t pressed = 0, kept = 0;
+    for (size_t i = 0; i < x.size(); ++i) {
+        if (x[i].w < 0) EXPECT_EQ(after[id[i]], 0.0F) << id[i];
+        pressed += x[i].w < 0 && before[id[i]] > 0 ? 1 : 0;
+        kept += x[i].w >= 0 && after[id[i]] > 0 ? 1 : 0;
+    }
+    EXPECT_GT(pressed, 50U);
+    EXPECT_GT(kept, 50U) << "the others' stays";
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, EmitterParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 #include "fluid/sim/world_state.h"
 #include "tests/unit/program_runner.h"
@@ -137,6 +138,52 @@ TEST(ProgramState, TwiceNFramesAreNFramesTwice) {
     ASSERT_EQ(with({"--resume", "half.rstate", "--save", "end.rstate"}).code, 0);
     ASSERT_EQ(with({"--save", "all.rstate"}).code, 0);
     EXPECT_EQ(textOf(scratch.path() / "end.rstate"), textOf(scratch.path() / "all.rstate"));
+}
+
+// With bodies on Bullet, and with emitters and a sink: a duck on a box, and the shipped fountain, coarser.
+TEST(ProgramState, BodiesEmittersAndSinksGoOnToo) {
+    const Scratch scratch;
+    const std::string duck = scratch.file("duck.json", R"({
+        "name": "duck", "duration": 1,
+        "fluid": {"method": "dfsph", "box": {"min": [0, 0, 0], "max": [0.6, 0.6, 0.6]},
+                  "blocks": [{"min": [0, 0, 0], "max": [0.6, 0.15, 0.6]}]},
+        "bodies": [{"shape": "box", "size": [0.2, 0.15, 0.2], "position": [0.3, 0.08, 0.3], "density": 2000},
+                   {"shape": "mesh", "mesh": "meshes/duck.obj", "fitSize": 0.15, "position": [0.3, 0.24, 0.3], "density": 260}]})");
+    const RunOptions in{.folder = scratch.path(), .environment = {}, .whileRunning = {}, .stdoutFile = {}};
+    const auto with = [&](const std::string& scene, const std::string& spacing, std::vector<std::string> more) {
+        const std::vector<std::string> run = {"run",
+                                              scene == "duck" ? duck : "scenes/" + scene + ".json",
+                                              "--no-render",
+                                              "--backend",
+                                              "cpu",
+                                              "--stats",
+                                              "s.json",
+                                              "--set",
+                                              "fluid.spacing=" + spacing};
+        more.insert(more.begin(), run.begin(), run.end());
+        return runProgram(more, in);
+    };
+    const auto refused = [&](const std::string& state, const std::string& mentions) {
+        const Outcome outcome = with("fountain", "0.025", {"--frames", "1", "--resume", state});
+        EXPECT_EQ(outcome.code, 2) << state;
+        EXPECT_NE(outcome.err.find(mentions), std::string::npos) << outcome.err;
+    };
+    for (const auto& [scene, spacing, frames] : {std::tuple("duck", "0.04", 8), std::tuple("fountain", "0.025", 20)}) {
+        const std::string all = std::to_string(2 * frames), half = std::to_string(frames), file = std::string(scene) + ".rstate";
+        ASSERT_EQ(with(scene, spacing, {"--frames", all, "--save", "whole.rstate"}).code, 0) << scene;
+        ASSERT_EQ(with(scene, spacing, {"--frames", half, "--save", file}).code, 0) << scene;
+        const Outcome rest = with(scene, spacing, {"--frames", half, "--resume", file, "--save", "rest.rstate"});
+        ASSERT_EQ(rest.code, 0) << rest.err;
+        EXPECT_TRUE(textOf(scratch.path() / "whole.rstate") == textOf(scratch.path() / "rest.rstate")) << scene;
+        EXPECT_FALSE(textOf(scratch.path() / "whole.rstate") == textOf(scratch.path() / file)) << scene;
+    }
+    std::string bytes = textOf(scratch.path() / "fountain.rstate");
+    scratch.file("cut.rstate", bytes.substr(0, bytes.size() / 2));
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    scratch.file("changed.rstate", bytes);
+    refused("cut.rstate", "cut off");
+    refused("changed.rstate", "damaged");
+    refused("duck.rstate", "resume it with the scene it is of");
 }
 
 TEST(ProgramState, RefusalsArePlain) {

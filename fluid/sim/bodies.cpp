@@ -126,8 +126,14 @@ BodyHost FreeBodies::host() {
     return h;
 }
 
-BodyLoads::BodyLoads(std::span<const Body> bodies, double restDensity) {
-    for (const Body& b : bodies) own_.push_back({b.shape.mass > 0 ? restDensity * movedAlong(b.shape) / double{b.shape.mass} : 0.0, {}});
+BodyLoads::BodyLoads(std::span<const Body> bodies, const FluidParams& params) {
+    const double particle = std::pow(double{params.spacing}, 3);
+    for (const Body& b : bodies) {
+        const double mass = b.shape.mass, density = params.restDensity;
+        const double layer = density * particle * static_cast<double>(b.shape.samples.size());
+        const double with = params.method == "wcsph" ? std::max(layer - mass, 0.0) : density * movedAlong(b.shape);
+        own_.push_back({mass > 0 ? with / mass : 0.0, {}});
+    }
 }
 
 BodyLoad BodyLoads::give(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds) {

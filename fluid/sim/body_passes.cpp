@@ -52,7 +52,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
     }
     b.loads_.resize(bodies.size());
     b.sampleCount_ = static_cast<uint32_t>(b.volumes_.size());
-    b.giving_ = BodyLoads(bodies, params.restDensity);
+    b.giving_ = BodyLoads(bodies, params);
     b.host_ = host;
     if (host.advance == nullptr) {
         b.free_ = std::make_shared<FreeBodies>(bodies);

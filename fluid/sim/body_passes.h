@@ -71,7 +71,7 @@ class BodyPasses {
     std::vector<BodyState> states_;
     std::vector<BodyLoad> loads_;
     std::vector<float> reach_;  // m, of each body's farthest sample
-    BodyLoads giving_{{}, 0};
+    BodyLoads giving_{{}, FluidParams{}};
     std::shared_ptr<FreeBodies> free_;  // where there is no other host
     BodyHost host_;
     uint32_t sampleCount_ = 0;

@@ -6,6 +6,7 @@
 #undef MATTER_OTHER
 #undef VOLUME
 #undef MIRRORED
+#undef FOLLOWED
 #undef INERT
 #undef FLUID_ONLY
 #undef LIGHTNESS
@@ -18,6 +19,9 @@
 #define VOLUME(term) ((term) * other_.x)
 // How often a pair counts a particle's own pressure: at a sample for the sample, too.
 #define MIRRORED(own) ((own) * (other_.w < 0.0f ? 2.0f : 1.0f))
+// What more there is at a sample, where the pressure goes on as gravity has it (Adami et al. 2012): `rise` from the sample to the particle, at
+// most as much as there is. push_samples does the same.
+#define FOLLOWED(rise, own) SELECT(other_.w < 0.0f, max(min(-(rise), own), -(own)), 0.0f)
 // Nothing at a sample.
 #define FLUID_ONLY(term) ((term) * (other_.w < 0.0f ? 0.0f : 1.0f))
 // Times how readily the other one moves.

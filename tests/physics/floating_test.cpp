@@ -1,0 +1,196 @@
+// Bodies that float and bodies that stick, against Archimedes, Stokes and Rayleigh.
+//
+// What is under. Particles' centres lie within the water and a body's samples within the body, both by half a spacing: neither shows a
+// surface. So the water level is found from the tank: particles stand for spacing^3 each, less what they are compressed by, and
+//     level * area = water + what is under the level of the body,
+// which knows nothing of how particles lie at the top or beside the body. If the fluid kept too far off the body, or crept under its skin,
+// it would stand higher or lower there, and the body float elsewhere than this level says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "fluid/sim/body_shapes.h"
+#include "tests/physics/worlds.h"
+
+namespace rivulet {
+namespace {
+
+struct Fluid {
+    double water = 0;  // m^3, less what is compressed
+    std::vector<vec4> position, velocity;
+};
+Fluid fluidOf(const FluidWorld& world) {
+    const ParticleView view = world.particles();
+    const std::vector<vec4> x = world.device().readAll<vec4>(*view.position, view.slots),
+                            v = world.device().readAll<vec4>(*view.velocity, view.slots);
+    Fluid f;
+    for (size_t i = 0; i < x.size(); ++i)
+        if (x[i].w >= 0) {
+            f.position.push_back(x[i]);
+            f.velocity.push_back(v[i]);
+            f.water += std::pow(double{view.spacing}, 3) / std::max(double{x[i].w}, 1.0);
+        }
+    return f;
+}
+
+// ---- Archimedes ----
+
+struct Floater {
+    const char* method;
+    double ratio;  // its density over the water's
+    bool ball = false;
+};
+void PrintTo(const Floater& f, std::ostream* out) { *out << f.method << (f.ball ? " ball " : " box ") << f.ratio; }
+
+class Draught : public testing::TestWithParam<Floater> {};
+
+// The share of a shape that is under, `deep` (m) its lowest point below the level.
+double shareUnder(bool ball, double height, double deep) {
+    const double d = std::clamp(deep / height, 0.0, 1.0);
+    return ball ? d * d * (3 - 2 * d) : d;
+}
+
+TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
+    const Floater& what = GetParam();
+    const float s = 0.0125F;
+    // A box half as dense as water that is as wide as high lies down: this one is half as wide again.
+    const vec3 size = what.ball ? vec3(10 * s) : vec3(12 * s, 8 * s, 12 * s);
+    const double height = double{size.y}, volume = what.ball ? M_PI / 6 * height * height * height : double{size.x * size.y * size.z};
+    double draught = 0;
+    while (shareUnder(what.ball, height, draught) < what.ratio && draught < height) draught += 1.0e-5 * height;
+    FluidParams p;
+    p.method = what.method;
+    p.spacing = s;
+    p.box.max = vec3(24 * s, 0.4F, 24 * s);
+    p.dfsph.tolerance = 1.0e-3F;
+    p.box.periodicX = p.box.periodicZ = true;  // no walls that the water could stand off from
+    p.soundSpeed = 15;
+    p.cfl = 0.8F;
+    p.artificialViscosity = 0.05F;
+    const double area = double{p.box.max.x * p.box.max.z};
+    const double level = std::ceil(draught / double{s} + 4.999) * double{s};  // five spacings below its keel
+    p.blocks = {{vec3(0.0F), vec3(p.box.max.x, static_cast<float>(level), p.box.max.z), vec3(0.0F)}};
+    Body body;
+    body.shape = what.ball ? sphereShape(0.5F * size.y, 1000 * what.ratio, s) : boxShape(size, 1000 * what.ratio, s);
+    // Dropped from six spacings too high: particles at rest lie in layers, and a flat keel set down gently stays on one, as much as half a
+    // spacing too high or too low. The splash melts them.
+    const float drop = (what.ball ? 2 : 6) * s;
+    body.state.pose.position = vec3(0.5F * p.box.max.x, static_cast<float>(level - draught + 0.5 * height) + drop, 0.5F * p.box.max.z);
+    auto device = cpu();
+    auto world = make(*device, p, {.bodies = {body}});
+    ASSERT_TRUE(world);
+    double under = 0, tilt = 0, moved = 0;
+    constexpr int kFrames = 110, kLast = 45;
+    for (int frame = 0; frame < kFrames; ++frame) {
+        world->step({.gravity = p.gravity}, 1.0 / 60);
+        if (frame < kFrames - kLast) continue;
+        const BodyState& b = world->bodies()[0];
+        const double keel = double{b.pose.position.y} - 0.5 * height, water = fluidOf(*world).water;
+        double top = water / area;
+        for (int k = 0; k < 50; ++k) top = (water + volume * shareUnder(what.ball, height, top - keel)) / area;
+        under += shareUnder(what.ball, height, top - keel) / kLast;
+        tilt = std::max(tilt, 1 - double{(b.pose.rotation * vec3(0, 1, 0)).y});
+        moved = std::max(moved, double{glm::length(b.velocity)});
+    }
+    std::printf("%s %s %g: under %.4f (%+.2f %%), tilt %.1e, speed %.3f\n", what.method, what.ball ? "ball" : "box", what.ratio, under,
+                100 * (under / what.ratio - 1), tilt, moved);
+    EXPECT_NEAR(under / what.ratio, 1.0, 0.03);
+    if (!what.ball) EXPECT_LT(tilt, 0.01) << "it floats upright";
+    EXPECT_EQ(world->stats().lost, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, Draught,
+                         testing::Values(Floater{"wcsph", 0.25}, Floater{"wcsph", 0.5}, Floater{"wcsph", 0.75}, Floater{"wcsph", 0.5, true},
+                                         Floater{"pbf", 0.5}, Floater{"dfsph", 0.5}),
+                         [](const auto& row) {
+                             return std::string(row.param.method) + (row.param.ball ? "_ball_" : "_box_") +
+                                    std::to_string(static_cast<int>(100 * row.param.ratio));
+                         });
+
+// A ball that weighs what it displaces hangs where it is.
+TEST(Neutral, AsHeavyAsWaterItHangs) {
+    for (const char* method : {"wcsph", "dfsph"}) {
+        const float s = 0.0125F;
+        FluidParams p;
+        p.method = method;
+        p.spacing = s;
+        p.box.max = vec3(16 * s, 0.3F, 16 * s);
+        p.box.periodicX = p.box.periodicZ = true;
+        p.soundSpeed = 20;
+        p.cfl = 0.8F;
+        p.dfsph.tolerance = 1.0e-3F;
+        p.artificialViscosity = 0.05F;
+        p.blocks = {{vec3(0.0F), vec3(16 * s, 16 * s, 16 * s), vec3(0.0F)}};
+        Body body;
+        body.shape = sphereShape(4 * s, 1000, s);
+        body.state.pose.position = vec3(8 * s);
+        auto device = cpu();
+        auto world = make(*device, p, {.bodies = {body}});
+        ASSERT_TRUE(world);
+        for (int frame = 0; frame < 30; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
+        const double sunk = 8 - double{world->bodies()[0].pose.position.y / s};
+        std::printf("%s: sunk by %.3f spacings\n", method, sunk);
+        // With 3 % of its weight left over it would go two spacings, water moved along with it.
+        EXPECT_LT(std::abs(sunk), 2.0) << method;
+        EXPECT_EQ(world->stats().lost, 0U);
+    }
+}
+
+// ---- what sticks ----
+
+class Sticking : public testing::TestWithParam<const char*> {};
+
+// A plate at the bottom of water at rest begins to slide (Rayleigh 1911; Stokes's first problem): u = U erfc(y / sqrt(4 nu t)) where it
+// sticks, y from the samples (which lie half a spacing under the surface: there the water has their speed); nothing where it slips.
+TEST_P(Sticking, APlateDragsWaterAlongAndASlipperyOneDoesNot) {
+    const double nu = 0.05, speed = 0.1;
+    for (const float sticks : {1.0F, 0.0F}) {
+        FluidParams p;
+        p.method = GetParam();
+        p.spacing = 0.02F;
+        p.viscosity = static_cast<float>(nu);
+        p.artificialViscosity = 0;
+        p.soundSpeed = 4;
+        p.gravity = vec3(0.0F);
+        p.box.max = vec3(0.16F, 0.8F, 0.16F);
+        p.box.periodicX = p.box.periodicZ = true;
+        p.blocks = {{vec3(0.0F, 0.1F, 0.0F), vec3(0.16F, 0.7F, 0.16F), vec3(0.0F)}};
+        Body plate;  // of one layer of samples, from side to side
+        for (int i = 0; i < 8; ++i)
+            for (int k = 0; k < 8; ++k)
+                plate.shape.samples.emplace_back(0.02F * (static_cast<float>(i) - 3.5F), -0.01F, 0.02F * (static_cast<float>(k) - 3.5F));
+        plate.shape.sticks = sticks;
+        plate.state.pose.position = vec3(0.08F, 0.1F, 0.08F);
+        plate.state.velocity = vec3(static_cast<float>(speed), 0.0F, 0.0F);
+        BodyHost sliding;  // as it is pushed by somebody stronger
+        sliding.reset = [](void*, std::span<const BodyState>) {};
+        sliding.advance = [](void*, std::span<const BodyLoad>, const vec3&, double seconds, std::span<BodyState> states) {
+            states[0].pose.position += states[0].velocity * static_cast<float>(seconds);
+        };
+        auto device = cpu();
+        auto world = make(*device, p, {.bodies = {plate}, .bodyHost = sliding});
+        ASSERT_TRUE(world);
+        for (int frame = 0; frame < 24; ++frame) world->step({p.gravity}, 1.0 / 120);
+        const Fluid f = fluidOf(*world);
+        double error = 0, whole = 0, fastest = 0;
+        for (size_t i = 0; i < f.position.size(); ++i) {
+            const double u = speed * std::erfc((double{f.position[i].y} - 0.09) / std::sqrt(4 * nu * world->time()));
+            error += std::pow(double{f.velocity[i].x} - u, 2);
+            whole += u * u;
+            fastest = std::max(fastest, std::abs(double{f.velocity[i].x}));
+        }
+        std::printf("%s %g: error %.4f, fastest %.4f\n", GetParam(), double{sticks}, std::sqrt(error / whole), fastest / speed);
+        if (sticks > 0)
+            EXPECT_LT(std::sqrt(error / whole), 0.05);
+        else
+            EXPECT_LT(fastest, 0.05 * speed);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Sticking, testing::Values("wcsph", "pbf", "dfsph"),
+                         [](const auto& row) { return std::string(row.param); });
+
+}  // namespace
+}  // namespace rivulet

@@ -169,6 +169,68 @@ TEST_P(Poured, HoneySpreadsAsHuppertSaysWithStepsAsLongAsWaters) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Poured, testing::Values("pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
 
+// A thread of cold honey falls ten of its widths: it does not run into the puddle but stands, buckles and lays itself down in coils, always
+// the same way round (liquid rope coiling, Ribe 2004), piled above the puddle, and all stays finite.
+TEST(Honey, AThreadCoilsAndPilesUp) {
+    auto device = cpu();
+    FluidParams p;
+    p.method = "pbf";
+    p.spacing = 0.0025F;
+    p.restDensity = 1420;
+    p.viscosity = 0.05F;
+    p.forces.tension = 0.06F;
+    p.collision.walls = "no-slip";
+    p.box.max = vec3(0.16F, 0.18F, 0.16F);
+    Emitter thread;
+    thread.params.litresPerSecond = 0.1F;
+    thread.params.radius = 0.0075F;
+    thread.params.position = vec3(0.08F, 0.16F, 0.08F);
+    Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(*device, p, {}, {}, {.emitters = {thread}, .seconds = 1});
+    ASSERT_TRUE(made) << (made ? "" : made.error().message);
+    FluidWorld& world = **made;
+    // As fast as it comes out, and as it falls.
+    const double out = 1.0e-4 / (M_PI * 0.0075 * 0.0075), most = std::sqrt(out * out + 2 * 9.81 * 0.16);
+    double fastest = 0, high = 0, turned = 0, before = 0, widest = 0;
+    int piled = 0;
+    constexpr int kFrames = 42, kFalls = 18;
+    for (int frame = 0; frame < kFrames; ++frame) {
+        world.step({p.gravity}, 1.0 / 60);
+        const State s = state(world);
+        std::array<double, 3> slice{};
+        double top = 0;
+        for (size_t i = 0; i < s.position.size(); ++i) {
+            const vec4& x = s.position[i];
+            if (x.w < 0) continue;
+            ASSERT_TRUE(std::isfinite(x.x + x.y + x.z));
+            fastest = std::max(fastest, double{glm::length(vec3(s.velocity[i]))});
+            const double off = std::hypot(double{x.x} - 0.08, double{x.z} - 0.08);
+            // What lies outside a thread's width is pile.
+            if (off > 0.0125) top = std::max(top, double{x.y});
+            widest = std::max(widest, off);
+        }
+        high = std::max(high, top);
+        if (frame < kFalls) continue;
+        piled += top > 8 * double{p.spacing} ? 1 : 0;
+        // The thread where it meets the pile.
+        for (size_t i = 0; i < s.position.size(); ++i) {
+            const vec4& x = s.position[i];
+            if (x.w < 0 || double{x.y} < top || double{x.y} > top + 4 * double{p.spacing}) continue;
+            slice[0] += double{x.x} - 0.08;
+            slice[1] += double{x.z} - 0.08;
+            slice[2] += 1;
+        }
+        const double angle = std::atan2(slice[1], slice[0]);
+        if (frame > kFalls) turned += std::remainder(angle - before, 2 * M_PI);
+        before = angle;
+    }
+    std::printf("fastest %.2f of %.2f m/s, pile %.1f spacings high, in %d of %d frames over 8; %.2f turns; %.3f m wide\n", fastest, most,
+                high / double{p.spacing}, piled, kFrames - kFalls, turned / (2 * M_PI), widest);
+    EXPECT_EQ(world.stats().lost, 0U);
+    EXPECT_LT(fastest, 1.1 * most);
+    EXPECT_GT(piled, (kFrames - kFalls) / 2);
+    EXPECT_GT(std::abs(turned), 2 * M_PI) << "it coils, one way round";
+}
+
 TEST(Honey, KeepsMomentumAndSpin) {
     auto device = cpu();
     FluidParams p;

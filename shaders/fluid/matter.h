@@ -12,7 +12,7 @@
 #undef LIGHTNESS
 #undef PAIR_VISCOSITY
 #if defined(MATTER)
-// x volume / spacing^3; y reference rest density / own, 0 of samples; z dynamic viscosity, Pa s (of a sample: 1 = sticks, 0 = slips);
+// x volume / spacing^3; y reference rest density / own, 0 of samples; z dynamic viscosity, Pa s (of a sample: 2 = sticks, 0 = slips; see BodyPasses::matter);
 // w < 0: a sample
 #define MATTER_ARG(b, RO) RO(b, Matter, vec4, matter)
 #define MATTER_OTHER vec4 other_ = matter[j];

@@ -157,10 +157,11 @@ void BodyPasses::index(const StepParams& step, const NeighborGrid& grid, Particl
 }
 
 void BodyPasses::push(const StepParams& step, const NeighborGrid& grid, Particles& particles, const Buffer& position,
-                      const Buffer& pressures, float scale) {
+                      const Buffer& pressures, float scale, const vec3& weight) {
     if (!any()) return;
     StepParams s = step;
     s.sampleScale = scale;
+    s.force = vec4(weight, 0.0F);
     if (friction_)
         device_->run(push_, s,
                      {&grid.neighbors(), &particles.position, &position, &pressures, &particles.matter, &particles.acceleration,

@@ -43,7 +43,7 @@ class BodyPasses {
     void index(const StepParams& step, const NeighborGrid& grid, Particles& particles);
     // As StepContext::pushSamples.
     void push(const StepParams& step, const NeighborGrid& grid, Particles& particles, const Buffer& position, const Buffer& pressures,
-              float scale);
+              float scale, const vec3& weight);
     // Sums the forces, waits for them (some KB: on a GPU that is one round trip a substep) and has the host move the bodies.
     void advance(const StepParams& step, Particles& particles, double seconds);
     // Back to t = 0.

@@ -41,16 +41,19 @@ void PbfParams::visit(ParamVisitor& v) {
 }
 
 void DfsphParams::visit(ParamVisitor& v) {
-    v.value({"tolerance", "", "mean compression that a step may leave, as a fraction: 1e-4 is 0.01 %", 1.0e-6, 0.1, kLog}, tolerance);
-    v.value({.name = "divergence", .doc = "whether the flow is kept from compressing as well as the density: steadier, and slower"},
-            divergence);
-    v.value({"divergenceTolerance", "1/s", "mean rate of compression that may be left", 1.0e-3, 100, kLog}, divergenceTolerance);
-    v.value({"maxIterations", "", "of each solver in a step", 1, 1000, kLog}, maxIterations);
+    v.value(
+        {"tolerance", "",
+         "mean compression that a step may add, as a fraction, where the fastest particle goes its reach; less in slower water, down to a "
+         "twentieth",
+         1.0e-6, 0.1, kLog},
+        tolerance);
+    v.value({"correction", "",
+             "share of a density that is off which a step puts right: 1 keeps it best and heats water at rest, 0 lets it drift", 0, 1},
+            correction);
+    v.value({"maxIterations", "", "in a step", 1, 1000, kLog}, maxIterations);
     v.value({"warmStart", "", "share of the last step's pressure that the next begins with", 0, 1}, warmStart);
-    v.value({"relaxation", "", "share of a Jacobi correction that is made; above 0.5 it may not converge", 0.05, 1}, relaxation);
-    v.value({"warmGate", "", "density, over that at rest, above which a particle begins with it", 0, 1.1}, warmGate);
-    v.value({"momentum", "", "share of the last iteration's change that is made once more: fewer iterations, too much trembles", 0, 0.95},
-            momentum);
+    v.value({"relaxation", "", "share of a Jacobi correction that is made; above 0.6 it may not converge", 0.05, 1}, relaxation);
+    v.value({"momentum", "", "share of the last iteration's change that is made once more where it still helps", 0, 0.95}, momentum);
     v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
     v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: density keeps better with more", 1, 100}, minSubsteps);
 }

@@ -43,14 +43,12 @@ struct PbfParams {
 };
 
 struct DfsphParams {
-    float tolerance = 1.0e-4F;         // mean compression after a step, a fraction
-    bool divergence = true;            // whether the flow is kept from compressing, too
-    float divergenceTolerance = 0.1F;  // 1/s
-    int maxIterations = 50;
-    float warmStart = 0.7F;   // 0..1
-    float warmGate = 0.97F;   // density ratio
+    float tolerance = 3.0e-4F;  // mean compression that a step adds where the fastest goes as far as it may, a fraction
+    float correction = 0.2F;    // of a density that is off, a step
+    int maxIterations = 100;
+    float warmStart = 1.0F;   // 0..1
     float relaxation = 0.6F;  // of an iteration
-    float momentum = 0.3F;
+    float momentum = 0.7F;
     float reach = 0.3F;   // spacings a step
     int minSubsteps = 8;  // a frame of 1/60 s
     void visit(ParamVisitor& v);

@@ -1,4 +1,5 @@
-// DFSPH (Bender and Koschier 2015), with pressures summed over the iterations and kept from pulling.
+// DFSPH (Bender and Koschier 2015) as one solve for rates of compression (see dfsph_rate.kernel), with pressures summed over the
+// iterations, kept from pulling, and begun with those of the step before.
 #include "fluid/sim/method_dfsph.h"
 
 #include <algorithm>
@@ -11,6 +12,10 @@ namespace rivulet {
 
 namespace {
 
+// The speed of sound over that of the flow: compression under pressure is the square of its inverse, at most.
+constexpr float kSound = 100.0F;
+float squared(float x) { return x * x; }
+
 // What is known of the residual: at once on the cpu, some frames late on a GPU.
 struct Residual {
     double value = 0;
@@ -19,8 +24,8 @@ struct Residual {
 
 class Dfsph final : public Method {
   public:
-    Kernel kick, integrate, begin, end, residual;
-    PairKernel density, rate, divergence, push;
+    Kernel integrate, begin, end, residual;
+    PairKernel density, rate, push;
     Buffer solve, pressures, rows;  // pressures: remembered, by id
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
@@ -28,11 +33,12 @@ class Dfsph final : public Method {
 
     void fill(const FluidParams& p, float fastest, StepParams& s) const override {
         fillSmoothing(p, s);
-        // There is no sound: the flow's own speed is what the damping is measured by.
-        s.artificial = p.artificialViscosity * fastest * 0.5F * s.h;
+        // There is no sound: damping is what it is in weakly compressible water.
+        s.artificial = p.artificialViscosity * 10.0F * fastest * 0.5F * s.h;
+        s.stiffness = glm::length(vec3(s.gravity)) > 0 ? squared(kSound * fastest) : 0.0F;
         s.relaxation = p.dfsph.relaxation;
         s.warmStart = p.dfsph.warmStart;
-        s.warmGate = p.dfsph.warmGate;
+        s.correction = p.dfsph.correction;
         s.momentum = p.dfsph.momentum;
     }
 
@@ -45,12 +51,12 @@ class Dfsph final : public Method {
         c.boundary(p.position);
         density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
                     c.grid.pairThreads());
-        if (d.divergence) iterate(c, divergence, d.divergenceTolerance * c.params.dt, 1, plannedDivergence_, divergenceResidual_);
         c.forces();
-        c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, p.count);
-        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &pressures, &solve, &p.pressure}, p.count);
-        pushOn(c);
-        c.solve.iterations = iterate(c, rate, d.tolerance, 1, planned_, residual_);
+        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &pressures, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
+        pushOn(c, vec3(c.params.gravity) * c.params.dt);
+        // What is left trembles: it is to be little beside what moves.
+        const double way = c.fastest * double{c.params.dt} / double{d.reach * c.fluid.spacing};
+        c.solve.iterations = iterate(c, double{d.tolerance} * std::clamp(way, 0.05, 1.0));
         c.solve.residual = residual_->value;
         c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &pressures}, p.count);
         c.device.run(
@@ -60,41 +66,44 @@ class Dfsph final : public Method {
     }
 
   private:
-    // Velocities follow the change in p.pressure.
-    void pushOn(StepContext& c) {
+    // Velocities follow the change in p.pressure, which goes on into bodies by `weight` a metre (Adami et al. 2012).
+    void pushOn(StepContext& c, const vec3& weight) {
         Particles& p = c.particles;
-        push.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure}, c.grid.pairThreads());
-        c.pushSamples(p.position, p.pressure, 1.0F / c.params.dt);
+        StepParams s = c.params;
+        s.force = vec4(weight, 0.0F);
+        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure}, c.grid.pairThreads());
+        c.pushSamples(p.position, p.pressure, 2.0F / c.params.dt, weight);  // MIRRORED
     }
-    // Runs one solver to its tolerance (compression a step, a fraction); returns the number of iterations.
-    int iterate(StepContext& c, const PairKernel& measure, double tolerance, int atLeast, int& planned, std::shared_ptr<Residual>& last) {
+    // Runs the solver to its tolerance (compression a step, a fraction); returns the number of iterations.
+    int iterate(StepContext& c, double tolerance) {
         Particles& p = c.particles;
         const uint32_t threads = c.grid.pairThreads();
         const Buffer& neighbors = c.grid.neighbors();
         const bool cpu = c.device.backend() == Backend::cpu;
-        const int most = std::max(c.fluid.dfsph.maxIterations, atLeast);
+        const int most = c.fluid.dfsph.maxIterations;
         // On a GPU nothing waits for the residual: as many iterations as the last one known asked for, one more or fewer.
-        if (!cpu && last->known) {
-            planned += last->value > tolerance ? 1 : last->value < 0.5 * tolerance ? -1 : 0;
-            last->known = false;
+        if (!cpu && residual_->known) {
+            planned_ += residual_->value > tolerance ? 1 : residual_->value < 0.5 * tolerance ? -1 : 0;
+            residual_->known = false;
         }
-        planned = std::clamp(planned, atLeast, most);
+        planned_ = std::clamp(planned_, 1, most);
         double before = 0;
         StepParams s = c.params;
+        s.stiffness = std::max(s.stiffness, squared(kSound * static_cast<float>(c.fastest)));
         int k = 0;
         while (true) {
             s.iteration = static_cast<uint32_t>(k);
-            measure.run(c, s, {&neighbors, &p.position, &p.velocity, &p.boundary, &solve, &p.pressure}, threads);
-            pushOn(c);
+            rate.run(c, s, {&neighbors, &p.position, &p.velocity, &p.boundary, &solve, &p.pressure}, threads);
+            pushOn(c, vec3(0.0F));
             ++k;
             if (cpu) {
-                const double r = readResidual(c, *last);
+                const double r = readResidual(c, *residual_);
                 // What has just been applied will leave about as much of it as the iteration before left.
                 const double kept = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
                 before = r;
-                if ((k >= atLeast && r * kept <= tolerance) || k >= most) break;
-            } else if (k >= planned) {
-                askResidual(c, last);
+                if (r * kept <= tolerance || k >= most) break;
+            } else if (k >= planned_) {
+                askResidual(c, residual_);
                 break;
             }
         }
@@ -117,8 +126,8 @@ class Dfsph final : public Method {
         return {total / std::max(1.0, double{values[STATS_THREADS]}), true};
     }
 
-    int planned_ = 3, plannedDivergence_ = 3;  // until a residual is known
-    std::shared_ptr<Residual> residual_ = std::make_shared<Residual>(), divergenceResidual_ = std::make_shared<Residual>();
+    int planned_ = 3;  // until a residual is known
+    std::shared_ptr<Residual> residual_ = std::make_shared<Residual>();
 };
 
 }  // namespace
@@ -127,30 +136,23 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     if (setup.params.kernel != "wendland")
         return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method dfsph works with wendland");
     auto m = std::make_unique<Dfsph>();
-    const Define coast{"COAST", "1"}, divergence{"DIVERGENCE", "1"};
+    const Define coast{"COAST", "1"};
     struct Wanted {
         Kernel* kernel;
         const char* path;
         std::vector<Define> defines;
     };
-    for (const Wanted& w :
-         {Wanted{&m->kick, "fluid/kick", {}}, Wanted{&m->integrate, "fluid/integrate", {coast}}, Wanted{&m->begin, "fluid/dfsph_begin", {}},
-          Wanted{&m->end, "fluid/dfsph_end", {}}, Wanted{&m->residual, "fluid/residual", {}}}) {
+    for (const Wanted& w : {Wanted{&m->integrate, "fluid/integrate", {coast}}, Wanted{&m->begin, "fluid/dfsph_begin", {}},
+                            Wanted{&m->end, "fluid/dfsph_end", {}}, Wanted{&m->residual, "fluid/residual", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    struct WantedPair {
-        PairKernel* kernel;
-        const char* path;
-        std::vector<Define> defines;
-    };
-    for (const WantedPair& w :
-         {WantedPair{&m->density, "fluid/dfsph_density", {}}, WantedPair{&m->rate, "fluid/dfsph_rate", {}},
-          WantedPair{&m->divergence, "fluid/dfsph_rate", {divergence}}, WantedPair{&m->push, "fluid/dfsph_push", {}}}) {
-        Result<PairKernel> found = PairKernel::find(device, w.path, setup.traits, w.defines);
+    for (auto [kernel, path] : {std::pair(&m->density, "fluid/dfsph_density"), std::pair(&m->rate, "fluid/dfsph_rate"),
+                                std::pair(&m->push, "fluid/dfsph_push")}) {
+        Result<PairKernel> found = PairKernel::find(device, path, setup.traits);
         if (!found) return found.error();
-        *w.kernel = *found;
+        *kernel = *found;
     }
     const size_t count = setup.count;
     for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->pressures, count * sizeof(float)),

@@ -39,7 +39,7 @@ class Pbf final : public Method {
             c.boundary(*at);
             lambda.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.density, &p.pressure}, threads);
             shift.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2]}, threads);
-            c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt));
+            c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt), vec3(0.0F));
             at = &corrected[k % 2];
         }
         c.solve.iterations = c.fluid.pbf.iterations;

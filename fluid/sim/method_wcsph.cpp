@@ -54,7 +54,7 @@ class Wcsph final : public Method {
             density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure, &p.boundary}, threads);
             forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.boundary}, threads);
             // At a sample the pair has the fluid's pressure twice; one over rho^2 is in the pressures already.
-            c.pushSamples(p.position, p.pressure, 2.0F * c.params.restDensity);
+            c.pushSamples(p.position, p.pressure, 2.0F * c.params.restDensity, vec3(0.0F));
         }
         c.forces();
         c.device.run(

@@ -27,12 +27,14 @@ struct StepContext {
     NeighborGrid& grid;
     Particles& particles;
     SolveFigures& solve;
+    double fastest = 0;  // m/s, as last known; on a GPU that is some frames ago
     // Sorts the newest state into position and velocity, and moves solids and bodies on. false: it could not, and the substep ends here.
     // `fromPositions`: velocityNext holds where particles come from, m.
     std::function<bool(bool fromPositions)> build;
     // Adds to the forces on bodies what fluid does to their samples; a world without bodies has none. `pressures`: of the fluid, as the
-    // pair terms of the method have them; `scale`: an acceleration of one particle (m/s^2) over pressure * gradient (1/m).
-    std::function<void(const Buffer& position, const Buffer& pressures, float scale)> pushSamples;
+    // pair terms of the method have them; `scale`: an acceleration of one particle (m/s^2) over pressure * gradient (1/m); `weight`: how
+    // they go on growing beyond the fluid, a metre (methods with a pair term of viscosity of their own: as gravity has it).
+    std::function<void(const Buffer& position, const Buffer& pressures, float scale, const vec3& weight)> pushSamples;
     const Buffer& planes;  // as integrate.kernel wants them
     // Fills particles.boundary for these positions (in sorted order). Methods whose density knows no walls do not ask.
     std::function<void(const Buffer& position)> boundary;

@@ -27,7 +27,7 @@ STRUCT(StepParams) {
     float restDensity;     // kg/m^3
     float kernelK;         // density kernel's factor: Wendland C2 21/(2 pi h^3); thesis poly6 315/(64 pi h^9)
     float gradientK;       // gradient's factor: Wendland C2 -210/(pi h^5); thesis spiky -45/(pi h^6)
-    float stiffness;       // Tait: c0^2 rho0 / 7 (Pa). Thesis (4): k (m^2/s^2)
+    float stiffness;       // Tait: c0^2 rho0 / 7 (Pa). Thesis (4): k (m^2/s^2). DFSPH: c^2 (m^2/s^2)
     float viscosity;       // m^2/s, kinematic
     float artificial;      // alpha c0 hs, m^2/s: Monaghan's artificial viscosity (approaching pairs only)
     float contact;         // m, a particle's centre keeps this far from walls
@@ -40,7 +40,7 @@ STRUCT(StepParams) {
     float relaxation;      // of an iteration of the pressure solvers
     float warmStart;       // share of the last step's pressures that the next begins with
     uint  iteration;       // of a pressure solver, from 0
-    float warmGate;        // density ratio above which that is done
+    float correction;      // of a density that is off: the share that a step puts right
     float wallShare;       // of a wall at the distance at which particles rest on it, less a hair: above it none moves nearer
     float sampleScale;     // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)
     float padding2;

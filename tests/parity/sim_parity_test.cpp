@@ -83,7 +83,6 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     p.pbf.iterations = iterations;
     p.dfsph.maxIterations = iterations;
     p.dfsph.tolerance = 1.0e-9F;
-    p.dfsph.divergenceTolerance = 1.0e-9F;
     // A step's corrections are small beside the support: then it matters little that the cpu's lists and a GPU's cells differ in
     // what they hold just beyond it.
     const Input in = disturbedBlock(field, iterations > 1 ? 0.02F : 0.15F);
@@ -177,7 +176,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
                 keep("reorder velocity", particles->velocity, true);
                 return true;
             },
-        .pushSamples = [](const Buffer&, const Buffer&, float) {},
+        .pushSamples = [](const Buffer&, const Buffer&, float, const vec3&) {},
         .planes = planes,
         .boundary =
             [&](const Buffer& position) {

@@ -64,7 +64,6 @@ TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
     p.method = what.method;
     p.spacing = s;
     p.box.max = vec3(24 * s, 0.4F, 24 * s);
-    p.dfsph.tolerance = 1.0e-3F;
     p.box.periodicX = p.box.periodicZ = true;  // no walls that the water could stand off from
     p.soundSpeed = 15;
     p.cfl = 0.8F;
@@ -120,7 +119,6 @@ TEST(Neutral, AsHeavyAsWaterItHangs) {
         p.box.periodicX = p.box.periodicZ = true;
         p.soundSpeed = 20;
         p.cfl = 0.8F;
-        p.dfsph.tolerance = 1.0e-3F;
         p.artificialViscosity = 0.05F;
         p.blocks = {{vec3(0.0F), vec3(16 * s, 16 * s, 16 * s), vec3(0.0F)}};
         Body body;

@@ -215,7 +215,6 @@ TEST(Vorticity, ConfinementKeepsAWhirlUp) {
         FluidParams p;
         p.method = "dfsph";
         p.spacing = 0.05F;
-        p.dfsph.warmStart = 0;  // in a full box it adds energy of its own
         p.gravity = vec3(0.0F);
         p.viscosity = 1.0e-3F;
         p.forces.vorticity = k == 0 ? 0.0F : 0.5F;

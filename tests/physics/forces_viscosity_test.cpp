@@ -41,7 +41,6 @@ TEST_P(Viscosity, AShearWaveDecaysWithNuKSquared) {
     p.gravity = vec3(0.0F);
     p.box.max = vec3(side, 0.14F, 0.14F);
     p.box.periodicX = p.box.periodicY = p.box.periodicZ = true;
-    p.dfsph.warmStart = 0;  // what is asked here is what viscosity does, not what a warm start adds
     for (int layer = 0; layer < 40; ++layer) {
         const float x = spacing * static_cast<float>(layer), middle = x + 0.5F * spacing;
         p.blocks.push_back({vec3(x, 0.0F, 0.0F), vec3(x + spacing, p.box.max.y, p.box.max.z),
@@ -276,7 +275,6 @@ TEST(NoSlip, CouetteFlowUnderAMovingPlate) {
     p.spacing = 0.02F;
     p.supportSpacings = 2.3F;
     p.viscosity = static_cast<float>(nu);
-    p.dfsph.warmStart = 0;
     p.gravity = vec3(0.0F);
     p.collision.walls = "no-slip";
     p.box.max = vec3(0.12F, 0.6F, 0.12F);

@@ -15,8 +15,8 @@ namespace {
 constexpr float kSpacing = 0.03F;
 constexpr int kMostParticles = 1650;
 
-// A heavy box on the floor of a pool with another on it, a light box afloat, and a paddle that turns beside them; dyed water comes in, and a
-// sink lets out what makes room for it.
+// A heavy box on the floor of a pool with another on it, a light box afloat, and a paddle that turns beside them; dyed water comes in, and
+// a sink lets out what makes room for it.
 SceneFile scene(const std::string& method) {
     SceneFile s;
     s.name = "state";

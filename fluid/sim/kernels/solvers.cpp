@@ -16,11 +16,6 @@ namespace {
 #define PAIR_KERNEL "shaders/fluid/dfsph_rate.kernel"
 #define PAIR_UNIT rate
 #include "fluid/sim/kernels/pair_forms.h"
-#define DIVERGENCE 1
-#define PAIR_KERNEL "shaders/fluid/dfsph_rate.kernel"
-#define PAIR_UNIT divergence
-#include "fluid/sim/kernels/pair_forms.h"
-#undef DIVERGENCE
 #define PAIR_KERNEL "shaders/fluid/dfsph_push.kernel"
 #define PAIR_UNIT push
 #include "fluid/sim/kernels/pair_forms.h"
@@ -57,7 +52,6 @@ std::span<const CpuKernelRow> solverRows() {
         PAIR_ROWS(shift, pbf_shift, ""),
         PAIR_ROWS(density, dfsph_density, ""),
         PAIR_ROWS(rate, dfsph_rate, ""),
-        PAIR_ROWS(divergence, dfsph_rate, "DIVERGENCE=1"),
         PAIR_ROWS(push, dfsph_push, ""),
         {"fluid/pbf_predict", "", RIVULET_UNIT_ISA, predict::pbf_predict, 1024},
         {"fluid/pbf_finish", "", RIVULET_UNIT_ISA, finish::pbf_finish, 1024},

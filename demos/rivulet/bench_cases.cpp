@@ -24,7 +24,7 @@ struct Column {
 constexpr Column kColumns[] = {{"8k", 0.03125F}, {"31k", 0.02F}, {"128k", 0.0125F}};
 
 FluidParams columnScene(float spacing) {
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = spacing;
     p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
     return p;
@@ -32,7 +32,7 @@ FluidParams columnScene(float spacing) {
 
 // Thesis 2.4: a column in free fall in a box of 1 m; its height grows with i.
 FluidParams seriesScene(int i) {
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = 1.0F / 128.0F;
     p.blocks = {{vec3(0.375F, 0.0F, 0.375F), vec3(0.625F, 0.125F * static_cast<float>(i), 0.625F), vec3(0.0F)}};
     return p;

@@ -23,30 +23,31 @@ struct Setting {
     FluidParams (*params)();
 };
 
-FluidParams pbf(int substeps, int iterations) {
-    FluidParams p;
-    p.method = "pbf";
-    p.pbf.minSubsteps = substeps;
-    p.pbf.iterations = iterations;
-    return p;
-}
-FluidParams dfsph(int substeps, float tolerance, float reach) {
+FluidParams dfsph(int substeps, float reach, float tolerance, float correction) {
     FluidParams p;
     p.method = "dfsph";
     p.dfsph.minSubsteps = substeps;
-    p.dfsph.tolerance = tolerance;
     p.dfsph.reach = reach;
+    p.dfsph.tolerance = tolerance;
+    p.dfsph.correction = correction;
+    return p;
+}
+FluidParams asItComes(const char* method) {
+    FluidParams p;
+    p.method = method;
     return p;
 }
 
 constexpr Setting kSettings[] = {
-    {"dfsph, 20 substeps, tolerance 1e-4", "31k", 0.02F, [] { return dfsph(20, 1.0e-4F, 0.12F); }},
-    {"dfsph, as it comes", "31k", 0.02F, [] { return dfsph(8, 1.0e-3F, 0.3F); }},
-    {"pbf, as it comes", "31k", 0.02F, [] { return pbf(4, 3); }},
-    {"dfsph, as it comes", "8k", 0.03125F, [] { return dfsph(8, 1.0e-3F, 0.3F); }},
-    {"pbf, as it comes", "8k", 0.03125F, [] { return pbf(4, 3); }},
-    {"dfsph, as it comes", "128k", 0.0125F, [] { return dfsph(8, 1.0e-3F, 0.3F); }},
-    {"pbf, as it comes", "128k", 0.0125F, [] { return pbf(4, 3); }},
+    {"dfsph, tolerance 1e-4, correction 0.3", "31k", 0.02F, [] { return dfsph(8, 0.3F, 1.0e-4F, 0.3F); }},
+    {"dfsph, as it comes", "31k", 0.02F, [] { return asItComes("dfsph"); }},
+    {"dfsph, 6 substeps, reach 0.4, tolerance 1e-3", "31k", 0.02F, [] { return dfsph(6, 0.4F, 1.0e-3F, 0.2F); }},
+    {"pbf, as it comes", "31k", 0.02F, [] { return asItComes("pbf"); }},
+    {"dfsph, as it comes", "8k", 0.03125F, [] { return asItComes("dfsph"); }},
+    {"dfsph, 4 substeps, reach 0.5, tolerance 8e-4", "8k", 0.03125F, [] { return dfsph(4, 0.5F, 8.0e-4F, 0.2F); }},
+    {"pbf, as it comes", "8k", 0.03125F, [] { return asItComes("pbf"); }},
+    {"dfsph, 6 substeps, reach 0.4, tolerance 5e-4", "128k", 0.0125F, [] { return dfsph(6, 0.4F, 5.0e-4F, 0.2F); }},
+    {"pbf, as it comes", "128k", 0.0125F, [] { return asItComes("pbf"); }},
 };
 
 }  // namespace

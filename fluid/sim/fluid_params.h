@@ -69,7 +69,7 @@ struct ForcesParams {
 };
 
 struct FluidParams {
-    std::string method = "wcsph";     // a row of methods()
+    std::string method = "pbf";       // a row of methods()
     std::string kernel = "wendland";  // wendland | cubic_spline
     float spacing = 0.02F;            // m
     float supportSpacings = 2.0F;     // h = this * spacing
@@ -87,12 +87,12 @@ struct FluidParams {
     float frameBudget = 0.0F;   // ms; 0 = none
     dvec3 origin{0.0};          // m: where the scene's (0, 0, 0) is in the host's world. A scene file gives it as floats
     int maxParticles = 0;       // 0 = what blocks and emitters need
-    PbfParams pbf;
-    DfsphParams dfsph;
-    ForcesParams forces;
-    BoxParams box;
-    CollisionParams collision;
-    std::vector<BlockParams> blocks;
+    PbfParams pbf = {};
+    DfsphParams dfsph = {};
+    ForcesParams forces = {};
+    BoxParams box = {};
+    CollisionParams collision = {};
+    std::vector<BlockParams> blocks = {};
     void visit(ParamVisitor& v);
 };
 

@@ -78,7 +78,7 @@ std::vector<vec4> byId(const std::vector<uint32_t>& id, const std::vector<vec4>&
 
 // `iterations`: of a solver, the same on every device.
 Fields oneStep(Device& device, const char* methodName, const VoxelField* field, int iterations = 1) {
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = kSpacing;
     p.pbf.iterations = iterations;
     p.dfsph.maxIterations = iterations;
@@ -301,7 +301,7 @@ TEST(SimSameness, ACpuRunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
     for (Run run :
          {Run{1, bestIsa()}, Run{2, bestIsa()}, Run{2, bestIsa()}, Run{2, Isa::generic}, Run{2, std::min(bestIsa(), Isa::avx2)}}) {
         auto device = makeTestCpu(run.threads, run.isa);
-        FluidParams p;
+        FluidParams p{.method = "wcsph"};
         p.spacing = kSpacing;
         p.blocks = {{vec3(0.0F, 0.3F, 0.0F), vec3(0.4F, 0.7F, 0.4F), vec3(0.0F)}};
         auto world = FluidWorld::create(*device, p, {.field = &field}, {});

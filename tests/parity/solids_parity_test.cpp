@@ -46,7 +46,7 @@ Outcome run(Device& device, const std::string& walk) {
     EXPECT_TRUE(still && turning && bending);
     if (!still || !turning || !bending) return out;
 
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = kSpacing;
     p.soundSpeed = 15;
     p.cfl = 0.8F;

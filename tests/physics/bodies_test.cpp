@@ -99,7 +99,7 @@ double surfaceOf(const std::vector<Drop>& drops, float spacing, Counts counts) {
 TEST(Samples, APlaneStandsForWhatLiesBehindIt) {
     for (const char* kernel : {"wendland", "cubic_spline"})
         for (const float support : {2.0F, 2.5F, 3.0F}) {
-            FluidParams p;
+            FluidParams p{.method = "wcsph"};
             p.kernel = kernel;
             p.spacing = 0.02F;
             p.supportSpacings = support;

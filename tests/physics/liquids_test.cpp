@@ -83,7 +83,7 @@ TEST(Liquids, EveryRowIsWholeAndSaysItsSource) {
 
 TEST(Liquids, ANamedLiquidSaysDensityAndViscosity) {
     auto device = makeTestCpu();
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.restDensity = 7;
     p.liquid = "honey";
     auto world = make(*device, p);

@@ -17,7 +17,7 @@ namespace rivulet {
 namespace {
 
 FluidParams boxOfWater(float spacing, vec3 min, vec3 max) {
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = spacing;
     p.blocks = {{min, max, vec3(0.0F)}};
     return p;
@@ -92,7 +92,7 @@ TEST(Wcsph, AWallsShareIsTheKernelsIntegralBehindIt) {
     auto device = cpu();
     const float spacing = 0.05F, h = 0.1F;
     for (float distance : {0.03F, 0.05F, 0.07F, 0.09F}) {
-        FluidParams p;
+        FluidParams p{.method = "wcsph"};
         p.spacing = spacing;
         p.gravity = vec3(0.0F);
         p.blocks = {{vec3(0.45F), vec3(0.5F), vec3(0.0F)}};  // one particle
@@ -118,7 +118,7 @@ TEST(Wcsph, AWallsShareIsTheKernelsIntegralBehindIt) {
 
 TEST(Wcsph, PairForcesConserveMomentum) {
     auto device = cpu();
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = 0.04F;
     p.gravity = vec3(0.0F);
     p.blocks = {{vec3(0.2F, 0.4F, 0.4F), vec3(0.4F, 0.6F, 0.6F), vec3(1.0F, 0.0F, 0.0F)},
@@ -144,7 +144,7 @@ TEST(Wcsph, PairForcesConserveMomentum) {
 
 TEST(Wcsph, ParticlesFarFromAllOthersFallAsGalileoSays) {
     auto device = cpu();
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = 0.02F;
     p.blocks = {{vec3(0.5F, 0.9F, 0.5F), vec3(0.52F, 0.92F, 0.52F), vec3(0.0F)}};
     auto world = make(*device, p);
@@ -237,7 +237,7 @@ TEST(WcsphThesis, TheGradientPrintedInEquationSixCannotSlowAShear) {
 
 TEST(Wcsph, NoneOneAndTwoAtTheSamePointAreNoErrors) {
     auto device = cpu();
-    FluidParams none;
+    FluidParams none{.method = "wcsph"};
     auto empty = make(*device, none);
     empty->step({none.gravity}, 1.0 / 60);
     EXPECT_EQ(empty->stats().particles, 0U);
@@ -377,7 +377,7 @@ TEST(Wcsph, ResetIsTheStartAgainAndTheSameRunAgain) {
 
 TEST(Wcsph, ABoxTooLargeForItsSpacingIsRefusedWithTheSpacingThatFits) {
     auto device = cpu();
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = 0.001F;
     p.box.max = vec3(10.0F);
     auto world = FluidWorld::create(*device, p, {}, {});

@@ -22,7 +22,7 @@ std::unique_ptr<CpuDevice> cpu() {
 }
 
 FluidParams fluid(const vec3& low, const vec3& high, float spacing, const vec3& blockLow, const vec3& blockHigh) {
-    FluidParams p;
+    FluidParams p{.method = "wcsph"};
     p.spacing = spacing;
     p.soundSpeed = 20;
     p.cfl = 0.8F;

@@ -34,7 +34,11 @@ void BoxParams::visit(ParamVisitor& v) {
 }
 
 void PbfParams::visit(ParamVisitor& v) {
-    v.value({"iterations", "", "corrections a step: more is stiffer and slower", 1, 50}, iterations);
+    v.value({"iterations", "", "corrections a step, where tolerance is 0: more is stiffer and slower", 1, 50}, iterations);
+    v.value(
+        {"tolerance", "", "mean compression, as a fraction, down to which a step corrects; 0: always as often as iterations says", 0, 0.1},
+        tolerance);
+    v.value({"maxIterations", "", "corrections a step at most, where tolerance is not 0", 1, 1000, kLog}, maxIterations);
     v.value({"relaxation", "", "share of a correction that is made: more converges faster, too much trembles", 0.05, 1.5}, relaxation);
     v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
     v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: water is stiffer with more", 1, 100}, minSubsteps);

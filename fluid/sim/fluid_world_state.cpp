@@ -72,7 +72,7 @@ Status FluidWorld::restore(WorldState& state) {
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
     if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
-    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the last one who can object
+    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the last host that can object
 
     w.writeStart();
     w.particles.restore(*w.device, *saved);

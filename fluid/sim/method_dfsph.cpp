@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "fluid/sim/smoothing.h"
-#include "shaders/fluid/stats_row.h"
+#include "fluid/sim/solver_residual.h"
 
 namespace rivulet {
 
@@ -16,17 +16,12 @@ namespace {
 constexpr float kSound = 100.0F;
 float squared(float x) { return x * x; }
 
-// What is known of the residual: at once on the cpu, some frames late on a GPU.
-struct Residual {
-    double value = 0;
-    bool known = false;
-};
-
 class Dfsph final : public Method {
   public:
-    Kernel integrate, begin, end, residual;
+    Kernel integrate, begin, end;
     PairKernel density, rate, push;
-    Buffer solve, pressures, rows;  // pressures: remembered, by id
+    Buffer solve, pressures;  // pressures: remembered, by id
+    SolverResidual residual;
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
     StepLimit stepLimit(const FluidParams& p) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
@@ -57,7 +52,7 @@ class Dfsph final : public Method {
         // What is left trembles: it is to be little beside what moves.
         const double way = c.fastest * double{c.params.dt} / double{d.reach * c.fluid.spacing};
         c.solve.iterations = iterate(c, double{d.tolerance} * std::clamp(way, 0.05, 1.0));
-        c.solve.residual = residual_->value;
+        c.solve.residual = residual.value();
         c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &pressures}, p.count);
         c.device.run(
             integrate, c.params,
@@ -80,13 +75,7 @@ class Dfsph final : public Method {
         const uint32_t threads = c.grid.pairThreads();
         const Buffer& neighbors = c.grid.neighbors();
         const bool cpu = c.device.backend() == Backend::cpu;
-        const int most = c.fluid.dfsph.maxIterations;
-        // On a GPU nothing waits for the residual: as many iterations as the last one known asked for, one more or fewer.
-        if (!cpu && residual_->known) {
-            planned_ += residual_->value > tolerance ? 1 : residual_->value < 0.5 * tolerance ? -1 : 0;
-            residual_->known = false;
-        }
-        planned_ = std::clamp(planned_, 1, most);
+        const int most = cpu ? c.fluid.dfsph.maxIterations : residual.planned(tolerance, c.fluid.dfsph.maxIterations);
         double before = 0;
         StepParams s = c.params;
         s.stiffness = std::max(s.stiffness, squared(kSound * static_cast<float>(c.fastest)));
@@ -96,38 +85,18 @@ class Dfsph final : public Method {
             rate.run(c, s, {&neighbors, &p.position, &p.velocity, &p.boundary, &solve, &p.pressure}, threads);
             pushOn(c, vec3(0.0F));
             ++k;
-            if (cpu) {
-                const double r = readResidual(c, *residual_);
-                // What has just been applied will leave about as much of it as the iteration before left.
-                const double kept = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
-                before = r;
-                if (r * kept <= tolerance || k >= most) break;
-            } else if (k >= planned_) {
-                askResidual(c, residual_);
-                break;
+            if (!cpu) {
+                if (k < most) continue;
+                residual.measure(c, solve);
+                return k;
             }
+            const double r = residual.measure(c, solve);
+            // What has just been applied will leave about as much of it as the iteration before left.
+            const double kept = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
+            before = r;
+            if (r * kept <= tolerance || k >= most) return k;
         }
-        return k;
     }
-
-    double readResidual(StepContext& c, Residual& into) {
-        c.device.run(residual, c.params, {&c.grid.cellStart(), &solve, &rows}, STATS_THREADS);
-        c.device.readLater(rows, rows.bytes(), [&into](std::span<const std::byte> bytes) { into = sum(bytes); });
-        return into.value;
-    }
-    void askResidual(StepContext& c, const std::shared_ptr<Residual>& into) {
-        c.device.run(residual, c.params, {&c.grid.cellStart(), &solve, &rows}, STATS_THREADS);
-        c.device.readLater(rows, rows.bytes(), [into](std::span<const std::byte> bytes) { *into = sum(bytes); });
-    }
-    static Residual sum(std::span<const std::byte> bytes) {
-        const float* values = reinterpret_cast<const float*>(bytes.data());
-        double total = 0;
-        for (uint32_t t = 0; t < STATS_THREADS; ++t) total += double{values[t]};
-        return {total / std::max(1.0, double{values[STATS_THREADS]}), true};
-    }
-
-    int planned_ = 3;  // until a residual is known
-    std::shared_ptr<Residual> residual_ = std::make_shared<Residual>();
 };
 
 }  // namespace
@@ -143,7 +112,7 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         std::vector<Define> defines;
     };
     for (const Wanted& w : {Wanted{&m->integrate, "fluid/integrate", {coast}}, Wanted{&m->begin, "fluid/dfsph_begin", {}},
-                            Wanted{&m->end, "fluid/dfsph_end", {}}, Wanted{&m->residual, "fluid/residual", {}}}) {
+                            Wanted{&m->end, "fluid/dfsph_end", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -154,9 +123,11 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         if (!found) return found.error();
         *kernel = *found;
     }
+    Result<SolverResidual> residual = SolverResidual::create(device, {});
+    if (!residual) return residual.error();
+    m->residual = std::move(*residual);
     const size_t count = setup.count;
-    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->pressures, count * sizeof(float)),
-                                 std::pair(&m->rows, (STATS_THREADS + 1) * sizeof(float))}) {
+    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->pressures, count * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);

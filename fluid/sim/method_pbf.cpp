@@ -4,6 +4,7 @@
 #include <array>
 
 #include "fluid/sim/smoothing.h"
+#include "fluid/sim/solver_residual.h"
 
 namespace rivulet {
 
@@ -14,6 +15,7 @@ class Pbf final : public Method {
     Kernel predict, finish, kick, weigh, setRatio;
     PairKernel lambda, shift;
     Buffer corrected[2];
+    SolverResidual residual;
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
     StepLimit stepLimit(const FluidParams& p) const override { return {p.pbf.reach, 1.0 / (60 * p.pbf.minSubsteps)}; }
@@ -35,14 +37,25 @@ class Pbf final : public Method {
         // Samples on bodies are never corrected, but looked at there.
         if (c.params.firstSample < c.params.count)
             for (Buffer& b : corrected) c.device.copy(p.position, b, size_t{p.count} * sizeof(vec4));
-        for (int k = 0; k < c.fluid.pbf.iterations; ++k) {
+        const PbfParams& pbf = c.fluid.pbf;
+        const bool toTolerance = pbf.tolerance > 0, cpu = c.device.backend() == Backend::cpu;
+        const int most = !toTolerance ? pbf.iterations
+                         : cpu        ? pbf.maxIterations
+                                      : residual.planned(double{pbf.tolerance}, pbf.maxIterations);
+        int k = 0;
+        for (; k < most; ++k) {
             c.boundary(*at);
             lambda.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.density, &p.pressure}, threads);
+            if (toTolerance && (cpu || k + 1 == most)) {
+                const double left = residual.measure(c, p.density);
+                if (cpu && k > 0 && left <= double{pbf.tolerance}) break;
+            }
             shift.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2]}, threads);
             c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt), vec3(0.0F));
             at = &corrected[k % 2];
         }
-        c.solve.iterations = c.fluid.pbf.iterations;
+        c.solve.iterations = k;
+        if (toTolerance) c.solve.residual = residual.value();
         c.device.run(finish, c.params,
                      {&c.grid.cellStart(), &p.position, at, &p.velocity, &p.density, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
         // The other forces act on the velocity that came out; the next step's prediction follows it.
@@ -84,6 +97,10 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
         if (!found) return found.error();
         *kernel = *found;
     }
+    const Define density{"DENSITY", "1"};
+    Result<SolverResidual> residual = SolverResidual::create(device, std::span(&density, 1));
+    if (!residual) return residual.error();
+    m->residual = std::move(*residual);
     for (Buffer& b : m->corrected) {
         Result<Buffer> made = device.allocate(size_t{setup.count} * sizeof(vec4));
         if (!made) return made.error();

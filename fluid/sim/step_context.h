@@ -32,8 +32,8 @@ struct StepContext {
     // `fromPositions`: velocityNext holds where particles come from, m.
     std::function<bool(bool fromPositions)> build;
     // Adds to the forces on bodies what fluid does to their samples; a world without bodies has none. `pressures`: of the fluid, as the
-    // pair terms of the method have them; `scale`: an acceleration of one particle (m/s^2) over pressure * gradient (1/m); `weight`: how
-    // they go on growing beyond the fluid, a metre (methods with a pair term of viscosity of their own: as gravity has it).
+    // pair terms of the method have them; `scale`: an acceleration of one particle (m/s^2) over pressure * gradient (1/m); `weight`: by
+    // how much they grow a metre beyond the fluid, in the same unit (wcsph: its form of the kernel knows gravity; 0).
     std::function<void(const Buffer& position, const Buffer& pressures, float scale, const vec3& weight)> pushSamples;
     const Buffer& planes;  // as integrate.kernel wants them
     // Fills particles.boundary for these positions (in sorted order). Methods whose density knows no walls do not ask.

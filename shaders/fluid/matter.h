@@ -21,7 +21,7 @@
 #define MIRRORED(own) ((own) * (other_.w < 0.0f ? 2.0f : 1.0f))
 // What more there is at a sample, where the pressure goes on as gravity has it (Adami et al. 2012): `rise` from the sample to the particle, at
 // most as much as there is. push_samples does the same.
-#define FOLLOWED(rise, own) SELECT(other_.w < 0.0f, max(min(-(rise), own), -(own)), 0.0f)
+#define FOLLOWED(rise, own) SELECT(other_.w < 0.0f, max(min(-(rise), max0(own)), -max0(own)), 0.0f)
 // Nothing at a sample.
 #define FLUID_ONLY(term) ((term) * (other_.w < 0.0f ? 0.0f : 1.0f))
 // Times how readily the other one moves.

@@ -195,7 +195,8 @@ TEST(FreeBody, TumblesWithItsAngularMomentum) {
 // A drop flies against a resting body, off the middle, without gravity or while both fall: what fluid and body have of momentum and angular
 // momentum together stays, but for what gravity gives them, for pressures and friction of every method.
 TEST(TwoWay, NothingIsLostBetweenFluidAndBody) {
-    for (const auto& [method, gravity] : {std::pair("wcsph", 0.0F), std::pair("wcsph", 9.81F), std::pair("dfsph", 0.0F)}) {
+    for (const auto& [method, gravity] : {std::pair("wcsph", 0.0F), std::pair("wcsph", 9.81F), std::pair("dfsph", 0.0F),
+                                          std::pair("dfsph", 9.81F), std::pair("pbf", 0.0F)}) {
         auto device = cpu();
         FluidParams p = tank(method, 0.02F, vec3(2), 0);
         p.gravity = vec3(0.0F, -gravity, 0.0F);

@@ -164,5 +164,35 @@ TEST_P(Methods, APeriodicBoxKnowsNoBorder) {
     EXPECT_LT(worst, std::string_view(GetParam()) == "pbf" ? 5.0e-4 : 2.0e-5) << "of a spacing of 0.05 m";
 }
 
+// With a tolerance, PBF corrects until that little compression is left; fewer corrections leave more.
+TEST(Pbf, CorrectsDownToItsTolerance) {
+    auto device = [] {
+        const std::vector<CpuKernelRow> rows = cpuKernels();
+        return makeCpuDevice(rows);
+    }();
+    double last = 1;
+    for (const float tolerance : {5.0e-3F, 1.0e-3F}) {
+        FluidParams p{.method = "pbf"};
+        p.spacing = 0.04F;
+        p.box.max = vec3(1.0F, 1.2F, 1.0F);
+        p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
+        p.pbf.tolerance = tolerance;
+        p.pbf.maxIterations = 200;
+        auto world = FluidWorld::create(*device, p, {}, {});
+        ASSERT_TRUE(world) << world.error().message;
+        double mean = 0;
+        for (int frame = 0; frame < 20; ++frame) {
+            (*world)->step({.gravity = p.gravity}, 1.0 / 60);
+            ASSERT_TRUE((*world)->stats().residual);
+            EXPECT_LE(*(*world)->stats().residual, double{tolerance}) << frame;
+            mean += (*world)->stats().avgCompression / 20;
+        }
+        // What is left is measured before walls have their say.
+        EXPECT_LT(mean, 2 * double{tolerance});
+        EXPECT_LT(mean, last);
+        last = mean;
+    }
+}
+
 }  // namespace
 }  // namespace rivulet

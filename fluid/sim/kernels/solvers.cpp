@@ -34,6 +34,11 @@ namespace end {
 namespace residual_unit {
 #include "shaders/fluid/residual.kernel"
 }
+#define DENSITY 1
+namespace residual_density {
+#include "shaders/fluid/residual.kernel"
+}
+#undef DENSITY
 namespace set_ratio_unit {
 #include "shaders/fluid/set_ratio.kernel"
 }
@@ -58,6 +63,7 @@ std::span<const CpuKernelRow> solverRows() {
         {"fluid/dfsph_begin", "", RIVULET_UNIT_ISA, begin::dfsph_begin, 1024},
         {"fluid/dfsph_end", "", RIVULET_UNIT_ISA, end::dfsph_end, 1024},
         {"fluid/residual", "", RIVULET_UNIT_ISA, residual_unit::residual, 128},
+        {"fluid/residual", "DENSITY=1", RIVULET_UNIT_ISA, residual_density::residual, 128},
         {"fluid/set_ratio", "", RIVULET_UNIT_ISA, set_ratio_unit::set_ratio, 1024},
         {"fluid/kick", "", RIVULET_UNIT_ISA, kick_unit::kick, 1024},
         {"fluid/weigh", "", RIVULET_UNIT_ISA, weigh_unit::weigh, 1024},

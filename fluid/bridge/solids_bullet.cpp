@@ -206,8 +206,8 @@ struct BulletSolids::Impl {
         return compound;
     }
     // Bullet would keep contacts and their forces for the next step, in an order of their own; what a state keeps are the bodies. So
-    // nothing is kept: a step depends on nothing but where bodies and solids are. Stacks creep somewhat
-    // more for it (23 mm instead of 18 in 4 s at 1/120 s); more iterations make up for the rest.
+    // nothing is kept: a step depends on nothing but where bodies and solids are. Stacks creep somewhat more for it (23 mm instead of 18
+    // in 4 s at 1/120 s); more iterations make up for the rest.
     void forget() {
         btOverlappingPairCache& pairs = *broadphase.getOverlappingPairCache();
         for (int n = pairs.getNumOverlappingPairs(); n > 0; --n) {

@@ -1,5 +1,5 @@
 // The neighbours of a particle on a GPU: the nine rows of cells around its own, each row's three cells contiguous in memory; with MATTER the
-// same rows of body samples; with PERIODIC cell by cell, so that rows may wrap round. (On the CPU lang_cpp.h defines the same macros over a list
+// same rows of body samples; with PERIODIC cell by cell, so that rows may wrap round. (On the CPU lang_lanes.h defines the same macros over a list
 // for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1, Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart.
 // `home`: where the particle was when the grid was built. j includes the particle itself.
 #if !defined(FOR_NEIGHBORS)

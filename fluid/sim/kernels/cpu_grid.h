@@ -13,11 +13,11 @@ struct Float4 {
     float x, y, z, w;
 };
 
-// 8 lanes of one row of cells. Same layout as Group in shaders/common/lang_cpp.h.
+// 8 lanes of one row of cells. Same layout as Group in shaders/common/lang_lanes.h.
 struct CpuGroup {
     uint32_t first, lanes, listBegin, listCount;
 };
-// What binding 1 of a pair kernel points to. Same layout as NeighborLists in lang_cpp.h.
+// What binding 1 of a pair kernel points to. Same layout as NeighborLists in lang_lanes.h.
 struct CpuNeighborLists {
     const CpuGroup* groups;
     uint32_t* list;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/core/json.h"
+#include "engine/core/table.h"
 #include "fluid/sim/solids.h"
 
 namespace rivulet {
@@ -267,8 +268,27 @@ Status checkScene(const SceneFile& scene) {
     return wrong.empty() ? ok() : badInput(wrong);
 }
 
-Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments) {
+namespace {
+
+// Where a scene is: as findAsset says, or by the name it has in `rivulet list scenes`.
+Result<std::string> findScene(const std::string& path) {
     Result<std::string> file = findAsset(path, "");
+    const fs::path typed(path);
+    if (file || typed.has_parent_path()) return file;
+    const std::string stem = typed.stem().string();
+    std::vector<std::string> names;
+    for (const SceneListing& s : listScenes()) {
+        names.push_back(fs::path(s.path).stem().string());
+        if (names.back() == stem) return s.path;
+    }
+    const std::string near = nearestName(stem, names);
+    return near.empty() ? file : badInput(fmt::format("{}; did you mean the scene {}?", file.error().message, near));
+}
+
+}  // namespace
+
+Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments) {
+    Result<std::string> file = findScene(path);
     if (!file) return file.error();
     SceneFile scene;
     const VisitFn visit = visiting(scene);

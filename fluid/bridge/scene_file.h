@@ -148,7 +148,8 @@ struct SceneFile {
     void visit(ParamVisitor& v);
 };
 
-// `assignments`: each --set, in order. Error: as readJson and setParam say.
+// `path`: as findAsset takes it, or the name of a listed scene (`dam_break`). `assignments`: each --set, in order. Error: as readJson and
+// setParam say.
 Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments);
 
 // Error: values that make no sense together, each fine by itself. loadScene asks it; who edits a scene asks it too.

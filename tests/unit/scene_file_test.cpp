@@ -193,6 +193,19 @@ TEST_F(SceneTest, AnAssetThatIsNowhereNamesEveryPlace) {
     EXPECT_FALSE(findAsset(std::string("a\0b", 3), folder()));
 }
 
+TEST_F(SceneTest, AListedSceneIsFoundByItsNameAndAMistypedOneIsAnsweredWithTheNearest) {
+    ::setenv("RIVULET_ASSETS", folder().c_str(), 1);
+    write("scenes/teapot_of_ours.json", R"({"name": "Teapot"})");
+    for (const char* typed : {"teapot_of_ours", "teapot_of_ours.json"}) {
+        const Result<SceneFile> scene = loadScene(typed, {});
+        ASSERT_TRUE(scene) << scene.error().message;
+        EXPECT_EQ(scene->name, "Teapot");
+        EXPECT_EQ(fs::path(scene->folder).filename(), "scenes");
+    }
+    const std::string error = loadScene("teapot_of_ors.json", {}).error().message;
+    EXPECT_TRUE(error.ends_with("did you mean the scene teapot_of_ours?")) << error;
+}
+
 TEST_F(SceneTest, TheListHasEverySceneOnceAndSaysWhatIsWrongWithABrokenOne) {
     ::setenv("RIVULET_ASSETS", (folder() + ":" + folder() + "/scenes/..").c_str(), 1);
     write("scenes/good.json", R"({"name": "Good", "doc": "All well."})");

@@ -245,7 +245,7 @@ TEST(TwoWay, NothingIsLostBetweenFluidAndBody) {
 // A ball a hundred times as light as water, and one a hundred times as heavy, dropped from just above it: one ends on top, one on the
 // floor.
 TEST(Floating, AHundredTimesAsLightAndAsHeavy) {
-    for (const char* method : {"wcsph", "dfsph"})
+    for (const char* method : {"wcsph", "pbf", "dfsph"})
         for (const double ratio : {0.01, 100.0}) {
             auto device = cpu();
             const float s = 0.0125F, radius = 0.05F;
@@ -316,10 +316,11 @@ TEST(BoundaryParticles, APoolStandsAsOverTheFloor) {
 }
 
 // A gap three spacings wide between walls of boundary particles lets water through: no clog.
-TEST(BoundaryParticles, AChannelOfThreeSpacingsLetsWaterThrough) {
+class ChannelOfParticles : public testing::TestWithParam<const char*> {};
+TEST_P(ChannelOfParticles, ThreeSpacingsWideLetsWaterThrough) {
     auto device = cpu();
     const float s = 0.02F;
-    FluidParams p = tank("wcsph", s, vec3(0.42F, 0.8F, 0.1F), 0.0F);
+    FluidParams p = tank(GetParam(), s, vec3(0.42F, 0.8F, 0.1F), 0.0F);
     p.blocks = {{vec3(0, 0.44F, 0), vec3(0.42F, 0.6F, 0.1F), vec3(0.0F)}};
     Solids solids;
     for (const float side : {-1.0F, 1.0F}) {
@@ -342,6 +343,8 @@ TEST(BoundaryParticles, AChannelOfThreeSpacingsLetsWaterThrough) {
     EXPECT_EQ(within, 0U) << "nothing goes through the walls";
     EXPECT_EQ(world->stats().lost, 0U);
 }
+INSTANTIATE_TEST_SUITE_P(Methods, ChannelOfParticles, testing::Values("wcsph", "pbf", "dfsph"),
+                         [](const auto& row) { return std::string(row.param); });
 
 // ---- sameness ----
 

@@ -314,8 +314,10 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                          .limited = {}};
     device->readLater(
         statsRows, STATS_THREADS * sizeof(StatsRow),
-        [now, into = figures, count = start.size(), volume = std::pow(double{params.spacing}, 3), mass = double{step.mass}, g = gravity,
-         this](std::span<const std::byte> bytes) {
+        [now, weak = std::weak_ptr(figures), count = start.size(), volume = std::pow(double{params.spacing}, 3), mass = double{step.mass},
+         g = gravity, this](std::span<const std::byte> bytes) {
+            const std::shared_ptr<FluidStats> into = weak.lock();
+            if (!into) return;  // the world was reset meanwhile, or is no more
             const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
             FluidStats f = now;
             double centre[3] = {0, 0, 0}, inside = 0, masses = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
@@ -345,14 +347,10 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                 }
             }
             f.limited = std::move(into->limited);
-            const bool current = into == figures;  // else the world was reset meanwhile
-            if (current) {
-                f.emitted = (static_cast<double>(count) + static_cast<double>(sources.given())) * volume;
-                f.drained = static_cast<double>(sources.drained()) * volume;
-                f.owed = sources.owed() * volume;
-            }
+            f.emitted = (static_cast<double>(count) + static_cast<double>(sources.given())) * volume;
+            f.drained = static_cast<double>(sources.drained()) * volume;
+            f.owed = sources.owed() * volume;
             *into = std::move(f);
-            if (!current) return;
             if (sources.full())
                 say(fmt::format(
                     "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles says how many", slots));

@@ -68,6 +68,31 @@ TEST_P(StateParity, SavedOnTheCpuResumedThere) {
     }
 }
 
+// Figures that are still on their way when their world goes come to nobody: neither to it nor to the next world of that device.
+TEST_P(StateParity, AWorldMayGoBeforeItsFiguresCome) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    const FluidParams p = block("wcsph");
+    FluidParams few = p;
+    few.blocks[0].max = vec3(0.2F);
+    {
+        auto gone = FluidWorld::create(*gpu->device, p, {}, {});
+        ASSERT_TRUE(gone);
+        for (int k = 0; k < 2; ++k) (*gone)->step({.gravity = p.gravity}, 1.0 / 60);
+    }
+    auto next = FluidWorld::create(*gpu->device, few, {}, {});
+    ASSERT_TRUE(next);
+    gpu->device->finish();
+    gpu->device->poll();
+    EXPECT_EQ((*next)->stats().particles, 64U);
+    EXPECT_EQ((*next)->stats().time, 0.0);
+    for (int k = 0; k < 2; ++k) (*next)->step({.gravity = p.gravity}, 1.0 / 60);
+    gpu->device->finish();
+    gpu->device->poll();
+    EXPECT_EQ((*next)->stats().particles, 64U);
+    EXPECT_GT((*next)->stats().time, 0.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, StateParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace

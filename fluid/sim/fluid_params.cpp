@@ -118,7 +118,7 @@ void FluidParams::visit(ParamVisitor& v) {
     v.choice(
         {.name = "kernel", .doc = "how neighbours are weighed; the cubic spline, for comparison, in method wcsph alone", .fixed = kFixed},
         kernel, kernels);
-    v.value({"spacing", "m", "distance between particles at rest: halving it makes eight times as many", 0.0005, 1, kLog, kFixed}, spacing);
+    v.value({"spacing", "m", "distance between particles at rest: halving it makes eight times as many", 1.0e-5, 1, kLog, kFixed}, spacing);
     v.value(
         {"supportSpacings", "", "reach of a particle (support radius), in spacings: more is smoother and slower", 1.5, 4, kLinear, kFixed},
         supportSpacings);

@@ -21,6 +21,7 @@ constexpr double kLateFrames = 3;
 FluidWorld::FluidWorld() : impl_(std::make_unique<Impl>()) {}
 FluidWorld::~FluidWorld() = default;
 const FluidParams& FluidWorld::params() const { return impl_->params; }
+std::vector<float> FluidWorld::pressures() const { return impl_->method->pressures(*impl_->device, impl_->particles, impl_->step); }
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 double FluidWorld::time() const { return impl_->time; }
 double FluidWorld::pending() const { return impl_->pace.pending(); }
@@ -308,6 +309,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                          .particles = particles.count,
                          .substeps = substeps,
                          .iterations = iterations / substeps,
+                         .sweeps = solve.sweeps,
                          .residual = solve.residual,
                          .dtMin = dtMin,
                          .dtMax = dtMax,

@@ -20,7 +20,7 @@ class Dfsph final : public Method {
   public:
     Kernel integrate, begin, end;
     PairKernel density, rate, push;
-    Buffer solve, pressures;  // pressures: remembered, by id
+    Buffer solve, kept;  // kept: pressures of the last step, by id
     SolverResidual residual;
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
@@ -37,7 +37,15 @@ class Dfsph final : public Method {
         s.momentum = p.dfsph.momentum;
     }
 
-    std::vector<NamedBuffer> remembered() override { return {{"pressure", &pressures}}; }
+    std::vector<NamedBuffer> remembered() override { return {{"pressure", &kept}}; }
+
+    std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
+        const std::vector<uint32_t> id = device.readAll<uint32_t>(p.id, p.count);
+        const std::vector<float> remembered = device.readAll<float>(kept, p.count);
+        std::vector<float> pascal(p.count);
+        for (size_t i = 0; i < id.size(); ++i) pascal[i] = remembered[id[i]] * s.restDensity;
+        return pascal;
+    }
 
     void step(StepContext& c) override {
         if (!c.build(false)) return;
@@ -47,13 +55,13 @@ class Dfsph final : public Method {
         density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
                     c.grid.pairThreads());
         c.forces();
-        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &pressures, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
+        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
         pushOn(c, vec3(c.params.gravity) * c.params.dt);
         // What is left trembles: it is to be little beside what moves.
         const double way = c.fastest * double{c.params.dt} / double{d.reach * c.fluid.spacing};
         c.solve.iterations = iterate(c, double{d.tolerance} * std::clamp(way, 0.05, 1.0));
         c.solve.residual = residual.value();
-        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &pressures}, p.count);
+        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept}, p.count);
         c.device.run(
             integrate, c.params,
             {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
@@ -92,9 +100,9 @@ class Dfsph final : public Method {
             }
             const double r = residual.measure(c, solve);
             // What has just been applied will leave about as much of it as the iteration before left.
-            const double kept = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
+            const double leaves = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
             before = r;
-            if (r * kept <= tolerance || k >= most) return k;
+            if (r * leaves <= tolerance || k >= most) return k;
         }
     }
 };
@@ -127,7 +135,7 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     if (!residual) return residual.error();
     m->residual = std::move(*residual);
     const size_t count = setup.count;
-    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->pressures, count * sizeof(float))}) {
+    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);

@@ -14,7 +14,7 @@ class Pbf final : public Method {
   public:
     Kernel predict, finish, kick, weigh, setRatio;
     PairKernel lambda, shift;
-    Buffer corrected[2];
+    Buffer corrected[2], given;  // given: multipliers, summed over the iterations of the last step
     SolverResidual residual;
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
@@ -23,6 +23,12 @@ class Pbf final : public Method {
     void fill(const FluidParams& p, float, StepParams& s) const override {
         fillSmoothing(p, s);
         s.relaxation = p.pbf.relaxation;
+    }
+
+    std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
+        std::vector<float> pascal = device.readAll<float>(given, p.count);
+        for (float& x : pascal) x *= s.restDensity / (s.dt * s.dt);
+        return pascal;
     }
 
     void step(StepContext& c) override {
@@ -43,14 +49,16 @@ class Pbf final : public Method {
                          : cpu        ? pbf.maxIterations
                                       : residual.planned(double{pbf.tolerance}, pbf.maxIterations);
         int k = 0;
+        StepParams s = c.params;
         for (; k < most; ++k) {
+            s.iteration = static_cast<uint32_t>(k);
             c.boundary(*at);
             lambda.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.density, &p.pressure}, threads);
             if (toTolerance && (cpu || k + 1 == most)) {
                 const double left = residual.measure(c, p.density);
                 if (cpu && k > 0 && left <= double{pbf.tolerance}) break;
             }
-            shift.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2]}, threads);
+            shift.run(c, s, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2], &given}, threads);
             c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt), vec3(0.0F));
             at = &corrected[k % 2];
         }
@@ -101,10 +109,11 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
     Result<SolverResidual> residual = SolverResidual::create(device, std::span(&density, 1));
     if (!residual) return residual.error();
     m->residual = std::move(*residual);
-    for (Buffer& b : m->corrected) {
-        Result<Buffer> made = device.allocate(size_t{setup.count} * sizeof(vec4));
+    for (auto [buffer, bytes] :
+         {std::pair(&m->corrected[0], sizeof(vec4)), std::pair(&m->corrected[1], sizeof(vec4)), std::pair(&m->given, sizeof(float))}) {
+        Result<Buffer> made = device.allocate(size_t{setup.count} * bytes);
         if (!made) return made.error();
-        b = std::move(*made);
+        *buffer = std::move(*made);
     }
     return std::unique_ptr<Method>(std::move(m));
 }

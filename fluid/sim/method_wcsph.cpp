@@ -41,6 +41,14 @@ class Wcsph final : public Method {
         s.artificial = p.artificialViscosity * c0 * 0.5F * s.h;
     }
 
+    std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
+        std::vector<float> pascal = device.readAll<float>(p.pressure, p.count);
+        if (thesis_) return pascal;
+        const std::vector<float> ratio = device.readAll<float>(p.density, p.count);  // the kernels hold p / rho^2
+        for (size_t i = 0; i < pascal.size(); ++i) pascal[i] *= ratio[i] * ratio[i] * s.restDensity * s.restDensity;
+        return pascal;
+    }
+
     void step(StepContext& c) override {
         if (!c.build(false)) return;
         Particles& p = c.particles;

@@ -28,6 +28,7 @@ struct FluidStats {
     uint32_t speedLimited = 0;         // particles whose speed the step had to limit
     int substeps = 0;                  // of that frame
     double iterations = 0;             // of the pressure solver, mean over those substeps
+    uint64_t sweeps = 0;               // over all neighbours, since the start: what a step costs, whatever the machine
     std::optional<double> residual;    // mean compression that the last of them left, as the solver predicts it; nothing: it does not
     double dtMin = 0, dtMax = 0;       // s, since the start
     std::vector<std::string> limited;  // plain sentences: what the program limited, each once

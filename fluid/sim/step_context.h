@@ -1,6 +1,7 @@
 // Everything a substep needs, handed to the Method and the forces.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -18,6 +19,7 @@ namespace rivulet {
 struct SolveFigures {
     double iterations = 0;           // of the last substep
     std::optional<double> residual;  // what it stopped at: mean compression it predicts, a fraction; of a method that knows
+    uint64_t sweeps = 0;             // over all neighbours, of all kernels since the start
 };
 
 struct StepContext {

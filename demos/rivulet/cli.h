@@ -30,6 +30,7 @@ int listVerb(const Arguments& arguments);
 int infoVerb(const Arguments& arguments);
 int voxelizeVerb(const Arguments& arguments);
 int benchVerb(const Arguments& arguments);
+int validateVerb(const Arguments& arguments);
 
 // "rivulet: sentence" on stderr; returns the exit code that the error's fault asks for.
 int report(const Error& error);

@@ -20,6 +20,7 @@ Table<Verb> verbs() {
         {"info", "what this machine offers, what --backend auto would choose and why", infoVerb},
         {"voxelize", "turn a mesh into voxels: a file, figures, pictures", voxelizeVerb},
         {"bench", "measure speed and memory", benchVerb},
+        {"validate", "measure the simulation against nature, papers and formulas", validateVerb},
     };
     return {rows};
 }

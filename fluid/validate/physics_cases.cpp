@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "fluid/validate/trial.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr PhysicsCase kCases[] = {
+    {"hydrostatic", "a pool at rest: pressure against rho g (H - z), and the speed that is left after 2 s", "fluid.spacing=0.025",
+     runHydrostatic},
+    {"dam_break", "front and height of a column that breaks: Martin and Moyce 1952, Koshizuka and Oka 1996",
+     "fluid.spacing=0.0017859375; fluid.box.max=0.3429,0.15,0.00714375; fluid.blocks.0.max=0.05715,0.1143,0.00714375", runDamBreak},
+    {"poiseuille", "flow between plates from rest: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runPoiseuille},
+    {"taylor_green", "whirls without walls, Re = 100: how fast they die away", "fluid.spacing=0.02", runTaylorGreen},
+    {"standing_wave", "period of the lowest mode, w^2 = g k tanh(k H), and the viscosity of its decay",
+     "fluid.spacing=0.0166666667; fluid.box.max=1,0.8,0.0666666667; fluid.blocks.0.max=1,0.5,0.0666666667", runStandingWave},
+    {"momentum", "two drops collide where nothing weighs anything: drift of momentum and angular momentum", "fluid.spacing=0.035",
+     runMomentum},
+};
+
+struct Half {
+    dvec3 centre{0.0};
+    double kinetic = 0, compression = 0;
+    Outcome outcome;
+    bool done = false;
+};
+
+// Half a second of a case at its quick size; what it is compared by is read from the particles, not from late sums.
+Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& device) {
+    settings.device = &device;
+    settings.quick = true;
+    settings.assignments.emplace_back("duration=0.5");
+    Result<Trial> trial = Trial::open(row.name, settings);
+    if (!trial) return trial.error();
+    Half half;
+    double compression = 0;
+    int frames = 0;
+    half.done = trial->run(1.0 / 60, [&] {
+        const HostParticles all = trial->particles();
+        double sum = 0;
+        for (const vec4& x : all.position) sum += std::max(double{x.w} - 1, 0.0);
+        compression += sum / static_cast<double>(std::max<size_t>(all.position.size(), 1));
+        ++frames;
+    });
+    const HostParticles all = trial->particles();
+    double mass = 0;
+    for (size_t i = 0; i < all.position.size(); ++i) {
+        mass += double{all.mass[i]};
+        half.centre += double{all.mass[i]} * dvec3(all.position[i]);
+        half.kinetic += 0.5 * double{all.mass[i]} * glm::dot(dvec3(all.velocity[i]), dvec3(all.velocity[i]));
+    }
+    half.centre /= std::max(mass, 1e-30);
+    half.compression = compression / std::max(frames, 1);
+    half.outcome = trial->outcome({}, {});
+    return half;
+}
+
+}  // namespace
+
+Table<PhysicsCase> physicsCases() { return {kCases}; }
+
+Result<Outcome> compareWithCpu(const PhysicsCase& row, const CaseSettings& settings, Device& cpu) {
+    const Result<Half> here = halfSecond(row, settings, cpu), there = halfSecond(row, settings, *settings.device);
+    if (!here) return here.error();
+    if (!there) return there.error();
+    Outcome o = there->outcome;
+    if (!here->done || !there->done) return o;
+    const double far = glm::length(here->centre), near = glm::length(there->centre), apart = glm::length(there->centre - here->centre);
+    const auto finding = [&](const char* what, const char* unit, double measured, double reference, double error) {
+        o.findings.push_back({what, unit, measured, reference, error, 0.01});
+    };
+    finding("centre of mass against the cpu's", "m", near, far, apart / std::max(far, 1e-30));
+    finding("kinetic energy against the cpu's", "J", there->kinetic, here->kinetic,
+            std::abs(there->kinetic - here->kinetic) / std::max(here->kinetic, 1e-30));
+    finding("mean compression against the cpu's", "", there->compression, here->compression,
+            std::abs(there->compression - here->compression) / std::max(here->compression, 1e-30));
+    return o;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,63 @@
+// Water swings in its lowest mode: w^2 = g k tanh(k H), and its energy dies as exp(-4 nu k^2 t) (Lamb 1932).
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fluid/validate/trial.h"
+
+namespace rivulet {
+
+Result<Outcome> runStandingWave(const CaseSettings& settings) {
+    Result<Trial> trial = Trial::open("standing_wave", settings);
+    if (!trial) return trial.error();
+    const FluidParams p = trial->params();
+    constexpr double pi = std::numbers::pi, amplitude = 0.02;  // m, of the surface
+    const double k = 2 * pi / double{p.box.max.x}, depth = double{p.blocks[0].max.y}, g = glm::length(p.gravity);
+    const double w = std::sqrt(g * k * std::tanh(k * depth));
+    const auto mode = [&](const dvec3& x) {
+        return dvec3(-std::cosh(k * x.y) * std::sin(k * x.x), std::sinh(k * x.y) * std::cos(k * x.x), 0.0) / std::sinh(k * depth);
+    };
+    if (Status set = trial->setVelocities([&](const dvec3& x) { return amplitude * w * mode(x); }); !set) return set.error();
+    Curve measured{"measured", true, {}}, reference{"Lamb", true, {}};
+    const bool done = trial->run(1.0 / 120, [&] {
+        const HostParticles all = trial->particles();
+        double along = 0, whole = 0;
+        for (size_t i = 0; i < all.position.size(); ++i) {
+            const dvec3 m = mode(dvec3(all.position[i]));
+            along += glm::dot(m, dvec3(all.velocity[i]));
+            whole += glm::dot(m, m);
+        }
+        const double t = trial->time();
+        measured.points.emplace_back(t, along / whole / (amplitude * w));
+        reference.points.emplace_back(t, std::cos(w * t) * std::exp(-2 * double{p.viscosity} * k * k * t));
+    });
+    if (!done) return trial->outcome({}, {});
+    // Periods from where it passes zero, viscosity from how the crests between sink.
+    std::vector<double> zeros, crests, crestTimes;
+    double crest = 0, crestTime = 0;
+    for (size_t i = 1; i < measured.points.size(); ++i) {
+        const glm::dvec2 a = measured.points[i - 1], c = measured.points[i];
+        if (std::abs(c.y) > crest) {
+            crest = std::abs(c.y);
+            crestTime = c.x;
+        }
+        if (a.y * c.y > 0 || a.y == c.y) continue;
+        zeros.push_back(a.x + (c.x - a.x) * a.y / (a.y - c.y));
+        if (zeros.size() > 1) {
+            crests.push_back(crest);
+            crestTimes.push_back(crestTime);
+        }
+        crest = 0;
+    }
+    const double period = zeros.size() > 1 ? 2 * (zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1) : 0;
+    const double expected = 2 * pi / w;
+    const double viscosity =
+        crests.size() > 1 ? std::log(crests.front() / crests.back()) / (crestTimes.back() - crestTimes.front()) / (2 * k * k) : 0;
+    return trial->outcome(
+        {{"period", "s", period, expected, std::abs(period / expected - 1), 0.02},
+         {"viscosity of the decay", "m^2/s", viscosity, double{p.viscosity}, std::abs(viscosity - double{p.viscosity}), {}}},
+        {"Standing wave", "time, s", "the mode over that at the start", {measured, reference}});
+}
+
+}  // namespace rivulet

@@ -1,0 +1,75 @@
+#include "fluid/validate/trial.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace rivulet {
+
+Result<Trial> Trial::open(const char* name, const CaseSettings& settings) {
+    std::vector<std::string> assignments = {"fluid.method=" + settings.method};
+    if (settings.quick) {
+        const std::string_view all = physicsCases().find(name)->quick;
+        for (size_t at = 0; at < all.size();) {
+            const size_t end = std::min(all.find("; ", at), all.size());
+            assignments.emplace_back(all.substr(at, end - at));
+            at = end + 2;
+        }
+    }
+    assignments.insert(assignments.end(), settings.assignments.begin(), settings.assignments.end());
+    Result<SceneFile> scene = loadScene(fmt::format("cases/{}.json", name), assignments);
+    if (!scene) return scene.error();
+    Result<std::unique_ptr<Session>> session = Session::create(std::move(*scene), *settings.device, settings.log);
+    if (!session) return session.error();
+    Trial trial;
+    trial.session_ = std::move(*session);
+    trial.goOn_ = settings.goOn;
+    return trial;
+}
+
+Status Trial::setVelocities(const std::function<dvec3(const dvec3&)>& at) {
+    FluidWorld& w = world();
+    if (Status can = w.savable(); !can) return can;
+    WorldState state;
+    w.save(state);
+    const size_t slots = w.particles().slots;
+    Result<std::vector<vec4>> x = state.take<vec4>("particles.position", slots), v = state.take<vec4>("particles.velocity", slots);
+    if (!x) return x.error();
+    if (!v) return v.error();
+    for (size_t i = 0; i < slots; ++i)
+        if (!((*x)[i].w < 0)) (*v)[i] = vec4(vec3(at(dvec3((*x)[i]))), (*v)[i].w);
+    WorldState changed;
+    for (const auto& [name, bytes] : state.sections()) changed.putBytes(name, bytes);
+    changed.put<vec4>("particles.position", *x);
+    changed.put<vec4>("particles.velocity", *v);
+    return w.restore(changed);
+}
+
+bool Trial::run(double frame, const std::function<void()>& each) {
+    const double duration = scene().duration;
+    for (int k = 0; time() < duration - 1e-3 * frame; ++k) {
+        if (!goOn_(time() / duration)) return false;
+        wall_ += 1e-3 * session_->step(std::min(frame, duration - time()), true);
+        compression_ += world().stats().avgCompression;
+        ++frames_;
+        each();
+    }
+    return true;
+}
+
+Outcome Trial::outcome(std::vector<Finding> findings, Plot plot) const {
+    const FluidWorld& w = session_->world();
+    Outcome o;
+    o.findings = std::move(findings);
+    o.plot = std::move(plot);
+    o.method = w.params().method;
+    o.particles = w.stats().particles;
+    if (w.time() > 0) {
+        o.wallPerSecond = wall_ / w.time();
+        o.sweepsPerSecond = static_cast<double>(w.stats().sweeps) / w.time();
+    }
+    o.compression = frames_ > 0 ? compression_ / static_cast<double>(frames_) : 0;
+    return o;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,39 @@
+// Trial: a physics case's scene under way, with an eye on what it costs.
+#pragma once
+
+#include <memory>
+
+#include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/session.h"
+#include "fluid/validate/physics_case.h"
+
+namespace rivulet {
+
+class Trial {
+  public:
+    // cases/`name`.json with the method and assignments that were asked for. Error: as loadScene and Session::create.
+    static Result<Trial> open(const char* name, const CaseSettings& settings);
+
+    const FluidParams& params() const { return session_->world().params(); }
+    FluidWorld& world() { return session_->world(); }
+    const SceneFile& scene() const { return session_->scene(); }
+    double time() const { return session_->world().time(); }
+
+    // Gives each particle the velocity (m/s) of its place.
+    Status setVelocities(const std::function<dvec3(const dvec3&)>& at);
+    // Frames of `frame` s until the scene's duration, `each` after every one. false: it was stopped.
+    bool run(double frame, const std::function<void()>& each);
+    HostParticles particles() const { return readParticles(session_->world()); }
+
+    // What was found, with the cost of the way there.
+    Outcome outcome(std::vector<Finding> findings, Plot plot) const;
+
+  private:
+    Trial() = default;
+    std::unique_ptr<Session> session_;
+    std::function<bool(double)> goOn_;
+    double wall_ = 0, compression_ = 0;
+    uint64_t frames_ = 0;
+};
+
+}  // namespace rivulet

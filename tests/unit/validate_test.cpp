@@ -1,0 +1,130 @@
+// Physics cases: their references, scenes and pictures, and the verb that runs them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "engine/core/json.h"
+#include "fluid/sim/cpu_kernels.h"
+#include "fluid/validate/reference_data.h"
+#include "fluid/validate/trial.h"
+
+namespace rivulet {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::unique_ptr<CpuDevice> cpu() {
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    return makeCpuDevice(rows);
+}
+
+TEST(ReferenceData, IsWhatThePapersPrint) {
+    const std::vector<glm::dvec2> front = referenceCurve("martin_moyce_1952_front");
+    ASSERT_EQ(front.size(), 15U);
+    EXPECT_EQ(front.front(), glm::dvec2(0.41, 1.11));
+    EXPECT_EQ(front.back(), glm::dvec2(3.33, 4.11));
+    // Between T = 1.43 and 3.33 the front goes 2.44 a.
+    EXPECT_NEAR((front.back().y - valueAt(front, 1.43)) / (3.33 - 1.43), 1.284, 1e-3);
+    EXPECT_EQ(referenceCurve("martin_moyce_1952_height").size(), 17U);
+    EXPECT_EQ(referenceCurve("koshizuka_oka_1996_front").back(), glm::dvec2(3.096, 3.624));
+    for (const ReferenceTable& table : referenceTables()) EXPECT_NE(table.text.find("doi:"), std::string_view::npos) << table.name;
+}
+
+TEST(ReferenceData, LiesOnStraightLinesBetweenItsPoints) {
+    const std::vector<glm::dvec2> curve = {{0, 1}, {2, 5}, {3, 4}};
+    EXPECT_EQ(valueAt(curve, -1), 1);
+    EXPECT_EQ(valueAt(curve, 0.5), 2);
+    EXPECT_EQ(valueAt(curve, 2), 5);
+    EXPECT_EQ(valueAt(curve, 2.25), 4.75);
+    EXPECT_EQ(valueAt(curve, 9), 4);
+}
+
+TEST(PhysicsCases, EachHasItsSceneAndAQuickSize) {
+    auto device = cpu();
+    for (const PhysicsCase& row : physicsCases().rows) {
+        CaseSettings settings;
+        settings.device = device.get();
+        settings.quick = true;
+        Result<Trial> trial = Trial::open(row.name, settings);
+        ASSERT_TRUE(trial) << trial.error().message;
+        EXPECT_EQ(trial->scene().name, row.name);
+        const uint32_t particles = trial->world().particles().count;
+        EXPECT_GT(particles, 1000U) << row.name;
+        EXPECT_LT(particles, 13000U) << row.name;
+    }
+}
+
+TEST(PhysicsCases, ATrialGivesVelocitiesByPlaceAndCountsItsSweeps) {
+    auto device = cpu();
+    CaseSettings settings;
+    settings.device = device.get();
+    settings.method = "wcsph";
+    settings.assignments = {"fluid.spacing=0.1", "duration=0.01"};
+    Result<Trial> trial = Trial::open("momentum", settings);
+    ASSERT_TRUE(trial) << trial.error().message;
+    ASSERT_TRUE(trial->setVelocities([](const glm::dvec3& x) { return glm::dvec3(-x.y, x.x, 0.0); }));
+    const HostParticles before = trial->particles();
+    ASSERT_GT(before.position.size(), 100U);
+    for (size_t i = 0; i < before.position.size(); ++i) {
+        EXPECT_EQ(before.velocity[i].x, -before.position[i].y);
+        EXPECT_EQ(before.velocity[i].y, before.position[i].x);
+    }
+    int frames = 0;
+    EXPECT_TRUE(trial->run(0.005, [&] { ++frames; }));
+    EXPECT_EQ(frames, 2);
+    // Density and forces, a step each.
+    const double steps = trial->outcome({}, {}).sweepsPerSecond * trial->time() / 2;
+    EXPECT_NEAR(steps, std::round(steps), 1e-9);
+    EXPECT_GE(steps, 2);
+    EXPECT_GT(trial->outcome({}, {}).wallPerSecond, 0);
+}
+
+TEST(PhysicsCases, AStoppedTrialStops) {
+    auto device = cpu();
+    CaseSettings settings;
+    settings.device = device.get();
+    settings.assignments = {"fluid.spacing=0.1"};
+    int asked = 0;
+    settings.goOn = [&](double share) {
+        EXPECT_LT(share, 0.1);
+        return ++asked < 3;
+    };
+    Result<Outcome> outcome = runMomentum(settings);
+    ASSERT_TRUE(outcome);
+    EXPECT_EQ(asked, 3);
+    EXPECT_TRUE(outcome->findings.empty());
+}
+
+TEST(PhysicsCases, AFindingWithoutToleranceIsOnlyReported) {
+    EXPECT_TRUE((Finding{"x", "", 1, 0, 1, {}}).pass());
+    EXPECT_TRUE((Finding{"x", "", 1, 0, 0.01, 0.01}).pass());
+    EXPECT_FALSE((Finding{"x", "", 1, 0, 0.011, 0.01}).pass());
+    EXPECT_FALSE((Finding{"x", "", 1, 0, std::nan(""), 0.01}).pass());
+}
+
+TEST(PhysicsCases, APlotBecomesASvgWhateverItsWordsAre) {
+    const std::string path = (fs::temp_directory_path() / "rivulet_plot_test.svg").string();
+    fs::remove(path);
+    const Plot plot{
+        "a \"title\" \\ with % and _", "x", "y", {{"line", true, {{0, 0}, {1, 2}}}, {"none", true, {}}, {"dots", false, {{0.5, 1}}}}};
+    const Status drawn = drawPlot(plot, path);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    const std::string svg = *readFile(path);
+    EXPECT_NE(svg.find("<svg"), std::string::npos);
+    EXPECT_NE(svg.find("title"), std::string::npos);
+    EXPECT_NE(svg.find("dots"), std::string::npos);
+    EXPECT_EQ(svg.find(">none<"), std::string::npos);
+    EXPECT_FALSE(drawPlot(plot, "/nowhere/x.svg"));
+    const std::string old = std::getenv("PATH");
+    ::setenv("PATH", "/nowhere", 1);
+    const Status absent = drawPlot(plot, path);
+    ::setenv("PATH", old.c_str(), 1);
+    ASSERT_FALSE(absent);
+    EXPECT_NE(absent.error().message.find("gnuplot is not installed"), std::string::npos) << absent.error().message;
+    fs::remove(path);
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -1,4 +1,4 @@
-// A block of particles: the cubic lattice that fills a box at rest spacing.
+// A block of particles: the cubic lattice that fills a box at rest spacing, strewn a little where it is to be no crystal.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,8 @@ struct NewParticle {
 
 // How many particles a block holds, without making them: a block too large for memory is refused before it is built.
 double blockCount(const BlockParams& block, float spacing);
-// Appends the lattice, centred in the block, x fastest. An empty or inverted block adds nothing.
+// Appends the lattice, centred in the block, x fastest. With jitter no particle stands further out than the outermost of the lattice;
+// the same every time. An empty or inverted block adds nothing.
 void fillBlock(const BlockParams& block, float spacing, std::vector<NewParticle>& to);
 
 }  // namespace rivulet

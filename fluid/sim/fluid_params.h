@@ -15,6 +15,7 @@ struct BlockParams {
     std::string liquid = {};  // a row of liquids(); "" = the world's
     vec3 dye{1.0F};           // linear; white = none
     float dyeAmount = 20.0F;  // 1/m
+    float jitter = 0.0F;      // spacings that a particle may stand off its place in the lattice, along each axis
     void visit(ParamVisitor& v);
 };
 

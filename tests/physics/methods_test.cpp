@@ -5,6 +5,7 @@
 #include <random>
 
 #include "engine/compute/device_cpu.h"
+#include "fluid/sim/block.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/sim/fluid_world.h"
 
@@ -51,6 +52,41 @@ TEST_P(Methods, APoolAtRestKeepsItsLevelAndIsStill) {
     float highest = 0;
     for (const vec4& x : positions(*world)) highest = std::max(highest, x.y);
     EXPECT_LT(highest, 0.5F + 0.05F) << "a particle climbed";
+}
+
+// A block with jitter: nobody further than that from his place, nobody outside, all over the range, and the same every time.
+TEST(Block, JitterStrewsParticlesAboutTheirLattice) {
+    BlockParams b;
+    b.min = vec3(0.1F);
+    b.max = vec3(0.1F + 20 * 0.05F);
+    std::vector<NewParticle> still, strewn, again;
+    fillBlock(b, 0.05F, still);
+    b.jitter = 0.3F;
+    fillBlock(b, 0.05F, strewn);
+    fillBlock(b, 0.05F, again);
+    ASSERT_EQ(still.size(), 8000U);
+    ASSERT_EQ(strewn.size(), 8000U);
+    glm::dvec3 sum(0.0), squares(0.0), product(0.0);
+    int inside = 0;
+    for (size_t i = 0; i < still.size(); ++i) {
+        const vec3 off = (strewn[i].position - still[i].position) / 0.05F, x = strewn[i].position, s = still[i].position;
+        EXPECT_EQ(x, again[i].position);
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_LE(std::abs(off[k]), 0.3001F);
+            EXPECT_GE(x[k], 0.1249F);
+            EXPECT_LE(x[k], 1.0751F);
+        }
+        if (glm::any(glm::lessThan(s, vec3(0.13F))) || glm::any(glm::greaterThan(s, vec3(1.07F)))) continue;
+        ++inside;
+        sum += dvec3(off);
+        squares += dvec3(off * off);
+        product += dvec3(off.x * off.y, off.y * off.z, off.z * off.x);
+    }
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(sum[k] / inside, 0, 0.01);
+        EXPECT_NEAR(squares[k] / inside, 0.03, 0.001) << "a third of the square of 0.3";
+        EXPECT_NEAR(product[k] / inside, 0, 0.001) << "axes know nothing of each other";
+    }
 }
 
 // On average the pressure halfway down is the weight above. It is what pairs press with: a lattice with a support of 2 spacings passes on

@@ -9,8 +9,8 @@ namespace rivulet {
 namespace {
 
 constexpr PhysicsCase kCases[] = {
-    {"hydrostatic", "a pool at rest: pressure against rho g (H - z), and the speed that is left after 2 s", "fluid.spacing=0.025",
-     runHydrostatic},
+    {"hydrostatic", "a pool at rest: pressure at gauges a support radius wide against rho g (H - z); the speed left after 2 s",
+     "fluid.spacing=0.025", runHydrostatic},
     {"dam_break", "front and height of a column that breaks: Martin and Moyce 1952, Koshizuka and Oka 1996",
      "fluid.spacing=0.0017859375; fluid.box.max=0.3429,0.15,0.00714375; fluid.blocks.0.max=0.05715,0.1143,0.00714375", runDamBreak},
     {"poiseuille", "flow between plates from rest: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runPoiseuille},
@@ -23,10 +23,17 @@ constexpr PhysicsCase kCases[] = {
 
 struct Half {
     dvec3 centre{0.0};
-    double kinetic = 0, compression = 0;
+    double kinetic = 0, mostKinetic = 0, compression = 0;
     Outcome outcome;
     bool done = false;
 };
+
+double kineticOf(const HostParticles& all) {
+    double sum = 0;
+    for (size_t i = 0; i < all.velocity.size(); ++i)
+        sum += 0.5 * double{all.mass[i]} * glm::dot(glm::dvec3(all.velocity[i]), glm::dvec3(all.velocity[i]));
+    return sum;
+}
 
 // Half a second of a case at its quick size; what it is compared by is read from the particles, not from late sums.
 Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& device) {
@@ -43,6 +50,7 @@ Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& d
         double sum = 0;
         for (const vec4& x : all.position) sum += std::max(double{x.w} - 1, 0.0);
         compression += sum / static_cast<double>(std::max<size_t>(all.position.size(), 1));
+        half.mostKinetic = std::max(half.mostKinetic, kineticOf(all));
         ++frames;
     });
     const HostParticles all = trial->particles();
@@ -50,8 +58,8 @@ Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& d
     for (size_t i = 0; i < all.position.size(); ++i) {
         mass += double{all.mass[i]};
         half.centre += double{all.mass[i]} * dvec3(all.position[i]);
-        half.kinetic += 0.5 * double{all.mass[i]} * glm::dot(dvec3(all.velocity[i]), dvec3(all.velocity[i]));
     }
+    half.kinetic = kineticOf(all);
     half.centre /= std::max(mass, 1e-30);
     half.compression = compression / std::max(frames, 1);
     half.outcome = trial->outcome({}, {});
@@ -74,7 +82,7 @@ Result<Outcome> compareWithCpu(const PhysicsCase& row, const CaseSettings& setti
     };
     finding("centre of mass against the cpu's", "m", near, far, apart / std::max(far, 1e-30));
     finding("kinetic energy against the cpu's", "J", there->kinetic, here->kinetic,
-            std::abs(there->kinetic - here->kinetic) / std::max(here->kinetic, 1e-30));
+            std::abs(there->kinetic - here->kinetic) / std::max(here->mostKinetic, 1e-30));
     finding("mean compression against the cpu's", "", there->compression, here->compression,
             std::abs(there->compression - here->compression) / std::max(here->compression, 1e-30));
     return o;

@@ -55,7 +55,7 @@ TEST(ProgramValidate, AMissedAimIsAFailureOfTheQualityMethodOnly) {
         const Outcome outcome = runProgram(words, in);
         EXPECT_EQ(outcome.code, std::string(method) == "dfsph" ? 1 : 0) << outcome.err;
         const Json::Value rows = readJson(scratch.path() / "v.json");
-        ASSERT_EQ(rows.size(), 2U);
+        ASSERT_EQ(rows.size(), 3U);
         EXPECT_EQ(rows[0]["tolerance"].isNull(), std::string(method) == "wcsph");
         EXPECT_EQ(outcome.out.find("MISSED") != std::string::npos, std::string(method) == "dfsph");
     }

@@ -9,6 +9,7 @@
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/validate/reference_data.h"
 #include "fluid/validate/trial.h"
+#include "fluid/validate/virial.h"
 
 namespace rivulet {
 namespace {
@@ -39,6 +40,36 @@ TEST(ReferenceData, LiesOnStraightLinesBetweenItsPoints) {
     EXPECT_EQ(valueAt(curve, 2), 5);
     EXPECT_EQ(valueAt(curve, 2.25), 4.75);
     EXPECT_EQ(valueAt(curve, 9), 4);
+}
+
+// A lattice under one pressure passes on a third of the sum of V r |W'|, here by counting; off a lattice, as much on average.
+TEST(VirialPressure, OfALatticeIsWhatItsPairsPassOn) {
+    FluidParams p;
+    p.spacing = 0.1F;
+    const double support = double{p.supportSpacings};
+    double shape = 0, passed = 0;
+    for (int z = -3; z <= 3; ++z)
+        for (int y = -3; y <= 3; ++y)
+            for (int x = -3; x <= 3; ++x) {
+                const double q = std::sqrt(x * x + y * y + z * z) / support;
+                if (q >= 1) continue;
+                shape += std::pow(1 - q, 4) * (1 + 4 * q);
+                passed += 20 * q * q * std::pow(1 - q, 3) / 3;
+            }
+    EXPECT_NEAR(passed / shape, 0.95, 0.001);
+    std::vector<vec4> positions;
+    for (int k = 0; k < 9 * 9 * 9; ++k)
+        positions.emplace_back(0.1F * static_cast<float>(k % 9), 0.1F * static_cast<float>(k / 9 % 9),
+                               0.1F * static_cast<float>(k / 81) - 5, 1);
+    const size_t middle = 4 + 9 * 4 + 81 * 4;
+    std::vector<float> pressures(positions.size(), 700.0F);
+    EXPECT_NEAR(virialPressures(positions, pressures, p)[middle], 700 * passed / shape, 0.01);
+    // Of its own pressure it passes on half, of its neighbours' half.
+    pressures[middle] = 0;
+    EXPECT_NEAR(virialPressures(positions, pressures, p)[middle], 350 * passed / shape, 0.01);
+    // A free slot is nobody.
+    positions[middle].w = -1;
+    EXPECT_EQ(virialPressures(positions, pressures, p)[middle], 0);
 }
 
 TEST(PhysicsCases, EachHasItsSceneAndAQuickSize) {

@@ -58,9 +58,11 @@ TEST(VirialPressure, OfALatticeIsWhatItsPairsPassOn) {
             }
     EXPECT_NEAR(passed / shape, 0.95, 0.001);
     std::vector<vec4> positions;
-    for (int k = 0; k < 9 * 9 * 9; ++k)
-        positions.emplace_back(0.1F * static_cast<float>(k % 9), 0.1F * static_cast<float>(k / 9 % 9),
-                               0.1F * static_cast<float>(k / 81) - 5, 1);
+    positions.reserve(9 * 9 * 9);
+    for (int k = 0; k < 9 * 9 * 9; ++k) {
+        const ivec3 place(k % 9, k / 9 % 9, k / 81);
+        positions.emplace_back(0.1F * vec3(place) - vec3(0, 0, 5), 1.0F);
+    }
     const size_t middle = 4 + 9 * 4 + 81 * 4;
     std::vector<float> pressures(positions.size(), 700.0F);
     EXPECT_NEAR(virialPressures(positions, pressures, p)[middle], 700 * passed / shape, 0.01);

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
+#include "demos/rivulet/asked_device.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/app/context_egl.h"
 #include "engine/core/json.h"
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/run_stats.h"
@@ -90,14 +90,8 @@ int validateVerb(const Arguments& arguments) {
     std::vector<std::string> names = request.names.empty() ? physicsCases().names() : request.names, methodNames = {request.method};
     if (request.method.empty()) methodNames = {"dfsph", "pbf", "wcsph"};
 
-    std::optional<ContextEgl> context;
-    GlFacts gl = noGl("no OpenGL was asked for");
-    if (request.backend == "gl" || request.backend == "auto") {
-        Result<ContextEgl> made = ContextEgl::create();
-        gl = made ? currentGlFacts() : noGl(made.error().message);
-        if (made) context = std::move(*made);
-    }
-    const std::unique_ptr<Device> device = makeDevice(request.backend, gl, stderrLog());
+    const AskedDevice asked = askedDevice(request.backend, stderrLog());
+    const std::unique_ptr<Device>& device = asked.device;
     const bool onCpu = device->backend() == Backend::cpu;
     const std::vector<CpuKernelRow> rows = cpuKernels();
     const std::unique_ptr<Device> cpu = onCpu ? nullptr : makeCpuDevice(rows);

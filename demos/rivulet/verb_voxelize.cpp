@@ -4,10 +4,10 @@
 #include <chrono>
 #include <filesystem>
 
+#include "demos/rivulet/asked_device.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/app/context_egl.h"
 #include "engine/core/json.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/bridge/backend.h"
@@ -163,14 +163,8 @@ int voxelizeAs(const VoxelizeRequest& request) {
     const Log log = stderrLog();
     Result<Mesh> mesh = importMesh(request.mesh);
     if (!mesh) return report(mesh.error());
-    std::optional<ContextEgl> context;
-    GlFacts gl = noGl("no OpenGL was asked for");
-    if (request.backend == "gl" || request.backend == "auto") {
-        Result<ContextEgl> made = ContextEgl::create();
-        gl = made ? currentGlFacts() : noGl(made.error().message);
-        if (made) context = std::move(*made);
-    }
-    const std::unique_ptr<Device> device = makeDevice(request.backend, gl, log);
+    const AskedDevice asked = askedDevice(request.backend, log);
+    const std::unique_ptr<Device>& device = asked.device;
 
     // Until files are written Ctrl-C leaves at once: there is nothing to tidy up.
     const MeshView view = mesh->view();

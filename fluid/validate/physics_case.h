@@ -34,7 +34,6 @@ struct Curve {
 struct Plot {
     std::string title, x, y;
     std::vector<Curve> curves;
-    bool logX = false, logY = false;
 };
 
 struct Outcome {

@@ -14,6 +14,9 @@ namespace {
 
 // The speed of sound over that of the flow: compression under pressure is the square of its inverse, at most.
 constexpr float kSound = 100.0F;
+// The same where there is no surface: the mean of a disordered fluid's densities is above that of a lattice, nothing can give way, and a
+// stiff fluid's pressure for it would drown all others.
+constexpr float kSoundClosed = 10.0F;
 float squared(float x) { return x * x; }
 
 class Dfsph final : public Method {
@@ -22,6 +25,8 @@ class Dfsph final : public Method {
     PairKernel density, rate, push;
     Buffer solve, kept;  // kept: pressures of the last step, by id
     SolverResidual residual;
+    float coupling = 1;   // of the iteration, over that with a support of 2 spacings
+    bool closed = false;  // periodic along all axes: there may be no surface
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
     StepLimit stepLimit(const FluidParams& p) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
@@ -31,7 +36,7 @@ class Dfsph final : public Method {
         // There is no sound: damping is what it is in weakly compressible water.
         s.artificial = p.artificialViscosity * 10.0F * fastest * 0.5F * s.h;
         s.stiffness = glm::length(vec3(s.gravity)) > 0 ? squared(kSound * fastest) : 0.0F;
-        s.relaxation = p.dfsph.relaxation;
+        s.relaxation = p.dfsph.relaxation / coupling;
         s.warmStart = p.dfsph.warmStart;
         s.correction = p.dfsph.correction;
         s.momentum = p.dfsph.momentum;
@@ -86,7 +91,7 @@ class Dfsph final : public Method {
         const int most = cpu ? c.fluid.dfsph.maxIterations : residual.planned(tolerance, c.fluid.dfsph.maxIterations);
         double before = 0;
         StepParams s = c.params;
-        s.stiffness = std::max(s.stiffness, squared(kSound * static_cast<float>(c.fastest)));
+        s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         int k = 0;
         while (true) {
             s.iteration = static_cast<uint32_t>(k);
@@ -113,6 +118,9 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     if (setup.params.kernel != "wendland")
         return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method dfsph works with wendland");
     auto m = std::make_unique<Dfsph>();
+    const double support = setup.params.supportSpacings;
+    m->coupling = static_cast<float>(std::max(wendlandCoupling(support) / wendlandCoupling(2), 1.0));
+    m->closed = glm::all(setup.traits.periodic);
     const Define coast{"COAST", "1"};
     struct Wanted {
         Kernel* kernel;

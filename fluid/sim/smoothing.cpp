@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace rivulet {
 
@@ -59,6 +60,30 @@ double cubicLatticeSum(double support) {
 }
 
 double wendlandWallOffset(double support) { return wallOffset(wendlandShape, support); }
+
+// By Fourier: a wave k of pressures comes back |sum_r g(r) sin(k r)|^2 / sum_r |g(r)|^2 times as large. The largest is looked for along the
+// lattice's axes and diagonals.
+double wendlandCoupling(double support) {
+    const int n = static_cast<int>(std::ceil(support));
+    constexpr int kWaves = 64;
+    const dvec3 ways[] = {{1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
+    std::vector<dvec3> sums(std::size(ways) * kWaves, dvec3(0.0));
+    double squares = 0;
+    for (int z = -n; z <= n; ++z)
+        for (int y = -n; y <= n; ++y)
+            for (int x = -n; x <= n; ++x) {
+                const dvec3 r(x, y, z);
+                const dvec3 g = r * std::pow(std::max(1 - glm::length(r) / support, 0.0), 3);  // the slope of Wendland C2
+                squares += glm::dot(g, g);
+                for (size_t k = 0; k < sums.size(); ++k) {
+                    const double wave = kPiD * static_cast<double>(k % kWaves + 1) / kWaves;
+                    sums[k] += g * std::sin(wave * glm::dot(ways[k / kWaves], r));
+                }
+            }
+    double most = 0;
+    for (const dvec3& sum : sums) most = std::max(most, glm::dot(sum, sum));
+    return most / squares;
+}
 
 namespace {
 

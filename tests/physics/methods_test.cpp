@@ -8,6 +8,7 @@
 #include "fluid/sim/block.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/sim/fluid_world.h"
+#include "fluid/sim/smoothing.h"
 
 namespace rivulet {
 namespace {
@@ -224,6 +225,85 @@ TEST_P(Methods, APeriodicBoxKnowsNoBorder) {
 }
 
 // With a tolerance, PBF corrects until that little compression is left; fewer corrections leave more.
+
+// A closed box without walls, strewn: nothing can give way, and with more neighbours each Jacobi correction meets more of the others'. At a
+// support of three spacings the iteration for two diverges: particles fall upon each other.
+TEST(Dfsph, ConvergesWithAnyNumberOfNeighbours) {
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    const std::unique_ptr<CpuDevice> device = makeCpuDevice(rows);
+    for (const float support : {2.0F, 2.3F, 3.0F, 3.5F}) {
+        SCOPED_TRACE(support);
+        FluidParams p;
+        p.method = "dfsph";
+        p.spacing = 0.01F;
+        p.supportSpacings = support;
+        p.gravity = vec3(0.0F);
+        p.viscosity = 1.0e-3F;
+        p.box.max = vec3(0.12F);
+        p.box.periodicX = p.box.periodicY = p.box.periodicZ = true;
+        BlockParams b;
+        b.max = p.box.max;
+        b.jitter = 0.3F;
+        p.blocks = {b};
+        auto world = FluidWorld::create(*device, p, {}, {});
+        ASSERT_TRUE(world) << world.error().message;
+        for (int frame = 0; frame < 30; ++frame) (*world)->step({.gravity = p.gravity}, 1.0 / 60);
+        EXPECT_LT((*world)->stats().iterations, 20);
+        EXPECT_LT((*world)->stats().maxCompression, 0.1);
+    }
+}
+
+// By power iteration on a periodic lattice of 12^3.
+TEST(Smoothing, CouplingIsTheLargestEigenvalueOfTheJacobiMatrix) {
+    constexpr int n = 12;
+    for (const double support : {2.0, 2.6, 3.5}) {
+        struct Link {
+            ivec3 to;
+            dvec3 g;
+        };
+        std::vector<Link> links;
+        double squares = 0;
+        for (int z = -4; z <= 4; ++z)
+            for (int y = -4; y <= 4; ++y)
+                for (int x = -4; x <= 4; ++x) {
+                    const dvec3 d(x, y, z);
+                    const double r = glm::length(d);
+                    if (r == 0 || r >= support) continue;
+                    links.push_back({{x, y, z}, d * std::pow(1 - r / support, 3)});
+                    squares += glm::dot(links.back().g, links.back().g);
+                }
+        const auto at = [](int x, int y, int z) { return static_cast<size_t>(((z + n) % n * n + (y + n) % n) * n + (x + n) % n); };
+        std::vector<double> p(n * n * n), q(p.size());
+        std::vector<dvec3> v(p.size());
+        std::mt19937 random(1);
+        for (double& x : p) x = std::uniform_real_distribution<double>(-1, 1)(random);
+        double largest = 0;
+        for (int round = 0; round < 60; ++round) {
+            const auto each = [&](auto&& what) {
+                for (int z = 0; z < n; ++z)
+                    for (int y = 0; y < n; ++y)
+                        for (int x = 0; x < n; ++x) what(x, y, z);
+            };
+            each([&](int x, int y, int z) {
+                dvec3 sum(0.0);
+                for (const Link& l : links) sum += l.g * p[at(x + l.to.x, y + l.to.y, z + l.to.z)];
+                v[at(x, y, z)] = sum;
+            });
+            each([&](int x, int y, int z) {
+                double sum = 0;
+                for (const Link& l : links) sum -= glm::dot(l.g, v[at(x + l.to.x, y + l.to.y, z + l.to.z)]);
+                q[at(x, y, z)] = sum / squares;
+            });
+            double norm = 0;
+            for (const double x : q) norm += x * x;
+            largest = std::sqrt(norm);
+            for (size_t i = 0; i < p.size(); ++i) p[i] = q[i] / largest;
+        }
+        // Waves of a lattice of 12 are not all waves: a little below.
+        EXPECT_NEAR(wendlandCoupling(support), largest, 0.03 * largest) << support;
+    }
+}
+
 TEST(Pbf, CorrectsDownToItsTolerance) {
     auto device = [] {
         const std::vector<CpuKernelRow> rows = cpuKernels();

@@ -21,6 +21,7 @@ Table<Verb> verbs() {
         {"voxelize", "turn a mesh into voxels: a file, figures, pictures", voxelizeVerb},
         {"bench", "measure speed and memory", benchVerb},
         {"validate", "measure the simulation against nature, papers and formulas", validateVerb},
+        {"chart", "speed against accuracy, into a page", chartVerb},
     };
     return {rows};
 }

@@ -34,16 +34,19 @@ struct Curve {
 struct Plot {
     std::string title, x, y;
     std::vector<Curve> curves;
+    bool logX = false, logY = false;  // axes
 };
 
 struct Outcome {
     std::vector<Finding> findings;
     Plot plot;
     std::string method;  // that ran
+    double spacing = 0;  // m
     uint32_t particles = 0;
     double wallPerSecond = 0;    // s on the wall per simulated second, steps alone
     double sweepsPerSecond = 0;  // over all neighbours, per simulated second: cost whatever the machine
-    double compression = 0;      // mean over particles and frames, a fraction
+    double stepsPerSecond = 0;
+    double compression = 0;  // mean over particles and frames, a fraction
 };
 
 // What a case is run with.

@@ -22,11 +22,13 @@ std::string inQuotes(std::string_view text) {
 }
 
 std::string scriptOf(const Plot& plot) {
-    const std::string script = fmt::format(
+    std::string script = fmt::format(
         "set terminal svg size 760,480 noenhanced font 'sans-serif,14' background 'white'\n"
         "set title {}\nset xlabel {}\nset ylabel {}\nset grid lc rgb '#dddddd'\nset border lc rgb '#666666'\nset key {} textcolor rgb "
         "'#333333'\n",
         inQuotes(plot.title), inQuotes(plot.x), inQuotes(plot.y), plot.curves.size() > 3 ? "outside bottom center horizontal " : "inside");
+    if (plot.logX) script += "set logscale x\nset format x '%g'\n";
+    if (plot.logY) script += "set logscale y\nset format y '%g'\n";
     constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#8c564b", "#444444"};
     std::string curves, data;
     for (size_t k = 0; k < plot.curves.size(); ++k) {

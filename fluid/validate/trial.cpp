@@ -50,6 +50,7 @@ bool Trial::run(double frame, const std::function<void()>& each) {
     for (int k = 0; time() < duration - 1e-3 * frame; ++k) {
         if (!goOn_(time() / duration)) return false;
         wall_ += 1e-3 * session_->step(std::min(frame, duration - time()), true);
+        steps_ += world().lastSubsteps();
         compression_ += world().stats().avgCompression;
         ++frames_;
         each();
@@ -63,9 +64,11 @@ Outcome Trial::outcome(std::vector<Finding> findings, Plot plot) const {
     o.findings = std::move(findings);
     o.plot = std::move(plot);
     o.method = w.params().method;
+    o.spacing = w.params().spacing;
     o.particles = w.stats().particles;
     if (w.time() > 0) {
         o.wallPerSecond = wall_ / w.time();
+        o.stepsPerSecond = static_cast<double>(steps_) / w.time();
         o.sweepsPerSecond = static_cast<double>(w.stats().sweeps) / w.time();
     }
     o.compression = frames_ > 0 ? compression_ / static_cast<double>(frames_) : 0;

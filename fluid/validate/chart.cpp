@@ -1,0 +1,169 @@
+#include "fluid/validate/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rivulet {
+
+namespace {
+
+constexpr ChartSetting kSettings[] = {
+    {"pbf 1", "1 correction a step", "pbf", "fluid.pbf.iterations=1"},
+    {"pbf 2", "2 corrections a step", "pbf", "fluid.pbf.iterations=2"},
+    {"pbf", "3 corrections a step, as it comes", "pbf", ""},
+    {"pbf 6", "6 corrections a step", "pbf", "fluid.pbf.iterations=6"},
+    {"pbf 3, short steps", "3 corrections in steps half as long", "pbf", "fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8"},
+    {"pbf 10, short steps", "10 corrections in steps half as long", "pbf",
+     "fluid.pbf.iterations=10; fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8"},
+    {"dfsph 3e-3, long steps", "tolerance 0.3 %, steps twice as long", "dfsph",
+     "fluid.dfsph.tolerance=3e-3; fluid.dfsph.reach=0.6; fluid.dfsph.minSubsteps=4"},
+    {"dfsph 1e-3", "tolerance 0.1 %", "dfsph", "fluid.dfsph.tolerance=1e-3"},
+    {"dfsph", "tolerance 0.03 %, as it comes", "dfsph", ""},
+    {"dfsph 1e-4", "tolerance 0.01 %", "dfsph", "fluid.dfsph.tolerance=1e-4"},
+    {"dfsph 1e-4, short steps", "tolerance 0.01 %, steps half as long", "dfsph",
+     "fluid.dfsph.tolerance=1e-4; fluid.dfsph.reach=0.15; fluid.dfsph.minSubsteps=16"},
+    {"wcsph", "weakly compressible, sound ten times as fast as the flow", "wcsph", ""},
+    {"wcsph, short steps", "steps half as long", "wcsph", "fluid.cfl=0.2"},
+    {"wcsph_thesis", "the thesis's pressure", "wcsph_thesis", ""},
+};
+
+// A case of the chart: coarser and finer than `validate --quick` has it.
+struct ChartCase {
+    const char* name;
+    bool quick;
+    const char *coarse, *fine;
+};
+constexpr ChartCase kCases[] = {
+    {"hydrostatic", true, "fluid.spacing=0.0357142857", "fluid.spacing=0.0178571429"},
+    {"dam_break", true, "fluid.spacing=0.00238125; fluid.box.max=0.3429,0.15,0.009525; fluid.blocks.0.max=0.05715,0.1143,0.009525",
+     "fluid.spacing=0.00119062500; fluid.box.max=0.3429,0.15,0.0047625; fluid.blocks.0.max=0.05715,0.1143,0.0047625"},
+    {"standing_wave", true, "fluid.spacing=0.025; fluid.box.max=1,0.8,0.1; fluid.blocks.0.max=1,0.5,0.1",
+     "fluid.spacing=0.0125; fluid.box.max=1,0.8,0.05; fluid.blocks.0.max=1,0.5,0.05"},
+    {"taylor_green", true, "fluid.spacing=0.0333333333; fluid.box.max=1,1,0.2666666664; fluid.blocks.0.max=1,1,0.2666666664",
+     "fluid.spacing=0.02; fluid.box.max=1,1,0.16; fluid.blocks.0.max=1,1,0.16"},
+    {"poiseuille", false,
+     "fluid.spacing=3.3333333e-5; fluid.box.max=1.6666667e-4,1e-3,1.6666667e-4; fluid.blocks.0.max=1.6666667e-4,1e-3,1.6666667e-4",
+     "fluid.spacing=2e-5; fluid.box.max=1.2e-4,1e-3,1.2e-4; fluid.blocks.0.max=1.2e-4,1e-3,1.2e-4"},
+};
+enum Size { kCoarse, kMiddle, kFine };
+
+void add(std::vector<std::string>& to, std::string_view assignments) {
+    for (size_t at = 0; at < assignments.size();) {
+        const size_t end = std::min(assignments.find("; ", at), assignments.size());
+        to.emplace_back(assignments.substr(at, end - at));
+        at = end + 2;
+    }
+}
+
+struct Run {
+    const ChartCase* of;
+    const ChartSetting* setting;
+    Size size;
+};
+
+// Settings as they come at all sizes, the others at the middle one.
+std::vector<Run> plannedRuns(const ChartRequest& request) {
+    std::vector<Run> runs;
+    for (const ChartCase& c : kCases) {
+        const bool named = std::find(request.names.begin(), request.names.end(), c.name) != request.names.end();
+        if (request.names.empty() ? request.quick && !c.quick : !named) continue;
+        for (const Size size : {kCoarse, kMiddle, kFine})
+            for (const ChartSetting& s : kSettings)
+                if (size == kMiddle || (*s.assignments == '\0' && !(request.quick && size == kFine))) runs.push_back({&c, &s, size});
+    }
+    return runs;
+}
+
+// The figure that is judged, or nothing: the run gave none.
+const Finding* judgedOf(const Outcome& outcome) {
+    const auto found = std::find_if(outcome.findings.begin(), outcome.findings.end(), [](const Finding& f) { return f.tolerance; });
+    return found == outcome.findings.end() ? nullptr : &*found;
+}
+
+constexpr int kIterations[] = {1, 2, 4, 8, 16}, kSteps[] = {2, 4, 8, 16};
+
+}  // namespace
+
+std::vector<std::string> chartCases() {
+    std::vector<std::string> names;
+    for (const ChartCase& c : kCases) names.emplace_back(c.name);
+    return names;
+}
+
+Table<ChartSetting> chartSettings() { return {kSettings}; }
+
+void markFront(std::vector<ChartRow>& rows) {
+    for (ChartRow& row : rows)
+        row.onFront = std::none_of(rows.begin(), rows.end(), [&](const ChartRow& other) {
+            return other.name == row.name && other.error <= row.error && other.wallPerSecond <= row.wallPerSecond &&
+                   (other.error < row.error || other.wallPerSecond < row.wallPerSecond);
+        });
+}
+
+Result<Chart> runChart(const ChartRequest& request) {
+    Chart chart;
+    const std::vector<Run> runs = plannedRuns(request);
+    const bool wave =
+        request.names.empty() || std::find(request.names.begin(), request.names.end(), "standing_wave") != request.names.end();
+    const size_t viscous = wave ? std::size(kIterations) * std::size(kSteps) : 0, whole = runs.size() + viscous;
+    size_t done = 0;
+    CaseSettings settings;
+    settings.device = request.device;
+    // Hundreds of runs: what they notice would be read by nobody.
+    const auto onWay = [&](const std::string& what) {
+        settings.goOn = [&request, done, whole, what](double share) {
+            return request.goOn((static_cast<double>(done) + share) / static_cast<double>(whole), what);
+        };
+    };
+    for (const Run& run : runs) {
+        settings.method = run.setting->method;
+        settings.assignments.clear();
+        settings.quick = run.size == kMiddle;
+        if (run.size != kMiddle) add(settings.assignments, run.size == kCoarse ? run.of->coarse : run.of->fine);
+        add(settings.assignments, run.setting->assignments);
+        const std::string what = fmt::format("{}, {}", run.of->name, run.setting->name);
+        onWay(what);
+        const Result<Outcome> outcome = physicsCases().find(run.of->name)->run(settings);
+        ++done;
+        if (!outcome) {
+            if (run.size == kMiddle) chart.refused.push_back(fmt::format("{}: {}", what, outcome.error().message));
+            continue;
+        }
+        if (outcome->findings.empty()) {
+            chart.stopped = true;
+            return chart;
+        }
+        const Finding* f = judgedOf(*outcome);
+        if (f == nullptr || !std::isfinite(f->error)) {
+            chart.refused.push_back(fmt::format("{}: it gave no figure", what));
+            continue;
+        }
+        chart.rows.push_back({run.of->name, f->what, run.setting->name, outcome->spacing, outcome->particles, f->error,
+                              outcome->wallPerSecond, outcome->sweepsPerSecond, outcome->stepsPerSecond, outcome->compression, false});
+    }
+    markFront(chart.rows);
+    settings.quick = true;
+    for (const int steps : kSteps)
+        for (const int iterations : kIterations) {
+            if (!wave) break;
+            settings.method = "pbf";
+            settings.assignments.clear();
+            settings.assignments.push_back(fmt::format("fluid.pbf.iterations={}", iterations));
+            settings.assignments.push_back(fmt::format("fluid.pbf.minSubsteps={}", steps));
+            onWay(fmt::format("standing_wave, pbf with {} corrections and {} steps a frame", iterations, steps));
+            const Result<Outcome> outcome = physicsCases().find("standing_wave")->run(settings);
+            ++done;
+            if (!outcome) return outcome.error();
+            if (outcome->findings.size() < 2) {
+                chart.stopped = true;
+                return chart;
+            }
+            chart.viscosity.push_back(
+                {iterations, steps, outcome->findings[1].measured, outcome->findings[0].error, outcome->wallPerSecond});
+        }
+    return chart;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,241 @@
+// What a chart leaves behind: a table, pictures, and a page that reads them aloud.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+
+#include "engine/core/json.h"
+#include "fluid/validate/chart.h"
+
+namespace rivulet {
+
+namespace {
+
+std::string percent(double fraction) { return fmt::format("{:.2g} %", 100 * fraction); }
+std::string cost(double wallPerSecond) { return fmt::format("{:.2g} s", wallPerSecond); }
+
+std::vector<std::string> caseNames(const Chart& chart) {
+    std::vector<std::string> names;
+    for (const ChartRow& row : chart.rows)
+        if (std::find(names.begin(), names.end(), row.name) == names.end()) names.push_back(row.name);
+    return names;
+}
+
+std::vector<ChartRow> rowsOf(const Chart& chart, const std::string& name) {
+    std::vector<ChartRow> rows;
+    std::copy_if(chart.rows.begin(), chart.rows.end(), std::back_inserter(rows), [&](const ChartRow& r) { return r.name == name; });
+    std::sort(rows.begin(), rows.end(), [](const ChartRow& a, const ChartRow& b) { return a.wallPerSecond < b.wallPerSecond; });
+    return rows;
+}
+
+std::string methodOf(const ChartRow& row) { return chartSettings().find(row.setting)->method; }
+
+Plot plotOf(const std::vector<ChartRow>& rows) {
+    Plot plot{rows.front().name + ": " + rows.front().what, "s on the wall per simulated second", "error", {}, true, true};
+    constexpr double kLeast = 1e-5;  // an axis of logarithms has no 0
+    std::map<std::string, Curve> methods;
+    Curve front{"nothing is both cheaper and better", true, {}};
+    for (const ChartRow& row : rows) {
+        const glm::dvec2 at(row.wallPerSecond, std::max(row.error, kLeast));
+        Curve& curve = methods[methodOf(row)];
+        curve.name = methodOf(row);
+        curve.line = false;
+        curve.points.push_back(at);
+        if (row.onFront) front.points.push_back(at);
+    }
+    for (const auto& [name, curve] : methods) plot.curves.push_back(curve);
+    plot.curves.push_back(front);
+    return plot;
+}
+
+// The cheapest that is as accurate as that, by rows from the cheapest on.
+const ChartRow* cheapest(const std::vector<ChartRow>& rows, double error) {
+    const auto found = std::find_if(rows.begin(), rows.end(), [&](const ChartRow& r) { return r.error <= error; });
+    return found == rows.end() ? nullptr : &*found;
+}
+
+std::string readAloud(const std::vector<ChartRow>& rows) {
+    const ChartRow& best =
+        *std::min_element(rows.begin(), rows.end(), [](const ChartRow& a, const ChartRow& b) { return a.error < b.error; });
+    std::string text = fmt::format("Best: **{}** with {} particles, {} off, {} a simulated second.", best.setting, best.particles,
+                                   percent(best.error), cost(best.wallPerSecond));
+    const ChartRow* last = nullptr;
+    for (const double within : {0.2, 0.1, 0.05, 0.02, 0.01}) {
+        const ChartRow* row = cheapest(rows, within);
+        if (row == nullptr) {
+            text += fmt::format(" Nothing here comes within {}.", percent(within));
+            break;
+        }
+        if (row != last)
+            text += fmt::format(" Within {}: **{}**, {} particles, {}.", percent(within), row->setting, row->particles,
+                                cost(row->wallPerSecond));
+        last = row;
+    }
+    return text;
+}
+
+// As methods come, at the middle size: what each costs and how far it is off, case by case.
+std::string needs(const Chart& chart) {
+    std::string text =
+        "## Which method for which need\n\n| method | on the front | error over the best's, median | cost over the cheapest's, median | "
+        "compressed |\n| --- | --- | --- | --- | --- |\n";
+    std::map<std::string, std::vector<double>> worse, dearer, squeezed;
+    std::map<std::string, int> front;
+    for (const std::string& name : caseNames(chart)) {
+        const std::vector<ChartRow> rows = rowsOf(chart, name);
+        std::vector<const ChartRow*> own;  // one particle count: the one that most settings were run at
+        std::map<uint32_t, int> counts;
+        for (const ChartRow& r : rows) ++counts[r.particles];
+        const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        for (const ChartRow& r : rows) {
+            front[methodOf(r)] += r.onFront ? 1 : 0;
+            if (r.particles == most->first && *chartSettings().find(r.setting)->assignments == '\0') own.push_back(&r);
+        }
+        double least = 1e300, fastest = 1e300;
+        for (const ChartRow* r : own) {
+            least = std::min(least, r->error);
+            fastest = std::min(fastest, r->wallPerSecond);
+        }
+        for (const ChartRow* r : own) {
+            worse[methodOf(*r)].push_back(r->error / least);
+            dearer[methodOf(*r)].push_back(r->wallPerSecond / fastest);
+            squeezed[methodOf(*r)].push_back(r->compression);
+        }
+    }
+    const auto median = [](std::vector<double> of) {
+        std::sort(of.begin(), of.end());
+        return of.empty() ? 0 : of[of.size() / 2];
+    };
+    std::string accurate, cheap, stiff;
+    double leastWorse = 1e300, leastDear = 1e300, leastSqueezed = 1e300;
+    for (const auto& [method, all] : worse) {
+        const double w = median(all), d = median(dearer[method]), c = median(squeezed[method]);
+        text += fmt::format("| {} | {} times | {:.2g} | {:.2g} | {} |\n", method, front[method], w, d, percent(c));
+        if (w < leastWorse) leastWorse = w, accurate = method;
+        if (d < leastDear) leastDear = d, cheap = method;
+        if (c < leastSqueezed) leastSqueezed = c, stiff = method;
+    }
+    return text + fmt::format(
+                      "\n- Figures that must be right: **{}**.\n- The most particles in a frame: **{}**.\n- Water that keeps its "
+                      "volume: **{}**.\n",
+                      accurate, cheap, stiff);
+}
+
+std::string tableOf(const std::vector<ChartRow>& rows) {
+    std::string text =
+        "| setting | particles | error | s a second | sweeps a second | steps a second | compressed | |\n| --- | --- | --- | --- "
+        "| --- | --- | --- | --- |\n";
+    for (const ChartRow& r : rows)
+        text += fmt::format("| {} | {} | {} | {:.3g} | {:.4g} | {:.4g} | {} | {} |\n", r.setting, r.particles, percent(r.error),
+                            r.wallPerSecond, r.sweepsPerSecond, r.stepsPerSecond, percent(r.compression), r.onFront ? "front" : "");
+    return text;
+}
+
+std::string viscosityPage(const Chart& chart) {
+    if (chart.viscosity.empty()) return {};
+    const auto [least, most] = std::minmax_element(chart.viscosity.begin(), chart.viscosity.end(),
+                                                   [](const auto& a, const auto& b) { return a.viscosity < b.viscosity; });
+    std::string text = fmt::format(
+        "## What pbf adds to viscosity\n\nThe standing wave dies as if the water had this viscosity; its own is 1e-6 m^2/s. "
+        "More corrections a step and more steps a frame: least with {} corrections and {} steps at least ({:.2g} m^2/s), most with {} and "
+        "{} ({:.2g}).\n\n![viscosity against corrections](pbf_viscosity.svg)\n\n| corrections | steps a frame, at least | viscosity, m^2/s "
+        "| "
+        "period off | s a second |\n| --- | --- | --- | --- | --- |\n",
+        least->iterations, least->stepsPerFrame, least->viscosity, most->iterations, most->stepsPerFrame, most->viscosity);
+    for (const ViscosityRow& r : chart.viscosity)
+        text += fmt::format("| {} | {} | {:.3g} | {} | {:.3g} |\n", r.iterations, r.stepsPerFrame, r.viscosity, percent(r.periodError),
+                            r.wallPerSecond);
+    return text;
+}
+
+Plot viscosityPlot(const Chart& chart) {
+    Plot plot{"pbf: viscosity of the standing wave", "corrections a step", "m^2/s", {}, true, true};
+    std::map<int, Curve> curves;
+    for (const ViscosityRow& r : chart.viscosity) {
+        Curve& c = curves[r.stepsPerFrame];
+        c.name = fmt::format("{} steps a frame", r.stepsPerFrame);
+        if (r.viscosity > 0) c.points.emplace_back(r.iterations, r.viscosity);
+    }
+    for (const auto& [steps, curve] : curves) plot.curves.push_back(curve);
+    return plot;
+}
+
+constexpr const char* kColumns =
+    "case,what,setting,spacing,particles,error,wallPerSecond,sweepsPerSecond,stepsPerSecond,compression,front\n";
+
+std::string csvOf(const Chart& chart, const std::string& machine) {
+    std::string csv = fmt::format("# {}\n{}", machine, kColumns);
+    const auto plain = [](std::string text) {
+        std::replace(text.begin(), text.end(), ',', ';');
+        return text;
+    };
+    for (const ChartRow& r : chart.rows)
+        csv += fmt::format("{},{},{},{:.6g},{},{:.5g},{:.4g},{:.5g},{:.5g},{:.4g},{}\n", r.name, plain(r.what), plain(r.setting), r.spacing,
+                           r.particles, r.error, r.wallPerSecond, r.sweepsPerSecond, r.stepsPerSecond, r.compression, r.onFront ? 1 : 0);
+    return csv;
+}
+
+}  // namespace
+
+std::vector<ChartRow> readChart(std::string_view csv) {
+    std::vector<ChartRow> rows;
+    for (size_t at = 0; at < csv.size();) {
+        const size_t end = std::min(csv.find('\n', at), csv.size());
+        std::vector<std::string> cells(1);
+        for (const char c : csv.substr(at, end - at))
+            if (c == ',')
+                cells.emplace_back();
+            else
+                cells.back() += c;
+        at = end + 1;
+        if (cells.size() != 11 || cells[0].starts_with('#') || cells[0] == "case") continue;
+        std::replace(cells[2].begin(), cells[2].end(), ';', ',');
+        const auto number = [&](size_t k) {
+            double x = 0;
+            std::from_chars(cells[k].data(), cells[k].data() + cells[k].size(), x);
+            return x;
+        };
+        if (chartSettings().find(cells[2]) == nullptr) continue;  // of an older table
+        rows.push_back({cells[0], cells[1], cells[2], number(3), static_cast<uint32_t>(number(4)), number(5), number(6), number(7),
+                        number(8), number(9), cells[10] == "1"});
+    }
+    return rows;
+}
+
+Status writeChart(const Chart& chart, const std::string& folder, const std::string& machine, const std::string& command) {
+    const std::filesystem::path to(folder);
+    std::string page = fmt::format(
+        "# Speed against accuracy\n\nWritten by `{}` on: {}. All rows come from one run. Cost is what steps take on the wall for a "
+        "simulated "
+        "second; a sweep is one look at all neighbours, the same on any machine. An error is a fraction of what `rivulet validate` says "
+        "for "
+        "the case; the table is `speed_accuracy.csv`, and a scene's `budget` picks from it.\n\n| setting | what it is |\n| --- | --- |\n",
+        command, machine);
+    for (const ChartSetting& s : chartSettings().rows) page += fmt::format("| {} | method {}: {} |\n", s.name, s.method, s.doc);
+    page += '\n' + needs(chart);
+    for (const std::string& name : caseNames(chart)) {
+        const std::vector<ChartRow> rows = rowsOf(chart, name);
+        const std::string picture = fmt::format("speed_accuracy_{}.svg", name);
+        if (Status drawn = drawPlot(plotOf(rows), (to / picture).string()); !drawn) return drawn;
+        page += fmt::format("\n## {}\n\n{}.\n\n![error against cost]({})\n\n{}\n\n{}", name, physicsCases().find(name)->doc, picture,
+                            readAloud(rows), tableOf(rows));
+    }
+    if (!chart.refused.empty()) {
+        page += "\n## What could not be run\n\n";
+        for (const std::string& line : chart.refused) page += "- " + line + '\n';
+    }
+    if (!chart.viscosity.empty()) {
+        if (Status drawn = drawPlot(viscosityPlot(chart), (to / "pbf_viscosity.svg").string()); !drawn) return drawn;
+        page += '\n' + viscosityPage(chart);
+        std::string csv = fmt::format("# {}\niterations,stepsPerFrame,viscosity,periodError,wallPerSecond\n", machine);
+        for (const ViscosityRow& r : chart.viscosity)
+            csv += fmt::format("{},{},{:.5g},{:.5g},{:.4g}\n", r.iterations, r.stepsPerFrame, r.viscosity, r.periodError, r.wallPerSecond);
+        if (Status written = writeFileAtomic((to / "pbf_viscosity.csv").string(), csv); !written) return written;
+    }
+    if (Status written = writeFileAtomic((to / "speed_accuracy.csv").string(), csvOf(chart, machine)); !written) return written;
+    return writeFileAtomic((to / "speed_accuracy.md").string(), page);
+}
+
+}  // namespace rivulet

@@ -434,7 +434,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.params = params;
     w.asked = sources;
     if (Status s = takeLiquid(w.params); !s) return s.error();
-    Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision);
+    Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision, !glm::all(params.box.periodic()));
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
     Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, params, {.periodic = params.box.periodic()});

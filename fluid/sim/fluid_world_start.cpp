@@ -39,6 +39,7 @@ Status FluidWorld::Impl::prepare() {
     };
     const Define fromPositions{"FROM_POSITIONS", "1"};
     traits.periodic = params.box.periodic();
+    traits.walls = !glm::all(traits.periodic) || solids.any();
     traits.samples = bodies.sampleCount();
     traits.matter = traits.matter || bodies.any();
     for (const Wanted& w :

@@ -25,10 +25,10 @@ class Viscosity {
     PairKernel explicit_, onSamples, start, apply;
     Kernel drag, guess, sum, scalars, update, finish;
     Buffer friction, solved, left, applied, direction, changed, rows, result;
-    bool samples = false, doesViscosity = false;
+    bool samples = false, doesViscosity = false, walled = true;
 
     void run(StepContext& c) {
-        const bool walls = c.fluid.collision.walls == "no-slip" && c.wallFriction;
+        const bool walls = walled && c.fluid.collision.walls == "no-slip" && c.wallFriction;
         if (walls) c.wallFriction(c.particles.position, friction);
         walls_ = walls;
         if (doesViscosity)
@@ -149,10 +149,13 @@ Result<ForcePass> makeViscosity(Device& device, const MethodSetup& setup) {
         Kernel* kernel;
         const char* path;
         std::vector<Define> defines;
+        bool wanted = true;
     };
-    for (const Wanted& w : {Wanted{&v->drag, "fluid/wall_drag", matter}, Wanted{&v->guess, "fluid/viscous_guess", matter},
+    v->walled = setup.traits.walls;
+    for (const Wanted& w : {Wanted{&v->drag, "fluid/wall_drag", matter, v->walled}, Wanted{&v->guess, "fluid/viscous_guess", matter},
                             Wanted{&v->sum, "fluid/viscous_sum", {}}, Wanted{&v->scalars, "fluid/viscous_scalars", {}},
                             Wanted{&v->update, "fluid/viscous_update", {}}, Wanted{&v->finish, "fluid/viscous_finish", {}}}) {
+        if (!w.wanted) continue;
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;

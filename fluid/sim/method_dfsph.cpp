@@ -121,21 +121,20 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     const double support = setup.params.supportSpacings;
     m->coupling = static_cast<float>(std::max(wendlandCoupling(support) / wendlandCoupling(2), 1.0));
     m->closed = glm::all(setup.traits.periodic);
-    const Define coast{"COAST", "1"};
     struct Wanted {
         Kernel* kernel;
         const char* path;
         std::vector<Define> defines;
     };
-    for (const Wanted& w : {Wanted{&m->integrate, "fluid/integrate", {coast}}, Wanted{&m->begin, "fluid/dfsph_begin", {}},
-                            Wanted{&m->end, "fluid/dfsph_end", {}}}) {
+    for (const Wanted& w : {Wanted{&m->integrate, "fluid/integrate", setup.traits.wallDefines({{"COAST", "1"}})},
+                            Wanted{&m->begin, "fluid/dfsph_begin", {}}, Wanted{&m->end, "fluid/dfsph_end", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
     }
     for (auto [kernel, path] : {std::pair(&m->density, "fluid/dfsph_density"), std::pair(&m->rate, "fluid/dfsph_rate"),
                                 std::pair(&m->push, "fluid/dfsph_push")}) {
-        Result<PairKernel> found = PairKernel::find(device, path, setup.traits);
+        Result<PairKernel> found = PairKernel::find(device, path, setup.traits, setup.traits.wallDefines());
         if (!found) return found.error();
         *kernel = *found;
     }

@@ -2,6 +2,7 @@
 #include "fluid/sim/method_pbf.h"
 
 #include <array>
+#include <tuple>
 
 #include "fluid/sim/smoothing.h"
 #include "fluid/sim/solver_residual.h"
@@ -93,15 +94,17 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
     if (setup.params.kernel != "wendland")
         return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method pbf works with wendland");
     auto m = std::make_unique<Pbf>();
-    for (auto [kernel, path] :
-         {std::pair(&m->predict, "fluid/pbf_predict"), std::pair(&m->finish, "fluid/pbf_finish"), std::pair(&m->kick, "fluid/kick"),
-          std::pair(&m->weigh, "fluid/weigh"), std::pair(&m->setRatio, "fluid/set_ratio")}) {
-        Result<Kernel> found = device.kernel(path);
+    const std::vector<Define> walls = setup.traits.wallDefines();
+    for (auto [kernel, path, defines] :
+         {std::tuple(&m->predict, "fluid/pbf_predict", walls), std::tuple(&m->finish, "fluid/pbf_finish", walls),
+          std::tuple(&m->kick, "fluid/kick", std::vector<Define>()), std::tuple(&m->weigh, "fluid/weigh", std::vector<Define>()),
+          std::tuple(&m->setRatio, "fluid/set_ratio", std::vector<Define>())}) {
+        Result<Kernel> found = device.kernel(path, defines);
         if (!found) return found.error();
         *kernel = *found;
     }
     for (auto [kernel, path] : {std::pair(&m->lambda, "fluid/pbf_lambda"), std::pair(&m->shift, "fluid/pbf_shift")}) {
-        Result<PairKernel> found = PairKernel::find(device, path, setup.traits);
+        Result<PairKernel> found = PairKernel::find(device, path, setup.traits, walls);
         if (!found) return found.error();
         *kernel = *found;
     }

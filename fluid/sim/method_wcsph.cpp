@@ -80,14 +80,14 @@ Result<std::unique_ptr<Method>> make(Device& device, const MethodSetup& setup, b
         return badInput(
             "method wcsph_thesis knows one liquid, no floating bodies and no periodic axes: choose another method for this scene");
     auto method = std::make_unique<Wcsph>(thesis);
-    std::vector<Define> defines;
+    std::vector<Define> defines = setup.traits.wallDefines();
     if (thesis) defines.push_back({"THESIS", "1"});
     if (!thesis && setup.params.kernel == "cubic_spline") defines.push_back({"CUBIC", "1"});
     Result<PairKernel> density = PairKernel::find(device, "fluid/wcsph_density", setup.traits, defines);
     if (!density) return density.error();
     Result<PairKernel> forces = PairKernel::find(device, "fluid/wcsph_forces", setup.traits, defines);
     if (!forces) return forces.error();
-    Result<Kernel> integrate = device.kernel("fluid/integrate");
+    Result<Kernel> integrate = device.kernel("fluid/integrate", setup.traits.wallDefines());
     if (!integrate) return integrate.error();
     method->density = *density;
     method->forces = *forces;

@@ -232,6 +232,11 @@ std::vector<Define> PairTraits::defines() const {
     return d;
 }
 
+std::vector<Define> PairTraits::wallDefines(std::vector<Define> extra) const {
+    if (!walls) extra.push_back({"OPEN", "1"});
+    return extra;
+}
+
 Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits) {
     ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");
     auto impl = std::make_unique<Impl>();

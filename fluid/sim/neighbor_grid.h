@@ -20,7 +20,10 @@ struct PairTraits {
     bvec3 periodic{false};                // axes on which the bounds wrap round
     bool matter = false;                  // particles differ: several liquids, or samples on bodies
     uint32_t samples = 0;                 // on bodies: the last ids
+    bool walls = true;                    // else the box wraps round along all axes and there are no colliders
     std::vector<Define> defines() const;  // MATTER, PERIODIC: of every kernel with FOR_NEIGHBORS
+    // OPEN where there are no walls: of every kernel that asks for them. `extra`: others.
+    std::vector<Define> wallDefines(std::vector<Define> extra = {}) const;
 };
 
 class NeighborGrid {

@@ -65,7 +65,7 @@ Status SolidPasses::Field::upload(Device& device) {
     return hold<uint32_t>(device, normal, field->normal, 2 * kMostSurfaces * sizeof(uint32_t));
 }
 
-Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const CollisionParams& collision) {
+Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls) {
     SolidPasses s;
     s.device_ = &device;
     s.planeSolids_ = solids.planes;
@@ -107,6 +107,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         std::vector<Define> defines;
         bool wanted;
     };
+    s.walled_ = boxWalls || s.any();
     const bool thesis = collision.walk == "thesis", still = s.static_.field != nullptr;
     const auto collide = [&](const char* motion) {
         std::vector<Define> d;
@@ -116,9 +117,9 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         return d;
     };
     for (const Wanted& w :
-         {Wanted{&s.boundary_, "fluid/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
-          Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
-          Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, true},
+         {Wanted{&s.boundary_, "fluid/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
           Wanted{&s.frictionMoving_, "fluid/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.walls_, "fluid/walls", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
@@ -385,6 +386,7 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
 }
 
 void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary) {
+    if (!walled_) return;
     const uint32_t n = step.count;
     const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
@@ -396,6 +398,7 @@ void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, con
 }
 
 void SolidPasses::friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction) {
+    if (!walled_) return;
     const uint32_t n = step.count;
     const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
@@ -407,6 +410,7 @@ void SolidPasses::friction(const StepParams& step, const NeighborGrid& grid, con
 }
 
 void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Particles& p) {
+    if (!walled_) return;
     const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
         device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration, &staticBlock_, &static_.distance}, step.count);

@@ -20,11 +20,13 @@ class SolidPasses {
   public:
     // Error (badInput): a plane without direction, too many surfaces, an unknown walk; (failed): out of memory. `device` and the solids'
     // fields must outlive it.
-    static Result<SolidPasses> create(Device& device, const Solids& solids, const CollisionParams& collision);
+    // `boxWalls`: the box has some; without them and without solids nothing is made for walls.
+    static Result<SolidPasses> create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls);
 
     // Whether a particle may be born at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not nearer
     // than it would rest.
     bool mayBeBorn(const vec3& p, float spacing) const;
+    bool any() const { return planeCount() > 0 || static_.field != nullptr || !rigid_.empty() || !deforming_.empty(); }
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
     const Buffer& planes() const { return planes_; }  // as integrate.kernel wants them
 
@@ -93,6 +95,7 @@ class SolidPasses {
     Surface otherwise_;
     bool surfacesChanged_ = true;
     Buffer planes_;
+    bool walled_ = true;
     Kernel boundary_, friction_, frictionMoving_, adhesion_, collide_, walls_, boundaryMoving_, collideRigid_, collideDeforming_;
     Field static_;
     FieldParams block_{};

@@ -1,10 +1,16 @@
 // The box and the planes: a particle's centre stays `contact` away from them; the velocity into a wall answers to it (respond.h).
-// Include after BUFFERS and fluid/respond.h; the buffer is `planes`, two vec4 a plane: unit normal, w m; friction, restitution.
+// In a world without walls (OPEN) there is nothing to answer to. Include after BUFFERS and fluid/respond.h; the buffer is `planes`, two vec4 a plane: unit normal, w m; friction, restitution.
 STRUCT(Walled) {
     vec3 position;  // m
     vec3 velocity;  // m/s
 };
-FN Walled withinWalls(GLOBAL(vec4, planes) StepParams p, vec3 x, vec3 v) {
+#undef WITHIN_WALLS
+#if defined(OPEN)
+#define WITHIN_WALLS(x, v) asTheyAre_(x, v)
+FN Walled asTheyAre_(vec3 x, vec3 v) {
+#else
+#define WITHIN_WALLS(x, v) withinWalls_(PASS(planes) PARAMS, x, v)
+FN Walled withinWalls_(GLOBAL(vec4, planes) StepParams p, vec3 x, vec3 v) {
     vec3 lo = p.boxMin.xyz + vec3(p.contact, p.contact, p.contact);
     vec3 hi = p.boxMax.xyz - vec3(p.contact, p.contact, p.contact);
     float e = p.restitution;
@@ -25,6 +31,7 @@ FN Walled withinWalls(GLOBAL(vec4, planes) StepParams p, vec3 x, vec3 v) {
             v = respond(v, plane.xyz, surface.x, surface.y);
         }
     }
+#endif
     Walled w;
     w.position = x;
     w.velocity = v;

@@ -19,7 +19,15 @@ namespace integrate_unit {
 namespace integrate_coast {
 #include "shaders/fluid/integrate.kernel"
 }
+#define OPEN 1
+namespace integrate_coast_open {
+#include "shaders/fluid/integrate.kernel"
+}
 #undef COAST
+namespace integrate_open {
+#include "shaders/fluid/integrate.kernel"
+}
+#undef OPEN
 namespace gather_matter_unit {
 #include "shaders/fluid/gather_matter.kernel"
 }
@@ -88,6 +96,8 @@ std::span<const CpuKernelRow> particleRows() {
         {"fluid/boundary", "FIELD=1", RIVULET_UNIT_ISA, boundary_field::boundary, 1024},
         {"fluid/integrate", "", RIVULET_UNIT_ISA, integrate_unit::integrate, 1024},
         {"fluid/integrate", "COAST=1", RIVULET_UNIT_ISA, integrate_coast::integrate, 1024},
+        {"fluid/integrate", "OPEN=1", RIVULET_UNIT_ISA, integrate_open::integrate, 1024},
+        {"fluid/integrate", "COAST=1;OPEN=1", RIVULET_UNIT_ISA, integrate_coast_open::integrate, 1024},
         {"fluid/gather_matter", "", RIVULET_UNIT_ISA, gather_matter_unit::gather_matter, 1024},
         {"fluid/wrap", "", RIVULET_UNIT_ISA, wrap_unit::wrap, 1024},
         {"fluid/wrap", "FROM_POSITIONS=1", RIVULET_UNIT_ISA, wrap_from_positions::wrap, 1024},

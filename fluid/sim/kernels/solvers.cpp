@@ -6,18 +6,23 @@ namespace {
 
 #define PAIR_KERNEL "shaders/fluid/pbf_lambda.kernel"
 #define PAIR_UNIT lambda
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #define PAIR_KERNEL "shaders/fluid/pbf_shift.kernel"
 #define PAIR_UNIT shift
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #define PAIR_KERNEL "shaders/fluid/dfsph_density.kernel"
 #define PAIR_UNIT density
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #define PAIR_KERNEL "shaders/fluid/dfsph_rate.kernel"
 #define PAIR_UNIT rate
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #define PAIR_KERNEL "shaders/fluid/dfsph_push.kernel"
 #define PAIR_UNIT push
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 namespace predict {
 #include "shaders/fluid/pbf_predict.kernel"
@@ -25,6 +30,15 @@ namespace predict {
 namespace finish {
 #include "shaders/fluid/pbf_finish.kernel"
 }
+#define OPEN 1
+#undef RIVULET_GRID_H  // each form has its own StepParams
+namespace predict_open {
+#include "shaders/fluid/pbf_predict.kernel"
+}
+namespace finish_open {
+#include "shaders/fluid/pbf_finish.kernel"
+}
+#undef OPEN
 namespace begin {
 #include "shaders/fluid/dfsph_begin.kernel"
 }
@@ -54,12 +68,19 @@ namespace weigh_unit {
 std::span<const CpuKernelRow> solverRows() {
     static const CpuKernelRow rows[] = {
         PAIR_ROWS(lambda, pbf_lambda, ""),
+        OPEN_ROWS(lambda, pbf_lambda, ""),
         PAIR_ROWS(shift, pbf_shift, ""),
+        OPEN_ROWS(shift, pbf_shift, ""),
         PAIR_ROWS(density, dfsph_density, ""),
+        OPEN_ROWS(density, dfsph_density, ""),
         PAIR_ROWS(rate, dfsph_rate, ""),
+        OPEN_ROWS(rate, dfsph_rate, ""),
         PAIR_ROWS(push, dfsph_push, ""),
+        OPEN_ROWS(push, dfsph_push, ""),
         {"fluid/pbf_predict", "", RIVULET_UNIT_ISA, predict::pbf_predict, 1024},
         {"fluid/pbf_finish", "", RIVULET_UNIT_ISA, finish::pbf_finish, 1024},
+        {"fluid/pbf_predict", "OPEN=1", RIVULET_UNIT_ISA, predict_open::pbf_predict, 1024},
+        {"fluid/pbf_finish", "OPEN=1", RIVULET_UNIT_ISA, finish_open::pbf_finish, 1024},
         {"fluid/dfsph_begin", "", RIVULET_UNIT_ISA, begin::dfsph_begin, 1024},
         {"fluid/dfsph_end", "", RIVULET_UNIT_ISA, end::dfsph_end, 1024},
         {"fluid/residual", "", RIVULET_UNIT_ISA, residual_unit::residual, 128},

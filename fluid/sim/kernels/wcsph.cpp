@@ -6,16 +6,20 @@ namespace {
 
 #define PAIR_KERNEL "shaders/fluid/wcsph_density.kernel"
 #define PAIR_UNIT density
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #define PAIR_KERNEL "shaders/fluid/wcsph_forces.kernel"
 #define PAIR_UNIT forces
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #define CUBIC 1
 #define PAIR_KERNEL "shaders/fluid/wcsph_density.kernel"
 #define PAIR_UNIT cubic_density
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #define PAIR_KERNEL "shaders/fluid/wcsph_forces.kernel"
 #define PAIR_UNIT cubic_forces
+#define PAIR_WALLED
 #include "fluid/sim/kernels/pair_forms.h"
 #undef CUBIC
 #define THESIS 1
@@ -32,9 +36,13 @@ namespace thesis_forces {
 std::span<const CpuKernelRow> wcsphRows() {
     static const CpuKernelRow rows[] = {
         PAIR_ROWS(density, wcsph_density, ""),
+        OPEN_ROWS(density, wcsph_density, ""),
         PAIR_ROWS(forces, wcsph_forces, ""),
+        OPEN_ROWS(forces, wcsph_forces, ""),
         PAIR_ROWS(cubic_density, wcsph_density, "CUBIC=1"),
+        OPEN_ROWS(cubic_density, wcsph_density, "CUBIC=1"),
         PAIR_ROWS(cubic_forces, wcsph_forces, "CUBIC=1"),
+        OPEN_ROWS(cubic_forces, wcsph_forces, "CUBIC=1"),
         {"fluid/wcsph_density", "THESIS=1", RIVULET_UNIT_ISA, thesis_density::wcsph_density, 64},
         {"fluid/wcsph_forces", "THESIS=1", RIVULET_UNIT_ISA, thesis_forces::wcsph_forces, 64},
     };

@@ -12,6 +12,7 @@
 #include "engine/app/context_egl.h"
 #include "engine/core/json.h"
 #include "fluid/bridge/backend.h"
+#include "fluid/bridge/explain.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
@@ -154,6 +155,7 @@ int runHeadless(const RunOptions& options) {
     if (options.render && stats.frames > 0)
         where = fmt::format("{}, {} pictures {}_*.png and {}", to->video, loop.pictures, to->picturePrefix, to->stats);
     if (!options.save.empty()) where += fmt::format(" and {}", options.save);
+    if (options.explain) fmt::print("{}", explain((*session)->world(), stats));
     fmt::print("{}\n", where);
     return graceful.interrupted() ? kInterrupted : kDone;
 }

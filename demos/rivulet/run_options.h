@@ -15,6 +15,7 @@ struct RunOptions {
     SceneFile scene;
     std::string backend = "auto";  // auto | cpu | gl | cl
     bool render = true;
+    bool explain = false;
     std::optional<int> frames;       // how many; nothing: the loop's own default
     int width = 1280, height = 720;  // pixels
     std::string out = "out";         // folder of what is written

@@ -71,6 +71,7 @@ int runVerb(const Arguments& arguments) {
     reader.option("--stats", "FILE.json", "the figures' file, instead of DIR/stats.json", options.stats);
     reader.option("--save", "FILE", "the whole state at the run's end, for --resume", options.save);
     reader.option("--resume", "FILE", "go on from a state that --save wrote, of the same scene", options.resume);
+    reader.flag("--explain", "at the end, say what was chosen, what was left out, and what the rest cost", options.explain);
     reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 

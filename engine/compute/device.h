@@ -84,6 +84,9 @@ class Device {
     virtual Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) = 0;
     Result<Kernel> kernel(std::string_view path) { return kernel(path, {}); }
 
+    // What kernel() has made so far: "fluid/wcsph_density;MATTER=1;PERIODIC=1".
+    virtual std::vector<std::string> kernels() const = 0;
+
     // Contents are zero. 0 bytes give a valid Buffer of 0 bytes.
     virtual Result<Buffer> allocate(size_t bytes) = 0;
     virtual void release(uint64_t handle, size_t bytes) = 0;  // Buffer's destructor calls it

@@ -152,6 +152,11 @@ class ClDevice final : public Device {
     Backend backend() const override { return Backend::cl; }
     const DeviceInfo& info() const override { return info_; }
     Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
+    std::vector<std::string> kernels() const override {
+        std::vector<std::string> made;
+        for (const Entry& e : kernels_) made.push_back(e.key);
+        return made;
+    }
     Result<Buffer> allocate(size_t bytes) override;
     void release(uint64_t handle, size_t bytes) override;
     void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override;

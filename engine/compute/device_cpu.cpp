@@ -124,6 +124,13 @@ Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> 
     return Kernel{static_cast<uint32_t>(impl_->kernels.size() - 1)};
 }
 
+std::vector<std::string> CpuDevice::kernels() const {
+    std::vector<std::string> made;
+    for (const CpuKernelRow& row : impl_->kernels)
+        made.push_back(fmt::format("{}{}{}", row.path, *row.defines == '\0' ? "" : ";", row.defines));
+    return made;
+}
+
 Result<Buffer> CpuDevice::allocate(size_t bytes) {
     size_t padded = (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment;
     void* memory = std::aligned_alloc(kAlignment, padded);

@@ -37,6 +37,7 @@ class CpuDevice final : public Device {
     const DeviceInfo& info() const override { return info_; }
     using Device::kernel;
     Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
+    std::vector<std::string> kernels() const override;
     Result<Buffer> allocate(size_t bytes) override;
     void release(uint64_t handle, size_t bytes) override;
     void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override;

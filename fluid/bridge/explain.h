@@ -1,0 +1,13 @@
+// What a run is made of, told plainly: what was chosen, what was left out of kernels and passes, and what the rest costs.
+#pragma once
+
+#include <string>
+
+#include "fluid/bridge/run_stats.h"
+
+namespace rivulet {
+
+// As lines of text. `stats` of the run so far: its passes are the costs, per frame; without frames there are none.
+std::string explain(const FluidWorld& world, const RunStats& stats);
+
+}  // namespace rivulet

@@ -152,6 +152,11 @@ void FluidParams::visit(ParamVisitor& v) {
     v.value({"frameBudget", "ms", "what a frame's steps may take; where they would take longer, simulated time slows down; 0 = no limit", 0,
              1000},
             frameBudget);
+    v.value(
+        {.name = "limits",
+         .doc = "whether steps are kept as short as is stable and particles slower than a spacing a step; off: every frame or fixedStep is "
+                "one step, to see where methods fail"},
+        limits);
     vec3 place(origin);
     v.value({"origin", "m", "where the scene's (0, 0, 0) is in the host's world; all else in a scene is relative to it", -1.0e9, 1.0e9},
             place);

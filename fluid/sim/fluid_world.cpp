@@ -16,6 +16,9 @@ namespace {
 // GPU figures come this many frames late at most: speeds may have grown by gravity since.
 constexpr double kLateFrames = 3;
 
+// m/s, where speeds have no limit: its square is still a float.
+constexpr float kAnySpeed = 1.0e18F;
+
 }  // namespace
 
 FluidWorld::FluidWorld() : impl_(std::make_unique<Impl>()) {}
@@ -76,6 +79,7 @@ void FluidWorld::Impl::say(const std::string& sentence) {
 // The largest stable step: acoustic CFL or how far the fastest may go, viscous and body-force limits (Monaghan 1992, with the constants of
 // Morris et al. 1997).
 StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
+    if (!params.limits) return {frameSeconds, "the frame"};
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
     double fastest = std::max({figures->maxSpeed, double{solids.fastestWall()}, double{sources.fastest()}, double{bodies.fastest()}}) +
@@ -130,7 +134,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
 // `from`, `to`: the shares of the frame's time at which it begins and ends.
 void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
-    step.maxSpeed = static_cast<float>(params.spacing / dt);
+    step.maxSpeed = params.limits ? static_cast<float>(params.spacing / dt) : kAnySpeed;
     bool built = false;
     StepContext context{.device = *device,
                         .fluid = params,
@@ -167,7 +171,7 @@ double FluidWorld::taken(double seconds) {
     Impl& w = *impl_;
     if (!(seconds > 0)) return 0;
     const double most = w.params.longestFrame;
-    if (seconds <= most) return seconds;
+    if (seconds <= most || !w.params.limits) return seconds;
     w.dropped += seconds - most;
     w.say(fmt::format("a frame was longer than fluid.longestFrame = {} s: what was beyond it has been dropped", w.params.longestFrame));
     return most;
@@ -186,7 +190,8 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     const FluidParams& p = w.params;
     const bool cpu = w.device->backend() == Backend::cpu;
     if (!cpu) w.pace.know(inputs.deviceMs, w.lastSubsteps);
-    const Pace::Frame frame = w.pace.begin(now, double{p.fixedStep}, double{p.frameBudget});
+    const Pace::Frame frame = w.pace.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
+    if (!p.limits) w.say("fluid.limits is off: steps are as long as asked for, stable or not");
     const double span = frame.before + seconds;  // until the solids are where they are to be
     w.frameLength = span;
     w.gravity = inputs.gravity;
@@ -279,6 +284,8 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
                         "than asked",
                         params.maxSubsteps, limit.why));
     }
+    if (params.fixedStep > 0 && count > 1)
+        say(fmt::format("fluid.fixedStep = {} s is cut into shorter steps, their length limited by {}", params.fixedStep, limit.why));
     const bool cpu = device->backend() == Backend::cpu;
     int done = 0;
     while (done < count) {

@@ -5,7 +5,7 @@
 
 namespace rivulet {
 
-Pace::Frame Pace::begin(double seconds, double fixedStep, double budgetMs) {
+Pace::Frame Pace::begin(double seconds, double fixedStep, double budgetMs, bool whole) {
     budgetMs_ = budgetMs;
     if (budgetMs > 0) start_ = Clock::now();
     seconds_ = seconds;
@@ -13,12 +13,12 @@ Pace::Frame Pace::begin(double seconds, double fixedStep, double budgetMs) {
     const double before = pending_;
     if (fixedStep > 0) {
         // A frame that is a fixed step to the last bits is one, whatever sums have made of it.
-        const double whole = std::floor((before + seconds) / fixedStep + 1.0e-9);
-        return {static_cast<int>(std::min(whole, 1.0e9)), fixedStep, before};
+        const double steps = std::floor((before + seconds) / fixedStep + 1.0e-9);
+        return {static_cast<int>(std::min(steps, 1.0e9)), fixedStep, before};
     }
     // A long frame has several pieces: speeds may grow in it, and each piece is stepped by those it finds.
     constexpr double kLongestPiece = 1.0 / 60;  // s
-    const double pieces = std::clamp(std::ceil(seconds / kLongestPiece - 1.0e-6), 1.0, 1.0e9);
+    const double pieces = whole ? 1 : std::clamp(std::ceil(seconds / kLongestPiece - 1.0e-6), 1.0, 1.0e9);
     return {static_cast<int>(pieces), (before + seconds) / pieces, before};
 }
 

@@ -14,7 +14,8 @@ class Pace {
         double before = 0;  // s, what was left over of frames before: the frame's end is before + seconds from the newest state
     };
     // `seconds` > 0; `fixedStep` s, 0: none, and the whole frame is stepped. `budgetMs`: what its steps may take, 0: as long as they do.
-    Frame begin(double seconds, double fixedStep, double budgetMs);
+    // `whole`: a frame without fixed steps is one piece, however long.
+    Frame begin(double seconds, double fixedStep, double budgetMs, bool whole = false);
     // Whether another piece of work may follow `done` (>= 1) pieces alike; asked between them, on the cpu.
     bool mayGoOn(int done) const { return budgetMs_ <= 0 || fits(elapsedMs(), done); }
     // The same before the work, from what is known of earlier frames' substeps: of a GPU, whose work is not done when it has been asked

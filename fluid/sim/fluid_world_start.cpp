@@ -185,6 +185,8 @@ void FluidWorld::Impl::writeStart() {
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
     figures = std::make_shared<FluidStats>();
     figures->particles = static_cast<uint32_t>(start.size());
+    // The first step must know, too.
+    for (const NewParticle& p : start) figures->maxSpeed = std::max(figures->maxSpeed, double{glm::length(p.velocity)});
     figures->emitted = static_cast<double>(start.size()) * std::pow(double{params.spacing}, 3);
 }
 

@@ -35,7 +35,7 @@ class Dfsph final : public Method {
         fillSmoothing(p, s);
         // There is no sound: damping is what it is in weakly compressible water.
         s.artificial = p.artificialViscosity * 10.0F * fastest * 0.5F * s.h;
-        s.stiffness = glm::length(vec3(s.gravity)) > 0 ? squared(kSound * fastest) : 0.0F;
+        s.stiffness = squared((closed ? kSoundClosed : kSound) * fastest);
         s.relaxation = p.dfsph.relaxation / coupling;
         s.warmStart = p.dfsph.warmStart;
         s.correction = p.dfsph.correction;

@@ -88,10 +88,10 @@ StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
     const auto atMost = [&limit](double dt, const char* why) {
         if (dt < limit.dt) limit = {dt, why};
     };
-    const Method::StepLimit own = method->stepLimit(params);
+    const Method::StepLimit own = method->stepLimit(params, fastestFall());
     if (c0 > 0) atMost(params.cfl * hs / (c0 + fastest), "the speed of sound (fluid.cfl)");
     atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
-    atMost(own.longest, "the method's fewest steps a frame (minSubsteps)");
+    atMost(own.longest, own.why);
     // Explicit viscosity alone has a limit; an implicit solver has none.
     const double laminar = explicitViscosity(params, method->doesViscosity());
     const double nu = (laminar > 0 && traits.matter ? std::max(laminar, double{mostViscous}) : laminar) + 0.1 * double{step.artificial};

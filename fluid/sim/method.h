@@ -34,12 +34,13 @@ class Method {
     virtual float soundSpeed(const FluidParams& params, float fastest) const = 0;
     // Whether it does explicit viscosity among its own pair forces; else the row of forces() does.
     virtual bool doesViscosity() const { return false; }
-    // How far the fastest particle may go in a step, in spacings, and the longest step, s.
+    // How far the fastest particle may go in a step, in spacings, and the longest step, s, with what says so. `fastest`: as in fill.
     struct StepLimit {
         float reach = 1;
         double longest = 1;
+        const char* why = "the method's fewest steps a frame (minSubsteps)";
     };
-    virtual StepLimit stepLimit(const FluidParams& params) const = 0;
+    virtual StepLimit stepLimit(const FluidParams& params, float fastest) const = 0;
     // positionNext, velocityNext as they are -> a substep later, in sorted order; positionNext's w the density ratio. It calls build, once.
     virtual void step(StepContext& context) = 0;
     // Called at a frame's end: makes w of positionNext the density ratio of the positions as they are, where step() left an earlier one.

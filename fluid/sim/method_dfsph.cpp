@@ -29,7 +29,7 @@ class Dfsph final : public Method {
     bool closed = false;  // periodic along all axes: there may be no surface
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
-    StepLimit stepLimit(const FluidParams& p) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
+    StepLimit stepLimit(const FluidParams& p, float) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
 
     void fill(const FluidParams& p, float fastest, StepParams& s) const override {
         fillSmoothing(p, s);

@@ -18,7 +18,7 @@ class Wcsph final : public Method {
     Kernel integrate;
 
     bool doesViscosity() const override { return true; }
-    StepLimit stepLimit(const FluidParams&) const override { return {}; }  // sound's is far shorter
+    StepLimit stepLimit(const FluidParams&, float) const override { return {}; }  // sound's is far shorter
 
     float soundSpeed(const FluidParams& p, float fastest) const override {
         if (thesis_) return std::sqrt(p.stiffness);  // dp/drho of (4)

@@ -63,6 +63,16 @@ float FluidWorld::Impl::fastestFall() const {
     return std::max(fastest, 10.0F * params.spacing);
 }
 
+// No water of this scene is faster, m/s: ten times what a fall across the whole box, walls, wind, a skin or its own start give, or twice
+// the speed of sound. Where something goes wrong, speeds would else grow as steps shrink, and steps shrink as speeds grow.
+float FluidWorld::Impl::fastestEver() const {
+    const float fall = std::sqrt(2.0F * glm::length(gravity) * glm::length(params.box.max - params.box.min));
+    const float skin = std::sqrt((params.forces.tension + params.forces.adhesion) / (params.restDensity * params.spacing));
+    const float wind = params.forces.airDrag > 0 ? glm::length(params.forces.wind) : 0.0F;
+    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), bodies.fastest(), wind, skin}) + fastestFall());
+    return std::max(most, 2.0F * method->soundSpeed(params, fastestFall()));
+}
+
 void FluidWorld::Impl::gatherColours() {
     if (!coloured) return;
     StepParams all{};
@@ -74,6 +84,23 @@ void FluidWorld::Impl::say(const std::string& sentence) {
     if (std::find(figures->limited.begin(), figures->limited.end(), sentence) != figures->limited.end()) return;
     figures->limited.push_back(sentence);
     log.notice(sentence);
+}
+
+// What is known to go wrong, before it does.
+void FluidWorld::Impl::warn() {
+    if (!params.limits) say("fluid.limits is off: steps are as long as asked for, stable or not");
+    const vec3 reach = glm::max(glm::abs(params.box.min), glm::abs(params.box.max));
+    const float most = std::max({reach.x, reach.y, reach.z}), apart = std::nextafter(most, 2.0F * most) - most;
+    if (apart > 2.0e-3F * params.spacing)
+        say(fmt::format(
+            "fluid.box lies so far from its zero that floats there are {:.2g} m apart and slow motion is lost: say where it is by "
+            "fluid.origin",
+            apart));
+    const float support = params.supportSpacings, neighbours = 4.18879F * support * support * support;
+    if (params.kernel == "cubic_spline" && neighbours > 55.0F)
+        say(fmt::format(
+            "fluid.supportSpacings = {} gives particles {:.0f} neighbours: with more than 55 those of the cubic spline go in pairs",
+            support, neighbours));
 }
 
 // The largest stable step: acoustic CFL or how far the fastest may go, viscous and body-force limits (Monaghan 1992, with the constants of
@@ -134,7 +161,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
 // `from`, `to`: the shares of the frame's time at which it begins and ends.
 void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
-    step.maxSpeed = params.limits ? static_cast<float>(params.spacing / dt) : kAnySpeed;
+    step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), fastestEver()) : kAnySpeed;
     bool built = false;
     StepContext context{.device = *device,
                         .fluid = params,
@@ -191,7 +218,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     const bool cpu = w.device->backend() == Backend::cpu;
     if (!cpu) w.pace.know(inputs.deviceMs, w.lastSubsteps);
     const Pace::Frame frame = w.pace.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
-    if (!p.limits) w.say("fluid.limits is off: steps are as long as asked for, stable or not");
+    w.warn();
     const double span = frame.before + seconds;  // until the solids are where they are to be
     w.frameLength = span;
     w.gravity = inputs.gravity;
@@ -324,7 +351,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
     device->readLater(
         statsRows, STATS_THREADS * sizeof(StatsRow),
         [now, weak = std::weak_ptr(figures), count = start.size(), volume = std::pow(double{params.spacing}, 3), mass = double{step.mass},
-         g = gravity, this](std::span<const std::byte> bytes) {
+         g = gravity, maxSpeed = step.maxSpeed, spacingAStep = params.spacing / step.dt, this](std::span<const std::byte> bytes) {
             const std::shared_ptr<FluidStats> into = weak.lock();
             if (!into) return;  // the world was reset meanwhile, or is no more
             const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
@@ -364,7 +391,12 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                 say(fmt::format(
                     "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles says how many", slots));
             if (into->lost > 0) say("particles left the grid or became NaN: they are frozen and counted as lost");
-            if (into->speedLimited > 0) say("the fastest particles were slowed to one spacing a step");
+            if (into->speedLimited == 0) return;
+            if (maxSpeed < 0.999F * spacingAStep)
+                say(fmt::format("the fastest particles were slowed to {:.3g} m/s: nothing in this scene should make them so fast",
+                                maxSpeed));
+            else
+                say("the fastest particles were slowed to one spacing a step");
         });
 }
 

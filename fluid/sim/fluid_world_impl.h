@@ -62,7 +62,8 @@ struct FluidWorld::Impl {
     uint64_t frame = 0;
     int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
-    float fastestWall = 0;  // m/s, of moving solids, lately
+    float fastestWall = 0;   // m/s, of moving solids, lately
+    float fastestStart = 0;  // m/s, of particles as they were put in, or taken up from a saved state
     bool budgetSaid = false;
     int lastPiece = 0;  // substeps
 
@@ -73,6 +74,8 @@ struct FluidWorld::Impl {
     void writeStart();
     void gatherColours();
     float fastestFall() const;
+    float fastestEver() const;
+    void warn();
     StepLimit stepLimit(double frameSeconds) const;
     void fillStep();
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);

@@ -187,6 +187,7 @@ void FluidWorld::Impl::writeStart() {
     figures->particles = static_cast<uint32_t>(start.size());
     // The first step must know, too.
     for (const NewParticle& p : start) figures->maxSpeed = std::max(figures->maxSpeed, double{glm::length(p.velocity)});
+    fastestStart = static_cast<float>(figures->maxSpeed);
     figures->emitted = static_cast<double>(start.size()) * std::pow(double{params.spacing}, 3);
 }
 

@@ -85,6 +85,8 @@ Status FluidWorld::restore(WorldState& state) {
     w.dtMin = n[3];
     w.dtMax = n[4];
     w.figures->maxSpeed = n[5];
+    for (const vec4& v : saved->velocity)
+        if (isFinite(vec3(v))) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(v)));
     w.fastestWall = static_cast<float>(n[6]);
     w.frame = static_cast<uint64_t>(n[7]);
     w.params.origin = dvec3(n[8], n[9], n[10]);

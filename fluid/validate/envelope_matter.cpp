@@ -1,0 +1,231 @@
+// Rows of the stability envelope that are not a matter of the step alone: neighbours in pairs and clumps, places far from zero, thin walls,
+// particles born in each other, light bodies.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "fluid/sim/block.h"
+#include "fluid/validate/envelope_run.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr double kHalfTurn = std::numbers::pi;
+
+// Mean distance to the nearest neighbour, m; over borders where the box has no walls.
+double nearestNeighbour(const FluidWorld& world) {
+    const HostParticles all = readParticles(world);
+    const BoxParams& box = world.params().box;
+    double sum = 0;
+    for (const vec4& a : all.position) {
+        double nearest = 1e30;
+        for (const vec4& b : all.position) {
+            if (&a == &b) continue;
+            dvec3 d = dvec3(a) - dvec3(b);
+            for (int k = 0; k < 3; ++k) {
+                const double period = double{box.max[k] - box.min[k]};
+                if (box.periodic()[k]) d[k] -= period * std::round(d[k] / period);
+            }
+            nearest = std::min(nearest, glm::dot(d, d));
+        }
+        sum += std::sqrt(nearest);
+    }
+    return sum / static_cast<double>(all.position.size());
+}
+
+// Puts particles elsewhere.
+Status moveParticles(FluidWorld& world, const std::function<dvec3(const dvec3&)>& to) {
+    if (Status can = world.savable(); !can) return can;
+    WorldState state;
+    world.save(state);
+    Result<std::vector<vec4>> x = state.take<vec4>("particles.position", world.particles().slots);
+    if (!x) return x.error();
+    for (vec4& p : *x)
+        if (!(p.w < 0)) p = vec4(vec3(to(dvec3(p))), p.w);
+    WorldState changed;
+    for (const auto& [name, bytes] : state.sections()) changed.putBytes(name, bytes);
+    changed.put<vec4>("particles.position", *x);
+    return world.restore(changed);
+}
+
+}  // namespace
+
+Result<std::vector<EnvelopeFinding>> envelopeOfPairing(const EnvelopeSettings& settings) {
+    const Result<SceneFile> scene = stabilityScene("pairing", {});
+    if (!scene) return scene.error();
+    const double spacing = scene->fluid.spacing, edge = double{scene->fluid.box.max.x - scene->fluid.box.min.x};
+    double particles = 0;
+    for (const BlockParams& b : scene->fluid.blocks) particles += blockCount(b, scene->fluid.spacing);
+    const double crowd = particles * std::pow(spacing / edge, 3);  // where one should be
+    std::vector<Sweep> sweeps;
+    for (const char* kernel : {"cubic_spline", "wendland"})
+        sweeps.push_back({.row = "pairing",
+                          .method = "wcsph",
+                          .what = fmt::format("neighbours, {}", kernel),
+                          .unit = "",
+                          .predicted = 55,
+                          .least = 15,
+                          .most = 267,
+                          .criterion = "nearest neighbours on average nearer than 0.7 spacings",
+                          .run = [=](double at, bool) {
+                              const double support = std::cbrt(at / crowd * 3 / (4 * kHalfTurn));
+                              return StabilityRun{
+                                  .scene = "pairing",
+                                  .assignments = {fmt::format("fluid.kernel={}", kernel), fmt::format("fluid.supportSpacings={}", support)},
+                                  .limits = true,
+                                  .verdict = [=](Session& s) { return nearestNeighbour(s.world()) < 0.7 * spacing; }};
+                          }});
+    return sweepAll(settings, sweeps);
+}
+
+Result<std::vector<EnvelopeFinding>> envelopeOfClumping(const EnvelopeSettings& settings) {
+    const Result<SceneFile> scene = stabilityScene("clumping", {});
+    if (!scene) return scene.error();
+    const double spacing = scene->fluid.spacing;
+    std::vector<Sweep> sweeps;
+    for (const char* method : {"wcsph_thesis", "wcsph", "pbf", "dfsph"})
+        sweeps.push_back(
+            {.row = "clumping",
+             .method = method,
+             .what = "volume over that at rest",
+             .unit = "",
+             .predicted = 1,
+             .least = 1,
+             .most = 2,
+             .criterion = "nearest neighbours on average nearer than 0.8 spacings",
+             .run = [=](double at, bool) {
+                 return StabilityRun{
+                     .scene = "clumping",
+                     .assignments = {fmt::format("fluid.method={}", method)},
+                     .limits = true,
+                     .prepare = [at](Session& s) { return moveParticles(s.world(), [at](const dvec3& x) { return x * std::cbrt(at); }); },
+                     .verdict = [=](Session& s) { return nearestNeighbour(s.world()) < 0.8 * spacing; }};
+             }});
+    return sweepAll(settings, sweeps);
+}
+
+Result<std::vector<EnvelopeFinding>> envelopeOfDistance(const EnvelopeSettings& settings) {
+    constexpr double kSpeed = 0.1, kStep = 0.004, kDigits = 8388608;  // floats from a power of two to the next
+    std::vector<Sweep> sweeps;
+    for (const char* method : {"wcsph", "pbf", "dfsph"})
+        sweeps.push_back({.row = "far_origin",
+                          .method = method,
+                          .what = "distance, 0.4 mm a step",
+                          .unit = "m",
+                          .predicted = 2 * kSpeed * kStep * kDigits,
+                          .least = 100,
+                          .most = 65536,
+                          .criterion = "a hundredth of the way is gone, or less",
+                          .run = [=](double at, bool limits) {
+                              // With the limits on it is the same place, given as the world's origin.
+                              const double away = std::floor(at), low = limits ? 0 : away;
+                              std::vector<std::string> assignments = {fmt::format("fluid.method={}", method)};
+                              if (limits) assignments.push_back(fmt::format("fluid.origin={},0,0", away));
+                              for (const auto& [key, x] : {std::pair("box.min", 0.0), std::pair("box.max", 1.0),
+                                                           std::pair("blocks.0.min", 0.5), std::pair("blocks.0.max", 0.57)})
+                                  assignments.push_back(fmt::format("fluid.{}={},{},{}", key, low + x, x, x));
+                              auto from = std::make_shared<double>(0);
+                              const auto place = [](Session& s) { return double{readParticles(s.world()).position[0].x}; };
+                              return StabilityRun{
+                                  .scene = "far_origin",
+                                  .assignments = assignments,
+                                  .frame = kStep,
+                                  .asFrames = true,
+                                  .prepare =
+                                      [=](Session& s) {
+                                          *from = place(s);
+                                          return ok();
+                                      },
+                                  .verdict = [=](Session& s) { return place(s) - *from < 0.01 * kSpeed * s.world().time(); }};
+                          }});
+    return sweepAll(settings, sweeps);
+}
+
+Result<std::vector<EnvelopeFinding>> envelopeOfTunnelling(const EnvelopeSettings& settings) {
+    const Result<SceneFile> scene = stabilityScene("tunnelling", {});
+    if (!scene) return scene.error();
+    const double speed = glm::length(scene->fluid.blocks[0].velocity), voxel = 0.25 * double{scene->fluid.spacing};
+    const double turned = double{scene->colliders[0].rotation.z} * kHalfTurn / 180;
+    const dvec3 up(-std::sin(turned), std::cos(turned), 0);
+    std::vector<Sweep> sweeps;
+    for (const auto& [method, walk] : {std::pair("pbf", "exact"), std::pair("dfsph", "exact"), std::pair("dfsph", "thesis")})
+        sweeps.push_back({.row = "tunnelling",
+                          .method = method,
+                          .what = fmt::format("way in a step, walk {}", walk),
+                          .unit = "walls",
+                          .predicted = 1,
+                          .least = 0.25,
+                          .most = 64,
+                          .criterion = "a particle beyond the sheet, or lost",
+                          .run = [=](double at, bool) {
+                              return StabilityRun{
+                                  .scene = "tunnelling",
+                                  .assignments = {fmt::format("fluid.method={}", method), fmt::format("fluid.collision.walk={}", walk)},
+                                  .frame = at * voxel / speed,
+                                  .verdict = [=](Session& s) {
+                                      for (const vec4& x : readParticles(s.world()).position)
+                                          if (glm::dot(dvec3(x), up) < -2 * voxel) return true;
+                                      return false;
+                                  }};
+                          }});
+    return sweepAll(settings, sweeps);
+}
+
+// Blocks in one place, drawn together until so many particles are where one should be.
+Result<std::vector<EnvelopeFinding>> envelopeOfSpawning(const EnvelopeSettings& settings) {
+    const Result<SceneFile> scene = stabilityScene("spawning", {});
+    if (!scene) return scene.error();
+    const BlockParams& block = scene->fluid.blocks[0];
+    const dvec3 middle = 0.5 * dvec3(block.min + block.max);
+    std::vector<Sweep> sweeps;
+    for (const auto& [method, step] : {std::pair("wcsph", 0.0005), std::pair("pbf", 1.0 / 240), std::pair("dfsph", 1.0 / 480)})
+        sweeps.push_back({.row = "spawning",
+                          .method = method,
+                          .what = fmt::format("density at birth, steps of {:.3g} ms", 1000 * step),
+                          .unit = "",
+                          .predicted = 2,
+                          .least = 2,
+                          .most = 64,
+                          .criterion = "not finite, or lost",
+                          .run = [=](double at, bool) {
+                              return StabilityRun{.scene = "spawning",
+                                                  .assignments = {fmt::format("fluid.method={}", method)},
+                                                  .frame = step,
+                                                  .prepare = [=](Session& s) {
+                                                      return moveParticles(s.world(), [=](const dvec3& x) {
+                                                          return middle + (x - middle) * std::cbrt(2 / at);
+                                                      });
+                                                  }};
+                          }});
+    return sweepAll(settings, sweeps);
+}
+
+Result<std::vector<EnvelopeFinding>> envelopeOfCoupling(const EnvelopeSettings& settings) {
+    std::vector<Sweep> sweeps;
+    for (const auto& [method, step] : {std::pair("wcsph", 0.0002), std::pair("pbf", 1.0 / 240), std::pair("dfsph", 1.0 / 480)})
+        sweeps.push_back(
+            {.row = "coupling",
+             .method = method,
+             .what = fmt::format("water's density over the ball's, steps of {:.3g} ms", 1000 * step),
+             .unit = "",
+             .predicted = 2,
+             .least = 0.01,
+             .most = 100,
+             .criterion = "the ball faster than 3 m/s, or not finite, or lost",
+             .run = [method, step](double at, bool) {
+                 auto fast = std::make_shared<double>(0);
+                 return StabilityRun{
+                     .scene = "coupling",
+                     .assignments = {fmt::format("fluid.method={}", method), fmt::format("bodies.0.density={}", 1000 / at)},
+                     .frame = step,
+                     .fails = [fast](const Seen&) { return !(*fast < 3); },
+                     .each = [fast](Session& s) { *fast = std::max(*fast, double{glm::length(s.world().bodies()[0].velocity)}); }};
+             }});
+    return sweepAll(settings, sweeps);
+}
+
+}  // namespace rivulet

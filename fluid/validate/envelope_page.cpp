@@ -1,0 +1,137 @@
+// What the stability envelope writes into docs/: a table, a picture, and a page that reads both aloud.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "engine/core/json.h"
+#include "fluid/validate/envelope.h"
+#include "fluid/validate/physics_case.h"
+
+namespace rivulet {
+
+namespace {
+
+std::string inCsv(const std::string& text) {
+    std::string safe;
+    for (const char c : text) {
+        if (c == '"') safe += '"';
+        safe += c == '\n' ? ' ' : c;
+    }
+    return '"' + safe + '"';
+}
+
+std::string csvOf(std::span<const EnvelopeFinding> findings, const std::string& machine) {
+    std::string text = fmt::format(
+        "# Where methods fail: predicted and measured with fluid.limits off; what the limits make of it. {}\n"
+        "# An empty measured: nothing failed up to reached.\n"
+        "row,method,swept,unit,predicted,measured,reached,ratio,criterion,asked,finite,bounded,nothingLost,steps,notice\n",
+        machine);
+    for (const EnvelopeFinding& f : findings)
+        text += fmt::format("{},{},{},{},{:.5g},{},{:.5g},{:.4g},{},{:.5g},{},{},{},{},{}\n", f.row, f.method, inCsv(f.what), f.unit,
+                            f.predicted, f.measured ? fmt::format("{:.5g}", *f.measured) : "", f.reached, f.ratio(), inCsv(f.criterion),
+                            f.limited.asked, f.limited.finite, f.limited.bounded, f.limited.nothingLost, f.limited.steps,
+                            inCsv(f.limited.notice));
+    return text;
+}
+
+Plot plotOf(std::span<const EnvelopeFinding> findings) {
+    Plot plot{.title = "Where methods fail, limits off", .x = "predicted", .y = "measured", .curves = {}, .logX = true, .logY = true};
+    double low = 1e300, high = 0;
+    Curve none{"none up to here", false, {}};
+    std::map<std::string, size_t> curves;
+    for (const EnvelopeFinding& f : findings) {
+        const glm::dvec2 at(f.predicted, f.measured ? *f.measured : f.reached);
+        low = std::min({low, at.x, at.y});
+        high = std::max({high, at.x, at.y});
+        if (!f.measured) {
+            none.points.push_back(at);
+            continue;
+        }
+        const auto [known, added] = curves.try_emplace(f.row, plot.curves.size());
+        if (added) plot.curves.push_back({f.unit.empty() ? f.row : fmt::format("{}, {}", f.row, f.unit), false, {}});
+        plot.curves[known->second].points.push_back(at);
+    }
+    if (!none.points.empty()) plot.curves.push_back(none);
+    if (high > 0) plot.curves.push_back({"as predicted", true, {{low, low}, {high, high}}});
+    return plot;
+}
+
+std::string withUnit(double value, const std::string& unit) {
+    if (unit == "s") return fmt::format("{:.3g} ms", 1000 * value);
+    return unit.empty() ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
+}
+
+// How far from the predictor, in words.
+std::string verdictOf(const EnvelopeFinding& f) {
+    if (!f.measured) return fmt::format("never, up to {}", withUnit(f.reached, f.unit));
+    return fmt::format("{}, {:.2g} times that", withUnit(*f.measured, f.unit), f.ratio());
+}
+
+std::string limitsOf(const EnvelopeFinding::Limited& l) {
+    std::string text = l.holds() ? "holds" : "";
+    const auto lacks = [&text](bool is, const char* word) {
+        if (!is) text += fmt::format("{}{}", text.empty() ? "" : ", ", word);
+    };
+    lacks(l.finite, "not finite");
+    lacks(l.bounded, "fails");
+    lacks(l.nothingLost, "loses particles");
+    return text;
+}
+
+std::string pageOf(std::span<const EnvelopeFinding> findings, const std::string& machine, bool picture) {
+    std::string text = fmt::format(
+        "# Where methods fail\n\n"
+        "Written by the program ({}), from [stability.csv](stability.csv). Each row is a scene under `assets/stability`. With "
+        "`fluid.limits` "
+        "off a step is as long as asked for and no speed is limited; something is swept until the scene fails, and where it does stands "
+        "beside "
+        "where the literature says that its promise ends. Those are sufficient conditions: to hold a few times longer is usual, to fail "
+        "sooner has a reason, which is given. Then the limits are on, and the same scene is asked for twice what it failed at.\n\n",
+        machine);
+    if (picture) text += "![predicted and measured](stability.svg)\n\n";
+    size_t failed = 0, early = 0, hold = 0;
+    for (const EnvelopeFinding& f : findings) {
+        failed += f.measured ? 1 : 0;
+        early += f.measured && f.ratio() < 1 ? 1 : 0;
+        hold += f.limited.holds() ? 1 : 0;
+    }
+    text += fmt::format("Of {} sweeps {} found a failure, {} of them before it was predicted; with the limits on {} of {} hold.\n\n",
+                        findings.size(), failed, early, hold, findings.size());
+    for (const EnvelopeRow& row : envelope().rows) {
+        const auto of = [&row](const EnvelopeFinding& f) { return f.row == row.name; };
+        const auto first = std::find_if(findings.begin(), findings.end(), of);
+        if (first == findings.end()) continue;
+        std::string doc = row.doc;
+        doc[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(doc[0])));
+        text += fmt::format("## {}\n\n{}. Predictor: {}. Failure: {}.\n\n", row.name, doc, row.predictor, first->criterion);
+        if (row.remark[0] != '\0') text += fmt::format("{}\n\n", row.remark);
+        text +=
+            "| method | swept | predicted | failed, limits off | limits on | asked for | steps | it says |\n"
+            "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+        for (const EnvelopeFinding& f : findings)
+            if (of(f))
+                text +=
+                    fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", f.method, f.what, withUnit(f.predicted, f.unit),
+                                verdictOf(f), limitsOf(f.limited), withUnit(f.limited.asked, f.unit), f.limited.steps, f.limited.notice);
+        text += '\n';
+    }
+    text.pop_back();
+    return text;
+}
+
+}  // namespace
+
+Status writeEnvelope(const std::string& folder, std::span<const EnvelopeFinding> findings, const std::string& machine) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return failed(fmt::format("the folder {} cannot be made: {}", folder, error.message()));
+    if (Status wrote = writeFileAtomic(folder + "/stability.csv", csvOf(findings, machine)); !wrote) return wrote;
+    const Status drawn = drawPlot(plotOf(findings), folder + "/stability.svg");
+    if (Status wrote = writeFileAtomic(folder + "/stability.md", pageOf(findings, machine, static_cast<bool>(drawn))); !wrote) return wrote;
+    return drawn;
+}
+
+}  // namespace rivulet

@@ -189,7 +189,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSpawning(const EnvelopeSettings& 
                           .unit = "",
                           .predicted = 2,
                           .least = 2,
-                          .most = 64,
+                          .most = 16,
                           .criterion = "not finite, or lost",
                           .run = [=](double at, bool) {
                               return StabilityRun{.scene = "spawning",

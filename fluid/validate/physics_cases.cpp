@@ -14,12 +14,15 @@ constexpr PhysicsCase kCases[] = {
     {"dam_break", "front and height of a column that breaks: Martin and Moyce 1952, Koshizuka and Oka 1996",
      "fluid.spacing=0.0017859375; fluid.box.max=0.3429,0.15,0.00714375; fluid.blocks.0.max=0.05715,0.1143,0.00714375", runDamBreak},
     {"poiseuille", "flow between plates from rest: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runPoiseuille},
+    {"couette", "flow under a plate that starts to slide: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runCouette},
     {"taylor_green", "whirls without walls, Re = 100: how fast they die away",
      "fluid.spacing=0.025; fluid.box.max=1,1,0.2; fluid.blocks.0.max=1,1,0.2", runTaylorGreen},
     {"standing_wave", "period of the lowest mode, w^2 = g k tanh(k H), and the viscosity of its decay",
      "fluid.spacing=0.0166666667; fluid.box.max=1,0.8,0.0666666667; fluid.blocks.0.max=1,0.5,0.0666666667", runStandingWave},
     {"momentum", "two drops collide where nothing weighs anything: drift of momentum and angular momentum", "fluid.spacing=0.035",
      runMomentum},
+    {"floating", "boxes that float and sink: draught against Archimedes, impulse between water and boxes", "fluid.spacing=0.0125",
+     runFloating},
 };
 
 struct Half {

@@ -1,10 +1,4 @@
 // Bodies that float and bodies that stick, against Archimedes, Stokes and Rayleigh.
-//
-// What is under. Particles' centres lie within the water and a body's samples within the body, both by half a spacing: neither shows a
-// surface. So the water level is found from the tank: particles stand for spacing^3 each, less what they are compressed by, and
-//     level * area = water + what is under the level of the body,
-// which knows nothing of how particles lie at the top or beside the body. If the fluid kept too far off the body, or crept under its skin,
-// it would stand higher or lower there, and the body float elsewhere than this level says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,13 +6,13 @@
 #include <string>
 
 #include "fluid/sim/body_shapes.h"
+#include "fluid/validate/draught.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {
 namespace {
 
 struct Fluid {
-    double water = 0;  // m^3, less what is compressed
     std::vector<vec4> position, velocity;
 };
 Fluid fluidOf(const FluidWorld& world) {
@@ -30,36 +24,30 @@ Fluid fluidOf(const FluidWorld& world) {
         if (x[i].w >= 0) {
             f.position.push_back(x[i]);
             f.velocity.push_back(v[i]);
-            f.water += std::pow(double{view.spacing}, 3) / std::max(double{x[i].w}, 1.0);
         }
     return f;
 }
 
 // ---- Archimedes ----
 
-struct Floater {
+struct Dropped {
     const char* method;
     double ratio;  // its density over the water's
     bool ball = false;
 };
-void PrintTo(const Floater& f, std::ostream* out) { *out << f.method << (f.ball ? " ball " : " box ") << f.ratio; }
+void PrintTo(const Dropped& f, std::ostream* out) { *out << f.method << (f.ball ? " ball " : " box ") << f.ratio; }
 
-class Draught : public testing::TestWithParam<Floater> {};
-
-// The share of a shape that is under, `deep` (m) its lowest point below the level.
-double shareUnder(bool ball, double height, double deep) {
-    const double d = std::clamp(deep / height, 0.0, 1.0);
-    return ball ? d * d * (3 - 2 * d) : d;
-}
+class Draught : public testing::TestWithParam<Dropped> {};
 
 TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
-    const Floater& what = GetParam();
+    const Dropped& what = GetParam();
     const float s = 0.0125F;
     // A box half as dense as water that is as wide as high lies down: this one is half as wide again.
     const vec3 size = what.ball ? vec3(10 * s) : vec3(12 * s, 8 * s, 12 * s);
     const double height = double{size.y}, volume = what.ball ? M_PI / 6 * height * height * height : double{size.x * size.y * size.z};
+    Floater floater{height, volume, 0, what.ball};
     double draught = 0;
-    while (shareUnder(what.ball, height, draught) < what.ratio && draught < height) draught += 1.0e-5 * height;
+    while (floater.shareUnder(draught) < what.ratio && draught < height) draught += 1.0e-5 * height;
     FluidParams p;
     p.method = what.method;
     p.spacing = s;
@@ -86,10 +74,9 @@ TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
         world->step({.gravity = p.gravity}, 1.0 / 60);
         if (frame < kFrames - kLast) continue;
         const BodyState& b = world->bodies()[0];
-        const double keel = double{b.pose.position.y} - 0.5 * height, water = fluidOf(*world).water;
-        double top = water / area;
-        for (int k = 0; k < 50; ++k) top = (water + volume * shareUnder(what.ball, height, top - keel)) / area;
-        under += shareUnder(what.ball, height, top - keel) / kLast;
+        floater.keel = double{b.pose.position.y} - 0.5 * height;
+        const double top = waterLevel(waterVolume(fluidOf(*world).position, double{s}), area, std::span(&floater, 1));
+        under += floater.shareUnder(top - floater.keel) / kLast;
         tilt = std::max(tilt, 1 - double{(b.pose.rotation * vec3(0, 1, 0)).y});
         moved = std::max(moved, double{glm::length(b.velocity)});
     }
@@ -101,8 +88,8 @@ TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, Draught,
-                         testing::Values(Floater{"wcsph", 0.25}, Floater{"wcsph", 0.5}, Floater{"wcsph", 0.75}, Floater{"wcsph", 0.5, true},
-                                         Floater{"pbf", 0.5}, Floater{"dfsph", 0.5}),
+                         testing::Values(Dropped{"wcsph", 0.25}, Dropped{"wcsph", 0.5}, Dropped{"wcsph", 0.75}, Dropped{"wcsph", 0.5, true},
+                                         Dropped{"pbf", 0.5}, Dropped{"dfsph", 0.5}),
                          [](const auto& row) {
                              return std::string(row.param.method) + (row.param.ball ? "_ball_" : "_box_") +
                                     std::to_string(static_cast<int>(100 * row.param.ratio));

@@ -76,6 +76,7 @@ Result<Outcome> runTaylorGreen(const CaseSettings& settings);
 Result<Outcome> runStandingWave(const CaseSettings& settings);
 Result<Outcome> runMomentum(const CaseSettings& settings);
 Result<Outcome> runFloating(const CaseSettings& settings);
+Result<Outcome> runSpheric2(const CaseSettings& settings);
 
 // The first half second of the quick size, there and on the cpu: centre of mass, kinetic energy (of the most there was: water at rest has
 // next to none) and mean compression, each within 1 %.

@@ -23,6 +23,8 @@ constexpr PhysicsCase kCases[] = {
      runMomentum},
     {"floating", "boxes that float and sink: draught against Archimedes, impulse between water and boxes", "fluid.spacing=0.0125",
      runFloating},
+    {"spheric2", "a dam breaks over a box: pressures and heights against the record of Kleefsman et al. 2005",
+     "fluid.spacing=0.0454545455; duration=2", runSpheric2},
 };
 
 struct Half {

@@ -7,6 +7,7 @@
 
 #include "engine/core/json.h"
 #include "fluid/sim/cpu_kernels.h"
+#include "fluid/validate/draught.h"
 #include "fluid/validate/reference_data.h"
 #include "fluid/validate/trial.h"
 #include "fluid/validate/virial.h"
@@ -30,6 +31,12 @@ TEST(ReferenceData, IsWhatThePapersPrint) {
     EXPECT_NEAR((front.back().y - valueAt(front, 1.43)) / (3.33 - 1.43), 1.284, 1e-3);
     EXPECT_EQ(referenceCurve("martin_moyce_1952_height").size(), 17U);
     EXPECT_EQ(referenceCurve("koshizuka_oka_1996_front").back(), glm::dvec2(3.096, 3.624));
+    // A quarter of the peak of 11.2 kPa at 0.395 s; gauge 4 stands in the reservoir.
+    const std::vector<glm::dvec2> p1 = referenceCurve("kleefsman_2005", 0, 1), h4 = referenceCurve("kleefsman_2005", 0, 12);
+    EXPECT_LT(valueAt(p1, 0.39), 100);
+    EXPECT_NEAR(valueAt(p1, 0.395), 2800, 100);
+    EXPECT_NEAR(h4.front().y, 0.55, 0.005);
+    EXPECT_NEAR(h4.back().x, 6, 0.011);
     for (const ReferenceTable& table : referenceTables()) EXPECT_NE(table.text.find("doi:"), std::string_view::npos) << table.name;
 }
 
@@ -128,6 +135,23 @@ TEST(PhysicsCases, AStoppedTrialStops) {
     ASSERT_TRUE(outcome);
     EXPECT_EQ(asked, 3);
     EXPECT_TRUE(outcome->findings.empty());
+}
+
+TEST(Draught, TheLevelHoldsWaterAndWhatIsUnder) {
+    // Half a cubic metre of water on a square metre, a box of 0.5 x 0.4 x 0.5 m with its keel at 0.3 m: the level is y where
+    // 0.5 + 0.25 (y - 0.3) = y.
+    const Floater box{0.4, 0.1, 0.3};
+    const double level = (0.5 - 0.25 * 0.3) / 0.75;
+    EXPECT_NEAR(waterLevel(0.5, 1, std::span(&box, 1)), level, 1e-12);
+    EXPECT_NEAR(box.shareUnder(level - box.keel), (level - 0.3) / 0.4, 1e-12);
+    const Floater both[] = {{0.4, 0.1, 0.9}, {0.1, 0.01, 0.0}};
+    EXPECT_NEAR(waterLevel(0.5, 1, both), 0.51, 1e-12) << "one is out of it, one is under";
+    // A ball: the cap's volume is pi d^2 (3 r - d) / 3.
+    const Floater ball{2, 4.0 / 3 * M_PI, 0, true};
+    EXPECT_NEAR(ball.shareUnder(0.5), M_PI * 0.25 * 2.5 / 3 / ball.volume, 1e-12);
+    // Particles that are pressed together take less room; a free slot takes none.
+    const vec4 particles[] = {{0, 0, 0, 1}, {0, 0, 0, 1.25}, {0, 0, 0, 0.5}, {0, 0, 0, -1}};
+    EXPECT_NEAR(waterVolume(particles, 0.5), 0.125 * 2.8, 1e-7);
 }
 
 TEST(PhysicsCases, AFindingWithoutToleranceIsOnlyReported) {

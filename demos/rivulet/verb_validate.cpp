@@ -42,6 +42,10 @@ Json::Value jsonOf(const PhysicsCase& row, const char* backend, const Outcome& o
 }
 
 void print(const PhysicsCase& row, const Outcome& o) {
+    if (!o.refused.empty()) {
+        fmt::print("{}, {}: refused: {}\n", row.name, o.method, o.refused);
+        return;
+    }
     fmt::print("{}, {}: {} particles, {:.3g} s and {:.3g} sweeps per simulated second, {:.3g} % compressed\n", row.name, o.method,
                o.particles, o.wallPerSecond, o.sweepsPerSecond, 100 * o.compression);
     for (const Finding& f : o.findings)
@@ -79,7 +83,7 @@ int validateVerb(const Arguments& arguments) {
         list);
     reader.positional("CASE", "which cases; all of them when none is named", request.names);
     reader.flag("--quick", "each at about 8,000 particles", request.quick);
-    reader.option("--method", "M", "one method only; else dfsph, pbf and wcsph", request.method);
+    reader.option("--method", "M", "one method only; else dfsph, pbf, wcsph and wcsph_thesis", request.method);
     reader.option("--backend", "B", "cpu, gl or cl", request.backend);
     reader.option("--json", "FILE.json", "also write the figures to a file", request.json);
     reader.option("--pictures", "DIR", "draw each case, measured against reference, as SVG into this folder", request.pictures);
@@ -88,7 +92,7 @@ int validateVerb(const Arguments& arguments) {
     if (Status sense = checkRequest(request); !sense) return report(sense.error());
 
     std::vector<std::string> names = request.names.empty() ? physicsCases().names() : request.names, methodNames = {request.method};
-    if (request.method.empty()) methodNames = {"dfsph", "pbf", "wcsph"};
+    if (request.method.empty()) methodNames = {"dfsph", "pbf", "wcsph", "wcsph_thesis"};
 
     const AskedDevice asked = askedDevice(request.backend, stderrLog());
     const std::unique_ptr<Device>& device = asked.device;
@@ -114,7 +118,7 @@ int validateVerb(const Arguments& arguments) {
                 progress.show(share);
                 return !graceful.interrupted();
             };
-            Result<Outcome> outcome = onCpu ? row.run(settings) : compareWithCpu(row, settings, *cpu);
+            Result<Outcome> outcome = runCase(row, settings, cpu.get());
             if (!outcome) return report(outcome.error());
             if (graceful.interrupted()) return kInterrupted;
             for (Finding& f : outcome->findings) {

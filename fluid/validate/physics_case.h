@@ -40,8 +40,9 @@ struct Plot {
 struct Outcome {
     std::vector<Finding> findings;
     Plot plot;
-    std::string method;  // that ran
-    double spacing = 0;  // m
+    std::string method;        // that ran
+    std::string refused = {};  // the sentence with which the method refused the case; empty: it ran
+    double spacing = 0;        // m
     uint32_t particles = 0;
     double wallPerSecond = 0;    // s on the wall per simulated second, steps alone
     double sweepsPerSecond = 0;  // over all neighbours, per simulated second: cost whatever the machine
@@ -77,6 +78,10 @@ Result<Outcome> runStandingWave(const CaseSettings& settings);
 Result<Outcome> runMomentum(const CaseSettings& settings);
 Result<Outcome> runFloating(const CaseSettings& settings);
 Result<Outcome> runSpheric2(const CaseSettings& settings);
+
+// The case, or what a method says that cannot do it and where dfsph could: then one finding, which says so and is not judged. `cpu`:
+// another device's run is compared with it, see compareWithCpu; null: the case is measured. Error: as PhysicsCase::run.
+Result<Outcome> runCase(const PhysicsCase& row, const CaseSettings& settings, Device* cpu = nullptr);
 
 // The first half second of the quick size, there and on the cpu: centre of mass, kinetic energy (of the most there was: water at rest has
 // next to none) and mean compression, each within 1 %.

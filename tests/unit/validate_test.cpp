@@ -137,6 +137,29 @@ TEST(PhysicsCases, AStoppedTrialStops) {
     EXPECT_TRUE(outcome->findings.empty());
 }
 
+TEST(PhysicsCases, WhatAMethodCannotDoIsReportedAndWhatMakesNoSenseIsAnError) {
+    auto device = cpu();
+    CaseSettings settings;
+    settings.device = device.get();
+    settings.quick = true;
+    settings.method = "wcsph_thesis";
+    const PhysicsCase& row = *physicsCases().find("couette");
+    const Result<Outcome> refused = runCase(row, settings);
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->method, "wcsph_thesis");
+    ASSERT_EQ(refused->findings.size(), 1U);
+    EXPECT_NE(refused->findings[0].what.find("periodic"), std::string::npos) << refused->findings[0].what;
+    EXPECT_FALSE(refused->findings[0].tolerance);
+    EXPECT_TRUE(refused->findings[0].pass());
+    settings.assignments = {"fluid.spacing=-1"};
+    EXPECT_FALSE(runCase(row, settings));
+    settings.assignments = {"colliders.0.mesh=meshes/none.obj"};
+    EXPECT_FALSE(runCase(row, settings)) << "nobody can do it";
+    settings.assignments = {"fluid.kernel=cubic_spline"};
+    settings.method = "dfsph";
+    EXPECT_FALSE(runCase(row, settings)) << "the judged method has to do it";
+}
+
 TEST(Draught, TheLevelHoldsWaterAndWhatIsUnder) {
     // Half a cubic metre of water on a square metre, a box of 0.5 x 0.4 x 0.5 m with its keel at 0.3 m: the level is y where
     // 0.5 + 0.25 (y - 0.3) = y.

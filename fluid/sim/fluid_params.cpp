@@ -94,8 +94,7 @@ void ForcesParams::visit(ParamVisitor& v) {
              1.0e-5, 0.5, kLog},
             viscosityTolerance);
     v.value({"viscosityIterations", "", "of the implicit solver in a step, at most", 1, 1000, kLog}, viscosityIterations);
-    v.value({"tension", "N/m",
-             "surface tension (Akinci et al. 2013): 0 = none; water 0.072; steps are kept shorter than capillary waves need", 0, 100},
+    v.value({"tension", "N/m", "surface tension: 0 = none; water 0.072; steps are kept shorter than capillary waves need", 0, 100},
             tension);
     v.value(
         {"adhesion", "N/m", "how walls and bodies pull the fluid, in the measure of tension: about the same value makes it stick", 0, 100},

@@ -1,4 +1,4 @@
-// Forces at the fluid's surface: normals, the thesis's tension, Akinci's, the air; and vorticity confinement.
+// Forces at the fluid's surface: normals, the thesis's tension, a stress along the surface, the air; and vorticity confinement.
 #pragma once
 
 #include "fluid/sim/force.h"

@@ -8,7 +8,8 @@ Table<ForceRow> forces() {
     static constexpr ForceRow rows[] = {
         {"normals", "normals of the surface, to look at", normalsOn, makeNormals},
         {"thesis_tension", "the thesis's surface tension (8) from its normals (7)", thesisTensionOn, makeThesisTension},
-        {"tension", "surface tension by cohesion and normals, adhesion to walls and bodies (Akinci et al. 2013)", cohesionOn, makeCohesion},
+        {"tension", "surface tension as a stress along the surface, adhesion to walls and bodies (Akinci et al. 2013)", cohesionOn,
+         makeCohesion},
         {"vorticity", "vorticity confinement (Macklin and Mueller 2013)", vorticityOn, makeVorticity},
         {"air", "drag of the air and push of the wind on what is open to them (Gissler et al. 2017, simplified)", airOn, makeAir},
         // Last: solved for implicitly it wants to know where all the others lead.

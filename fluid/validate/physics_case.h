@@ -78,6 +78,7 @@ Result<Outcome> runStandingWave(const CaseSettings& settings);
 Result<Outcome> runMomentum(const CaseSettings& settings);
 Result<Outcome> runFloating(const CaseSettings& settings);
 Result<Outcome> runSpheric2(const CaseSettings& settings);
+Result<Outcome> runTension(const CaseSettings& settings);
 
 // The case, or what a method says that cannot do it and where dfsph could: then one finding, which says so and is not judged. `cpu`:
 // another device's run is compared with it, see compareWithCpu; null: the case is measured. Error: as PhysicsCase::run.

@@ -25,6 +25,8 @@ constexpr PhysicsCase kCases[] = {
      runFloating},
     {"spheric2", "a dam breaks over a box: pressures and heights against the record of Kleefsman et al. 2005",
      "fluid.spacing=0.0454545455; duration=2", runSpheric2},
+    {"tension", "drops that hang: pressure inside against 2 sigma / R, and how they swing against Lamb 1932", "fluid.spacing=0.0025",
+     runTension},
 };
 
 struct Half {

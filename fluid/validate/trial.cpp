@@ -28,6 +28,16 @@ Result<Trial> Trial::open(const char* name, const CaseSettings& settings) {
 }
 
 Status Trial::setVelocities(const std::function<dvec3(const dvec3&)>& at) {
+    return change([&](vec4& x, vec4& v) { v = vec4(vec3(at(dvec3(x))), v.w); });
+}
+
+Status Trial::keep(const std::function<bool(const dvec3&)>& where) {
+    return change([&](vec4& x, vec4&) {
+        if (!where(dvec3(x))) x.w = -1;
+    });
+}
+
+Status Trial::change(const std::function<void(vec4& position, vec4& velocity)>& each) {
     FluidWorld& w = world();
     if (Status can = w.savable(); !can) return can;
     WorldState state;
@@ -37,7 +47,7 @@ Status Trial::setVelocities(const std::function<dvec3(const dvec3&)>& at) {
     if (!x) return x.error();
     if (!v) return v.error();
     for (size_t i = 0; i < slots; ++i)
-        if (!((*x)[i].w < 0)) (*v)[i] = vec4(vec3(at(dvec3((*x)[i]))), (*v)[i].w);
+        if (!((*x)[i].w < 0)) each((*x)[i], (*v)[i]);
     WorldState changed;
     for (const auto& [name, bytes] : state.sections()) changed.putBytes(name, bytes);
     changed.put<vec4>("particles.position", *x);

@@ -21,6 +21,8 @@ class Trial {
 
     // Gives each particle the velocity (m/s) of its place.
     Status setVelocities(const std::function<dvec3(const dvec3&)>& at);
+    // Leaves out the particles of other places.
+    Status keep(const std::function<bool(const dvec3&)>& where);
     // Frames of `frame` s until the scene's duration, `each` after every one. false: it was stopped.
     bool run(double frame, const std::function<void()>& each);
     HostParticles particles() const { return readParticles(session_->world()); }
@@ -30,6 +32,7 @@ class Trial {
 
   private:
     Trial() = default;
+    Status change(const std::function<void(vec4& position, vec4& velocity)>& each);
     std::unique_ptr<Session> session_;
     std::function<bool(double)> goOn_;
     double wall_ = 0, compression_ = 0;

@@ -1,0 +1,125 @@
+// Drops where nothing weighs anything: the pressure in them is 2 sigma / R (Laplace), and pulled long they swing at
+// w^2 = n (n - 1) (n + 2) sigma / (rho R^3), n = 2 (Lamb 1932).
+//
+// The force of the surface (fluid/cohesion) acts at the surface alone: inside a drop at rest the method's own pressure is all there is, and
+// a gauge there reads what the surface presses with.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fluid/validate/trial.h"
+#include "fluid/validate/virial.h"
+
+namespace rivulet {
+
+namespace {
+
+struct Drop {
+    double radius = 0;  // m, of a ball of its volume
+    double spacing = 0;
+};
+
+// The block of the scene, which is a cube about the origin, becomes the ball in it.
+Result<Trial> openDrop(const CaseSettings& settings, const Drop& wanted, std::vector<std::string> assignments, Drop& drop) {
+    // Steps of a quarter of what is stable: the pressure answers to a surface that has moved.
+    const double substeps = 32 * std::pow(0.0025 / wanted.spacing, 1.5);
+    assignments.push_back(fmt::format("fluid.spacing={:.9g}", wanted.spacing));
+    assignments.push_back(fmt::format("fluid.blocks.0.min=-{0:.9g},-{0:.9g},-{0:.9g}", wanted.radius));
+    assignments.push_back(fmt::format("fluid.blocks.0.max={0:.9g},{0:.9g},{0:.9g}", wanted.radius));
+    assignments.push_back(fmt::format("fluid.dfsph.minSubsteps={:.0f}", std::ceil(substeps)));
+    CaseSettings with = settings;
+    with.assignments.insert(with.assignments.begin(), assignments.begin(), assignments.end());
+    Result<Trial> trial = Trial::open("tension", with);
+    if (!trial) return trial.error();
+    const FluidParams& p = trial->params();
+    const double reach = p.blocks[0].max.x;
+    if (Status kept = trial->keep([&](const dvec3& x) { return glm::length(x) < reach; }); !kept) return kept.error();
+    drop.spacing = p.spacing;
+    const double volume = trial->world().stats().particles * std::pow(drop.spacing, 3);
+    drop.radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
+    return trial;
+}
+
+// Mean of the virial pressure within half the radius, Pa, over the second half of the run.
+std::optional<double> pressureInside(Trial& trial, const Drop& drop, Curve& curve) {
+    double sum = 0, count = 0;
+    const double late = 0.5 * double{trial.scene().duration};
+    const bool done = trial.run(1.0 / 60, [&] {
+        const ParticleView view = trial.world().particles();
+        const std::vector<vec4> x = trial.world().device().readAll<vec4>(*view.position, view.count);
+        const std::vector<double> virial = virialPressures(x, trial.world().pressures(), trial.params());
+        double now = 0, inside = 0;
+        for (size_t i = 0; i < x.size(); ++i) {
+            if (x[i].w < 0 || double{glm::length(vec3(x[i]))} > 0.5 * drop.radius) continue;
+            now += virial[i];
+            inside += 1;
+        }
+        curve.points.emplace_back(trial.time(), now / std::max(inside, 1.0));
+        if (trial.time() < late) return;
+        sum += now;
+        count += inside;
+    });
+    return done ? std::optional(sum / std::max(count, 1.0)) : std::nullopt;
+}
+
+}  // namespace
+
+Result<Outcome> runTension(const CaseSettings& settings) {
+    struct Run {
+        double radius;  // m
+        int across;     // spacings in it
+    };
+    // Three radii, and the middle one at two spacings. The quick size leaves out what is large.
+    const std::vector<Run> runs = settings.quick ? std::vector<Run>{{0.02, 8}, {0.02, 10}, {0.025, 10}}
+                                                 : std::vector<Run>{{0.015, 9}, {0.02, 8}, {0.02, 12}, {0.03, 12}};
+    std::vector<Finding> findings;
+    Plot plot{"Pressure in drops", "time, s", "pressure, Pa", {}};
+    for (const Run& run : runs) {
+        Drop drop;
+        Result<Trial> trial = openDrop(settings, {run.radius, run.radius / run.across}, {}, drop);
+        if (!trial) return trial.error();
+        Curve curve{fmt::format("R = {:.3g} mm, {:.3g} spacings", 1000 * drop.radius, drop.radius / drop.spacing), true, {}};
+        const std::optional<double> inside = pressureInside(*trial, drop, curve);
+        if (!inside) return trial->outcome({}, {});
+        const double expected = 2 * double{trial->params().forces.tension} / drop.radius;
+        findings.push_back(
+            {fmt::format("pressure in a drop, R = {:.3g} mm = {:.3g} spacings", 1000 * drop.radius, drop.radius / drop.spacing), "Pa",
+             *inside, expected, std::abs(*inside / expected - 1), 0.1});
+        plot.curves.push_back(curve);
+        plot.curves.push_back({"2 sigma / R", true, {{0, expected}, {trial->time(), expected}}});
+    }
+    // Pulled long and let go.
+    Drop drop;
+    Result<Trial> trial = openDrop(settings, {0.02, 0.0025}, {"fluid.viscosity=3e-5", "duration=1.1"}, drop);
+    if (!trial) return trial.error();
+    const FluidParams& p = trial->params();
+    const double w = std::sqrt(8 * double{p.forces.tension} / (double{p.restDensity} * std::pow(drop.radius, 3)));
+    const auto mode = [](const dvec3& x) { return dvec3(-0.5 * x.x, -0.5 * x.y, x.z); };
+    // A tenth of its radius longer at the first turn.
+    if (Status set = trial->setVelocities([&](const dvec3& x) { return 0.1 * w * mode(x); }); !set) return set.error();
+    std::vector<glm::dvec2> swing;
+    const bool done = trial->run(1.0 / 120, [&] {
+        const HostParticles all = trial->particles();
+        double along = 0, whole = 0;
+        for (size_t i = 0; i < all.position.size(); ++i) {
+            const dvec3 m = mode(dvec3(all.position[i]));
+            along += glm::dot(m, dvec3(all.velocity[i]));
+            whole += glm::dot(m, m);
+        }
+        swing.emplace_back(trial->time(), along / whole / (0.1 * w));
+    });
+    if (!done) return trial->outcome({}, {});
+    std::vector<double> zeros;
+    for (size_t i = 1; i < swing.size(); ++i) {
+        const glm::dvec2 a = swing[i - 1], c = swing[i];
+        if (a.y * c.y <= 0 && a.y != c.y) zeros.push_back(a.x + (c.x - a.x) * a.y / (a.y - c.y));
+    }
+    const double measured =
+        zeros.size() > 1 ? std::numbers::pi * static_cast<double>(zeros.size() - 1) / (zeros.back() - zeros.front()) : 0;
+    findings.push_back({fmt::format("w of the second mode, R = {:.3g} spacings", drop.radius / drop.spacing), "1/s", measured, w,
+                        std::abs(measured / w - 1), 0.1});
+    return trial->outcome(findings, plot);
+}
+
+}  // namespace rivulet

@@ -18,6 +18,9 @@ constexpr bool kFixed = true;
 constexpr double kCatchUp = 1.1;
 constexpr double kLoose = 1.01;  // of a jet's lattice
 
+double latticeEdge(float spacing) { return kLoose * std::pow(2.0, 1.0 / 6) * double{spacing}; }
+double layerGap(float spacing) { return std::sqrt(2.0 / 3) * latticeEdge(spacing); }
+
 double openingArea(const EmitterParams& p) { return kPiD * double{p.radius} * double{p.radius}; }
 double nozzleSpeed(const EmitterParams& p) { return p.speed > 0 ? double{p.speed} : 1.0e-3 * double{p.litresPerSecond} / openingArea(p); }
 
@@ -84,6 +87,12 @@ std::string contradiction(const EmitterParams& p) {
     return "";
 }
 
+double layerOf(const EmitterParams& p, float spacing) {
+    if (p.shape != "nozzle" || !(p.litresPerSecond > 0)) return 0;
+    const double sideways = 1.0e-3 * double{p.litresPerSecond} / nozzleSpeed(p);  // m^2, of the jet
+    return std::max(std::round(sideways * layerGap(spacing) / std::pow(double{spacing}, 3)), 1.0);
+}
+
 EmitterFeed::EmitterFeed(const Emitter& emitter, uint32_t index, float spacing) : emitter_(emitter), index_(index), spacing_(spacing) {
     double sum = 0;
     for (size_t t = 0; t + 2 < emitter_.triangles.size(); t += 3) {
@@ -110,10 +119,10 @@ void EmitterFeed::layOut() {
     const EmitterParams& p = emitter_.params;
     speed_ = p.speed;
     if (p.shape != "nozzle" || !(p.litresPerSecond > 0)) return;
-    const double s = spacing_, a = kLoose * std::pow(2.0, 1.0 / 6) * s, gap = std::sqrt(2.0 / 3) * a, v = nozzleSpeed(p);
+    const double s = spacing_, a = latticeEdge(spacing_), v = nozzleSpeed(p);
     speed_ = static_cast<float>(v);
     const double sideways = 1.0e-3 * double{p.litresPerSecond} / v;  // m^2, of the jet
-    const auto n = static_cast<size_t>(std::max(std::round(sideways * gap / (s * s * s)), 1.0));
+    const auto n = static_cast<size_t>(layerOf(p, spacing_));
     const auto [u, w] = across(glm::normalize(p.direction));
     const int reach = static_cast<int>(std::ceil(std::sqrt(sideways / kPiD) / (0.8 * a))) + 2;
     for (int layer = 0; layer < 2; ++layer) {

@@ -57,6 +57,9 @@ double volumeAfter(const EmitterParams& params, double seconds);
 // "", or why it cannot be: a nozzle too narrow for its rate at its speed, a direction without length.
 std::string contradiction(const EmitterParams& params);
 
+// Particles that a nozzle lets out side by side; 0 of another shape.
+double layerOf(const EmitterParams& params, float spacing);
+
 // Makes an emitter's candidates, and keeps its accounts: every particle that is due is offered until it is taken.
 class EmitterFeed {
   public:

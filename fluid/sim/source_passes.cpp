@@ -19,10 +19,15 @@ constexpr float kNearest = 0.8F;             // spacings
 // The density ratio that a new particle may have, and give its neighbours: beyond it they would be pushed away with force.
 constexpr float kCrowded = 1.01F;
 
-Status check(const Sources& sources) {
+Status check(const Sources& sources, float spacing) {
     for (size_t k = 0; k < sources.emitters.size(); ++k) {
         const Emitter& e = sources.emitters[k];
         if (const std::string wrong = contradiction(e.params); !wrong.empty()) return badInput(fmt::format("emitters[{}].{}", k, wrong));
+        // They are laid out as one layer, and that would take all the memory there is.
+        if (const double layer = layerOf(e.params, spacing); layer > kMostCandidates)
+            return badInput(fmt::format(
+                "emitters[{}] lets {:.3g} particles out side by side, there may be {}: narrow its radius, make it faster, or let less out",
+                k, layer, kMostCandidates));
         if (!e.params.liquid.empty() && liquids().find(e.params.liquid) == nullptr)
             return badInput(fmt::format("emitters[{}].liquid '{}' is not a liquid; there are {}", k, e.params.liquid,
                                         fmt::join(liquids().names(), ", ")));
@@ -33,7 +38,7 @@ Status check(const Sources& sources) {
 }  // namespace
 
 Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources, const FluidParams& params, bool matter, bool absorption) {
-    if (Status s = check(sources); !s) return s.error();
+    if (Status s = check(sources, params.spacing); !s) return s.error();
     for (size_t k = 0; k < sources.emitters.size(); ++k)
         if (sources.emitters[k].params.shape == "mesh" && sources.emitters[k].triangles.size() < 3)
             return badInput(fmt::format("emitters[{}] has a mesh without triangles", k));
@@ -99,7 +104,7 @@ void SourcePasses::writeSinks(const std::vector<SinkParams>& sinks) {
 Status SourcePasses::set(const Sources& sources) {
     if (sources.emitters.size() != feeds_.size() || sources.sinks.size() != sinkCount_)
         return badInput("emitters and sinks were added or taken away: that needs a new world");
-    if (Status s = check(sources); !s) return s;
+    if (Status s = check(sources, spacing_); !s) return s;
     for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].take(sources.emitters[k].params);
     writeSinks(sources.sinks);
     return ok();

@@ -73,6 +73,17 @@ Result<SceneBody> bodyOf(const BodyParams& params, const std::string& folder, fl
     const Transform placed{params.position, params.rotation, 1.0F};
     if (params.shape == "box" || params.shape == "sphere") {
         const bool box = params.shape == "box";
+        // As many as a mesh may have (body_shapes.cpp): more would take all the memory there is.
+        constexpr double kMostSamples = 1.0e6;
+        const dvec3 size(params.size);
+        const double area =
+            box ? 2 * (size.x * size.y + size.y * size.z + size.z * size.x) : 4 * double{kPi} * params.radius * params.radius;
+        const double samples = area / (double{spacing} * spacing);
+        if (samples > kMostSamples)
+            return badInput(
+                fmt::format("its surface would need {:.3g} samples at a spacing of {} m, there may be {:.0f}: make it smaller, or "
+                            "fluid.spacing larger",
+                            samples, spacing, kMostSamples));
         shape = box ? boxShape(params.size, density, spacing) : sphereShape(params.radius, density, spacing);
         made.form.kind = box ? BodyForm::Kind::box : BodyForm::Kind::sphere;
         made.form.size = params.size;

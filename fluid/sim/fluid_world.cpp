@@ -15,7 +15,6 @@ namespace {
 
 // GPU figures come this many frames late at most: speeds may have grown by gravity since.
 constexpr double kLateFrames = 3;
-
 // m/s, where speeds have no limit: its square is still a float.
 constexpr float kAnySpeed = 1.0e18F;
 
@@ -65,11 +64,12 @@ float FluidWorld::Impl::fastestFall() const {
 
 // No water of this scene is faster, m/s: ten times what a fall across the whole box, walls, wind, a skin or its own start give, or twice
 // the speed of sound. Where something goes wrong, speeds would else grow as steps shrink, and steps shrink as speeds grow.
-float FluidWorld::Impl::fastestEver() const {
+float FluidWorld::Impl::fastestPossible() const {
     const float fall = std::sqrt(2.0F * glm::length(gravity) * glm::length(params.box.max - params.box.min));
     const float skin = std::sqrt((params.forces.tension + params.forces.adhesion) / (params.restDensity * params.spacing));
     const float wind = params.forces.airDrag > 0 ? glm::length(params.forces.wind) : 0.0F;
-    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), bodies.fastest(), wind, skin}) + fastestFall());
+    const float thrown = time == 0 ? static_cast<float>(bodies.fastest()) : 0.0F;  // later it may be what has gone wrong
+    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), thrown, wind, skin}) + fastestFall());
     return std::max(most, 2.0F * method->soundSpeed(params, fastestFall()));
 }
 
@@ -161,7 +161,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
 // `from`, `to`: the shares of the frame's time at which it begins and ends.
 void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
-    step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), fastestEver()) : kAnySpeed;
+    step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), fastestEver) : kAnySpeed;
     bool built = false;
     StepContext context{.device = *device,
                         .fluid = params,
@@ -292,6 +292,8 @@ void FluidWorld::Impl::fillStep() {
     step.planeCount = solids.planeCount();
     grid->fill(step);
     method->fill(p, fastestFall(), step);
+    // What it was driven to under other params it keeps for a while, and that is no fault.
+    fastestEver = std::max(fastestEver, fastestPossible());
 }
 
 // Steps `length` s on, from `begin` s after the start of a frame whose solids need `span` s for their way. Returns how far it came:

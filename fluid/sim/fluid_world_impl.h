@@ -64,17 +64,19 @@ struct FluidWorld::Impl {
     double dtMin = 0, dtMax = 0;
     float fastestWall = 0;   // m/s, of moving solids, lately
     float fastestStart = 0;  // m/s, of particles as they were put in, or taken up from a saved state
+    float fastestEver = 0;   // m/s, the largest fastestPossible() since t = 0
     bool budgetSaid = false;
     int lastPiece = 0;  // substeps
 
     Status prepare();
+    Status checkPrecision() const;
     void fillStart();
     Status findSlots();
     void findLiquids();
     void writeStart();
     void gatherColours();
     float fastestFall() const;
-    float fastestEver() const;
+    float fastestPossible() const;
     void warn();
     StepLimit stepLimit(double frameSeconds) const;
     void fillStep();

@@ -57,6 +57,7 @@ Status FluidWorld::Impl::prepare() {
     Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
     if (!made) return made.error();
     method = std::move(*made);
+    if (Status s = checkPrecision(); !s) return s;
     for (const ForceRow& force : forces().rows) forcePasses.push_back({&force, nullptr});
 
     Result<NeighborGrid> newGrid = NeighborGrid::create(*device, Bounds{params.box.min, params.box.max}, h, count, traits);
@@ -82,6 +83,27 @@ Status FluidWorld::Impl::prepare() {
     if (count == 0) log.notice("the scene has no particles");
     writeStart();
     return ok();
+}
+
+// Factors of the smoothing kernels go with the eighth or ninth power of the support radius: those of a very small one are no floats.
+Status FluidWorld::Impl::checkPrecision() const {
+    const auto fits = [this](float spacing) {
+        FluidParams p = params;
+        p.spacing = spacing;
+        StepParams s{};
+        s.h = p.supportSpacings * spacing;
+        s.invH = 1.0F / s.h;
+        s.contact = 0.5F * spacing;
+        method->fill(p, 1.0F, s);
+        return std::isfinite(s.kernelK) && std::isfinite(s.gradientK);
+    };
+    float least = params.spacing;
+    while (!fits(least)) least *= 1.1F;
+    if (least == params.spacing) return ok();
+    return badInput(
+        fmt::format("fluid.spacing is {} m, too fine for single precision with method {} and a reach of {} spacings: use at "
+                    "least {:.2g} m",
+                    params.spacing, params.method, params.supportSpacings, 1.1F * least));
 }
 
 // The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
@@ -178,6 +200,7 @@ void FluidWorld::Impl::writeStart() {
     time = dropped = 0;
     frame = 0;
     dtMin = dtMax = 0;
+    fastestEver = 0;
     budgetSaid = false;
     pace.reset();
     drawn.forget();

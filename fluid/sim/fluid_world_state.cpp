@@ -27,6 +27,7 @@ void FluidWorld::save(WorldState& state) {
                               w.dtMax,
                               f.maxSpeed,
                               w.fastestWall,
+                              w.fastestEver,
                               static_cast<double>(w.frame),
                               w.params.origin.x,
                               w.params.origin.y,
@@ -48,11 +49,11 @@ Status FluidWorld::restore(WorldState& state) {
     Result<std::string> params = state.takeText("world.params");
     if (!params) return params.error();
     if (Status same = sameFixedValues(*params, fixedValues([&w](ParamVisitor& v) { w.params.visit(v); })); !same) return same;
-    Result<std::vector<double>> numbers = state.take<double>("world.numbers", 11);
+    Result<std::vector<double>> numbers = state.take<double>("world.numbers", 12);
     if (!numbers) return numbers.error();
     const std::vector<double>& n = *numbers;
     if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
-        std::any_of(n.begin(), n.begin() + 8, [](double v) { return v < 0; }))
+        std::any_of(n.begin(), n.begin() + 9, [](double v) { return v < 0; }))
         return badInput("the saved state's numbers make no sense: save it again");
     Result<std::string> limited = state.takeText("world.limited");
     if (!limited) return limited.error();
@@ -88,8 +89,9 @@ Status FluidWorld::restore(WorldState& state) {
     for (const vec4& v : saved->velocity)
         if (isFinite(vec3(v))) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(v)));
     w.fastestWall = static_cast<float>(n[6]);
-    w.frame = static_cast<uint64_t>(n[7]);
-    w.params.origin = dvec3(n[8], n[9], n[10]);
+    w.fastestEver = static_cast<float>(n[7]);
+    w.frame = static_cast<uint64_t>(n[8]);
+    w.params.origin = dvec3(n[9], n[10], n[11]);
     FluidStats& f = *w.figures;
     const double volume = std::pow(double{w.params.spacing}, 3);
     f.frame = w.frame;

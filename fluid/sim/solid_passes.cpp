@@ -108,7 +108,8 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         bool wanted;
     };
     s.walled_ = boxWalls || s.any();
-    const bool thesis = collision.walk == "thesis", still = s.static_.field != nullptr;
+    s.thesis_ = collision.walk == "thesis";
+    const bool thesis = s.thesis_, still = s.static_.field != nullptr;
     const auto collide = [&](const char* motion) {
         std::vector<Define> d;
         if (*motion != 0) d.push_back({motion, "1"});
@@ -121,7 +122,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
           Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
           Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
           Wanted{&s.frictionMoving_, "fluid/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
-          Wanted{&s.walls_, "fluid/walls", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.walls_, "fluid/walls", {}, !s.rigid_.empty() || !s.deforming_.empty() || (still && thesis)},
           Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.collide_, "fluid/collide", collide(""), still},
           Wanted{&s.collideRigid_, "fluid/collide", collide("MOVING"), !s.rigid_.empty()},
@@ -429,8 +430,10 @@ void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Part
         device_->run(collideRigid_, m.motion, {from, to, velocity, start, &m.on.bits, &m.on.distance, &m.on.normal}, n);
     if (!rigid_.empty() || !deforming_.empty()) device_->run(walls_, step, {start, &planes_, to, velocity}, n);
     // Last: what stands still is never entered, whatever squeezes.
-    if (static_.field != nullptr)
-        device_->run(collide_, block_, {from, to, velocity, start, &static_.bits, &static_.distance, &static_.normal}, n);
+    if (static_.field == nullptr) return;
+    device_->run(collide_, block_, {from, to, velocity, start, &static_.bits, &static_.distance, &static_.normal}, n);
+    // The thesis's way back by a voxel asks nothing of the box: a mesh beside a wall would put particles beyond it, and they would be lost.
+    if (thesis_) device_->run(walls_, step, {start, &planes_, to, velocity}, n);
 }
 
 }  // namespace rivulet

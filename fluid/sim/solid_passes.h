@@ -95,7 +95,8 @@ class SolidPasses {
     Surface otherwise_;
     bool surfacesChanged_ = true;
     Buffer planes_;
-    bool walled_ = true;
+    bool walled_ = true;   // the box or solids
+    bool thesis_ = false;  // collision.walk
     Kernel boundary_, friction_, frictionMoving_, adhesion_, collide_, walls_, boundaryMoving_, collideRigid_, collideDeforming_;
     Field static_;
     FieldParams block_{};

@@ -75,10 +75,9 @@ Result<SceneBody> bodyOf(const BodyParams& params, const std::string& folder, fl
         const bool box = params.shape == "box";
         // As many as a mesh may have (body_shapes.cpp): more would take all the memory there is.
         constexpr double kMostSamples = 1.0e6;
-        const dvec3 size(params.size);
-        const double area =
-            box ? 2 * (size.x * size.y + size.y * size.z + size.z * size.x) : 4 * double{kPi} * params.radius * params.radius;
-        const double samples = area / (double{spacing} * spacing);
+        const dvec3 along = dvec3(params.size) / double{spacing} + 1.0;
+        const double round = double{params.radius} / double{spacing};
+        const double samples = box ? 2 * (along.x * along.y + along.y * along.z + along.z * along.x) : 4 * double{kPi} * round * round;
         if (samples > kMostSamples)
             return badInput(
                 fmt::format("its surface would need {:.3g} samples at a spacing of {} m, there may be {:.0f}: make it smaller, or "

@@ -45,8 +45,8 @@ struct Case {
 // Error: a name that is none, or what readers of scenes say of it.
 Result<Case> caseOf(const std::string& name);
 
-// The names of the tiers. A Param is tried in the first base that has it. Pairs are of what the simulation reads: what is below fluid and
-// in the lists.
+// The names of the tiers. A Param is tried in the first base that has it, an item's in each. Pairs are of what the simulation reads: what
+// is below fluid and in the lists.
 std::vector<std::string> singles(const std::string& method, bool sample);
 std::vector<std::string> pairs(const std::string& method, bool sample);
 

@@ -180,6 +180,8 @@ std::string Slider::draw(Random& random, double size) const {
 std::vector<Slider> slidersOf(SceneFile& scene) {
     Collector collector;
     scene.visit(collector);
+    // The one switch that takes away what is checked here: without limits methods fail, and tests/stability says where.
+    std::erase_if(collector.sliders, [](const Slider& s) { return s.path == "fluid.limits"; });
     return std::move(collector.sliders);
 }
 

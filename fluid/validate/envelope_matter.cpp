@@ -152,7 +152,9 @@ Result<std::vector<EnvelopeFinding>> envelopeOfTunnelling(const EnvelopeSettings
     const double turned = double{scene->colliders[0].rotation.z} * kHalfTurn / 180;
     const dvec3 up(-std::sin(turned), std::cos(turned), 0);
     std::vector<Sweep> sweeps;
-    for (const auto& [method, walk] : {std::pair("pbf", "exact"), std::pair("dfsph", "exact"), std::pair("dfsph", "thesis")})
+    for (const auto& row : {std::pair("pbf", "exact"), std::pair("dfsph", "exact"), std::pair("dfsph", "thesis")}) {
+        const char* const method = row.first;
+        const char* const walk = row.second;
         sweeps.push_back({.row = "tunnelling",
                           .method = method,
                           .what = fmt::format("way in a step, walk {}", walk),
@@ -172,6 +174,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfTunnelling(const EnvelopeSettings
                                       return false;
                                   }};
                           }});
+    }
     return sweepAll(settings, sweeps);
 }
 
@@ -182,7 +185,9 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSpawning(const EnvelopeSettings& 
     const BlockParams& block = scene->fluid.blocks[0];
     const dvec3 middle = 0.5 * dvec3(block.min + block.max);
     std::vector<Sweep> sweeps;
-    for (const auto& [method, step] : {std::pair("wcsph", 0.0005), std::pair("pbf", 1.0 / 240), std::pair("dfsph", 1.0 / 480)})
+    for (const auto& row : {std::pair("wcsph", 0.0005), std::pair("pbf", 1.0 / 240), std::pair("dfsph", 1.0 / 480)}) {
+        const char* const method = row.first;
+        const double step = row.second;
         sweeps.push_back({.row = "spawning",
                           .method = method,
                           .what = fmt::format("density at birth, steps of {:.3g} ms", 1000 * step),
@@ -201,12 +206,15 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSpawning(const EnvelopeSettings& 
                                                       });
                                                   }};
                           }});
+    }
     return sweepAll(settings, sweeps);
 }
 
 Result<std::vector<EnvelopeFinding>> envelopeOfCoupling(const EnvelopeSettings& settings) {
     std::vector<Sweep> sweeps;
-    for (const auto& [method, step] : {std::pair("wcsph", 0.0002), std::pair("pbf", 1.0 / 240), std::pair("dfsph", 1.0 / 480)})
+    for (const auto& row : {std::pair("wcsph", 0.0002), std::pair("pbf", 1.0 / 240), std::pair("dfsph", 1.0 / 480)}) {
+        const char* const method = row.first;
+        const double step = row.second;
         sweeps.push_back(
             {.row = "coupling",
              .method = method,
@@ -225,6 +233,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfCoupling(const EnvelopeSettings& 
                      .fails = [fast](const Seen&) { return !(*fast < 3); },
                      .each = [fast](Session& s) { *fast = std::max(*fast, double{glm::length(s.world().bodies()[0].velocity)}); }};
              }});
+    }
     return sweepAll(settings, sweeps);
 }
 

@@ -8,20 +8,49 @@
 #include "fluid/bridge/run_stats.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/validate/chart.h"
+#include "fluid/validate/envelope.h"
 
 namespace rivulet {
+
+namespace {
+
+constexpr const char* kStability = "stability";
+
+// Where methods fail: stability.md with its table and its picture.
+int chartStability(Device& device, const Graceful& graceful, Progress& progress, const std::string& folder) {
+    std::vector<EnvelopeFinding> all;
+    for (const EnvelopeRow& row : envelope().rows) {
+        progress.show(static_cast<double>(&row - envelope().rows.data()) / static_cast<double>(envelope().rows.size()),
+                      fmt::format("stability, {}", row.name));
+        const Result<std::vector<EnvelopeFinding>> found = row.run({.device = &device, .goOn = [&] { return !graceful.interrupted(); }});
+        if (graceful.interrupted()) return kInterrupted;
+        if (!found) return report(found.error());
+        all.insert(all.end(), found->begin(), found->end());
+    }
+    if (Status written = writeEnvelope(folder, all, machineName()); !written) return report(written.error());
+    fmt::print("{}\n", (std::filesystem::path(folder) / "stability.md").string());
+    return kDone;
+}
+
+}  // namespace
 
 int chartVerb(const Arguments& arguments) {
     ArgumentReader reader("chart", "Charts speed against accuracy: every setting of every method, on the physics cases.");
     ChartRequest request;
     std::string folder = "docs";
-    reader.footer("Writes speed_accuracy.md, its table and its pictures, and what pbf adds to viscosity.");
-    reader.positional("CASE", "which cases; all that are charted when none is named", request.names);
+    reader.footer(
+        "Writes speed_accuracy.md, its table and its pictures, and what pbf adds to viscosity;\nand stability.md: where methods fail once "
+        "their limits are off.");
+    reader.positional("CASE", "which cases; all that are charted, and stability, when none is named", request.names);
     reader.flag("--quick", "fewer cases and sizes: ten minutes on two cores", request.quick);
     reader.option("--out", "DIR", "the folder that all is written to; docs if not given", folder);
     if (std::optional<int> code = reader.read(arguments)) return *code;
+    std::vector<std::string> known = chartCases();
+    known.emplace_back(kStability);
     for (const std::string& name : request.names)
-        if (Status known = checkWord("charted case", name, chartCases()); !known) return report(known.error());
+        if (Status right = checkWord("charted case", name, known); !right) return report(right.error());
+    const bool all = request.names.empty(), stability = all || std::erase(request.names, kStability) > 0;
+    const bool cases = all || !request.names.empty();
     if (Status made = makeFolder(folder); !made) return report(made.error());
 
     const std::vector<CpuKernelRow> rows = cpuKernels();
@@ -33,6 +62,8 @@ int chartVerb(const Arguments& arguments) {
         progress.show(share, what);
         return !graceful.interrupted();
     };
+    if (stability)
+        if (const int code = chartStability(*device, graceful, progress, folder); code != kDone || !cases) return code;
     const Result<Chart> chart = runChart(request);
     if (!chart) return report(chart.error());
     if (chart->stopped) return kInterrupted;

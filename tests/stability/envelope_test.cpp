@@ -66,8 +66,8 @@ TEST(Envelope, Viscosity) {
     }
 }
 
-// Brackbill's limit takes half of the step that the shortest capillary wave crosses a smoothing length in. Particles pull along the surface as
-// far as their support, two of those: shorter waves feel no tension, and it can be 2 * 2^1.5 = 5.7 times as long.
+// Brackbill's limit takes half of the step that the shortest capillary wave crosses a smoothing length in. Particles pull along the surface
+// as far as their support, two of those: shorter waves feel no tension, and it can be 2 * 2^1.5 = 5.7 times as long.
 TEST(Envelope, Tension) {
     for (const EnvelopeFinding& f : findings("tension")) {
         expectFailsAt(f, kKnown, 5.7);

@@ -9,6 +9,7 @@
 
 #include "fluid/sim/block.h"
 #include "fluid/validate/envelope_run.h"
+#include "fluid/validate/trial.h"
 
 namespace rivulet {
 
@@ -39,17 +40,7 @@ double nearestNeighbour(const FluidWorld& world) {
 
 // Puts particles elsewhere.
 Status moveParticles(FluidWorld& world, const std::function<dvec3(const dvec3&)>& to) {
-    if (Status can = world.savable(); !can) return can;
-    WorldState state;
-    world.save(state);
-    Result<std::vector<vec4>> x = state.take<vec4>("particles.position", world.particles().slots);
-    if (!x) return x.error();
-    for (vec4& p : *x)
-        if (!(p.w < 0)) p = vec4(vec3(to(dvec3(p))), p.w);
-    WorldState changed;
-    for (const auto& [name, bytes] : state.sections()) changed.putBytes(name, bytes);
-    changed.put<vec4>("particles.position", *x);
-    return world.restore(changed);
+    return changeParticles(world, [&to](vec4& x, vec4&) { x = vec4(vec3(to(dvec3(x))), x.w); });
 }
 
 }  // namespace

@@ -28,17 +28,16 @@ Result<Trial> Trial::open(const char* name, const CaseSettings& settings) {
 }
 
 Status Trial::setVelocities(const std::function<dvec3(const dvec3&)>& at) {
-    return change([&](vec4& x, vec4& v) { v = vec4(vec3(at(dvec3(x))), v.w); });
+    return changeParticles(world(), [&](vec4& x, vec4& v) { v = vec4(vec3(at(dvec3(x))), v.w); });
 }
 
 Status Trial::keep(const std::function<bool(const dvec3&)>& where) {
-    return change([&](vec4& x, vec4&) {
+    return changeParticles(world(), [&](vec4& x, vec4&) {
         if (!where(dvec3(x))) x.w = -1;
     });
 }
 
-Status Trial::change(const std::function<void(vec4& position, vec4& velocity)>& each) {
-    FluidWorld& w = world();
+Status changeParticles(FluidWorld& w, const std::function<void(vec4& position, vec4& velocity)>& each) {
     if (Status can = w.savable(); !can) return can;
     WorldState state;
     w.save(state);

@@ -9,6 +9,9 @@
 
 namespace rivulet {
 
+// Changes the particles of a world where they stand (position: xyz m, w < 0 takes one away; velocity: m/s). Error: as FluidWorld::savable.
+Status changeParticles(FluidWorld& world, const std::function<void(vec4& position, vec4& velocity)>& each);
+
 class Trial {
   public:
     // cases/`name`.json with the method and assignments that were asked for. Error: as loadScene and Session::create.
@@ -32,7 +35,6 @@ class Trial {
 
   private:
     Trial() = default;
-    Status change(const std::function<void(vec4& position, vec4& velocity)>& each);
     std::unique_ptr<Session> session_;
     std::function<bool(double)> goOn_;
     double wall_ = 0, compression_ = 0;

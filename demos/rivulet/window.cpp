@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <chrono>
 #include <thread>
 
@@ -7,6 +9,7 @@
 #include "engine/app/capture.h"
 #include "engine/app/window_glfw.h"
 #include "engine/core/json.h"
+#include "fluid/bridge/explain.h"
 #include "fluid/bridge/viewer.h"
 
 namespace rivulet {
@@ -25,10 +28,10 @@ int runWindow(const RunOptions& options) {
         if (Status resumed = resumeFrom(options.resume, v.session()); !resumed) return report(resumed.error());
     if (!options.save.empty())
         if (Status writable = checkWritable(options.save); !writable) return report(writable.error());
-    if (!options.stats.empty()) {
+    if (!options.stats.empty())
         if (Status writable = checkWritable(options.stats); !writable) return report(writable.error());
-        v.record();
-    }
+    const bool recorded = options.explain || !options.stats.empty();
+    if (recorded) v.record();
 
     Graceful graceful;
     auto last = std::chrono::steady_clock::now();
@@ -43,8 +46,12 @@ int runWindow(const RunOptions& options) {
         if (input.framebuffer.x <= 0 || input.framebuffer.y <= 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing paces it
     }
-    if (!options.stats.empty())
-        if (Status written = writeFileAtomic(options.stats, writeRunStats(v.finishRecord())); !written) return report(written.error());
+    if (recorded) {
+        const RunStats stats = v.finishRecord();
+        if (!options.stats.empty())
+            if (Status written = writeFileAtomic(options.stats, writeRunStats(stats)); !written) return report(written.error());
+        if (options.explain) fmt::print("{}", explain(v.session().world(), stats));
+    }
     if (!options.save.empty())
         if (Status saved = saveTo(options.save, v.session()); !saved) return report(saved.error());
     return graceful.interrupted() ? kInterrupted : kDone;

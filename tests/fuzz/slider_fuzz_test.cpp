@@ -1,8 +1,9 @@
 // The slider fuzzer: whatever a panel permits, nothing becomes NaN, nothing is lost, no speed passes the step's limit, nothing crashes.
-//   test_fuzz                                     a sample of it: three minutes
-//   RIVULET_FUZZ=full test_fuzz                   every Param's ends and middle, all pairs of ends, 2,000 combinations, each with every
-//   method RIVULET_FUZZ="full 3/16" test_fuzz            the third of sixteen parts of that RIVULET_FUZZ="pbf random 17" test_fuzz one
-//   case, as a failure names it (fuzz_case.h: the names)
+// test_fuzz alone runs a sample. RIVULET_FUZZ in the environment asks for more:
+//   full             every Param's ends and middle, all pairs of ends, 2,000 combinations, each with every method
+//   full 3/16        the third of sixteen parts of that
+//   pbf random 17    one case, as a failure names it (fuzz_case.h: the names)
+//
 // With --gtest_filter for one method or kind: '*Pairs/dfsph'.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -119,7 +120,6 @@ class SliderFuzz : public testing::TestWithParam<std::string> {
     // A part of the full list, or a sample of another.
     void runThese(const std::vector<std::string>& full, const std::vector<std::string>& sample, size_t count) {
         const Mode m = mode();
-        if (!m.one.empty()) GTEST_SKIP() << "one case was asked for";
         const std::vector<std::string> names = m.full ? partOf(full, m) : sampled(sample, count);
         runAll(names, names.size() / 2);
     }
@@ -136,18 +136,35 @@ TEST_P(SliderFuzz, PairsOfParamsAtTheirEnds) { runThese(pairs(GetParam(), false)
 
 TEST_P(SliderFuzz, RandomCombinations) { runThese(combinations(GetParam(), 2000), combinations(GetParam(), 2000), 12); }
 
-INSTANTIATE_TEST_SUITE_P(Every, SliderFuzz, testing::ValuesIn(methods().names()),
+// Where one case is asked for, there are no others.
+INSTANTIATE_TEST_SUITE_P(Every, SliderFuzz, testing::ValuesIn(mode().one.empty() ? methods().names() : std::vector<std::string>()),
                          [](const testing::TestParamInfo<std::string>& method) { return method.param; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SliderFuzz);
 
-TEST(SliderFuzzCase, OneByItsName) {
-    const Mode m = mode();
-    if (m.one.empty()) GTEST_SKIP() << "no case was asked for: RIVULET_FUZZ names one";
-    const Result<Case> c = caseOf(m.one);
+// By its name alone a case is there again: the one that was asked for, else such as were found to fail once.
+class NamedCase : public testing::TestWithParam<std::string> {};
+
+TEST_P(NamedCase, IsRepeatedByItsName) {
+    const Result<Case> c = caseOf(GetParam());
     ASSERT_TRUE(c) << c.error().message;
     const Outcome o = run(*c);
     EXPECT_NE(o.verdict, Outcome::Verdict::failed) << report(*c, o);
     fmt::print("{}{} ({:.1f} s, {} notices)\n", o.verdict == Outcome::Verdict::refused ? "refused: " : "", o.sentence, o.seconds,
                o.limited);
+    const std::string told = report(*c, o);
+    EXPECT_NE(told.find(fmt::format("RIVULET_FUZZ=\"{}\"", GetParam())), std::string::npos) << told;
 }
+
+INSTANTIATE_TEST_SUITE_P(Cases, NamedCase,
+                         testing::ValuesIn(mode().one.empty()
+                                               ? std::vector<std::string>{
+                                                     // Pressures of an iteration that diverges were no number.
+                                                     "dfsph pair tank fluid.dfsph.relaxation=1 fluid.dfsph.maxIterations=1000",
+                                                     // Took all the memory there is.
+                                                     "pbf start forces emitters.0.radius=100",
+                                                     // Factors of the smoothing kernel were infinite.
+                                                     "wcsph start tank fluid.spacing=1e-05",
+                                                 }
+                                               : std::vector<std::string>{mode().one}));
 
 }  // namespace rivulet::fuzz

@@ -22,6 +22,7 @@ std::vector<EnvelopeFinding> findings(const char* name) {
     Result<std::vector<EnvelopeFinding>> found = row->run({.device = device.get()});
     EXPECT_TRUE(found) << (found ? "" : found.error().message);
     if (!found) return {};
+    EXPECT_FALSE(found->empty()) << name << " has nothing to say";
     for (const EnvelopeFinding& f : *found) {
         std::printf("%s, %s: predicted %.4g %s, measured %s%.4g, ratio %.3g; asked for %.4g, %llu steps\n", f.method.c_str(),
                     f.what.c_str(), f.predicted, f.unit.c_str(), f.measured ? "" : "none to ", f.measured.value_or(f.reached), f.ratio(),

@@ -28,10 +28,12 @@ constexpr EnvelopeRow kRows[] = {
     {"dfsph", "pressure that begins as it ended may push twice", "warm start > 0 where it is not gated (Bender and Koschier 2017)",
      "There is no gate here, and none is missed: all of the last pressure as a start costs no stability.", envelopeOfDfsph},
     {"pairing", "with too many neighbours particles of a cubic spline sit together in pairs",
-     "55 neighbours, Wendland C2 none up to 700 (Dehnen and Aly 2012)", "", envelopeOfPairing},
+     "55 neighbours, Wendland C2 none up to 700 (Dehnen and Aly 2012)",
+     "Steps play no part in this: what fails fails with the limits on, too.", envelopeOfPairing},
     {"clumping", "pressure below nothing pulls neighbours together, the nearer the harder",
      "density below the rest density (Swegle, Hicks and Attaway 1995)",
-     "The thesis's pressure is below nothing at every free surface, so it clumps in any block, limits or not. The other methods' pressure "
+     "The thesis's pressure is below nothing at every free surface, so it clumps in any block: with the limits on, as all of this row was "
+     "run. The other methods' pressure "
      "never pulls.",
      envelopeOfClumping},
     {"far_origin", "a float far from zero does not feel a small step", "ulp(x) / 2 = v dt",

@@ -42,7 +42,7 @@ int chartVerb(const Arguments& arguments) {
         "Writes speed_accuracy.md, its table and its pictures, and what pbf adds to viscosity;\nand stability.md: where methods fail once "
         "their limits are off.");
     reader.positional("CASE", "which cases; all that are charted, and stability, when none is named", request.names);
-    reader.flag("--quick", "fewer cases and sizes: ten minutes on two cores", request.quick);
+    reader.flag("--quick", "fewer cases and sizes", request.quick);
     reader.option("--out", "DIR", "the folder that all is written to; docs if not given", folder);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     std::vector<std::string> known = chartCases();

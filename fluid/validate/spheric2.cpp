@@ -76,14 +76,16 @@ Result<Outcome> runSpheric2(const CaseSettings& settings) {
     for (int k = 1; k <= 8; ++k) pressures.push_back({fmt::format("P{}", k), true, {{0, 0}}});
     for (size_t k = 0; k < std::size(kHeights); ++k)
         heights.push_back({fmt::format("H{}", k + 1), true, {{0, heightAt(trial->particles().position, k, spacing)}}});
-    const bool done = trial->run(0.005, [&] {
+    const auto look = [&] {
         const ParticleView view = trial->world().particles();
         const std::vector<vec4> x = trial->world().device().readAll<vec4>(*view.position, view.count);
         const std::vector<float> p = trial->world().pressures();
         for (size_t k = 0; k < pressures.size(); ++k) pressures[k].points.emplace_back(trial->time(), pressureAt(x, p, k, spacing));
         for (size_t k = 0; k < heights.size(); ++k) heights[k].points.emplace_back(trial->time(), heightAt(x, k, spacing));
-    });
-    if (!done) return trial->outcome({}, {});
+    };
+    // What the water's first particles press with is three times as much one millisecond as the next: while it arrives, the gauges are read
+    // as often as the record's were (1 kHz).
+    if (!trial->run(0.001, look, 0.5) || !trial->run(0.005, look)) return trial->outcome({}, {});
 
     const auto record = [](size_t column) { return referenceCurve("kleefsman_2005", 0, column); };
     std::vector<Finding> findings;
@@ -101,18 +103,18 @@ Result<Outcome> runSpheric2(const CaseSettings& settings) {
     for (size_t k = 0; k < heights.size(); ++k) {
         double off = 0, mean = 0, other = 0;
         const std::vector<glm::dvec2> reference = record(9 + k);
-        for (const glm::dvec2& h : heights[k].points) {
-            const double r = valueAt(reference, h.x);
-            off += std::abs(h.y - r);
-            mean += h.y;
-            other += r;
+        for (size_t i = 1; i < heights[k].points.size(); ++i) {
+            const glm::dvec2 h = heights[k].points[i];
+            const double r = valueAt(reference, h.x), lasts = h.x - heights[k].points[i - 1].x;
+            off += std::abs(h.y - r) * lasts;
+            mean += h.y * lasts;
+            other += r * lasts;
         }
-        const auto n = static_cast<double>(heights[k].points.size());
         Finding f{fmt::format("{}, mean height; error: mean difference over 0.55 m", heights[k].name),
                   "m",
-                  mean / n,
-                  other / n,
-                  off / n / kDepth,
+                  mean / last,
+                  other / last,
+                  off / last / kDepth,
                   {}};
         if (k == 1 || k == 3) f.tolerance = 0.05;
         findings.push_back(f);

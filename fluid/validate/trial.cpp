@@ -54,11 +54,11 @@ Status changeParticles(FluidWorld& w, const std::function<void(vec4& position, v
     return w.restore(changed);
 }
 
-bool Trial::run(double frame, const std::function<void()>& each) {
-    const double duration = scene().duration;
-    for (int k = 0; time() < duration - 1e-3 * frame; ++k) {
+bool Trial::run(double frame, const std::function<void()>& each, double until) {
+    const double duration = scene().duration, end = std::min(duration, until);
+    while (time() < end - 1e-3 * frame) {
         if (!goOn_(time() / duration)) return false;
-        wall_ += 1e-3 * session_->step(std::min(frame, duration - time()), true);
+        wall_ += 1e-3 * session_->step(std::min(frame, end - time()), true);
         steps_ += world().lastSubsteps();
         compression_ += world().stats().avgCompression;
         ++frames_;

@@ -1,5 +1,7 @@
 // A dam breaks: front and height of the column against Martin and Moyce 1952 (Tables 2 and 6), and Koshizuka and Oka 1996. Their axes
-// differ: T = t sqrt(2 g / a) for the front, tau = t sqrt(g / a) for the height.
+// differ: T = t sqrt(2 g / a) for the front, tau = t sqrt(g / a) for the height. The film's front starts late, by 0.3 in T, whatever held
+// it (gate, wetting, friction): inviscid flow by boundary elements is 13.6 % ahead of it, too, and is what equations without them can be
+// judged by.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +25,7 @@ double frontOfShare(std::span<const vec4> positions, const FluidParams& p, doubl
 
 // The height of the water along the wall at x = min, m: the volume there over the floor it stands on.
 double heightAtWall(std::span<const vec4> positions, const FluidParams& p) {
-    const double reach = 4 * double{p.spacing}, s = p.spacing;
+    const double reach = double{p.blocks[0].max.x - p.blocks[0].min.x} / 8, s = p.spacing;
     const auto count =
         std::count_if(positions.begin(), positions.end(), [&](const vec4& at) { return double{at.x - p.box.min.x} < reach; });
     return static_cast<double>(count) * s * s * s / (reach * double{p.box.max.z - p.box.min.z});
@@ -73,9 +75,10 @@ Result<Outcome> runDamBreak(const CaseSettings& settings) {
     });
     if (!done || front.points.empty()) return trial->outcome({}, {});
     const std::vector<glm::dvec2> martin = referenceCurve("martin_moyce_1952_front"), tall = referenceCurve("martin_moyce_1952_height"),
-                                  koshizuka = referenceCurve("koshizuka_oka_1996_front");
-    const double last = 3.34, off = meanError(front.points, martin, 0.4, last), slope = slopeOf(front.points, 1.43),
-                 expected = slopeOf(martin, 1.43);
+                                  koshizuka = referenceCurve("koshizuka_oka_1996_front"),
+                                  inviscid = referenceCurve("inviscid_dam_break_front");
+    const double last = 3.34, ideal = meanError(front.points, inviscid, 0.39, last), off = meanError(front.points, martin, 0.4, last),
+                 slope = slopeOf(front.points, 1.43), expected = slopeOf(martin, 1.43);
     const double sunk = meanError(height.points, tall, 0, last / std::sqrt(2.0)), other = meanError(front.points, koshizuka, 0.3, last),
                  particles = meanError(most.points, martin, 0.4, last);
     const Plot plot{"Dam break",
@@ -86,8 +89,10 @@ Result<Outcome> runDamBreak(const CaseSettings& settings) {
                      height,
                      {"Martin and Moyce 1952, front", false, martin},
                      {"Martin and Moyce 1952, height", false, tall},
-                     {"Koshizuka and Oka 1996, front", false, koshizuka}}};
-    return trial->outcome({{"front, mean error over mean", "", off, 0, off, 0.06},
+                     {"Koshizuka and Oka 1996, front", false, koshizuka},
+                     {"inviscid flow, front", false, inviscid}}};
+    return trial->outcome({{"front against inviscid flow, mean error over mean", "", ideal, 0, ideal, 0.03},
+                           {"front, mean error over mean", "", off, 0, off, 0.06},
                            {"front's speed, dZ/dT", "", slope, expected, std::abs(slope / expected - 1), 0.05},
                            {"height at the wall, mean error over mean", "", sunk, 0, sunk, {}},
                            {"front of 99 % of the particles, mean error over mean", "", particles, 0, particles, {}},

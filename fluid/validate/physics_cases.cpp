@@ -11,7 +11,7 @@ namespace {
 constexpr PhysicsCase kCases[] = {
     {"hydrostatic", "a pool at rest: pressure at gauges a support radius wide against rho g (H - z); the speed left after 2 s",
      "fluid.spacing=0.025", runHydrostatic},
-    {"dam_break", "front and height of a column that breaks: Martin and Moyce 1952, Koshizuka and Oka 1996",
+    {"dam_break", "front and height of a column that breaks: inviscid flow, Martin and Moyce 1952, Koshizuka and Oka 1996",
      "fluid.spacing=0.0017859375; fluid.box.max=0.3429,0.15,0.00714375; fluid.blocks.0.max=0.05715,0.1143,0.00714375", runDamBreak},
     {"poiseuille", "flow between plates from rest: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runPoiseuille},
     {"couette", "flow under a plate that starts to slide: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runCouette},

@@ -92,7 +92,9 @@ Result<Outcome> runSpheric2(const CaseSettings& settings) {
     const double arrived = firstAt(pressures[0].points, kArrived), expected = firstAt(record(1), kArrived);
     findings.push_back({"P1 reaches 2.8 kPa", "s", arrived, expected, std::abs(arrived / expected - 1), 0.03});
     const double last = pressures[0].points.back().x;
-    std::vector<Finding> reported;
+    // Inviscid flow by boundary elements, let go at once, has its tip at the box then (two grids: 0.4052 and 0.4065 s).
+    constexpr double kIdeal = 0.4052;  // s
+    std::vector<Finding> reported = {{"the same against inviscid flow", "s", arrived, kIdeal, std::abs(arrived / kIdeal - 1), {}}};
     for (size_t k = 0; k < pressures.size(); ++k) {
         const double until = k < 4 ? std::min(1.0, last) : last, got = impulse(pressures[k].points, until),
                      given = impulse(record(k + 1), until);

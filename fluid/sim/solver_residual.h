@@ -27,7 +27,7 @@ class SolverResidual {
     };
     Kernel kernel_;
     Buffer rows_;
-    int planned_ = 3;  // until one is known
+    int planned_ = 30;  // until one is known: pressure begins from nothing
     std::shared_ptr<Known> last_ = std::make_shared<Known>();
 };
 

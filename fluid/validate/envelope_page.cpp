@@ -37,25 +37,26 @@ std::string csvOf(std::span<const EnvelopeFinding> findings, const std::string& 
     return text;
 }
 
+// Rows beside each other, methods by colour: how far from where it was predicted each fails.
 Plot plotOf(std::span<const EnvelopeFinding> findings) {
-    Plot plot{.title = "Where methods fail, limits off", .x = "predicted", .y = "measured", .curves = {}, .logX = true, .logY = true};
-    double low = 1e300, high = 0;
-    Curve none{"none up to here", false, {}};
-    std::map<std::string, size_t> curves;
+    Plot plot{.title = "Where methods fail, limits off", .x = "", .y = "measured over predicted", .curves = {}, .logY = true};
+    Curve none{"no failure up to here", false, {}};
+    std::map<std::string, Curve> methods;
     for (const EnvelopeFinding& f : findings) {
-        const glm::dvec2 at(f.predicted, f.measured ? *f.measured : f.reached);
-        low = std::min({low, at.x, at.y});
-        high = std::max({high, at.x, at.y});
+        if (plot.ticks.empty() || plot.ticks.back() != f.row) plot.ticks.push_back(f.row);
+        const auto at = static_cast<double>(plot.ticks.size() - 1);
         if (!f.measured) {
-            none.points.push_back(at);
+            none.points.emplace_back(at, f.reached / f.predicted);
             continue;
         }
-        const auto [known, added] = curves.try_emplace(f.row, plot.curves.size());
-        if (added) plot.curves.push_back({f.unit.empty() ? f.row : fmt::format("{}, {}", f.row, f.unit), false, {}});
-        plot.curves[known->second].points.push_back(at);
+        Curve& c = methods[f.method];
+        c.name = f.method;
+        c.line = false;
+        c.points.emplace_back(at, f.ratio());
     }
+    for (const auto& [name, curve] : methods) plot.curves.push_back(curve);
     if (!none.points.empty()) plot.curves.push_back(none);
-    if (high > 0) plot.curves.push_back({"as predicted", true, {{low, low}, {high, high}}});
+    if (!plot.ticks.empty()) plot.curves.push_back({"as predicted", true, {{-0.5, 1}, {static_cast<double>(plot.ticks.size()) - 0.5, 1}}});
     return plot;
 }
 

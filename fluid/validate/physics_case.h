@@ -34,7 +34,8 @@ struct Curve {
 struct Plot {
     std::string title, x, y;
     std::vector<Curve> curves;
-    bool logX = false, logY = false;  // axes
+    bool logX = false, logY = false;      // axes
+    std::vector<std::string> ticks = {};  // names of x = 0, 1, ...; empty: x is a number
 };
 
 struct Outcome {
@@ -48,6 +49,7 @@ struct Outcome {
     double sweepsPerSecond = 0;  // over all neighbours, per simulated second: cost whatever the machine
     double stepsPerSecond = 0;
     double compression = 0;  // mean over particles and frames, a fraction
+    double fastest = 0;      // m/s, what the water reaches by falling
 };
 
 // What a case is run with.

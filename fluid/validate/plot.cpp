@@ -29,13 +29,19 @@ std::string scriptOf(const Plot& plot) {
         inQuotes(plot.title), inQuotes(plot.x), inQuotes(plot.y), plot.curves.size() > 3 ? "outside bottom center horizontal " : "inside");
     if (plot.logX) script += "set logscale x\nset format x '%g'\n";
     if (plot.logY) script += "set logscale y\nset format y '%g'\n";
+    if (!plot.ticks.empty()) {
+        std::string names;
+        for (size_t k = 0; k < plot.ticks.size(); ++k) names += fmt::format("{}{} {}", k > 0 ? ", " : "", inQuotes(plot.ticks[k]), k);
+        script += fmt::format("set xtics ({}) rotate by -40\nset xrange [-0.5:{}]\nset format y '%g'\n", names,
+                              static_cast<double>(plot.ticks.size()) - 0.5);
+    }
     constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#8c564b", "#444444"};
     std::string curves, data;
     for (size_t k = 0; k < plot.curves.size(); ++k) {
         const Curve& c = plot.curves[k];
         if (c.points.empty()) continue;
         curves += fmt::format("{}'-' with {} lc rgb '{}' title {}", curves.empty() ? "plot " : ", ",
-                              c.line ? "lines lw 2" : "points pt 7 ps 0.4", kColours[k % std::size(kColours)], inQuotes(c.name));
+                              c.line ? "lines lw 2" : "points pt 7 ps 0.6", kColours[k % std::size(kColours)], inQuotes(c.name));
         for (const glm::dvec2& p : c.points) data += fmt::format("{:.9g} {:.9g}\n", p.x, p.y);
         data += "e\n";
     }

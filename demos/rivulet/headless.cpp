@@ -155,7 +155,7 @@ int runHeadless(const RunOptions& options) {
     if (options.render && stats.frames > 0)
         where = fmt::format("{}, {} pictures {}_*.png and {}", to->video, loop.pictures, to->picturePrefix, to->stats);
     if (!options.save.empty()) where += fmt::format(" and {}", options.save);
-    if (options.explain) fmt::print("{}", explain((*session)->world(), stats));
+    if (options.explain) fmt::print("{}", explain(**session, stats));
     fmt::print("{}\n", where);
     return graceful.interrupted() ? kInterrupted : kDone;
 }

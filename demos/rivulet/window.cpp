@@ -50,7 +50,7 @@ int runWindow(const RunOptions& options) {
         const RunStats stats = v.finishRecord();
         if (!options.stats.empty())
             if (Status written = writeFileAtomic(options.stats, writeRunStats(stats)); !written) return report(written.error());
-        if (options.explain) fmt::print("{}", explain(v.session().world(), stats));
+        if (options.explain) fmt::print("{}", explain(v.session(), stats));
     }
     if (!options.save.empty())
         if (Status saved = saveTo(options.save, v.session()); !saved) return report(saved.error());

@@ -54,13 +54,15 @@ bool isThere(const Part& part, const std::vector<std::string>& kernels) {
 
 }  // namespace
 
-std::string explain(const FluidWorld& world, const RunStats& stats) {
+std::string explain(const Session& session, const RunStats& stats) {
+    const FluidWorld& world = session.world();
     const Device& device = world.device();
     const FluidParams& p = world.params();
     std::string text = fmt::format("chosen\n  {}: {}{}{}\n", backendName(device.backend()), device.info().name,
                                    device.info().driver.empty() ? "" : ", ", device.info().driver);
     text += fmt::format("  method {}, {} particles {} m apart, reaching {} spacings\n", p.method, world.stats().particles, p.spacing,
                         p.supportSpacings);
+    if (session.budget()) text += session.budget()->report();
 
     std::vector<std::string> kernels = device.kernels();
     std::sort(kernels.begin(), kernels.end());

@@ -4,10 +4,11 @@
 #include <string>
 
 #include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/session.h"
 
 namespace rivulet {
 
 // As lines of text. `stats` of the run so far: its passes are the costs, per frame; without frames there are none.
-std::string explain(const FluidWorld& world, const RunStats& stats);
+std::string explain(const Session& session, const RunStats& stats);
 
 }  // namespace rivulet

@@ -248,6 +248,15 @@ void FluidLookParams::visit(ParamVisitor& v) {
             refractiveIndex);
 }
 
+void BudgetParams::visit(ParamVisitor& v) {
+    v.value({"frameMs", "ms", "what simulating a sixtieth of a second may take; 0 = no budget: all is as fluid says", 0, 10000, kLinear,
+             kFixed},
+            frameMs);
+    v.value({"maxDensityError", "", "how far density may be off, mean over particles and time, a fraction", 1.0e-5, 1, kLog, kFixed},
+            maxDensityError);
+    v.value({"finest", "m", "a finer spacing is not picked; 0 = fluid.spacing", 0, 100, kLinear, kFixed}, finest);
+}
+
 void SceneFile::visit(ParamVisitor& v) {
     v.value({.name = "name", .doc = "what outputs are called after"}, name);
     v.value({.name = "doc", .doc = "one sentence on what is to be seen"}, doc);
@@ -261,6 +270,7 @@ void SceneFile::visit(ParamVisitor& v) {
     v.group({.name = "camera", .doc = "where the picture is taken from"}, camera);
     v.group({.name = "light", .doc = "the sun"}, light);
     v.group({.name = "background", .doc = "sky and ground"}, background);
+    v.group({.name = "budget", .doc = "what a frame may take: picks method, spacing and steps from the measured chart"}, budget);
 }
 
 Status checkScene(const SceneFile& scene) {

@@ -131,6 +131,14 @@ struct FluidLookParams {
     void visit(ParamVisitor& v);
 };
 
+// What a frame may take, and how far density may be off: a setting that holds both is picked (budget.h).
+struct BudgetParams {
+    float frameMs = 0;              // what simulating a sixtieth of a second may take; 0 = no budget
+    float maxDensityError = 0.01F;  // mean compression, a fraction
+    float finest = 0;               // m, spacing that nothing finer is picked than; 0 = fluid.spacing
+    void visit(ParamVisitor& v);
+};
+
 struct SceneFile {
     std::string name = "unnamed";
     std::string doc;
@@ -144,6 +152,7 @@ struct SceneFile {
     CameraParams camera;
     LightParams light;
     BackgroundParams background;
+    BudgetParams budget;
     std::string folder;  // of the file it came from; not a Param
     void visit(ParamVisitor& v);
 };

@@ -78,6 +78,10 @@ Error about(const Error& error, size_t collider, const ColliderParams& params) {
 Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, const Log& log) {
     std::unique_ptr<Session> session(new Session());
     Session& s = *session;
+    Result<std::optional<Budget>> budget = openBudget(scene, device, log);
+    if (!budget) return budget.error();
+    s.budget_ = std::move(*budget);
+    s.log_ = log;
     s.scene_ = std::move(scene);
     if (Status imported = s.importColliders(); !imported) return imported.error();
     Solids solids;
@@ -307,6 +311,7 @@ void Session::apply(const SceneFile& scene) {
     std::string folder = scene_.folder;
     scene_ = scene;
     scene_.folder = folder;
+    if (budget_) budget_->apply(scene_);
     world_->setParams(simulated(scene_));
     Sources sources{.sinks = scene_.sinks};
     for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
@@ -376,7 +381,18 @@ double Session::step(double asked, bool wait, double deviceMs) {
     if (moving || contacts_) placeNodes();
     double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     world_->device().poll();
+    // Of a GPU that nobody waits for, what its passes took says more than what the call did.
+    if (budget_ && asked > 0) watchBudget((wait || deviceMs <= 0 ? ms : deviceMs) / (asked * kFramesPerSecond));
     return ms;
+}
+
+void Session::watchBudget(double ms) {
+    std::string sentence;
+    if (budget_->frame(ms, world_->stats().avgCompression, sentence)) {
+        budget_->apply(scene_);
+        world_->setParams(simulated(scene_));
+    }
+    if (!sentence.empty()) log_.notice(sentence);
 }
 
 void Session::reset() {

@@ -8,6 +8,7 @@
 #include "engine/compute/device.h"
 #include "engine/core/log.h"
 #include "engine/scene/scene.h"
+#include "fluid/bridge/budget.h"
 #include "fluid/bridge/scene_file.h"
 #include "fluid/bridge/solids_bullet.h"
 #include "fluid/sim/fluid_world.h"
@@ -31,12 +32,14 @@ struct SolidFields {
 
 class Session {
   public:
-    // `device` must outlive the session. Error (badInput): a mesh is missing, unreadable or not finite; values that make no sense
-    // together. Error (failed): out of memory.
+    // `device` must outlive the session. A scene's budget is opened first: scene() is then what it picked. Error (badInput): a mesh is
+    // missing, unreadable or not finite; values that make no sense together. Error (failed): out of memory.
     static Result<std::unique_ptr<Session>> create(SceneFile scene, Device& device, const Log& log);
 
     const SceneFile& scene() const { return scene_; }
     FluidWorld& world() { return *world_; }
+    const FluidWorld& world() const { return *world_; }
+    const std::optional<Budget>& budget() const { return budget_; }
     const VoxelField& field() const { return field_; }  // of the mesh colliders that stand still; empty = none
     SolidFields fields() const;
     const Scene& solids() const { return solids_; }  // the visible colliders, to be drawn
@@ -44,11 +47,11 @@ class Session {
 
     // Whether a collider of `scene` moves, bends or stands still where it did not before: its voxels are of another kind then.
     bool needsNew(const SceneFile& scene) const;
-    // Takes what may change between steps; what is `fixed` needs a new Session.
+    // Takes what may change between steps; what is `fixed` needs a new Session. What a budget picks stays its own.
     void apply(const SceneFile& scene);
 
     // One frame. The wall time in ms: with `wait`, until the device has done it; without, only what the call took.
-    // `deviceMs`: as FluidInputs.
+    // `deviceMs`: as FluidInputs. A budget watches, and may pick other values: scene() has them then, and the log says so.
     double step(double seconds, bool wait, double deviceMs = 0);
     void reset();
 
@@ -78,8 +81,11 @@ class Session {
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
     void advance(double seconds, double deviceMs);
     void placeNodes();
+    void watchBudget(double ms);
 
     SceneFile scene_;
+    Log log_;
+    std::optional<Budget> budget_;
     Scene solids_;
     std::vector<Mesh> meshes_;        // of the mesh colliders, in the order of the scene: in the world, or in a moving one's own frame
     std::vector<size_t> colliderOf_;  // of each mesh

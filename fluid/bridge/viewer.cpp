@@ -172,6 +172,8 @@ void Viewer::takeEdits(bool recreate) {
         sense ? Session::create(draft_, *device_, log_) : Result<std::unique_ptr<Session>>(sense.error());
     if (fresh) {
         session_ = std::move(*fresh);
+        draft_ = session_->scene();  // a budget may have picked
+        repicked_ = 0;
         message_.clear();
         profiler_.clear();
         voxels_.clear();
@@ -198,6 +200,10 @@ void Viewer::step(double seconds) {
     stepOnce_ = false;
     double ms = session_->step(fixed ? seconds : kStep, false, deviceMs_);
     ++steps_;
+    if (const int repicked = session_->budget() ? session_->budget()->repicked() : 0; repicked != repicked_) {
+        repicked_ = repicked;
+        draft_.fluid = session_->scene().fluid;  // what the panel shows
+    }
     std::vector<PassTime> passes = device_->takeTimes();
     deviceMs_ = 0;
     for (const PassTime& pass : passes) deviceMs_ += pass.ms;

@@ -68,6 +68,7 @@ class Viewer {
     double deviceMs_ = 0;  // of the passes last heard of
     std::optional<RunRecorder> recorder_;
     uint64_t steps_ = 0;
+    int repicked_ = 0;  // by the session's budget
 
     explicit Viewer(UiLayer ui) : ui_(std::move(ui)) {}
 };

@@ -25,6 +25,7 @@ FluidWorld::~FluidWorld() = default;
 const FluidParams& FluidWorld::params() const { return impl_->params; }
 std::vector<float> FluidWorld::pressures() const { return impl_->method->pressures(*impl_->device, impl_->particles, impl_->step); }
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
+float FluidWorld::fastestFall() const { return impl_->fastestFall(); }
 double FluidWorld::time() const { return impl_->time; }
 double FluidWorld::pending() const { return impl_->pace.pending(); }
 double FluidWorld::dropped() const { return impl_->dropped; }

@@ -66,6 +66,7 @@ class FluidWorld {
     const FluidParams& params() const;
     ParticleView particles() const;
     const FluidStats& stats() const;  // late on a GPU
+    float fastestFall() const;        // m/s, what its water reaches by falling, with what it starts with
     double time() const;              // s simulated
     double pending() const;           // s asked for that wait for a whole fluid.fixedStep
     double dropped() const;           // s asked for that were not and will not be simulated

@@ -4,29 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace rivulet {
 
 namespace {
 
 constexpr ChartSetting kSettings[] = {
-    {"pbf 1", "1 correction a step", "pbf", "fluid.pbf.iterations=1"},
-    {"pbf 2", "2 corrections a step", "pbf", "fluid.pbf.iterations=2"},
-    {"pbf", "3 corrections a step, as it comes", "pbf", ""},
-    {"pbf 6", "6 corrections a step", "pbf", "fluid.pbf.iterations=6"},
-    {"pbf 3, short steps", "3 corrections in steps half as long", "pbf", "fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8"},
+    {"pbf 1", "1 correction a step", "pbf", "fluid.pbf.iterations=1", false},
+    {"pbf 2", "2 corrections a step", "pbf", "fluid.pbf.iterations=2", true},
+    {"pbf", "3 corrections a step, as it comes", "pbf", "", true},
+    {"pbf 6", "6 corrections a step", "pbf", "fluid.pbf.iterations=6", true},
+    {"pbf 3, short steps", "3 corrections in steps half as long", "pbf", "fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8", true},
     {"pbf 10, short steps", "10 corrections in steps half as long", "pbf",
-     "fluid.pbf.iterations=10; fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8"},
+     "fluid.pbf.iterations=10; fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8", false},
+    {"dfsph 1e-2, long steps", "tolerance 1 %, steps twice as long", "dfsph",
+     "fluid.dfsph.tolerance=1e-2; fluid.dfsph.reach=0.6; fluid.dfsph.minSubsteps=4", true},
     {"dfsph 3e-3, long steps", "tolerance 0.3 %, steps twice as long", "dfsph",
-     "fluid.dfsph.tolerance=3e-3; fluid.dfsph.reach=0.6; fluid.dfsph.minSubsteps=4"},
-    {"dfsph 1e-3", "tolerance 0.1 %", "dfsph", "fluid.dfsph.tolerance=1e-3"},
-    {"dfsph", "tolerance 0.03 %, as it comes", "dfsph", ""},
-    {"dfsph 1e-4", "tolerance 0.01 %", "dfsph", "fluid.dfsph.tolerance=1e-4"},
+     "fluid.dfsph.tolerance=3e-3; fluid.dfsph.reach=0.6; fluid.dfsph.minSubsteps=4", true},
+    {"dfsph 1e-3", "tolerance 0.1 %", "dfsph", "fluid.dfsph.tolerance=1e-3", true},
+    {"dfsph", "tolerance 0.03 %, as it comes", "dfsph", "", true},
+    {"dfsph 1e-4", "tolerance 0.01 %", "dfsph", "fluid.dfsph.tolerance=1e-4", true},
     {"dfsph 1e-4, short steps", "tolerance 0.01 %, steps half as long", "dfsph",
-     "fluid.dfsph.tolerance=1e-4; fluid.dfsph.reach=0.15; fluid.dfsph.minSubsteps=16"},
-    {"wcsph", "weakly compressible, sound ten times as fast as the flow", "wcsph", ""},
-    {"wcsph, short steps", "steps half as long", "wcsph", "fluid.cfl=0.2"},
-    {"wcsph_thesis", "the thesis's pressure", "wcsph_thesis", ""},
+     "fluid.dfsph.tolerance=1e-4; fluid.dfsph.reach=0.15; fluid.dfsph.minSubsteps=16", false},
+    {"wcsph", "weakly compressible, sound ten times as fast as the flow", "wcsph", "", true},
+    {"wcsph, short steps", "steps half as long", "wcsph", "fluid.cfl=0.2", false},
+    {"wcsph_thesis", "the thesis's pressure", "wcsph_thesis", "", true},
 };
 
 // A case of the chart: coarser and finer than `validate --quick` has it.
@@ -63,7 +66,7 @@ struct Run {
     Size size;
 };
 
-// Settings as they come at all sizes, the others at the middle one.
+// Settings as they come at all sizes, the others at the middle one. Quick: some settings, two sizes.
 std::vector<Run> plannedRuns(const ChartRequest& request) {
     std::vector<Run> runs;
     for (const ChartCase& c : kCases) {
@@ -71,7 +74,8 @@ std::vector<Run> plannedRuns(const ChartRequest& request) {
         if (request.names.empty() ? request.quick && !c.quick : !named) continue;
         for (const Size size : {kCoarse, kMiddle, kFine})
             for (const ChartSetting& s : kSettings)
-                if (size == kMiddle || (*s.assignments == '\0' && !(request.quick && size == kFine))) runs.push_back({&c, &s, size});
+                if ((s.quick || !request.quick) && (size == kMiddle || (*s.assignments == '\0' && !(request.quick && size == kFine))))
+                    runs.push_back({&c, &s, size});
     }
     return runs;
 }
@@ -82,7 +86,12 @@ const Finding* judgedOf(const Outcome& outcome) {
     return found == outcome.findings.end() ? nullptr : &*found;
 }
 
-constexpr int kIterations[] = {1, 2, 4, 8, 16}, kSteps[] = {2, 4, 8, 16};
+// The ends of these are left out when it is to be quick.
+constexpr int kIterations[] = {1, 2, 4, 8, 16}, kSteps[] = {4, 8, 16};
+std::span<const int> iterationsOf(const ChartRequest& request) {
+    const std::span<const int> all(kIterations);
+    return request.quick ? all.subspan(1, all.size() - 2) : all;
+}
 
 }  // namespace
 
@@ -107,7 +116,7 @@ Result<Chart> runChart(const ChartRequest& request) {
     const std::vector<Run> runs = plannedRuns(request);
     const bool wave =
         request.names.empty() || std::find(request.names.begin(), request.names.end(), "standing_wave") != request.names.end();
-    const size_t viscous = wave ? std::size(kIterations) * std::size(kSteps) : 0, whole = runs.size() + viscous;
+    const size_t viscous = wave ? iterationsOf(request).size() * std::size(kSteps) : 0, whole = runs.size() + viscous;
     size_t done = 0;
     CaseSettings settings;
     settings.device = request.device;
@@ -141,12 +150,13 @@ Result<Chart> runChart(const ChartRequest& request) {
             continue;
         }
         chart.rows.push_back({run.of->name, f->what, run.setting->name, outcome->spacing, outcome->particles, f->error,
-                              outcome->wallPerSecond, outcome->sweepsPerSecond, outcome->stepsPerSecond, outcome->compression, false});
+                              outcome->wallPerSecond, outcome->sweepsPerSecond, outcome->stepsPerSecond, outcome->compression,
+                              outcome->fastest, false});
     }
     markFront(chart.rows);
     settings.quick = true;
     for (const int steps : kSteps)
-        for (const int iterations : kIterations) {
+        for (const int iterations : iterationsOf(request)) {
             if (!wave) break;
             settings.method = "pbf";
             settings.assignments.clear();

@@ -15,6 +15,7 @@ struct ChartSetting {
     const char* doc;
     const char* method;
     const char* assignments;  // "; " between them
+    bool quick;               // whether it is run when the chart is to be quick
 };
 // Per method from the cheapest to the most careful; the one without assignments is as the method comes.
 Table<ChartSetting> chartSettings();
@@ -30,6 +31,7 @@ struct ChartRow {
     double sweepsPerSecond = 0;  // over all neighbours
     double stepsPerSecond = 0;
     double compression = 0;  // mean over particles and frames, a fraction
+    double fastest = 0;      // m/s, what the water reaches by falling: FluidWorld::fastestFall
     bool onFront = false;    // no other row of its case is both cheaper and more accurate
 };
 

@@ -163,7 +163,7 @@ Plot viscosityPlot(const Chart& chart) {
 }
 
 constexpr const char* kColumns =
-    "case,what,setting,spacing,particles,error,wallPerSecond,sweepsPerSecond,stepsPerSecond,compression,front\n";
+    "case,what,setting,spacing,particles,error,wallPerSecond,sweepsPerSecond,stepsPerSecond,compression,fastest,front\n";
 
 std::string csvOf(const Chart& chart, const std::string& machine) {
     std::string csv = fmt::format("# {}\n{}", machine, kColumns);
@@ -172,8 +172,9 @@ std::string csvOf(const Chart& chart, const std::string& machine) {
         return text;
     };
     for (const ChartRow& r : chart.rows)
-        csv += fmt::format("{},{},{},{:.6g},{},{:.5g},{:.4g},{:.5g},{:.5g},{:.4g},{}\n", r.name, plain(r.what), plain(r.setting), r.spacing,
-                           r.particles, r.error, r.wallPerSecond, r.sweepsPerSecond, r.stepsPerSecond, r.compression, r.onFront ? 1 : 0);
+        csv += fmt::format("{},{},{},{:.6g},{},{:.5g},{:.4g},{:.5g},{:.5g},{:.4g},{:.4g},{}\n", r.name, plain(r.what), plain(r.setting),
+                           r.spacing, r.particles, r.error, r.wallPerSecond, r.sweepsPerSecond, r.stepsPerSecond, r.compression, r.fastest,
+                           r.onFront ? 1 : 0);
     return csv;
 }
 
@@ -190,7 +191,7 @@ std::vector<ChartRow> readChart(std::string_view csv) {
             else
                 cells.back() += c;
         at = end + 1;
-        if (cells.size() != 11 || cells[0].starts_with('#') || cells[0] == "case") continue;
+        if (cells.size() != 12 || cells[0].starts_with('#') || cells[0] == "case") continue;
         std::replace(cells[2].begin(), cells[2].end(), ';', ',');
         const auto number = [&](size_t k) {
             double x = 0;
@@ -199,7 +200,7 @@ std::vector<ChartRow> readChart(std::string_view csv) {
         };
         if (chartSettings().find(cells[2]) == nullptr) continue;  // of an older table
         rows.push_back({cells[0], cells[1], cells[2], number(3), static_cast<uint32_t>(number(4)), number(5), number(6), number(7),
-                        number(8), number(9), cells[10] == "1"});
+                        number(8), number(9), number(10), cells[11] == "1"});
     }
     return rows;
 }
@@ -213,7 +214,11 @@ Status writeChart(const Chart& chart, const std::string& folder, const std::stri
         "for "
         "the case; the table is `speed_accuracy.csv`, and a scene's `budget` picks from it.\n\n| setting | what it is |\n| --- | --- |\n",
         command, machine);
-    for (const ChartSetting& s : chartSettings().rows) page += fmt::format("| {} | method {}: {} |\n", s.name, s.method, s.doc);
+    const auto wasRun = [&](const ChartSetting& s) {
+        return std::any_of(chart.rows.begin(), chart.rows.end(), [&](const ChartRow& row) { return row.setting == s.name; });
+    };
+    for (const ChartSetting& s : chartSettings().rows)
+        if (wasRun(s)) page += fmt::format("| {} | method {}: {} |\n", s.name, s.method, s.doc);
     page += '\n' + needs(chart);
     for (const std::string& name : caseNames(chart)) {
         const std::vector<ChartRow> rows = rowsOf(chart, name);

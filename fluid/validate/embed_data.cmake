@@ -1,5 +1,5 @@
-# Writes OUT, a C++ file with every table under ROOT/tests/physics/data as a string (cmake -DROOT=... -DOUT=... -P embed_data.cmake).
-file(GLOB files ${ROOT}/tests/physics/data/*.csv)
+# Writes OUT, a C++ file with every table under ROOT/tests/physics/data, and the chart that budgets pick from, as strings (cmake -DROOT=... -DOUT=... -P embed_data.cmake).
+file(GLOB files ${ROOT}/tests/physics/data/*.csv ${ROOT}/docs/speed_accuracy.csv)
 list(SORT files)
 set(rows "")
 foreach(file ${files})

@@ -80,6 +80,7 @@ Outcome Trial::outcome(std::vector<Finding> findings, Plot plot) const {
         o.stepsPerSecond = static_cast<double>(steps_) / w.time();
         o.sweepsPerSecond = static_cast<double>(w.stats().sweeps) / w.time();
     }
+    o.fastest = double{w.fastestFall()};
     o.compression = frames_ > 0 ? compression_ / static_cast<double>(frames_) : 0;
     return o;
 }

@@ -19,7 +19,8 @@ ChartRow row(const char* name, const char* setting, double error, double cost) {
             .wallPerSecond = cost,
             .sweepsPerSecond = 1200,
             .stepsPerSecond = 240,
-            .compression = 0.004};
+            .compression = 0.004,
+            .fastest = 1.5};
 }
 
 TEST(Chart, WhatNothingBeatsInBothIsOnTheFront) {
@@ -52,6 +53,7 @@ TEST(Chart, IsReadAsItWasWritten) {
         EXPECT_DOUBLE_EQ(read[k].error, chart.rows[k].error);
         EXPECT_DOUBLE_EQ(read[k].wallPerSecond, chart.rows[k].wallPerSecond);
         EXPECT_DOUBLE_EQ(read[k].compression, 0.004);
+        EXPECT_DOUBLE_EQ(read[k].fastest, 1.5);
         EXPECT_EQ(read[k].onFront, chart.rows[k].onFront);
     }
     const std::string page = *readFile((folder / "speed_accuracy.md").string());

@@ -25,39 +25,23 @@ Result<Outcome> runStandingWave(const CaseSettings& settings) {
     if (Status set = trial->setVelocities([&](const dvec3& x) { return amplitude * w * mode(x); }); !set) return set.error();
     Curve measured{"measured", true, {}}, reference{"Lamb", true, {}};
     const bool done = trial->run(1.0 / 120, [&] {
-        const HostParticles all = trial->particles();
-        double along = 0, whole = 0;
-        for (size_t i = 0; i < all.position.size(); ++i) {
-            const dvec3 m = mode(dvec3(all.position[i]));
-            along += glm::dot(m, dvec3(all.velocity[i]));
-            whole += glm::dot(m, m);
-        }
         const double t = trial->time();
-        measured.points.emplace_back(t, along / whole / (amplitude * w));
+        measured.points.emplace_back(t, amplitudeOf(trial->particles(), mode) / (amplitude * w));
         reference.points.emplace_back(t, std::cos(w * t) * std::exp(-2 * double{p.viscosity} * k * k * t));
     });
     if (!done) return trial->outcome({}, {});
     // Periods from where it passes zero, viscosity from how the crests between sink.
-    std::vector<double> zeros, crests, crestTimes;
-    double crest = 0, crestTime = 0;
-    for (size_t i = 1; i < measured.points.size(); ++i) {
-        const glm::dvec2 a = measured.points[i - 1], c = measured.points[i];
-        if (std::abs(c.y) > crest) {
-            crest = std::abs(c.y);
-            crestTime = c.x;
-        }
-        if (a.y * c.y > 0 || a.y == c.y) continue;
-        zeros.push_back(a.x + (c.x - a.x) * a.y / (a.y - c.y));
-        if (zeros.size() > 1) {
-            crests.push_back(crest);
-            crestTimes.push_back(crestTime);
-        }
-        crest = 0;
+    const std::vector<double> zeros = zerosOf(measured.points);
+    std::vector<glm::dvec2> crests;
+    for (size_t n = 1; n < zeros.size(); ++n) {
+        crests.emplace_back(0.0, 0.0);
+        for (const glm::dvec2& at : measured.points)
+            if (at.x > zeros[n - 1] && at.x < zeros[n] && std::abs(at.y) > crests.back().y) crests.back() = {at.x, std::abs(at.y)};
     }
     const double period = zeros.size() > 1 ? 2 * (zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1) : 0;
     const double expected = 2 * pi / w;
     const double viscosity =
-        crests.size() > 1 ? std::log(crests.front() / crests.back()) / (crestTimes.back() - crestTimes.front()) / (2 * k * k) : 0;
+        crests.size() > 1 ? std::log(crests.front().y / crests.back().y) / (crests.back().x - crests.front().x) / (2 * k * k) : 0;
     return trial->outcome(
         {{"period", "s", period, expected, std::abs(period / expected - 1), 0.02},
          {"viscosity of the decay", "m^2/s", viscosity, double{p.viscosity}, std::abs(viscosity - double{p.viscosity}), {}}},

@@ -112,22 +112,9 @@ Result<Outcome> runTension(const CaseSettings& settings) {
     // A tenth of its radius longer at the first turn.
     if (Status set = trial->setVelocities([&](const dvec3& x) { return 0.1 * w * mode(x); }); !set) return set.error();
     std::vector<glm::dvec2> swing;
-    const bool done = trial->run(1.0 / 120, [&] {
-        const HostParticles all = trial->particles();
-        double along = 0, whole = 0;
-        for (size_t i = 0; i < all.position.size(); ++i) {
-            const dvec3 m = mode(dvec3(all.position[i]));
-            along += glm::dot(m, dvec3(all.velocity[i]));
-            whole += glm::dot(m, m);
-        }
-        swing.emplace_back(trial->time(), along / whole / (0.1 * w));
-    });
+    const bool done = trial->run(1.0 / 120, [&] { swing.emplace_back(trial->time(), amplitudeOf(trial->particles(), mode) / (0.1 * w)); });
     if (!done) return trial->outcome({}, {});
-    std::vector<double> zeros;
-    for (size_t i = 1; i < swing.size(); ++i) {
-        const glm::dvec2 a = swing[i - 1], c = swing[i];
-        if (a.y * c.y <= 0 && a.y != c.y) zeros.push_back(a.x + (c.x - a.x) * a.y / (a.y - c.y));
-    }
+    const std::vector<double> zeros = zerosOf(swing);
     const double measured =
         zeros.size() > 1 ? std::numbers::pi * static_cast<double>(zeros.size() - 1) / (zeros.back() - zeros.front()) : 0;
     findings.push_back({fmt::format("w of the second mode, R = {:.3g} spacings", drop.radius / drop.spacing), "1/s", measured, w,

@@ -54,6 +54,25 @@ Status changeParticles(FluidWorld& w, const std::function<void(vec4& position, v
     return w.restore(changed);
 }
 
+double amplitudeOf(const HostParticles& particles, const std::function<dvec3(const dvec3&)>& mode) {
+    double along = 0, whole = 0;
+    for (size_t i = 0; i < particles.position.size(); ++i) {
+        const dvec3 m = mode(dvec3(particles.position[i]));
+        along += glm::dot(m, dvec3(particles.velocity[i]));
+        whole += glm::dot(m, m);
+    }
+    return along / whole;
+}
+
+std::vector<double> zerosOf(std::span<const glm::dvec2> curve) {
+    std::vector<double> zeros;
+    for (size_t i = 1; i < curve.size(); ++i) {
+        const glm::dvec2 a = curve[i - 1], c = curve[i];
+        if (a.y * c.y <= 0 && a.y != c.y) zeros.push_back(a.x + (c.x - a.x) * a.y / (a.y - c.y));
+    }
+    return zeros;
+}
+
 bool Trial::run(double frame, const std::function<void()>& each, double until) {
     const double duration = scene().duration, end = std::min(duration, until);
     while (time() < end - 1e-3 * frame) {

@@ -12,6 +12,12 @@ namespace rivulet {
 // Changes the particles of a world where they stand (position: xyz m, w < 0 takes one away; velocity: m/s). Error: as FluidWorld::savable.
 Status changeParticles(FluidWorld& world, const std::function<void(vec4& position, vec4& velocity)>& each);
 
+// How much of a field of velocities is in those of particles: least squares.
+double amplitudeOf(const HostParticles& particles, const std::function<dvec3(const dvec3&)>& mode);
+
+// Where a curve passes zero, by straight lines between its points.
+std::vector<double> zerosOf(std::span<const glm::dvec2> curve);
+
 class Trial {
   public:
     // cases/`name`.json with the method and assignments that were asked for. Error: as loadScene and Session::create.

@@ -85,6 +85,10 @@ int runVerb(const Arguments& arguments) {
 
     Result<SceneFile> loaded = loadScene(scene, assignments);
     if (!loaded) return report(loaded.error());
+    if (loaded->budget.frameMs > 0 && (!options.save.empty() || !options.resume.empty()))
+        return report(
+            badInput("a budget picks anew at each start, and what is saved would not fit: --set budget.frameMs=0, and the method and "
+                     "spacing that you want"));
     options.scene = std::move(*loaded);
     options.render = !noRender;
     if (seconds) options.frames = static_cast<int>(std::lround(*seconds * kFramesPerSecond));

@@ -1,4 +1,4 @@
-// A scene's budget in this machine's milliseconds: half a second of its own water with each method.
+// A scene's budget in this machine's milliseconds: half a second of its own water, with each method and then with what they lead to.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,35 +6,25 @@
 
 #include "fluid/bridge/budget.h"
 #include "fluid/bridge/session.h"
-#include "fluid/validate/reference_data.h"
 
 namespace rivulet {
 
 namespace {
 
 constexpr double kCalibration = 300;  // ms, of all methods together
-constexpr double kCloser = 200;       // ms, of what they lead to
-constexpr double kAtMost = 20000;     // particles of the calibration: a sweep costs each the same
-constexpr double kSomeWater = 200;    // particles, below which a frame says nothing of what one costs
-constexpr double kUsual = 60;         // ns: where nothing could be measured
+constexpr double kCloser = 100;       // ms, of what they lead to, each time
+constexpr int kCloserTimes = 2;
+constexpr double kAtMost = 20000;   // particles of a whole box of water: a sweep costs each the same
+constexpr double kSomeWater = 200;  // particles, below which a frame says nothing of what one costs
+constexpr double kUsual = 60;       // ns: where nothing could be measured
 
-constexpr const char* kNoChart = "the program was built without a chart to pick from: `rivulet chart`, then build again";
-
-std::vector<ChartRow> builtInChart() {
-    for (const ReferenceTable& table : referenceTables())
-        if (table.name == "speed_accuracy") return readChart(table.text);
-    return {};
-}
-
-struct Calibration {
-    std::vector<SweepCost> costs;
-    SceneSize size;
-    bool measured = true;
+struct Cost {
+    double ns = 0, frameMs = 0;  // a particle and sweep; a frame, mean
 };
 
-// Steps the scene with a method for so many ms. ns a particle and sweep; nullopt: there was too little water.
-std::optional<double> sweepCost(Session& session, double budgetMs) {
-    double ms = 0, work = 0;  // work: particles times sweeps
+// Steps the scene for so many ms. nullopt: there was too little water.
+std::optional<Cost> costOf(Session& session, double budgetMs) {
+    double ms = 0, work = 0, frames = 0;  // work: particles times sweeps
     const FluidWorld& world = session.world();
     session.step(1.0 / kFramesPerSecond, true);  // the first one makes what the others find made
     for (double spent = 0; spent < budgetMs;) {
@@ -45,80 +35,116 @@ std::optional<double> sweepCost(Session& session, double budgetMs) {
         if (particles < kSomeWater) continue;
         ms += took;
         work += particles * static_cast<double>(world.stats().sweeps - before);
+        frames += 1;
     }
-    return work > 0 ? std::optional(1e6 * ms / work) : std::nullopt;
+    return work > 0 ? std::optional(Cost{1e6 * ms / work, ms / frames}) : std::nullopt;
 }
 
+struct Calibration {
+    std::vector<SweepCost> costs;
+    SceneSize size;
+    bool measured = true;
+};
+
+// The scene without its budget, at a spacing.
+SceneFile trialOf(const SceneFile& scene, double spacing) {
+    SceneFile trial = scene;
+    trial.budget = {};
+    trial.fluid.spacing = static_cast<float>(spacing);
+    trial.fluid.maxParticles = 0;  // how many there would be
+    return trial;
+}
+
+// Each method that the chart can pick, as it comes. Those that refuse the scene are left out; the last one's sentence, where all do.
 Result<Calibration> calibrate(const SceneFile& scene, Device& device, std::span<const ChartRow> chart) {
     Calibration c;
     c.size.finest = scene.budget.finest > 0 ? double{scene.budget.finest} : double{scene.fluid.spacing};
-    SceneFile trial = scene;
-    trial.budget = {};
-    const dvec3 box(scene.fluid.box.max - scene.fluid.box.min);
-    trial.fluid.spacing = static_cast<float>(std::max(c.size.finest, std::cbrt(box.x * box.y * box.z / kAtMost)));
-    std::vector<std::string> methods;
+    c.size.most = scene.fluid.maxParticles;
+    std::vector<const ChartSetting*> plain;
     for (const ChartSetting& s : chartSettings().rows)
-        if (std::any_of(chart.begin(), chart.end(), [&](const ChartRow& row) { return row.setting == s.name; }) &&
-            std::find(methods.begin(), methods.end(), s.method) == methods.end())
-            methods.emplace_back(s.method);
-    Error refused = failed(kNoChart);
-    for (const std::string& method : methods) {
-        trial.fluid.method = method;
-        Result<std::unique_ptr<Session>> session = Session::create(trial, device, Log{});
-        if (!session && trial.fluid.spacing > scene.fluid.spacing) {  // too coarse for this scene
-            trial.fluid.spacing = static_cast<float>(c.size.finest);
+        if (*s.assignments == '\0' && std::any_of(chart.begin(), chart.end(), [&](const ChartRow& row) { return row.setting == s.name; }))
+            plain.push_back(&s);
+    const dvec3 box(scene.fluid.box.max - scene.fluid.box.min);
+    const double coarse = std::max(c.size.finest, std::cbrt(box.x * box.y * box.z / kAtMost));
+    std::optional<Error> refused;
+    for (const ChartSetting* setting : plain) {
+        Result<std::unique_ptr<Session>> session = failed("");
+        double spacing = coarse;
+        for (;; spacing = std::max(0.5 * spacing, c.size.finest)) {  // too coarse for the scene, or for a drop in it
+            SceneFile trial = trialOf(scene, spacing);
+            applySetting(*setting, trial);
             session = Session::create(trial, device, Log{});
+            if (spacing <= c.size.finest || (session && (*session)->world().particles().count > 0)) break;
         }
-        if (!session) {  // others may take the scene
+        if (!session) {
             refused = session.error();
             continue;
         }
         const FluidWorld& world = (*session)->world();
-        c.size.spacing = double{trial.fluid.spacing};
+        if (world.particles().count == 0) continue;
+        c.size.spacing = spacing;
         c.size.particlesAt = world.particles().count;
-        c.size.fastest = world.fastestFall();
-        const std::optional<double> ns = sweepCost(**session, kCalibration / static_cast<double>(methods.size()));
-        c.costs.push_back({method, ns.value_or(kUsual)});
-        c.measured = c.measured && ns.has_value();
+        c.size.fastest = double{world.fastestFall()};
+        const std::optional<Cost> cost = costOf(**session, kCalibration / static_cast<double>(plain.size()));
+        c.costs.push_back({setting->method, cost ? cost->ns : kUsual});
+        c.measured = c.measured && cost.has_value();
     }
-    if (c.costs.empty()) return refused;
+    if (c.costs.empty() && refused) return *refused;
     return c;
+}
+
+// As it was picked, with as many particles as there are then: what a frame takes that the chart's dam break knows nothing of (bodies, a
+// liquid that is thick, short steps) makes each sweep dearer.
+Status comeCloser(const SceneFile& scene, Device& device, std::span<const ChartRow> chart, Calibration& c,
+                  std::optional<BudgetPick>& pick) {
+    for (int k = 0; k < kCloserTimes; ++k) {
+        SceneFile trial = trialOf(scene, pick->spacing);
+        applySetting(*pick->setting, trial);
+        Result<std::unique_ptr<Session>> session = Session::create(trial, device, Log{});
+        if (!session) return session.error();
+        if (const double count = (*session)->world().particles().count; count > 0) {
+            c.size.particlesAt = count;
+            c.size.spacing = pick->spacing;
+        }
+        if (const std::optional<Cost> cost = costOf(**session, kCloser)) {
+            const auto own =
+                std::find_if(c.costs.begin(), c.costs.end(), [&](const SweepCost& s) { return s.method == trial.fluid.method; });
+            own->ns = cost->ns;
+            const double expected = frameCost(chart, c.costs, c.size, *pick->setting, pick->spacing).value_or(cost->frameMs);
+            own->ns *= std::max(cost->frameMs / expected, 1.0);
+        }
+        pick = pickSetting(chart, c.costs, c.size, scene.budget);
+    }
+    return ok();
 }
 
 }  // namespace
 
 Result<std::optional<Budget>> openBudget(SceneFile& scene, Device& device, const Log& log) {
     if (scene.budget.frameMs <= 0) return std::optional<Budget>();
-    std::vector<ChartRow> chart = builtInChart();
+    std::vector<ChartRow> chart = readChart(builtInChart());
     Result<Calibration> c = calibrate(scene, device, chart);
     if (!c) return c.error();
     std::optional<BudgetPick> pick = pickSetting(chart, c->costs, c->size, scene.budget);
-    if (!pick) return failed(kNoChart);
-    // Closer: as it was picked, with as many particles as there are then.
-    SceneFile closer = scene;
-    Budget(scene, chart, c->costs, c->size, *pick).apply(closer);
-    closer.budget = {};
-    closer.fluid.spacing = static_cast<float>(pick->spacing);
-    Result<std::unique_ptr<Session>> session = Session::create(closer, device, Log{});
-    if (!session) return session.error();
-    c->size.particlesAt = (*session)->world().particles().count;
-    c->size.spacing = pick->spacing;
-    const auto own = std::find_if(c->costs.begin(), c->costs.end(), [&](const SweepCost& s) { return s.method == closer.fluid.method; });
-    own->ns = sweepCost(**session, kCloser).value_or(own->ns);
-    pick = pickSetting(chart, c->costs, c->size, scene.budget);
-    Budget budget(scene, std::move(chart), c->costs, c->size, *pick);
-    budget.apply(scene);
+    if (!pick) {
+        log.notice("the scene starts without water: its budget has nothing to measure, and picks nothing");
+        return std::optional<Budget>();
+    }
+    if (Status closer = comeCloser(scene, device, chart, *c, pick); !closer) return closer.error();
+    device.finish();
+    (void)device.takeTimes();  // of the trials: nobody asked for them
+    applySetting(*pick->setting, scene);
     scene.fluid.spacing = static_cast<float>(pick->spacing);
     scene.budget.finest = static_cast<float>(c->size.finest);  // so that another pick may be finer again
-    std::string said =
-        fmt::format("budget of {:.3g} ms and {:.2g} %: {}, particles {:.3g} m apart, about {:.0f} of them; {:.3g} ms and {:.2g} % expected",
-                    scene.budget.frameMs, 100 * scene.budget.maxDensityError, pick->setting->name, pick->spacing, pick->particles,
-                    pick->frameMs, 100 * pick->densityError);
+    const std::string allowed = percentText(double{scene.budget.maxDensityError});
+    std::string said = fmt::format(
+        "budget of {:.4g} ms and {}: {}, particles {:.3g} m apart, about {:.0f} of them; {:.3g} ms and {} expected", scene.budget.frameMs,
+        allowed, pick->setting->name, pick->spacing, pick->particles, pick->frameMs, percentText(pick->densityError));
     if (!c->measured) said += "; the scene starts with too little water to measure what it costs here";
-    if (!pick->holdsError) said += fmt::format("; nothing on the chart keeps density within {:.2g} %", 100 * scene.budget.maxDensityError);
+    if (!pick->holdsError) said += fmt::format("; nothing on the chart keeps density within {}", allowed);
     if (!pick->holdsFrame) said += "; so few particles that water would not be seen still take longer: allow a frame more";
     log.notice(said);
-    return std::optional(std::move(budget));
+    return std::optional(Budget(scene.budget, std::move(chart), c->costs, c->size, *pick));
 }
 
 }  // namespace rivulet

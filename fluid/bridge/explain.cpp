@@ -70,7 +70,8 @@ std::string explain(const Session& session, const RunStats& stats) {
     for (const Part& part : kParts)
         if (!isThere(part, kernels)) text += fmt::format("  {}: {}\n", part.name, part.why);
 
-    text += fmt::format("made, {} kernels\n", kernels.size());
+    text +=
+        fmt::format("made, {} kernels{}\n", kernels.size(), session.budget() ? ", those of methods that the budget tried among them" : "");
     for (std::string k : kernels) {
         std::replace(k.begin(), k.end(), ';', ' ');
         for (size_t at = 0; (at = k.find("=1", at)) != std::string::npos;) k.erase(at, 2);

@@ -252,9 +252,9 @@ void BudgetParams::visit(ParamVisitor& v) {
     v.value({"frameMs", "ms", "what simulating a sixtieth of a second may take; 0 = no budget: all is as fluid says", 0, 10000, kLinear,
              kFixed},
             frameMs);
-    v.value({"maxDensityError", "", "how far density may be off, mean over particles and time, a fraction", 1.0e-5, 1, kLog, kFixed},
+    v.value({"maxDensityError", "", "how far water may be compressed, mean over particles and time, a fraction", 1.0e-5, 1, kLog, kFixed},
             maxDensityError);
-    v.value({"finest", "m", "a finer spacing is not picked; 0 = fluid.spacing", 0, 100, kLinear, kFixed}, finest);
+    v.value({"finest", "m", "a finer spacing is not picked; 0 = fluid.spacing, which it is from then on", 0, 100, kLinear, kFixed}, finest);
 }
 
 void SceneFile::visit(ParamVisitor& v) {

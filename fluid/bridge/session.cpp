@@ -311,7 +311,7 @@ void Session::apply(const SceneFile& scene) {
     std::string folder = scene_.folder;
     scene_ = scene;
     scene_.folder = folder;
-    if (budget_) budget_->apply(scene_);
+    if (budget_) applySetting(budget_->setting(), scene_);
     world_->setParams(simulated(scene_));
     Sources sources{.sinks = scene_.sinks};
     for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
@@ -372,7 +372,7 @@ void Session::placeNodes() {
 
 double Session::step(double asked, bool wait, double deviceMs) {
     auto start = std::chrono::steady_clock::now();
-    const double seconds = world_->taken(asked);
+    const double seconds = world_->taken(asked), before = world_->time();
     // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
     const bool moving = !rigid_.empty() || !deforming_.empty();
     const int parts = moving && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
@@ -381,15 +381,15 @@ double Session::step(double asked, bool wait, double deviceMs) {
     if (moving || contacts_) placeNodes();
     double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     world_->device().poll();
-    // Of a GPU that nobody waits for, what its passes took says more than what the call did.
-    if (budget_ && asked > 0) watchBudget((wait || deviceMs <= 0 ? ms : deviceMs) / (asked * kFramesPerSecond));
+    // A GPU that nobody waits for works on after the call: what its passes took, some frames ago, says what a frame costs.
+    if (budget_) watchBudget(wait || world_->device().backend() == Backend::cpu ? ms : deviceMs, world_->time() - before);
     return ms;
 }
 
-void Session::watchBudget(double ms) {
+void Session::watchBudget(double ms, double seconds) {
     std::string sentence;
-    if (budget_->frame(ms, world_->stats().avgCompression, sentence)) {
-        budget_->apply(scene_);
+    if (budget_->frame(ms, seconds, world_->stats().avgCompression, sentence)) {
+        applySetting(budget_->setting(), scene_);
         world_->setParams(simulated(scene_));
     }
     if (!sentence.empty()) log_.notice(sentence);

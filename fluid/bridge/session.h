@@ -81,7 +81,7 @@ class Session {
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
     void advance(double seconds, double deviceMs);
     void placeNodes();
-    void watchBudget(double ms);
+    void watchBudget(double ms, double seconds);
 
     SceneFile scene_;
     Log log_;

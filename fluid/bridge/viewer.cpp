@@ -165,6 +165,7 @@ void Viewer::takeEdits(bool recreate) {
     if (!recreate) {
         message_.clear();
         session_->apply(draft_);
+        if (session_->budget()) draft_.fluid = session_->scene().fluid;  // what a budget holds, an edit does not change
         return;
     }
     notices_->clear();

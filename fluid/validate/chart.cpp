@@ -53,11 +53,7 @@ constexpr ChartCase kCases[] = {
 enum Size { kCoarse, kMiddle, kFine };
 
 void add(std::vector<std::string>& to, std::string_view assignments) {
-    for (size_t at = 0; at < assignments.size();) {
-        const size_t end = std::min(assignments.find("; ", at), assignments.size());
-        to.emplace_back(assignments.substr(at, end - at));
-        at = end + 2;
-    }
+    for (std::string& each : assignmentsOf(assignments)) to.push_back(std::move(each));
 }
 
 struct Run {
@@ -86,7 +82,7 @@ const Finding* judgedOf(const Outcome& outcome) {
     return found == outcome.findings.end() ? nullptr : &*found;
 }
 
-// The ends of these are left out when it is to be quick.
+// Of the corrections the ends are left out when it is to be quick.
 constexpr int kIterations[] = {1, 2, 4, 8, 16}, kSteps[] = {4, 8, 16};
 std::span<const int> iterationsOf(const ChartRequest& request) {
     const std::span<const int> all(kIterations);
@@ -99,6 +95,16 @@ std::vector<std::string> chartCases() {
     std::vector<std::string> names;
     for (const ChartCase& c : kCases) names.emplace_back(c.name);
     return names;
+}
+
+std::vector<std::string> assignmentsOf(std::string_view joined) {
+    std::vector<std::string> each;
+    for (size_t at = 0; at < joined.size();) {
+        const size_t end = std::min(joined.find("; ", at), joined.size());
+        each.emplace_back(joined.substr(at, end - at));
+        at = end + 2;
+    }
+    return each;
 }
 
 Table<ChartSetting> chartSettings() { return {kSettings}; }

@@ -17,6 +17,7 @@ struct ChartSetting {
     const char* assignments;  // "; " between them
     bool quick;               // whether it is run when the chart is to be quick
 };
+std::vector<std::string> assignmentsOf(std::string_view joined);  // what "; " stands between
 // Per method from the cheapest to the most careful; the one without assignments is as the method comes.
 Table<ChartSetting> chartSettings();
 
@@ -62,6 +63,12 @@ void markFront(std::vector<ChartRow>& rows);
 // Into `folder`: speed_accuracy.csv, speed_accuracy_CASE.svg, pbf_viscosity.csv and .svg, and speed_accuracy.md, which reads them aloud.
 // `machine` and `command` say where they come from. Error (failed): gnuplot is not installed, or a file cannot be written.
 Status writeChart(const Chart& chart, const std::string& folder, const std::string& machine, const std::string& command);
+
+// docs/speed_accuracy.csv as it was when the program was built.
+std::string_view builtInChart();
+
+// "0.5 %", "120 %".
+std::string percentText(double fraction);
 
 // The rows of a speed_accuracy.csv. A line that is no row is left out.
 std::vector<ChartRow> readChart(std::string_view csv);

@@ -13,7 +13,6 @@ namespace rivulet {
 
 namespace {
 
-std::string percent(double fraction) { return fmt::format("{:.2g} %", 100 * fraction); }
 std::string cost(double wallPerSecond) { return fmt::format("{:.2g} s", wallPerSecond); }
 
 std::vector<std::string> caseNames(const Chart& chart) {
@@ -60,16 +59,16 @@ std::string readAloud(const std::vector<ChartRow>& rows) {
     const ChartRow& best =
         *std::min_element(rows.begin(), rows.end(), [](const ChartRow& a, const ChartRow& b) { return a.error < b.error; });
     std::string text = fmt::format("Best: **{}** with {} particles, {} off, {} a simulated second.", best.setting, best.particles,
-                                   percent(best.error), cost(best.wallPerSecond));
+                                   percentText(best.error), cost(best.wallPerSecond));
     const ChartRow* last = nullptr;
     for (const double within : {0.2, 0.1, 0.05, 0.02, 0.01}) {
         const ChartRow* row = cheapest(rows, within);
         if (row == nullptr) {
-            text += fmt::format(" Nothing here comes within {}.", percent(within));
+            text += fmt::format(" Nothing here comes within {}.", percentText(within));
             break;
         }
         if (row != last)
-            text += fmt::format(" Within {}: **{}**, {} particles, {}.", percent(within), row->setting, row->particles,
+            text += fmt::format(" Within {}: **{}**, {} particles, {}.", percentText(within), row->setting, row->particles,
                                 cost(row->wallPerSecond));
         last = row;
     }
@@ -112,7 +111,7 @@ std::string needs(const Chart& chart) {
     double leastWorse = 1e300, leastDear = 1e300, leastSqueezed = 1e300;
     for (const auto& [method, all] : worse) {
         const double w = median(all), d = median(dearer[method]), c = median(squeezed[method]);
-        text += fmt::format("| {} | {} times | {:.2g} | {:.2g} | {} |\n", method, front[method], w, d, percent(c));
+        text += fmt::format("| {} | {} times | {:.2g} | {:.2g} | {} |\n", method, front[method], w, d, percentText(c));
         if (w < leastWorse) leastWorse = w, accurate = method;
         if (d < leastDear) leastDear = d, cheap = method;
         if (c < leastSqueezed) leastSqueezed = c, stiff = method;
@@ -128,8 +127,8 @@ std::string tableOf(const std::vector<ChartRow>& rows) {
         "| setting | particles | error | s a second | sweeps a second | steps a second | compressed | |\n| --- | --- | --- | --- "
         "| --- | --- | --- | --- |\n";
     for (const ChartRow& r : rows)
-        text += fmt::format("| {} | {} | {} | {:.3g} | {:.4g} | {:.4g} | {} | {} |\n", r.setting, r.particles, percent(r.error),
-                            r.wallPerSecond, r.sweepsPerSecond, r.stepsPerSecond, percent(r.compression), r.onFront ? "front" : "");
+        text += fmt::format("| {} | {} | {} | {:.3g} | {:.4g} | {:.4g} | {} | {} |\n", r.setting, r.particles, percentText(r.error),
+                            r.wallPerSecond, r.sweepsPerSecond, r.stepsPerSecond, percentText(r.compression), r.onFront ? "front" : "");
     return text;
 }
 
@@ -145,7 +144,7 @@ std::string viscosityPage(const Chart& chart) {
         "period off | s a second |\n| --- | --- | --- | --- | --- |\n",
         least->iterations, least->stepsPerFrame, least->viscosity, most->iterations, most->stepsPerFrame, most->viscosity);
     for (const ViscosityRow& r : chart.viscosity)
-        text += fmt::format("| {} | {} | {:.3g} | {} | {:.3g} |\n", r.iterations, r.stepsPerFrame, r.viscosity, percent(r.periodError),
+        text += fmt::format("| {} | {} | {:.3g} | {} | {:.3g} |\n", r.iterations, r.stepsPerFrame, r.viscosity, percentText(r.periodError),
                             r.wallPerSecond);
     return text;
 }
@@ -179,6 +178,11 @@ std::string csvOf(const Chart& chart, const std::string& machine) {
 }
 
 }  // namespace
+
+std::string percentText(double fraction) {
+    const double p = 100 * fraction;
+    return p < 99.5 ? fmt::format("{:.2g} %", p) : fmt::format("{:.0f} %", p);
+}
 
 std::vector<ChartRow> readChart(std::string_view csv) {
     std::vector<ChartRow> rows;

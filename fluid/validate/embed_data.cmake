@@ -1,5 +1,6 @@
-# Writes OUT, a C++ file with every table under ROOT/tests/physics/data, and the chart that budgets pick from, as strings (cmake -DROOT=... -DOUT=... -P embed_data.cmake).
-file(GLOB files ${ROOT}/tests/physics/data/*.csv ${ROOT}/docs/speed_accuracy.csv)
+# Writes OUT, a C++ file with every table under ROOT/tests/physics/data, and the chart that budgets pick from, as strings
+# (cmake -DROOT=... -DOUT=... -P embed_data.cmake).
+file(GLOB files ${ROOT}/tests/physics/data/*.csv)
 list(SORT files)
 set(rows "")
 foreach(file ${files})
@@ -7,6 +8,9 @@ foreach(file ${files})
     get_filename_component(name ${file} NAME_WE)
     string(APPEND rows "    {\"${name}\", R\"~~~(${text})~~~\"},\n")
 endforeach()
-file(WRITE ${OUT}.new "#include \"fluid/validate/reference_data.h\"\nnamespace rivulet {\nstatic const ReferenceTable kTables[] = {\n${rows}};\n"
-    "std::span<const ReferenceTable> referenceTables() { return kTables; }\n}  // namespace rivulet\n")
+file(READ ${ROOT}/docs/speed_accuracy.csv chart)
+file(WRITE ${OUT}.new "#include \"fluid/validate/chart.h\"\n#include \"fluid/validate/reference_data.h\"\nnamespace rivulet {\n"
+    "static const ReferenceTable kTables[] = {\n${rows}};\n"
+    "std::span<const ReferenceTable> referenceTables() { return kTables; }\n"
+    "std::string_view builtInChart() { return R\"~~~(${chart})~~~\"; }\n}  // namespace rivulet\n")
 file(RENAME ${OUT}.new ${OUT})

@@ -1,5 +1,5 @@
-// Published measurements: the tables under tests/physics/data and the chart (docs/speed_accuracy.csv), each with its source in its first
-// lines, embedded in the library.
+// Published measurements and reference solutions: the tables under tests/physics/data, each with its source in its first lines, embedded in
+// the library.
 #pragma once
 
 #include <span>

@@ -40,8 +40,9 @@ Result<Outcome> runStandingWave(const CaseSettings& settings) {
     }
     const double period = zeros.size() > 1 ? 2 * (zeros.back() - zeros.front()) / static_cast<double>(zeros.size() - 1) : 0;
     const double expected = 2 * pi / w;
-    const double viscosity =
-        crests.size() > 1 ? std::log(crests.front().y / crests.back().y) / (crests.back().x - crests.front().x) / (2 * k * k) : 0;
+    const double viscosity = crests.size() > 1 && crests.back().y > 0
+                                 ? std::log(crests.front().y / crests.back().y) / (crests.back().x - crests.front().x) / (2 * k * k)
+                                 : 0;
     return trial->outcome(
         {{"period", "s", period, expected, std::abs(period / expected - 1), 0.02},
          {"viscosity of the decay", "m^2/s", viscosity, double{p.viscosity}, std::abs(viscosity - double{p.viscosity}), {}}},

@@ -61,7 +61,7 @@ double amplitudeOf(const HostParticles& particles, const std::function<dvec3(con
         along += glm::dot(m, dvec3(particles.velocity[i]));
         whole += glm::dot(m, m);
     }
-    return along / whole;
+    return whole > 0 ? along / whole : 0;
 }
 
 std::vector<double> zerosOf(std::span<const glm::dvec2> curve) {
@@ -77,10 +77,10 @@ bool Trial::run(double frame, const std::function<void()>& each, double until) {
     const double duration = scene().duration, end = std::min(duration, until);
     while (time() < end - 1e-3 * frame) {
         if (!goOn_(time() / duration)) return false;
+        const double before = time();
         wall_ += 1e-3 * session_->step(std::min(frame, end - time()), true);
         steps_ += world().lastSubsteps();
-        compression_ += world().stats().avgCompression;
-        ++frames_;
+        compression_ += world().stats().avgCompression * (time() - before);
         each();
     }
     return true;
@@ -100,7 +100,7 @@ Outcome Trial::outcome(std::vector<Finding> findings, Plot plot) const {
         o.sweepsPerSecond = static_cast<double>(w.stats().sweeps) / w.time();
     }
     o.fastest = double{w.fastestFall()};
-    o.compression = frames_ > 0 ? compression_ / static_cast<double>(frames_) : 0;
+    o.compression = w.time() > 0 ? compression_ / w.time() : 0;
     return o;
 }
 

@@ -44,7 +44,7 @@ class Trial {
     std::unique_ptr<Session> session_;
     std::function<bool(double)> goOn_;
     double wall_ = 0, compression_ = 0;
-    uint64_t frames_ = 0, steps_ = 0;
+    uint64_t steps_ = 0;
 };
 
 }  // namespace rivulet

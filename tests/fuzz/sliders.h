@@ -1,4 +1,5 @@
-// Every Param that a scene's panel shows (but fluid.limits and budget), as the fuzzer drags it: found by visiting the scene, never listed by hand.
+// Every Param that a scene's panel shows (but fluid.limits and budget), as the fuzzer drags it: found by visiting the scene, never listed
+// by hand.
 #pragma once
 
 #include <random>

@@ -31,9 +31,11 @@ double SolverResidual::measure(StepContext& c, const Buffer& of) {
 
 int SolverResidual::planned(double tolerance, int most) {
     if (last_->fresh) {
-        // An iteration leaves about seven tenths of what it finds: three for each factor of e; down again by ones.
-        const double over = last_->value / tolerance;
-        planned_ += over > 1 ? static_cast<int>(std::ceil(std::min(3 * std::log(over), 100.0))) : over < 0.5 ? -1 : 0;
+        // An iteration leaves about seven tenths of what it finds: three for each factor of e; down again by a quarter of that, as what is
+        // known is some frames old and several tell the same.
+        const double over = std::clamp(last_->value / tolerance, 1e-9, 1e30);
+        if (over > 1) planned_ += static_cast<int>(std::ceil(std::min(3 * std::log(over), 100.0)));
+        if (over < 0.5) planned_ -= std::max(static_cast<int>(-0.75 * std::log(over)), 1);
         last_->fresh = false;
     }
     return planned_ = std::clamp(planned_, 1, most);

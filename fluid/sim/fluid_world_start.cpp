@@ -6,6 +6,7 @@
 
 #include "fluid/sim/fluid_world_impl.h"
 #include "fluid/sim/liquids.h"
+#include "fluid/sim/smoothing.h"
 #include "shaders/fluid/stats_row.h"
 
 namespace rivulet {
@@ -95,7 +96,11 @@ Status FluidWorld::Impl::checkPrecision() const {
         s.invH = 1.0F / s.h;
         s.contact = 0.5F * spacing;
         method->fill(p, 1.0F, s);
-        return std::isfinite(s.kernelK) && std::isfinite(s.gradientK);
+        FluidParams forces = p;  // they have Wendland's kernel, whatever the method has
+        forces.kernel = "wendland";
+        StepParams f = s;
+        fillSmoothing(forces, f);
+        return std::isfinite(s.kernelK) && std::isfinite(s.gradientK) && std::isfinite(f.kernelK) && std::isfinite(f.gradientK);
     };
     float least = params.spacing;
     while (!fits(least)) least *= 1.1F;

@@ -121,7 +121,8 @@ class SliderFuzz : public testing::TestWithParam<std::string> {
     void runThese(const std::vector<std::string>& full, const std::vector<std::string>& sample, size_t count) {
         const Mode m = mode();
         const std::vector<std::string> names = m.full ? partOf(full, m) : sampled(sample, count);
-        runAll(names, names.size() / 2);
+        constexpr size_t kMany = 20;  // of a few, all may be refused
+        runAll(names, names.size() < kMany && m.full ? 0 : names.size() / 2);
     }
 };
 
@@ -164,6 +165,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, NamedCase,
                                                      "pbf start forces emitters.0.radius=100",
                                                      // Factors of the smoothing kernel were infinite.
                                                      "wcsph start tank fluid.spacing=1e-05",
+                                                     // Those of forces were, with a kernel whose own were not.
+                                                     "wcsph pair forces fluid.kernel=cubic_spline fluid.spacing=1e-05",
                                                  }
                                                : std::vector<std::string>{mode().one}));
 

@@ -87,7 +87,7 @@ Result<Outcome> runTension(const CaseSettings& settings);
 Result<Outcome> runCase(const PhysicsCase& row, const CaseSettings& settings, Device* cpu = nullptr);
 
 // The first half second of the quick size, there and on the cpu: centre of mass, kinetic energy (of the most there was: water at rest has
-// next to none) and mean compression, each within 1 %. With dfsph both do 12 iterations a step.
+// next to none) and mean compression, each within 1 %.
 Result<Outcome> compareWithCpu(const PhysicsCase& row, const CaseSettings& settings, Device& cpu);
 
 // As an SVG file, by gnuplot. Error (failed): gnuplot is not installed, or the file cannot be written.

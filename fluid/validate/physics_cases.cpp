@@ -48,10 +48,6 @@ Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& d
     settings.device = &device;
     settings.quick = true;
     settings.assignments.emplace_back("duration=0.5");
-    // As many iterations there as here: a device that hears of residuals some frames late does others than the cpu, and is the better or
-    // the worse for it.
-    if (settings.method == "dfsph")
-        settings.assignments.insert(settings.assignments.begin(), {"fluid.dfsph.tolerance=1e-6", "fluid.dfsph.maxIterations=12"});
     Result<Trial> trial = Trial::open(row.name, settings);
     if (!trial) return trial.error();
     Half half;

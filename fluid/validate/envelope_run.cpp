@@ -98,6 +98,10 @@ std::function<bool(const Seen&)> gainsEnergy(double more) {
     return [more](const Seen& s) { return s.energy > 1.1 * (s.start + more); };
 }
 
+std::function<bool(const Seen&)> gainsEnergyOrIsSqueezed() {
+    return [gains = gainsEnergy()](const Seen& s) { return gains(s) || s.compression > 0.1; };
+}
+
 Result<EnvelopeFinding> sweep(const EnvelopeSettings& settings, const Sweep& s) {
     const double least = s.least > 0 ? s.least : s.predicted / 64, most = s.most > 0 ? s.most : s.predicted * 64;
     const Result<Threshold> found = findThreshold(s.predicted, least, most, [&](double at) {

@@ -70,5 +70,9 @@ Result<std::vector<EnvelopeFinding>> sweepAll(const EnvelopeSettings& settings, 
 // Energy beyond what there was, by a tenth; `more` J may come from elsewhere.
 std::function<bool(const Seen&)> gainsEnergy(double more = 0);
 inline constexpr const char* kGainsEnergy = "kinetic energy and weight a tenth above the start's, or not finite, or lost";
+// The same, or a mean compression of a tenth: who passes through others gains nothing by it where pressure is implicit.
+std::function<bool(const Seen&)> gainsEnergyOrIsSqueezed();
+inline constexpr const char* kGainsEnergyOrIsSqueezed =
+    "kinetic energy and weight a tenth above the start's, or a tenth too dense on average, or not finite, or lost";
 
 }  // namespace rivulet

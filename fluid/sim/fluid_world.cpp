@@ -13,8 +13,6 @@ namespace rivulet {
 
 namespace {
 
-// GPU figures come this many frames late at most: speeds may have grown by gravity since.
-constexpr double kLateFrames = 3;
 // m/s, where speeds have no limit: its square is still a float.
 constexpr float kAnySpeed = 1.0e18F;
 
@@ -106,12 +104,14 @@ void FluidWorld::Impl::warn() {
 
 // The largest stable step: acoustic CFL or how far the fastest may go, viscous and body-force limits (Monaghan 1992, with the constants of
 // Morris et al. 1997).
-StepLimit FluidWorld::Impl::stepLimit(double frameSeconds) const {
+StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
     if (!params.limits) return {frameSeconds, "the frame"};
     const double hs = 0.5 * step.h, g = glm::length(gravity);
     const double c0 = method->soundSpeed(params, fastestFall());
+    // On a GPU figures come some frames late: speeds may have grown by gravity since.
+    const double late = std::max(now - figures->time, 0.0);
     double fastest = std::max({figures->maxSpeed, double{solids.fastestWall()}, double{sources.fastest()}, double{bodies.fastest()}}) +
-                     g * frameSeconds * (device->backend() == Backend::cpu ? 1 : kLateFrames);
+                     g * (late < 1.0e-9 ? frameSeconds : late + frameSeconds);
     StepLimit limit{frameSeconds, "the frame"};
     const auto atMost = [&limit](double dt, const char* why) {
         if (dt < limit.dt) limit = {dt, why};
@@ -171,6 +171,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .particles = particles,
                         .solve = solve,
                         .fastest = figures->maxSpeed,
+                        .stats = statsRows,
                         .build = [&](bool fromPositions) { return built = build(fromPositions, from, to); },
                         .pushSamples = [&](const Buffer& position, const Buffer& pressures, float scale,
                                            const vec3& weight) { bodies.push(step, *grid, particles, position, pressures, scale, weight); },
@@ -258,7 +259,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
             w.say(
                 fmt::format("a frame's steps take longer than fluid.frameBudget = {} ms, their length limited by {}: simulated time runs "
                             "slower than asked",
-                            p.frameBudget, w.stepLimit(frame.length).why));
+                            p.frameBudget, w.stepLimit(w.time, frame.length).why));
         }
     }
     if (p.fixedStep > 0)
@@ -301,7 +302,7 @@ void FluidWorld::Impl::fillStep() {
 // less where maxSubsteps or the budget end it, and then nothing more of the frame is to be stepped.
 double FluidWorld::Impl::stepPiece(double length, double begin, double span, int& substeps, bool& stop) {
     fillStep();
-    const StepLimit limit = stepLimit(length);
+    const StepLimit limit = stepLimit(time + begin, length);
     int count = static_cast<int>(std::min(std::ceil(length / limit.dt - 1e-6), 1.0e9));
     count = std::max(count, 1);
     double dt = length / count;

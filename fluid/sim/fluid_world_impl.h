@@ -76,9 +76,10 @@ struct FluidWorld::Impl {
     void writeStart();
     void gatherColours();
     float fastestFall() const;
+    void knowFastest(double speed);  // m/s: where nothing has been measured yet
     float fastestPossible() const;
     void warn();
-    StepLimit stepLimit(double frameSeconds) const;
+    StepLimit stepLimit(double now, double frameSeconds) const;  // s
     void fillStep();
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
     void say(const std::string& sentence);

@@ -205,7 +205,7 @@ void FluidWorld::Impl::writeStart() {
     time = dropped = 0;
     frame = 0;
     dtMin = dtMax = 0;
-    fastestEver = 0;
+    fastestEver = fastestStart = 0;
     budgetSaid = false;
     pace.reset();
     drawn.forget();
@@ -214,9 +214,16 @@ void FluidWorld::Impl::writeStart() {
     figures = std::make_shared<FluidStats>();
     figures->particles = static_cast<uint32_t>(start.size());
     // The first step must know, too.
-    for (const NewParticle& p : start) figures->maxSpeed = std::max(figures->maxSpeed, double{glm::length(p.velocity)});
-    fastestStart = static_cast<float>(figures->maxSpeed);
+    for (const NewParticle& p : start) fastestStart = std::max(fastestStart, glm::length(p.velocity));
+    knowFastest(double{fastestStart});
     figures->emitted = static_cast<double>(start.size()) * std::pow(double{params.spacing}, 3);
+}
+
+void FluidWorld::Impl::knowFastest(double speed) {
+    figures->maxSpeed = speed;
+    std::vector<StatsRow> rows(STATS_THREADS);
+    rows[0].speed2Max = static_cast<float>(speed * speed);
+    device->writeAll<StatsRow>(statsRows, rows);
 }
 
 }  // namespace rivulet

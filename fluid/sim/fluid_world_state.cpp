@@ -85,7 +85,7 @@ Status FluidWorld::restore(WorldState& state) {
     w.dropped = n[2];
     w.dtMin = n[3];
     w.dtMax = n[4];
-    w.figures->maxSpeed = n[5];
+    w.knowFastest(n[5]);
     for (const vec4& v : saved->velocity)
         if (isFinite(vec3(v))) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(v)));
     w.fastestWall = static_cast<float>(n[6]);

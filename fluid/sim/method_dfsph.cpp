@@ -55,16 +55,14 @@ class Dfsph final : public Method {
     void step(StepContext& c) override {
         if (!c.build(false)) return;
         Particles& p = c.particles;
-        const DfsphParams& d = c.fluid.dfsph;
         c.boundary(p.position);
         density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
                     c.grid.pairThreads());
         c.forces();
         c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
-        pushOn(c, vec3(c.params.gravity) * c.params.dt);
-        // What is left trembles: it is to be little beside what moves.
-        const double way = c.fastest * double{c.params.dt} / double{d.reach * c.fluid.spacing};
-        c.solve.iterations = iterate(c, double{d.tolerance} * std::clamp(way, 0.05, 1.0));
+        pushOn(c, 0, vec3(c.params.gravity) * c.params.dt);
+        iterate(c);
+        c.solve.iterations = residual.iterations();
         c.solve.residual = residual.value();
         c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept}, p.count);
         c.device.run(
@@ -74,41 +72,32 @@ class Dfsph final : public Method {
     }
 
   private:
-    // Velocities follow the change in p.pressure, which goes on into bodies by `weight` a metre (Adami et al. 2012).
-    void pushOn(StepContext& c, const vec3& weight) {
+    // Velocities follow the change in p.pressure in iteration k, which goes on into bodies by `weight` a metre (Adami et al. 2012).
+    void pushOn(StepContext& c, int k, const vec3& weight) {
         Particles& p = c.particles;
         StepParams s = c.params;
+        s.iteration = static_cast<uint32_t>(k);
         s.force = vec4(weight, 0.0F);
-        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure}, c.grid.pairThreads());
+        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure, &residual.progress()},
+                 c.grid.pairThreads());
         c.pushSamples(p.position, p.pressure, 2.0F / c.params.dt, weight);  // MIRRORED
     }
-    // Runs the solver to its tolerance (compression a step, a fraction); returns the number of iterations.
-    int iterate(StepContext& c, double tolerance) {
+    // Runs the solver to its tolerance.
+    void iterate(StepContext& c) {
         Particles& p = c.particles;
-        const uint32_t threads = c.grid.pairThreads();
-        const Buffer& neighbors = c.grid.neighbors();
+        const DfsphParams& d = c.fluid.dfsph;
         const bool cpu = c.device.backend() == Backend::cpu;
-        const int most = cpu ? c.fluid.dfsph.maxIterations : residual.planned(tolerance, c.fluid.dfsph.maxIterations);
-        double before = 0;
+        const int most = cpu ? d.maxIterations : residual.worthQueueing(d.maxIterations);
         StepParams s = c.params;
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
-        int k = 0;
-        while (true) {
+        for (int k = 0; k < most; ++k) {
             s.iteration = static_cast<uint32_t>(k);
-            rate.run(c, s, {&neighbors, &p.position, &p.velocity, &p.boundary, &solve, &p.pressure}, threads);
-            pushOn(c, vec3(0.0F));
-            ++k;
-            if (!cpu) {
-                if (k < most) continue;
-                residual.measure(c, solve);
-                return k;
-            }
-            const double r = residual.measure(c, solve);
-            // What has just been applied will leave about as much of it as the iteration before left.
-            const double leaves = k > 1 && before > 0 ? std::clamp(r / before, 0.3, 0.95) : 0.6;
-            before = r;
-            if (r * leaves <= tolerance || k >= most) return k;
+            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress()},
+                     c.grid.pairThreads());
+            pushOn(c, k, vec3(0.0F));
+            if (residual.enough(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
         }
+        if (!cpu) residual.tellLater(c);
     }
 };
 

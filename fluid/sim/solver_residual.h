@@ -1,5 +1,6 @@
-// What an iterative pressure solver leaves, and how many iterations that asks for: known at once on the cpu, on a GPU some frames late,
-// where nothing waits for it.
+// What an iterative pressure solver leaves, and how many iterations that asks for: known at once on the cpu. On a GPU, where nothing waits
+// for it, the device itself finds out when they are enough, and what was queued beyond that does nothing; here it is known some frames
+// late.
 #pragma once
 
 #include <memory>
@@ -13,21 +14,39 @@ class SolverResidual {
     // `defines`: of fluid/residual, which says what it sums.
     static Result<SolverResidual> create(Device& device, std::span<const Define> defines);
 
-    // The mean over all particles, a fraction, as last known.
+    // The mean over all particles, a fraction, and the iterations of a step, as last known. A GPU: the mean over the steps that came to be
+    // known together.
     double value() const { return last_->value; }
+    double iterations() const { return iterations_; }
+
     // Measures `of` (see fluid/residual). cpu: and returns it. A GPU: it is known later, and what is returned is older.
     double measure(StepContext& context, const Buffer& of);
     // A GPU: how many iterations, 1 to `most`, the last one known asks for.
     int planned(double tolerance, int most);
 
+    // For kernels that do nothing once iterations are enough: see fluid/solver_progress. On the cpu it never says so.
+    const Buffer& progress() const { return progress_; }
+    // After iteration `k`, from 0: whether `of` after what has just been applied is at its goal, see goalAt() of solver_stop.h; `reach`:
+    // how far the fastest may go in a step, m. A GPU: the device knows.
+    bool enough(StepContext& context, const Buffer& of, double tolerance, double reach, int k);
+    // A GPU: how many iterations, 1 to `most`, are worth queueing.
+    int worthQueueing(int most);
+    // A GPU, after the last of them: so that the host knows later.
+    void tellLater(StepContext& context);
+
   private:
     struct Known {
         double value = 0;
-        bool fresh = false;
+        int steps = 0;                    // since the host last asked
+        double iterations = 0, most = 0;  // of them: the sum, of any
+        bool fresh = false, tooFew = false;
     };
-    Kernel kernel_;
-    Buffer rows_;
-    int planned_ = 30;  // until one is known: pressure begins from nothing
+    Kernel kernel_, advance_;
+    Buffer rows_, progress_;
+    int planned_ = 30;   // until one is known: pressure begins from nothing
+    int queued_ = 1000;  // what is too many costs a GPU next to nothing
+    double before_ = 0;  // cpu: of the iteration before
+    double iterations_ = 0;
     std::shared_ptr<Known> last_ = std::make_shared<Known>();
 };
 

@@ -135,6 +135,7 @@ std::vector<vec4> result(Device& device, const Case& c, float dt = 2.0e-3F) {
         .grid = *grid,
         .particles = *particles,
         .solve = solve,
+        .stats = planes,
         .build = {},
         .pushSamples = {},
         .planes = planes,

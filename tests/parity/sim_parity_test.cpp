@@ -161,6 +161,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
         device.writeAll<uint32_t>(normal, normals);
     }
     SolveFigures solve;
+    const Buffer statsRows = std::move(*device.allocate(STATS_THREADS * sizeof(StatsRow)));  // nothing moves
     StepContext context{
         .device = device,
         .fluid = p,
@@ -168,6 +169,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
         .grid = *grid,
         .particles = *particles,
         .solve = solve,
+        .stats = statsRows,
         .build =
             [&](bool) {
                 EXPECT_TRUE(grid->build(s, *particles));

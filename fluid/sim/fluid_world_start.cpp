@@ -211,6 +211,7 @@ void FluidWorld::Impl::writeStart() {
     drawn.forget();
     posesBefore.clear();
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
+    method->forget();
     figures = std::make_shared<FluidStats>();
     figures->particles = static_cast<uint32_t>(start.size());
     // The first step must know, too.

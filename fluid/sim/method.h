@@ -49,6 +49,8 @@ class Method {
     virtual std::vector<float> pressures(Device& device, const Particles& particles, const StepParams& step) const = 0;
     // All that a step depends on beside particles, params and solids. The world saves it, puts it back, and fills it with 0 at t = 0.
     virtual std::vector<NamedBuffer> remembered() { return {}; }
+    // What was learnt of a solver's pace: the world begins again.
+    virtual void forget() {}
 };
 
 struct MethodRow {

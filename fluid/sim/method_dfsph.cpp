@@ -43,6 +43,7 @@ class Dfsph final : public Method {
     }
 
     std::vector<NamedBuffer> remembered() override { return {{"pressure", &kept}}; }
+    void forget() override { residual.forget(); }
 
     std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
         const std::vector<uint32_t> id = device.readAll<uint32_t>(p.id, p.count);
@@ -76,7 +77,7 @@ class Dfsph final : public Method {
     void pushOn(StepContext& c, int k, const vec3& weight) {
         Particles& p = c.particles;
         StepParams s = c.params;
-        s.iteration = static_cast<uint32_t>(k);
+        s.iteration = k > 0 ? 1 : 0;
         s.force = vec4(weight, 0.0F);
         push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure, &residual.progress()},
                  c.grid.pairThreads());
@@ -91,7 +92,7 @@ class Dfsph final : public Method {
         StepParams s = c.params;
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         for (int k = 0; k < most; ++k) {
-            s.iteration = static_cast<uint32_t>(k);
+            s.iteration = k > 0 ? 1 : 0;  // not its number: a device keeps few different blocks of params at hand
             rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress()},
                      c.grid.pairThreads());
             pushOn(c, k, vec3(0.0F));

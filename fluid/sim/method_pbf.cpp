@@ -45,6 +45,8 @@ class Pbf final : public Method {
         return pascal;
     }
 
+    void forget() override { residual.forget(); }
+
     void step(StepContext& c) override {
         Particles& p = c.particles;
         c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);

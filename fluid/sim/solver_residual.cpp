@@ -32,7 +32,7 @@ Result<SolverResidual> SolverResidual::create(Device& device, std::span<const De
 }
 
 double SolverResidual::measure(StepContext& c, const Buffer& of) {
-    c.device.run(kernel_, c.params, {&c.grid.cellStart(), &of, &rows_}, STATS_THREADS);
+    c.device.run(kernel_, c.params, {&c.grid.cellStart(), &of, &rows_, &progress_}, STATS_THREADS);
     c.device.readLater(rows_, rows_.bytes(), [last = last_](std::span<const std::byte> bytes) {
         const float* values = reinterpret_cast<const float*>(bytes.data());
         double total = 0;
@@ -56,7 +56,8 @@ int SolverResidual::planned(double tolerance, int most) {
 }
 
 bool SolverResidual::enough(StepContext& c, const Buffer& of, double tolerance, double reach, int k) {
-    const auto iteration = static_cast<uint32_t>(k);
+    // Not its number: a device keeps few different blocks of params at hand.
+    const uint32_t iteration = k > 0 ? 1 : 0;
     const double wayOf1 = double{c.params.dt} / reach;  // of a speed of 1 m/s
     if (c.device.backend() == Backend::cpu) {
         const double found = measure(c, of);
@@ -65,9 +66,9 @@ bool SolverResidual::enough(StepContext& c, const Buffer& of, double tolerance, 
         iterations_ = k + 1;
         return ahead <= goalAt(static_cast<float>(tolerance), static_cast<float>(c.fastest * wayOf1));
     }
-    c.device.run(kernel_, c.params, {&c.grid.cellStart(), &of, &rows_}, STATS_THREADS);
     StepParams s = c.params;
     s.iteration = iteration;
+    c.device.run(kernel_, s, {&c.grid.cellStart(), &of, &rows_, &progress_}, STATS_THREADS);
     s.force = vec4(static_cast<float>(tolerance), static_cast<float>(wayOf1), 0.0F, 0.0F);
     c.device.run(advance_, s, {&rows_, &c.stats, &progress_}, kGroup);
     return false;
@@ -82,6 +83,13 @@ int SolverResidual::worthQueueing(int most) {
         *last_ = {.value = last_->value};
     }
     return queued_ = std::clamp(queued_, 1, most);
+}
+
+void SolverResidual::forget() {
+    planned_ = kPlanned;
+    queued_ = kQueued;
+    before_ = iterations_ = 0;
+    last_ = std::make_shared<Known>();  // what is still on its way is of the world before
 }
 
 void SolverResidual::tellLater(StepContext& c) {

@@ -1,6 +1,6 @@
 // What an iterative pressure solver leaves, and how many iterations that asks for: known at once on the cpu. On a GPU, where nothing waits
-// for it, the device itself finds out when they are enough, and what was queued beyond that does nothing; here it is known some frames
-// late.
+// for it, the device itself finds out when they are enough, and what was queued beyond that skips its sweeps over particles; here it is
+// known some frames late.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@ class SolverResidual {
     // `defines`: of fluid/residual, which says what it sums.
     static Result<SolverResidual> create(Device& device, std::span<const Define> defines);
 
-    // The mean over all particles, a fraction, and the iterations of a step, as last known. A GPU: the mean over the steps that came to be
-    // known together.
+    // What the last step known left, the mean over all particles, a fraction; and the iterations of a step. A GPU: those are the mean over
+    // the steps that came to be known together.
     double value() const { return last_->value; }
     double iterations() const { return iterations_; }
 
@@ -33,6 +33,8 @@ class SolverResidual {
     int worthQueueing(int most);
     // A GPU, after the last of them: so that the host knows later.
     void tellLater(StepContext& context);
+    // As new, for a world that begins again.
+    void forget();
 
   private:
     struct Known {
@@ -43,8 +45,9 @@ class SolverResidual {
     };
     Kernel kernel_, advance_;
     Buffer rows_, progress_;
-    int planned_ = 30;   // until one is known: pressure begins from nothing
-    int queued_ = 1000;  // what is too many costs a GPU next to nothing
+    // Until one is known: pressure begins from nothing.
+    static constexpr int kPlanned = 30, kQueued = 1000;
+    int planned_ = kPlanned, queued_ = kQueued;
     double before_ = 0;  // cpu: of the iteration before
     double iterations_ = 0;
     std::shared_ptr<Known> last_ = std::make_shared<Known>();

@@ -27,7 +27,7 @@ struct FluidStats {
     double maxSpeed = 0;               // m/s
     uint32_t speedLimited = 0;         // particles whose speed the step had to limit
     int substeps = 0;                  // of that frame
-    double iterations = 0;             // of the pressure solver, mean over those substeps
+    double iterations = 0;             // of the pressure solver, mean over those substeps; on a GPU over some frames earlier
     uint64_t sweeps = 0;               // over all neighbours, since the start: what a step costs, whatever the machine
     std::optional<double> residual;    // mean compression that the last of them left, as the solver predicts it; nothing: it does not
     double dtMin = 0, dtMax = 0;       // s, since the start

@@ -30,7 +30,7 @@ struct StepContext {
     Particles& particles;
     SolveFigures& solve;
     double fastest = 0;   // m/s, as last known; on a GPU that is some frames ago
-    const Buffer& stats;  // rows of fluid/stats as the last frame left them: where a kernel asks, they are not late
+    const Buffer& stats;  // rows of fluid/stats as they were last measured: where a kernel asks, they are not late
     // Sorts the newest state into position and velocity, and moves solids and bodies on. false: it could not, and the substep ends here.
     // `fromPositions`: velocityNext holds where particles come from, m.
     std::function<bool(bool fromPositions)> build;

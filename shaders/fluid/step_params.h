@@ -39,7 +39,7 @@ STRUCT(StepParams) {
     float friction;        // Coulomb's, of the box
     float relaxation;      // of an iteration of the pressure solvers
     float warmStart;       // share of the last step's pressures that the next begins with
-    uint  iteration;       // of a pressure solver, from 0
+    uint  iteration;       // of a solver, from 0; dfsph: 1 of all but the first
     float correction;      // of a density that is off: the share that a step puts right
     float wallShare;       // of a wall at the distance at which particles rest on it, less a hair: above it none moves nearer
     float sampleScale;     // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)

@@ -25,6 +25,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::emissionRows());
     add(kernels_generic::bodyRows());
     add(kernels_generic::forceRows());
+    add(kernels_generic::flowRows());
 #endif
 #if defined(RIVULET_HAS_AVX2)
     add(kernels_avx2::gridRows());
@@ -34,6 +35,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx2::emissionRows());
     add(kernels_avx2::bodyRows());
     add(kernels_avx2::forceRows());
+    add(kernels_avx2::flowRows());
 #endif
 #if defined(RIVULET_HAS_AVX512)
     add(kernels_avx512::gridRows());
@@ -43,6 +45,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx512::emissionRows());
     add(kernels_avx512::bodyRows());
     add(kernels_avx512::forceRows());
+    add(kernels_avx512::flowRows());
 #endif
     return all;
 }

@@ -108,12 +108,12 @@ INLINE float BITS_FLOAT(uint u) { float f; memcpy(&f, &u, 4); return f; }
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
 #define KERNEL(name, P)                                                                                            \
-    static INLINE void name##_one(const uint tid_, const P& params_ ARGS(RO, RW));                                 \
+    static INLINE void name##_one(const uint tid_, [[maybe_unused]] const P& params_ ARGS(RO, RW));                                 \
     void name(uint32_t begin_, uint32_t end_, const void* p_, void* const* buffers_) {                             \
         const P& params_ = *static_cast<const P*>(p_);                                                             \
         for (uint32_t t_ = begin_; t_ < end_; ++t_) name##_one(t_, params_ ARGS(RO_CAST, RW_CAST));                \
     }                                                                                                              \
-    static INLINE void name##_one(const uint tid_, const P& params_ ARGS(RO, RW))
+    static INLINE void name##_one(const uint tid_, [[maybe_unused]] const P& params_ ARGS(RO, RW))
 #define PARAMS params_
 #define THREAD_ID tid_
 #endif

@@ -15,6 +15,7 @@
     std::span<const CpuKernelRow> emissionRows(); \
     std::span<const CpuKernelRow> bodyRows();     \
     std::span<const CpuKernelRow> forceRows();    \
+    std::span<const CpuKernelRow> flowRows();     \
     }
 #if defined(RIVULET_KERNEL_UNIT)
 #define RIVULET_ISA_OF_kernels_generic Isa::generic

@@ -1,0 +1,94 @@
+// Flow on a skin: drops that walk over a mesh's triangles, run into each other, are held and let go. UVs play no part in it.
+// Drop: Furmidge 1962 (what holds it), Le Grand, Daerr and Limat 2005 (what slows it).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "engine/core/params.h"
+#include "fluid/flow/flow_mesh.h"
+
+namespace rivulet {
+
+// What flows, and how it clings. Tears, unless said otherwise.
+struct SurfaceFlowParams {
+    float surfaceTension = 0.0436F;  // N/m
+    float viscosity = 1.73e-3F;      // Pa s
+    float density = 1005.0F;         // kg/m^3
+    float advancing = 60.0F;         // deg, contact angle at the front
+    float receding = 40.0F;          // deg, at the back
+    float hold = 1.0F;               // k of what holds a drop: k w gamma (cos receding - cos advancing)
+    float drag = 60.0F;              // beta of what slows it: beta w eta |v|
+    float adhesion = 1.0F;           // share of w gamma sin(advancing) pi that holds a drop under a skin
+    float airDrag = 1.0F;            // drag coefficient of a drop in the wind
+    float largestDrop = 30.0F;       // microlitres: what would be more stays several drops
+    float touch = 0.8F;              // of the sum of two drops' radii: as near they are one
+    float footprint = 2.5e-3F;       // m, over which a drop's weight is spread
+    float trail = 1.0e-5F;           // m, thickness of the film that a drop leaves
+    float trailWidth = 0.7F;         // of the drop's width
+    float slip = 0.85F;              // share of what holds a drop that a wet way takes
+    float steer = 0.5F;              // of what holds it: how strongly a trail beside its way pulls it in
+    float evaporation = 2.0e-8F;     // m/s, of the film
+    float filmCell = 7.0e-4F;        // m, the film's cells are no wider
+    int capacity = 4096;             // drops at most
+    void visit(ParamVisitor& v);
+};
+
+struct SurfaceFlowInputs {
+    vec3 pull{0.0F, -9.81F, 0.0F};         // m/s^2, in the skin's frame: gravity, and the inertia of a skin that moves
+    vec3 wind{0.0F};                       // m/s, of the air past the skin
+    std::span<const vec3> positions = {};  // m, of the mesh's positions where they have changed; as many as the mesh has
+};
+
+struct SkinDrop {
+    uint32_t id = 0;
+    SkinPoint at;
+    vec3 position{0.0F}, velocity{0.0F};  // m, m/s
+    double volume = 0;                    // m^3
+    double way = 0;                       // m, walked since it was born
+};
+
+// What let go of the skin, or ran over an open edge.
+struct LeftDrop {
+    vec3 position{0.0F}, velocity{0.0F};  // m, m/s
+    uint32_t picolitres = 0;
+    uint32_t triangle = 0;
+};
+
+class SurfaceFlow {
+  public:
+    // `device` must outlive it. Error: a mesh whose skin would not fit; out of memory.
+    static Result<SurfaceFlow> create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params);
+    SurfaceFlow(SurfaceFlow&&) noexcept;
+    SurfaceFlow& operator=(SurfaceFlow&&) noexcept;
+    ~SurfaceFlow();
+
+    const FlowMesh& mesh() const;
+    const SurfaceFlowParams& params() const;
+    void setParams(const SurfaceFlowParams& params);  // capacity and footprint stay
+
+    // A drop that appears with the next step. Where no slot is free it is counted as refused.
+    void add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity = vec3(0.0F));
+    void step(const SurfaceFlowInputs& inputs, double seconds);
+
+    // Waits for the device.
+    std::vector<SkinDrop> drops() const;
+    std::vector<LeftDrop> takeLeft();  // since it was last asked, in the order of their ids each step
+    // The film's thickness, m, of every cell of a triangle's lattice; waits.
+    std::vector<float> film(uint32_t triangle) const;
+    // Picolitres since the start. added = drops + film + left + evaporated + refused.
+    struct Ledger {
+        uint64_t added = 0, drops = 0, film = 0, left = 0, evaporated = 0, refused = 0;
+        uint64_t merges = 0;
+    };
+    Ledger ledger() const;  // waits
+
+  private:
+    struct Impl;
+    explicit SurfaceFlow(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rivulet

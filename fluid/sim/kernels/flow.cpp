@@ -1,0 +1,64 @@
+#include "fluid/sim/kernels/kernel_rows.h"
+#include "shaders/common/lang.h"
+
+namespace rivulet::RIVULET_KERNEL_UNIT {
+namespace {
+
+namespace basis_unit {
+#include "shaders/flow/basis.kernel"
+}
+namespace drive_unit {
+#include "shaders/flow/drive.kernel"
+}
+namespace born_unit {
+#include "shaders/flow/born.kernel"
+}
+namespace place_unit {
+#include "shaders/flow/place.kernel"
+}
+namespace name_unit {
+#include "shaders/flow/name.kernel"
+}
+namespace meet_unit {
+#include "shaders/flow/meet.kernel"
+}
+namespace gather_unit {
+#include "shaders/flow/gather.kernel"
+}
+namespace merge_unit {
+#include "shaders/flow/merge.kernel"
+}
+#undef RIVULET_WALK_H  // each of the three has its own
+namespace law_unit {
+#include "shaders/flow/law.kernel"
+}
+#undef RIVULET_WALK_H
+namespace paint_unit {
+#include "shaders/flow/paint.kernel"
+}
+namespace dry_unit {
+#include "shaders/flow/dry.kernel"
+}
+#undef RIVULET_WALK_H
+namespace walk_unit {
+#include "shaders/flow/walk.kernel"
+}
+namespace leave_unit {
+#include "shaders/flow/leave.kernel"
+}
+
+}  // namespace
+
+std::span<const CpuKernelRow> flowRows() {
+    static const CpuKernelRow rows[] = {
+        {"flow/basis", "", RIVULET_UNIT_ISA, basis_unit::basis, 1024},  {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 256},
+        {"flow/born", "", RIVULET_UNIT_ISA, born_unit::born, 256},      {"flow/place", "", RIVULET_UNIT_ISA, place_unit::place, 256},
+        {"flow/name", "", RIVULET_UNIT_ISA, name_unit::name, 1024},     {"flow/meet", "", RIVULET_UNIT_ISA, meet_unit::meet, 16},
+        {"flow/gather", "", RIVULET_UNIT_ISA, gather_unit::gather, 16}, {"flow/merge", "", RIVULET_UNIT_ISA, merge_unit::merge, 256},
+        {"flow/law", "", RIVULET_UNIT_ISA, law_unit::law, 64},          {"flow/walk", "", RIVULET_UNIT_ISA, walk_unit::walk, 64},
+        {"flow/paint", "", RIVULET_UNIT_ISA, paint_unit::paint, 32},    {"flow/dry", "", RIVULET_UNIT_ISA, dry_unit::dry, 256},
+        {"flow/leave", "", RIVULET_UNIT_ISA, leave_unit::leave, 256},
+    };
+    return rows;
+}
+}  // namespace rivulet::RIVULET_KERNEL_UNIT

@@ -1,0 +1,81 @@
+// Drops on a bumpy ball, on every device: the same volumes, the same places.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/flow/surface_flow.h"
+#include "tests/parity/devices.h"
+
+namespace rivulet {
+namespace {
+
+Result<FlowMesh> bumpyBall() {
+    constexpr uint32_t kRows = 32;
+    std::vector<vec3> positions;
+    std::vector<uint32_t> indices;
+    for (uint32_t k = 0; k <= kRows; ++k)
+        for (uint32_t i = 0; i < 2 * kRows; ++i) {
+            const double t = 3.14159265358979 * k / kRows, f = 3.14159265358979 * i / kRows;
+            const double r = k == 0 || k == kRows ? 0.05 : 0.05 + 0.002 * std::sin(5 * t) * std::sin(4 * f);
+            const double sine = k == 0 || k == kRows ? 0 : std::sin(t);
+            positions.emplace_back(r * sine * std::cos(f), r * std::cos(t), -r * sine * std::sin(f));
+        }
+    for (uint32_t k = 0; k < kRows; ++k)
+        for (uint32_t i = 0; i < 2 * kRows; ++i) {
+            const uint32_t a = k * 2 * kRows + i, b = k * 2 * kRows + (i + 1) % (2 * kRows), c = a + 2 * kRows, d = b + 2 * kRows;
+            indices.insert(indices.end(), {a, c, d, a, d, b});
+        }
+    return makeFlowMesh({positions, indices, {}, {}});
+}
+
+struct After {
+    std::vector<SkinDrop> drops;
+    SurfaceFlow::Ledger ledger;
+};
+
+After run(Device& device) {
+    Result<FlowMesh> mesh = bumpyBall();
+    EXPECT_TRUE(mesh);
+    Result<SurfaceFlow> flow = SurfaceFlow::create(device, std::move(*mesh), {});
+    EXPECT_TRUE(flow) << (flow ? "" : flow.error().message);
+    if (!flow) return {};
+    for (int k = 0; k < 90; ++k) {
+        if (k < 60) {
+            const double a = 0.7 * k;
+            flow->add(nearestPoint(flow->mesh(), 0.05F * vec3(dvec3(0.6 * std::cos(a), 0.7, 0.6 * std::sin(a)))),
+                      1500000 + 40000 * (k % 7));
+        }
+        flow->step({}, 1.0 / 60);
+    }
+    return {flow->drops(), flow->ledger()};
+}
+
+class FlowParity : public testing::TestWithParam<const char*> {};
+
+TEST_P(FlowParity, TheSameDropsAtTheSamePlaces) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    auto cpu = makeTestCpu();
+    const After here = run(*cpu), there = run(*gpu->device);
+    EXPECT_EQ(there.ledger.added,
+              there.ledger.drops + there.ledger.film + there.ledger.left + there.ledger.evaporated + there.ledger.refused);
+    EXPECT_NEAR(static_cast<double>(there.ledger.drops), static_cast<double>(here.ledger.drops),
+                1.0e-4 * static_cast<double>(here.ledger.drops));
+    EXPECT_EQ(there.ledger.merges, here.ledger.merges);
+    EXPECT_GT(here.ledger.merges, 5U);
+    ASSERT_EQ(there.drops.size(), here.drops.size());
+    EXPECT_GT(here.drops.size(), 10U);
+    // Which free slot a drop is born into, and so its id, is a GPU's own affair.
+    for (const SkinDrop& d : here.drops)
+        EXPECT_TRUE(std::any_of(there.drops.begin(), there.drops.end(),
+                                [&](const SkinDrop& o) {
+                                    return std::abs(o.volume / d.volume - 1) < 1.0e-3 && glm::distance(o.position, d.position) < 5.0e-5F;
+                                }))
+            << d.volume * 1e9 << " microlitres";
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpus, FlowParity, testing::Values("cl", "gl"));
+
+}  // namespace
+}  // namespace rivulet

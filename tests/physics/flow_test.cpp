@@ -1,0 +1,356 @@
+// Flow on a skin: drops walk straight, are held and slide as drops do, run into each other, and none of their volume is lost.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "fluid/flow/surface_flow.h"
+#include "tests/physics/worlds.h"
+
+namespace rivulet {
+namespace {
+
+constexpr double kPiD = 3.14159265358979323846;
+
+struct Shape {
+    std::vector<vec3> positions;
+    std::vector<uint32_t> indices;
+    MeshView view() const { return {positions, indices, {}, {}}; }
+};
+
+// A sheet of n x m quads in the plane of `across` and `along`, from `corner`; its normal is across x along.
+Shape sheet(const vec3& corner, const vec3& across, const vec3& along, uint32_t n, uint32_t m) {
+    Shape s;
+    for (uint32_t k = 0; k <= m; ++k)
+        for (uint32_t i = 0; i <= n; ++i)
+            s.positions.push_back(corner + across * (static_cast<float>(i) / static_cast<float>(n)) +
+                                  along * (static_cast<float>(k) / static_cast<float>(m)));
+    for (uint32_t k = 0; k < m; ++k)
+        for (uint32_t i = 0; i < n; ++i) {
+            const uint32_t a = k * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+            // Quads are cut one way and the other.
+            if ((i + k) % 2 == 0)
+                s.indices.insert(s.indices.end(), {a, b, d, a, d, c});
+            else
+                s.indices.insert(s.indices.end(), {a, b, c, b, d, c});
+        }
+    return s;
+}
+
+// A ball of `rows` x 2 `rows` quads, poles closed by triangles, with a seam of double vertices.
+Shape ball(float radius, uint32_t rows) {
+    Shape s;
+    const uint32_t around = 2 * rows;
+    for (uint32_t k = 0; k <= rows; ++k)
+        for (uint32_t i = 0; i <= around; ++i) {
+            const double t = kPiD * k / rows, f = 2 * kPiD * (i % around) / around;
+            const double sine = k == 0 || k == rows ? 0 : std::sin(t);
+            s.positions.push_back(radius * vec3(dvec3(sine * std::cos(f), std::cos(t), -sine * std::sin(f))));
+        }
+    for (uint32_t k = 0; k < rows; ++k)
+        for (uint32_t i = 0; i < around; ++i) {
+            const uint32_t a = k * (around + 1) + i, b = a + 1, c = a + around + 1, d = c + 1;
+            s.indices.insert(s.indices.end(), {a, c, d, a, d, b});  // two of a pole's have no area
+        }
+    return s;
+}
+
+SurfaceFlow flowOn(Device& device, const Shape& shape, const SurfaceFlowParams& params = {}) {
+    Result<FlowMesh> mesh = makeFlowMesh(shape.view());
+    EXPECT_TRUE(mesh) << (mesh ? "" : mesh.error().message);
+    Result<SurfaceFlow> flow = SurfaceFlow::create(device, std::move(*mesh), params);
+    EXPECT_TRUE(flow) << (flow ? "" : flow.error().message);
+    return std::move(*flow);
+}
+
+constexpr uint32_t kMicrolitres = 1000000;  // picolitres
+
+TEST(FlowMesh, ABallHangsTogetherOverItsSeamAndPoles) {
+    const Shape shape = ball(0.05F, 24);
+    Result<FlowMesh> made = makeFlowMesh(shape.view());
+    ASSERT_TRUE(made);
+    const FlowMesh& m = *made;
+    EXPECT_EQ(m.report.degenerate, 96U);  // at the poles
+    EXPECT_EQ(m.report.openEdges, 0U) << m.report.sentence();
+    EXPECT_EQ(m.report.components, 1U);
+    EXPECT_EQ(m.rest.size(), 2U + 23U * 48U);
+    for (uint32_t k = 0; k < m.across.size(); ++k) {
+        const uint32_t other = 3 * (m.across[k] / 4) + m.across[k] % 4;
+        EXPECT_EQ(m.across[other], 4 * (k / 3) + k % 3);
+        // The same two places, the other way round.
+        const uint32_t from = m.corner[k], to = m.corner[k - k % 3 + (k + 1) % 3];
+        EXPECT_EQ(m.corner[other], to);
+        EXPECT_EQ(m.corner[other - other % 3 + (other + 1) % 3], from);
+    }
+    for (size_t p = 0; p < m.rest.size(); ++p) EXPECT_EQ(shape.positions[m.given[p]], m.rest[p]);
+}
+
+// A band of `n` quads, closed with half a turn or none.
+Shape band(uint32_t n, bool turned) {
+    Shape s;
+    for (uint32_t k = 0; k < n; ++k) {
+        const double f = 2 * kPiD * k / n, t = turned ? 0.5 * f : 0;
+        for (const double side : {-1.0, 1.0}) {
+            const double r = 0.05 + 0.01 * side * std::cos(t);
+            s.positions.emplace_back(r * std::cos(f), 0.01 * side * std::sin(t) + (turned ? 0 : 0.01 * side), r * std::sin(f));
+        }
+    }
+    for (uint32_t k = 0; k < n; ++k) {
+        const uint32_t a = 2 * k, b = a + 1;
+        const bool last = k + 1 == n;
+        const uint32_t c = last ? (turned ? 1U : 0U) : a + 2, d = last ? (turned ? 0U : 1U) : a + 3;
+        s.indices.insert(s.indices.end(), {a, b, d, a, d, c});
+    }
+    return s;
+}
+
+TEST(FlowMesh, WhatIsWrongIsCountedMendedOrWalkedRound) {
+    const auto report = [](const Shape& shape) {
+        Result<FlowMesh> mesh = makeFlowMesh(shape.view());
+        EXPECT_TRUE(mesh) << (mesh ? "" : mesh.error().message);
+        return mesh ? mesh->report : FlowMeshReport{};
+    };
+    const Shape plain = sheet(vec3(0.0F), vec3(0.1F, 0, 0), vec3(0, 0.1F, 0), 4, 4);
+    EXPECT_EQ(report(plain).openEdges, 16U);
+    EXPECT_EQ(report(plain).turned, 0U);
+
+    Shape mixed = plain;  // one quad wound the other way
+    std::swap(mixed.indices[6], mixed.indices[7]);
+    std::swap(mixed.indices[9], mixed.indices[10]);
+    EXPECT_EQ(report(mixed).turned, 2U);
+    EXPECT_EQ(report(mixed).openEdges, 16U);
+
+    Shape again = plain;  // the first triangle twice
+    again.indices.insert(again.indices.end(), plain.indices.begin(), plain.indices.begin() + 3);
+    EXPECT_EQ(report(again).repeated, 1U);
+    EXPECT_EQ(report(again).branchedEdges, 0U);
+
+    Shape fin = plain;  // a triangle that stands on an inner edge
+    fin.positions.emplace_back(0.05F, 0.05F, 0.05F);
+    fin.indices.insert(fin.indices.end(), {6U, 12U, static_cast<uint32_t>(fin.positions.size() - 1)});
+    Result<FlowMesh> onFin = makeFlowMesh(fin.view());
+    ASSERT_TRUE(onFin);
+    EXPECT_EQ(onFin->report.branchedEdges, 1U);
+    // The sheet goes on under it; of the fin that edge is open.
+    size_t open = 0;
+    for (const uint32_t a : onFin->across) open += a == FlowMesh::kOpen ? 1 : 0;
+    EXPECT_EQ(open, 16U + 3U);
+
+    EXPECT_EQ(report(band(24, false)).oneSided, 0U);
+    EXPECT_EQ(report(band(24, true)).oneSided, 1U);  // at the place where the two sides meet
+
+    for (const Shape& nothing : {Shape{}, Shape{{vec3(0.0F), vec3(1.0F, 0, 0), vec3(2.0F, 0, 0)}, {0, 1, 2}}}) {
+        const Result<FlowMesh> refused = makeFlowMesh(nothing.view());
+        ASSERT_FALSE(refused);
+        EXPECT_NE(refused.error().message.find("triangle"), std::string::npos) << refused.error().message;
+    }
+}
+
+// A drop passes through triangles without area, which are there where a long edge meets two short ones, as if they were not.
+TEST(Flow, PassesThroughTrianglesWithoutArea) {
+    auto device = cpu();
+    // Two rectangles, the upper one cut in two below; in between a triangle whose three corners are in a line.
+    const Shape shape{{vec3(0, 0.1F, 0), vec3(0.1F, 0.1F, 0), vec3(0, 0.05F, 0), vec3(0.1F, 0.05F, 0), vec3(0.05F, 0.05F, 0), vec3(0, 0, 0),
+                       vec3(0.05F, 0, 0), vec3(0.1F, 0, 0)},
+                      {0, 2, 3, 0, 3, 1, 2, 4, 3, 2, 5, 6, 2, 6, 4, 4, 6, 7, 4, 7, 3}};
+    SurfaceFlowParams p;
+    p.hold = p.drag = p.airDrag = p.trail = 0;
+    SurfaceFlow flow = flowOn(*device, shape, p);
+    EXPECT_EQ(flow.mesh().report.flat, 1U);
+    for (const float x : {0.02F, 0.05F, 0.071F}) flow.add(nearestPoint(flow.mesh(), vec3(x, 0.09F, 0)), kMicrolitres, vec3(0.1F, -0.8F, 0));
+    for (int k = 0; k < 10; ++k) flow.step({.pull = vec3(0.0F)}, 0.01);
+    const std::vector<SkinDrop> drops = flow.drops();
+    ASSERT_EQ(drops.size(), 3U);
+    for (size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(drops[k].position.y, 0.01F, 1e-5F);
+        EXPECT_NEAR(glm::length(drops[k].velocity), std::sqrt(0.65F), 1e-5F);
+    }
+}
+
+// With nothing that pulls, holds or slows it a drop goes straight: round a ball it comes back to where it began.
+TEST(Flow, GoesStraightRoundABall) {
+    auto device = cpu();
+    const Shape shape = ball(0.05F, 64);
+    SurfaceFlowParams p;
+    p.hold = p.drag = p.airDrag = p.trail = 0;
+    SurfaceFlow flow = flowOn(*device, shape, p);
+    const vec3 start = 0.05F * glm::normalize(vec3(1.0F, 0.3F, 0.2F));
+    const vec3 heading = glm::normalize(glm::cross(start, vec3(0.3F, 1.0F, -0.2F)));
+    flow.add(nearestPoint(flow.mesh(), start), kMicrolitres, 0.1F * heading);
+    double off = 0, speed = 0;
+    const int steps = 200;
+    for (int k = 0; k < steps; ++k) {
+        flow.step({.pull = vec3(0.0F)}, 2 * kPiD * 0.05 / 0.1 / steps);
+        const std::vector<SkinDrop> drops = flow.drops();
+        ASSERT_EQ(drops.size(), 1U);
+        off = std::max(off, double{std::abs(glm::dot(drops[0].position, glm::normalize(glm::cross(start, heading))))});
+        speed = glm::length(drops[0].velocity);
+    }
+    EXPECT_NEAR(speed, 0.1, 1e-4);
+    EXPECT_LT(off, 0.01 * 0.05);
+    EXPECT_LT(glm::distance(flow.drops()[0].position, start), 0.01F * 2 * kPi * 0.05F);
+}
+
+// Le Grand's law without hysteresis: m v' = m g sin(a) - beta w eta v, solved exactly.
+TEST(Flow, SlidesDownASlopeAsItsLawSays) {
+    for (const double dt : {1.0 / 240, 1.0 / 60, 1.0 / 15}) {
+        auto device = cpu();
+        const double a = 35 * kPiD / 180;
+        const Shape shape = sheet(vec3(0.0F), vec3(0.0F, 0.0F, -0.1F), vec3(dvec3(0.4 * std::cos(a), -0.4 * std::sin(a), 0)), 7, 31);
+        SurfaceFlowParams p;
+        p.hold = p.airDrag = p.trail = 0;
+        SurfaceFlow flow = flowOn(*device, shape, p);
+        ASSERT_GT(flow.mesh().report.openEdges, 0U);
+        flow.add(nearestPoint(flow.mesh(), vec3(0.01F, -0.007F, -0.05F)), 8 * kMicrolitres);
+        for (int k = 0; k < static_cast<int>(2 / dt + 0.5); ++k) flow.step({}, dt);
+        const std::vector<SkinDrop> drops = flow.drops();
+        ASSERT_EQ(drops.size(), 1U);
+        // A cap of 50 degrees: the radius of its foot by its height h = R tan(25 deg), V = pi h (3 R^2 + h^2) / 6.
+        const double slope = std::tan(25 * kPiD / 180), volume = 8e-9;
+        const double radius = std::cbrt(6 * volume / (kPiD * slope * (3 + slope * slope)));
+        const double steady = 1005 * volume * 9.81 * std::sin(a) / (60 * 2 * radius * 1.73e-3);
+        EXPECT_NEAR(glm::length(drops[0].velocity) / steady, 1, 1e-3) << dt;
+        EXPECT_NEAR(drops[0].position.z, -0.05F, 1e-5F);
+    }
+}
+
+// Furmidge 1962: a drop of 60 / 40 degrees on an upright wall lets go at 4.07 microlitres, of 90 / 60 at 7.74: rho g V = w gamma (cos
+// receding
+// - cos advancing), a cap with the mean angle. It grows by fifty others.
+TEST(Flow, IsHeldUntilItIsTooHeavy) {
+    struct Row {
+        float advancing, receding;
+        double microlitres;
+    };
+    for (const Row& row : {Row{60, 40, 4.07}, Row{90, 60, 7.74}})
+        for (const uint32_t quads : {4U, 60U}) {
+            auto device = cpu();
+            const Shape shape = sheet(vec3(0.0F, 0.1F, 0.0F), vec3(0.0F, -0.1F, 0.0F), vec3(0.1F, 0.0F, 0.0F), quads, quads);
+            SurfaceFlowParams p;
+            p.advancing = row.advancing;
+            p.receding = row.receding;
+            SurfaceFlow flow = flowOn(*device, shape, p);
+            std::mt19937 random(7);
+            std::uniform_real_distribution<float> strewn(-2e-4F, 2e-4F);
+            double grown = 0, first = 0;
+            for (int k = 0; k < 60 && first == 0; ++k) {
+                const auto birth = static_cast<uint32_t>(row.microlitres * 1e6 / 50);
+                flow.add(nearestPoint(flow.mesh(), vec3(0.05F + strewn(random), 0.05F + strewn(random), 0)), birth);
+                for (int step = 0; step < 6; ++step) flow.step({}, 1.0 / 60);
+                grown += birth * 1e-6;
+                for (const SkinDrop& d : flow.drops())
+                    if (glm::length(d.velocity) > 1e-3F) first = grown;
+            }
+            ASSERT_GT(first, 0) << "it never let go";
+            EXPECT_NEAR(first / row.microlitres, 1, 0.05) << row.advancing << ", " << quads << " quads";
+        }
+}
+
+// A drop on a dry wall leaves a film as thick as asked and as wide as its foot, and stops when it is too light; the next one, begun beside
+// its way, is drawn into the trail and gets further.
+TEST(Flow, TheSecondTearFollowsTheFirst) {
+    auto device = cpu();
+    const Shape shape = sheet(vec3(0.0F, 0.3F, 0.0F), vec3(0.0F, -0.3F, 0.0F), vec3(0.05F, 0.0F, 0.0F), 60, 10);
+    SurfaceFlowParams p;
+    p.evaporation = 0;
+    p.largestDrop = 6;
+    SurfaceFlow flow = flowOn(*device, shape, p);
+    const auto runDown = [&](float x) {
+        flow.add(nearestPoint(flow.mesh(), vec3(x, 0.29F, 0)), 5 * kMicrolitres);
+        for (int k = 0; k < 600; ++k) flow.step({}, 1.0 / 60);
+        const std::vector<SkinDrop> drops = flow.drops();
+        return *std::min_element(drops.begin(), drops.end(),
+                                 [](const SkinDrop& a, const SkinDrop& b) { return a.position.y < b.position.y; });
+    };
+    const SkinDrop first = runDown(0.025F);
+    EXPECT_LT(glm::length(first.velocity), 5e-4F);  // all but stopped: it has become too light
+    const double went = 0.29 - double{first.position.y};
+    EXPECT_GT(went, 0.01);
+    EXPECT_LT(went, 0.25);
+    EXPECT_NEAR(first.position.x, 0.025F, 1e-4F);
+    SurfaceFlow::Ledger l = flow.ledger();
+    EXPECT_EQ(l.added, l.drops + l.film + l.left);
+    // 10 micrometres over its way and 0.7 of its foot, 3.7 mm for 5 microlitres; less as it gets lighter.
+    const double foot = 2 * 1.0836e-3 * std::cbrt(5.0);
+    EXPECT_NEAR(l.film * 1e-15 / (1e-5 * 0.7 * foot * went), 1, 0.2);
+    // And where it lay: half way down, on the middle line and beside it.
+    const auto thickness = [&](float x, float y) {
+        const SkinPoint at = nearestPoint(flow.mesh(), vec3(x, y, 0));
+        const std::vector<float> cells = flow.film(at.triangle);
+        return *std::max_element(cells.begin(), cells.end());
+    };
+    const auto middle = static_cast<float>(0.29 - 0.5 * went);
+    EXPECT_NEAR(thickness(0.025F, middle), 1e-5F, 2e-6F);
+    EXPECT_EQ(thickness(0.035F, middle), 0);
+
+    const SkinDrop second = runDown(0.0262F);
+    EXPECT_LT(second.position.y, first.position.y - 0.01F);
+    EXPECT_LT(std::abs(second.position.x - 0.025F), 0.0012F);
+    l = flow.ledger();
+    EXPECT_EQ(l.added, l.drops + l.film + l.left);
+}
+
+// A skin that stirs, and now and then loses a triangle's area, carries its drops along: they keep their places in it, and none becomes Inf.
+TEST(Flow, ASkinThatMovesCarriesItsDrops) {
+    auto device = cpu();
+    const Shape rest = sheet(vec3(-0.05F, 0, 0.05F), vec3(0.1F, 0, 0), vec3(0, 0, -0.1F), 20, 20);
+    SurfaceFlow flow = flowOn(*device, rest);
+    for (int k = 0; k < 12; ++k)
+        flow.add(nearestPoint(flow.mesh(), vec3(-0.04F + 0.02F * static_cast<float>(k % 4), 0, -0.02F + 0.02F * static_cast<float>(k / 4))),
+                 kMicrolitres);
+    flow.step({.pull = vec3(0.0F)}, 1.0 / 60);
+    const std::vector<SkinDrop> before = flow.drops();
+    ASSERT_EQ(before.size(), 12U);
+    std::vector<vec3> moved = rest.positions;
+    for (int k = 0; k < 60; ++k) {
+        for (size_t i = 0; i < moved.size(); ++i) {
+            const vec3& x = rest.positions[i];
+            moved[i] = vec3(x.x, 0.01F * std::sin(60 * x.x + 0.2F * static_cast<float>(k)), x.z);
+        }
+        if (k % 10 == 5) moved[150] = moved[151];  // four triangles lose their area, their drops their room
+        flow.step({.pull = vec3(0.0F), .positions = moved}, 1.0 / 60);
+        for (const SkinDrop& d : flow.drops()) EXPECT_TRUE(isFinite(d.position) && isFinite(d.velocity));
+    }
+    const std::vector<SkinDrop> after = flow.drops();
+    ASSERT_EQ(after.size(), before.size());
+    for (size_t k = 0; k < after.size(); ++k) {
+        EXPECT_EQ(after[k].at.triangle, before[k].at.triangle);
+        EXPECT_NEAR(after[k].position.x, before[k].position.x, 1e-5F);
+        EXPECT_NEAR(after[k].position.y, 0.01F * std::sin(60 * before[k].position.x + 0.2F * 59), 1e-3F);
+    }
+}
+
+TEST(Flow, LosesNothing) {
+    auto device = cpu();
+    const Shape shape = ball(0.04F, 40);
+    SurfaceFlowParams p;
+    p.capacity = 512;
+    SurfaceFlow flow = flowOn(*device, shape, p);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> any(-1.0F, 1.0F);
+    std::uniform_int_distribution<uint32_t> volume(1, 3 * kMicrolitres);
+    for (int k = 0; k < 600; ++k) {
+        if (k < 300)
+            for (int n = 0; n < 3; ++n)
+                flow.add(nearestPoint(flow.mesh(), vec3(any(random), std::abs(any(random)), any(random))), volume(random));
+        flow.step({.wind = vec3(k > 400 ? 3.0F : 0.0F, 0, 0)}, 1.0 / 60);
+        if (k % 100 != 99) continue;
+        const SurfaceFlow::Ledger l = flow.ledger();
+        EXPECT_EQ(l.added, l.drops + l.film + l.left + l.evaporated + l.refused);
+        for (const SkinDrop& d : flow.drops()) {
+            EXPECT_NEAR(glm::length(d.position), 0.04F, 0.04F * 0.004F);
+            EXPECT_TRUE(isFinite(d.velocity));
+        }
+    }
+    const SurfaceFlow::Ledger l = flow.ledger();
+    EXPECT_GT(l.merges, 200U);
+    EXPECT_GT(l.film, 0U);
+    EXPECT_GT(l.evaporated, 0U);
+    uint64_t told = 0;
+    for (const LeftDrop& d : flow.takeLeft()) told += d.picolitres;
+    EXPECT_EQ(told, l.left);
+}
+
+}  // namespace
+}  // namespace rivulet

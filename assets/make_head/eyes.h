@@ -1,0 +1,55 @@
+// Eyes and lids. Everything near an eye is seen from the eyeball's centre: by two angles, and by the height above the eye's surface
+// (sclera and cornea), so that lids wrap the eye wherever they slide.
+#pragma once
+
+#include <string>
+
+#include "assets/make_head/surface.h"
+
+namespace rivulet::head {
+
+inline constexpr double kEyeRadius = 1.2, kLimbusRadius = 0.59, kLidGap = 0.03;
+
+// A point by an eye: angle outward, angle up, and height above sclera or cornea.
+struct EyePoint {
+    double out = 0, up = 0, height = 0;
+};
+
+struct Eye {
+    double side = 1;  // +1 the subject's left
+    dvec3 centre{0};
+    std::vector<uint32_t> loop;                // the lid's outer edge: outer corner, lower lid, inner corner, upper lid
+    std::vector<std::vector<uint32_t>> rings;  // its margin, from the edge inward: as many vertices a ring
+    std::vector<EyePoint> lower, upper;        // margins at rest, from the inner corner to the outer
+
+    EyePoint seen(dvec3 p) const;
+    dvec3 placed(const EyePoint& e) const;
+    // Both lids moved by a share of the way to the line where they meet; 1, 1 closes the eye. Points far from the lids stay; what is
+    // `onMargin` slides as one.
+    dvec3 lidsMoved(dvec3 p, bool upperLid, bool onMargin, double upperShare, double lowerShare) const;
+    double closingLine(double out) const;
+    double margin(bool upperLid, double out) const;
+};
+
+// A part with its own material beside the skin.
+struct Part {
+    std::string name, material;
+    std::vector<dvec3> positions, normals;
+    std::vector<dvec2> uvs;
+    std::vector<Triangle> triangles;
+    std::vector<std::vector<dvec3>> morphs;  // displacements, one list a target; may be empty
+};
+
+double eyeSurface(double out, double up);  // distance from the eyeball's centre to sclera or cornea
+// Fits the lids of the subdivided head around both eyes and adds their margins.
+std::array<Eye, 2> fitLids(Surface& head);
+Part makeEyeball(const Eye& eye);
+Part makeCornea(const Eye& eye);
+Part makeCaruncle(const Eye& eye);
+struct Lash {
+    uint32_t root = 0;  // the skin's vertex that it grows by
+    bool upper = true;
+};
+Part makeLashes(const Eye& eye, const Surface& head, std::vector<Lash>& ofVertex);
+
+}  // namespace rivulet::head

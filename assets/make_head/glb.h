@@ -1,0 +1,16 @@
+// Writes parts with their morph targets and materials as one binary glTF 2.0 file, in metres.
+#pragma once
+
+#include <string>
+
+#include "assets/make_head/eyes.h"
+
+namespace rivulet::head {
+
+// The bytes of the file. `parts[0]` is the skin; morphs of any part are named by kMorphNames and stored sparsely.
+std::string asGlb(const std::vector<Part>& parts);
+
+// What is stored, and so what everything else must agree with: whole micrometres, here in cm.
+dvec3 rounded(dvec3 p);
+
+}  // namespace rivulet::head

@@ -1,0 +1,138 @@
+#include "assets/make_head/morphs.h"
+
+#include <cmath>
+
+namespace rivulet::head {
+namespace {
+
+double bell(dvec3 p, dvec3 centre, dvec3 width) {
+    dvec3 d = (p - centre) / width;
+    return std::exp(-0.5 * glm::dot(d, d));
+}
+
+// 0 at the lids, 1 away from them: what brows and cheeks do must not shear the lids off the eyes.
+double awayFromLids(dvec3 p, bool above) {
+    dvec2 d = dvec2(std::abs(p.x) - 3.17, p.y - 2.6) / dvec2(1.75, above ? 1.35 : 1.2);
+    return smoothstep(0.75, 1.5, glm::length(d));
+}
+
+dvec3 jawTurned(dvec3 p, double angle) {
+    const double y = 0.4, z = -3.0;
+    dvec3 d = p - dvec3(p.x, y, z);
+    return dvec3(p.x, y + d.y * std::cos(angle) - d.z * std::sin(angle), z + d.y * std::sin(angle) + d.z * std::cos(angle));
+}
+
+// Every face's half moves as its mirror image; `side` is +1 on the left.
+dvec3 cheeks(dvec3 p, double side) {
+    dvec3 lift = dvec3(0.05 * side, 0.42, 0.24) * bell(p, {3.7 * side, 0.2, 4.0}, {1.35, 1.15, 1.6});
+    return lift * awayFromLids(p, false);
+}
+
+dvec3 brows(dvec3 p, double side, bool inner) {
+    if (inner) {
+        dvec3 up = dvec3(0.06 * side, 0.72, 0.06) * bell(p, {1.1 * side, 4.9, 5.2}, {1.3, 1.35, 2.0});
+        return up * smoothstep(3.0, 4.5, p.y);
+    }
+    dvec3 down = dvec3(-0.16 * side, -0.48, 0.10) * bell(p, {1.5 * side, 4.9, 5.1}, {1.2, 1.1, 2.0}) +
+                 dvec3(0, -0.30, 0.02) * bell(p, {3.9 * side, 4.9, 4.5}, {1.3, 1.1, 2.0});
+    return down * smoothstep(3.15, 4.4, p.y);
+}
+
+dvec3 mouth(dvec3 p, double side, const std::string& name, const Vertex& v) {
+    double front = smoothstep(0.0, 2.5, p.z);
+    if (name == "smile") {
+        dvec3 corner = dvec3(0.62 * side, 0.50, -0.42) * bell(p, {2.5 * side, -4.25, 4.3}, {1.0, 1.0, 2.2});
+        dvec3 fold = dvec3(0.18 * side, 0.34, 0.16) * bell(p, {3.6 * side, -2.2, 4.2}, {1.1, 1.3, 2.0});
+        return (corner + fold) * front + 0.45 * cheeks(p, side);
+    }
+    if (name == "frown") {
+        dvec3 corner = dvec3(0.10 * side, -0.62, -0.10) * bell(p, {2.5 * side, -4.4, 4.3}, {0.85, 0.95, 2.2});
+        dvec3 chin = 0.5 * dvec3(0, 0.28, 0.12) * bell(p, {0, -6.6, 5.0}, {1.5, 0.9, 2.0});
+        return (corner + chin) * front;
+    }
+    // Pucker: towards the middle and forward, lips rolled out.
+    double near = bell(p, {0, -4.3, p.z}, {1.9, 1.25, 1.0}) * front;
+    double drawn = near * 0.5 * std::abs(p.x) / (0.6 + 0.35 * std::abs(p.x));
+    return 0.5 *
+           (dvec3(-side * drawn, 0, 0) * 2.0 + dvec3(0, 0.10 * (v.weight[kJaw] > 0.5 ? -1.0 : 1.0) * v.weight[kLip] * near, 0.62 * near));
+}
+
+struct LidPlace {
+    int eye = -1;
+    bool upper = false, onMargin = false;
+};
+
+std::vector<LidPlace> lidPlaces(const Surface& head, const std::array<Eye, 2>& eyes) {
+    std::vector<LidPlace> places(head.vertices.size());
+    for (int k = 0; k < 2; ++k) {
+        const Eye& eye = eyes[k];
+        for (uint32_t v = 0; v < places.size(); ++v) {
+            dvec3 p = head.vertices[v].at;
+            if (glm::distance(p, eye.centre) > 3.2 || p.z < eye.centre.z) continue;
+            EyePoint e = eye.seen(p);
+            places[v] = {k, e.up > eye.closingLine(e.out), false};
+        }
+        size_t n = eye.loop.size();
+        for (size_t i = 0; i < n; ++i) {
+            places[eye.loop[i]] = {k, i > n / 2, true};
+            for (const auto& ring : eye.rings) places[ring[i]] = {k, i > n / 2, true};
+        }
+    }
+    return places;
+}
+
+}  // namespace
+
+std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array<Eye, 2>& eyes) {
+    std::vector<LidPlace> places = lidPlaces(head, eyes);
+    auto lids = [&](uint32_t v, int eye, double upper, double lower) {
+        dvec3 p = head.vertices[v].at;
+        const LidPlace& place = places[v];
+        return place.eye == eye ? eyes[eye].lidsMoved(p, place.upper, place.onMargin, upper, lower) - p : dvec3(0);
+    };
+    std::vector<std::vector<dvec3>> morphs;
+    for (const std::string& name : kMorphNames) {
+        std::vector<dvec3>& morph = morphs.emplace_back(head.vertices.size(), dvec3(0));
+        for (uint32_t v = 0; v < morph.size(); ++v) {
+            const Vertex& vertex = head.vertices[v];
+            dvec3 p = vertex.at;
+            for (double side : {1.0, -1.0}) {
+                int k = side > 0 ? 0 : 1;
+                bool own = name.ends_with(k == 0 ? "Left" : "Right");
+                if (name.starts_with("blink") && own) morph[v] += lids(v, k, 1, 1);
+                if (name.starts_with("squint") && own) {
+                    dvec3 cheek = 0.45 * cheeks(p, side) +
+                                  dvec3(0, -0.10, 0) * bell(p, {3.4 * side, 4.7, 4.7}, {1.5, 0.8, 2.0}) * awayFromLids(p, true);
+                    morph[v] += lids(v, k, 0.30, 0.95) + cheek;
+                }
+                if (name == "browInnerUp") morph[v] += brows(p, side, true);
+                if (name == "browDown") morph[v] += brows(p, side, false);
+                if (name == "cheekRaise") morph[v] += cheeks(p, side) + lids(v, k, 0.0, 0.5);
+                if (name == "smile" || name == "frown" || name == "mouthPucker") morph[v] += mouth(p, side, name, vertex);
+            }
+            if (name == "mouthOpen") morph[v] = jawTurned(p, 0.24 * vertex.weight[kJaw]) - p;
+            if (glm::length(morph[v]) < 5e-4) morph[v] = dvec3(0);
+        }
+    }
+    return morphs;
+}
+
+std::vector<std::vector<dvec3>> lashMorphs(const Part& lashes, const std::vector<Lash>& ofVertex, const Surface& head, const Eye& eye,
+                                           const std::vector<std::vector<dvec3>>& skin) {
+    std::vector<std::vector<dvec3>> morphs;
+    for (const auto& morph : skin) {
+        std::vector<dvec3>& own = morphs.emplace_back(lashes.positions.size(), dvec3(0));
+        for (size_t v = 0; v < own.size(); ++v) {
+            uint32_t root = ofVertex[v].root;
+            if (morph[root] == dvec3(0)) continue;
+            // A lash turns with its lid about the eyeball's centre.
+            dvec3 rest = head.vertices[root].at, d = lashes.positions[v] - eye.centre;
+            double turn = eye.seen(rest + morph[root]).up - eye.seen(rest).up;
+            dvec3 turned(d.x, d.y * std::cos(turn) + d.z * std::sin(turn), d.z * std::cos(turn) - d.y * std::sin(turn));
+            own[v] = turned - d;
+        }
+    }
+    return morphs;
+}
+
+}  // namespace rivulet::head

@@ -1,0 +1,237 @@
+// The head that ships is what make_head writes, and it is what animation, tears and skin rely on.
+#include <gtest/gtest.h>
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "engine/core/json.h"
+#include "engine/core/math.h"
+#include "tests/unit/program_runner.h"
+
+namespace rivulet::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kShipped = fs::path(RIVULET_SOURCE_DIR) / "assets/meshes/head";
+const std::set<std::string> kMorphs = {"blinkLeft", "blinkRight", "browInnerUp", "browDown", "squintLeft", "squintRight",
+                                       "frown",     "mouthOpen",  "mouthPucker", "smile",    "cheekRaise"};
+const dvec3 kEyes[2] = {{0.0317, 0.0268, 0.0260}, {-0.0317, 0.0268, 0.0260}};  // head.json says the same
+
+class Head : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        scene_ = importer_.ReadFile((kShipped / "head.glb").string(), 0);
+        ASSERT_NE(scene_, nullptr) << importer_.GetErrorString();
+    }
+    const aiMesh& mesh(const std::string& name) const {
+        for (unsigned m = 0; m < scene_->mNumMeshes; ++m)
+            if (scene_->mMeshes[m]->mName.C_Str() == name) return *scene_->mMeshes[m];
+        ADD_FAILURE() << "head.glb has no mesh '" << name << "'";
+        return *scene_->mMeshes[0];
+    }
+    static std::vector<dvec3> positions(const aiVector3D* from, unsigned count) {
+        std::vector<dvec3> all;
+        for (unsigned i = 0; i < count; ++i) all.emplace_back(from[i].x, from[i].y, from[i].z);
+        return all;
+    }
+    std::vector<dvec3> skinWith(const std::vector<std::string>& morphs) const {
+        const aiMesh& skin = mesh("skin");
+        std::vector<dvec3> rest = positions(skin.mVertices, skin.mNumVertices), moved = rest;
+        for (unsigned a = 0; a < skin.mNumAnimMeshes; ++a) {
+            const aiAnimMesh& morph = *skin.mAnimMeshes[a];
+            if (std::find(morphs.begin(), morphs.end(), morph.mName.C_Str()) == morphs.end()) continue;
+            for (unsigned i = 0; i < skin.mNumVertices; ++i)
+                moved[i] += dvec3(morph.mVertices[i].x, morph.mVertices[i].y, morph.mVertices[i].z) - rest[i];
+        }
+        return moved;
+    }
+    // How far from an eyeball's centre the skin first lies that way; infinite where it is open.
+    class Around {
+      public:
+        Around(const aiMesh& skin, const std::vector<dvec3>& at, dvec3 centre) {
+            for (unsigned f = 0; f < skin.mNumFaces; ++f) {
+                const unsigned* v = skin.mFaces[f].mIndices;
+                if (glm::distance(at[v[0]], centre) < 0.025 && at[v[0]].z > centre.z - 0.002)
+                    near_.push_back({at[v[0]] - centre, at[v[1]] - centre, at[v[2]] - centre});
+            }
+        }
+        double along(dvec3 d) const {
+            double least = std::numeric_limits<double>::infinity();
+            for (const auto& [a, b, c] : near_) {
+                dvec3 e = b - a, f = c - a, p = glm::cross(d, f);
+                double det = glm::dot(e, p);
+                if (std::abs(det) < 1e-18) continue;
+                double u = glm::dot(-a, p) / det;
+                dvec3 q = glm::cross(-a, e);
+                double v = glm::dot(d, q) / det, t = glm::dot(f, q) / det;
+                if (u >= 0 && v >= 0 && u + v <= 1 && t > 0) least = std::min(least, t);
+            }
+            return least;
+        }
+
+      private:
+        std::vector<std::tuple<dvec3, dvec3, dvec3>> near_;
+    };
+    // Eyeball and cornea lie behind the lids, by at least a tenth of a millimetre.
+    void expectEyesBehindLids(const std::vector<dvec3>& skin) const {
+        for (int k = 0; k < 2; ++k) {
+            Around lids(mesh("skin"), skin, kEyes[k]);
+            for (const char* part : {"eye", "cornea"}) {
+                const aiMesh& eye = mesh(std::string(part) + (k == 0 ? "Left" : "Right"));
+                double least = 1;
+                for (dvec3 p : positions(eye.mVertices, eye.mNumVertices)) {
+                    dvec3 d = p - kEyes[k];
+                    if (d.z < 0.003) continue;
+                    least = std::min(least, lids.along(glm::normalize(d)) - glm::length(d));
+                }
+                EXPECT_GT(least, 1e-4) << eye.mName.C_Str();
+            }
+        }
+    }
+    // The tallest opening between the lids, in metres at the eyeball.
+    static double opening(const Around& lids) {
+        const double step = 0.008;
+        double tallest = 0;
+        for (double out = -0.75; out <= 0.9; out += 0.03) {
+            int run = 0;
+            for (double up = -0.6; up <= 0.6; up += step) {
+                dvec3 d(std::sin(out) * std::cos(up), std::sin(up), std::cos(out) * std::cos(up));
+                run = std::isinf(lids.along(d)) ? run + 1 : 0;
+                tallest = std::max(tallest, run * step * 0.0122);
+            }
+        }
+        return tallest;
+    }
+    Assimp::Importer importer_;
+    const aiScene* scene_ = nullptr;
+};
+
+TEST(MakeHead, WritesWhatShipsByteForByte) {
+    Scratch scratch;
+    Outcome made = runCommand({(fs::path(RIVULET_PROGRAM).parent_path() / "make_head").string(),
+                               (kShipped.parent_path() / "canonical_face_model.obj").string(), scratch.file("head")});
+    ASSERT_EQ(made.code, 0) << made.err;
+    uintmax_t bytes = 0;
+    for (const auto& entry : fs::directory_iterator(kShipped)) {
+        std::string name = entry.path().filename().string();
+        bytes += entry.file_size();
+        Result<std::string> shipped = readFile(entry.path().string()), written = readFile(scratch.file("head") + "/" + name);
+        ASSERT_TRUE(shipped) << shipped.error().message;
+        ASSERT_TRUE(written) << written.error().message;
+        EXPECT_TRUE(*shipped == *written) << name << " differs from what make_head writes: run it into assets/meshes/head";
+    }
+    EXPECT_LT(bytes, 6u << 20);
+}
+
+TEST(MakeHead, RefusesAFaceThatIsAnother) {
+    Scratch scratch;
+    std::string face = scratch.file("face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+    Outcome made = runCommand({(fs::path(RIVULET_PROGRAM).parent_path() / "make_head").string(), face, scratch.file("head")});
+    EXPECT_EQ(made.code, 2);
+    EXPECT_NE(made.err.find("canonical face model"), std::string::npos) << made.err;
+    EXPECT_FALSE(fs::exists(scratch.file("head")));
+}
+
+TEST_F(Head, HasItsPartsAndMorphsByName) {
+    for (const char* name : {"skin", "eyeLeft", "eyeRight", "corneaLeft", "corneaRight", "lashesLeft", "lashesRight", "caruncleLeft"})
+        mesh(name);
+    const aiMesh& skin = mesh("skin");
+    EXPECT_GT(skin.mNumFaces, 25000u);
+    EXPECT_LT(skin.mNumFaces, 60000u);
+    std::set<std::string> names;
+    for (unsigned a = 0; a < skin.mNumAnimMeshes; ++a) names.insert(skin.mAnimMeshes[a]->mName.C_Str());
+    EXPECT_EQ(names, kMorphs);
+    EXPECT_STREQ(scene_->mMaterials[skin.mMaterialIndex]->GetName().C_Str(), "skin");
+}
+
+TEST_F(Head, IsItsOwnMirrorImage) {
+    const aiMesh& skin = mesh("skin");
+    std::vector<dvec3> at = positions(skin.mVertices, skin.mNumVertices);
+    std::map<std::tuple<int, int, int>, std::vector<dvec3>> cells;
+    auto cell = [](dvec3 p) {
+        dvec3 c = glm::floor(p / 1e-3);
+        return std::tuple<int, int, int>(c.x, c.y, c.z);
+    };
+    for (dvec3 p : at) cells[cell(p)].push_back(p);
+    size_t alone = 0;
+    for (dvec3 p : at) {
+        dvec3 twin(-p.x, p.y, p.z);
+        double least = 1;
+        for (int k = 0; k < 27; ++k)
+            for (dvec3 q : cells[cell(twin + dvec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1) * 1e-3)])
+                least = std::min(least, glm::distance(q, twin));
+        if (least > 1e-4) ++alone;
+    }
+    EXPECT_EQ(alone, 0u);
+}
+
+TEST_F(Head, ChartStaysInTheTileAndTurnsOneWay) {
+    const aiMesh& skin = mesh("skin");
+    auto uv = [&](unsigned v) { return glm::dvec2(skin.mTextureCoords[0][v].x, skin.mTextureCoords[0][v].y); };
+    for (unsigned v = 0; v < skin.mNumVertices; ++v) {
+        EXPECT_GE(std::min(uv(v).x, uv(v).y), 0.0);
+        EXPECT_LE(std::max(uv(v).x, uv(v).y), 1.0);
+    }
+    size_t flipped = 0;
+    for (unsigned f = 0; f < skin.mNumFaces; ++f) {
+        const unsigned* v = skin.mFaces[f].mIndices;
+        glm::dvec2 ab = uv(v[1]) - uv(v[0]), ac = uv(v[2]) - uv(v[0]);
+        if (ab.x * ac.y - ab.y * ac.x <= 0) ++flipped;
+    }
+    EXPECT_EQ(flipped, 0u);
+}
+
+TEST_F(Head, IsOpenOnlyAtNeckAndBehindTheLids) {
+    const aiMesh& skin = mesh("skin");
+    std::set<std::pair<unsigned, unsigned>> edges;
+    for (unsigned f = 0; f < skin.mNumFaces; ++f)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_TRUE(edges.insert({skin.mFaces[f].mIndices[k], skin.mFaces[f].mIndices[(k + 1) % 3]}).second) << "an edge is used twice";
+    std::map<unsigned, unsigned> next;
+    for (auto [a, b] : edges)
+        if (!edges.contains({b, a})) EXPECT_TRUE(next.insert({a, b}).second) << "a boundary touches itself";
+    std::vector<dvec3> middles;
+    while (!next.empty()) {
+        dvec3 sum(0);
+        int count = 0;
+        for (auto at = next.begin(); at != next.end(); ++count) {
+            const aiVector3D& p = skin.mVertices[at->first];
+            sum += dvec3(p.x, p.y, p.z);
+            unsigned to = at->second;
+            next.erase(at);
+            at = next.find(to);
+        }
+        middles.push_back(sum / static_cast<double>(count));
+    }
+    ASSERT_EQ(middles.size(), 3u);
+    int behindLids = 0;
+    for (dvec3 middle : middles)
+        for (dvec3 eye : kEyes) behindLids += glm::distance(middle, eye) < 0.014 ? 1 : 0;
+    EXPECT_EQ(behindLids, 2);
+    EXPECT_LT(std::min({middles[0].y, middles[1].y, middles[2].y}), -0.17);
+}
+
+TEST_F(Head, LidsLieOnTheEyesOpenAndShut) {
+    std::vector<dvec3> rest = skinWith({}), shut = skinWith({"blinkLeft", "blinkRight"});
+    expectEyesBehindLids(rest);
+    expectEyesBehindLids(shut);
+    expectEyesBehindLids(skinWith({"squintLeft", "squintRight", "browDown"}));
+    for (dvec3 eye : kEyes) {
+        double open = opening(Around(mesh("skin"), rest, eye));
+        EXPECT_GT(open, 0.008);
+        EXPECT_LT(open, 0.012);
+        EXPECT_LT(opening(Around(mesh("skin"), shut, eye)), 0.0005);
+    }
+}
+
+}  // namespace
+}  // namespace rivulet::testing

@@ -64,6 +64,7 @@ void closeLips(Surface& face) {
             bool upper = i < 10;
             double across = std::sin(kPi * static_cast<double>(i % 10) / 10);
             v.at.y += (upper ? -0.22 : 0.33) * share[row] * std::pow(across, 0.6);
+            if (!upper) v.at.z += 0.12 * across * std::min(1.0, row + 0.5);
             if (row == 3) v.at.z += upper ? 0.06 * across : -0.10 * across;
             if (row >= 2) v.uv.y += (upper ? 1 : -1) * (row == 3 ? 0.005 : 0.002) * std::sqrt(across);
         }
@@ -326,6 +327,8 @@ class Loft {
             face_.addTriangle(a, d, b);
             face_.addTriangle(b, d, e);
         }
+        if (side < 0)  // a strip that runs the other way is its mirror image
+            for (Ids& ring : rings) std::reverse(ring.begin(), ring.end());
         for (int step = 0; step + 1 < kSteps; ++step) face_.addStrip(rings[step], rings[step + 1], true);
         Vertex canal;
         canal.at = earPoint(side, concha, -0.45);

@@ -19,7 +19,7 @@ constexpr double kInner = -1.36, kOuter = 1.32;  // the corners, outward from th
 EyePoint marginEdge(const Eye& eye, bool upper, double t) {
     double base = glm::mix(-0.15, 0.07, t);
     double arch =
-        upper ? 0.49 * std::pow(std::sin(kPi * std::pow(t, 0.92)), 0.84) : -0.46 * std::pow(std::sin(kPi * std::pow(t, 1.2)), 0.92);
+        upper ? 0.51 * std::pow(std::sin(kPi * std::pow(t, 0.92)), 0.84) : -0.48 * std::pow(std::sin(kPi * std::pow(t, 1.2)), 0.92);
     arch *= glm::mix(0.62, 1.0, smoothstep(0.0, 0.22, t));
     double x = glm::mix(kInner, kOuter, t), y = base + arch;
     double lake = std::max(0.0, 1 - t / 0.27), tail = std::max(0.0, 1 - (1 - t) / 0.2);
@@ -117,6 +117,7 @@ void addMargins(Surface& head, Eye& eye) {
     }
     dvec2 centre = 0.5 * (low + high);
     std::vector<uint32_t> last = eye.loop;
+    if (eye.side < 0) std::reverse(last.begin(), last.end());
     for (const Step& step : steps) {
         std::vector<uint32_t> ring;
         for (size_t i = 0; i < n; ++i) {
@@ -131,8 +132,9 @@ void addMargins(Surface& head, Eye& eye) {
             v.weight[kRim] = smoothstep(0.0, 0.2, step.chart);
             ring.push_back(head.add(v));
         }
-        head.addStrip(last, ring, true);
         eye.rings.push_back(ring);
+        if (eye.side < 0) std::reverse(ring.begin(), ring.end());  // a strip that runs the other way is its mirror image
+        head.addStrip(last, ring, true);
         last = ring;
     }
 }
@@ -140,7 +142,7 @@ void addMargins(Surface& head, Eye& eye) {
 }  // namespace
 
 double eyeSurface(double out, double up) {
-    double forward = std::cos(out) * std::cos(up);  // cosine of the angle to the direction of sight
+    double forward = std::cos(out + kInward) * std::cos(up);  // cosine of the angle to the direction of sight
     double under = kCorneaRadius * kCorneaRadius - kCorneaCentre * kCorneaCentre * (1 - forward * forward);
     double cornea = forward > 0 ? kCorneaCentre * forward + std::sqrt(std::max(under, 0.0)) : 0;
     double d = cornea - kEyeRadius;
@@ -241,7 +243,7 @@ struct Latitude {
 };
 Part revolved(const Eye& eye, const std::vector<Latitude>& profile, std::string name, std::string material) {
     constexpr int kAround = 64;
-    const double inward = 0.03 * eye.side;
+    const double inward = kInward * eye.side;
     Part part;
     part.name = std::move(name);
     part.material = std::move(material);
@@ -288,7 +290,7 @@ Part makeCornea(const Eye& eye) {
     std::vector<Latitude> profile;
     for (int j = 0; j <= 20; ++j) {
         double angle = edge * j / 20;
-        double r = eyeSurface(angle, 0) - 0.004 * smoothstep(0.85, 1.0, j / 20.0);
+        double r = eyeSurface(angle - kInward, 0) - 0.004 * smoothstep(0.85, 1.0, j / 20.0);
         profile.push_back({angle, r, 0.5 * j / 20});
     }
     return revolved(eye, profile, eye.side > 0 ? "corneaLeft" : "corneaRight", "cornea");

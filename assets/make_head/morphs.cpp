@@ -33,12 +33,12 @@ dvec3 brows(dvec3 p, double side, bool inner) {
         dvec3 up = dvec3(0.06 * side, 0.72, 0.06) * bell(p, {1.1 * side, 4.9, 5.2}, {1.3, 1.35, 2.0});
         return up * smoothstep(3.0, 4.5, p.y);
     }
-    dvec3 down = dvec3(-0.16 * side, -0.48, 0.10) * bell(p, {1.5 * side, 4.9, 5.1}, {1.2, 1.1, 2.0}) +
+    dvec3 down = dvec3(-0.14 * side, -0.42, 0.08) * bell(p, {1.7 * side, 4.9, 5.1}, {1.0, 1.2, 2.0}) +
                  dvec3(0, -0.30, 0.02) * bell(p, {3.9 * side, 4.9, 4.5}, {1.3, 1.1, 2.0});
-    return down * smoothstep(3.15, 4.4, p.y);
+    return down * smoothstep(2.5, 5.0, p.y);
 }
 
-dvec3 mouth(dvec3 p, double side, const std::string& name, const Vertex& v) {
+dvec3 mouth(dvec3 p, double side, const std::string& name) {
     double front = smoothstep(0.0, 2.5, p.z);
     if (name == "smile") {
         dvec3 corner = dvec3(0.62 * side, 0.50, -0.42) * bell(p, {2.5 * side, -4.25, 4.3}, {1.0, 1.0, 2.2});
@@ -50,11 +50,10 @@ dvec3 mouth(dvec3 p, double side, const std::string& name, const Vertex& v) {
         dvec3 chin = 0.5 * dvec3(0, 0.28, 0.12) * bell(p, {0, -6.6, 5.0}, {1.5, 0.9, 2.0});
         return (corner + chin) * front;
     }
-    // Pucker: towards the middle and forward, lips rolled out.
+    // Pucker: towards the middle and forward.
     double near = bell(p, {0, -4.3, p.z}, {1.9, 1.25, 1.0}) * front;
-    double drawn = near * 0.5 * std::abs(p.x) / (0.6 + 0.35 * std::abs(p.x));
-    return 0.5 *
-           (dvec3(-side * drawn, 0, 0) * 2.0 + dvec3(0, 0.10 * (v.weight[kJaw] > 0.5 ? -1.0 : 1.0) * v.weight[kLip] * near, 0.62 * near));
+    double drawn = near * 0.44 * std::abs(p.x) / (0.6 + 0.3 * std::abs(p.x));
+    return side * p.x < 0 ? dvec3(0) : dvec3(-side * drawn, 0, 0.62 * near) * (p.x == 0 ? 0.5 : 1.0);
 }
 
 struct LidPlace {
@@ -81,6 +80,28 @@ std::vector<LidPlace> lidPlaces(const Surface& head, const std::array<Eye, 2>& e
     return places;
 }
 
+// A lid that slides unfolds: what the fold leaves uneven is smoothed, the more the further it went, and stays clear of the eye.
+void unfold(std::vector<dvec3>& morph, const Surface& head, const Neighbours& around, const std::vector<LidPlace>& places, const Eye& eye,
+            int k) {
+    std::vector<uint32_t> moved;
+    for (uint32_t v = 0; v < morph.size(); ++v)
+        if (places[v].eye == k && !places[v].onMargin && glm::length(morph[v]) > 5e-3) moved.push_back(v);
+    std::vector<dvec3> next = morph;
+    std::vector<double> amount(morph.size(), 0);
+    for (uint32_t v : moved) amount[v] = 0.6 * smoothstep(0.02, 0.2, glm::length(morph[v]));
+    for (int step = 0; step < 14; ++step) {
+        for (uint32_t v : moved) {
+            dvec3 p = head.vertices[v].at + morph[v], sum(0);
+            for (uint32_t n : around[v]) sum += head.vertices[n].at + morph[n];
+            p += amount[v] * (sum / static_cast<double>(around[v].size()) - p);
+            EyePoint e = eye.seen(p);
+            e.height = std::max(e.height, 0.16);
+            next[v] = eye.placed(e) - head.vertices[v].at;
+        }
+        for (uint32_t v : moved) morph[v] = next[v];
+    }
+}
+
 }  // namespace
 
 std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array<Eye, 2>& eyes) {
@@ -90,6 +111,7 @@ std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array
         const LidPlace& place = places[v];
         return place.eye == eye ? eyes[eye].lidsMoved(p, place.upper, place.onMargin, upper, lower) - p : dvec3(0);
     };
+    Neighbours around = neighboursOf(head);
     std::vector<std::vector<dvec3>> morphs;
     for (const std::string& name : kMorphNames) {
         std::vector<dvec3>& morph = morphs.emplace_back(head.vertices.size(), dvec3(0));
@@ -103,16 +125,19 @@ std::vector<std::vector<dvec3>> makeMorphs(const Surface& head, const std::array
                 if (name.starts_with("squint") && own) {
                     dvec3 cheek = 0.45 * cheeks(p, side) +
                                   dvec3(0, -0.10, 0) * bell(p, {3.4 * side, 4.7, 4.7}, {1.5, 0.8, 2.0}) * awayFromLids(p, true);
-                    morph[v] += lids(v, k, 0.30, 0.95) + cheek;
+                    morph[v] += lids(v, k, 0.22, 0.85) + cheek;
                 }
                 if (name == "browInnerUp") morph[v] += brows(p, side, true);
                 if (name == "browDown") morph[v] += brows(p, side, false);
                 if (name == "cheekRaise") morph[v] += cheeks(p, side) + lids(v, k, 0.0, 0.5);
-                if (name == "smile" || name == "frown" || name == "mouthPucker") morph[v] += mouth(p, side, name, vertex);
+                if (name == "smile" || name == "frown" || name == "mouthPucker") morph[v] += mouth(p, side, name);
             }
             if (name == "mouthOpen") morph[v] = jawTurned(p, 0.24 * vertex.weight[kJaw]) - p;
-            if (glm::length(morph[v]) < 5e-4) morph[v] = dvec3(0);
         }
+        for (int k = 0; k < 2; ++k)
+            if (name == (k == 0 ? "blinkLeft" : "blinkRight")) unfold(morph, head, around, places, eyes[k], k);
+        for (dvec3& d : morph)
+            if (glm::length(d) < 5e-4) d = dvec3(0);
     }
     return morphs;
 }

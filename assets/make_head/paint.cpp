@@ -280,14 +280,14 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         colour += dvec3(0.030, 0.024, 0.018) * fractal(p * 0.35, 3, 11);
         double blotch = fractal(p * 1.6, 4, 12), speck = fractal(p * 7.0, 3, 13), grain = fractal(p * 24.0, 2, 14);
         double red =
-            0.62 * cheek + 0.62 * nose + 0.55 * wing + 0.25 * chin + 0.62 * ear + 0.4 * lid + 0.4 * corner + 0.28 * blotch + 0.14 * speck;
-        red += 0.35 * glm::clamp(hollow, 0.0, 1.5) * face;
+            0.62 * cheek + 0.62 * nose + 0.55 * wing + 0.25 * chin + 0.62 * ear + 0.22 * lid + 0.4 * corner + 0.28 * blotch + 0.14 * speck;
+        red += 0.35 * glm::clamp(hollow, 0.0, 1.5) * face * (1 - 0.7 * byEye);
         colour += glm::clamp(red, -0.4, 1.6) * dvec3(0.008, -0.072, -0.062);
         colour += forehead * dvec3(0.012, 0.016, 0.006);
         colour -= under * dvec3(0.050, 0.050, 0.024);
-        colour -= byEye * smoothstep(0.1, 0.9, toUpper) * smoothstep(1.6, 0.7, toUpper) * dvec3(0.035, 0.042, 0.038);
+        colour -= byEye * smoothstep(0.1, 0.9, toUpper) * smoothstep(1.6, 0.7, toUpper) * dvec3(0.012, 0.016, 0.014);
         colour -= corner * dvec3(0.02, 0.02, 0.01);
-        colour *= 1 - 0.10 * glm::clamp(hollow, -0.6, 2.0) * (1 - 0.5 * lip);
+        colour *= 1 - 0.10 * glm::clamp(hollow, -0.6, 2.0) * (1 - 0.5 * lip) * (1 - 0.7 * byEye);
         colour *= 1 + 0.022 * grain + 0.018 * speck;
         double which = 0, freckle = cells(p * 2.6, 31, which);
         double freckled = (cheek + 0.8 * nose + 0.18) * smoothstep(0.19, 0.05, freckle + 0.03 * grain) * smoothstep(0.45, 0.75, which);

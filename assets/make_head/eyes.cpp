@@ -91,9 +91,9 @@ void wrapLids(Surface& head, const Eye& eye) {
             double fade = smoothstep(0.02, 0.25, t) * (1 - smoothstep(0.85, 1.12, t));
             double plate = smoothstep(0.0, 0.08, above) * (1 - smoothstep(fold * 0.8, fold * 1.25, above));
             double flat = atOut(eye.upper, e.out, &EyePoint::height) + 0.03;
-            e.height = glm::mix(e.height, std::min(e.height, flat), fade * plate);
+            e.height = glm::mix(e.height, std::min(e.height, flat), 0.7 * fade * plate);
             double from = above - fold;
-            e.height += fade * (0.10 * std::exp(-(from - 0.2) * (from - 0.2) / 0.02) - 0.05 * std::exp(-from * from / 0.004));
+            e.height += fade * (0.05 * std::exp(-(from - 0.2) * (from - 0.2) / 0.02) - 0.035 * std::exp(-from * from / 0.004));
         }
         vertex.at = eye.placed(e);
     }
@@ -105,8 +105,8 @@ void addMargins(Surface& head, Eye& eye) {
         double away, height, corner, chart;
     };
     static const Step steps[] = {{-0.012, 0.150, 1.0, 0.07},  {-0.023, 0.120, 0.97, 0.14}, {-0.027, 0.092, 0.92, 0.21},
-                                 {-0.022, 0.064, 0.85, 0.28}, {-0.006, 0.042, 0.75, 0.35}, {0.03, kLidGap, 0.6, 0.42},
-                                 {0.13, kLidGap, 0.4, 0.5},   {0.30, kLidGap, 0.2, 0.6},   {0.50, 0.04, 0.1, 0.7}};
+                                 {-0.022, 0.064, 0.85, 0.28}, {-0.006, 0.046, 0.75, 0.35}, {0.03, kLidGap, 0.6, 0.42},
+                                 {0.13, kLidGap, 0.4, 0.5},   {0.30, kLidGap, 0.2, 0.6},   {0.50, 0.042, 0.1, 0.7}};
     size_t n = eye.loop.size();
     dvec2 low(1e9), high(-1e9);
     dvec3 middle(0);
@@ -251,7 +251,7 @@ Part revolved(const Eye& eye, const std::vector<Latitude>& profile, std::string 
         dvec3 d(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
         d = dvec3(d.x * std::cos(inward) - d.z * std::sin(inward), d.y, d.x * std::sin(inward) + d.z * std::cos(inward));
         part.positions.push_back(eye.centre + d * distance);
-        part.uvs.emplace_back(0.5 + chart * std::cos(turn), 0.5 + chart * std::sin(turn));
+        part.uvs.emplace_back(0.5 + eye.side * chart * std::cos(turn), 0.5 + chart * std::sin(turn));
     };
     put(0, 0, profile[0].distance, 0);
     for (size_t j = 1; j < profile.size(); ++j)
@@ -300,30 +300,33 @@ Part makeCaruncle(const Eye& eye) {
     Part part;
     part.name = eye.side > 0 ? "caruncleLeft" : "caruncleRight";
     part.material = "caruncle";
-    EyePoint at = eye.lower[4];
-    at.up = 0.5 * (eye.lower[6].up + eye.upper[6].up);
-    at.out = eye.lower[5].out;
-    at.height = 0.17;
-    dvec3 centre = eye.placed(at), outward = glm::normalize(centre - eye.centre);
-    dvec3 across = glm::normalize(glm::cross(dvec3(0, 1, 0), outward)), up = glm::cross(outward, across);
-    constexpr int kAround = 24, kRows = 12;
-    for (int j = 0; j <= kRows; ++j)
-        for (int i = 0; i < kAround; ++i) {
-            double a = kPi * j / kRows, b = 2 * kPi * i / kAround;
-            double lump = 1 + 0.06 * std::sin(3 * b + 1) * std::sin(a) + 0.05 * std::sin(5 * a);
-            dvec3 d(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
-            part.positions.push_back(centre + lump * (across * (0.26 * d.x * eye.side) + up * (0.15 * d.y) + outward * (0.14 * d.z)));
-            part.uvs.emplace_back(static_cast<double>(i) / kAround, static_cast<double>(j) / kRows);
+    EyePoint centre;  // a mound on the eye that rises into the corner and runs out into the white
+    centre.out = eye.lower[7].out;
+    centre.up = 0.5 * (eye.lower[7].up + eye.upper[7].up);
+    constexpr uint32_t kAround = 32, kRows = 12;
+    for (uint32_t j = 0; j <= kRows; ++j)
+        for (uint32_t i = 0; i < kAround; ++i) {
+            double r = static_cast<double>(j) / kRows, a = 2 * kPi * i / kAround;
+            EyePoint e;
+            double out = 0.34 * r * std::cos(a);
+            e.out = centre.out + out;
+            e.up = centre.up + 0.19 * r * std::sin(a);
+            double lump = 0.012 * std::sin(3 * a + 1) * std::sin(kPi * r);
+            e.height = 0.13 * std::pow(1 - r * r, 1.2) - 0.02 + lump - 0.55 * std::min(out, 0.0) * (1 - 0.5 * r);
+            part.positions.push_back(eye.placed(e));
+            part.uvs.emplace_back(0.5 + 0.5 * r * std::cos(a), 0.5 + 0.5 * r * std::sin(a));
         }
     for (uint32_t j = 0; j < kRows; ++j)
         for (uint32_t i = 0; i < kAround; ++i) {
-            uint32_t a = j * kAround + i, b = j * kAround + (i + 1) % kAround;
-            Triangle one = {a, a + kAround, b + kAround}, two = {a, b + kAround, b};
+            uint32_t p = j * kAround + i, q = j * kAround + (i + 1) % kAround;
+            Triangle one = {p, p + kAround, q + kAround}, two = {p, q + kAround, q};
             if (eye.side < 0) std::swap(one[1], one[2]), std::swap(two[1], two[2]);
+            if (j > 0) part.triangles.push_back(two);
             part.triangles.push_back(one);
-            part.triangles.push_back(two);
         }
     part.normals = normalsOf(part.positions, part.triangles);
+    for (uint32_t i = 1; i < kAround; ++i) part.normals[0] += part.normals[i];  // the middle is one point
+    for (uint32_t i = 0; i < kAround; ++i) part.normals[i] = glm::normalize(part.normals[0]);
     return part;
 }
 

@@ -8,7 +8,7 @@
 
 namespace rivulet::head {
 
-inline constexpr double kEyeRadius = 1.2, kLimbusRadius = 0.59, kLidGap = 0.03;
+inline constexpr double kEyeRadius = 1.2, kLimbusRadius = 0.59, kLidGap = 0.034;
 inline constexpr double kInward = 0.03;  // radians by which each eye turns towards the other
 
 // A point by an eye: angle outward, angle up, and height above sclera or cornea.

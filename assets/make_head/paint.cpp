@@ -262,7 +262,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         double nostril = bell(m, {0.80, -1.28, 6.30}, {0.25, 0.30, 0.42}) * smoothstep(0.1, -0.45, t.normal.y);
         nostril = std::max(nostril, t.weight[kNostril]);
         double forehead = smoothstep(4.8, 6.2, p.y) * face * smoothstep(5.5, 3.5, m.x);
-        double lip = smoothstep(0.38, 0.75, t.weight[kLip] + 0.10 * fractal(p * 9.0, 3, 5)),
+        double lip = smoothstep(0.38, 0.75, t.weight[kLip] + 0.05 * fractal(p * 6.0, 2, 5)),
                mouth = smoothstep(0.15, 0.8, t.weight[kMouth]);
         double ear = t.weight[kEar];
         const Eye& eye = eyes[p.x >= 0 ? 0 : 1];
@@ -280,7 +280,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         colour += dvec3(0.030, 0.024, 0.018) * fractal(p * 0.35, 3, 11);
         double blotch = fractal(p * 1.6, 4, 12), speck = fractal(p * 7.0, 3, 13), grain = fractal(p * 24.0, 2, 14);
         double red =
-            0.62 * cheek + 0.62 * nose + 0.55 * wing + 0.25 * chin + 0.62 * ear + 0.22 * lid + 0.4 * corner + 0.28 * blotch + 0.14 * speck;
+            0.62 * cheek + 0.62 * nose + 0.55 * wing + 0.25 * chin + 0.62 * ear + 0.22 * lid + 0.4 * corner + 0.38 * blotch + 0.18 * speck;
         red += 0.35 * glm::clamp(hollow, 0.0, 1.5) * face * (1 - 0.7 * byEye);
         colour += glm::clamp(red, -0.4, 1.6) * dvec3(0.008, -0.072, -0.062);
         colour += forehead * dvec3(0.012, 0.016, 0.006);
@@ -296,7 +296,8 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         // A close crop: denser up the scalp, with an edge that is strewn rather than drawn.
         double front = 8.35 + 0.75 * smoothstep(0.8, 3.6, m.x) - 1.2 * smoothstep(4.2, 6.2, m.x);
         double side = glm::mix(1.2, -3.8, smoothstep(-4.5, -9.5, p.z)), edge = glm::mix(front, side, smoothstep(2.6, -2.4, p.z));
-        double crop = smoothstep(-0.7, 1.5, p.y - edge + 0.5 * fractal(p * 1.1, 2, 91) + 0.9 * fractal(p * 5.0, 2, 92)) * (1 - ear);
+        double crop =
+            smoothstep(-0.7, 1.5, p.y - edge + 0.5 * fractal(p * 1.1, 2, 91) + 0.8 * fractal(p * dvec3(8, 2.2, 8), 2, 92)) * (1 - ear);
         double stubble = 0.5 + 0.5 * cells(p * 13.0, 93, which);
         colour = glm::mix(colour, rgb(92, 72, 60), crop * glm::clamp(0.40 + 0.38 * stubble + 0.2 * grain, 0.0, 0.82));
 
@@ -318,7 +319,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         double bed = 0;
         for (double dy : {-0.2, 0.0, 0.2}) bed += brow.at(m + dvec3(0.1 * dy, dy, 0)) / 3;
         colour = glm::mix(colour, colour * dvec3(0.70, 0.62, 0.56), 0.55 * smoothstep(0.0, 0.5, bed));
-        colour = glm::mix(colour, rgb(58, 40, 31), 0.90 * hair);
+        colour = glm::mix(colour, rgb(60, 42, 33), 0.85 * hair);
         colour = glm::mix(colour, rgb(110, 70, 60), 0.40 * root);
         for (int c = 0; c < 3; ++c) put(skin.albedo, i, c, colour[c]);
 
@@ -380,9 +381,12 @@ Picture paintEye() {
             dvec3 iris = glm::mix(rgb(112, 92, 62), rgb(84, 108, 106), smoothstep(0.45, 0.72, f + 0.12 * fork));
             iris *= 1 + 0.75 * fibre + 0.30 * fork;
             iris = glm::mix(iris, rgb(164, 128, 80) * (1 + 0.5 * fibre), 0.55 * frill);
-            iris *= 1 - 0.72 * smoothstep(0.80, 0.99, f);
+            iris *= 1 - 0.62 * smoothstep(0.76, 1.0, f);
             iris = glm::mix(rgb(10, 8, 8), iris, smoothstep(0.34, 0.385, f + 0.012 * fork));
-            colour = glm::mix(iris, colour, smoothstep(0.955, 1.06, r));
+            // Both eyes show this chart with the nose on its left.
+            double corner = smoothstep(0.60, 0.95, angle) * smoothstep(-0.6, -0.95, std::cos(turn));
+            colour = glm::mix(colour, rgb(206, 140, 126), 0.8 * corner);
+            colour = glm::mix(iris, colour, smoothstep(0.92, 1.09, r));
             for (int c = 0; c < 3; ++c) put(eye, static_cast<size_t>(y) * kSize + x, c, colour[c]);
         }
     return eye;

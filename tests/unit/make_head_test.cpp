@@ -60,7 +60,7 @@ class Head : public ::testing::Test {
         Around(const aiMesh& skin, const std::vector<dvec3>& at, dvec3 centre) {
             for (unsigned f = 0; f < skin.mNumFaces; ++f) {
                 const unsigned* v = skin.mFaces[f].mIndices;
-                if (glm::distance(at[v[0]], centre) < 0.035 && at[v[0]].z > centre.z - 0.002)
+                if (glm::distance(at[v[0]], centre) < 0.045 && at[v[0]].z > centre.z - 0.002)
                     near_.push_back({at[v[0]] - centre, at[v[1]] - centre, at[v[2]] - centre});
             }
         }
@@ -103,7 +103,7 @@ class Head : public ::testing::Test {
         double tallest = 0;
         for (double out = -0.75; out <= 0.9; out += 0.03) {
             int run = 0;
-            for (double up = -0.5; up <= 0.5; up += step) {
+            for (double up = -0.38; up <= 0.38; up += step) {
                 dvec3 d(std::sin(out) * std::cos(up), std::sin(up), std::cos(out) * std::cos(up));
                 run = std::isinf(lids.along(d)) ? run + 1 : 0;
                 tallest = std::max(tallest, run * step * 0.0137);

@@ -305,9 +305,11 @@ class Loft {
                 dvec2 p = concha + (kEarRim[k] - concha) * scale[step];
                 if (step == 0) {
                     p = glm::mix(base, kEarRim[k], 0.4);
-                    height = 0.22 * kEarHeight[k];
+                    height = front ? 0.03 : 0.22 * kEarHeight[k];
+                } else if (front && step < 4) {
+                    height = 0.05 + 0.05 * step;  // in front the face runs on into the ear
                 } else if (front && step >= 4 && step <= 5) {
-                    height = k >= 1 && k <= 3 ? (step == 4 ? 0.5 : 0.42) : 0.16;  // the tragus
+                    height = k >= 1 && k <= 3 ? (step == 4 ? 0.42 : 0.5) : 0.14;  // the tragus
                 } else if (step == 6) {
                     height = lobe ? 0.25 : front ? -0.1 : 0.02;
                 } else if (step == 7) {

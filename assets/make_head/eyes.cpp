@@ -271,16 +271,16 @@ Part revolved(const Eye& eye, const std::vector<Latitude>& profile, std::string 
 
 Part makeEyeball(const Eye& eye) {
     const double limbus = std::asin(kLimbusRadius / kEyeRadius), plane = kEyeRadius * std::cos(limbus);
-    std::vector<Latitude> profile = {{0, plane - 0.035, 0}};
+    std::vector<Latitude> profile = {{0, plane - 0.032, 0}};
     auto chart = [](double angle) { return 0.5 * std::sqrt(angle / kPi); };
     for (int j = 1; j <= 12; ++j) {  // the iris: a shallow bowl behind the cornea
-        double r = kLimbusRadius * j / 12 * 0.985, depth = 0.035 - 0.02 * std::pow(j / 12.0, 2.0);
+        double r = kLimbusRadius * j / 12 * 0.995, depth = 0.032 * (1 - std::pow(j / 12.0, 4.0));
         double z = plane - depth;
-        profile.push_back({std::atan2(r, z), std::hypot(r, z), chart(limbus * j / 12 * 0.985)});
+        profile.push_back({std::atan2(r, z), std::hypot(r, z), chart(limbus * j / 12 * 0.995)});
     }
     for (int j = 0; j <= 30; ++j) {
         double angle = glm::mix(limbus, kPi - 0.02, std::pow(j / 30.0, 1.3));
-        profile.push_back({angle, kEyeRadius - (j == 0 ? 0.004 : 0), chart(angle)});
+        profile.push_back({angle, kEyeRadius - (j == 0 ? 0.001 : 0), chart(angle)});
     }
     return revolved(eye, profile, eye.side > 0 ? "eyeLeft" : "eyeRight", "eye");
 }
@@ -301,18 +301,18 @@ Part makeCaruncle(const Eye& eye) {
     part.name = eye.side > 0 ? "caruncleLeft" : "caruncleRight";
     part.material = "caruncle";
     EyePoint centre;  // a mound on the eye that rises into the corner and runs out into the white
-    centre.out = eye.lower[7].out;
-    centre.up = 0.5 * (eye.lower[7].up + eye.upper[7].up);
+    centre.out = eye.lower[6].out;
+    centre.up = 0.5 * (eye.lower[6].up + eye.upper[6].up);
     constexpr uint32_t kAround = 32, kRows = 12;
     for (uint32_t j = 0; j <= kRows; ++j)
         for (uint32_t i = 0; i < kAround; ++i) {
             double r = static_cast<double>(j) / kRows, a = 2 * kPi * i / kAround;
             EyePoint e;
-            double out = 0.34 * r * std::cos(a);
+            double out = 0.27 * r * std::cos(a);
             e.out = centre.out + out;
-            e.up = centre.up + 0.19 * r * std::sin(a);
+            e.up = centre.up + 0.17 * r * std::sin(a);
             double lump = 0.012 * std::sin(3 * a + 1) * std::sin(kPi * r);
-            e.height = 0.13 * std::pow(1 - r * r, 1.2) - 0.02 + lump - 0.55 * std::min(out, 0.0) * (1 - 0.5 * r);
+            e.height = 0.10 * std::pow(1 - r * r, 1.2) - 0.02 + lump - 0.55 * std::min(out, 0.0) * (1 - 0.5 * r);
             part.positions.push_back(eye.placed(e));
             part.uvs.emplace_back(0.5 + 0.5 * r * std::cos(a), 0.5 + 0.5 * r * std::sin(a));
         }
@@ -355,14 +355,14 @@ Part makeLashes(const Eye& eye, const Surface& head, std::vector<Lash>& ofVertex
             dvec3 lift = dvec3(0, upper ? 1 : -1, 0) - outward * outward.y * (upper ? 1.0 : -1.0);
             double length =
                 (upper ? 0.82 * glm::mix(0.5, 1.0, smoothstep(0.0, 0.55, t)) : 0.42 * glm::mix(0.6, 1.0, t)) * (0.75 + 0.4 * chance());
-            double fan = 0.75 * (t - 0.42) + 0.22 * (chance() - 0.5), curl = (upper ? 0.8 : 0.35) + 0.25 * chance();
+            double fan = 1.0 * (t - 0.40) + 0.22 * (chance() - 0.5), curl = (upper ? 0.95 : 0.40) + 0.25 * chance();
             root -= outward * 0.015;
             constexpr int kJoints = 6;
             auto first = static_cast<uint32_t>(part.positions.size());
             for (int s = 0; s < kJoints; ++s) {
                 double u = static_cast<double>(s) / (kJoints - 1);
                 dvec3 on = root + length * (outward * (0.92 * u - 0.18 * u * u) + run * (fan * (0.5 * u + 0.4 * u * u)) +
-                                            lift * ((upper ? -0.28 : -0.02) * u + curl * u * u));
+                                            lift * ((upper ? -0.34 : -0.02) * u + curl * u * u));
                 double half = 0.0075 * (1 - 0.85 * u) * (upper ? 1.0 : 0.7);
                 for (double sign : {-1.0, 1.0}) {
                     part.positions.push_back(on + run * (sign * half));

@@ -20,7 +20,7 @@ class Writer {
         return viewCount_++;
     }
     int accessor(const std::string& fields) {
-        accessors_ += (accessors_.empty() ? "{" : ",{") + fields + "}";
+        accessors_ += fmt::format("{}{{{}}}", accessors_.empty() ? "" : ",", fields);
         return accessorCount_++;
     }
     int vectors(const std::vector<dvec3>& values, double scale, bool bounds) {
@@ -118,7 +118,7 @@ const MaterialText kMaterials[] = {
     {"skin", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0,"roughnessFactor":0.5})"},
     {"eye", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1},"metallicFactor":0,"roughnessFactor":0.2})"},
     {"cornea", R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.06],"metallicFactor":0,"roughnessFactor":0.03})"},
-    {"caruncle", R"("pbrMetallicRoughness":{"baseColorFactor":[0.58,0.29,0.235,1],"metallicFactor":0,"roughnessFactor":0.25})"},
+    {"caruncle", R"("pbrMetallicRoughness":{"baseColorFactor":[0.64,0.37,0.31,1],"metallicFactor":0,"roughnessFactor":0.3})"},
     {"lashes",
      R"("doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.015,0.010,0.008,1],"metallicFactor":0,"roughnessFactor":0.6})"},
 };
@@ -148,8 +148,8 @@ std::string asGlb(const std::vector<Part>& parts) {
         meshes += fmt::format(R"({}{{"name":"{}","primitives":[{{"attributes":{{"POSITION":{},"NORMAL":{},"TEXCOORD_0":{}}},"indices":{},)"
                               R"("material":{}{}}}]{}}})",
                               i == 0 ? "" : ",", part.name, positions, normals, uvs, indices, material,
-                              targets.empty() ? "" : ",\"targets\":[" + targets + "]",
-                              targets.empty() ? "" : ",\"weights\":[" + weights + "],\"extras\":{\"targetNames\":[" + names + "]}");
+                              targets.empty() ? "" : fmt::format(R"(,"targets":[{}])", targets),
+                              targets.empty() ? "" : fmt::format(R"(,"weights":[{}],"extras":{{"targetNames":[{}]}})", weights, names));
         nodes += fmt::format(R"({}{{"name":"{}","mesh":{}}})", i == 0 ? "" : ",", part.name, i);
         roots += fmt::format("{}{}", i == 0 ? "" : ",", i);
     }

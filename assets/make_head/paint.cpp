@@ -327,8 +327,8 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         double pores =
             (0.35 + 0.9 * nose + 0.6 * cheek + 0.5 * wing + 0.35 * forehead + 0.4 * chin) * (1 - lip) * (1 - rim) * (1 - 0.7 * lid);
         double poreSize = 0.085, pore = cells(p / poreSize, 51, which);
-        double height = -0.050 * pores * smoothstep(0.5, 0.1, pore) * (0.4 + 0.6 * which);
-        height += 0.020 * fractal(p * 11.0, 3, 52) * (1 - lip);
+        double height = -0.070 * pores * smoothstep(0.5, 0.1, pore) * (0.4 + 0.6 * which);
+        height += 0.028 * fractal(p * 11.0, 3, 52) * (1 - lip);
         dvec3 bent = p + dvec3(0, 0.35 * fractal(p * 0.5, 2, 53), 0);
         height -=
             0.035 * forehead * std::pow(std::max(0.0, std::sin(bent.y * 2 * kPi / 0.95)), 8.0) * (0.6 + 0.8 * fractal(p * 0.8, 2, 54));
@@ -371,7 +371,7 @@ Picture paintEye() {
             double wander = fractal(on * 3.5, 3, 62), vein = 1 - std::abs(fractal(on * 4.5 + wander * 0.8, 4, 63)) * 9;
             double fine = 1 - std::abs(fractal(on * 9.0 + wander, 3, 64)) * 8;
             double veins = std::max(0.0, vein) * 0.65 + std::max(0.0, fine) * 0.35;
-            colour = glm::mix(colour, rgb(190, 84, 76), 0.55 * veins * smoothstep(0.68, 1.35, angle));
+            colour = glm::mix(colour, rgb(190, 84, 76), 0.55 * veins * smoothstep(0.58, 1.2, angle));
             // The iris: fibres along its radius, a paler frill around the pupil, a dark ring at the limbus.
             double f = r;
             dvec3 around(std::cos(turn), std::sin(turn), 0.0);

@@ -118,7 +118,7 @@ const MaterialText kMaterials[] = {
     {"skin", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0,"roughnessFactor":0.5})"},
     {"eye", R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1},"metallicFactor":0,"roughnessFactor":0.2})"},
     {"cornea", R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.06],"metallicFactor":0,"roughnessFactor":0.03})"},
-    {"caruncle", R"("pbrMetallicRoughness":{"baseColorFactor":[0.64,0.37,0.31,1],"metallicFactor":0,"roughnessFactor":0.3})"},
+    {"caruncle", R"("pbrMetallicRoughness":{"baseColorFactor":[0.62,0.31,0.26,1],"metallicFactor":0,"roughnessFactor":0.3})"},
     {"lashes",
      R"("doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.015,0.010,0.008,1],"metallicFactor":0,"roughnessFactor":0.6})"},
 };

@@ -5,6 +5,8 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <json/json.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -230,6 +232,40 @@ TEST_F(Head, LidsLieOnTheEyesOpenAndShut) {
         EXPECT_GT(open, 0.008);
         EXPECT_LT(open, 0.012);
         EXPECT_LT(opening(Around(mesh("skin"), shut, eye)), 0.0005);
+    }
+}
+
+// What a simulation finds in head.json lies on the mesh that lies beside it.
+TEST_F(Head, NamesEyesTearsAndMarginsWhereTheyAre) {
+    Result<std::string> text = readFile((kShipped / "head.json").string());
+    ASSERT_TRUE(text) << text.error().message;
+    Json::Value root;
+    ASSERT_TRUE(Json::Reader().parse(*text, root));
+    auto point = [](const Json::Value& v) { return dvec3(v[0].asDouble(), v[1].asDouble(), v[2].asDouble()); };
+    const aiMesh& skin = mesh("skin");
+    std::vector<dvec3> at = skinWith({});
+    for (int k = 0; k < 2; ++k) {
+        const Json::Value& eye = root["eyes"][k == 0 ? "left" : "right"];
+        EXPECT_LT(glm::distance(point(eye["eyeball"]["centre"]), kEyes[k]), 1e-6);
+        EXPECT_EQ(eye["eyeball"]["radius"].asDouble(), 0.012);
+        dvec3 tear = point(eye["tear"]["position"]);
+        glm::dvec2 uv(eye["tear"]["uv"][0].asDouble(), eye["tear"]["uv"][1].asDouble());
+        double toSkin = 1, toUv = 1, toMargin = 1;
+        for (unsigned v = 0; v < skin.mNumVertices; ++v) {
+            toSkin = std::min(toSkin, glm::distance(at[v], tear));
+            toUv = std::min(toUv, glm::distance(glm::dvec2(skin.mTextureCoords[0][v].x, skin.mTextureCoords[0][v].y), uv));
+        }
+        dvec3 before = point(eye["inner_corner"]);
+        for (const Json::Value& next : eye["lower_lid_margin"]) {
+            toMargin = std::min(toMargin, glm::distance(point(next), tear));
+            EXPECT_LT(glm::distance(point(next), before), 0.003);  // a line without gaps
+            before = point(next);
+        }
+        EXPECT_LT(toSkin, 0.001);
+        EXPECT_LT(toUv, 0.004);
+        EXPECT_GT(toMargin, 0.0015);
+        EXPECT_LT(toMargin, 0.0035);
+        EXPECT_LT(glm::distance(before, point(eye["outer_corner"])), 0.002);
     }
 }
 

@@ -344,6 +344,13 @@ class Loft {
     std::vector<Ids> rings_;
 };
 
+// Of the way that the jaw goes: the upper lip stays, the lower goes along, and both meet half-way at the corners, so that the mouth opens
+// round.
+double lipShare(size_t i) {
+    double across = std::pow(std::sin(kPi * static_cast<double>(i % 10) / 10), 0.7);
+    return i < 10 ? 0.5 - 0.5 * across : 0.5 + 0.5 * across;
+}
+
 // How far each vertex goes with the jaw: given on lips, chin and what stays, harmonic between. By neighbourhood, so the lips part.
 void spreadJaw(Surface& cage) {
     std::vector<double> given(cage.vertices.size(), -1);
@@ -354,10 +361,9 @@ void spreadJaw(Surface& cage) {
         if (vertex.weight[kLoft] == 0 && vertex.weight[kMouth] == 0 && p.y < -6.0 && std::abs(p.x) < 4.5) given[v] = 1;
     }
     for (const Ids& loop : kLipLoops)
-        for (size_t i = 0; i < loop.size(); ++i) given[loop[i]] = i == 0 || i == 10 ? 0.5 : i < 10 ? 0 : 1;
+        for (size_t i = 0; i < loop.size(); ++i) given[loop[i]] = lipShare(i);
     for (size_t v = 468; v < 468 + 60; ++v) {  // the mouth's three rings
-        size_t i = (v - 468) % 20;
-        given[v] = i == 0 || i == 10 ? 0.5 : i < 10 ? 0 : 1;
+        given[v] = lipShare((v - 468) % 20);
     }
     for (uint32_t v : {2U, 164U, 97U, 326U}) given[v] = 0;
     Neighbours around = neighboursOf(cage);

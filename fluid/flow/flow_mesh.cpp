@@ -8,6 +8,7 @@
 
 #include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/mesh_defects.h"
+#include "fluid/voxel/nearest_weights.h"
 
 namespace rivulet {
 
@@ -153,42 +154,18 @@ vec3 positionOf(const FlowMesh& m, const SkinPoint& at) {
     return (1 - at.b1 - at.b2) * m.rest[c[0]] + at.b1 * m.rest[c[1]] + at.b2 * m.rest[c[2]];
 }
 
-// Closest point of a triangle by its Voronoi regions (Ericson 2005, 5.1.5).
 SkinPoint nearestPoint(const FlowMesh& m, const vec3& given) {
     const dvec3 x(given);
     SkinPoint best;
     double nearest = std::numeric_limits<double>::max();
     for (uint32_t t = 0; t < m.triangleCount(); ++t) {
         const dvec3 a(m.rest[m.corner[3 * t]]), b(m.rest[m.corner[3 * t + 1]]), c(m.rest[m.corner[3 * t + 2]]);
-        const dvec3 ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
-        const double d1 = glm::dot(ab, ax), d2 = glm::dot(ac, ax), d3 = glm::dot(ab, bx), d4 = glm::dot(ac, bx), d5 = glm::dot(ab, cx),
-                     d6 = glm::dot(ac, cx);
-        const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-        double b1 = 0, b2 = 0;
-        if (d1 <= 0 && d2 <= 0) {
-        } else if (d3 >= 0 && d4 <= d3) {
-            b1 = 1;
-        } else if (d6 >= 0 && d5 <= d6) {
-            b2 = 1;
-        } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-            b1 = d1 / (d1 - d3);
-        } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-            b2 = d2 / (d2 - d6);
-        } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-            b2 = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-            b1 = 1 - b2;
-        } else {
-            const double sum = va + vb + vc;
-            if (!(sum > 0)) continue;
-            b1 = vb / sum;
-            b2 = vc / sum;
-        }
-        const dvec3 at = a + b1 * ab + b2 * ac - x;
-        const double d = glm::dot(at, at);
-        if (d < nearest) {
-            nearest = d;
-            best = {t, static_cast<float>(b1), static_cast<float>(b2)};
-        }
+        const std::array<double, 3> w = nearestWeights(x, a, b, c);
+        const dvec3 apart = w[0] * a + w[1] * b + w[2] * c - x;
+        const double d = glm::dot(apart, apart);
+        if (d >= nearest || flatAt(m, t)) continue;  // on one without area nothing stays
+        nearest = d;
+        best = {t, static_cast<float>(w[1]), static_cast<float>(w[2])};
     }
     return best;
 }

@@ -34,7 +34,7 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({"viscosity", "Pa s", "dynamic", 1.0e-5, 100, kLog}, viscosity);
     v.value({"density", "kg/m^3", "", 1, 20000, kLog}, density);
     v.value({"advancing", "deg", "contact angle at a drop's front", 1, 175}, advancing);
-    v.value({"receding", "deg", "contact angle at its back; no more than advancing", 1, 175}, receding);
+    v.value({"receding", "deg", "contact angle at its back; where it is the larger one, the front's holds for both", 1, 175}, receding);
     v.value({"hold", "", "of the force that holds a drop, over that of a disc with these angles", 0, 10}, hold);
     v.value({"drag", "", "of the force that slows it, over its width times viscosity times speed", 0, 10000}, drag);
     v.value({"adhesion", "", "of the force that keeps a drop on a skin it hangs from", 0, 10}, adhesion);
@@ -82,6 +82,7 @@ struct SurfaceFlow::Impl {
     uint32_t count() const { return drops.count; }
     Status prepare(Device& on);
     Status layLattice();
+    Status checkPositions(std::span<const vec3> positions) const;
     FlowStep stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const;
     void takeCounters();
 };
@@ -181,12 +182,22 @@ Status SurfaceFlow::Impl::layLattice() {
         float longest = 0;
         for (size_t k = 0; k < 3; ++k)
             longest = std::max(longest, glm::distance(mesh.rest[mesh.corner[3 * t + k]], mesh.rest[mesh.corner[3 * t + (k + 1) % 3]]));
-        const double rows = std::min(std::max(std::ceil(double{longest} / double{params.filmCell}), 1.0), 4096.0);
-        cells += static_cast<uint64_t>(rows * rows);
+        const double rows = std::max(std::ceil(double{longest} / double{params.filmCell}), 1.0);
+        cells += static_cast<uint64_t>(std::min(rows * rows, 2.0 * kMostCells));
         if (cells > kMostCells)
             return badInput(fmt::format("the skin is so large that its film would have more than {} cells of {} m: make filmCell larger",
                                         kMostCells, params.filmCell));
         firstCell.push_back(static_cast<uint32_t>(cells));
+    }
+    return ok();
+}
+
+Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const {
+    if (positions.empty()) return ok();
+    for (const uint32_t k : mesh.given) {
+        if (k >= positions.size())
+            return badInput(fmt::format("a skin was given {} positions, too few: its triangles use number {}", positions.size(), k));
+        if (!isFinite(positions[k])) return badInput(fmt::format("position {} of a skin is not a finite number", k));
     }
     return ok();
 }
@@ -276,10 +287,11 @@ void SurfaceFlow::Impl::takeCounters() {
     });
 }
 
-void SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
+Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     Impl& w = *impl_;
     w.device->poll();
-    if (!(seconds > 0)) return;
+    if (!(seconds > 0)) return ok();
+    if (Status places = w.checkPositions(inputs.positions); !places) return places;
     StepParams s{};
     s.count = s.firstSample = w.count();
     w.grid->fill(s);
@@ -313,7 +325,7 @@ void SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
         w.births.clear();
     }
     w.device->run(w.place, f, {&w.drops.id, &w.frames, &w.drop, &w.motion, &w.drops.positionNext, &w.drops.velocityNext}, f.count);
-    if (Status sorted = w.grid->build(s, w.drops); !sorted) return;
+    if (Status sorted = w.grid->build(s, w.drops); !sorted) return sorted;
     SolveFigures none;
     FluidParams unused;
     const Buffer nothing;
@@ -341,6 +353,7 @@ void SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     if (f.dries > 0) w.device->run(w.dry, f, {&w.skin, &w.frames, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
     w.device->run(w.leave, f, {&w.drops.id, &w.frames, &w.motion, &w.drop, &w.counter, &w.left}, f.count);
     w.takeCounters();
+    return ok();
 }
 
 std::vector<SkinDrop> SurfaceFlow::drops() const {

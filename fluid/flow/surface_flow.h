@@ -71,7 +71,9 @@ class SurfaceFlow {
 
     // A drop that appears with the next step. Where no slot is free it is counted as refused.
     void add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity = vec3(0.0F));
-    void step(const SurfaceFlowInputs& inputs, double seconds);
+    // Error: positions that are not as many as the mesh's, or not finite (badInput); no memory for the sort (failed). Nothing has moved
+    // then.
+    Status step(const SurfaceFlowInputs& inputs, double seconds);
 
     // Waits for the device.
     std::vector<SkinDrop> drops() const;

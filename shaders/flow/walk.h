@@ -1,7 +1,7 @@
 // A straight walk over a skin: on a triangle along a line, over an edge unfolded into the next one's plane. And the film's lattice in a triangle.
 #if !defined(RIVULET_WALK_H)
 #define RIVULET_WALK_H
-#define MOST_EDGES 256
+#define MOST_EDGES 4096  /* in a step: an end for ways that are no number */
 #define TRIANGLE_NORMAL(t) vec3(basis[5u * (t) + 1u].w, basis[5u * (t) + 2u].w, basis[5u * (t) + 3u].w)
 STRUCT(SkinWalk) {
     vec3  n;         // the triangle's normal

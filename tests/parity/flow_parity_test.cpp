@@ -46,7 +46,7 @@ After run(Device& device) {
             flow->add(nearestPoint(flow->mesh(), 0.05F * vec3(dvec3(0.6 * std::cos(a), 0.7, 0.6 * std::sin(a)))),
                       1500000 + 40000 * (k % 7));
         }
-        flow->step({}, 1.0 / 60);
+        EXPECT_TRUE(flow->step({}, 1.0 / 60));
     }
     return {flow->drops(), flow->ledger()};
 }

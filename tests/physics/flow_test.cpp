@@ -159,7 +159,7 @@ TEST(Flow, PassesThroughTrianglesWithoutArea) {
     SurfaceFlow flow = flowOn(*device, shape, p);
     EXPECT_EQ(flow.mesh().report.flat, 1U);
     for (const float x : {0.02F, 0.05F, 0.071F}) flow.add(nearestPoint(flow.mesh(), vec3(x, 0.09F, 0)), kMicrolitres, vec3(0.1F, -0.8F, 0));
-    for (int k = 0; k < 10; ++k) flow.step({.pull = vec3(0.0F)}, 0.01);
+    for (int k = 0; k < 10; ++k) EXPECT_TRUE(flow.step({.pull = vec3(0.0F)}, 0.01));
     const std::vector<SkinDrop> drops = flow.drops();
     ASSERT_EQ(drops.size(), 3U);
     for (size_t k = 0; k < 3; ++k) {
@@ -181,7 +181,7 @@ TEST(Flow, GoesStraightRoundABall) {
     double off = 0, speed = 0;
     const int steps = 200;
     for (int k = 0; k < steps; ++k) {
-        flow.step({.pull = vec3(0.0F)}, 2 * kPiD * 0.05 / 0.1 / steps);
+        EXPECT_TRUE(flow.step({.pull = vec3(0.0F)}, 2 * kPiD * 0.05 / 0.1 / steps));
         const std::vector<SkinDrop> drops = flow.drops();
         ASSERT_EQ(drops.size(), 1U);
         off = std::max(off, double{std::abs(glm::dot(drops[0].position, glm::normalize(glm::cross(start, heading))))});
@@ -203,7 +203,7 @@ TEST(Flow, SlidesDownASlopeAsItsLawSays) {
         SurfaceFlow flow = flowOn(*device, shape, p);
         ASSERT_GT(flow.mesh().report.openEdges, 0U);
         flow.add(nearestPoint(flow.mesh(), vec3(0.01F, -0.007F, -0.05F)), 8 * kMicrolitres);
-        for (int k = 0; k < static_cast<int>(2 / dt + 0.5); ++k) flow.step({}, dt);
+        for (int k = 0; k < static_cast<int>(2 / dt + 0.5); ++k) EXPECT_TRUE(flow.step({}, dt));
         const std::vector<SkinDrop> drops = flow.drops();
         ASSERT_EQ(drops.size(), 1U);
         // A cap of 50 degrees: the radius of its foot by its height h = R tan(25 deg), V = pi h (3 R^2 + h^2) / 6.
@@ -237,7 +237,7 @@ TEST(Flow, IsHeldUntilItIsTooHeavy) {
             for (int k = 0; k < 60 && first == 0; ++k) {
                 const auto birth = static_cast<uint32_t>(row.microlitres * 1e6 / 50);
                 flow.add(nearestPoint(flow.mesh(), vec3(0.05F + strewn(random), 0.05F + strewn(random), 0)), birth);
-                for (int step = 0; step < 6; ++step) flow.step({}, 1.0 / 60);
+                for (int step = 0; step < 6; ++step) EXPECT_TRUE(flow.step({}, 1.0 / 60));
                 grown += birth * 1e-6;
                 for (const SkinDrop& d : flow.drops())
                     if (glm::length(d.velocity) > 1e-3F) first = grown;
@@ -258,7 +258,7 @@ TEST(Flow, TheSecondTearFollowsTheFirst) {
     SurfaceFlow flow = flowOn(*device, shape, p);
     const auto runDown = [&](float x) {
         flow.add(nearestPoint(flow.mesh(), vec3(x, 0.29F, 0)), 5 * kMicrolitres);
-        for (int k = 0; k < 600; ++k) flow.step({}, 1.0 / 60);
+        for (int k = 0; k < 600; ++k) EXPECT_TRUE(flow.step({}, 1.0 / 60));
         const std::vector<SkinDrop> drops = flow.drops();
         return *std::min_element(drops.begin(), drops.end(),
                                  [](const SkinDrop& a, const SkinDrop& b) { return a.position.y < b.position.y; });
@@ -299,7 +299,7 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
     for (int k = 0; k < 12; ++k)
         flow.add(nearestPoint(flow.mesh(), vec3(-0.04F + 0.02F * static_cast<float>(k % 4), 0, -0.02F + 0.02F * static_cast<float>(k / 4))),
                  kMicrolitres);
-    flow.step({.pull = vec3(0.0F)}, 1.0 / 60);
+    EXPECT_TRUE(flow.step({.pull = vec3(0.0F)}, 1.0 / 60));
     const std::vector<SkinDrop> before = flow.drops();
     ASSERT_EQ(before.size(), 12U);
     std::vector<vec3> moved = rest.positions;
@@ -309,7 +309,7 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
             moved[i] = vec3(x.x, 0.01F * std::sin(60 * x.x + 0.2F * static_cast<float>(k)), x.z);
         }
         if (k % 10 == 5) moved[150] = moved[151];  // four triangles lose their area, their drops their room
-        flow.step({.pull = vec3(0.0F), .positions = moved}, 1.0 / 60);
+        EXPECT_TRUE(flow.step({.pull = vec3(0.0F), .positions = moved}, 1.0 / 60));
         for (const SkinDrop& d : flow.drops()) EXPECT_TRUE(isFinite(d.position) && isFinite(d.velocity));
     }
     const std::vector<SkinDrop> after = flow.drops();
@@ -319,6 +319,25 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
         EXPECT_NEAR(after[k].position.x, before[k].position.x, 1e-5F);
         EXPECT_NEAR(after[k].position.y, 0.01F * std::sin(60 * before[k].position.x + 0.2F * 59), 1e-3F);
     }
+}
+
+TEST(Flow, PositionsThatAreNoneAreRefusedAndNothingMoves) {
+    auto device = cpu();
+    const Shape shape = sheet(vec3(0.0F, 0.1F, 0.0F), vec3(0.0F, -0.1F, 0.0F), vec3(0.1F, 0.0F, 0.0F), 4, 4);
+    SurfaceFlow flow = flowOn(*device, shape);
+    flow.add(nearestPoint(flow.mesh(), vec3(0.05F, 0.05F, 0)), 8 * kMicrolitres);
+    EXPECT_TRUE(flow.step({}, 1.0 / 60));
+    const vec3 before = flow.drops().at(0).position;
+    std::vector<vec3> bad = shape.positions;
+    bad[7].y = std::numeric_limits<float>::infinity();
+    const Status infinite = flow.step({.positions = bad}, 1.0 / 60);
+    ASSERT_FALSE(infinite);
+    EXPECT_NE(infinite.error().message.find("position 7"), std::string::npos) << infinite.error().message;
+    bad.resize(5);
+    const Status few = flow.step({.positions = bad}, 1.0 / 60);
+    ASSERT_FALSE(few);
+    EXPECT_NE(few.error().message.find("too few"), std::string::npos) << few.error().message;
+    EXPECT_EQ(flow.drops().at(0).position, before);
 }
 
 TEST(Flow, LosesNothing) {
@@ -334,7 +353,7 @@ TEST(Flow, LosesNothing) {
         if (k < 300)
             for (int n = 0; n < 3; ++n)
                 flow.add(nearestPoint(flow.mesh(), vec3(any(random), std::abs(any(random)), any(random))), volume(random));
-        flow.step({.wind = vec3(k > 400 ? 3.0F : 0.0F, 0, 0)}, 1.0 / 60);
+        EXPECT_TRUE(flow.step({.wind = vec3(k > 400 ? 3.0F : 0.0F, 0, 0)}, 1.0 / 60));
         if (k % 100 != 99) continue;
         const SurfaceFlow::Ledger l = flow.ledger();
         EXPECT_EQ(l.added, l.drops + l.film + l.left + l.evaporated + l.refused);

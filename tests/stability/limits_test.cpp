@@ -149,6 +149,18 @@ TEST(DfsphFirstFrame, IsAsStiffAsTheNext) {
     }
 }
 
+// Nothing weighs anything, and the skin is strong.
+FluidParams tense(const char* method, float half) {
+    FluidParams p;
+    p.method = method;
+    p.spacing = 0.01F;
+    p.gravity = vec3(0.0F);
+    p.forces.tension = 10;
+    p.box.min = vec3(-half);
+    p.box.max = vec3(half);
+    return p;
+}
+
 // Surface tension: a cube of liquid moves with no more than what its surface gives as it becomes a sphere's, 0.194 of it, and stays as
 // dense as it was. With dfsph the eight in the middle of a lattice that is its own mirror image once fell into one place, and iterations
 // diverged there and held them together.
@@ -156,14 +168,8 @@ TEST(TensionOfACube, MovesItAsMuchAsTheSphereItBecomesAllows) {
     for (const char* method : {"pbf", "dfsph"})
         for (const double dt : {0.0, 0.0005}) {
             auto device = cpu();
-            FluidParams p;
-            p.method = method;
-            p.spacing = 0.01F;
-            p.gravity = vec3(0.0F);
-            p.forces.tension = 10;
+            FluidParams p = tense(method, 0.2F);
             p.fixedStep = static_cast<float>(dt);
-            p.box.min = vec3(-0.2F);
-            p.box.max = vec3(0.2F);
             p.blocks = {{vec3(-0.05F), vec3(0.05F)}};
             auto world = make(*device, p);
             const double surface = 10 * 6 * 0.1 * 0.1;
@@ -180,13 +186,7 @@ TEST(TensionOfACube, MovesItAsMuchAsTheSphereItBecomesAllows) {
 TEST(TensionOfSpray, MeetsGently) {
     for (const char* method : {"pbf", "dfsph", "wcsph"}) {
         auto device = cpu();
-        FluidParams p;
-        p.method = method;
-        p.spacing = 0.01F;
-        p.gravity = vec3(0.0F);
-        p.forces.tension = 10;
-        p.box.min = vec3(-0.1F);
-        p.box.max = vec3(0.1F);
+        FluidParams p = tense(method, 0.1F);
         // One more than a support radius apart, which drift into it at a tenth of a metre a second.
         p.blocks = {{vec3(-0.02F, 0, 0), vec3(-0.01F, 0.01F, 0.01F), vec3(0.1F, 0, 0)}, {vec3(0.0002F, 0, 0), vec3(0.0102F, 0.01F, 0.01F)}};
         auto world = make(*device, p);

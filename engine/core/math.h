@@ -16,6 +16,8 @@
 namespace rivulet {
 
 using glm::bvec3;
+using glm::dmat3;
+using glm::dmat4;
 using glm::dvec3;
 using glm::ivec2;
 using glm::ivec3;

@@ -17,6 +17,14 @@ namespace {
 
 constexpr double kRadian = 3.14159265358979323846 / 180;
 constexpr double kMicrolitre = 1.0e-9;  // m^3
+constexpr double kPiD = 3.14159265358979323846;
+// Of the support radius of the film's kernel: the paraboloid whose volume is spread as widely has this radius.
+constexpr double kFilmRadius = 0.6455;
+constexpr float kJump = 50.0F;        // m/s: a skin that is faster has been set down elsewhere
+constexpr double kThinnest = 0.06;    // of the film's reach: of what is thinner the edge is not resolved
+constexpr double kFilmStep = 0.0045;  // s: with a film in it a step is no longer
+constexpr double kCalming = 0.02;     // s, in which parts of a film come to go as those about them
+constexpr double kSettling = 0.2;     // s, in which what is in a brim comes to rest along it
 
 // Radius of the foot of a cap over the cube root of its volume.
 double contactRadius(double degrees) {
@@ -47,7 +55,11 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({"slip", "", "share of what holds a drop that a wet way takes", 0, 1}, slip);
     v.value({"steer", "", "how strongly a trail beside its way pulls a drop in, of what holds it", 0, 2}, steer);
     v.value({"evaporation", "m/s", "of the film", 0, 1.0e-5}, evaporation);
-    v.value({"filmCell", "m", "the film's cells are no wider", 1.0e-5, 0.1, kLog, kFixed}, filmCell);
+    v.value({"filmCell", "m", "cells of what drops leave behind are no wider", 1.0e-5, 0.1, kLog, kFixed}, filmCell);
+    v.value({"filmReach", "m", "support radius of the sum that a film's height is", 1.0e-4, 0.1, kLog, kFixed}, filmReach);
+    v.value({"brimHolds", "ul", "what an eyelid's brim holds before it spills", 0.1, 100, kLog}, brimHolds);
+    v.value({"brimWidth", "m", "radius of what lies in a brim", 1.0e-4, 0.01, kLog}, brimWidth);
+    v.value({"tear", "ul", "of a drop that spills over a brim", 0.1, 30, kLog}, tear);
     v.value({"capacity", "", "drops at most", 1, 1 << 20, kLog, kFixed}, capacity);
 }
 
@@ -57,12 +69,13 @@ struct SurfaceFlow::Impl {
     SurfaceFlowParams params;
     std::unique_ptr<NeighborGrid> grid;
     Particles drops;  // as the grid sorts them: position.w radius, velocity.w volume
-    Kernel basis, drive, born, place, name, merge, law, walk, paint, dry, leave;
-    PairKernel meet, gather;
-    Buffer skin, point, frames, driven, begin, footprint, weight;  // of the mesh
-    Buffer drop, motion;                                           // by id
-    Buffer names, sortedOf, into, merged, shift;                   // sorted
-    Buffer film;                                                   // picolitres, of each cell
+    Kernel take, rest, basis, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
+    PairKernel meet, gather, spread, press;
+    Buffer skin, given, hostMoved, point, frames, driven, begin, footprint, weight;  // of the mesh
+    Buffer drop, motion;                                                             // by id
+    Buffer names, sortedOf, side, into, merged, shift, spreads;                      // sorted
+    Buffer chain, spill;                                                             // of brims
+    Buffer film;                                                                     // picolitres, of each cell
     Buffer birth, counter, left;
     std::vector<uint32_t> firstCell;   // of each triangle's lattice, and the end
     uint32_t phase = 0;                // whose turn it is to dry
@@ -74,32 +87,49 @@ struct SurfaceFlow::Impl {
         uint64_t refused = 0, left = 0, evaporated = 0;  // picolitres
         uint64_t merges = 0;
         uint32_t leaving = 0;  // in the step that is being told
+        bool film = false;     // there is some
         std::vector<LeftDrop> gone;
     };
     std::shared_ptr<Told> told = std::make_shared<Told>();
-    bool moved = true;  // the basis is to be made anew
+    bool moved = true;      // the basis is to be made anew
+    bool stirring = false;  // the skin has a velocity
+    Bounds corners;         // m, of the skin at rest
+    uint32_t brims = 0, brimPlaces = 0;
+    dmat4 pose{1.0};  // the skin's frame -> the world, as of the last step
+    bool posed = false;
 
     uint32_t count() const { return drops.count; }
-    Status prepare(Device& on);
+    Status prepare(Device& on, std::span<const SkinBrim> along);
+    Status fillBrims(std::span<const SkinBrim> along);
     Status layLattice();
     Status checkPositions(std::span<const vec3> positions) const;
+    void bear(const FlowBirth& one);
+    void moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f);
+    void setStep(FlowStep& f, StepParams& s, double seconds) const;
+    Status moveDrops(const FlowStep& f, const StepParams& s);
+    void turnFrame(const dmat4& toWorld, double seconds, FlowStep& f);
     FlowStep stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const;
     void takeCounters();
 };
 
-Status SurfaceFlow::Impl::prepare(Device& on) {
+Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     device = &on;
-    const auto slots = static_cast<uint32_t>(params.capacity);
+    brims = static_cast<uint32_t>(along.size());
+    for (const SkinBrim& b : along) brimPlaces += static_cast<uint32_t>(b.places.size());
+    const auto slots = static_cast<uint32_t>(params.capacity) + brimPlaces;
     Bounds around;
     for (const vec3& p : mesh.rest) around.add(p);
     const vec3 size = around.size();
     const float longest = std::max({size.x, size.y, size.z});
     // A skin may move within a margin. Cells as wide as two of the largest drops reach; wider on a large skin, whose cells would be too
     // many: they are counted anew each step.
+    corners = around;
     const float margin = 0.25F * longest;
     around.add(around.min - margin);
     around.add(around.max + margin);
-    const double reach = 2 * double{params.touch} * contactRadius(meanAngle(params)) * std::cbrt(double{params.largestDrop} * kMicrolitre);
+    const double reach =
+        std::max(2 * double{params.touch} * contactRadius(meanAngle(params)) * std::cbrt(double{params.largestDrop} * kMicrolitre),
+                 std::max(double{params.filmReach}, 2 * double{params.touch} * kFilmRadius * double{params.filmReach}));
     constexpr double kCells = 1 << 17;
     const dvec3 all(around.size());
     const float h = static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / kCells)));
@@ -115,14 +145,16 @@ Status SurfaceFlow::Impl::prepare(Device& on) {
         const char* path;
     };
     for (const Wanted& w :
-         {Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"}, Wanted{&born, "flow/born"}, Wanted{&place, "flow/place"},
-          Wanted{&name, "flow/name"}, Wanted{&merge, "flow/merge"}, Wanted{&walk, "flow/walk"}, Wanted{&leave, "flow/leave"},
-          Wanted{&law, "flow/law"}, Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"}}) {
+         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"},
+          Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"}, Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"},
+          Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"}, Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"},
+          Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"}, Wanted{&leave, "flow/leave"}}) {
         Result<Kernel> found = on.kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    for (auto [kernel, path] : {std::pair(&meet, "flow/meet"), std::pair(&gather, "flow/gather")}) {
+    for (auto [kernel, path] : {std::pair(&meet, "flow/meet"), std::pair(&gather, "flow/gather"), std::pair(&spread, "flow/spread"),
+                                std::pair(&press, "flow/press")}) {
         Result<PairKernel> found = PairKernel::find(on, path, {});
         if (!found) return found.error();
         *kernel = *found;
@@ -130,15 +162,31 @@ Status SurfaceFlow::Impl::prepare(Device& on) {
     if (Status fits = layLattice(); !fits) return fits;
     const Footprint under = footprintOf(mesh, params.footprint);
     const size_t triangles = mesh.triangleCount(), places = mesh.rest.size(), n = slots;
-    for (auto [buffer, bytes] :
-         {std::pair(&skin, SKIN_UINTS * triangles * sizeof(uint32_t)), std::pair(&film, firstCell.back() * sizeof(uint32_t)),
-          std::pair(&point, places * sizeof(vec4)), std::pair(&frames, 5 * triangles * sizeof(vec4)),
-          std::pair(&driven, places * sizeof(vec4)), std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
-          std::pair(&footprint, under.triangle.size() * sizeof(uint32_t)), std::pair(&weight, under.weight.size() * sizeof(float)),
-          std::pair(&drop, n * DROP_UINTS * sizeof(uint32_t)), std::pair(&motion, n * sizeof(vec4)), std::pair(&names, n * sizeof(float)),
-          std::pair(&sortedOf, n * sizeof(uint32_t)), std::pair(&into, n * sizeof(float)), std::pair(&merged, n * sizeof(vec4)),
-          std::pair(&shift, n * sizeof(vec4)), std::pair(&birth, n * sizeof(FlowBirth)),
-          std::pair(&counter, FLOW_COUNTERS * sizeof(uint32_t)), std::pair(&left, MOST_LEFT * sizeof(FlowLeft))}) {
+    const size_t positions = size_t{*std::max_element(mesh.given.begin(), mesh.given.end())} + 1;
+    for (auto [buffer, bytes] : {std::pair(&skin, SKIN_UINTS * triangles * sizeof(uint32_t)),
+                                 std::pair(&film, firstCell.back() * sizeof(uint32_t)),
+                                 std::pair(&point, places * sizeof(vec4)),
+                                 std::pair(&frames, 5 * triangles * sizeof(vec4)),
+                                 std::pair(&given, places * sizeof(uint32_t)),
+                                 std::pair(&hostMoved, positions * sizeof(vec4)),
+                                 std::pair(&driven, 2 * places * sizeof(vec4)),
+                                 std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
+                                 std::pair(&footprint, under.triangle.size() * sizeof(uint32_t)),
+                                 std::pair(&weight, under.weight.size() * sizeof(float)),
+                                 std::pair(&drop, n * DROP_UINTS * sizeof(uint32_t)),
+                                 std::pair(&motion, 2 * n * sizeof(vec4)),
+                                 std::pair(&side, n * sizeof(vec4)),
+                                 std::pair(&spreads, n * sizeof(vec4)),
+                                 std::pair(&chain, 2 * size_t{brims} * sizeof(uint32_t)),
+                                 std::pair(&spill, size_t{brimPlaces} * sizeof(FlowBirth)),
+                                 std::pair(&names, n * sizeof(float)),
+                                 std::pair(&sortedOf, n * sizeof(uint32_t)),
+                                 std::pair(&into, n * sizeof(float)),
+                                 std::pair(&merged, n * sizeof(vec4)),
+                                 std::pair(&shift, n * sizeof(vec4)),
+                                 std::pair(&birth, n * sizeof(FlowBirth)),
+                                 std::pair(&counter, FLOW_COUNTERS * sizeof(uint32_t)),
+                                 std::pair(&left, MOST_LEFT * sizeof(FlowLeft))}) {
         Result<Buffer> room = on.allocate(bytes);
         if (!room) return room.error();
         *buffer = std::move(*room);
@@ -156,14 +204,21 @@ Status SurfaceFlow::Impl::prepare(Device& on) {
     at.reserve(places);
     for (const vec3& p : mesh.rest) at.emplace_back(p, 0.0F);
     on.writeAll<vec4>(point, at);
+    on.writeAll<uint32_t>(given, mesh.given);
+    std::vector<vec4> usual(2 * places, vec4(0.0F));
+    for (size_t p = 0; p < places; ++p) usual[2 * p] = vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    on.writeAll<vec4>(driven, usual);
     on.writeAll<uint32_t>(begin, under.begin);
     on.writeAll<uint32_t>(footprint, under.triangle);
     on.writeAll<float>(weight, under.weight);
     std::vector<uint32_t> ids(n);
     for (uint32_t k = 0; k < slots; ++k) ids[k] = k;
     on.writeAll<uint32_t>(drops.id, ids);
-    const std::vector<vec4> free(n, vec4(0.0F, 0.0F, 0.0F, -1.0F));
+    std::vector<vec4> free(n, vec4(0.0F, 0.0F, 0.0F, -1.0F));
+    for (size_t k = 0, id = size_t(params.capacity); k < along.size(); ++k)
+        for (const SkinPoint& p : along[k].places) free[id++] = vec4(positionOf(mesh, p), 0.0F);
     on.writeAll<vec4>(drops.positionNext, free);
+    if (Status filled = fillBrims(along); !filled) return filled;
     // The first step's births look where the last sort put free slots.
     StepParams s{};
     s.h = h;
@@ -171,6 +226,33 @@ Status SurfaceFlow::Impl::prepare(Device& on) {
     s.count = s.firstSample = slots;
     grid->fill(s);
     return grid->build(s, drops);
+}
+
+Status SurfaceFlow::Impl::fillBrims(std::span<const SkinBrim> along) {
+    std::vector<uint32_t> chains, state(size_t{count()} * DROP_UINTS, 0);
+    std::vector<FlowBirth> spills;
+    for (const SkinBrim& b : along) {
+        if (b.places.empty() || b.spills.size() != b.places.size())
+            return badInput(fmt::format("a brim has {} places and {} to spill at: there must be as many, and one at least", b.places.size(),
+                                        b.spills.size()));
+        chains.insert(chains.end(), {static_cast<uint32_t>(spills.size()), static_cast<uint32_t>(b.places.size())});
+        for (size_t k = 0; k < b.places.size(); ++k) {
+            const SkinPoint &p = b.places[k], &s = b.spills[k];
+            ASSERT(p.triangle < mesh.triangleCount() && s.triangle < mesh.triangleCount(), "a brim's triangles are the mesh's");
+            uint32_t* d = &state[(static_cast<size_t>(params.capacity) + spills.size()) * DROP_UINTS];
+            const uint32_t volume = std::max(b.picolitres / static_cast<uint32_t>(b.places.size()), 1U);
+            d[DROP_TRIANGLE] = DROP_BRIM | p.triangle;
+            d[DROP_B1] = std::bit_cast<uint32_t>(p.b1);
+            d[DROP_B2] = std::bit_cast<uint32_t>(p.b2);
+            d[DROP_VOLUME] = volume;
+            added += volume;
+            spills.push_back({vec4(0.0F), s.triangle, s.b1, s.b2, 0});
+        }
+    }
+    device->writeAll<uint32_t>(drop, state);
+    device->writeAll<uint32_t>(chain, chains);
+    device->writeAll<FlowBirth>(spill, spills);
+    return ok();
 }
 
 // Rows so many that no cell's side is longer than asked.
@@ -207,8 +289,9 @@ FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepPa
     const SurfaceFlowParams& p = params;
     const double advancing = double{p.advancing} * kRadian, receding = double{std::min(p.receding, p.advancing)} * kRadian;
     FlowStep f{};
-    f.pull = vec4(inputs.pull, 0.0F);
-    f.wind = vec4(inputs.wind, 0.0F);
+    const dmat3 fromWorld = glm::transpose(dmat3(inputs.toWorld));
+    f.pull = vec4(vec3(fromWorld * dvec3(inputs.gravity)), 0.0F);
+    f.wind = vec4(vec3(fromWorld * dvec3(inputs.wind)), 0.0F);
     f.count = count();
     f.triangles = static_cast<uint32_t>(mesh.triangleCount());
     f.places = static_cast<uint32_t>(mesh.rest.size());
@@ -227,6 +310,20 @@ FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepPa
     f.slip = p.slip;
     f.steer = p.steer;
     f.cell = p.filmCell;
+    const double reach = p.filmReach;
+    f.viscosity = p.viscosity;
+    f.filmReach = p.filmReach;
+    f.filmSelf = static_cast<float>(7 / (kPiD * reach * reach));
+    f.filmRadius = static_cast<float>(kFilmRadius * reach);
+    f.jump = kJump;
+    f.inverseDt = static_cast<float>(1 / seconds);
+    f.tension = p.surfaceTension;
+    f.brimAt = static_cast<uint32_t>(p.capacity);
+    f.brims = brims;
+    f.brimMost = brimPlaces == 0 ? 1.0F : p.brimHolds * 1.0e6F * static_cast<float>(brims) / static_cast<float>(brimPlaces);
+    f.brimRadius = p.brimWidth;
+    f.tear = p.tear * 1.0e6F;
+    f.settle = static_cast<float>(1 - std::exp(-seconds / kSettling));
     return f;
 }
 
@@ -238,11 +335,11 @@ SurfaceFlow::~SurfaceFlow() = default;
 const FlowMesh& SurfaceFlow::mesh() const { return impl_->mesh; }
 const SurfaceFlowParams& SurfaceFlow::params() const { return impl_->params; }
 
-Result<SurfaceFlow> SurfaceFlow::create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params) {
+Result<SurfaceFlow> SurfaceFlow::create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims) {
     auto impl = std::make_unique<Impl>();
     impl->mesh = std::move(mesh);
     impl->params = params;
-    if (Status ready = impl->prepare(device); !ready) return ready.error();
+    if (Status ready = impl->prepare(device, brims); !ready) return ready.error();
     return SurfaceFlow(std::move(impl));
 }
 
@@ -251,18 +348,35 @@ void SurfaceFlow::setParams(const SurfaceFlowParams& params) {
     p.capacity = impl_->params.capacity;
     p.footprint = impl_->params.footprint;
     p.largestDrop = impl_->params.largestDrop;
+    p.filmReach = impl_->params.filmReach;
     impl_->params = p;
 }
 
-void SurfaceFlow::add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity) {
+void SurfaceFlow::Impl::bear(const FlowBirth& one) {
+    if (one.volume == 0) return;
+    added += one.volume;
+    if (births.size() < count())
+        births.push_back(one);
+    else
+        told->refused += one.volume;
+}
+
+void SurfaceFlow::add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity, bool film) {
     ASSERT(at.triangle < impl_->mesh.triangleCount(), "a drop's triangle is one of mesh()'s");
-    if (picolitres == 0) return;
-    impl_->added += picolitres;
-    if (impl_->births.size() >= impl_->count()) {
-        impl_->told->refused += picolitres;
-        return;
-    }
-    impl_->births.push_back({vec4(velocity, 0.0F), at.triangle, at.b1, at.b2, picolitres});
+    impl_->bear({vec4(velocity, film ? 1.0F : 0.0F), at.triangle, at.b1, at.b2, picolitres});
+}
+
+void SurfaceFlow::addToBrim(uint32_t place, uint32_t picolitres) {
+    ASSERT(place < impl_->brimPlaces, "a brim's place is one of those given to create()");
+    impl_->bear({vec4(0.0F), DROP_BRIM | place, 0.0F, 0.0F, picolitres});
+}
+
+void SurfaceFlow::setGrip(std::span<const float> grip) {
+    Impl& w = *impl_;
+    ASSERT(grip.size() == w.mesh.rest.size(), "one number a place of mesh()");
+    std::vector<vec4> table = w.device->readAll<vec4>(w.driven, 2 * grip.size());
+    for (size_t p = 0; p < grip.size(); ++p) table[2 * p].w = grip[p];
+    w.device->writeAll<vec4>(w.driven, table);
 }
 
 // On a GPU both come some frames later, one after the other.
@@ -274,6 +388,7 @@ void SurfaceFlow::Impl::takeCounters() {
         t->refused += c[0];
         t->merges += c[1];
         t->leaving = std::min(c[2], MOST_LEFT);
+        t->film = c[6] > 0;
         t->left += c[3];
         t->evaporated += c[4];
     });
@@ -287,6 +402,49 @@ void SurfaceFlow::Impl::takeCounters() {
     });
 }
 
+// What the frame's own motion means to what is in it: x of now was turn^-1 ... in the world, and is drift x faster than it.
+void SurfaceFlow::Impl::turnFrame(const dmat4& toWorld, double seconds, FlowStep& f) {
+    const dmat4 before = posed ? glm::inverse(toWorld) * pose : dmat4(1.0);  // a place's coordinates then -> where it is now, had it stayed
+    pose = toWorld;
+    posed = true;
+    vec4* turn[] = {&f.turn0, &f.turn1, &f.turn2};
+    vec4* drift[] = {&f.drift0, &f.drift1, &f.drift2};
+    double fastest = 0;
+    for (int row = 0; row < 3; ++row) {
+        *turn[row] = vec4(before[0][row], before[1][row], before[2][row], 0.0F);
+        *drift[row] = vec4(((row == 0 ? 1 : 0) - before[0][row]) / seconds, ((row == 1 ? 1 : 0) - before[1][row]) / seconds,
+                           ((row == 2 ? 1 : 0) - before[2][row]) / seconds, -before[3][row] / seconds);
+        for (const vec3& x : {corners.min, corners.max})
+            fastest = std::max(fastest, std::abs(double{glm::dot(vec3(*drift[row]), x)} + double{drift[row]->w}));
+    }
+    if (fastest > kJump)  // set down elsewhere
+        for (vec4* row : drift) *row = vec4(0.0F);
+}
+
+// Host memory or the device's own: either is a buffer of the mesh's positions.
+void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f) {
+    const Buffer* from = inputs.moved;
+    if (from == nullptr && !inputs.positions.empty()) {
+        std::vector<vec4> at;
+        const size_t used = hostMoved.bytes() / sizeof(vec4);
+        at.reserve(used);
+        for (const vec3& p : inputs.positions.first(used)) at.emplace_back(p, 0.0F);
+        device->writeAll<vec4>(hostMoved, at);
+        from = &hostMoved;
+    }
+    if (from != nullptr) {
+        device->run(take, f, {&given, from, &point, &driven}, f.places);
+        moved = stirring = true;
+    } else if (stirring) {
+        device->run(rest, f, {&driven}, f.places);
+        stirring = false;
+    }
+    if (!moved) return;
+    device->run(basis, f, {&skin, &point, &frames}, f.triangles);
+    device->run(drive, f, {&begin, &footprint, &weight, &frames, &driven}, f.places);
+    moved = false;
+}
+
 Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     Impl& w = *impl_;
     w.device->poll();
@@ -297,8 +455,6 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     w.grid->fill(s);
     s.h = 1 / s.gridScale.x;
     s.invH = s.gridScale.x;
-    s.dt = static_cast<float>(seconds);
-    s.force = vec4(w.params.touch, static_cast<float>(double{w.params.largestDrop} * kMicrolitre), 0.0F, 0.0F);
     FlowStep f = w.stepOf(inputs, s, seconds);
     for (double& since : w.sinceTurn) since += seconds;
     w.phase = (w.phase + 1) % DRY_EVERY;
@@ -306,34 +462,55 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     f.dries = static_cast<float>(double{w.params.evaporation} * w.sinceTurn[w.phase]);
     w.sinceTurn[w.phase] = 0;
 
-    if (!inputs.positions.empty()) {
-        std::vector<vec4> at;
-        at.reserve(w.mesh.rest.size());
-        for (const uint32_t k : w.mesh.given) at.emplace_back(inputs.positions[k], 0.0F);
-        w.device->writeAll<vec4>(w.point, at);
-        w.moved = true;
-    }
-    if (w.moved) {
-        w.device->run(w.basis, f, {&w.skin, &w.point, &w.frames}, f.triangles);
-        w.device->run(w.drive, f, {&w.begin, &w.footprint, &w.weight, &w.frames, &w.driven}, f.places);
-        w.moved = false;
-    }
+    w.turnFrame(inputs.toWorld, seconds, f);
+    w.moveSkin(inputs, f);
     w.device->fill(w.counter, 0);
     if (!w.births.empty()) {
         w.device->write(w.birth, std::as_bytes(std::span(w.births)));
         w.device->run(w.born, f, {&w.grid->cellStart(), &w.drops.id, &w.birth, &w.drop, &w.motion, &w.counter}, f.births);
+        w.told->film = w.told->film || std::any_of(w.births.begin(), w.births.end(), [](const FlowBirth& b) { return b.velocity.w > 0; });
         w.births.clear();
     }
-    w.device->run(w.place, f, {&w.drops.id, &w.frames, &w.drop, &w.motion, &w.drops.positionNext, &w.drops.velocityNext}, f.count);
-    if (Status sorted = w.grid->build(s, w.drops); !sorted) return sorted;
+    if (f.brims > 0)
+        w.device->run(w.brim, f, {&w.chain, &w.spill, &w.grid->cellStart(), &w.drops.id, &w.frames, &w.drop, &w.motion, &w.counter},
+                      f.brims);
+    // What holds a film's edge is stiff; drops know no such thing.
+    const int parts = w.told->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
+    for (int k = 0; k < parts; ++k) {
+        w.setStep(f, s, seconds / parts);
+        if (Status moved = w.moveDrops(f, s); !moved) return moved;
+        f.turn0 = vec4(1, 0, 0, 0);  // the frame has turned, and goes on
+        f.turn1 = vec4(0, 1, 0, 0);
+        f.turn2 = vec4(0, 0, 1, 0);
+    }
+    if (f.dries > 0) w.device->run(w.dry, f, {&w.skin, &w.frames, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
+    w.takeCounters();
+    return ok();
+}
+
+// What depends on the length of a step.
+void SurfaceFlow::Impl::setStep(FlowStep& f, StepParams& s, double seconds) const {
+    f.dt = s.dt = static_cast<float>(seconds);
+    f.inverseDt = static_cast<float>(1 / seconds);
+    s.force = vec4(params.touch, static_cast<float>(double{params.largestDrop} * kMicrolitre), 1 / params.filmReach, f.filmSelf);
+    s.relaxation = static_cast<float>(1 - std::exp(-seconds / kCalming));
+    const double reach = params.filmReach, gamma = double{params.surfaceTension} / double{params.density};
+    s.gravity = vec4(vec3(f.pull), static_cast<float>(gamma * kPiD * kPiD / (reach * reach)));
+    s.stiffness = static_cast<float>(gamma * (1 - std::cos(meanAngle(params) * kRadian)));
+    s.spacing = static_cast<float>(reach * kThinnest);
+}
+
+Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
+    device->run(place, f, {&drops.id, &skin, &frames, &driven, &drop, &motion, &drops.positionNext, &drops.velocityNext}, f.count);
+    if (Status sorted = grid->build(s, drops); !sorted) return sorted;
     SolveFigures none;
     FluidParams unused;
     const Buffer nothing;
-    StepContext context{.device = *w.device,
+    StepContext context{.device = *device,
                         .fluid = unused,
                         .params = s,
-                        .grid = *w.grid,
-                        .particles = w.drops,
+                        .grid = *grid,
+                        .particles = drops,
                         .solve = none,
                         .stats = nothing,
                         .build = {},
@@ -341,34 +518,36 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
                         .planes = nothing,
                         .boundary = {},
                         .forces = {}};
-    w.device->run(w.name, f, {&w.drops.id, &w.names, &w.sortedOf}, f.count);
-    const uint32_t threads = w.grid->pairThreads();
-    const Buffer& neighbors = w.grid->neighbors();
-    w.meet.run(context, s, {&neighbors, &w.drops.position, &w.drops.velocity, &w.names, &w.into}, threads);
-    w.gather.run(context, s, {&neighbors, &w.drops.position, &w.drops.velocity, &w.names, &w.into, &w.merged, &w.shift}, threads);
-    w.device->run(w.merge, f, {&w.grid->cellStart(), &w.drops.id, &w.sortedOf, &w.into, &w.drop, &w.counter}, f.count);
-    w.device->run(w.law, f, {&w.drops.id, &w.skin, &w.frames, &w.driven, &w.merged, &w.film, &w.drop, &w.motion}, f.count);
-    w.device->run(w.walk, f, {&w.drops.id, &w.skin, &w.frames, &w.shift, &w.drop, &w.motion}, f.count);
-    w.device->run(w.paint, f, {&w.drops.id, &w.skin, &w.frames, &w.motion, &w.film, &w.drop}, f.count);
-    if (f.dries > 0) w.device->run(w.dry, f, {&w.skin, &w.frames, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
-    w.device->run(w.leave, f, {&w.drops.id, &w.frames, &w.motion, &w.drop, &w.counter, &w.left}, f.count);
-    w.takeCounters();
+    device->run(name, f, {&drops.id, &drop, &frames, &names, &sortedOf, &side, &counter}, f.count);
+    const uint32_t threads = grid->pairThreads();
+    const Buffer& neighbors = grid->neighbors();
+    const Buffer &x = drops.position, &v = drops.velocity;
+    spread.run(context, s, {&neighbors, &x, &v, &side, &names, &spreads}, threads);
+    meet.run(context, s, {&neighbors, &x, &v, &side, &names, &into}, threads);
+    gather.run(context, s, {&neighbors, &x, &v, &names, &into, &side, &merged, &shift}, threads);
+    if (told->film) press.run(context, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
+    device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
+    device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
+    device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion}, f.count);
+    device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);
+    device->run(paint, f, {&drops.id, &skin, &frames, &motion, &film, &drop}, f.count);
+    device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
     return ok();
 }
 
 std::vector<SkinDrop> SurfaceFlow::drops() const {
     const Impl& w = *impl_;
     const auto state = w.device->readAll<uint32_t>(w.drop, size_t{w.count()} * DROP_UINTS);
-    const auto motion = w.device->readAll<vec4>(w.motion, w.count());
+    const auto motion = w.device->readAll<vec4>(w.motion, 2 * size_t{w.count()});
     const auto frames = w.device->readAll<vec4>(w.frames, 5 * w.mesh.triangleCount());
     std::vector<SkinDrop> all;
     for (uint32_t k = 0; k < w.count(); ++k) {
         const uint32_t* d = &state[size_t{k} * DROP_UINTS];
         if (d[DROP_VOLUME] == 0) continue;
-        const SkinPoint at{d[DROP_TRIANGLE] & (DROP_LEFT - 1), std::bit_cast<float>(d[DROP_B1]), std::bit_cast<float>(d[DROP_B2])};
+        const SkinPoint at{d[DROP_TRIANGLE] & DROP_NUMBER, std::bit_cast<float>(d[DROP_B1]), std::bit_cast<float>(d[DROP_B2])};
         const vec4* basis = &frames[5 * size_t{at.triangle}];
-        all.push_back({k, at, vec3(basis[0]) + at.b1 * vec3(basis[1]) + at.b2 * vec3(basis[2]), vec3(motion[k]), d[DROP_VOLUME] * 1.0e-15,
-                       double{motion[k].w}});
+        all.push_back({k, at, vec3(basis[0]) + at.b1 * vec3(basis[1]) + at.b2 * vec3(basis[2]), vec3(motion[2 * size_t{k}]),
+                       d[DROP_VOLUME] * 1.0e-15, double{motion[2 * size_t{k}].w}, double{std::bit_cast<float>(d[DROP_SHARE])}});
     }
     return all;
 }

@@ -1,5 +1,6 @@
 // Flow on a skin: drops that walk over a mesh's triangles, run into each other, are held and let go. UVs play no part in it.
-// Drop: Furmidge 1962 (what holds it), Le Grand, Daerr and Limat 2005 (what slows it).
+// Drop: Furmidge 1962 (what holds it), Le Grand, Daerr and Limat 2005 (what slows it). Drops that overlap and are too much to be one are a
+// film: Nusselt 1916, its height by a sum over neighbours.
 #pragma once
 
 #include <memory>
@@ -31,15 +32,29 @@ struct SurfaceFlowParams {
     float slip = 0.85F;              // share of what holds a drop that a wet way takes
     float steer = 0.5F;              // of what holds it: how strongly a trail beside its way pulls it in
     float evaporation = 2.0e-8F;     // m/s, of the film
-    float filmCell = 7.0e-4F;        // m, the film's cells are no wider
+    float filmCell = 7.0e-4F;        // m, the cells of what drops leave behind are no wider
+    float filmReach = 5.0e-3F;       // m, support radius of the sum that a film's height is
+    float brimHolds = 8.0F;          // microlitres, of a brim that is full
+    float brimWidth = 6.0e-4F;       // m, radius of what lies in a brim
+    float tear = 4.5F;               // microlitres, of a drop that spills over it
     int capacity = 4096;             // drops at most
     void visit(ParamVisitor& v);
 };
 
 struct SurfaceFlowInputs {
-    vec3 pull{0.0F, -9.81F, 0.0F};         // m/s^2, in the skin's frame: gravity, and the inertia of a skin that moves
-    vec3 wind{0.0F};                       // m/s, of the air past the skin
-    std::span<const vec3> positions = {};  // m, of the mesh's positions where they have changed; as many as the mesh has
+    vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2, in the world
+    vec3 wind{0.0F};                   // m/s, of the air, in the world
+    dmat4 toWorld{1.0};                // the skin's frame -> the world: turned and moved, not scaled
+    // m, in the skin's frame, of the mesh's positions where they have changed; as many as the mesh has. Drops feel how the skin moves.
+    std::span<const vec3> positions = {};
+    const Buffer* moved = nullptr;  // the same on the device (vec4, w unused), instead. A place that is no number stays where it was
+};
+
+// A row of places along an edge, as of a lower lid, that fills before it spills.
+struct SkinBrim {
+    std::vector<SkinPoint> places;
+    std::vector<SkinPoint> spills;  // of each place: where what spills begins to run
+    uint32_t picolitres = 1200000;  // in it at the start, all along
 };
 
 struct SkinDrop {
@@ -48,11 +63,12 @@ struct SkinDrop {
     vec3 position{0.0F}, velocity{0.0F};  // m, m/s
     double volume = 0;                    // m^3
     double way = 0;                       // m, walked since it was born
+    double film = 0;                      // 0 a drop, 1 part of a film
 };
 
 // What let go of the skin, or ran over an open edge.
 struct LeftDrop {
-    vec3 position{0.0F}, velocity{0.0F};  // m, m/s
+    vec3 position{0.0F}, velocity{0.0F};  // m, m/s, in the skin's frame; the velocity is the world's
     uint32_t picolitres = 0;
     uint32_t triangle = 0;
 };
@@ -60,7 +76,7 @@ struct LeftDrop {
 class SurfaceFlow {
   public:
     // `device` must outlive it. Error: a mesh whose skin would not fit; out of memory.
-    static Result<SurfaceFlow> create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params);
+    static Result<SurfaceFlow> create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims = {});
     SurfaceFlow(SurfaceFlow&&) noexcept;
     SurfaceFlow& operator=(SurfaceFlow&&) noexcept;
     ~SurfaceFlow();
@@ -70,7 +86,10 @@ class SurfaceFlow {
     void setParams(const SurfaceFlowParams& params);  // capacity and footprint stay
 
     // A drop that appears with the next step. Where no slot is free it is counted as refused.
-    void add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity = vec3(0.0F));
+    // `film`: it is not taken up by others, but part of a film as long as there is one.
+    void add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity = vec3(0.0F), bool film = false);
+    void addToBrim(uint32_t place, uint32_t picolitres);  // places count through all brims in their order
+    void setGrip(std::span<const float> grip);            // of each of mesh()'s places: what holds drops there, 1 as usual. Waits
     // Error: positions that are not as many as the mesh's, or not finite (badInput); no memory for the sort (failed). Nothing has moved
     // then.
     Status step(const SurfaceFlowInputs& inputs, double seconds);

@@ -5,19 +5,30 @@
 namespace rivulet {
 #endif
 #define PICOLITRE 1.0e-15f  /* m^3 */
-// A drop, by id: four uints. Its volume is a whole number, so that none is lost to rounding; 0 is a free slot.
-#define DROP_TRIANGLE 0u  /* DROP_LEFT + the last one when it has let go or run over an edge */
+// A drop, by id: five uints. Its volume is a whole number, so that none is lost to rounding; 0 is a free slot.
+#define DROP_TRIANGLE 0u  /* its number, and flags */
 #define DROP_B1 1u        /* float bits: barycentric coordinates of corners 1 and 2 */
 #define DROP_B2 2u
 #define DROP_VOLUME 3u    /* picolitres */
-#define DROP_UINTS 4u
-#define DROP_LEFT 0x80000000u
+#define DROP_SHARE 4u     /* float bits, 0 a drop, 1 part of a film */
+#define DROP_UINTS 5u
+#define DROP_LEFT 0x80000000u    /* has let go, or run over an edge: the triangle is the last one */
+#define DROP_FILM 0x40000000u    /* part of a film: runs into nobody */
+#define DROP_BRIM 0x20000000u    /* part of a brim: stays where it is. In a birth: the number is a brim's place, which the volume is added to */
+#define DROP_NEW 0x10000000u     /* born in this step: its velocity is as it was given */
+#define DROP_NUMBER 0x0FFFFFFFu
 #define SKIN_OPEN 0xFFFFFFFFu
 #define SKIN_UINTS 8u
 #define DRY_EVERY 16u  /* triangles: one in so many has its turn each step */
 STRUCT(FlowStep) {
-    vec4  pull;            // xyz m/s^2, what acts on all mass alike: gravity, and the inertia of a skin that moves
-    vec4  wind;            // xyz m/s, of the air past the skin
+    vec4  pull;            // xyz m/s^2, what acts on all mass alike, in the skin's frame as all that follows
+    vec4  wind;            // xyz m/s, of the air
+    vec4  turn0;           // rows of a matrix: a direction as the last step's frame has it -> as this one's has it
+    vec4  turn1;
+    vec4  turn2;
+    vec4  drift0;          // rows of a matrix, w with 1: a place (m) -> its speed as the frame moves, m/s
+    vec4  drift1;
+    vec4  drift2;
     uint  count;           // slots of drops
     uint  triangles;
     uint  places;
@@ -37,14 +48,26 @@ STRUCT(FlowStep) {
     float steer;           // of what holds it: the pull of a trail to one side
     float cell;            // m, a film's cells are no wider
     float dries;           // m, of film in the time since this triangle's turn
+    float viscosity;       // Pa s
+    float filmSelf;        // 1/m^2: height of a film over volume, where one particle is alone
+    float filmReach;       // m, support radius of the film's sum
+    float filmRadius;      // m, of a cap that is spread as widely as one particle of a film
+    float jump;            // m/s: a skin's place that is faster has not moved, it is another
+    float inverseDt;       // 1/s
+    float tension;         // N/m
     uint  dryPhase;        // whose turn it is
+    uint  brimAt;          // id of the first place of a brim
+    uint  brims;
+    float brimMost;        // picolitres, of a place of a brim: more spills
+    float brimRadius;      // m, of a place of a brim, as drawn
+    float tear;            // picolitres, of a drop that spills
+    float settle;          // share of the way to rest that a brim goes in a step
+    float reach;           // of a cap's height: how near another skin takes a drop over
     uint  spare0;
     uint  spare1;
-    uint  spare2;
-    uint  spare3;
 };
 STRUCT(FlowBirth) {
-    vec4  velocity;  // m/s, along the triangle
+    vec4  velocity;  // m/s, along the triangle; w: 1 part of a film, 0 a drop
     uint  triangle;
     float b1;        // barycentric, of corners 1 and 2
     float b2;

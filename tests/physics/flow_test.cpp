@@ -6,63 +6,13 @@
 #include <random>
 
 #include "fluid/flow/surface_flow.h"
+#include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {
 namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
-
-struct Shape {
-    std::vector<vec3> positions;
-    std::vector<uint32_t> indices;
-    MeshView view() const { return {positions, indices, {}, {}}; }
-};
-
-// A sheet of n x m quads in the plane of `across` and `along`, from `corner`; its normal is across x along.
-Shape sheet(const vec3& corner, const vec3& across, const vec3& along, uint32_t n, uint32_t m) {
-    Shape s;
-    for (uint32_t k = 0; k <= m; ++k)
-        for (uint32_t i = 0; i <= n; ++i)
-            s.positions.push_back(corner + across * (static_cast<float>(i) / static_cast<float>(n)) +
-                                  along * (static_cast<float>(k) / static_cast<float>(m)));
-    for (uint32_t k = 0; k < m; ++k)
-        for (uint32_t i = 0; i < n; ++i) {
-            const uint32_t a = k * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
-            // Quads are cut one way and the other.
-            if ((i + k) % 2 == 0)
-                s.indices.insert(s.indices.end(), {a, b, d, a, d, c});
-            else
-                s.indices.insert(s.indices.end(), {a, b, c, b, d, c});
-        }
-    return s;
-}
-
-// A ball of `rows` x 2 `rows` quads, poles closed by triangles, with a seam of double vertices.
-Shape ball(float radius, uint32_t rows) {
-    Shape s;
-    const uint32_t around = 2 * rows;
-    for (uint32_t k = 0; k <= rows; ++k)
-        for (uint32_t i = 0; i <= around; ++i) {
-            const double t = kPiD * k / rows, f = 2 * kPiD * (i % around) / around;
-            const double sine = k == 0 || k == rows ? 0 : std::sin(t);
-            s.positions.push_back(radius * vec3(dvec3(sine * std::cos(f), std::cos(t), -sine * std::sin(f))));
-        }
-    for (uint32_t k = 0; k < rows; ++k)
-        for (uint32_t i = 0; i < around; ++i) {
-            const uint32_t a = k * (around + 1) + i, b = a + 1, c = a + around + 1, d = c + 1;
-            s.indices.insert(s.indices.end(), {a, c, d, a, d, b});  // two of a pole's have no area
-        }
-    return s;
-}
-
-SurfaceFlow flowOn(Device& device, const Shape& shape, const SurfaceFlowParams& params = {}) {
-    Result<FlowMesh> mesh = makeFlowMesh(shape.view());
-    EXPECT_TRUE(mesh) << (mesh ? "" : mesh.error().message);
-    Result<SurfaceFlow> flow = SurfaceFlow::create(device, std::move(*mesh), params);
-    EXPECT_TRUE(flow) << (flow ? "" : flow.error().message);
-    return std::move(*flow);
-}
 
 constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 
@@ -159,7 +109,7 @@ TEST(Flow, PassesThroughTrianglesWithoutArea) {
     SurfaceFlow flow = flowOn(*device, shape, p);
     EXPECT_EQ(flow.mesh().report.flat, 1U);
     for (const float x : {0.02F, 0.05F, 0.071F}) flow.add(nearestPoint(flow.mesh(), vec3(x, 0.09F, 0)), kMicrolitres, vec3(0.1F, -0.8F, 0));
-    for (int k = 0; k < 10; ++k) EXPECT_TRUE(flow.step({.pull = vec3(0.0F)}, 0.01));
+    for (int k = 0; k < 10; ++k) EXPECT_TRUE(flow.step({.gravity = vec3(0.0F)}, 0.01));
     const std::vector<SkinDrop> drops = flow.drops();
     ASSERT_EQ(drops.size(), 3U);
     for (size_t k = 0; k < 3; ++k) {
@@ -181,7 +131,7 @@ TEST(Flow, GoesStraightRoundABall) {
     double off = 0, speed = 0;
     const int steps = 200;
     for (int k = 0; k < steps; ++k) {
-        EXPECT_TRUE(flow.step({.pull = vec3(0.0F)}, 2 * kPiD * 0.05 / 0.1 / steps));
+        EXPECT_TRUE(flow.step({.gravity = vec3(0.0F)}, 2 * kPiD * 0.05 / 0.1 / steps));
         const std::vector<SkinDrop> drops = flow.drops();
         ASSERT_EQ(drops.size(), 1U);
         off = std::max(off, double{std::abs(glm::dot(drops[0].position, glm::normalize(glm::cross(start, heading))))});
@@ -299,7 +249,7 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
     for (int k = 0; k < 12; ++k)
         flow.add(nearestPoint(flow.mesh(), vec3(-0.04F + 0.02F * static_cast<float>(k % 4), 0, -0.02F + 0.02F * static_cast<float>(k / 4))),
                  kMicrolitres);
-    EXPECT_TRUE(flow.step({.pull = vec3(0.0F)}, 1.0 / 60));
+    EXPECT_TRUE(flow.step({.gravity = vec3(0.0F)}, 1.0 / 60));
     const std::vector<SkinDrop> before = flow.drops();
     ASSERT_EQ(before.size(), 12U);
     std::vector<vec3> moved = rest.positions;
@@ -309,7 +259,7 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
             moved[i] = vec3(x.x, 0.01F * std::sin(60 * x.x + 0.2F * static_cast<float>(k)), x.z);
         }
         if (k % 10 == 5) moved[150] = moved[151];  // four triangles lose their area, their drops their room
-        EXPECT_TRUE(flow.step({.pull = vec3(0.0F), .positions = moved}, 1.0 / 60));
+        EXPECT_TRUE(flow.step({.gravity = vec3(0.0F), .positions = moved}, 1.0 / 60));
         for (const SkinDrop& d : flow.drops()) EXPECT_TRUE(isFinite(d.position) && isFinite(d.velocity));
     }
     const std::vector<SkinDrop> after = flow.drops();

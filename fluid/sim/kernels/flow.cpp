@@ -4,6 +4,12 @@
 namespace rivulet::RIVULET_KERNEL_UNIT {
 namespace {
 
+namespace take_unit {
+#include "shaders/flow/take.kernel"
+}
+namespace rest_unit {
+#include "shaders/flow/rest.kernel"
+}
 namespace basis_unit {
 #include "shaders/flow/basis.kernel"
 }
@@ -13,11 +19,19 @@ namespace drive_unit {
 namespace born_unit {
 #include "shaders/flow/born.kernel"
 }
+// Headers of functions over a kernel's own buffers: each unit has them anew.
+#undef RIVULET_UNDER_H
 namespace place_unit {
 #include "shaders/flow/place.kernel"
 }
+namespace brim_unit {
+#include "shaders/flow/brim.kernel"
+}
 namespace name_unit {
 #include "shaders/flow/name.kernel"
+}
+namespace spread_unit {
+#include "shaders/flow/spread.kernel"
 }
 namespace meet_unit {
 #include "shaders/flow/meet.kernel"
@@ -25,12 +39,23 @@ namespace meet_unit {
 namespace gather_unit {
 #include "shaders/flow/gather.kernel"
 }
+namespace press_unit {
+#include "shaders/flow/press.kernel"
+}
 namespace merge_unit {
 #include "shaders/flow/merge.kernel"
 }
-#undef RIVULET_WALK_H  // each of the three has its own
+#undef RIVULET_UNDER_H
 namespace law_unit {
 #include "shaders/flow/law.kernel"
+}
+#undef RIVULET_WALK_H
+namespace steer_unit {
+#include "shaders/flow/steer.kernel"
+}
+#undef RIVULET_WALK_H
+namespace walk_unit {
+#include "shaders/flow/walk.kernel"
 }
 #undef RIVULET_WALK_H
 namespace paint_unit {
@@ -38,10 +63,6 @@ namespace paint_unit {
 }
 namespace dry_unit {
 #include "shaders/flow/dry.kernel"
-}
-#undef RIVULET_WALK_H
-namespace walk_unit {
-#include "shaders/flow/walk.kernel"
 }
 namespace leave_unit {
 #include "shaders/flow/leave.kernel"
@@ -51,11 +72,14 @@ namespace leave_unit {
 
 std::span<const CpuKernelRow> flowRows() {
     static const CpuKernelRow rows[] = {
+        {"flow/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},     {"flow/rest", "", RIVULET_UNIT_ISA, rest_unit::rest, 1024},
         {"flow/basis", "", RIVULET_UNIT_ISA, basis_unit::basis, 1024},  {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 256},
-        {"flow/born", "", RIVULET_UNIT_ISA, born_unit::born, 256},      {"flow/place", "", RIVULET_UNIT_ISA, place_unit::place, 256},
-        {"flow/name", "", RIVULET_UNIT_ISA, name_unit::name, 1024},     {"flow/meet", "", RIVULET_UNIT_ISA, meet_unit::meet, 16},
-        {"flow/gather", "", RIVULET_UNIT_ISA, gather_unit::gather, 16}, {"flow/merge", "", RIVULET_UNIT_ISA, merge_unit::merge, 256},
-        {"flow/law", "", RIVULET_UNIT_ISA, law_unit::law, 64},          {"flow/walk", "", RIVULET_UNIT_ISA, walk_unit::walk, 64},
+        {"flow/born", "", RIVULET_UNIT_ISA, born_unit::born, 256},      {"flow/brim", "", RIVULET_UNIT_ISA, brim_unit::brim, 1},
+        {"flow/place", "", RIVULET_UNIT_ISA, place_unit::place, 256},   {"flow/name", "", RIVULET_UNIT_ISA, name_unit::name, 1024},
+        {"flow/spread", "", RIVULET_UNIT_ISA, spread_unit::spread, 16}, {"flow/meet", "", RIVULET_UNIT_ISA, meet_unit::meet, 16},
+        {"flow/gather", "", RIVULET_UNIT_ISA, gather_unit::gather, 16}, {"flow/press", "", RIVULET_UNIT_ISA, press_unit::press, 16},
+        {"flow/merge", "", RIVULET_UNIT_ISA, merge_unit::merge, 256},   {"flow/law", "", RIVULET_UNIT_ISA, law_unit::law, 64},
+        {"flow/steer", "", RIVULET_UNIT_ISA, steer_unit::steer, 64},    {"flow/walk", "", RIVULET_UNIT_ISA, walk_unit::walk, 64},
         {"flow/paint", "", RIVULET_UNIT_ISA, paint_unit::paint, 32},    {"flow/dry", "", RIVULET_UNIT_ISA, dry_unit::dry, 256},
         {"flow/leave", "", RIVULET_UNIT_ISA, leave_unit::leave, 256},
     };

@@ -1,0 +1,198 @@
+// Flow on a skin: films, skins that move, brims that fill. Shapes are shared with flow_test.cpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "fluid/flow/surface_flow.h"
+#include "tests/physics/skins.h"
+#include "tests/physics/worlds.h"
+
+namespace rivulet {
+namespace {
+
+constexpr double kPiD = 3.14159265358979323846;
+constexpr uint32_t kMicrolitres = 1000000;  // picolitres
+
+// What nothing pulls at along the skin stays where it is in the world, whichever way the skin goes away under it: as its frame moves, or as
+// its positions do.
+TEST(FlowOnAMovingSkin, ADropKeepsItsOwnPlaceOverAPlateThatIsPulledAway) {
+    for (const bool bends : {false, true}) {
+        auto device = cpu();
+        const Shape rest = sheet(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
+        SurfaceFlowParams p;
+        p.hold = p.drag = p.airDrag = p.trail = 0;
+        SurfaceFlow flow = flowOn(*device, rest, p);
+        flow.add(nearestPoint(flow.mesh(), vec3(0.02F, 0, 0.05F)), kMicrolitres);
+        SurfaceFlowInputs inputs;
+        EXPECT_TRUE(flow.step(inputs, 1.0 / 60));
+        std::vector<vec3> moved = rest.positions;
+        double x = 0;
+        for (int k = 1; k <= 30; ++k) {
+            x = -0.5 * 1.0 * std::pow(k / 60.0, 2);  // 1 m/s^2 to the left
+            for (size_t i = 0; i < moved.size(); ++i) moved[i] = rest.positions[i] + vec3(static_cast<float>(x), 0, 0);
+            if (bends)
+                inputs.positions = moved;
+            else
+                inputs.toWorld[3] = glm::dvec4(x, 0, 0, 1);
+            EXPECT_TRUE(flow.step(inputs, 1.0 / 60));
+        }
+        const SkinDrop d = flow.drops().at(0);
+        const double world = double{d.position.x} + (bends ? 0 : x);
+        EXPECT_NEAR(world, 0.02, 2e-4) << (bends ? "positions" : "frame") << ": the plate went " << x;
+        EXPECT_NEAR(d.velocity.x, 0.5, 0.02);
+    }
+}
+
+// On a plate that turns it goes straight, which is a spiral to the plate: centrifugal and Coriolis forces are nothing else.
+TEST(FlowOnAMovingSkin, ADropThatNothingHoldsGoesStraightOverAPlateThatTurns) {
+    auto device = cpu();
+    const Shape rest = sheet(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
+    SurfaceFlowParams p;
+    p.hold = p.drag = p.airDrag = p.trail = 0;
+    SurfaceFlow flow = flowOn(*device, rest, p);
+    const double turns = 2.0;  // rad/s
+    const dvec3 start(0.08, 0, 0);
+    SurfaceFlowInputs inputs;
+    const auto pose = [&](double t) {
+        const double c = std::cos(turns * t), s = std::sin(turns * t);
+        dmat4 m(1.0);
+        m[0] = glm::dvec4(c, 0, -s, 0);
+        m[2] = glm::dvec4(s, 0, c, 0);
+        return m;
+    };
+    inputs.toWorld = pose(-1.0 / 240);
+    EXPECT_TRUE(flow.step(inputs, 1.0 / 240));
+    // At rest in the world: against the plate it goes the other way round. A point at x moves with (0, turns, 0) x x.
+    flow.add(nearestPoint(flow.mesh(), vec3(start)), kMicrolitres, -vec3(glm::cross(dvec3(0, turns, 0), start)));
+    double t = 0;
+    for (int k = 0; k < 240; ++k, t += 1.0 / 240) {
+        inputs.toWorld = pose(t);
+        EXPECT_TRUE(flow.step(inputs, 1.0 / 240));
+    }
+    const SkinDrop d = flow.drops().at(0);
+    const dvec3 world(inputs.toWorld * glm::dvec4(dvec3(d.position), 1));
+    // A step's way is along the plate as it was, so that it is a step's turn late.
+    EXPECT_LT(glm::distance(world, start), 0.02 * 0.08 * turns) << world.x << ", " << world.z;
+}
+
+// Nusselt 1916: a film 100 micrometres thick runs down an upright wall at rho g h^2 / (3 mu) = 32.7 mm/s.
+TEST(FlowFilm, RunsAsNusseltSays) {
+    for (const double jitter : {0.0, 0.3}) {
+        auto device = cpu();
+        const Shape wall = sheet(vec3(0, 0.2F, 0), vec3(0, -0.2F, 0), vec3(0.08F, 0, 0), 40, 16);
+        SurfaceFlowParams p;
+        p.viscosity = 1e-3F;
+        p.density = 1000;
+        p.advancing = p.receding = 1;  // it wets: a film as thin as that would tear else
+        p.trail = 0;
+        SurfaceFlow flow = flowOn(*device, wall, p);
+        const double spacing = 1.5e-3, height = 1e-4;
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> off(-jitter * spacing, jitter * spacing);
+        for (double y = 0.08; y < 0.18; y += spacing)
+            for (double x = 0.01; x < 0.07; x += spacing)
+                flow.add(nearestPoint(flow.mesh(), vec3(dvec3(x + off(random), y + off(random), 0))),
+                         static_cast<uint32_t>(spacing * spacing * height * 1e15), vec3(0.0F), true);
+        double sum = 0, count = 0;
+        for (int k = 0; k < 18; ++k) {
+            EXPECT_TRUE(flow.step({}, 1.0 / 60));
+            if (k < 3) continue;
+            for (const SkinDrop& d : flow.drops())
+                if (std::abs(d.position.x - 0.04F) < 0.02F && std::abs(d.position.y - 0.13F) < 0.03F) {
+                    sum -= double{d.velocity.y};
+                    count += 1;
+                }
+        }
+        EXPECT_NEAR(sum / count / (1000 * 9.81 * height * height / (3 * 1e-3)), 1, 0.05) << "jitter " << jitter;
+    }
+}
+
+// A heap of film on a level plate spreads, and stops where its rim holds it; none of it is lost.
+TEST(FlowFilm, AHeapSpreadsAndStops) {
+    auto device = cpu();
+    const Shape plate = sheet(vec3(-0.1F, 0, 0.1F), vec3(0.2F, 0, 0), vec3(0, 0, -0.2F), 20, 20);
+    SurfaceFlowParams p;
+    p.trail = 0;
+    SurfaceFlow flow = flowOn(*device, plate, p);
+    for (int k = 0; k < 600; ++k) {
+        const double r = 0.008 * std::sqrt((k + 0.5) / 600), a = 2.39996 * k;
+        flow.add(nearestPoint(flow.mesh(), vec3(dvec3(r * std::cos(a), 0, r * std::sin(a)))), kMicrolitres, vec3(0.0F), true);
+    }
+    const auto spreadOf = [&] {
+        double sum = 0;
+        for (const SkinDrop& d : flow.drops()) sum += glm::dot(d.position, d.position);
+        return std::sqrt(2 * sum / 600);
+    };
+    double fastest = 0, before = 0;
+    for (int k = 0; k < 600; ++k) {
+        EXPECT_TRUE(flow.step({}, 1.0 / 60));
+        if (k == 0) before = spreadOf();
+        if (k > 560)
+            for (const SkinDrop& d : flow.drops()) fastest = std::max(fastest, double{glm::length(d.velocity)});
+    }
+    EXPECT_EQ(flow.drops().size(), 600U);
+    const double after = spreadOf();
+    EXPECT_GT(after, 1.3 * before);
+    EXPECT_LT(fastest, 1e-3);
+    // A puddle is as high as its rim and its weight have it: e = 2 sqrt(gamma / rho g) sin(theta / 2), theta between receding and
+    // advancing. 0.6 ml of it are then 9.5 to 11.5 mm wide. What is summed over 5 mm has a rim as wide, and spreads a fifth further.
+    const auto radius = [](double degrees) {
+        const double e = 2 * std::sqrt(0.0436 / (1005 * 9.81)) * std::sin(0.5 * degrees * kPiD / 180);
+        return std::sqrt(600e-9 / (kPiD * e));
+    };
+    EXPECT_GT(after, radius(60));
+    EXPECT_LT(after, 1.25 * radius(40));
+    const SurfaceFlow::Ledger l = flow.ledger();
+    EXPECT_EQ(l.added, l.drops + l.film + l.left + l.evaporated);
+}
+
+// A brim that sags in its middle fills there most, keeps what it is given while it can, and spills tears there.
+TEST(FlowBrim, FillsAndSpillsWhereItIsLowest) {
+    auto device = cpu();
+    const Shape wall = sheet(vec3(-0.05F, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), 20, 20);
+    SurfaceFlowParams p;
+    p.evaporation = 0;
+    Result<FlowMesh> mesh = makeFlowMesh(wall.view());
+    ASSERT_TRUE(mesh);
+    SkinBrim brim;
+    for (int k = 0; k < 30; ++k) {
+        const double x = -0.0145 + 0.001 * k, y = 0.07 + 0.003 * std::pow(x / 0.0145, 2);
+        brim.places.push_back(nearestPoint(*mesh, vec3(dvec3(x, y, 0))));
+        brim.spills.push_back(nearestPoint(*mesh, vec3(dvec3(x, y - 0.002, 0))));
+    }
+    Result<SurfaceFlow> made = SurfaceFlow::create(*device, std::move(*mesh), p, std::span(&brim, 1));
+    ASSERT_TRUE(made) << made.error().message;
+    SurfaceFlow& flow = *made;
+    for (int k = 0; k < 240; ++k) EXPECT_TRUE(flow.step({}, 1.0 / 60));
+    std::vector<SkinDrop> rest = flow.drops();
+    ASSERT_EQ(rest.size(), 30U);
+    // Hydrostatics of a groove: gamma / r against rho g y, r^2 as the volume.
+    const auto radius = [&](size_t k) { return std::sqrt(rest[k].volume / (p.brimHolds * 1e-9 / 30)) * double{p.brimWidth}; };
+    const double low = 0.0436 / radius(15), high = 0.0436 / radius(0);
+    EXPECT_NEAR((high - low) / (1005 * 9.81 * double(rest[0].position.y - rest[15].position.y)), 1, 0.02);
+    // 30 ul/min into one end of it. It spills when its deepest place is full.
+    double first = 0, volume = 0, where = 1;
+    for (int k = 0; k < 60 * 40; ++k) {
+        flow.addToBrim(0, 8333);
+        EXPECT_TRUE(flow.step({}, 1.0 / 60));
+        for (const SkinDrop& d : flow.drops())
+            if (first == 0 && d.id < static_cast<uint32_t>(p.capacity)) {
+                first = 1.2 + k * 8333e-6;
+                volume = d.volume * 1e9;
+                where = d.position.x;
+            }
+    }
+    EXPECT_GT(first, 0.4 * double{p.brimHolds}) << "it spilt too early";
+    EXPECT_LE(first, 1.01 * double{p.brimHolds});
+    EXPECT_GT(volume, 0.6 * double{p.tear});
+    EXPECT_LT(volume, 1.3 * double{p.tear});
+    EXPECT_LT(std::abs(where), 0.004);
+    const SurfaceFlow::Ledger l = flow.ledger();
+    EXPECT_EQ(l.added, l.drops + l.film + l.left + l.evaporated + l.refused);
+    EXPECT_EQ(l.added, 1200000U + 2400U * 8333U);
+}
+
+}  // namespace
+}  // namespace rivulet

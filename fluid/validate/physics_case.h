@@ -68,7 +68,11 @@ struct PhysicsCase {
     const char* quick;  // assignments, "; " between them, that make it about 8,000 particles
     // Error: the scene is missing, or cannot be run so. A run that was stopped has no findings.
     Result<Outcome> (*run)(const CaseSettings& settings);
+    // The method whose tolerances hold, the others beside it; "flow": not a scene of particles but flow on skins, run as it is on any
+    // device.
+    const char* judged = "dfsph";
 };
+std::vector<std::string> methodsOf(const PhysicsCase& row);  // that it can be run with, the judged one first
 Table<PhysicsCase> physicsCases();
 
 Result<Outcome> runHydrostatic(const CaseSettings& settings);
@@ -81,6 +85,7 @@ Result<Outcome> runMomentum(const CaseSettings& settings);
 Result<Outcome> runFloating(const CaseSettings& settings);
 Result<Outcome> runSpheric2(const CaseSettings& settings);
 Result<Outcome> runTension(const CaseSettings& settings);
+Result<Outcome> runFlow(const CaseSettings& settings);
 
 // The case, or what a method says that cannot do it and where dfsph could: then one finding, which says so and is not judged. `cpu`:
 // another device's run is compared with it, see compareWithCpu; null: the case is measured. Error: as PhysicsCase::run.

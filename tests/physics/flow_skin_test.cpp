@@ -6,6 +6,7 @@
 #include <random>
 
 #include "fluid/flow/surface_flow.h"
+#include "fluid/validate/physics_case.h"
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
@@ -20,7 +21,7 @@ constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 TEST(FlowOnAMovingSkin, ADropKeepsItsOwnPlaceOverAPlateThatIsPulledAway) {
     for (const bool bends : {false, true}) {
         auto device = cpu();
-        const Shape rest = sheet(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
+        const Shape rest = sheetShape(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
         SurfaceFlowParams p;
         p.hold = p.drag = p.airDrag = p.trail = 0;
         SurfaceFlow flow = flowOn(*device, rest, p);
@@ -48,7 +49,7 @@ TEST(FlowOnAMovingSkin, ADropKeepsItsOwnPlaceOverAPlateThatIsPulledAway) {
 // On a plate that turns it goes straight, which is a spiral to the plate: centrifugal and Coriolis forces are nothing else.
 TEST(FlowOnAMovingSkin, ADropThatNothingHoldsGoesStraightOverAPlateThatTurns) {
     auto device = cpu();
-    const Shape rest = sheet(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
+    const Shape rest = sheetShape(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
     SurfaceFlowParams p;
     p.hold = p.drag = p.airDrag = p.trail = 0;
     SurfaceFlow flow = flowOn(*device, rest, p);
@@ -81,7 +82,7 @@ TEST(FlowOnAMovingSkin, ADropThatNothingHoldsGoesStraightOverAPlateThatTurns) {
 TEST(FlowFilm, RunsAsNusseltSays) {
     for (const double jitter : {0.0, 0.3}) {
         auto device = cpu();
-        const Shape wall = sheet(vec3(0, 0.2F, 0), vec3(0, -0.2F, 0), vec3(0.08F, 0, 0), 40, 16);
+        const Shape wall = sheetShape(vec3(0, 0.2F, 0), vec3(0, -0.2F, 0), vec3(0.08F, 0, 0), 40, 16);
         SurfaceFlowParams p;
         p.viscosity = 1e-3F;
         p.density = 1000;
@@ -112,7 +113,7 @@ TEST(FlowFilm, RunsAsNusseltSays) {
 // A heap of film on a level plate spreads, and stops where its rim holds it; none of it is lost.
 TEST(FlowFilm, AHeapSpreadsAndStops) {
     auto device = cpu();
-    const Shape plate = sheet(vec3(-0.1F, 0, 0.1F), vec3(0.2F, 0, 0), vec3(0, 0, -0.2F), 20, 20);
+    const Shape plate = sheetShape(vec3(-0.1F, 0, 0.1F), vec3(0.2F, 0, 0), vec3(0, 0, -0.2F), 20, 20);
     SurfaceFlowParams p;
     p.trail = 0;
     SurfaceFlow flow = flowOn(*device, plate, p);
@@ -151,7 +152,7 @@ TEST(FlowFilm, AHeapSpreadsAndStops) {
 // A brim that sags in its middle fills there most, keeps what it is given while it can, and spills tears there.
 TEST(FlowBrim, FillsAndSpillsWhereItIsLowest) {
     auto device = cpu();
-    const Shape wall = sheet(vec3(-0.05F, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), 20, 20);
+    const Shape wall = sheetShape(vec3(-0.05F, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), 20, 20);
     SurfaceFlowParams p;
     p.evaporation = 0;
     Result<FlowMesh> mesh = makeFlowMesh(wall.view());
@@ -192,6 +193,28 @@ TEST(FlowBrim, FillsAndSpillsWhereItIsLowest) {
     const SurfaceFlow::Ledger l = flow.ledger();
     EXPECT_EQ(l.added, l.drops + l.film + l.left + l.evaporated + l.refused);
     EXPECT_EQ(l.added, 1200000U + 2400U * 8333U);
+}
+
+// `rivulet validate flow`, the quick size. One aim is missed: the law of 104 cP says of 10 cP that it slides 1.6 times as fast as it did.
+// What slows a drop and what holds it differ between Le Grand's oils by more than their viscosity and angles explain; each with its own row
+// is exact.
+TEST(FlowCase, HoldsItsTolerances) {
+    auto device = cpu();
+    CaseSettings settings;
+    settings.device = device.get();
+    settings.method = "flow";
+    settings.quick = true;
+    const Result<Outcome> outcome = runFlow(settings);
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    EXPECT_GT(outcome->findings.size(), 15U);
+    for (const Finding& f : outcome->findings) {
+        if (f.what == "sliding drop of 10 cP, law of 104 cP")
+            EXPECT_NEAR(f.error, 0.61, 0.05);
+        else
+            EXPECT_TRUE(f.pass()) << f.what << ": " << f.measured << " of " << f.reference;
+    }
+    settings.goOn = [](double) { return false; };
+    EXPECT_TRUE(runFlow(settings)->findings.empty());
 }
 
 }  // namespace

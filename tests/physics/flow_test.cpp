@@ -17,7 +17,7 @@ constexpr double kPiD = 3.14159265358979323846;
 constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 
 TEST(FlowMesh, ABallHangsTogetherOverItsSeamAndPoles) {
-    const Shape shape = ball(0.05F, 24);
+    const Shape shape = ballShape(0.05F, 24);
     Result<FlowMesh> made = makeFlowMesh(shape.view());
     ASSERT_TRUE(made);
     const FlowMesh& m = *made;
@@ -61,7 +61,7 @@ TEST(FlowMesh, WhatIsWrongIsCountedMendedOrWalkedRound) {
         EXPECT_TRUE(mesh) << (mesh ? "" : mesh.error().message);
         return mesh ? mesh->report : FlowMeshReport{};
     };
-    const Shape plain = sheet(vec3(0.0F), vec3(0.1F, 0, 0), vec3(0, 0.1F, 0), 4, 4);
+    const Shape plain = sheetShape(vec3(0.0F), vec3(0.1F, 0, 0), vec3(0, 0.1F, 0), 4, 4);
     EXPECT_EQ(report(plain).openEdges, 16U);
     EXPECT_EQ(report(plain).turned, 0U);
 
@@ -121,7 +121,7 @@ TEST(Flow, PassesThroughTrianglesWithoutArea) {
 // With nothing that pulls, holds or slows it a drop goes straight: round a ball it comes back to where it began.
 TEST(Flow, GoesStraightRoundABall) {
     auto device = cpu();
-    const Shape shape = ball(0.05F, 64);
+    const Shape shape = ballShape(0.05F, 64);
     SurfaceFlowParams p;
     p.hold = p.drag = p.airDrag = p.trail = 0;
     SurfaceFlow flow = flowOn(*device, shape, p);
@@ -147,7 +147,7 @@ TEST(Flow, SlidesDownASlopeAsItsLawSays) {
     for (const double dt : {1.0 / 240, 1.0 / 60, 1.0 / 15}) {
         auto device = cpu();
         const double a = 35 * kPiD / 180;
-        const Shape shape = sheet(vec3(0.0F), vec3(0.0F, 0.0F, -0.1F), vec3(dvec3(0.4 * std::cos(a), -0.4 * std::sin(a), 0)), 7, 31);
+        const Shape shape = sheetShape(vec3(0.0F), vec3(0.0F, 0.0F, -0.1F), vec3(dvec3(0.4 * std::cos(a), -0.4 * std::sin(a), 0)), 7, 31);
         SurfaceFlowParams p;
         p.hold = p.airDrag = p.trail = 0;
         SurfaceFlow flow = flowOn(*device, shape, p);
@@ -176,7 +176,7 @@ TEST(Flow, IsHeldUntilItIsTooHeavy) {
     for (const Row& row : {Row{60, 40, 4.07}, Row{90, 60, 7.74}})
         for (const uint32_t quads : {4U, 60U}) {
             auto device = cpu();
-            const Shape shape = sheet(vec3(0.0F, 0.1F, 0.0F), vec3(0.0F, -0.1F, 0.0F), vec3(0.1F, 0.0F, 0.0F), quads, quads);
+            const Shape shape = sheetShape(vec3(0.0F, 0.1F, 0.0F), vec3(0.0F, -0.1F, 0.0F), vec3(0.1F, 0.0F, 0.0F), quads, quads);
             SurfaceFlowParams p;
             p.advancing = row.advancing;
             p.receding = row.receding;
@@ -201,7 +201,7 @@ TEST(Flow, IsHeldUntilItIsTooHeavy) {
 // its way, is drawn into the trail and gets further.
 TEST(Flow, TheSecondTearFollowsTheFirst) {
     auto device = cpu();
-    const Shape shape = sheet(vec3(0.0F, 0.3F, 0.0F), vec3(0.0F, -0.3F, 0.0F), vec3(0.05F, 0.0F, 0.0F), 60, 10);
+    const Shape shape = sheetShape(vec3(0.0F, 0.3F, 0.0F), vec3(0.0F, -0.3F, 0.0F), vec3(0.05F, 0.0F, 0.0F), 60, 10);
     SurfaceFlowParams p;
     p.evaporation = 0;
     p.largestDrop = 6;
@@ -244,7 +244,7 @@ TEST(Flow, TheSecondTearFollowsTheFirst) {
 // A skin that stirs, and now and then loses a triangle's area, carries its drops along: they keep their places in it, and none becomes Inf.
 TEST(Flow, ASkinThatMovesCarriesItsDrops) {
     auto device = cpu();
-    const Shape rest = sheet(vec3(-0.05F, 0, 0.05F), vec3(0.1F, 0, 0), vec3(0, 0, -0.1F), 20, 20);
+    const Shape rest = sheetShape(vec3(-0.05F, 0, 0.05F), vec3(0.1F, 0, 0), vec3(0, 0, -0.1F), 20, 20);
     SurfaceFlow flow = flowOn(*device, rest);
     for (int k = 0; k < 12; ++k)
         flow.add(nearestPoint(flow.mesh(), vec3(-0.04F + 0.02F * static_cast<float>(k % 4), 0, -0.02F + 0.02F * static_cast<float>(k / 4))),
@@ -273,7 +273,7 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
 
 TEST(Flow, PositionsThatAreNoneAreRefusedAndNothingMoves) {
     auto device = cpu();
-    const Shape shape = sheet(vec3(0.0F, 0.1F, 0.0F), vec3(0.0F, -0.1F, 0.0F), vec3(0.1F, 0.0F, 0.0F), 4, 4);
+    const Shape shape = sheetShape(vec3(0.0F, 0.1F, 0.0F), vec3(0.0F, -0.1F, 0.0F), vec3(0.1F, 0.0F, 0.0F), 4, 4);
     SurfaceFlow flow = flowOn(*device, shape);
     flow.add(nearestPoint(flow.mesh(), vec3(0.05F, 0.05F, 0)), 8 * kMicrolitres);
     EXPECT_TRUE(flow.step({}, 1.0 / 60));
@@ -292,7 +292,7 @@ TEST(Flow, PositionsThatAreNoneAreRefusedAndNothingMoves) {
 
 TEST(Flow, LosesNothing) {
     auto device = cpu();
-    const Shape shape = ball(0.04F, 40);
+    const Shape shape = ballShape(0.04F, 40);
     SurfaceFlowParams p;
     p.capacity = 512;
     SurfaceFlow flow = flowOn(*device, shape, p);

@@ -1,0 +1,309 @@
+// Flow on skins: films, drops that are held and slide, the same way whatever the mesh's layout, and a ledger that closes.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "fluid/flow/surface_flow.h"
+#include "fluid/validate/flow_shapes.h"
+#include "fluid/validate/physics_case.h"
+#include "fluid/validate/reference_data.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+constexpr double kStep = 1.0 / 60;
+constexpr double kGravity = 9.81;
+constexpr Layout kLayouts[] = {Layout::own, Layout::stretched, Layout::turned, Layout::pieces};
+
+struct Under {
+    const CaseSettings& settings;
+    Outcome outcome = {};
+    double wall = 0, simulated = 0;  // s
+    double share = 0;                // of the case that is done
+    bool stopped = false;
+
+    // One step. false: stop.
+    bool step(SurfaceFlow& flow, const SurfaceFlowInputs& inputs, double seconds = kStep) {
+        const auto before = std::chrono::steady_clock::now();
+        const Status done = flow.step(inputs, seconds);
+        wall += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+        simulated += seconds;
+        stopped = stopped || !done || !settings.goOn(share);
+        return !stopped;
+    }
+    void found(std::string what, const char* unit, double measured, double reference, double error, std::optional<double> tolerance) {
+        outcome.findings.push_back({std::move(what), unit, measured, reference, error, tolerance});
+    }
+};
+
+Result<SurfaceFlow> flowOn(const Under& u, const Shape& shape, const SurfaceFlowParams& params) {
+    Result<FlowMesh> mesh = makeFlowMesh(shape.view());
+    if (!mesh) return mesh.error();
+    return SurfaceFlow::create(*u.settings.device, std::move(*mesh), params);
+}
+
+// A film of strewn particles on an upright wall: rho g h^2 / (3 mu).
+Status film(Under& u) {
+    for (const Layout layout : kLayouts) {
+        SurfaceFlowParams p;
+        p.viscosity = 1.0e-3F;
+        p.density = 1000;
+        p.advancing = p.receding = 1;  // it wets: a film as thin as that tears else
+        p.trail = 0;
+        p.capacity = 1 << 14;
+        const Shape wall = laidOut(sheetShape(vec3(0, 0.2F, 0), vec3(0, -0.2F, 0), vec3(0.08F, 0, 0), 40, 16), layout);
+        Result<SurfaceFlow> flow = flowOn(u, wall, p);
+        if (!flow) return flow.error();
+        const double spacing = u.settings.quick ? 1.5e-3 : 1.2e-3, height = 1.0e-4;
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> off(-0.3 * spacing, 0.3 * spacing);
+        for (double y = 0.08; y < 0.18; y += spacing)
+            for (double x = 0.01; x < 0.07; x += spacing)
+                flow->add(nearestPoint(flow->mesh(), vec3(dvec3(x + off(random), y + off(random), 0))),
+                          static_cast<uint32_t>(spacing * spacing * height * 1.0e15), vec3(0.0F), true);
+        double sum = 0, count = 0;
+        for (int k = 0; k < 18; ++k) {
+            if (!u.step(*flow, {})) return ok();
+            if (k < 3) continue;
+            for (const SkinDrop& d : flow->drops())
+                if (std::abs(d.position.x - 0.04F) < 0.02F && std::abs(d.position.y - 0.13F) < 0.03F) {
+                    sum -= double{d.velocity.y};
+                    count += 1;
+                }
+        }
+        const double speed = 1000 * kGravity * height * height / (3 * 1.0e-3), measured = sum / std::max(count, 1.0);
+        u.found(fmt::format("Nusselt film of 100 um, mesh {}", layoutName(layout)), "m/s", measured, speed, std::abs(measured / speed - 1),
+                0.05);
+    }
+    return ok();
+}
+
+// Grown by fifty others on an upright wall until it lets go.
+Status heldDrop(Under& u, double advancing, double receding, uint32_t quads, Layout layout) {
+    SurfaceFlowParams p;
+    p.advancing = static_cast<float>(advancing);
+    p.receding = static_cast<float>(receding);
+    const Shape wall = laidOut(sheetShape(vec3(0, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), quads, quads), layout);
+    Result<SurfaceFlow> flow = flowOn(u, wall, p);
+    if (!flow) return flow.error();
+    // Furmidge 1962: rho g V = k w gamma (cos receding - cos advancing), w the foot of a cap with the mean angle.
+    const double rad = kPiD / 180, h = std::tan(0.25 * (advancing + receding) * rad);
+    const double w = 2 * std::cbrt(6 / (kPiD * h * (3 + h * h)));  // over V^(1/3)
+    const double force = double{p.hold} * w * double{p.surfaceTension} * (std::cos(receding * rad) - std::cos(advancing * rad));
+    const double expected = std::pow(force / (double{p.density} * kGravity), 1.5);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> strewn(-2.0e-4F, 2.0e-4F);
+    double grown = 0, first = 0;
+    const auto birth = static_cast<uint32_t>(expected * 1.0e15 / 50);
+    for (int k = 0; k < 70 && first == 0; ++k) {
+        flow->add(nearestPoint(flow->mesh(), vec3(0.05F + strewn(random), 0.05F + strewn(random), 0)), birth);
+        for (int step = 0; step < 6; ++step)
+            if (!u.step(*flow, {})) return ok();
+        grown += birth * 1.0e-15;
+        for (const SkinDrop& d : flow->drops())
+            if (glm::length(d.velocity) > 1.0e-3F) first = grown;
+    }
+    u.found(fmt::format("held drop, {:.0f}/{:.0f} deg, {} quads a side, mesh {}", advancing, receding, quads, layoutName(layout)), "ul",
+            first * 1.0e9, expected * 1.0e9, std::abs(first / expected - 1), 0.05);
+    return ok();
+}
+
+// The speed of a drop of 6 microlitres down a slope of which Bo = V^(2/3) rho g sin(a) / gamma. Nothing: stopped.
+Result<double> slidingSpeed(Under& u, const SurfaceFlowParams& p, double bond) {
+    const double volume = 6.0e-9, sine = bond * double{p.surfaceTension} / (std::pow(volume, 2.0 / 3) * double{p.density} * kGravity);
+    const double a = std::asin(std::min(sine, 1.0));
+    const Shape slope = sheetShape(vec3(0.0F), vec3(0.0F, 0.0F, -0.03F), vec3(dvec3(0.3 * std::cos(a), -0.3 * std::sin(a), 0)), 6, 60);
+    Result<SurfaceFlow> flow = flowOn(u, slope, p);
+    if (!flow) return flow.error();
+    const auto at = static_cast<float>(0.02 * std::cos(a)), down = static_cast<float>(-0.02 * std::sin(a));
+    flow->add(nearestPoint(flow->mesh(), vec3(at, down, -0.0151F)), static_cast<uint32_t>(volume * 1.0e15));
+    double speed = 0;
+    for (int k = 0; k < 60; ++k) {
+        if (!u.step(*flow, {})) return 0;
+        for (const SkinDrop& d : flow->drops()) speed = glm::length(d.velocity);
+    }
+    return speed;
+}
+
+// Le Grand, Daerr and Limat 2005: calibrated at 104 cP, what does the law say of 10 and 1040 cP, and of each when it is its own row?
+Status slidingDrops(Under& u) {
+    struct Oil {
+        double eta, advancing, receding, slope, critical;
+    };
+    std::vector<Oil> oils;
+    const auto column = [](size_t k) { return referenceCurve("le_grand_2005_sliding", 0, k); };
+    for (size_t k = 0; k < column(1).size(); ++k)
+        oils.push_back({1.0e-3 * column(1)[k].x, column(1)[k].y, column(2)[k].y, column(3)[k].y, column(4)[k].y});
+    const double rad = kPiD / 180;
+    // Ca = (Bo - 2 c k (cos r - cos a)) / (2 c beta), c the foot's radius over V^(1/3).
+    const auto calibrated = [&](const Oil& oil) {
+        const double h = std::tan(0.25 * (oil.advancing + oil.receding) * rad), c = std::cbrt(6 / (kPiD * h * (3 + h * h)));
+        SurfaceFlowParams p;
+        p.surfaceTension = 0.0209F;  // silicone oil
+        p.density = 964;
+        p.drag = static_cast<float>(1 / (2 * c * oil.slope));
+        p.hold = static_cast<float>(oil.critical / (2 * c * (std::cos(oil.receding * rad) - std::cos(oil.advancing * rad))));
+        p.trail = p.airDrag = 0;
+        return p;
+    };
+    Curve measured{"Le Grand et al. 2005", true, {}}, predicted{"predicted from 104 cP", true, {}};
+    for (const bool own : {false, true})
+        for (const Oil& oil : oils) {
+            if (own && oil.eta == oils[1].eta) continue;  // the same as predicted
+            SurfaceFlowParams p = calibrated(own ? oil : oils[1]);
+            p.viscosity = static_cast<float>(oil.eta);
+            p.advancing = static_cast<float>(oil.advancing);
+            p.receding = static_cast<float>(oil.receding);
+            double worst = 0, at = 0, there = 0;
+            for (const double bond : {0.6, 1.0, 1.4}) {
+                const Result<double> speed = slidingSpeed(u, p, bond);
+                if (!speed) return speed.error();
+                if (u.stopped) return ok();
+                const double expected = oil.slope * (bond - oil.critical) * double{p.surfaceTension} / oil.eta;
+                if (std::abs(*speed / expected - 1) >= worst) {
+                    worst = std::abs(*speed / expected - 1);
+                    at = *speed;
+                    there = expected;
+                }
+            }
+            u.found(fmt::format("sliding drop of {:.0f} cP, law of {}", 1.0e3 * oil.eta, own ? "its own" : "104 cP"), "m/s", at, there,
+                    worst, own ? 0.05 : 0.3);
+        }
+    return ok();
+}
+
+struct Way {
+    std::vector<vec3> places;
+    double arrival = 0;  // s, when it had gone as far as the first of the ways was to
+};
+
+// A tear that runs down a shape of 5 cm, from `from` until it is below `level`.
+Result<Way> wayDown(Under& u, const Shape& shape, const vec3& from, float level) {
+    SurfaceFlowParams p;
+    p.trail = 5.0e-6F;
+    Result<SurfaceFlow> flow = flowOn(u, shape, p);
+    if (!flow) return flow.error();
+    flow->add(nearestPoint(flow->mesh(), from), 12000000);
+    Way way;
+    for (int k = 0; k < 600; ++k) {
+        if (!u.step(*flow, {})) return way;
+        const std::vector<SkinDrop> drops = flow->drops();
+        if (drops.empty()) break;
+        way.places.push_back(drops[0].position);
+        way.arrival = k * kStep;
+        if (drops[0].position.y < level) {
+            // Between two steps.
+            const float before = way.places[way.places.size() - 2].y, now = drops[0].position.y;
+            way.arrival -= kStep * double{(level - now) / std::max(before - now, 1.0e-9F)};
+            break;
+        }
+    }
+    return way;
+}
+
+Status samePath(Under& u) {
+    struct Kind {
+        const char* name;
+        Shape shape;
+        vec3 from;
+        float level;
+    };
+    // Bumps of a tenth, so that there is a way to miss.
+    Shape ball = ballShape(0.05F, 48);
+    for (vec3& x : ball.positions) x *= 1.0F + 0.06F * std::sin(90 * x.x + 1.0F) * std::sin(110 * x.y) * std::sin(80 * x.z + 2.0F);
+    const std::vector<Kind> kinds = {{"bumpy ball", ball, vec3(0.012F, 0.06F, 0.014F), -0.02F},
+                                     {"cylinder", coneShape(0.03F, 0.03F, 0.1F, 48, 40), vec3(0.02F, 0.095F, 0.03F), 0.01F},
+                                     {"cone", coneShape(0.06F, 0.02F, 0.1F, 48, 40), vec3(0.012F, 0.095F, 0.016F), 0.01F}};
+    for (const Kind& kind : kinds) {
+        Way own;
+        double apart = 0, late = 0, length = 0;
+        for (const Layout layout : kLayouts) {
+            Result<Way> way = wayDown(u, laidOut(kind.shape, layout), kind.from, kind.level);
+            if (!way) return way.error();
+            if (u.stopped) return ok();
+            if (layout == Layout::own) {
+                own = *way;
+                for (size_t k = 1; k < own.places.size(); ++k) length += double{glm::distance(own.places[k], own.places[k - 1])};
+                continue;
+            }
+            late = std::max(late, std::abs(way->arrival / own.arrival - 1));
+            for (size_t k = 0; k < std::min(own.places.size(), way->places.size()); ++k)
+                apart = std::max(apart, double{glm::distance(own.places[k], way->places[k])} / length);
+        }
+        u.found(fmt::format("{}: paths of four layouts, apart over their length", kind.name), "", apart, 0, apart, 0.02);
+        u.found(fmt::format("{}: arrival, latest against the own layout's", kind.name), "", late, 0, late, 0.02);
+    }
+    return ok();
+}
+
+// A minute of crying down a ball that breathes, with gusts: what was shed is somewhere, to a picolitre.
+Status ledger(Under& u) {
+    const Shape rest = ballShape(0.06F, 64);
+    SurfaceFlowParams p;
+    p.capacity = 512;
+    p.evaporation = 1.0e-7F;
+    Result<SurfaceFlow> flow = flowOn(u, rest, p);
+    if (!flow) return flow.error();
+    std::vector<vec3> shape = rest.positions;
+    const double duration = u.settings.quick ? 10 : 60;
+    uint64_t told = 0;
+    for (int k = 0; k < static_cast<int>(duration / kStep); ++k) {
+        const double t = k * kStep;
+        for (const float side : {-1.0F, 1.0F})
+            if (k % 6 == 0) flow->add(nearestPoint(flow->mesh(), vec3(0.02F * side, 0.045F, 0.035F)), 50000);  // 30 ul a minute
+        for (size_t i = 0; i < shape.size(); ++i)
+            shape[i] = rest.positions[i] * (1.0F + 0.05F * static_cast<float>(std::sin(3 * t + 40 * double{rest.positions[i].x})));
+        const vec3 wind(static_cast<float>(std::fmod(t, 10) > 8 ? 6 : 0), 0, 0);
+        if (!u.step(*flow, {.wind = wind, .positions = shape})) return ok();
+        for (const LeftDrop& d : flow->takeLeft()) told += d.picolitres;
+    }
+    const SurfaceFlow::Ledger l = flow->ledger();
+    const auto there = static_cast<double>(l.drops + l.film + told + l.evaporated + l.refused);
+    u.found(fmt::format("ledger after {:.0f} s: {} merges, {:.0f} % dripped off, {:.0f} % dried", duration, l.merges,
+                        100.0 * static_cast<double>(told) / static_cast<double>(l.added),
+                        100.0 * static_cast<double>(l.evaporated) / static_cast<double>(l.added)),
+            "pl", there, static_cast<double>(l.added), std::abs(there - static_cast<double>(l.added)) / static_cast<double>(l.added),
+            1.0e-5);
+    return ok();
+}
+
+}  // namespace
+
+Result<Outcome> runFlow(const CaseSettings& settings) {
+    Under u{.settings = settings};
+    u.outcome.method = "flow";
+    const std::pair<double, std::function<Status()>> parts[] = {
+        {0.15, [&] { return film(u); }},
+        {0.30,
+         [&] {
+             for (const auto& [advancing, receding] : {std::pair(60.0, 40.0), std::pair(90.0, 60.0)})
+                 for (const uint32_t quads : {4U, 60U})
+                     for (const Layout layout : {Layout::own, Layout::turned, Layout::pieces}) {
+                         if (settings.quick && layout != Layout::own) continue;
+                         if (Status held = heldDrop(u, advancing, receding, quads, layout); !held || u.stopped) return held;
+                     }
+             return ok();
+         }},
+        {0.45, [&] { return slidingDrops(u); }},
+        {0.65, [&] { return samePath(u); }},
+        {1.0, [&] { return ledger(u); }},
+    };
+    for (const auto& [share, part] : parts) {
+        if (Status done = part(); !done) return done.error();
+        if (u.stopped) {
+            u.outcome.findings.clear();
+            return u.outcome;
+        }
+        u.share = share;
+    }
+    u.outcome.wallPerSecond = u.wall / std::max(u.simulated, 1.0e-9);
+    u.outcome.stepsPerSecond = 1 / kStep;
+    return u.outcome;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,120 @@
+#include "engine/scene/assimp_file.h"
+
+#include <fmt/format.h>
+
+#include <assimp/config.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace rivulet {
+namespace {
+
+std::string extensionOf(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+// assimp repeats an OBJ's vertex for each corner that uses it, so the file's own lines are counted instead.
+size_t countBadObjVertices(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    size_t bad = 0;
+    while (std::getline(file, line)) {
+        size_t start = line.find_first_not_of(" \t");
+        if (start == std::string::npos || line[start] != 'v' || start + 1 >= line.size() ||
+            (line[start + 1] != ' ' && line[start + 1] != '\t'))
+            continue;
+        const char* at = line.c_str() + start + 1;
+        bool finite = true;
+        for (int k = 0; k < 3; ++k) {
+            char* end = nullptr;
+            float x = std::strtof(at, &end);
+            if (end == at) break;
+            finite = finite && std::isfinite(x);
+            at = end;
+        }
+        if (!finite) ++bad;
+    }
+    return bad;
+}
+
+size_t countBadVertices(const aiScene& scene) {
+    size_t bad = 0;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        for (unsigned i = 0; i < scene.mMeshes[m]->mNumVertices; ++i) {
+            const aiVector3D& p = scene.mMeshes[m]->mVertices[i];
+            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) ++bad;
+        }
+    return bad;
+}
+
+bool indicesInRange(const aiScene& scene) {
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& part = *scene.mMeshes[m];
+        for (unsigned f = 0; f < part.mNumFaces; ++f)
+            for (unsigned k = 0; k < part.mFaces[f].mNumIndices; ++k)
+                if (part.mFaces[f].mIndices[k] >= part.mNumVertices) return false;
+    }
+    return true;
+}
+
+Status checkFile(const std::string& path) {
+    std::error_code error;
+    std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found) return meshFileError(path, "cannot be read: there is no such file");
+    if (error) return meshFileError(path, fmt::format("cannot be read: {}", error.message()));
+    if (std::filesystem::is_directory(status)) return meshFileError(path, "is a folder; name an OBJ, glTF, PLY or STL file in it");
+    if (!std::filesystem::is_regular_file(status)) return meshFileError(path, "is not a plain file; name an OBJ, glTF, PLY or STL file");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return meshFileError(path, "cannot be opened: check its permissions");
+    if (std::filesystem::file_size(path, error) == 0) return meshFileError(path, "is an empty file");
+    if (extensionOf(path) == ".ply") {  // assimp 5.2 never returns from a header without an end
+        std::string head(size_t{1} << 16, '\0');
+        file.read(head.data(), static_cast<std::streamsize>(head.size()));
+        if (head.find("end_header") == std::string::npos) return meshFileError(path, "cannot be read: its PLY header has no end");
+    }
+    return ok();
+}
+
+}  // namespace
+
+Error meshFileError(const std::string& path, std::string_view what) { return badInput(fmt::format("the mesh '{}' {}", path, what)); }
+
+Result<const aiScene*> readMeshFile(Assimp::Importer& importer, const std::string& path) {
+    if (Status readable = checkFile(path); !readable) return readable.error();
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const aiScene* scene = importer.ReadFile(path, 0);  // raw first: post-processing would stumble over NaN
+    if (scene == nullptr) {
+        std::string why = importer.GetErrorString();
+        if (why.find("No suitable reader") != std::string::npos)
+            return meshFileError(path, importer.IsExtensionSupported(extensionOf(path))
+                                           ? "cannot be read: it is damaged, or not what its name says"
+                                           : "is of a kind that cannot be read; use OBJ, glTF, PLY or STL");
+        if (why.find("out of range") != std::string::npos) return meshFileError(path, fmt::format("has an index out of range ({})", why));
+        return meshFileError(path, fmt::format("cannot be read: {}", why));
+    }
+    size_t bad = countBadVertices(*scene);
+    if (extensionOf(path) == ".obj") bad = std::max(bad > 0 ? size_t{1} : size_t{0}, countBadObjVertices(path));
+    if (bad > 0)
+        return meshFileError(path, fmt::format("has {} {} with NaN or infinite coordinates", bad, bad == 1 ? "vertex" : "vertices"));
+    if (!indicesInRange(*scene)) return meshFileError(path, "has a triangle whose index is out of range");
+    if (scene->mNumMeshes == 0) return meshFileError(path, "has no triangles");
+    return scene;
+}
+
+Result<const aiScene*> prepareMeshFile(Assimp::Importer& importer, const std::string& path, unsigned steps) {
+    const aiScene* scene = importer.ApplyPostProcessing(steps);
+    if (scene != nullptr) return scene;
+    const std::string why = importer.GetErrorString();
+    if (why.empty() || why.find("No output meshes") != std::string::npos) return meshFileError(path, "has no triangles");
+    return meshFileError(path, fmt::format("has no triangles, or they cannot be prepared ({})", why));
+}
+
+}  // namespace rivulet

@@ -1,0 +1,53 @@
+#include "engine/scene/load_image.h"
+
+#include <fmt/format.h>
+#include <stb/stb_image.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+namespace rivulet {
+namespace {
+
+constexpr int kWidest = 16384;  // texels
+
+Error about(const std::string& name, std::string_view what) { return badInput(fmt::format("the picture '{}' {}", name, what)); }
+
+}  // namespace
+
+Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& name) {
+    if (bytes.empty()) return about(name, "is empty");
+    if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) return about(name, "is larger than 2 GiB");
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const int size = static_cast<int>(bytes.size());
+    Image image;
+    image.name = name;
+    int channels = 0;
+    if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0)
+        return about(name, "cannot be read: it is damaged, or not a PNG, JPEG, TGA or BMP");
+    if (std::max(image.width, image.height) > kWidest)
+        return about(name, fmt::format("is {} x {} texels; make it no wider than {}", image.width, image.height, kWidest));
+    stbi_uc* texels = stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4);
+    if (texels == nullptr) return about(name, fmt::format("cannot be read: {}", stbi_failure_reason()));
+    const size_t row = static_cast<size_t>(image.width) * 4, rows = static_cast<size_t>(image.height);
+    image.rgba.resize(row * rows);
+    for (size_t y = 0; y < rows; ++y)
+        std::copy_n(texels + y * row, row, image.rgba.begin() + static_cast<std::ptrdiff_t>((rows - 1 - y) * row));
+    stbi_image_free(texels);
+    return image;
+}
+
+Result<Image> loadImage(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) return about(path, "cannot be read: there is no such file");
+    if (!std::filesystem::is_regular_file(path, error)) return about(path, "is not a plain file; name a PNG or JPEG");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return about(path, "cannot be opened: check its permissions");
+    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    return decodeImage(std::as_bytes(std::span(bytes)), path);
+}
+
+}  // namespace rivulet

@@ -1,0 +1,30 @@
+#include "engine/scene/model.h"
+
+#include <algorithm>
+#include <glm/matrix.hpp>
+
+namespace rivulet {
+
+std::vector<mat4> Model::worldMatrices() const {
+    std::vector<mat4> world;
+    world.reserve(nodes.size());
+    for (const ModelNode& node : nodes)
+        world.push_back(node.parent < 0 ? node.local : world[static_cast<size_t>(node.parent)] * node.local);
+    return world;
+}
+
+Part* Model::find(std::string_view partName) {
+    const auto found = std::find_if(parts.begin(), parts.end(), [&](const Part& part) { return part.name == partName; });
+    return found == parts.end() ? nullptr : &*found;
+}
+
+std::vector<mat4> Model::boneMatrices(const Part& part, const std::vector<mat4>& world) const {
+    // Vertices stay in their node's frame: what follows places them in the world as it does any other part's.
+    const mat4 toNode = glm::inverse(world[static_cast<size_t>(part.node)]);
+    std::vector<mat4> all;
+    all.reserve(part.bones.size());
+    for (const Bone& bone : part.bones) all.push_back(toNode * world[static_cast<size_t>(bone.node)] * bone.fromMesh);
+    return all;
+}
+
+}  // namespace rivulet

@@ -26,6 +26,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::bodyRows());
     add(kernels_generic::forceRows());
     add(kernels_generic::flowRows());
+    add(kernels_generic::deformRows());
 #endif
 #if defined(RIVULET_HAS_AVX2)
     add(kernels_avx2::gridRows());
@@ -36,6 +37,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx2::bodyRows());
     add(kernels_avx2::forceRows());
     add(kernels_avx2::flowRows());
+    add(kernels_avx2::deformRows());
 #endif
 #if defined(RIVULET_HAS_AVX512)
     add(kernels_avx512::gridRows());
@@ -46,6 +48,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx512::bodyRows());
     add(kernels_avx512::forceRows());
     add(kernels_avx512::flowRows());
+    add(kernels_avx512::deformRows());
 #endif
     return all;
 }

@@ -18,13 +18,17 @@ struct SkinLook {
     std::shared_ptr<const Image> regions;     // R oily, G dry, B hair, A lip; null: none of these
 };
 
-// An eyeball: what is seen through the cornea lies where the light is bent to. In the mesh's own frame.
+// An eyeball, in the mesh's own frame: its iris is seen where the cornea bends the ray to. Its pictures have the pole of Lambert's
+// equal-area map where the eye looks, in the middle, and the back of the eye along the edge of the inscribed circle. Lengths but `radius`
+// in its radii.
 struct EyeLook {
-    vec3 centre{0.0F};            // m, of the eyeball
-    vec3 sight{0, 0, 1};          // unit, through the pupil
-    float radius = 0.012F;        // m, of the eyeball
-    float corneaRadius = 0.65F;   // of the cornea's sphere, in radii of the eyeball
-    float corneaCentre = 0.446F;  // its centre before the eyeball's, in radii
+    vec3 centre{0.0F};           // m
+    vec3 sight{0, 0, 1};         // unit
+    float radius = 0.012F;       // m
+    float corneaCentre = 0.45F;  // of its sphere, along `sight`
+    float corneaRadius = 0.65F;
+    float irisPlane = 0.85F;  // along `sight`
+    float irisRadius = 0.5F;
 };
 
 struct Material {
@@ -35,6 +39,7 @@ struct Material {
     float opacity = 1.0F;                            // where blended: of what is matte; gloss stays
     bool blended = false;                            // drawn over what is opaque, farthest first
     float cutoff = 0.0F;                             // alpha below which there is nothing
+    float strand = 0.0F;                             // of blended ribbons: share of u, about its middle, that is a hair; 0: no ribbons
     bool doubleSided = true;                         // or seen from outside only
     std::shared_ptr<const Image> colour;             // sRGB, times baseColour; alpha, times opacity
     std::shared_ptr<const Image> metallicRoughness;  // blue, times metallic; green, times roughness

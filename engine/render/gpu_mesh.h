@@ -4,18 +4,25 @@
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/vertex_array.h"
 #include "engine/scene/mesh.h"
+#include "engine/scene/skin.h"
 
 namespace rivulet {
 
 class GpuMesh {
   public:
-    // Attribute 0: position, 1: normal (zero where the mesh has none). Error (failed): out of GPU memory.
+    // Attribute 0: position, 1: normal (zero where the mesh has none), w: mean curvature (1/m, of the mesh's unit), 2: uv (zero where it
+    // has none). Error (failed): out of GPU memory.
     static Result<GpuMesh> create(const Mesh& mesh);
+    // Vertices are where the deformer has them now: drawn from its own buffers if it runs on OpenGL, else from copies, made only when it
+    // has run since. It must have as many vertices, and outlive the drawing. Error (failed): out of GPU memory.
+    Status follow(const Deformer& deformer);
     void draw() const;                                // with the program in use
-    const Bounds& bounds() const { return bounds_; }  // the mesh's own
+    const Bounds& bounds() const { return bounds_; }  // the mesh's own, or the deformer's
 
   private:
-    gpu::Buffer vertices_, indices_;
+    gpu::Buffer vertices_, indices_, positions_, normals_;
+    uint64_t followed_ = 0;  // the deformer's version
+    std::vector<vec4> copy_;
     gpu::VertexArray array_;
     Bounds bounds_;
     int count_ = 0;

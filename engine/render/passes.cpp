@@ -1,8 +1,10 @@
 #include "engine/render/passes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/matrix.hpp>
 
+#include "engine/render/skin_tables.h"
 #include "engine/scene/light.h"
 
 namespace rivulet {
@@ -37,6 +39,69 @@ void bindLight(Program& program, const PassContext& c, const LightMaps& light, i
     program.set("waterAbsorption", light.absorption);
 }
 
+bool isSolid(const Material& m) { return !m.blended && m.cutoff <= 0; }
+
+// Only outsides are drawn where a material says so; a mirroring transform turns triangles round.
+void cull(const DrawnMesh& m) {
+    if (m.material.doubleSided) {
+        glDisable(GL_CULL_FACE);
+        return;
+    }
+    glEnable(GL_CULL_FACE);
+    glFrontFace(glm::determinant(mat3(m.toWorld)) < 0 ? GL_CW : GL_CCW);
+}
+
+void setPlace(Program& p, const DrawnMesh& m) {
+    p.set("toWorldMatrix", m.toWorld);
+    p.set("normalMatrix", glm::transpose(glm::inverse(mat3(m.toWorld))));
+    p.set("baseColour", m.material.baseColour);
+    p.set("roughness", m.material.roughness);
+    p.set("metallic", m.material.metallic);
+}
+
+void setSkin(Program& p, const SkinLook& skin, const MaterialTextures& textures) {
+    constexpr float kUnit = 0.36F;  // m a unit of uv, about, on a head whose chart fills the tile
+    p.set("scatterLength", glm::max(skin.scatter, vec3(1e-5F)));
+    p.set("skinAmount", vec2(skin.translucency, skin.pores));
+    p.set("poreTiling", vec2(std::round(kUnit / kPoreTile), kPoreTile));
+    p.texture("reliefMap", 8, *textures.relief);
+    p.texture("regionsMap", 9, *textures.regions);
+    p.texture("poresMap", 10, *textures.pores);
+    p.texture("diffusionMap", 11, *textures.diffusion);
+}
+
+void setEye(Program& p, const EyeLook& eye, const MaterialTextures& textures, const mat4& toWorld) {
+    const vec3 z = glm::normalize(eye.sight), x = glm::normalize(glm::cross(vec3(0, 1, 0.001F), z)), y = glm::cross(z, x);
+    const mat4 fromEye = toWorld * mat4(vec4(x, 0) * eye.radius, vec4(y, 0) * eye.radius, vec4(z, 0) * eye.radius, vec4(eye.centre, 1));
+    p.set("toEyeMatrix", glm::inverse(fromEye));
+    p.set("cornea", vec4(eye.corneaCentre, eye.corneaRadius, eye.irisPlane, eye.irisRadius));
+    p.texture("diffusionMap", 11, *textures.diffusion);
+}
+
+void drawPart(const DrawnMesh& m) {
+    Program& p = *m.part;
+    setPlace(p, m);
+    p.set("scale", std::cbrt(std::abs(glm::determinant(mat3(m.toWorld)))));
+    p.set("opacity", m.material.opacity);
+    p.set("cutoff", m.material.cutoff);
+    p.set("strand", m.material.strand);
+    p.texture("colourMap", 4, *m.textures.colour);
+    p.texture("roughnessMap", 5, *m.textures.metallicRoughness);
+    p.texture("normalMap", 6, *m.textures.normals);
+    if (m.material.skin)
+        setSkin(p, *m.material.skin, m.textures);
+    else if (m.material.eye)
+        setEye(p, *m.material.eye, m.textures, m.toWorld);
+    if (m.layer != nullptr) {
+        const LayerLook& look = m.layer->look;
+        p.texture("layerMap", 7, *m.layer->texels);
+        p.set("layerLook", vec4(look.refractiveIndex, look.roughness, look.filmRoughness, look.darkening));
+        p.set("layerAbsorption", vec4(look.absorption, look.scale));
+    }
+    cull(m);
+    m.mesh->draw();
+}
+
 // Three softboxes, turned with the key light.
 void placeSoftboxes(FrameParams& f) {
     const vec3 key(f.lightDir), colour(f.lightColour);
@@ -67,6 +132,7 @@ std::array<Program*, 14> RenderPrograms::all() {
 
 Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
     RenderPrograms p;
+    p.files_ = files;
     const std::string full = "shaders/render/fullscreen.vert", box = "shaders/render/box.vert", folder = "shaders/render/";
     std::pair<Program*, Result<Program>> made[] = {
         {&p.shadow, Program::create(files, {folder + "mesh_depth.vert", folder + "depth.frag"})},
@@ -94,8 +160,30 @@ Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
 Status RenderPrograms::reload() {
     for (Program* program : all())
         if (Status s = program->reload(); !s) return s;
+    for (auto& [key, program] : parts_)
+        if (Status s = program.reload(); !s) return s;
     return ok();
 }
+
+Result<Program*> RenderPrograms::part(const Material& material, bool layered) {
+    std::vector<Define> defines = {{"PART", "1"}};
+    unsigned key = 0;
+    auto add = [&](bool wanted, unsigned bit, const char* name) {
+        if (!wanted) return;
+        key |= bit;
+        defines.push_back({name, "1"});
+    };
+    add(material.skin != nullptr, 1, "SKIN");
+    add(material.eye != nullptr && !material.skin, 2, "EYE");
+    add(layered, 4, "LAYER");
+    add(material.blended, 8, "BLENDED");
+    if (const auto found = parts_.find(key); found != parts_.end()) return &found->second;
+    Result<Program> made = Program::create(files_, {"shaders/material/mesh.vert", "shaders/material/part.frag"}, defines);
+    if (!made) return made.error();
+    return &parts_.emplace(key, std::move(*made)).first->second;
+}
+
+bool isPart(const Material& m) { return m.skin || m.eye || m.blended || m.cutoff > 0 || !m.doubleSided || !imagesOf(m).empty(); }
 
 FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds& meshes, const Bounds& water) {
     FrameParams f{};
@@ -147,6 +235,7 @@ void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMes
         glEnable(GL_DEPTH_TEST);
         programs.shadow.use();
         for (const DrawnMesh& m : drawn) {
+            if (!isSolid(m.material)) continue;
             programs.shadow.set("toClip", projection * m.toWorld);
             m.mesh->draw();
         }
@@ -183,9 +272,12 @@ TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle
         glDepthFunc(GL_LESS);
         programs.depth.use();
         for (const DrawnMesh& m : drawn) {
+            if (!isSolid(m.material)) continue;
             programs.depth.set("toWorldMatrix", m.toWorld);
+            cull(m);
             m.mesh->draw();
         }
+        glDisable(GL_CULL_FACE);
     });
     return depth;
 }
@@ -216,6 +308,44 @@ TextureHandle addOcclusion(FrameGraph& graph, RenderPrograms& programs, BufferHa
     return open;
 }
 
+namespace {
+
+void bindPlain(Program& p, const PassContext& c, TextureHandle occlusion, const LightMaps& light) {
+    p.use();
+    p.texture("occlusion", 0, c.texture(occlusion));
+    bindLight(p, c, light, 1);
+}
+
+// Solid parts, then those with holes, which write their depth themselves, then what is blended.
+void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const vec3& camera, TextureHandle occlusion,
+               const LightMaps& light) {
+    std::vector<const DrawnMesh*> blended;
+    for (const bool holes : {false, true}) {
+        glDepthMask(holes ? GL_TRUE : GL_FALSE);
+        for (const DrawnMesh& m : drawn) {
+            if (m.part == nullptr || m.material.blended || isSolid(m.material) == holes) continue;
+            bindPlain(*m.part, c, occlusion, light);
+            drawPart(m);
+        }
+    }
+    for (const DrawnMesh& m : drawn)
+        if (m.part != nullptr && m.material.blended) blended.push_back(&m);
+    auto away = [&](const DrawnMesh* m) { return glm::distance(vec3(m->toWorld * vec4(m->mesh->bounds().centre(), 1.0F)), camera); };
+    std::stable_sort(blended.begin(), blended.end(), [&](const DrawnMesh* a, const DrawnMesh* b) { return away(a) > away(b); });
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    for (const DrawnMesh* m : blended) {
+        bindPlain(*m->part, c, occlusion, light);
+        drawPart(*m);
+    }
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glFrontFace(GL_CCW);
+}
+
+}  // namespace
+
 TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
                         std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light) {
     const TextureHandle colour = graph.texture("scene colour", sized(view, Format::rgba16f));
@@ -235,18 +365,13 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
                    bindLight(programs.floor, c, light, 1);
                    c.drawFullscreen();
                    glDepthFunc(GL_LEQUAL);
-                   Program& p = programs.mesh;
-                   p.use();
-                   p.texture("occlusion", 0, c.texture(occlusion));
-                   bindLight(p, c, light, 1);
+                   bindPlain(programs.mesh, c, occlusion, light);
                    for (const DrawnMesh& m : drawn) {
-                       p.set("toWorldMatrix", m.toWorld);
-                       p.set("normalMatrix", glm::transpose(glm::inverse(mat3(m.toWorld))));
-                       p.set("baseColour", m.material.baseColour);
-                       p.set("roughness", m.material.roughness);
-                       p.set("metallic", m.material.metallic);
+                       if (m.part != nullptr) continue;
+                       setPlace(programs.mesh, m);
                        m.mesh->draw();
                    }
+                   drawParts(c, drawn, view.cameraPosWorld, occlusion, light);
                });
     return colour;
 }

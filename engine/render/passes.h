@@ -3,13 +3,16 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
 
 #include "engine/compute/kernel_source.h"
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/program.h"
+#include "engine/material/layer.h"
 #include "engine/material/material.h"
 #include "engine/render/frame_view.h"
+#include "engine/render/gpu_images.h"
 #include "engine/render/gpu_mesh.h"
 #include "shaders/render/frame.h"
 
@@ -22,15 +25,26 @@ struct RenderPrograms {
     static Result<RenderPrograms> create(const ShaderFiles& files);
     Status reload();
 
+    // The program for parts of this material, with or without a layer on it: made when first asked for. Error: as create.
+    Result<gpu::Program*> part(const Material& material, bool layered);
+
   private:
     std::array<gpu::Program*, 14> all();
+    ShaderFiles files_;
+    std::map<unsigned, gpu::Program> parts_;
 };
 
 struct DrawnMesh {
     const GpuMesh* mesh = nullptr;  // lives until the graph has executed
     mat4 toWorld{1.0F};
     Material material;
+    gpu::Program* part = nullptr;  // RenderPrograms::part(), and then `textures` too; null: the material's three numbers say all
+    MaterialTextures textures;
+    const Layer* layer = nullptr;  // null, or one whose texels are there
 };
+
+// Whether a material needs more than its three numbers.
+bool isPart(const Material& material);
 
 // What the studio looks like; colours linear.
 struct Studio {
@@ -56,13 +70,13 @@ struct LightMaps {
 gpu::TextureDesc shadowMapDesc(bool soft);
 void addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection,
                gpu::TextureHandle sharp, gpu::TextureHandle soft);
-// Window depth of meshes and floor. `frame`: the buffer of a FrameParams.
+// Window depth of meshes and floor, without what is blended or has holes. `frame`: the buffer of a FrameParams.
 gpu::TextureHandle addDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                             std::vector<DrawnMesh> meshes);
 // How open each point is to the environment, at half resolution; `reach` in m.
 gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                                 gpu::TextureHandle depth, float reach);
-// Linear radiance (rgba16f) of background, floor and meshes.
+// Linear radiance (rgba16f) of background, floor and meshes; what is blended comes last, the farthest first.
 gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                              std::vector<DrawnMesh> meshes, gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light);
 // The edges of a box, drawn into `colour`. With `fluidDepth` (m, r32f): only those in front of the water.

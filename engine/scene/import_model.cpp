@@ -104,7 +104,7 @@ std::vector<MorphTarget> morphsOf(const aiMesh& from) {
 }
 
 // The four strongest of a vertex's bones, their weights brought to a sum of 1.
-Status gripsOf(const aiMesh& from, const std::map<std::string, int>& nodeOf, Part& part) {
+Status gripsOf(const aiMesh& from, const std::map<std::string, int>& nodeOf, ModelPart& part) {
     if (from.mNumBones == 0) return ok();
     part.grips.resize(from.mNumVertices);
     for (unsigned b = 0; b < from.mNumBones; ++b) {
@@ -185,7 +185,7 @@ Result<Model> importModel(const std::string& path) try {
     walk(*(*scene)->mRootNode, -1);
     for (const auto& [index, node] : placed) {
         const aiMesh& from = *(*scene)->mMeshes[index];
-        Part part;
+        ModelPart part;
         part.name = model.nodes[static_cast<size_t>(node)].name;
         if (part.name.empty() || (*scene)->mRootNode->mNumChildren == 0) part.name = from.mName.C_Str();
         part.mesh = meshOf(from);

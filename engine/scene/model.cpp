@@ -13,12 +13,12 @@ std::vector<mat4> Model::worldMatrices() const {
     return world;
 }
 
-Part* Model::find(std::string_view partName) {
-    const auto found = std::find_if(parts.begin(), parts.end(), [&](const Part& part) { return part.name == partName; });
+ModelPart* Model::find(std::string_view partName) {
+    const auto found = std::find_if(parts.begin(), parts.end(), [&](const ModelPart& part) { return part.name == partName; });
     return found == parts.end() ? nullptr : &*found;
 }
 
-std::vector<mat4> Model::boneMatrices(const Part& part, const std::vector<mat4>& world) const {
+std::vector<mat4> Model::boneMatrices(const ModelPart& part, const std::vector<mat4>& world) const {
     // Vertices stay in their node's frame: what follows places them in the world as it does any other part's.
     const mat4 toNode = glm::inverse(world[static_cast<size_t>(part.node)]);
     std::vector<mat4> all;

@@ -25,7 +25,7 @@ struct Bone {
 
 // Up to four bones hold a vertex; weights sum to 1.
 struct Grip {
-    uvec4 bone{0};  // indices into Part::bones
+    uvec4 bone{0};  // indices into ModelPart::bones
     vec4 weight{0.0F};
 };
 
@@ -35,7 +35,7 @@ struct ModelNode {
     int parent = -1;   // an earlier node, or -1
 };
 
-struct Part {
+struct ModelPart {
     std::string name;
     Mesh mesh;  // in its node's frame
     Material material;
@@ -47,12 +47,12 @@ struct Part {
 
 struct Model {
     std::vector<ModelNode> nodes;
-    std::vector<Part> parts;
+    std::vector<ModelPart> parts;
 
-    std::vector<mat4> worldMatrices() const;  // each node's, in the order of `nodes`
-    Part* find(std::string_view partName);    // null: there is none of that name
+    std::vector<mat4> worldMatrices() const;     // each node's, in the order of `nodes`
+    ModelPart* find(std::string_view partName);  // null: there is none of that name
     // What turns a part's vertices, a matrix a bone, when the nodes stand where `world` says.
-    std::vector<mat4> boneMatrices(const Part& part, const std::vector<mat4>& world) const;
+    std::vector<mat4> boneMatrices(const ModelPart& part, const std::vector<mat4>& world) const;
 };
 
 }  // namespace rivulet

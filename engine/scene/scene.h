@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/material/layer.h"
 #include "engine/material/material.h"
 #include "engine/scene/mesh.h"
+#include "engine/scene/skin.h"
 
 namespace rivulet {
 
@@ -16,7 +18,9 @@ struct Node {
     int parent = -1;                   // index of an earlier node, or -1: the world
     std::shared_ptr<const Mesh> mesh;  // null: a group
     Material material;
-    bool visible = true;  // an invisible node hides its children too
+    bool visible = true;                       // an invisible node hides its children too
+    std::shared_ptr<const Deformer> deformer;  // where the mesh's vertices are now; null: as the mesh says. Goes before its device
+    std::shared_ptr<const Layer> layer;        // what lies on the material; null: nothing
 };
 
 class Scene {

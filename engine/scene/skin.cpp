@@ -13,7 +13,7 @@
 namespace rivulet {
 namespace {
 
-Status checkPart(const Part& part) {
+Status checkPart(const ModelPart& part) {
     const size_t n = part.mesh.positions.size();
     auto wrong = [&](std::string_view what) { return badInput(fmt::format("the part '{}' {}", part.name, what)); };
     for (const uint32_t index : part.mesh.indices)
@@ -79,7 +79,7 @@ bool finite(const mat4& m) {
 
 }  // namespace
 
-Status Deformer::fillTables(const Part& part) {
+Status Deformer::fillTables(const ModelPart& part) {
     std::vector<vec4> rest, offset, grip;
     for (const vec3& p : part.mesh.positions) rest.emplace_back(p, 0.0F);
     std::vector<uint32_t> begin(part.mesh.positions.size() + 1, 0);
@@ -117,7 +117,7 @@ Status Deformer::fillTables(const Part& part) {
     return ok();
 }
 
-Result<Deformer> Deformer::create(Device& device, const Part& part) {
+Result<Deformer> Deformer::create(Device& device, const ModelPart& part) {
     if (Status right = checkPart(part); !right) return right.error();
     Deformer d;
     d.device_ = &device;

@@ -17,7 +17,7 @@ class Deformer {
   public:
     // `device` must outlive it and must know the kernels material/deform and material/normals. At rest until the first run().
     // Error (badInput): morphs, bones or indices that name what the part has not; (failed): out of memory.
-    static Result<Deformer> create(Device& device, const Part& part);
+    static Result<Deformer> create(Device& device, const ModelPart& part);
 
     // `weights`: one a morph, in the part's order; those missing are 0. `bones`: Model::boneMatrices; none: nothing is turned. What is not
     // finite counts as 0, or leaves the bone where it was bound. With all weights 0 and no bones the positions are the mesh's, bit for bit.
@@ -32,7 +32,7 @@ class Deformer {
     size_t bytes() const;                               // on the device
 
   private:
-    Status fillTables(const Part& part);
+    Status fillTables(const ModelPart& part);
     Device* device_ = nullptr;
     Kernel deform_, gatherNormals_;
     Buffer rest_, begin_, offset_, amount_, grip_, bone_, point_, ring_, corner_, normal_;

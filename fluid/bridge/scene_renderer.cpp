@@ -145,16 +145,23 @@ Status SceneRenderer::reload() {
 
 // Meshes that are new go to the GPU, those that are gone leave it, and the picture takes the view's size.
 Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
-    std::set<std::shared_ptr<const Mesh>> used;
+    std::set<MeshKey> used;
+    std::set<const Image*> seen;
     for (const Node& node : scene.nodes()) {
         if (!node.mesh) continue;
-        used.insert(node.mesh);
-        if (meshes_.contains(node.mesh)) continue;
-        Result<GpuMesh> mesh = GpuMesh::create(*node.mesh);
-        if (!mesh) return mesh.error();
-        meshes_.emplace(node.mesh, std::move(*mesh));
+        const MeshKey key{node.mesh, node.deformer};
+        used.insert(key);
+        seen.merge(imagesOf(node.material));
+        if (!meshes_.contains(key)) {
+            Result<GpuMesh> mesh = GpuMesh::create(*node.mesh);
+            if (!mesh) return mesh.error();
+            meshes_.emplace(key, std::move(*mesh));
+        }
+        if (node.deformer)
+            if (Status followed = meshes_.at(key).follow(*node.deformer); !followed) return followed;
     }
     std::erase_if(meshes_, [&](const auto& item) { return !used.contains(item.first); });
+    images_.forgetBut(seen);
     if (!picture_ || width() != view.width || height() != view.height) {
         Result<gpu::Texture> picture = gpu::Texture::create({.width = view.width, .height = view.height, .format = gpu::Format::rgba8});
         if (!picture) return picture.error();
@@ -163,8 +170,22 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
     return ok();
 }
 
+Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld) {
+    DrawnMesh drawn{&meshes_.at(MeshKey{node.mesh, node.deformer}), toWorld, node.material, nullptr, {}, nullptr};
+    if (node.layer && node.layer->texels != nullptr && *node.layer->texels) drawn.layer = node.layer.get();
+    if (!isPart(node.material) && drawn.layer == nullptr) return drawn;
+    Result<gpu::Program*> part = render_.part(node.material, drawn.layer != nullptr);
+    if (!part) return part.error();
+    Result<MaterialTextures> textures = images_.texturesOf(node.material);
+    if (!textures) return textures.error();
+    drawn.part = *part;
+    drawn.textures = *textures;
+    return drawn;
+}
+
 // The maps are drawn anew only when the light or a mesh has moved.
-void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, LightMaps& light) {
+void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
+                               LightMaps& light) {
     light.sharp = graph.importTexture("shadow, sharp", shadowSharp_);
     light.soft = graph.importTexture("shadow, soft", shadowSoft_);
     std::vector<mat4> places = {projection};
@@ -173,12 +194,15 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
         places.push_back(m.toWorld);
         drawn.push_back(m.mesh);
     }
-    if (places == shadowOf_ && drawn == shadowMeshes_) return;
+    std::vector<uint64_t> versions;
+    for (const Node& node : scene.nodes()) versions.push_back(node.deformer ? node.deformer->version() : 0);
+    if (places == shadowOf_ && drawn == shadowMeshes_ && versions == shadowVersions_) return;
     addShadow(graph, render_, meshes, projection, light.sharp, light.soft);
     graph.output(light.sharp);
     graph.output(light.soft);
     shadowOf_ = std::move(places);
     shadowMeshes_ = std::move(drawn);
+    shadowVersions_ = std::move(versions);
 }
 
 Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings) {
@@ -195,8 +219,10 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     for (size_t i = 0; i < scene.nodes().size(); ++i) {
         const Node& node = scene.nodes()[i];
         if (!visible[i] || !node.mesh) continue;
-        meshes.push_back({&meshes_.at(node.mesh), world[i], node.material});
-        const Bounds b = transformBounds(world[i], meshes_.at(node.mesh).bounds());
+        Result<DrawnMesh> drawn = drawnOf(node, world[i]);
+        if (!drawn) return drawn.error();
+        const Bounds b = transformBounds(world[i], drawn->mesh->bounds());
+        meshes.push_back(std::move(*drawn));
         solid.add(b.min);
         solid.add(b.max);
     }
@@ -213,7 +239,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());
     const gpu::TextureHandle nothing = graph.importTexture("nothing", nothing_);
     LightMaps light{nothing, nothing, nothing, look->absorption};
-    if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, light);
+    if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, scene, light);
     FluidDraw draw;
     draw.view = view;
     draw.fluid = fluid;

@@ -62,7 +62,9 @@ class SceneRenderer {
   private:
     SceneRenderer() = default;
     Status prepare(const FrameView& view, const Scene& scene);
-    void addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, LightMaps& light);
+    Result<DrawnMesh> drawnOf(const Node& node, const mat4& toWorld);
+    void addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
+                    LightMaps& light);
 
     RenderPrograms render_;
     FluidPrograms fluid_;
@@ -72,8 +74,17 @@ class SceneRenderer {
     gpu::Texture shadowSharp_, shadowSoft_;
     std::vector<mat4> shadowOf_;  // what the shadow maps show: the light's projection, then a matrix a mesh
     std::vector<const GpuMesh*> shadowMeshes_;
-    gpu::Texture nothing_;  // stands in for a map of the light that is not there
-    std::map<std::shared_ptr<const Mesh>, GpuMesh> meshes_;
+    gpu::Texture nothing_;                  // stands in for a map of the light that is not there
+    std::vector<uint64_t> shadowVersions_;  // of their deformers
+    struct MeshKey {
+        std::shared_ptr<const Mesh> mesh;
+        std::weak_ptr<const Deformer> deformer;  // weak: a deformer must not outlive its device, but this may
+        bool operator<(const MeshKey& other) const {
+            return mesh != other.mesh ? mesh < other.mesh : deformer.owner_before(other.deformer);
+        }
+    };
+    std::map<MeshKey, GpuMesh> meshes_;
+    GpuImages images_;
 };
 
 }  // namespace rivulet

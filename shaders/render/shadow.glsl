@@ -27,6 +27,15 @@ float meshShadow(vec3 posWorld, vec3 normal) {
     return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // far from what casts it, a shadow is soft
 }
 
+// Metres between a point and the surface nearest the light above it.
+float lightDepthBehind(vec3 posWorld) {
+    if (frame.shadow.x == 0.0) return 1.0;
+    vec4 clip = frame.shadowProjection * vec4(posWorld, 1.0);
+    vec3 at = clip.xyz * 0.5 + 0.5;
+    float first = log(max(texture(shadowSharp, at.xy).x, 1.0e-20)) / kWarp;
+    return max(at.z - first, 0.0) * frame.shadow.z;
+}
+
 // Transmittance of the water between the point and the light, brighter where its surface gathers light.
 vec3 waterShadow(vec3 posWorld) {
     if (frame.shadow.y == 0.0) return vec3(1.0);

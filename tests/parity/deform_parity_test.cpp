@@ -13,8 +13,8 @@ namespace {
 
 // A ball of radius 1 whose seam has two vertices a place, as a chart needs; the morph makes it an ellipsoid, two bones bend it.
 constexpr vec3 kAxes(1.6F, 0.7F, 1.1F);
-Part ball(uint32_t rows = 48) {
-    Part part;
+ModelPart ball(uint32_t rows = 48) {
+    ModelPart part;
     part.name = "ball";
     const uint32_t columns = 2 * rows;
     for (uint32_t k = 0; k <= rows; ++k)
@@ -46,7 +46,7 @@ Part ball(uint32_t rows = 48) {
 struct Deformed {
     std::vector<vec4> position, normal;
 };
-Deformed run(Device& device, const Part& part, std::vector<float> weights, std::vector<mat4> bones = {}) {
+Deformed run(Device& device, const ModelPart& part, std::vector<float> weights, std::vector<mat4> bones = {}) {
     Result<Deformer> made = Deformer::create(device, part);
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
     if (!made) return {};
@@ -56,7 +56,7 @@ Deformed run(Device& device, const Part& part, std::vector<float> weights, std::
 
 TEST(Deform, anEllipsoidsNormalsAreTheFormulas) {
     auto cpu = makeTestCpu();
-    const Part part = ball();
+    const ModelPart part = ball();
     const Deformed d = run(*cpu, part, {1.0F});
     float worst = 0;
     for (size_t i = 0; i < d.position.size(); ++i) {
@@ -69,7 +69,7 @@ TEST(Deform, anEllipsoidsNormalsAreTheFormulas) {
 
 TEST(Deform, aBallIsBentByOneOverItsRadius) {
     auto cpu = makeTestCpu();
-    Part part = ball();
+    ModelPart part = ball();
     for (vec3& p : part.mesh.positions) p *= 0.25F;
     const Deformed d = run(*cpu, part, {});
     size_t within = 0;
@@ -82,7 +82,7 @@ TEST(Deform, aBallIsBentByOneOverItsRadius) {
 
 TEST(Deform, weightsOfZeroGiveTheRestBitForBitAndAMissingOneIsZero) {
     auto cpu = makeTestCpu();
-    const Part part = ball();
+    const ModelPart part = ball();
     for (const std::vector<float>& weights : {std::vector<float>{}, {0.0F}, {0.0F, 0.0F}, {NAN, 0.0F}}) {
         const Deformed d = run(*cpu, part, weights);
         for (size_t i = 0; i < d.position.size(); ++i) ASSERT_EQ(vec3(d.position[i]), part.mesh.positions[i]);
@@ -91,14 +91,14 @@ TEST(Deform, weightsOfZeroGiveTheRestBitForBitAndAMissingOneIsZero) {
 
 TEST(Deform, aSeamHasOneNormal) {
     auto cpu = makeTestCpu();
-    const Part part = ball();
+    const ModelPart part = ball();
     const Deformed d = run(*cpu, part, {0.7F, 0.4F});
     for (uint32_t k = 0; k <= 48; ++k) EXPECT_EQ(d.normal[k * 97], d.normal[k * 97 + 96]) << "row " << k;
 }
 
 TEST(Deform, bonesTurnWhatTheyHold) {
     auto cpu = makeTestCpu();
-    const Part part = ball();
+    const ModelPart part = ball();
     const mat4 turn = glm::rotate(glm::translate(mat4(1.0F), vec3(0.1F, 0.2F, -0.3F)), 0.5F, glm::normalize(vec3(1, 2, 3)));
     const Deformed d = run(*cpu, part, {}, {mat4(1.0F), turn});
     for (size_t i = 0; i < d.position.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(Deform, bonesTurnWhatTheyHold) {
 
 TEST(Deform, boundsHoldWhatIsDeformed) {
     auto cpu = makeTestCpu();
-    const Part part = ball();
+    const ModelPart part = ball();
     Result<Deformer> made = Deformer::create(*cpu, part);
     ASSERT_TRUE(made);
     const mat4 turn = glm::rotate(mat4(1.0F), 0.8F, glm::normalize(vec3(1, 0, 1)));
@@ -124,7 +124,7 @@ TEST(Deform, boundsHoldWhatIsDeformed) {
 
 TEST(Deform, whatIsNotThereIsRefusedInASentence) {
     auto cpu = makeTestCpu();
-    Part part = ball(8);
+    ModelPart part = ball(8);
     part.morphs[0].vertices.back() = 100000;
     Result<Deformer> made = Deformer::create(*cpu, part);
     ASSERT_FALSE(made);
@@ -143,7 +143,7 @@ TEST_P(DeformParity, TheSameSkin) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();
-    const Part part = ball();
+    const ModelPart part = ball();
     const std::vector<mat4> bones = {mat4(1.0F), glm::rotate(mat4(1.0F), 0.5F, vec3(0, 0, 1))};
     const Deformed here = run(*cpu, part, {0.6F, 0.8F}, bones), there = run(*gpu->device, part, {0.6F, 0.8F}, bones);
     ASSERT_EQ(here.position.size(), there.position.size());

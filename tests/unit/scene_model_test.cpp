@@ -73,10 +73,10 @@ TEST_F(SceneModel, theHeadHasItsPartsMorphsAndTextures) {
     Result<Model> head = importModel(kHead + "head.glb");
     ASSERT_TRUE(head) << head.error().message;
     std::set<std::string> names;
-    for (const Part& part : head->parts) names.insert(part.name);
+    for (const ModelPart& part : head->parts) names.insert(part.name);
     EXPECT_EQ(names, (std::set<std::string>{"skin", "eyeLeft", "eyeRight", "caruncleLeft", "caruncleRight", "lashesLeft", "lashesRight",
                                             "corneaLeft", "corneaRight"}));
-    const Part& skin = *head->find("skin");
+    const ModelPart& skin = *head->find("skin");
     ASSERT_EQ(skin.morphs.size(), 11U);
     EXPECT_EQ(skin.morphs[0].name, "blinkLeft");
     for (const MorphTarget& morph : skin.morphs) {
@@ -117,7 +117,7 @@ TEST_F(SceneModel, bonesMorphsAndMaterialsAreTheFiles) {
     Result<Model> model = importModel(bonedTriangle("marks.png"));
     ASSERT_TRUE(model) << model.error().message;
     ASSERT_EQ(model->parts.size(), 1U);
-    const Part& part = model->parts[0];
+    const ModelPart& part = model->parts[0];
     EXPECT_EQ(part.mesh.positions.size(), 3U);
     EXPECT_EQ(part.mesh.uvs[0], vec2(0.25F, 0.875F));
     EXPECT_NEAR(part.mesh.normals[1].z, 1.0F, 1e-6F);

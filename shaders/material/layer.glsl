@@ -1,0 +1,72 @@
+// A liquid on a surface: where the ray from the eye meets it, where it is bent to, how the light gets under it. Heights in m.
+// Needs tangents.glsl and frame.glsl.
+uniform sampler2D layerMap;     // x, y slope (m a unit of u, v), z height (mm), w how wet
+uniform vec4 layerLook;         // refractive index, roughness of a drop, roughness of what is wet, darkening
+uniform vec4 layerAbsorption;   // 1/m; w: scale of heights
+
+struct Liquid {
+    float wet;       // 0..1
+    float drop;      // 0..1: how much of a drop there is, rather than a film
+    vec2 uvBelow;    // the point of the surface that is seen through it
+    vec3 slope;      // of its surface, as a vector in the tangent plane
+    float path;      // m, through the liquid to that point
+    float light;     // of what reaches that point, against a dry one: gathered or shaded
+    float variance;  // of slopes within a pixel
+};
+
+vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * vec4(layerAbsorption.www, 1.0); }
+
+Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
+    Liquid dry = Liquid(0.0, 0.0, uv, vec3(0.0), 0.0, 1.0, 0.0);
+    float lod = max(t.lod + log2(float(textureSize(layerMap, 0).x)), 0.0);
+    vec4 around = liquidTexel(uv, max(lod, 3.5));
+    if (around.z < 1.0e-5 && around.w < 1.0e-3) return dry;
+
+    // Down the ray, from the highest that may be here, until it is below the liquid's surface.
+    float cosine = max(dot(t.normal, toEye), 0.2);
+    vec2 climb = uvStep(t, toEye) / cosine;  // of uv, a metre of height
+    vec2 top = uv;
+    vec4 here = liquidTexel(uv, lod);
+    if (lod < 3.0) {
+        float high = min(1.0e-3 * max(7.0 * around.z, here.z), 2.5e-3), before = 0.0;
+        float at = high, step_ = high / 5.0;
+        for (int k = 0; k < 5; ++k) {
+            vec4 l = liquidTexel(uv + climb * at, lod);
+            float above = at - 1.0e-3 * l.z;
+            if (above <= 0.0) {
+                float back = before > 0.0 ? step_ * above / (above - before) : 0.0;  // where the two heights cross
+                top = uv + climb * (at + max(back, 0.0));
+                here = liquidTexel(top, lod);
+                break;
+            }
+            before = above;
+            at -= step_;
+            if (k == 4) here = liquidTexel(uv, lod);
+        }
+    }
+    Liquid q = dry;
+    q.wet = clamp(here.w, 0.0, 1.0);
+    q.drop = smoothstep(0.02, 0.12, here.z);
+    q.slope = gradient(t, here.xy);
+    float steep = length(q.slope);
+    q.slope *= min(1.0, 2.5 / max(steep, 1.0e-6));
+    vec3 n = normalize(t.normal - q.slope);
+    vec3 bent = refract(-toEye, n, 1.0 / layerLook.x);
+    float down = max(-dot(bent, t.normal), 0.25), height = 1.0e-3 * here.z;
+    q.uvBelow = top + uvStep(t, bent) * (height / down);
+    q.path = height / down;
+
+    // The light enters nearer to the lamp: where the surface rises towards the lamp, at a drop's far side, it is gathered.
+    vec3 lamp = frame.lightDir.xyz, across = lamp - t.normal * dot(lamp, t.normal);
+    float sun = max(dot(lamp, t.normal), 0.15);
+    vec3 bentLight = refract(-lamp, t.normal, 1.0 / layerLook.x);
+    vec4 entry = liquidTexel(q.uvBelow - uvStep(t, bentLight) * (height / max(-dot(bentLight, t.normal), 0.3)), lod);
+    float toLamp = dot(gradient(t, entry.xy), across);
+    q.light = clamp(1.0 + 1.8 * q.drop * toLamp / max(sun, 0.4), 0.3, 2.8);
+    // A drop between here and the lamp takes that light away.
+    const float kShade = 3.5e-4;
+    float over = 1.0e-3 * liquidTexel(uv + uvStep(t, across) * (kShade / sun), lod).z - kShade;
+    q.light *= 1.0 - 0.5 * (1.0 - q.drop) * smoothstep(0.0, 2.5e-4, over);
+    q.variance = 0.10 * q.drop * smoothstep(3.0e-4, 1.5e-3, t.footprint);
+    return q;
+}

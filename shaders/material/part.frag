@@ -1,0 +1,146 @@
+// A model's part: textures on the plain surface function, on SKIN, on an EYE; BLENDED over what is behind; a LAYER of liquid on top.
+#include "shaders/render/frame.glsl"
+#include "shaders/render/environment.glsl"
+#include "shaders/render/shadow.glsl"
+#include "shaders/material/surface.glsl"
+#include "shaders/material/tangents.glsl"
+in vec3 posWorld;
+in vec3 normalWorld;
+in vec2 posUv;
+in float curvature;
+uniform vec3 baseColour;
+uniform float roughness;
+uniform float metallic;
+uniform float opacity;
+uniform float cutoff;
+uniform float strand;  // share of u that a strand covers in the middle of its ribbon; 0: no strands
+uniform sampler2D occlusion;
+uniform sampler2D colourMap;
+uniform sampler2D roughnessMap;  // green; metallic: blue
+uniform sampler2D normalMap;
+uniform sampler2D diffusionMap;  // see makeDiffusionTable
+layout(location = 0) out vec4 colour;
+#if defined(SKIN)
+#include "shaders/material/skin.glsl"
+#endif
+#if defined(EYE)
+#include "shaders/material/eye.glsl"
+#endif
+#if defined(LAYER)
+#include "shaders/material/layer.glsl"
+#endif
+
+void main() {
+    vec3 toEye = normalize(frame.cameraPos.xyz - posWorld);
+    vec3 n = normalize(normalWorld);
+    if (!gl_FrontFacing) n = -n;
+    Tangents t = tangentsAt(posWorld, posUv, n);
+    vec2 uv = posUv;
+    float open = texture(occlusion, gl_FragCoord.xy * frame.viewport.zw).r;
+    vec3 lamp = frame.lightDir.xyz;
+    vec3 falling = frame.lightColour.rgb * waterShadow(posWorld);
+    float lit = meshShadow(posWorld, n);
+#if defined(LAYER)
+    Liquid q = liquidAt(t, uv, toEye);
+    uv = q.uvBelow;
+#endif
+#if defined(EYE)
+    uv = throughCornea(uv, toEye);
+#endif
+    vec4 albedo = look(colourMap, uv, t) * vec4(baseColour, opacity);
+    if (albedo.a < cutoff) discard;
+#if defined(BLENDED)
+    if (strand > 0.0) {  // what a pixel's width holds of it, so that thin ones fade and do not break up
+        float pixel = max(fwidth(posUv.x), 1.0e-4), from = max(abs(posUv.x - 0.5) - 0.5 * pixel, -0.5 * strand);
+        float to = min(abs(posUv.x - 0.5) + 0.5 * pixel, 0.5 * strand);
+        float held = clamp((to - from) / pixel, 0.0, 1.0);
+        albedo.a *= held * (2.0 - held);  // hairs shade each other
+    }
+#endif
+#if defined(LAYER)
+    albedo.rgb = mix(albedo.rgb, albedo.rgb * sqrt(max(albedo.rgb, 0.0)) * 1.12, layerLook.w * q.wet);
+#endif
+
+    vec3 matte, shine = vec3(0.0), f0 = vec3(0.04), facing = n;
+#if defined(SKIN)
+    vec4 region = look(regionsMap, uv, t);
+    float fade = 1.0 - 0.5 * region.b, variance = 0.0;
+    vec3 slope = reliefSlope(reliefMap, uv, t, 1.0, variance);
+    vec3 fine = reliefSlope(poresMap, uv, t, poreTiling.x, variance) * (skinAmount.y * fade * (1.0 + 0.5 * region.r));
+    variance *= skinAmount.y;
+#if defined(LAYER)
+    float filled = 1.0 / (1.0 + q.path / 3.0e-5);  // a film fills the pores
+#endif
+    facing = normalize(n - slope - fine);
+    vec3 soft = normalize(n - 0.35 * (slope + fine)), blurred = normalize(n - 0.12 * (slope + fine));
+    float bend = clamp(abs(curvature), 2.0, 250.0), nl = dot(n, lamp);
+    lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));  // near the terminator the table knows better than the map
+    vec3 through = pow(vec3(lit), vec3(0.55, 0.85, 1.0));
+    vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
+    vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * pow(vec3(open), vec3(0.85, 1.0, 1.05));
+    // Thin parts: what the light loses between where it enters and here.
+    float thick = lightDepthBehind(posWorld - 0.001 * n);
+    vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.30 * smoothstep(0.30, 0.75, -nl));
+#if defined(LAYER)
+    arriving *= mix(1.0, q.light, 0.8);
+#endif
+    matte = albedo.rgb * (arriving * 0.3183099 + around + glow * falling * vec3(1.0, 0.32, 0.2));
+    float oily = 0.30 + 0.75 * region.r - 0.10 * region.g;
+    oily = mix(oily, 0.05, region.b);
+    oily = mix(oily, 1.0, region.a);
+    float rough = mix(roughness, 0.36, 0.5 * region.r + 0.4 * region.a);
+    f0 = vec3(0.028);
+    vec3 glossLight = falling * lit;
+    float corner = open * open * (1.0 - 0.75 * region.b);  // hair scatters what skin mirrors
+    glossLight *= 1.0 - 0.75 * region.b;
+    shine = gloss(facing, toEye, f0, rough + 0.08, variance, glossLight, corner) * (0.65 * (0.6 + 0.4 * oily)) +
+            gloss(facing, toEye, f0, 0.62 * rough, variance, glossLight, corner) * (0.45 * oily);
+#elif defined(EYE)
+    shadeEye(uv, n, toEye, albedo.rgb, falling, lit, open, matte, shine);
+#else
+    vec3 mapped = texture(normalMap, uv).xyz * 2.0 - 1.0;
+    vec3 alongU = normalize(t.du + 1.0e-20), alongV = normalize(t.dv + 1.0e-20);
+    facing = normalize(n * max(mapped.z, 0.05) + alongU * mapped.x + alongV * mapped.y);
+    if (!(dot(facing, facing) > 0.5)) facing = n;
+    vec4 rm = texture(roughnessMap, uv);
+    float rough = roughness * rm.g, metal = metallic * rm.b;
+    f0 = mix(vec3(0.04), albedo.rgb, metal);
+    vec3 body = albedo.rgb * (1.0 - metal);
+    float reach = max(dot(facing, lamp), 0.0);
+#if defined(LAYER)
+    reach *= q.light;
+#endif
+    matte = body * (0.3183099 * reach * lit * falling + ambient(facing) * open);
+    shine = gloss(facing, toEye, f0, max(rough, 0.05), 0.0, falling * lit, open);
+#endif
+
+#if defined(LAYER)
+    // What leaves the surface goes out through the liquid; the liquid's own gloss takes the surface's place.
+    if (q.wet > 0.0 || q.drop > 0.0) {
+        float cover = max(q.wet, q.drop);
+        float r0 = (layerLook.x - 1.0) / (layerLook.x + 1.0);
+        r0 *= r0;
+        vec3 film = n - q.slope;
+#if defined(SKIN)
+        film -= (slope + fine) * (0.65 * filled);
+#else
+        film += (facing - n) * (1.0 - q.drop);
+#endif
+        film = normalize(film);
+        if (dot(film, toEye) < 0.02) film = normalize(film + toEye * (0.02 - dot(film, toEye)));
+        float wetRough = mix(layerLook.z, layerLook.y, q.drop);
+        vec3 wetShine = gloss(film, toEye, vec3(r0), wetRough, q.variance, falling * lit, mix(open * open, 1.0, 0.3 * q.drop));
+        float out_ = 1.0 - (r0 + (1.0 - r0) * pow(1.0 - max(dot(film, toEye), 0.0), 5.0));
+        vec3 dimmed = matte * exp(-layerAbsorption.rgb * (2.0 * q.path)) * out_;
+        matte = mix(matte, dimmed, cover);
+        // Metal and glass keep their mirror under the liquid, dimmed by it; a dielectric's is lost to one of nearly its own index.
+        shine = mix(shine, shine * (max(max(f0.r, f0.g), f0.b) > 0.1 ? out_ : 0.15) + wetShine, cover);
+    }
+#endif
+#if defined(BLENDED)
+    if (strand > 0.0) shine *= albedo.a;
+    colour = vec4(matte * albedo.a + shine, albedo.a);  // gloss stays where the body is clear
+#else
+    colour = vec4(matte + shine, 1.0);
+#endif
+}

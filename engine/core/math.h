@@ -18,6 +18,7 @@ namespace rivulet {
 using glm::bvec3;
 using glm::dmat3;
 using glm::dmat4;
+using glm::dvec2;
 using glm::dvec3;
 using glm::ivec2;
 using glm::ivec3;

@@ -97,6 +97,8 @@ struct SurfaceFlow::Impl {
     uint32_t brims = 0, brimPlaces = 0;
     dmat4 pose{1.0};  // the skin's frame -> the world, as of the last step
     bool posed = false;
+    uint64_t moves = 0;         // how often it was
+    uint32_t largestBirth = 0;  // picolitres
 
     uint32_t count() const { return drops.count; }
     Status prepare(Device& on, std::span<const SkinBrim> along);
@@ -355,10 +357,12 @@ void SurfaceFlow::setParams(const SurfaceFlowParams& params) {
 void SurfaceFlow::Impl::bear(const FlowBirth& one) {
     if (one.volume == 0) return;
     added += one.volume;
-    if (births.size() < count())
-        births.push_back(one);
-    else
+    if (births.size() >= count()) {
         told->refused += one.volume;
+        return;
+    }
+    largestBirth = std::max(largestBirth, one.volume);
+    births.push_back(one);
 }
 
 void SurfaceFlow::add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity, bool film) {
@@ -443,6 +447,7 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
     device->run(basis, f, {&skin, &point, &frames}, f.triangles);
     device->run(drive, f, {&begin, &footprint, &weight, &frames, &driven}, f.places);
     moved = false;
+    ++moves;
 }
 
 Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
@@ -556,6 +561,26 @@ std::vector<LeftDrop> SurfaceFlow::takeLeft() {
     std::vector<LeftDrop> taken;
     taken.swap(impl_->told->gone);
     return taken;
+}
+
+FlowView SurfaceFlow::view() const {
+    const Impl& w = *impl_;
+    // Three may run into a fourth at once: a quarter wider than the largest.
+    const double largest = 2 * std::max(double{w.params.largestDrop} * kMicrolitre, w.largestBirth * 1.0e-15);
+    FlowView v{.device = w.device,
+               .skin = &w.skin,
+               .point = &w.point,
+               .basis = &w.frames,
+               .film = &w.film,
+               .cellStart = &w.grid->cellStart(),
+               .position = &w.drops.position,
+               .velocity = &w.drops.velocity,
+               .slots = w.count(),
+               .largestRadius = std::max({static_cast<float>(contactRadius(meanAngle(w.params)) * std::cbrt(largest)),
+                                          static_cast<float>(kFilmRadius) * w.params.filmReach, w.params.brimWidth}),
+               .moved = w.moves};
+    w.grid->fill(v.grid);
+    return v;
 }
 
 std::vector<float> SurfaceFlow::film(uint32_t triangle) const {

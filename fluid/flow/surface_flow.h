@@ -10,6 +10,7 @@
 #include "engine/compute/device.h"
 #include "engine/core/params.h"
 #include "fluid/flow/flow_mesh.h"
+#include "shaders/fluid/step_params.h"
 
 namespace rivulet {
 
@@ -73,6 +74,17 @@ struct LeftDrop {
     uint32_t triangle = 0;
 };
 
+// A flow as those see it who draw it: memory of its device, between two steps.
+struct FlowView {
+    Device* device = nullptr;
+    const Buffer *skin, *point, *basis, *film;      // as the kernels of shaders/flow have them
+    const Buffer *cellStart, *position, *velocity;  // drops as they were last sorted: position.w radius, m; velocity.w volume, m^3
+    StepParams grid{};                              // the grid's part of it
+    uint32_t slots = 0;                             // of drops
+    float largestRadius = 0;                        // m, of a drop's foot; only where several met at once there are wider ones
+    uint64_t moved = 0;                             // how often the skin has; 0: no step was made yet
+};
+
 class SurfaceFlow {
   public:
     // `device` must outlive it. Error: a mesh whose skin would not fit; out of memory.
@@ -97,6 +109,7 @@ class SurfaceFlow {
     // Waits for the device.
     std::vector<SkinDrop> drops() const;
     std::vector<LeftDrop> takeLeft();  // since it was last asked, in the order of their ids each step
+    FlowView view() const;
     // The film's thickness, m, of every cell of a triangle's lattice; waits.
     std::vector<float> film(uint32_t triangle) const;
     // Picolitres since the start. added = drops + film + left + evaporated + refused.

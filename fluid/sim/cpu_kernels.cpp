@@ -27,6 +27,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::forceRows());
     add(kernels_generic::flowRows());
     add(kernels_generic::deformRows());
+    add(kernels_generic::flowMapRows());
 #endif
 #if defined(RIVULET_HAS_AVX2)
     add(kernels_avx2::gridRows());
@@ -38,6 +39,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx2::forceRows());
     add(kernels_avx2::flowRows());
     add(kernels_avx2::deformRows());
+    add(kernels_avx2::flowMapRows());
 #endif
 #if defined(RIVULET_HAS_AVX512)
     add(kernels_avx512::gridRows());
@@ -49,6 +51,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx512::forceRows());
     add(kernels_avx512::flowRows());
     add(kernels_avx512::deformRows());
+    add(kernels_avx512::flowMapRows());
 #endif
     return all;
 }

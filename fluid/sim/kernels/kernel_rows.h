@@ -17,6 +17,7 @@
     std::span<const CpuKernelRow> forceRows();    \
     std::span<const CpuKernelRow> flowRows();     \
     std::span<const CpuKernelRow> deformRows();   \
+    std::span<const CpuKernelRow> flowMapRows();  \
     }
 #if defined(RIVULET_KERNEL_UNIT)
 #define RIVULET_ISA_OF_kernels_generic Isa::generic

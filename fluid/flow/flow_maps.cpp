@@ -1,0 +1,169 @@
+#include "fluid/flow/flow_maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "fluid/flow/map_texels.h"
+#include "fluid/flow/skin_folds.h"
+#include "shaders/flow/map_step.h"
+
+namespace rivulet {
+
+struct FlowMaps::Impl {
+    Device* device = nullptr;
+    int size = 0, mips = 0;
+    Kernel caps, thick, bounds, touch, taps, rows, mip;
+    Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
+    Buffer box, cap, film, near, stamp, map;
+    uint32_t tiles = 0, pieces = 0;
+    uint32_t drawn = 0;
+    uint64_t moved = 0;  // as the flow counted when the boxes were made
+
+    Status prepare(const FlowView& flow, const MapTexels& made);
+    size_t before(int level) const {
+        size_t texels = 0;
+        for (int k = 0; k < level; ++k) texels += static_cast<size_t>(size >> k) * static_cast<size_t>(size >> k);
+        return texels;
+    }
+    FlowMapStep stepOf(const FlowView& flow, const SurfaceFlowParams& params) const;
+};
+
+Status FlowMaps::Impl::prepare(const FlowView& flow, const MapTexels& made) {
+    device = flow.device;
+    size = made.size;
+    mips = std::bit_width(static_cast<uint32_t>(size));
+    tiles = static_cast<uint32_t>(made.tiles());
+    pieces = static_cast<uint32_t>(made.pieces());
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+    };
+    for (const Wanted& w : {Wanted{&caps, "flow/map_caps"}, Wanted{&thick, "flow/map_thick"}, Wanted{&bounds, "flow/map_bounds"},
+                            Wanted{&touch, "flow/map_touch"}, Wanted{&taps, "flow/map_taps"}, Wanted{&rows, "flow/map_rows"},
+                            Wanted{&mip, "flow/map_mips"}}) {
+        Result<Kernel> found = device->kernel(w.path);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    std::vector<uint32_t> words;
+    words.reserve(TEXEL_UINTS * made.texel.size());
+    for (const uint32_t word : made.texel) words.insert(words.end(), {word, 0U, 0U, 0U});
+    const size_t above = before(mips) - before(3), all = before(mips);
+    for (auto [buffer, bytes] :
+         {std::pair(&tile, made.tile.size() * sizeof(uint32_t)), std::pair(&texel, words.size() * sizeof(uint32_t)),
+          std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)), std::pair(&pin, made.pin.size() * sizeof(uint32_t)),
+          std::pair(&chart, made.chart.size() * sizeof(vec4)), std::pair(&cover, made.cover.size() * sizeof(float)),
+          std::pair(&box, 2 * made.pieces() * sizeof(vec4)), std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)),
+          std::pair(&film, flow.film->bytes()), std::pair(&near, NEAR_UINTS * made.tiles() * sizeof(uint32_t)),
+          std::pair(&stamp, above * sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
+        Result<Buffer> room = device->allocate(bytes);
+        if (!room) return room.error();
+        *buffer = std::move(*room);
+    }
+    device->writeAll<uint32_t>(tile, made.tile);
+    device->writeAll<uint32_t>(texel, words);
+    device->writeAll<uint32_t>(pinBegin, made.pinBegin);
+    device->writeAll<uint32_t>(pin, made.pin);
+    device->writeAll<vec4>(chart, made.chart);
+    device->writeAll<float>(cover, made.cover);
+    return ok();
+}
+
+FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams& params) const {
+    const StepParams& grid = flow.grid;
+    FlowMapStep s{};
+    s.gridOrigin = grid.gridOrigin;
+    s.gridScale = grid.gridScale;
+    s.cellsX = grid.cellsX;
+    s.cellsY = grid.cellsY;
+    s.cellsZ = grid.cellsZ;
+    s.finer = grid.cellCount / static_cast<uint32_t>(grid.cellsX * grid.cellsY * grid.cellsZ);
+    s.insideAt = grid.cellCount;
+    s.slots = flow.slots;
+    s.triangles = static_cast<uint32_t>(flow.basis->bytes() / (5 * sizeof(vec4)));
+    s.tiles = tiles;
+    s.pieces = pieces;
+    s.size = static_cast<uint32_t>(size);
+    s.draw = drawn;
+    s.moved = flow.moved != moved ? 1 : 0;
+    s.reach = flow.largestRadius;
+    s.trail = std::max(params.trail, 1.0e-6F);
+    s.tap = 0.5F * params.filmCell;
+    return s;
+}
+
+std::vector<vec2> cornerUvs(const FlowMesh& mesh, const MeshView& from) {
+    std::vector<vec2> uvs;
+    if (from.uvs.size() != from.positions.size()) return uvs;
+    uvs.reserve(mesh.corner.size());
+    for (size_t k = 0; k < mesh.corner.size(); ++k) {
+        const uint32_t* given = &from.indices[3 * size_t{mesh.source[k / 3]}];
+        const uint32_t* same = std::find_if(given, given + 3, [&](uint32_t i) { return from.positions[i] == mesh.rest[mesh.corner[k]]; });
+        ASSERT(same != given + 3, "hand the mesh that the flow mesh was made of");
+        uvs.push_back(from.uvs[*same]);
+    }
+    return uvs;
+}
+
+FlowMaps::FlowMaps(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FlowMaps::FlowMaps(FlowMaps&&) noexcept = default;
+FlowMaps& FlowMaps::operator=(FlowMaps&&) noexcept = default;
+FlowMaps::~FlowMaps() = default;
+
+Result<FlowMaps> FlowMaps::create(const SurfaceFlow& flow, std::span<const vec2> uvs, int size) {
+    if (size < kLeastSize || size > kMostSize || !std::has_single_bit(static_cast<uint32_t>(size)))
+        return badInput(fmt::format("a flow's maps were asked for with {0} x {0} texels: give a power of two from {1} to {2}", size,
+                                    kLeastSize, kMostSize));
+    const FlowMesh& mesh = flow.mesh();
+    if (uvs.size() != mesh.corner.size())
+        return badInput(fmt::format("a flow's maps were given {} UVs for {} corners: give each corner of each triangle its own", uvs.size(),
+                                    mesh.corner.size()));
+    const FlowView view = flow.view();
+    const MapTexels made = layTexels(mesh, uvs, skinFolds(mesh, view.largestRadius), size);
+    if (made.tiles() == 0) return badInput("no triangle of the skin has an area in UV: give it UVs, or unwrap it");
+    auto impl = std::make_unique<Impl>();
+    if (Status ready = impl->prepare(view, made); !ready) return ready.error();
+    return FlowMaps(std::move(impl));
+}
+
+void FlowMaps::draw(const SurfaceFlow& flow) {
+    Impl& w = *impl_;
+    const FlowView v = flow.view();
+    ASSERT(v.device == w.device, "draw the flow that the maps were made for");
+    if (v.moved == 0) return;
+    ++w.drawn;
+    FlowMapStep s = w.stepOf(v, flow.params());
+    Device& d = *w.device;
+    if (w.drawn == 1) d.run(w.taps, s, {&w.tile, &w.chart, v.skin, v.basis, &w.texel}, w.tiles * TILE_TEXELS);
+    if (s.moved > 0) d.run(w.bounds, s, {&w.pinBegin, &w.pin, v.point, v.basis, &w.chart, &w.box}, w.pieces);
+    w.moved = v.moved;
+    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap}, s.slots);
+    d.run(w.thick, s, {v.skin, v.basis, v.film, &w.film}, s.triangles);
+    d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp}, w.tiles);
+    d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, 4 * w.tiles);
+    for (int level = 2; level < w.mips; ++level) {
+        const uint32_t edge = s.size >> static_cast<uint32_t>(level);
+        s.level = static_cast<uint32_t>(level);
+        s.levelAt = static_cast<uint32_t>(w.before(level));
+        s.aboveAt = static_cast<uint32_t>(w.before(level - 1));
+        if (level > 3) {
+            s.stampAt = s.levelAt - static_cast<uint32_t>(w.before(3));
+            s.stampAbove = s.aboveAt - static_cast<uint32_t>(w.before(3));
+        }
+        d.run(w.mip, s, {&w.cover, &w.stamp, &w.map}, edge * edge);
+    }
+}
+
+Device& FlowMaps::device() const { return *impl_->device; }
+int FlowMaps::size() const { return impl_->size; }
+int FlowMaps::mips() const { return impl_->mips; }
+const Buffer& FlowMaps::texels() const { return impl_->map; }
+size_t FlowMaps::texelsBefore(int mip) const { return impl_->before(mip); }
+const Buffer& FlowMaps::stamps() const { return impl_->stamp; }
+uint32_t FlowMaps::draws() const { return impl_->drawn; }
+size_t FlowMaps::tiles() const { return impl_->tiles; }
+
+}  // namespace rivulet

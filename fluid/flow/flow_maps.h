@@ -1,0 +1,51 @@
+// A flow drawn into UV: height, slope and wetness, on any layout of charts. Drops are gathered in space, so that no seam is seen.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "fluid/flow/surface_flow.h"
+
+namespace rivulet {
+
+// Of each corner of the mesh's triangles, 3 a triangle, the UV that `from` gives it there: what makeFlowMesh has welded may have several.
+// `from` is the mesh of which `mesh` was made. Empty if it has no UVs.
+std::vector<vec2> cornerUvs(const FlowMesh& mesh, const MeshView& from);
+
+class FlowMaps {
+  public:
+    static constexpr int kLeastSize = 16, kMostSize = 8192;
+
+    // `uvs`: 3 a triangle of the flow's mesh. `size`: texels of the map's edge, a power of two. The flow's device must outlive it.
+    // Error: a size that is none, UVs that are not as many or leave no texel (badInput); out of memory.
+    static Result<FlowMaps> create(const SurfaceFlow& flow, std::span<const vec2> uvs, int size);
+    FlowMaps(FlowMaps&&) noexcept;
+    FlowMaps& operator=(FlowMaps&&) noexcept;
+    ~FlowMaps();
+
+    // Brings texels() up to date; `flow` is the one it was made for. Drops are where the last step began: that is one step late. Before the
+    // first step there is nothing to draw. Does not wait.
+    void draw(const SurfaceFlow& flow);
+
+    Device& device() const;
+    int size() const;
+    int mips() const;  // down to 1 x 1
+    // Two uints a texel, four halves: slopes dh/du and dh/dv (m a unit of u, v), height of drops and film (mm), wetness (0 to 1). Rows from
+    // v = 0 up, tight; mip after mip. Texels on which no skin lies are 0.
+    const Buffer& texels() const;
+    size_t texelsBefore(int mip) const;
+    // A uint for every 8 x 8 texels, rows from v = 0 up: the number of the draw that last changed one of them. Behind them the same for
+    // every texel of the mips above 3.
+    const Buffer& stamps() const;
+    uint32_t draws() const;  // so far
+
+    size_t tiles() const;  // in which there is skin
+
+  private:
+    struct Impl;
+    explicit FlowMaps(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rivulet

@@ -1,0 +1,17 @@
+// Half floats from floats and back, as bits, the same on every compiler: for textures of 16-bit floats that a kernel writes.
+// Rounded to the nearest, to zero below 2^-25, at most 65504; what is no number becomes 0.
+FN uint halfBits(float x) {
+    float a = x < 0.0f ? -x : x;
+    if (!(a < 65504.0f)) a = a >= 65504.0f ? 65504.0f : 0.0f;
+    uint sign = x < 0.0f ? 0x8000u : 0u;
+    if (a < 6.103515625e-5f) return sign + TO_UINT(a * 16777216.0f + 0.5f);  // denormal: steps of 2^-24
+    uint bits = FLOAT_BITS(a);
+    return sign + ((bits + 0x0FFFu + ((bits >> 13u) & 1u) - 0x38000000u) >> 13u);
+}
+// Two halves in one word, `low` first in memory.
+FN uint halfPair(float low, float high) { return halfBits(low) | (halfBits(high) << 16u); }
+FN float floatOfHalf(uint half_) {
+    uint size = half_ & 0x7FFFu;
+    float a = size < 0x0400u ? TO_FLOAT(size) * 5.9604644775390625e-8f : BITS_FLOAT((size << 13u) + 0x38000000u);
+    return (half_ & 0x8000u) > 0u ? -a : a;
+}

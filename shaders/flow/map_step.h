@@ -1,0 +1,63 @@
+// What every kernel that draws a flow into UV knows, and how its tables are laid out. Layout shared by C++, GLSL and OpenCL. Lengths in m, in
+// the skin's frame. A map's texels come in tiles of 8 x 8; tiles in which no triangle lies are not kept.
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+#pragma once
+#include "shaders/common/lang.h"
+namespace rivulet {
+#endif
+// A texel of a tile: four uints. First its triangle; how often the map's width and height, less one, are added to its own place to lie where
+// the triangle's UVs do (they may be outside 0 to 1); and whether other skin is so near that a drop may lie on that instead. Then the three
+// cells of film about it.
+#define TEXEL_UINTS 4u
+#define TEXEL_NONE 0xFFFFFFFFu
+#define TEXEL_TRIANGLE 0x07FFFFFFu
+#define TEXEL_TURN_U 27u
+#define TEXEL_TURN_V 29u
+#define TEXEL_FOLD 0x80000000u
+#define TILE_TEXELS 64u
+// A tile: where it lies, in tiles, x | y << 16; its first piece and the one past its last. A piece is what hangs together on the skin.
+#define TILE_UINTS 4u
+// A pin of a piece, of which its bounds are made: a place; or with PIN_RECT a triangle with its turns and then a rectangle of texels, x | y << 13 |
+// (width - 1) << 26 | (height - 1) << 29.
+#define PIN_RECT 0x80000000u
+// What a tile knows of drops, 16 uints.
+#define NEAR_UINTS 16u
+#define NEAR_DRAW 0u   /* 1: it is to be drawn */
+#define NEAR_HASH 1u   /* of the drops that were there when it was last drawn */
+#define NEAR_WET 2u    /* 1: it had film then */
+#define NEAR_COUNT 3u  /* drops; above MOST_NEAR they are all looked at from NEAR_FIRST to before NEAR_END */
+#define NEAR_FIRST 4u
+#define NEAR_END 5u
+#define NEAR_PLACE 6u  /* of the tile in the map, see TILE_UINTS */
+#define NEAR_LIST 7u   /* sorted numbers of MOST_NEAR drops */
+#define MOST_NEAR 9u
+#define WET_EVERY 16u  /* draws: a wet tile is drawn anew that often, for what dries */
+#define ANY_EVERY 32u  /* and a dry one, for what a drop left that went too fast to be seen in between */
+STRUCT(FlowMapStep) {
+    vec4  gridOrigin;  // of the flow's grid, see fluid/step_params.h
+    vec4  gridScale;
+    int   cellsX;
+    int   cellsY;
+    int   cellsZ;
+    uint  finer;       // cells of the sort to one of the grid's along x
+    uint  insideAt;    // index into cellStart: how many drops there are
+    uint  slots;       // of drops
+    uint  triangles;
+    uint  tiles;
+    uint  pieces;
+    uint  size;        // texels, of the map's edge
+    uint  draw;        // number of this one, from 1
+    uint  moved;       // 1: the skin has moved since the last
+    float reach;       // m, radius of a drop's foot at most
+    float trail;       // m, film as thick is as wet as can be
+    float tap;         // m, from a texel to the places where it takes its film
+    uint  level;       // of the mip that is made
+    uint  levelAt;     // texels before it in the map
+    uint  aboveAt;     // and before the finer one
+    uint  stampAt;     // where the stamps of level 3 and above begin
+    uint  stampAbove;
+};
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+static_assert(sizeof(FlowMapStep) % 16 == 0);
+}  // namespace rivulet
+#endif

@@ -1,0 +1,211 @@
+// A flow drawn into UV: none of a drop's volume is lost at seams, its height and slopes are the cap's, and it lies on no skin but its own.
+#include <gtest/gtest.h>
+
+#include <glm/packing.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/compute/device_cpu.h"
+#include "fluid/flow/flow_maps.h"
+#include "fluid/flow/map_texels.h"
+#include "fluid/sim/cpu_kernels.h"
+#include "shaders/flow/map_step.h"
+#include "tests/physics/flow_shapes.h"
+#include "tests/physics/worlds.h"
+
+namespace rivulet {
+namespace {
+
+using test::addSheet;
+using test::Skin;
+constexpr double kPiD = 3.14159265358979323846;
+constexpr uint32_t kMicrolitre = 1000000;  // picolitres
+
+// A flow on a skin and its maps, and what the maps' texels show.
+struct Drawn {
+    std::unique_ptr<Device> device;
+    std::unique_ptr<SurfaceFlow> flow;
+    std::unique_ptr<FlowMaps> maps;
+    MapTexels layout;
+    std::vector<vec2> uvs;
+
+    Drawn(const Skin& skin, int size, const SurfaceFlowParams& params = {}) : device(cpu()) {
+        Result<FlowMesh> mesh = makeFlowMesh(skin.view());
+        EXPECT_TRUE(mesh);
+        uvs = cornerUvs(*mesh, skin.view());
+        layout = layTexels(*mesh, uvs, std::vector<uint8_t>(mesh->triangleCount(), 0), size);
+        Result<SurfaceFlow> made = SurfaceFlow::create(*device, std::move(*mesh), params);
+        EXPECT_TRUE(made);
+        flow = std::make_unique<SurfaceFlow>(std::move(*made));
+        Result<FlowMaps> drawn = FlowMaps::create(*flow, uvs, size);
+        EXPECT_TRUE(drawn) << (drawn ? "" : drawn.error().message);
+        maps = std::make_unique<FlowMaps>(std::move(*drawn));
+    }
+
+    std::vector<vec4> texels(int mip = 0) const {
+        const size_t edge = static_cast<size_t>(maps->size() >> mip);
+        std::vector<uint32_t> words(2 * edge * edge);
+        device->read(maps->texels(), std::as_writable_bytes(std::span(words)), maps->texelsBefore(mip) * 8);
+        std::vector<vec4> all;
+        for (size_t k = 0; k < edge * edge; ++k) {
+            const vec2 low = glm::unpackHalf2x16(words[2 * k]), high = glm::unpackHalf2x16(words[2 * k + 1]);
+            all.emplace_back(low, high);
+        }
+        return all;
+    }
+
+    struct Place {
+        size_t at;  // in texels()
+        SkinPoint on;
+        vec3 x;
+        dvec3 alongU, alongV;  // m a unit of u, v
+        double area;           // m^2
+    };
+    // Texels in their triangle, where the skin is at rest.
+    std::vector<Place> places() const {
+        std::vector<Place> all;
+        const FlowMesh& m = flow->mesh();
+        for (size_t k = 0; k < layout.texel.size(); ++k) {
+            const uint32_t word = layout.texel[k], where = layout.tile[TILE_UINTS * (k / TILE_TEXELS)];
+            if (word == TEXEL_NONE) continue;
+            const int x = static_cast<int>((where & 0xFFFFU) * 8 + k % 8), y = static_cast<int>((where >> 16U) * 8 + k % 64 / 8);
+            const SkinPoint p = skinPointOf(layout, word, x, y);
+            if (std::min({p.b1, p.b2, 1 - p.b1 - p.b2}) < -1e-4F) continue;
+            const vec4 slope = layout.chart[2 * size_t{p.triangle}];
+            const dvec3 a(m.rest[m.corner[3 * p.triangle]]), e1 = dvec3(m.rest[m.corner[3 * p.triangle + 1]]) - a,
+                                                             e2 = dvec3(m.rest[m.corner[3 * p.triangle + 2]]) - a;
+            const dvec3 u = e1 * double{slope.x} + e2 * double{slope.y}, v = e1 * double{slope.z} + e2 * double{slope.w};
+            const double size = maps->size();
+            all.push_back({static_cast<size_t>(y) * static_cast<size_t>(maps->size()) + static_cast<size_t>(x), p, positionOf(m, p), u, v,
+                           glm::length(glm::cross(u, v)) / (size * size)});
+        }
+        return all;
+    }
+    double drawnVolume() const {
+        const std::vector<vec4> all = texels();
+        double volume = 0;
+        for (const Place& p : places()) volume += double{all[p.at].z} * 1e-3 * p.area;
+        return volume;
+    }
+    void stand() { EXPECT_TRUE(flow->step({.pull = vec3(0.0F)}, 1.0 / 60)); }
+};
+
+SurfaceFlowParams still() {
+    SurfaceFlowParams p;
+    p.trail = p.evaporation = 0;
+    p.touch = 0.1F;  // drops that overlap stay what they are
+    return p;
+}
+
+// A drop in the middle of its sheet: the cap's height, 2 V / (pi R^2) (1 - r^2/R^2), its slope along u and v, and one under it is wet.
+TEST(FlowMaps, ACapIsDrawnAsItIs) {
+    Skin skin;
+    addSheet(skin, vec3(0, 0, 0), vec3(0.02F, 0, 0.01F), vec3(0, 0.03F, 0), 7, vec2(0.1F), vec2(0.7F, 0.1F), vec2(-0.05F, 0.75F));
+    Drawn d(skin, 256, still());
+    const vec3 middle(0.011F, 0.014F, 0.0055F);
+    d.flow->add(nearestPoint(d.flow->mesh(), middle), 2 * kMicrolitre);
+    d.stand();
+    d.maps->draw(*d.flow);
+    const std::vector<vec4> texels = d.texels();
+    const double slope = std::tan(25 * kPiD / 180), volume = 2e-9;
+    const double radius = std::cbrt(6 * volume / (kPiD * slope * (3 + slope * slope))), high = 2 * volume / (kPiD * radius * radius);
+    size_t under = 0;
+    for (const Drawn::Place& p : d.places()) {
+        const dvec3 off = dvec3(p.x) - dvec3(middle);
+        const double share = 1 - glm::dot(off, off) / (radius * radius);
+        const vec4 t = texels[p.at];
+        if (share < -0.01) {
+            EXPECT_EQ(t, vec4(0.0F));
+            continue;
+        }
+        if (share < 0.01) continue;
+        ++under;
+        EXPECT_NEAR(t.z / (1000 * high), share, 2e-3);
+        EXPECT_EQ(t.w, 1);
+        const dvec3 gradient = off * (-2 * high / (radius * radius));
+        EXPECT_NEAR(t.x, glm::dot(gradient, p.alongU), 2e-3 * 2 * high / radius * glm::length(p.alongU));
+        EXPECT_NEAR(t.y, glm::dot(gradient, p.alongV), 2e-3 * 2 * high / radius * glm::length(p.alongV));
+    }
+    EXPECT_GT(under, 250U);
+    EXPECT_NEAR(d.drawnVolume() / volume, 1, 1e-3);
+}
+
+// Slopes against differences of the heights of texels a step apart in space, over a seam too.
+TEST(FlowMaps, SlopesAreThoseOfTheHeights) {
+    const Skin skin = test::cubeBall(0.03F, 12);
+    Drawn d(skin, 1024, still());
+    for (const vec3& x : {vec3(0.03F, 0, 0), vec3(0.03F, 0.03F, 0.002F), vec3(-0.02F, 0.02F, 0.021F)})
+        d.flow->add(nearestPoint(d.flow->mesh(), 0.03F * glm::normalize(x)), 8 * kMicrolitre);
+    d.stand();
+    d.maps->draw(*d.flow);
+    const std::vector<vec4> texels = d.texels();
+    double worst = 0;
+    size_t compared = 0;
+    std::vector<const Drawn::Place*> where(texels.size(), nullptr);
+    const std::vector<Drawn::Place> places = d.places();
+    for (const Drawn::Place& p : places) where[p.at] = &p;
+    for (const Drawn::Place& p : places) {
+        const size_t x = p.at % 1024, step = 3;
+        if (x < step || x + step >= 1024) continue;
+        const Drawn::Place *left = where[p.at - step], *right = where[p.at + step];
+        if (!left || !right) continue;
+        // All under one drop, on one triangle: the cap is smooth there.
+        if (left->on.triangle != p.on.triangle || right->on.triangle != p.on.triangle) continue;
+        if (texels[left->at].z < 0.1F || texels[right->at].z < 0.1F) continue;
+        const double difference = double{texels[right->at].z - texels[left->at].z} * 1e-3 / (2.0 * step / 1024);
+        worst = std::max(worst, std::abs(difference - double{texels[p.at].x}) / (0.47 * glm::length(p.alongU)));
+        ++compared;
+    }
+    EXPECT_GT(compared, 1000U);
+    EXPECT_LT(worst, 0.02);  // of a cap's steepest; halves tell 0.1 % of the height apart
+}
+
+TEST(FlowMaps, NoVolumeIsLostAtSeams) {
+    struct Row {
+        const char* name;
+        Skin skin;
+        double radius;
+        int drops;
+    };
+    const Skin ball = test::cubeBall(0.04F, 16);
+    const Row rows[] = {
+        {"cube-charted ball", ball, 0.04, 60}, {"shattered ball", test::shattered(ball), 0.04, 60}, {"head", test::headSkin(), 0, 400}};
+    for (const Row& row : rows) {
+        ASSERT_FALSE(row.skin.indices.empty()) << row.name;
+        Drawn d(row.skin, 1024, still());
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> any(-1.0F, 1.0F);
+        std::uniform_int_distribution<uint32_t> volume(kMicrolitre, 4 * kMicrolitre);
+        // By area; on the head not so near an open edge that a part would hang over it.
+        const FlowMesh& m = d.flow->mesh();
+        std::vector<double> area;
+        double sum = 0;
+        for (size_t t = 0; t < m.triangleCount(); ++t) {
+            const vec3 a = m.rest[m.corner[3 * t]];
+            area.push_back(sum += glm::length(glm::cross(m.rest[m.corner[3 * t + 1]] - a, m.rest[m.corner[3 * t + 2]] - a)));
+        }
+        std::vector<vec3> edge;
+        for (size_t k = 0; k < m.across.size(); ++k)
+            if (m.across[k] == FlowMesh::kOpen) edge.push_back(m.rest[m.corner[k]]);
+        for (int k = 0; k < row.drops;) {
+            const double pick = (0.5 + 0.5 * double{any(random)}) * sum;
+            const auto t = static_cast<uint32_t>(std::lower_bound(area.begin(), area.end(), pick) - area.begin());
+            if (t >= m.triangleCount()) continue;
+            const SkinPoint at{t, 1.0F / 3, 1.0F / 3};
+            const vec3 x = positionOf(m, at);
+            if (std::any_of(edge.begin(), edge.end(), [&](const vec3& e) { return glm::distance(e, x) < 3e-3F; })) continue;
+            d.flow->add(at, volume(random));
+            ++k;
+        }
+        d.stand();
+        d.maps->draw(*d.flow);
+        const SurfaceFlow::Ledger ledger = d.flow->ledger();
+        printf("%s: %.5f (%zu tiles)\n", row.name, d.drawnVolume() / (ledger.drops * 1e-15), d.maps->tiles());
+        EXPECT_NEAR(d.drawnVolume() / (ledger.drops * 1e-15), 1, 0.005) << row.name;
+    }
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -89,7 +89,7 @@ struct Drawn {
         for (const Place& p : places()) volume += double{all[p.at].z} * 1e-3 * p.area;
         return volume;
     }
-    void stand() { EXPECT_TRUE(flow->step({.pull = vec3(0.0F)}, 1.0 / 60)); }
+    void stand() { EXPECT_TRUE(flow->step({.gravity = vec3(0.0F)}, 1.0 / 60)); }
 };
 
 SurfaceFlowParams still() {

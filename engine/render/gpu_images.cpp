@@ -29,7 +29,7 @@ Result<const gpu::Texture*> GpuImages::get(const std::shared_ptr<const Image>& i
     if (use != ImageUse::heights) {
         made->upload(std::as_bytes(std::span(image->rgba)));
         made->generateMips();
-        made->setSampling({.wrap = gpu::Wrap::repeat});
+        made->setSampling({.mip = use == ImageUse::colour ? gpu::Filter::linear : gpu::Filter::nearest, .wrap = gpu::Wrap::repeat});
     }
     const auto at = kept_.emplace(key, Kept{image, std::move(*made)}).first;
     return static_cast<const gpu::Texture*>(&at->second.texture);

@@ -47,6 +47,10 @@ Result<GpuMesh> GpuMesh::create(const Mesh& mesh) {
     out.array_.attribute(2, out.vertices_.name(), 2, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, uv));
     out.array_.elements(out.indices_.name());
     out.bounds_ = mesh.bounds();
+    for (size_t t = 0; !mesh.uvs.empty() && t + 2 < mesh.indices.size(); t += 3)
+        for (size_t k = 0; k < 3; ++k)
+            out.longestUv_ =
+                std::max(out.longestUv_, glm::distance(mesh.uvs[mesh.indices[t + k]], mesh.uvs[mesh.indices[t + (k + 1) % 3]]));
     out.count_ = static_cast<int>(mesh.indices.size());
     return out;
 }

@@ -23,7 +23,8 @@ constexpr int kShadowSize = 1024;     // texels, of the depth map
 constexpr int kShadowSharpReach = 2;  // texels either side
 constexpr int kShadowSoftReach = 9;
 constexpr float kExposure = 0.55F;
-constexpr float kBoxWidth = 1.2F;  // pixels
+constexpr float kBoxWidth = 1.2F;                        // pixels
+const float kPoreTiles = std::round(0.36F / kPoreTile);  // a unit of uv: about 0.36 m where a head's chart fills the tile
 const vec4 kBoxColour(0.10F, 0.13F, 0.16F, 0.35F);
 
 TextureDesc sized(const FrameView& view, Format format, int divide = 1) {
@@ -60,10 +61,9 @@ void setPlace(Program& p, const DrawnMesh& m) {
 }
 
 void setSkin(Program& p, const SkinLook& skin, const MaterialTextures& textures) {
-    constexpr float kUnit = 0.36F;  // m a unit of uv, about, on a head whose chart fills the tile
     p.set("scatterLength", glm::max(skin.scatter, vec3(1e-5F)));
     p.set("skinAmount", vec2(skin.translucency, skin.pores));
-    p.set("poreTiling", vec2(std::round(kUnit / kPoreTile), kPoreTile));
+    p.set("poreTiling", kPoreTiles);
     p.texture("reliefMap", 8, *textures.relief);
     p.texture("regionsMap", 9, *textures.regions);
     p.texture("poresMap", 10, *textures.pores);
@@ -78,13 +78,15 @@ void setEye(Program& p, const EyeLook& eye, const MaterialTextures& textures, co
     p.texture("diffusionMap", 11, *textures.diffusion);
 }
 
-void drawPart(const DrawnMesh& m) {
-    Program& p = *m.part;
+void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
     setPlace(p, m);
     p.set("scale", std::cbrt(std::abs(glm::determinant(mat3(m.toWorld)))));
     p.set("opacity", m.material.opacity);
     p.set("cutoff", m.material.cutoff);
     p.set("strand", m.material.strand);
+    auto lod = [](const gpu::Texture* map) { return std::log2(static_cast<float>(std::max(map->width(), map->height()))); };
+    p.set("mapLod",
+          vec4(lod(m.textures.colour), lod(m.textures.relief), lod(m.textures.regions), lod(m.textures.pores) + std::log2(kPoreTiles)));
     p.texture("colourMap", 4, *m.textures.colour);
     p.texture("roughnessMap", 5, *m.textures.metallicRoughness);
     p.texture("normalMap", 6, *m.textures.normals);
@@ -92,11 +94,13 @@ void drawPart(const DrawnMesh& m) {
         setSkin(p, *m.material.skin, m.textures);
     else if (m.material.eye)
         setEye(p, *m.material.eye, m.textures, m.toWorld);
-    if (m.layer != nullptr) {
-        const LayerLook& look = m.layer->look;
-        p.texture("layerMap", 7, *m.layer->texels);
+    if (layer != nullptr) {
+        const LayerLook& look = layer->look;
+        p.texture("layerMap", 7, *layer->texels);
         p.set("layerLook", vec4(look.refractiveIndex, look.roughness, look.filmRoughness, look.darkening));
         p.set("layerAbsorption", vec4(look.absorption, look.scale));
+        const auto size = static_cast<float>(std::max(layer->texels->width(), layer->texels->height()));
+        p.set("layerLod", std::max(std::log2(std::max(m.mesh->longestUv() * size, 1.0F)), 3.0F));
     }
     cull(m);
     m.mesh->draw();
@@ -165,7 +169,7 @@ Status RenderPrograms::reload() {
     return ok();
 }
 
-Result<Program*> RenderPrograms::part(const Material& material, bool layered) {
+Result<Program*> RenderPrograms::part(const Material& material, bool layered, bool water) {
     std::vector<Define> defines = {{"PART", "1"}};
     unsigned key = 0;
     auto add = [&](bool wanted, unsigned bit, const char* name) {
@@ -177,6 +181,7 @@ Result<Program*> RenderPrograms::part(const Material& material, bool layered) {
     add(material.eye != nullptr && !material.skin, 2, "EYE");
     add(layered, 4, "LAYER");
     add(material.blended, 8, "BLENDED");
+    add(water, 16, "WATER");
     if (const auto found = parts_.find(key); found != parts_.end()) return &found->second;
     Result<Program> made = Program::create(files_, {"shaders/material/mesh.vert", "shaders/material/part.frag"}, defines);
     if (!made) return made.error();
@@ -316,17 +321,22 @@ void bindPlain(Program& p, const PassContext& c, TextureHandle occlusion, const 
     bindLight(p, c, light, 1);
 }
 
-// Solid parts, then those with holes, which write their depth themselves, then what is blended.
+// Solid parts, then those with holes, which write their depth themselves, then what is blended. What has a layer is drawn dry, and then
+// again where it is wet: a liquid costs much more than what lies under it, and most of a skin is dry.
 void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const vec3& camera, TextureHandle occlusion,
                const LightMaps& light) {
+    auto draw = [&](const DrawnMesh& m) {
+        bindPlain(*m.part, c, occlusion, light);
+        drawPart(m, *m.part, nullptr);
+        if (m.wetPart == nullptr) return;
+        bindPlain(*m.wetPart, c, occlusion, light);
+        drawPart(m, *m.wetPart, m.layer);
+    };
     std::vector<const DrawnMesh*> blended;
     for (const bool holes : {false, true}) {
         glDepthMask(holes ? GL_TRUE : GL_FALSE);
-        for (const DrawnMesh& m : drawn) {
-            if (m.part == nullptr || m.material.blended || isSolid(m.material) == holes) continue;
-            bindPlain(*m.part, c, occlusion, light);
-            drawPart(m);
-        }
+        for (const DrawnMesh& m : drawn)
+            if (m.part != nullptr && !m.material.blended && isSolid(m.material) != holes) draw(m);
     }
     for (const DrawnMesh& m : drawn)
         if (m.part != nullptr && m.material.blended) blended.push_back(&m);
@@ -335,10 +345,7 @@ void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const 
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (const DrawnMesh* m : blended) {
-        bindPlain(*m->part, c, occlusion, light);
-        drawPart(*m);
-    }
+    for (const DrawnMesh* m : blended) draw(*m);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);
@@ -347,7 +354,7 @@ void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const 
 }  // namespace
 
 TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
-                        std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light) {
+                        std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light, bool floor) {
     const TextureHandle colour = graph.texture("scene colour", sized(view, Format::rgba16f));
     graph.pass("opaque", {{frame, Usage::uniform}, {depth, Usage::target}, occlusion, light.sharp, light.soft, light.water}, {colour},
                [=, &programs, drawn = std::move(meshes)](PassContext& c) {
@@ -360,10 +367,12 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
                    programs.sky.use();
                    c.drawFullscreen();
                    glDepthFunc(GL_GREATER);
-                   programs.floor.use();
-                   programs.floor.texture("occlusion", 0, c.texture(occlusion));
-                   bindLight(programs.floor, c, light, 1);
-                   c.drawFullscreen();
+                   if (floor) {  // it would be hidden by every mesh, but shaded under them all the same
+                       programs.floor.use();
+                       programs.floor.texture("occlusion", 0, c.texture(occlusion));
+                       bindLight(programs.floor, c, light, 1);
+                       c.drawFullscreen();
+                   }
                    glDepthFunc(GL_LEQUAL);
                    bindPlain(programs.mesh, c, occlusion, light);
                    for (const DrawnMesh& m : drawn) {

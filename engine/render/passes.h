@@ -25,8 +25,9 @@ struct RenderPrograms {
     static Result<RenderPrograms> create(const ShaderFiles& files);
     Status reload();
 
-    // The program for parts of this material, with or without a layer on it: made when first asked for. Error: as create.
-    Result<gpu::Program*> part(const Material& material, bool layered);
+    // The program for parts of this material, with or without a layer on it, with or without water in the light's way: made when first
+    // asked for. Error: as create.
+    Result<gpu::Program*> part(const Material& material, bool layered, bool water);
 
   private:
     std::array<gpu::Program*, 14> all();
@@ -40,7 +41,8 @@ struct DrawnMesh {
     Material material;
     gpu::Program* part = nullptr;  // RenderPrograms::part(), and then `textures` too; null: the material's three numbers say all
     MaterialTextures textures;
-    const Layer* layer = nullptr;  // null, or one whose texels are there
+    gpu::Program* wetPart = nullptr;  // the same with a layer; and then the layer, whose texels are there
+    const Layer* layer = nullptr;
 };
 
 // Whether a material needs more than its three numbers.
@@ -78,7 +80,8 @@ gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs
                                 gpu::TextureHandle depth, float reach);
 // Linear radiance (rgba16f) of background, floor and meshes; what is blended comes last, the farthest first.
 gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
-                             std::vector<DrawnMesh> meshes, gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light);
+                             std::vector<DrawnMesh> meshes, gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light,
+                             bool floor = true);
 // The edges of a box, drawn into `colour`. With `fluidDepth` (m, r32f): only those in front of the water.
 void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour,
             gpu::TextureHandle depth, gpu::TextureHandle fluidDepth = {});

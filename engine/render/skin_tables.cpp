@@ -122,7 +122,8 @@ Result<gpu::Texture> makeSlopes(const Image& heights, float step, bool repeats) 
         }
     made->upload(std::as_bytes(std::span(texels)));
     made->generateMips();
-    made->setSampling({.wrap = repeats ? gpu::Wrap::repeat : gpu::Wrap::clamp});
+    made->setSampling(
+        {.mip = repeats ? gpu::Filter::linear : gpu::Filter::nearest, .wrap = repeats ? gpu::Wrap::repeat : gpu::Wrap::clamp});
     return made;
 }
 

@@ -170,15 +170,21 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
     return ok();
 }
 
-Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld) {
-    DrawnMesh drawn{&meshes_.at(MeshKey{node.mesh, node.deformer}), toWorld, node.material, nullptr, {}, nullptr};
+Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld, bool water) {
+    DrawnMesh drawn;
+    drawn.mesh = &meshes_.at(MeshKey{node.mesh, node.deformer});
+    drawn.toWorld = toWorld;
+    drawn.material = node.material;
     if (node.layer && node.layer->texels != nullptr && *node.layer->texels) drawn.layer = node.layer.get();
     if (!isPart(node.material) && drawn.layer == nullptr) return drawn;
-    Result<gpu::Program*> part = render_.part(node.material, drawn.layer != nullptr);
-    if (!part) return part.error();
+    for (const bool wet : {false, true}) {
+        if (wet && drawn.layer == nullptr) continue;
+        Result<gpu::Program*> part = render_.part(node.material, wet, water);
+        if (!part) return part.error();
+        (wet ? drawn.wetPart : drawn.part) = *part;
+    }
     Result<MaterialTextures> textures = images_.texturesOf(node.material);
     if (!textures) return textures.error();
-    drawn.part = *part;
     drawn.textures = *textures;
     return drawn;
 }
@@ -215,18 +221,18 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     std::vector<DrawnMesh> meshes;
     const std::vector<mat4> world = scene.worldMatrices();
     const std::vector<bool> visible = scene.visible();
+    const Bounds water = fluid.count > 0 ? fluid.bounds : Bounds{};
     Bounds solid;
     for (size_t i = 0; i < scene.nodes().size(); ++i) {
         const Node& node = scene.nodes()[i];
         if (!visible[i] || !node.mesh) continue;
-        Result<DrawnMesh> drawn = drawnOf(node, world[i]);
+        Result<DrawnMesh> drawn = drawnOf(node, world[i], !water.empty());
         if (!drawn) return drawn.error();
         const Bounds b = transformBounds(world[i], drawn->mesh->bounds());
         meshes.push_back(std::move(*drawn));
         solid.add(b.min);
         solid.add(b.max);
     }
-    const Bounds water = fluid.count > 0 ? fluid.bounds : Bounds{};
     const BackgroundParams& background = settings.background;
     Studio studio{background.horizon, background.zenith, background.floor, background.floorHeight, background.showFloor, solid};
     const Bounds box{settings.fluid.box.min, settings.fluid.box.max};
@@ -258,7 +264,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.depth = addDepth(graph, render_, frame, view, meshes);
     const float radius = 0.5F * glm::length(studio.shown.size());
     const gpu::TextureHandle occlusion = addOcclusion(graph, render_, frame, view, draw.depth, kOcclusionReach * radius);
-    draw.colour = addOpaque(graph, render_, frame, view, meshes, draw.depth, occlusion, light);
+    draw.colour = addOpaque(graph, render_, frame, view, meshes, draw.depth, occlusion, light, studio.showFloor);
     draw.shadowSharp = light.sharp;
     draw.shadowSoft = light.soft;
     draw.waterLight = light.water;

@@ -1,5 +1,5 @@
 // A liquid on a surface: where the ray from the eye meets it, where it is bent to, how the light gets under it. Heights in m.
-// Needs tangents.glsl and frame.glsl.
+// Needs tangents.glsl and frame.glsl. Drawn over the dry surface, where the mesh is wet at all: see mesh.vert.
 uniform sampler2D layerMap;     // x, y slope (m a unit of u, v), z height (mm), w how wet
 uniform vec4 layerLook;         // refractive index, roughness of a drop, roughness of what is wet, darkening
 uniform vec4 layerAbsorption;   // 1/m; w: scale of heights

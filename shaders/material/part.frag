@@ -14,6 +14,7 @@ uniform float metallic;
 uniform float opacity;
 uniform float cutoff;
 uniform float strand;  // share of u that a strand covers in the middle of its ribbon; 0: no strands
+uniform vec4 mapLod;   // log2 of the widths of the maps of colour, relief, regions and pores (those tiled)
 uniform sampler2D occlusion;
 uniform sampler2D colourMap;
 uniform sampler2D roughnessMap;  // green; metallic: blue
@@ -38,8 +39,11 @@ void main() {
     vec2 uv = posUv;
     float open = texture(occlusion, gl_FragCoord.xy * frame.viewport.zw).r;
     vec3 lamp = frame.lightDir.xyz;
-    vec3 falling = frame.lightColour.rgb * waterShadow(posWorld);
-    float lit = meshShadow(posWorld, n);
+    vec3 falling = frame.lightColour.rgb;
+#if defined(WATER)
+    falling *= waterShadow(posWorld);
+#endif
+    float thick, lit = meshShadow(posWorld, n, thick);
 #if defined(LAYER)
     Liquid q = liquidAt(t, uv, toEye);
     uv = q.uvBelow;
@@ -47,7 +51,7 @@ void main() {
 #if defined(EYE)
     uv = throughCornea(uv, toEye);
 #endif
-    vec4 albedo = look(colourMap, uv, t) * vec4(baseColour, opacity);
+    vec4 albedo = look(colourMap, uv, t, mapLod.x) * vec4(baseColour, opacity);
     if (albedo.a < cutoff) discard;
 #if defined(BLENDED)
     if (strand > 0.0) {  // what a pixel's width holds of it, so that thin ones fade and do not break up
@@ -63,10 +67,10 @@ void main() {
 
     vec3 matte, shine = vec3(0.0), f0 = vec3(0.04), facing = n;
 #if defined(SKIN)
-    vec4 region = look(regionsMap, uv, t);
+    vec4 region = look(regionsMap, uv, t, mapLod.z);
     float fade = 1.0 - 0.5 * region.b, variance = 0.0;
-    vec3 slope = reliefSlope(reliefMap, uv, t, 1.0, variance);
-    vec3 fine = reliefSlope(poresMap, uv, t, poreTiling.x, variance) * (skinAmount.y * fade * (1.0 + 0.5 * region.r));
+    vec3 slope = reliefSlope(reliefMap, uv, t, 1.0, mapLod.y, variance);
+    vec3 fine = reliefSlope(poresMap, uv, t, poreTiling, mapLod.w, variance) * (skinAmount.y * fade * (1.0 + 0.5 * region.r));
     variance *= skinAmount.y;
 #if defined(LAYER)
     float filled = 1.0 / (1.0 + q.path / 3.0e-5);  // a film fills the pores
@@ -75,11 +79,10 @@ void main() {
     vec3 soft = normalize(n - 0.35 * (slope + fine)), blurred = normalize(n - 0.12 * (slope + fine));
     float bend = clamp(abs(curvature), 2.0, 250.0), nl = dot(n, lamp);
     lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));  // near the terminator the table knows better than the map
-    vec3 through = pow(vec3(lit), vec3(0.55, 0.85, 1.0));
+    vec3 through = mix(vec3(lit), vec3(sqrt(lit)), vec3(0.9, 0.3, 0.0));  // red bleeds into a shadow's edge
     vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
-    vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * pow(vec3(open), vec3(0.85, 1.0, 1.05));
+    vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * vec3(mix(open, sqrt(open), 0.3), open, open);
     // Thin parts: what the light loses between where it enters and here.
-    float thick = lightDepthBehind(posWorld - 0.001 * n);
     vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.30 * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
     arriving *= mix(1.0, q.light, 0.8);
@@ -93,8 +96,7 @@ void main() {
     vec3 glossLight = falling * lit;
     float corner = open * open * (1.0 - 0.75 * region.b);  // hair scatters what skin mirrors
     glossLight *= 1.0 - 0.75 * region.b;
-    shine = gloss(facing, toEye, f0, rough + 0.08, variance, glossLight, corner) * (0.65 * (0.6 + 0.4 * oily)) +
-            gloss(facing, toEye, f0, 0.62 * rough, variance, glossLight, corner) * (0.45 * oily);
+    shine = twoLobes(facing, toEye, f0, rough, oily, variance, glossLight, corner);
 #elif defined(EYE)
     shadeEye(uv, n, toEye, albedo.rgb, falling, lit, open, matte, shine);
 #else

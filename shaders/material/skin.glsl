@@ -5,12 +5,11 @@ uniform sampler2D regionsMap;  // oily, dry, hair, lip
 uniform sampler2D poresMap;    // slopes of a tile
 uniform vec3 scatterLength;    // m
 uniform vec2 skinAmount;       // of translucency, of pores
-uniform vec2 poreTiling;       // tiles a unit of uv; m a tile
+uniform float poreTiling;      // tiles a unit of uv
 
 // A height's slope in the tangent plane, and the variance of what the mip hides.
-vec3 reliefSlope(sampler2D map, vec2 uv, Tangents t, float stretch, inout float variance) {
-    vec2 size = vec2(textureSize(map, 0));
-    vec4 s = textureLod(map, uv * stretch, t.lod + log2(max(size.x, size.y) * stretch));
+vec3 reliefSlope(sampler2D map, vec2 uv, Tangents t, float stretch, float sizeLod, inout float variance) {
+    vec4 s = look(map, uv * stretch, t, sizeLod);
     float metric = 0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)) * stretch * stretch;
     variance += max(s.z - dot(s.xy, s.xy), 0.0) * metric;
     return (s.x * t.du + s.y * t.dv) * stretch;
@@ -22,4 +21,18 @@ vec3 spread(vec3 red, vec3 green, vec3 blue, vec3 lamp, float bend) {
     vec3 wide = clamp(scatterLength * bend, 0.0, 0.97) + 0.015;
     return vec3(texture(diffusionMap, vec2(cosine.x, wide.x)).r, texture(diffusionMap, vec2(cosine.y, wide.y)).r,
                 texture(diffusionMap, vec2(cosine.z, wide.z)).r);
+}
+
+// Gloss of skin: a broad lobe, and a sharper one where it is oily; one look at the environment serves both.
+vec3 twoLobes(vec3 normal, vec3 toEye, vec3 f0, float rough, float oily, float variance, vec3 lightArriving, float open) {
+    float nv = max(dot(normal, toEye), 1.0e-3), nl = max(dot(normal, frame.lightDir.xyz), 0.0);
+    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    float nh = max(dot(normal, h), 0.0), vh = max(dot(toEye, h), 0.0);
+    float broad = rough + 0.08, sharp = 0.62 * rough;
+    float extra = min(variance, 0.5), b2 = broad * broad, s2 = sharp * sharp;
+    float share = 0.65 * (0.6 + 0.4 * oily), glint = 0.45 * oily, away = 1.0 - vh;
+    vec3 fresnel = f0 + (1.0 - f0) * (away * away * away * away * away);
+    float both = share * highlight(nl, nv, nh, sqrt(b2 * b2 + extra)) + glint * highlight(nl, nv, nh, sqrt(s2 * s2 + extra));
+    float wide = sqrt(sqrt(mix(b2 * b2, s2 * s2, glint / (share + glint)) + extra));
+    return fresnel * (both * nl) * lightArriving + glossOf(f0, wide, nv) * environment(reflect(-toEye, normal), wide) * (open * (share + glint));
 }

@@ -21,7 +21,4 @@ Tangents tangentsAt(vec3 posWorld, vec2 uv, vec3 normal) {
 vec2 uvStep(Tangents t, vec3 stepWorld) { return vec2(dot(t.du, stepWorld), dot(t.dv, stepWorld)); }
 // Of a height whose slopes are x (m a unit of u) and y (of v).
 vec3 gradient(Tangents t, vec2 slopes) { return slopes.x * t.du + slopes.y * t.dv; }
-vec4 look(sampler2D map, vec2 uv, Tangents t) {
-    vec2 size = vec2(textureSize(map, 0));
-    return textureLod(map, uv, t.lod + log2(max(size.x, size.y)));
-}
+vec4 look(sampler2D map, vec2 uv, Tangents t, float sizeLod) { return textureLod(map, uv, t.lod + sizeLod); }

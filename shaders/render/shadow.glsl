@@ -15,25 +15,23 @@ float litFraction(vec2 moments, float warped, out float mean) {
     return smoothstep(0.12, 1.0, p);  // cuts the tail that lets light bleed through
 }
 
-float meshShadow(vec3 posWorld, vec3 normal) {
+// `thickness`: m of meshes between the point and where the light enters them, 0 where it is lit; blurred as the sharp map is.
+float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
+    thickness = 1.0;
     if (frame.shadow.x == 0.0) return 1.0;
     vec4 clip = frame.shadowProjection * vec4(posWorld + normal * (0.004 * frame.shadow.z), 1.0);
     vec3 at = clip.xyz * 0.5 + 0.5;
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
     float warped = exp(kWarp * clamp(at.z, 0.0, 1.0));
-    float blocker, unused;
+    float blocker, first;
     float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, blocker);
-    float sharp = litFraction(texture(shadowSharp, at.xy).xy, warped, unused);
+    float sharp = litFraction(texture(shadowSharp, at.xy).xy, warped, first);
+    thickness = max(at.z - first, 0.0) * frame.shadow.z;
     return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // far from what casts it, a shadow is soft
 }
-
-// Metres between a point and the surface nearest the light above it.
-float lightDepthBehind(vec3 posWorld) {
-    if (frame.shadow.x == 0.0) return 1.0;
-    vec4 clip = frame.shadowProjection * vec4(posWorld, 1.0);
-    vec3 at = clip.xyz * 0.5 + 0.5;
-    float first = log(max(texture(shadowSharp, at.xy).x, 1.0e-20)) / kWarp;
-    return max(at.z - first, 0.0) * frame.shadow.z;
+float meshShadow(vec3 posWorld, vec3 normal) {
+    float thickness;
+    return meshShadow(posWorld, normal, thickness);
 }
 
 // Transmittance of the water between the point and the light, brighter where its surface gathers light.

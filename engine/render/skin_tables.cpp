@@ -139,7 +139,7 @@ Image makePores() {
                 0.30F * smooth(0.0F, 0.5F, fine.y) * (0.4F + 1.2F * fine.z) + 0.45F * smooth(0.0F, 0.4F, deep.y) * (0.5F + deep.z);
             const float radius = 0.10F + 0.12F * pit.z;
             height -= (0.5F + 0.9F * pit.z) * (1.0F - smooth(0.2F * radius, radius, pit.x));
-            const auto level = static_cast<uint8_t>(std::clamp(128.0F + 60.0F * (height - 0.7F), 0.0F, 255.0F));
+            const auto level = static_cast<uint8_t>(std::clamp(128.0F + 48.0F * (height - 0.6F), 0.0F, 255.0F));
             for (size_t k = 0; k < 4; ++k)
                 image.rgba[4 * (static_cast<size_t>(y) * kPoreTexels + static_cast<size_t>(x)) + k] = k == 3 ? 255 : level;
         }

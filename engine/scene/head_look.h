@@ -11,9 +11,14 @@ namespace rivulet {
 // The eyeball in a mesh: the sphere that fits its vertices best, looking where the uvs' middle is.
 EyeLook eyeLookOf(const Mesh& mesh);
 
+// The tear that always lies along a lower lid: a strip that curves from the lid's edge to the eyeball, blended, as much of a mirror as a
+// mesh can be. It follows the skin's morphs. `width`: m, from the lid to where it ends on the eye. Nothing where no lid is near the eye.
+ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width = 0.8e-3F);
+
 // The part `skin` becomes skin, with head_relief.png and skin_regions.png of `folder` where they are there; parts whose names begin with
 // `eye` and that are not blended become eyes, `caruncle` flesh, `lashes` soft-edged hairs if they are ribbons whose u runs across. Parts
 // that are not there are no error; a picture that is damaged is.
+// Each eye gets a tear line, as parts `tearLine` + what follows `eye` in its name.
 Status dressHead(Model& head, const std::string& folder);
 
 }  // namespace rivulet

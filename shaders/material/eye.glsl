@@ -41,7 +41,7 @@ void shadeEye(vec2 uv, vec3 n, vec3 toEye, vec3 albedo, vec3 falling, float lit,
     vec3 white = vec3(texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.x)).r, texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.y)).r,
                       texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.z)).r);
     // Lids shade what lies under the upper one and deep in the corners.
-    open *= mix(1.0, 0.45, smoothstep(0.05, 0.48, at.y)) * mix(1.0, 0.35, smoothstep(0.5, 0.95, abs(at.x)));
+    open *= mix(1.0, 0.45, smoothstep(0.05, 0.48, at.y)) * mix(1.0, 0.15, smoothstep(0.45, 0.9, abs(at.x)));
     lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));
     vec3 arriving = white * pow(vec3(lit), vec3(0.7, 0.9, 1.0)) * falling * 0.3183099;
     // The iris: a bowl that the cornea fills with light on the side away from the lamp.

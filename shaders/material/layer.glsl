@@ -62,11 +62,13 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     vec3 bentLight = refract(-lamp, t.normal, 1.0 / layerLook.x);
     vec4 entry = liquidTexel(q.uvBelow - uvStep(t, bentLight) * (height / max(-dot(bentLight, t.normal), 0.3)), lod);
     float toLamp = dot(gradient(t, entry.xy), across);
-    q.light = clamp(1.0 + 1.8 * q.drop * toLamp / max(sun, 0.4), 0.3, 2.8);
-    // A drop between here and the lamp takes that light away.
-    const float kShade = 3.5e-4;
+    toLamp /= max(sun, 0.4);
+    q.light = clamp(1.0 + q.drop * (1.5 * toLamp + 2.2 * max(toLamp, 0.0) * max(toLamp, 0.0)), 0.35, 3.2);
+    // Along its edge a drop keeps light in; and it takes some from what lies behind it as the lamp sees it.
+    q.light *= 1.0 - 0.35 * smoothstep(0.25, 0.6, steep) * (1.0 - smoothstep(0.03, 0.14, here.z));
+    const float kShade = 1.5e-4;
     float over = 1.0e-3 * liquidTexel(uv + uvStep(t, across) * (kShade / sun), lod).z - kShade;
-    q.light *= 1.0 - 0.5 * (1.0 - q.drop) * smoothstep(0.0, 2.5e-4, over);
+    q.light *= 1.0 - 0.6 * (1.0 - q.drop) * smoothstep(0.0, 2.0e-4, over);
     q.variance = 0.10 * q.drop * smoothstep(3.0e-4, 1.5e-3, t.footprint);
     return q;
 }

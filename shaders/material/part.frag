@@ -83,7 +83,7 @@ void main() {
     vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
     vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * vec3(mix(open, sqrt(open), 0.3), open, open);
     // Thin parts: what the light loses between where it enters and here.
-    vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.30 * smoothstep(0.30, 0.75, -nl));
+    vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.20 * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
     arriving *= mix(1.0, q.light, 0.8);
 #endif
@@ -94,7 +94,8 @@ void main() {
     float rough = mix(roughness, 0.36, 0.5 * region.r + 0.4 * region.a);
     f0 = vec3(0.028);
     vec3 glossLight = falling * lit;
-    float corner = open * open * (1.0 - 0.75 * region.b);  // hair scatters what skin mirrors
+    // Folds mirror their own other side; hair scatters what skin mirrors.
+    float corner = open * open * (1.0 - 0.75 * region.b) / (1.0 + 0.006 * max(-curvature, 0.0));
     glossLight *= 1.0 - 0.75 * region.b;
     shine = twoLobes(facing, toEye, f0, rough, oily, variance, glossLight, corner);
 #elif defined(EYE)

@@ -1,6 +1,12 @@
 #include "tests/golden/look_fixture.h"
 
+#include <stb/stb_image.h>
+
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "engine/app/capture.h"
 
 namespace rivulet {
 
@@ -60,6 +66,27 @@ std::vector<uint8_t> LookTest::picture(const Camera& camera, int width, int heig
     const Status drawn = renderer_->draw(frameViewOf(camera, settings.light, width, height, 0), fluid, scene, settings);
     EXPECT_TRUE(drawn) << (drawn ? "" : drawn.error().message);
     return renderer_->pixels();
+}
+
+void LookTest::compareWith(const std::string& name, int width, int height, const std::vector<uint8_t>& rgba) {
+    const std::string path = std::string(RIVULET_SOURCE_DIR) + "/tests/golden/" + name + ".png";
+    if (std::getenv("RIVULET_UPDATE_GOLDEN") != nullptr) {
+        const Status written = writePng(path, rgba, width, height);
+        ASSERT_TRUE(written) << written.error().message;
+        return;
+    }
+    if (!onLlvmpipe()) GTEST_SKIP() << "the committed pictures are llvmpipe's";
+    int loadedWidth = 0, loadedHeight = 0, channels = 0;
+    stbi_uc* loaded = stbi_load(path.c_str(), &loadedWidth, &loadedHeight, &channels, 4);
+    ASSERT_NE(loaded, nullptr) << path << ": make it with RIVULET_UPDATE_GOLDEN=1 and look at it";
+    const std::vector<uint8_t> golden(loaded, loaded + static_cast<size_t>(loadedWidth) * static_cast<size_t>(loadedHeight) * 4);
+    stbi_image_free(loaded);
+    ASSERT_EQ(loadedWidth, width);
+    ASSERT_EQ(loadedHeight, height);
+    const double error = meanAbsoluteError(rgba, golden);
+    if (error >= 1.0) (void)writePng((std::filesystem::temp_directory_path() / (name + "_now.png")).string(), rgba, width, height);
+    EXPECT_LT(error, 1.0) << "the picture changed: look at " << name
+                          << "_now.png in the temporary folder; if it is better, RIVULET_UPDATE_GOLDEN=1";
 }
 
 double meanAbsoluteError(std::span<const uint8_t> a, std::span<const uint8_t> b) {

@@ -55,6 +55,14 @@ void widenStrands(ModelPart& part) {
     part.material.strand = 1.0F / kWider;
 }
 
+// m, from the eyeball's centre to the white or the cornea.
+float eyeSurface(const EyeLook& eye, const vec3& direction) {
+    const float forward = glm::dot(direction, eye.sight);
+    const float under = eye.corneaRadius * eye.corneaRadius - eye.corneaCentre * eye.corneaCentre * (1.0F - forward * forward);
+    if (forward <= 0 || under <= 0) return eye.radius;
+    return eye.radius * std::max(1.0F, eye.corneaCentre * forward + std::sqrt(under));
+}
+
 // The edge of the lower lid where it touches the eye, from one corner to the other: of the skin's vertices that lie on the eyeball below
 // the line of sight, the highest in each of a row of sectors. Indices into the skin's positions.
 std::vector<uint32_t> lowerLidEdge(const Mesh& skin, const EyeLook& eye, const vec3& side, const vec3& up) {
@@ -72,7 +80,7 @@ std::vector<uint32_t> lowerLidEdge(const Mesh& skin, const EyeLook& eye, const v
         if (x.z < 0.2F || x.y > 0.05F || off < 0.0F || off > kNear || std::abs(x.x) > kWidest) continue;
         const auto sector = std::min(static_cast<size_t>((x.x + kWidest) / (2.0F * kWidest) * kSectors), kSectors - 1);
         // Of a lid's rim the edge that touches the eye is wanted, not the one that lashes grow on: near beats high.
-        auto rank = [&](const vec3& p) { return p.y - 1.5F * (glm::length(p) - 1.0F); };
+        auto rank = [&](const vec3& p) { return p.y - 0.6F * (glm::length(p) - 1.0F); };
         if (highest[sector] == kNone || rank(x) > rank(seen(highest[sector]))) highest[sector] = v;
     }
     std::erase(highest, kNone);
@@ -100,12 +108,12 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
     for (size_t k = 0; k < lid.size(); ++k) {
         const float along = static_cast<float>(k) / static_cast<float>(lid.size() - 1), full = std::sin(kPi * along);
         const vec3 out = glm::normalize(lid[k] - eye.centre), onto = glm::normalize(up - out * glm::dot(up, out));
-        const float off = std::max(glm::distance(lid[k], eye.centre) - eye.radius, 1.0e-4F);
+        const float off = std::max(glm::distance(lid[k], eye.centre) - eyeSurface(eye, out), 1.0e-4F);
         const float reach = width * (0.35F + 0.65F * full);
         for (uint32_t j = 0; j < kAcross; ++j) {  // a quarter of an ellipse, hollow as a meniscus is
             const float angle = 0.5F * kPi * static_cast<float>(j) / (kAcross - 1);
             const vec3 above = glm::normalize(lid[k] + onto * (reach * (1.0F - std::cos(angle))) - eye.centre);
-            part.mesh.positions.push_back(eye.centre + above * (eye.radius + 2.0e-5F + off * (1.0F - std::sin(angle))));
+            part.mesh.positions.push_back(eye.centre + above * (eyeSurface(eye, above) + 2.0e-5F + off * (1.0F - std::sin(angle))));
             part.mesh.uvs.emplace_back(along, static_cast<float>(j) / (kAcross - 1));
         }
     }

@@ -105,6 +105,9 @@ void main() {
     vec3 alongU = normalize(t.du + 1.0e-20), alongV = normalize(t.dv + 1.0e-20);
     facing = normalize(n * max(mapped.z, 0.05) + alongU * mapped.x + alongV * mapped.y);
     if (!(dot(facing, facing) > 0.5)) facing = n;
+#if defined(LAYER)
+    facing = normalize(facing - q.slope * (layerLook.x - 1.0));  // a prism over a mirror turns it, as seen from outside
+#endif
     vec4 rm = texture(roughnessMap, uv);
     float rough = roughness * rm.g, metal = metallic * rm.b;
     f0 = mix(vec3(0.04), albedo.rgb, metal);
@@ -127,7 +130,7 @@ void main() {
 #if defined(SKIN)
         film -= (slope + fine) * (0.65 * filled);
 #else
-        film += (facing - n) * (1.0 - q.drop);
+        film += (facing + q.slope * (layerLook.x - 1.0) - n) * (1.0 - q.drop);
 #endif
         film = normalize(film);
         if (dot(film, toEye) < 0.02) film = normalize(film + toEye * (0.02 - dot(film, toEye)));

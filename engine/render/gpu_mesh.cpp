@@ -1,5 +1,7 @@
 #include "engine/render/gpu_mesh.h"
 
+#include <algorithm>
+
 namespace rivulet {
 
 namespace {
@@ -21,19 +23,33 @@ std::vector<float> meanCurvatures(const Mesh& mesh) {
     return fall;
 }
 
+// Of each vertex: the longest of its triangles' edges, in uv.
+std::vector<float> reaches(const Mesh& mesh) {
+    std::vector<float> reach(mesh.positions.size(), 0.0F);
+    if (mesh.uvs.size() != mesh.positions.size()) return reach;
+    for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+        const uint32_t* v = &mesh.indices[t];
+        const float longest = std::max({glm::distance(mesh.uvs[v[0]], mesh.uvs[v[1]]), glm::distance(mesh.uvs[v[1]], mesh.uvs[v[2]]),
+                                        glm::distance(mesh.uvs[v[2]], mesh.uvs[v[0]])});
+        for (size_t k = 0; k < 3; ++k) reach[v[k]] = std::max(reach[v[k]], longest);
+    }
+    return reach;
+}
+
 }  // namespace
 
 Result<GpuMesh> GpuMesh::create(const Mesh& mesh) {
     struct Vertex {
         vec3 position;
         vec4 normal;
-        vec2 uv;
+        vec3 uv;
     };
     const std::vector<float> curvature = meanCurvatures(mesh);
+    const std::vector<float> reach = reaches(mesh);
     std::vector<Vertex> vertices(mesh.positions.size(), Vertex{});
     for (size_t i = 0; i < vertices.size(); ++i)
         vertices[i] = {mesh.positions[i], vec4(i < mesh.normals.size() ? mesh.normals[i] : vec3(0.0F), curvature[i]),
-                       i < mesh.uvs.size() ? mesh.uvs[i] : vec2(0.0F)};
+                       i < mesh.uvs.size() ? vec3(mesh.uvs[i], reach[i]) : vec3(0.0F)};
     GpuMesh out;
     Result<gpu::Buffer> vertexBuffer = gpu::Buffer::from(vertices);
     if (!vertexBuffer) return vertexBuffer.error();
@@ -44,13 +60,9 @@ Result<GpuMesh> GpuMesh::create(const Mesh& mesh) {
     out.array_ = gpu::VertexArray::create();
     out.array_.attribute(0, out.vertices_.name(), 3, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, position));
     out.array_.attribute(1, out.vertices_.name(), 4, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, normal));
-    out.array_.attribute(2, out.vertices_.name(), 2, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, uv));
+    out.array_.attribute(2, out.vertices_.name(), 3, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, uv));
     out.array_.elements(out.indices_.name());
     out.bounds_ = mesh.bounds();
-    for (size_t t = 0; !mesh.uvs.empty() && t + 2 < mesh.indices.size(); t += 3)
-        for (size_t k = 0; k < 3; ++k)
-            out.longestUv_ =
-                std::max(out.longestUv_, glm::distance(mesh.uvs[mesh.indices[t + k]], mesh.uvs[mesh.indices[t + (k + 1) % 3]]));
     out.count_ = static_cast<int>(mesh.indices.size());
     return out;
 }

@@ -18,11 +18,9 @@ class GpuMesh {
     Status follow(const Deformer& deformer);
     void draw() const;                                // with the program in use
     const Bounds& bounds() const { return bounds_; }  // the mesh's own, or the deformer's
-    float longestUv() const { return longestUv_; }    // of all triangles' edges, in uv
 
   private:
     gpu::Buffer vertices_, indices_, positions_, normals_;
-    float longestUv_ = 0;
     uint64_t followed_ = 0;  // the deformer's version
     std::vector<vec4> copy_;
     gpu::VertexArray array_;

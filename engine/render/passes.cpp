@@ -99,8 +99,6 @@ void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
         p.texture("layerMap", 7, *layer->texels);
         p.set("layerLook", vec4(look.refractiveIndex, look.roughness, look.filmRoughness, look.darkening));
         p.set("layerAbsorption", vec4(look.absorption, look.scale));
-        const auto size = static_cast<float>(std::max(layer->texels->width(), layer->texels->height()));
-        p.set("layerLod", std::max(std::log2(std::max(m.mesh->longestUv() * size, 1.0F)), 3.0F));
     }
     cull(m);
     m.mesh->draw();

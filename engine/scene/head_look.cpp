@@ -109,7 +109,7 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
         const float along = static_cast<float>(k) / static_cast<float>(lid.size() - 1), full = std::sin(kPi * along);
         const vec3 out = glm::normalize(lid[k] - eye.centre), onto = glm::normalize(up - out * glm::dot(up, out));
         const float off = std::max(glm::distance(lid[k], eye.centre) - eyeSurface(eye, out), 1.0e-4F);
-        const float reach = width * (0.35F + 0.65F * full);
+        const float reach = width * (0.08F + 0.92F * full);
         for (uint32_t j = 0; j < kAcross; ++j) {  // a quarter of an ellipse, hollow as a meniscus is
             const float angle = 0.5F * kPi * static_cast<float>(j) / (kAcross - 1);
             const vec3 above = glm::normalize(lid[k] + onto * (reach * (1.0F - std::cos(angle))) - eye.centre);
@@ -176,11 +176,13 @@ Status dressHead(Model& head, const std::string& folder) {
             }
             part.material.skin = std::move(skin);
             part.material.baseColour = kTint;
+            part.material.doubleSided = true;  // beside the eye one looks into the head
         }
         if (part.name.starts_with("caruncle")) {
             auto flesh = std::make_shared<SkinLook>();
             flesh->pores = 0.0F;
             part.material.skin = std::move(flesh);
+            part.material.doubleSided = true;
         }
         if (part.name.starts_with("lashes")) widenStrands(part);
         if (part.name.starts_with("eye") && !part.material.blended) part.material.eye = std::make_shared<EyeLook>(eyeLookOf(part.mesh));

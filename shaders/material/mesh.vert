@@ -3,11 +3,10 @@
 layout(location = 0) in vec3 position;
 #if defined(PART)
 layout(location = 1) in vec4 normal;  // w: mean curvature, 1 / the mesh's unit
-layout(location = 2) in vec2 uv;
+layout(location = 2) in vec3 uv;  // z: the longest edge that ends here
 uniform float scale;  // of the mesh's unit, m
 #if defined(LAYER)
 uniform sampler2D layerMap;
-uniform float layerLod;  // a mip whose texels are as wide as the mesh's triangles
 out float gl_CullDistance[1];
 #endif
 out vec2 posUv;
@@ -23,10 +22,13 @@ void main() {
     posWorld = (toWorldMatrix * vec4(position, 1.0)).xyz;
     normalWorld = normalMatrix * normal.xyz;
 #if defined(PART)
-    posUv = uv;
+    posUv = uv.xy;
     curvature = normal.w / scale;
 #if defined(LAYER)
-    vec4 around = textureLod(layerMap, uv, layerLod);  // a triangle whose three corners are dry is not drawn
+    // A triangle whose three corners are dry is not drawn: looked up in a mip wide enough for what is between them, and for what a drop's
+    // height and shadow reach.
+    float lod = max(log2(max(0.7 * uv.z * float(textureSize(layerMap, 0).x), 1.0)), 3.0);
+    vec4 around = textureLod(layerMap, uv.xy, lod);
     gl_CullDistance[0] = max(around.z, around.w) - 1.0e-6;
 #endif
 #endif

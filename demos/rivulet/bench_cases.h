@@ -38,6 +38,7 @@ Table<BenchCase> benchCases();
 Status benchVoxels(const BenchContext& context);
 Status benchCollide(const BenchContext& context);
 Status benchMethods(const BenchContext& context);
+Status benchFlow(const BenchContext& context);
 
 // Calls `once` context.runs times (a first call, not counted, warms caches); the spread of what it returns.
 Spread repeat(const BenchContext& context, const std::function<double()>& once);

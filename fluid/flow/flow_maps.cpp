@@ -15,9 +15,9 @@ namespace rivulet {
 struct FlowMaps::Impl {
     Device* device = nullptr;
     int size = 0, mips = 0;
-    Kernel caps, thick, bounds, touch, taps, rows, mip;
+    Kernel caps, thick, frames, bounds, touch, taps, rows, mip;
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
-    Buffer box, cap, film, near, stamp, map;
+    Buffer frame, box, cap, film, near, stamp, map;
     uint32_t tiles = 0, pieces = 0;
     uint32_t drawn = 0;
     uint64_t moved = 0;  // as the flow counted when the boxes were made
@@ -41,9 +41,9 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const MapTexels& made) {
         Kernel* kernel;
         const char* path;
     };
-    for (const Wanted& w : {Wanted{&caps, "flow/map_caps"}, Wanted{&thick, "flow/map_thick"}, Wanted{&bounds, "flow/map_bounds"},
-                            Wanted{&touch, "flow/map_touch"}, Wanted{&taps, "flow/map_taps"}, Wanted{&rows, "flow/map_rows"},
-                            Wanted{&mip, "flow/map_mips"}}) {
+    for (const Wanted& w : {Wanted{&caps, "flow/map_caps"}, Wanted{&thick, "flow/map_thick"}, Wanted{&frames, "flow/map_frames"},
+                            Wanted{&bounds, "flow/map_bounds"}, Wanted{&touch, "flow/map_touch"}, Wanted{&taps, "flow/map_taps"},
+                            Wanted{&rows, "flow/map_rows"}, Wanted{&mip, "flow/map_mips"}}) {
         Result<Kernel> found = device->kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -56,9 +56,10 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const MapTexels& made) {
          {std::pair(&tile, made.tile.size() * sizeof(uint32_t)), std::pair(&texel, words.size() * sizeof(uint32_t)),
           std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)), std::pair(&pin, made.pin.size() * sizeof(uint32_t)),
           std::pair(&chart, made.chart.size() * sizeof(vec4)), std::pair(&cover, made.cover.size() * sizeof(float)),
-          std::pair(&box, 2 * made.pieces() * sizeof(vec4)), std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)),
-          std::pair(&film, flow.film->bytes()), std::pair(&near, NEAR_UINTS * made.tiles() * sizeof(uint32_t)),
-          std::pair(&stamp, above * sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
+          std::pair(&frame, 2 * made.chart.size() * sizeof(vec4)), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
+          std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)), std::pair(&film, flow.film->bytes()),
+          std::pair(&near, NEAR_UINTS * made.tiles() * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
+          std::pair(&map, 2 * all * sizeof(uint32_t))}) {
         Result<Buffer> room = device->allocate(bytes);
         if (!room) return room.error();
         *buffer = std::move(*room);
@@ -137,13 +138,16 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     ++w.drawn;
     FlowMapStep s = w.stepOf(v, flow.params());
     Device& d = *w.device;
-    if (w.drawn == 1) d.run(w.taps, s, {&w.tile, &w.chart, v.skin, v.basis, &w.texel}, w.tiles * TILE_TEXELS);
-    if (s.moved > 0) d.run(w.bounds, s, {&w.pinBegin, &w.pin, v.point, v.basis, &w.chart, &w.box}, w.pieces);
+    if (s.moved > 0) {
+        d.run(w.frames, s, {&w.chart, v.basis, &w.frame}, s.triangles);
+        d.run(w.bounds, s, {&w.pinBegin, &w.pin, v.point, &w.frame, &w.box}, w.pieces);
+    }
+    if (w.drawn == 1) d.run(w.taps, s, {&w.tile, &w.frame, v.skin, v.basis, &w.texel}, w.tiles * TILE_TEXELS);
     w.moved = v.moved;
     d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, &w.film}, s.triangles);
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp}, w.tiles);
-    d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, 4 * w.tiles);
+    d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, 4 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);
         s.level = static_cast<uint32_t>(level);
@@ -153,7 +157,8 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
             s.stampAt = s.levelAt - static_cast<uint32_t>(w.before(3));
             s.stampAbove = s.aboveAt - static_cast<uint32_t>(w.before(3));
         }
-        d.run(w.mip, s, {&w.cover, &w.stamp, &w.map}, edge * edge);
+        const uint32_t inTile = 8U >> s.level;
+        d.run(w.mip, s, {&w.cover, &w.stamp, &w.map, &w.near}, level <= 3 ? w.tiles * inTile * inTile : edge * edge);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "fluid/flow/skin_folds.h"
 #include "shaders/flow/map_step.h"
 
 namespace rivulet {
@@ -243,7 +244,7 @@ class PieceMaker {
     std::vector<uint32_t> seen_;
 };
 
-std::vector<vec4> chartsOf(const std::vector<Flat>& flats, int size) {
+std::vector<vec4> chartsOf(const std::vector<Flat>& flats, std::span<const float> folds, int size) {
     std::vector<vec4> chart;
     chart.reserve(2 * flats.size());
     for (const Flat& f : flats) {
@@ -254,7 +255,7 @@ std::vector<vec4> chartsOf(const std::vector<Flat>& flats, int size) {
         const dvec2 e1 = f.p[1] - f.p[0], e2 = f.p[2] - f.p[0], middle = (f.p[0] + f.p[1] + f.p[2]) / 3.0;
         const double scale = size / f.area;
         chart.emplace_back(e2.y * scale, -e1.y * scale, -e2.x * scale, e1.x * scale);
-        chart.emplace_back((middle.x + 0.5) / size, (middle.y + 0.5) / size, 0, 0);
+        chart.emplace_back((middle.x + 0.5) / size, (middle.y + 0.5) / size, folds[chart.size() / 2], 0);
     }
     return chart;
 }
@@ -278,7 +279,7 @@ std::vector<float> coverOf(const std::vector<uint32_t>& words, int size) {
 
 }  // namespace
 
-MapTexels layTexels(const FlowMesh& mesh, std::span<const vec2> uvs, std::span<const uint8_t> folds, int size, int gutter) {
+MapTexels layTexels(const FlowMesh& mesh, std::span<const vec2> uvs, std::span<const float> folds, int size, int gutter) {
     Rasteriser raster(mesh, uvs, size);
     raster.grow(gutter);
     const std::vector<uint32_t>& words = raster.words();
@@ -296,13 +297,13 @@ MapTexels layTexels(const FlowMesh& mesh, std::span<const vec2> uvs, std::span<c
                 uint32_t word = words[size_t{ty * 8 + k / 8} * edge + tx * 8 + k % 8];
                 if (word != TEXEL_NONE) {
                     any = true;
-                    if (folds[word & TEXEL_TRIANGLE] != 0) word |= TEXEL_FOLD;
+                    if (folds[word & TEXEL_TRIANGLE] < kNoFold) word |= TEXEL_FOLD;
                 }
                 own[k] = word;
             }
             if (any) pieces.add(tx, ty, own);
         }
-    map.chart = chartsOf(raster.flats(), size);
+    map.chart = chartsOf(raster.flats(), folds, size);
     map.cover = coverOf(words, size);
     return map;
 }

@@ -15,7 +15,7 @@ struct MapTexels {
     std::vector<uint32_t> texel;     // 64 a tile, a word each
     std::vector<uint32_t> pinBegin;  // of each piece's, and the end
     std::vector<uint32_t> pin;
-    std::vector<vec4> chart;   // 2 a triangle, see flow/map_bounds
+    std::vector<vec4> chart;   // 2 a triangle, see flow/map_frames; what `folds` says behind
     std::vector<float> cover;  // of every texel of mip 1 and above: how much of it has skin
     size_t inside = 0;         // texels whose centre lies in their triangle: the others are the charts' gutters
     size_t pieces() const { return pinBegin.size() - 1; }
@@ -24,9 +24,8 @@ struct MapTexels {
 
 // A texel belongs to the triangle in which its centre lies, of several to the first; `gutter` texels round every chart show what its
 // triangles would if they went on. `uvs`: 3 a triangle. UVs outside 0 to 1 wrap round. Triangles without area in UV, or with UVs that are
-// no numbers or span more than the map, have no texels. `folds`: 1 for triangles on which drops must be asked whether they are on the same
-// skin; see fluid/flow/skin_folds.h.
-MapTexels layTexels(const FlowMesh& mesh, std::span<const vec2> uvs, std::span<const uint8_t> folds, int size, int gutter = 3);
+// no numbers or span more than the map, have no texels. `folds`: see fluid/flow/skin_folds.h.
+MapTexels layTexels(const FlowMesh& mesh, std::span<const vec2> uvs, std::span<const float> folds, int size, int gutter = 3);
 
 // Barycentric coordinates of a texel on its triangle: as the kernels have them.
 SkinPoint skinPointOf(const MapTexels& map, uint32_t word, int x, int y);

@@ -41,7 +41,7 @@ class Samples {
     }
     const std::vector<Sample>& all() const { return all_; }
     template <class F>
-    bool anyWithin(const vec3& x, float reach, F&& says) const {
+    void eachWithin(const vec3& x, float reach, F&& see) const {
         const ivec3 low(glm::floor((x - reach) / cell_)), high(glm::floor((x + reach) / cell_));
         for (int z = low.z; z <= high.z; ++z)
             for (int y = low.y; y <= high.y; ++y)
@@ -49,9 +49,8 @@ class Samples {
                     const auto found = cells_.find(keyOf({i, y, z}));
                     if (found == cells_.end()) continue;
                     for (const uint32_t k : found->second)
-                        if (glm::distance(all_[k].x, x) < reach && says(all_[k].triangle)) return true;
+                        if (glm::distance(all_[k].x, x) < reach) see(all_[k].triangle);
                 }
-        return false;
     }
 
   private:
@@ -73,8 +72,8 @@ float distanceTo(const FlowMesh& m, uint32_t t, const vec3& x) {
 
 }  // namespace
 
-std::vector<uint8_t> skinFolds(const FlowMesh& mesh, float reach) {
-    std::vector<uint8_t> folds(mesh.triangleCount(), 0);
+std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
+    std::vector<float> folds(mesh.triangleCount(), kNoFold);
     if (!(reach > 0)) return folds;
     std::vector<vec3> normal(mesh.triangleCount());
     for (size_t t = 0; t < normal.size(); ++t) {
@@ -86,7 +85,6 @@ std::vector<uint8_t> skinFolds(const FlowMesh& mesh, float reach) {
     std::vector<uint32_t> seen(mesh.triangleCount(), UINT32_MAX), open;
     for (uint32_t k = 0; k < samples.all().size(); ++k) {
         const Sample& own = samples.all()[k];
-        if (folds[own.triangle] != 0) continue;
         open.assign(1, own.triangle);
         seen[own.triangle] = k;
         for (size_t next = 0; next < open.size() && open.size() < kMostSeen; ++next)
@@ -96,10 +94,13 @@ std::vector<uint8_t> skinFolds(const FlowMesh& mesh, float reach) {
                 seen[across / 4] = k;
                 if (distanceTo(mesh, across / 4, own.x) < kRound * reach) open.push_back(across / 4);
             }
-        const bool near = samples.anyWithin(own.x, 1.25F * reach, [&](uint32_t other) {
-            return seen[other] != k || glm::dot(normal[own.triangle], normal[other]) < kAway;
+        float& nearest = folds[own.triangle];
+        samples.eachWithin(own.x, 1.25F * reach, [&](uint32_t other) {
+            if (seen[other] == k && glm::dot(normal[own.triangle], normal[other]) >= kAway) return;
+            nearest = std::min(nearest, distanceTo(mesh, other, own.x));
+            for (size_t c = 0; c < 3; ++c)
+                nearest = std::min(nearest, distanceTo(mesh, other, mesh.rest[mesh.corner[3 * size_t{own.triangle} + c]]));
         });
-        folds[own.triangle] = near ? 1 : 0;
     }
     return folds;
 }

@@ -7,8 +7,9 @@
 
 namespace rivulet {
 
-// Of each triangle 1 if within `reach` of it (m, at rest) there is skin that one does not come to by going along the skin near by, or that
-// faces the other way.
-std::vector<uint8_t> skinFolds(const FlowMesh& mesh, float reach);
+// Of each triangle how far it is (m, at rest) to skin that one does not come to by going along the skin near by, or that faces the other
+// way; kNoFold where there is none within `reach`.
+constexpr float kNoFold = 1.0e30F;
+std::vector<float> skinFolds(const FlowMesh& mesh, float reach);
 
 }  // namespace rivulet

@@ -22,9 +22,9 @@ namespace rivulet {
 #define PIN_RECT 0x80000000u
 // What a tile knows of drops, 16 uints.
 #define NEAR_UINTS 16u
-#define NEAR_DRAW 0u   /* 1: it is to be drawn */
+#define NEAR_DRAW 0u   /* bit 0: it is to be drawn; 1: all its rows; 4 to 7: where drops were when it was last drawn */
 #define NEAR_HASH 1u   /* of the drops that were there when it was last drawn */
-#define NEAR_WET 2u    /* 1: it had film then */
+#define NEAR_WET 2u    /* bit 0: it had film then; 4 to 7: drops in its rows 0 and 1, 2 and 3 ... */
 #define NEAR_COUNT 3u  /* drops; above MOST_NEAR they are all looked at from NEAR_FIRST to before NEAR_END */
 #define NEAR_FIRST 4u
 #define NEAR_END 5u

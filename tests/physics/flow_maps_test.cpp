@@ -10,6 +10,7 @@
 #include "engine/compute/device_cpu.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/map_texels.h"
+#include "fluid/flow/skin_folds.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "shaders/flow/map_step.h"
 #include "tests/physics/flow_shapes.h"
@@ -35,7 +36,7 @@ struct Drawn {
         Result<FlowMesh> mesh = makeFlowMesh(skin.view());
         EXPECT_TRUE(mesh);
         uvs = cornerUvs(*mesh, skin.view());
-        layout = layTexels(*mesh, uvs, std::vector<uint8_t>(mesh->triangleCount(), 0), size);
+        layout = layTexels(*mesh, uvs, std::vector<float>(mesh->triangleCount(), kNoFold), size);
         Result<SurfaceFlow> made = SurfaceFlow::create(*device, std::move(*mesh), params);
         EXPECT_TRUE(made);
         flow = std::make_unique<SurfaceFlow>(std::move(*made));
@@ -202,9 +203,155 @@ TEST(FlowMaps, NoVolumeIsLostAtSeams) {
         d.stand();
         d.maps->draw(*d.flow);
         const SurfaceFlow::Ledger ledger = d.flow->ledger();
-        printf("%s: %.5f (%zu tiles)\n", row.name, d.drawnVolume() / (ledger.drops * 1e-15), d.maps->tiles());
         EXPECT_NEAR(d.drawnVolume() / (ledger.drops * 1e-15), 1, 0.005) << row.name;
     }
+}
+
+// A sheet in one chart, and cut into charts that lie elsewhere, turned and mirrored, by whole texels: the same places in space, and so the
+// same mass, whatever lies where.
+TEST(FlowMaps, TheSameMassInEveryLayout) {
+    const vec3 across(0.032F, 0, 0), along(0, 0.032F, 0);
+    Skin whole, cut;
+    addSheet(whole, vec3(0), across, along, 8, vec2(0.25F), vec2(0.5F, 0), vec2(0, 0.5F));
+    // Four quarters, each 0.25 of the map wide: as it is, turned by a right angle, mirrored, upside down.
+    const vec2 at[4] = {{0.0625F, 0.0625F}, {0.4375F, 0.5625F}, {0.9375F, 0.0625F}, {0.9375F, 0.9375F}};
+    const vec2 u[4] = {{0.25F, 0}, {0, 0.25F}, {-0.25F, 0}, {-0.25F, 0}}, v[4] = {{0, 0.25F}, {-0.25F, 0}, {0, 0.25F}, {0, -0.25F}};
+    for (uint32_t k = 0; k < 4; ++k)
+        addSheet(cut, 0.5F * (across * static_cast<float>(k % 2) + along * static_cast<float>(k / 2)), 0.5F * across, 0.5F * along, 4,
+                 at[k], u[k], v[k]);
+    double volume[2] = {};
+    for (int k = 0; k < 2; ++k) {
+        Drawn d(k == 0 ? whole : cut, 512, still());
+        ASSERT_EQ(d.flow->mesh().report.components, 1U);
+        for (const vec3& x : {vec3(0.016F, 0.016F, 0), vec3(0.0101F, 0.0163F, 0), vec3(0.0163F, 0.025F, 0), vec3(0.007F, 0.006F, 0)})
+            d.flow->add(nearestPoint(d.flow->mesh(), x), 3 * kMicrolitre);
+        d.stand();
+        d.maps->draw(*d.flow);
+        volume[k] = d.drawnVolume();
+    }
+    EXPECT_NEAR(volume[1] / volume[0], 1, 1e-6);
+    EXPECT_NEAR(volume[0] / 12e-9, 1, 1e-3);
+}
+
+// Two lips a third of a millimetre apart, joined far off: a drop on the one leaves the other dry; so does one on a thin leaf its other
+// side.
+TEST(FlowMaps, TheOtherLipStaysDry) {
+    Skin lips;
+    addSheet(lips, vec3(0, 0.00015F, 0), vec3(0.03F, 0, 0), vec3(0, 0.01485F, 0), 12, vec2(0.05F, 0.52F), vec2(0.9F, 0), vec2(0, 0.43F));
+    addSheet(lips, vec3(0, -0.015F, 0), vec3(0.03F, 0, 0), vec3(0, 0.01485F, 0), 12, vec2(0.05F, 0.05F), vec2(0.9F, 0), vec2(0, 0.43F));
+    // A leaf, its sides 0.8 mm apart, closed by a narrow strip along one edge.
+    Skin leaf;
+    addSheet(leaf, vec3(0, 0, 0.0004F), vec3(0.03F, 0, 0), vec3(0, 0.03F, 0), 12, vec2(0.03F, 0.05F), vec2(0.45F, 0), vec2(0, 0.9F));
+    addSheet(leaf, vec3(0, 0.03F, -0.0004F), vec3(0.03F, 0, 0), vec3(0, -0.03F, 0), 12, vec2(0.52F, 0.05F), vec2(0.45F, 0), vec2(0, 0.9F));
+    for (uint32_t k = 0; k < 12; ++k) {
+        const uint32_t a = 12 * 13 + k, b = a + 1, c = 13 * 13 + k, d = c + 1;  // the first one's last row, the second one's first
+        leaf.indices.insert(leaf.indices.end(), {a, b, d, a, d, c});
+    }
+    struct Row {
+        const Skin& skin;
+        vec3 drop;
+    };
+    for (const Row& row :
+         {Row{lips, vec3(0.015F, 0.0012F, 0)}, Row{lips, vec3(0.015F, -0.0008F, 0)}, Row{leaf, vec3(0.015F, 0.012F, 0.0004F)}}) {
+        Drawn d(row.skin, 512, still());
+        const SkinPoint home = nearestPoint(d.flow->mesh(), row.drop);
+        d.flow->add(home, 4 * kMicrolitre);
+        d.stand();
+        d.maps->draw(*d.flow);
+        const std::vector<vec4> texels = d.texels();
+        double own = 0, other = 0;
+        for (const Drawn::Place& p : d.places()) {
+            const bool same = &row.skin == &leaf ? p.x.z > 0 : (p.x.y > 0) == (row.drop.y > 0);
+            (same ? own : other) += double{texels[p.at].z} * p.area;
+        }
+        EXPECT_GT(own, 0);
+        EXPECT_LT(other, 1e-3 * own) << row.drop.y;
+    }
+}
+
+// What is drawn after many frames, tile by tile where something changed, is what is drawn at once; and mips are means over the skin in
+// them.
+TEST(FlowMaps, CleanTilesAreAsIfDrawnAnew) {
+    const Skin skin = test::cubeBall(0.03F, 12);
+    SurfaceFlowParams p;
+    p.evaporation = 0;
+    Drawn d(skin, 256, p);
+    for (const vec3& x : {vec3(1, 1, 0), vec3(0.9F, 1, 0.5F), vec3(-1, 2, 0.3F)})
+        d.flow->add(nearestPoint(d.flow->mesh(), 0.03F * glm::normalize(x)), 6 * kMicrolitre);
+    for (int k = 0; k < 90; ++k) {
+        EXPECT_TRUE(d.flow->step({}, 1.0 / 60));
+        d.maps->draw(*d.flow);
+    }
+    Result<FlowMaps> anew = FlowMaps::create(*d.flow, d.uvs, 256);
+    ASSERT_TRUE(anew);
+    anew->draw(*d.flow);
+    const std::vector<vec4> before = d.texels();
+    d.maps = std::make_unique<FlowMaps>(std::move(*anew));
+    const std::vector<vec4> after = d.texels();
+    double wet = 0;
+    size_t differ = 0;
+    for (size_t k = 0; k < after.size(); ++k) {
+        wet += double{after[k].w};
+        differ += before[k] == after[k] ? 0 : 1;
+    }
+    EXPECT_GT(wet, 200);
+    EXPECT_EQ(differ, 0U);
+    // Charts are far enough apart that at mip 2 none meets another.
+    std::vector<char> skinned(256 * 256, 0);
+    for (size_t k = 0; k < d.layout.texel.size(); ++k) {
+        const uint32_t where = d.layout.tile[TILE_UINTS * (k / TILE_TEXELS)];
+        if (d.layout.texel[k] != TEXEL_NONE) skinned[((where >> 16U) * 8 + k % 64 / 8) * 256 + (where & 0xFFFFU) * 8 + k % 8] = 1;
+    }
+    for (int mip = 1; mip <= 8; ++mip) {
+        const std::vector<vec4> level = d.texels(mip);
+        const size_t edge = size_t{256} >> static_cast<size_t>(mip), step = size_t{1} << static_cast<size_t>(mip);
+        for (size_t y = 0; y < edge; ++y)
+            for (size_t x = 0; x < edge; ++x) {
+                dvec3 sum(0.0);
+                double n = 0;
+                for (size_t k = 0; k < step * step; ++k) {
+                    const size_t at = (y * step + k / step) * 256 + x * step + k % step;
+                    n += skinned[at];
+                    if (skinned[at]) sum += dvec3(after[at].x, after[at].z, after[at].w);
+                }
+                const vec4 got = level[y * edge + x];
+                const dvec3 mean = sum / std::max(n, 1.0);
+                EXPECT_NEAR(got.x, mean.x, 2e-4 + 2e-3 * std::abs(mean.x));
+                EXPECT_NEAR(got.z, mean.y, 1e-4 + 2e-3 * mean.y);
+                EXPECT_NEAR(got.w, mean.z, 1e-4 + 2e-3 * mean.z);
+            }
+    }
+}
+
+TEST(FlowMaps, WhatCannotBeDrawnIsRefused) {
+    const Skin skin = test::cubeBall(0.03F, 3);
+    auto device = cpu();
+    Result<FlowMesh> mesh = makeFlowMesh(skin.view());
+    ASSERT_TRUE(mesh);
+    std::vector<vec2> uvs = cornerUvs(*mesh, skin.view());
+    Result<SurfaceFlow> flow = SurfaceFlow::create(*device, std::move(*mesh), {});
+    ASSERT_TRUE(flow);
+    for (const int size : {0, -4, 8, 100, 65536}) {
+        Result<FlowMaps> maps = FlowMaps::create(*flow, uvs, size);
+        ASSERT_FALSE(maps) << size;
+        EXPECT_NE(maps.error().message.find("power of two"), std::string::npos) << maps.error().message;
+    }
+    EXPECT_FALSE(FlowMaps::create(*flow, std::span(uvs).first(7), 64));
+    // UVs that are none: their triangles show nothing, the others do.
+    for (size_t k = 0; k < uvs.size() / 2; ++k) uvs[k] = k % 2 == 0 ? vec2(NAN, 1e30F) : vec2(0.3F);
+    Result<FlowMaps> half = FlowMaps::create(*flow, uvs, 64);
+    ASSERT_TRUE(half);
+    flow->add({30, 0.3F, 0.3F}, 5 * kMicrolitre);
+    EXPECT_TRUE(flow->step({.wind = vec3(1e6F, 0, 0)}, 1.0 / 60));
+    half->draw(*flow);
+    for (const uint32_t word : device->readAll<uint32_t>(half->texels(), 2 * 64 * 64)) {
+        EXPECT_LT(word & 0x7C00U, 0x7C00U);  // no Inf
+        EXPECT_LT(word >> 16U & 0x7C00U, 0x7C00U);
+    }
+    for (vec2& uv : uvs) uv = vec2(0.5F);
+    Result<FlowMaps> none = FlowMaps::create(*flow, uvs, 64);
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("unwrap"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,116 @@
+// The bench of flow on a skin: a head that stirs, all drops moving, the step and what draws it into maps.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include "demos/rivulet/bench_cases.h"
+#include "engine/compute/device_cpu.h"
+#include "engine/scene/import_assimp.h"
+#include "fluid/bridge/session.h"
+#include "fluid/flow/flow_maps.h"
+#include "fluid/sim/cpu_kernels.h"
+
+namespace rivulet {
+
+namespace {
+
+// Of a mesh the triangles that hang together and are the most: of the head its skin, without eyes and lashes.
+Mesh largestPart(Mesh mesh) {
+    const Result<FlowMesh> whole = makeFlowMesh(mesh.view());
+    if (!whole) return mesh;
+    std::vector<bool> seen(whole->triangleCount(), false);
+    std::vector<uint32_t> best;
+    for (uint32_t start = 0; start < seen.size(); ++start) {
+        if (seen[start]) continue;
+        std::vector<uint32_t> part(1, start);
+        seen[start] = true;
+        for (size_t k = 0; k < part.size(); ++k)
+            for (size_t edge = 0; edge < 3; ++edge) {
+                const uint32_t across = whole->across[3 * size_t{part[k]} + edge];
+                if (across == FlowMesh::kOpen || seen[across / 4]) continue;
+                seen[across / 4] = true;
+                part.push_back(across / 4);
+            }
+        if (part.size() > best.size()) best.swap(part);
+    }
+    std::vector<uint32_t> indices;
+    for (const uint32_t t : best)
+        for (size_t k = 0; k < 3; ++k) indices.push_back(mesh.indices[3 * size_t{whole->source[t]} + k]);
+    mesh.indices.swap(indices);
+    return mesh;
+}
+
+// Everywhere on it drops of a microlitre or two, which nothing holds and which stay what they are where they meet.
+Result<SurfaceFlow> runningHead(Device& device, const Mesh& head, int drops) {
+    SurfaceFlowParams p;
+    p.capacity = drops;
+    p.hold = 0;
+    p.touch = 0.1F;
+    p.adhesion = 10;
+    Result<FlowMesh> skin = makeFlowMesh(head.view());
+    if (!skin) return skin.error();
+    Result<SurfaceFlow> flow = SurfaceFlow::create(device, std::move(*skin), p);
+    if (!flow) return flow.error();
+    std::mt19937 random(1);
+    std::uniform_int_distribution<uint32_t> triangle(0, static_cast<uint32_t>(flow->mesh().triangleCount()) - 1),
+        picolitres(1000000, 2000000);
+    for (int k = 0; k < drops; ++k) flow->add({triangle(random), 0.3F, 0.3F}, picolitres(random));
+    return flow;
+}
+
+double msSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Status benchFlow(const BenchContext& context) {
+    Result<std::string> path = findAsset("meshes/head/head.glb", "");
+    if (!path) return path.error();
+    Result<Mesh> whole = importMesh(*path);
+    if (!whole) return whole.error();
+    const Mesh head = largestPart(std::move(*whole));
+    std::vector<std::vector<vec3>> moods(8, head.positions);
+    for (size_t mood = 0; mood < moods.size(); ++mood)
+        for (vec3& x : moods[mood]) x.y += 1.0e-3F * std::sin(40 * x.x + 0.785398F * static_cast<float>(mood));
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    for (const int drops : {512, 4096}) {
+        auto device = makeCpuDevice(rows);
+        Result<SurfaceFlow> flow = runningHead(*device, head, drops);
+        if (!flow) return flow.error();
+        Result<FlowMaps> maps = FlowMaps::create(*flow, cornerUvs(flow->mesh(), head.view()), 1024);
+        if (!maps) return maps.error();
+        constexpr int kFrames = 20;
+        Status status = ok();
+        double drawing = 0;
+        BenchRow row{.name = fmt::format("flow, {} drops on a head that stirs, cpu", drops), .unit = "ms/frame", .value = {}, .passes = {}};
+        row.value = repeat(context, [&] {
+            device->takeTimes();
+            drawing = 0;
+            const auto start = std::chrono::steady_clock::now();
+            for (int k = 0; k < kFrames && status; ++k) {
+                status = flow->step({.positions = moods[static_cast<size_t>(k) % moods.size()]}, 1.0 / 240);
+                const auto stepped = std::chrono::steady_clock::now();
+                maps->draw(*flow);
+                drawing += msSince(stepped) / kFrames;
+            }
+            const double ms = msSince(start) / kFrames;
+            row.passes.clear();
+            for (const PassTime& t : device->takeTimes()) row.passes[t.name] = t.ms / kFrames;
+            row.passes["drawing, all of it"] = drawing;
+            return ms;
+        });
+        if (!status) return status;
+        if (context.interrupted()) return ok();
+        context.report(row);
+        context.report({.name = fmt::format("flow, memory of {} drops, 1024 x 1024 maps", drops),
+                        .unit = "MB",
+                        .value = spreadOf({static_cast<double>(device->bytesAllocated()) / 1.0e6}),
+                        .passes = {}});
+    }
+    return ok();
+}
+
+}  // namespace rivulet

@@ -19,7 +19,7 @@ Result<FlowLayer> FlowLayer::create(int size) {
     if (!texture) return texture.error();
     FlowLayer layer;
     layer.texture_ = std::move(*texture);
-    layer.texture_.setSampling({.wrap = gpu::Wrap::repeat, .anisotropy = 4});
+    layer.texture_.setSampling({.wrap = gpu::Wrap::repeat});
     layer.texture_.clear(vec4(0.0F));
     return layer;
 }

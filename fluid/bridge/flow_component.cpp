@@ -1,0 +1,384 @@
+#include "fluid/bridge/flow_component.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "engine/core/table.h"
+#include "engine/scene/head_look.h"
+#include "engine/scene/import_model.h"
+#include "engine/scene/load_image.h"
+#include "engine/scene/transform.h"
+#include "fluid/bridge/scene_file.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kMicrolitre = 1.0e6;  // picolitres
+constexpr float kBrimStep = 6.0e-4F;   // m, between the places of a brim
+constexpr size_t kMostABirth = 4096;   // drops of one source in one step
+
+Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
+    Bounds all;
+    for (const ModelPart& part : model.parts)
+        for (const vec3& p : part.mesh.positions) all.add(transformPoint(world[static_cast<size_t>(part.node)], p));
+    return all;
+}
+
+// Puts a part into the frame of the whole: positions, normals, morphs.
+void place(ModelPart& part, const mat4& to) {
+    part.mesh = transformed(part.mesh, to);
+    for (MorphTarget& morph : part.morphs)
+        for (vec3& offset : morph.offsets) offset = mat3(to) * offset;
+    for (Bone& bone : part.bones) bone.fromMesh = bone.fromMesh * glm::inverse(to);
+}
+
+vec3 along(const std::vector<vec3>& line, float way) {
+    for (size_t k = 1; k < line.size(); ++k) {
+        const float step = glm::distance(line[k - 1], line[k]);
+        if (way <= step || k + 1 == line.size()) return glm::mix(line[k - 1], line[k], step > 0 ? std::min(way / step, 1.0F) : 0.0F);
+        way -= step;
+    }
+    return line.front();
+}
+
+float lengthOf(const std::vector<vec3>& line) {
+    float sum = 0;
+    for (size_t k = 1; k < line.size(); ++k) sum += glm::distance(line[k - 1], line[k]);
+    return sum;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& params, const std::string& sceneFolder, Device& device,
+                                                             Scene& scene, const Log& log) {
+    std::unique_ptr<FlowComponent> made(new FlowComponent());
+    FlowComponent& c = *made;
+    c.params_ = params;
+    c.device_ = &device;
+    Result<std::string> path = findAsset(params.mesh, sceneFolder);
+    if (!path) return path.error();
+    Result<Model> model = importModel(*path);
+    if (!model) return model.error();
+    const std::vector<mat4> world = model->worldMatrices();
+    const Bounds all = boundsOf(*model, world);
+    const Transform asked{params.position, params.rotation, params.scale};
+    mat4 to = params.fitSize > 0 ? Transform::fitted(all, params.fitSize, params.position, params.rotation) : asked.matrix();
+    c.toWorld_ = glm::translate(dmat4(1.0), dvec3(params.position));
+    to = glm::translate(mat4(1.0F), -params.position) * to;
+    for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
+    if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
+    if (Status marked = c.readMarks(*path, sceneFolder, to); !marked) return marked.error();
+    if (Status added = c.addParts(*model, scene); !added) return added.error();
+    const ModelPart* skin = model->parts.size() == 1 ? model->parts.data() : model->find(params.part);
+    if (Status ready = c.prepareFlow(skin->mesh, log); !ready) return ready.error();
+    if (Status masked = c.readRegions(sceneFolder, skin->mesh); !masked) return masked.error();
+    c.apply(params);
+    c.placeNode(scene);
+    return made;
+}
+
+Status FlowComponent::readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& to) {
+    std::string path = params_.marks;
+    if (path.empty()) {
+        fs::path beside(meshPath);
+        beside.replace_extension(".json");
+        if (!fs::exists(beside)) beside = beside.parent_path() / "landmarks.json";
+        if (!fs::exists(beside)) return ok();
+        path = beside.string();
+    } else {
+        Result<std::string> found = findAsset(path, sceneFolder);
+        if (!found) return found.error();
+        path = *found;
+    }
+    Result<FaceMarks> marks = readFaceMarks(path);
+    if (!marks) return marks.error();
+    marks_ = *marks;
+    for (EyeMarks& eye : marks_.eyes) {
+        if (eye.tear) eye.tear = transformPoint(to, *eye.tear);
+        for (vec3& p : eye.lowerLid) p = transformPoint(to, p);
+    }
+    return ok();
+}
+
+Status FlowComponent::addParts(Model& model, Scene& scene) {
+    std::vector<std::string> names, morphNames;
+    for (const ModelPart& part : model.parts) {
+        names.push_back(part.name);
+        for (const MorphTarget& m : part.morphs) morphNames.push_back(m.name);
+    }
+    const ModelPart* skin = model.parts.size() == 1 ? model.parts.data() : model.find(params_.part);
+    if (skin == nullptr)
+        return badInput(fmt::format("{} has no part `{}`; there are {}", params_.mesh, params_.part, fmt::join(names, ", ")));
+    for (const ExpressionParams& e : params_.expression)
+        if (std::find(morphNames.begin(), morphNames.end(), e.morph) == morphNames.end()) {
+            const std::string near = nearestName(e.morph, morphNames);
+            return badInput(fmt::format("{} has no morph target `{}`{}", params_.mesh, e.morph,
+                                        near.empty() ? std::string() : fmt::format("; did you mean {}?", near)));
+        }
+    Node group;
+    group.name = params_.mesh;
+    group_ = scene.add(std::move(group));
+    layer_ = std::make_shared<Layer>();
+    const std::vector<mat4> stand = model.worldMatrices();
+    for (ModelPart& part : model.parts) {
+        Node node;
+        node.name = part.name;
+        node.parent = group_;
+        node.material = part.material;
+        if (&part == skin) {
+            node.layer = layer_;
+            if (!part.material.colour && !part.material.skin) node.material = params_.material;
+        }
+        if (!part.morphs.empty() || !part.grips.empty()) {
+            Result<Deformer> deformer = Deformer::create(*device_, part);
+            if (!deformer) return deformer.error();
+            Deformed d;
+            d.deformer = std::make_shared<Deformer>(std::move(*deformer));
+            d.morphs = part.morphs.size();
+            for (const ExpressionParams& e : params_.expression) {
+                const auto at =
+                    std::find_if(part.morphs.begin(), part.morphs.end(), [&](const MorphTarget& m) { return m.name == e.morph; });
+                d.morphOf.push_back(at == part.morphs.end() ? -1 : static_cast<int>(at - part.morphs.begin()));
+            }
+            if (!part.grips.empty()) d.bones = model.boneMatrices(part, stand);
+            d.deformer->run({}, d.bones);
+            node.deformer = d.deformer;
+            if (&part == skin) skinDeformer_ = d.deformer;
+            deformed_.push_back(std::move(d));
+        }
+        node.mesh = std::make_shared<const Mesh>(part.mesh);
+        scene.add(std::move(node));
+    }
+    return ok();
+}
+
+Status FlowComponent::prepareFlow(const Mesh& skin, const Log& log) {
+    Result<FlowMesh> mesh = makeFlowMesh(skin.view());
+    if (!mesh) return badInput(fmt::format("{}: {}", params_.mesh, mesh.error().message));
+    if (const std::string found = mesh->report.sentence(); !found.empty()) log.notice(fmt::format("{}: {}", params_.mesh, found));
+    for (size_t side = 0; side < 2; ++side)
+        if (marks_.eyes[side].tear) tears_[side] = nearestPoint(*mesh, *marks_.eyes[side].tear);
+    for (const FlowSourceParams& source : params_.sources) {
+        const bool needs = source.kind == "corner" || source.kind == "brim";
+        if (needs && (!marks_.eyes[0].tear || marks_.eyes[0].lowerLid.size() < 2))
+            return badInput(fmt::format("{} has no marks of eyes: a source of kind {} has nowhere to be; use spot, strewn or rain",
+                                        params_.mesh, source.kind));
+    }
+    const std::vector<SkinBrim> along = brims(*mesh);
+    const std::vector<vec2> uvs = cornerUvs(*mesh, skin.view());
+    if (uvs.empty()) return badInput(fmt::format("{} has no UVs to draw into", params_.mesh));
+    Result<SurfaceFlow> flow = SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
+    if (!flow) return badInput(fmt::format("{}: {}", params_.mesh, flow.error().message));
+    flow_.emplace(std::move(*flow));
+    Result<FlowMaps> maps = FlowMaps::create(*flow_, uvs, params_.mapSize);
+    if (!maps) return badInput(fmt::format("{}: {}", params_.mesh, maps.error().message));
+    maps_.emplace(std::move(*maps));
+    search_.emplace(flow_->mesh());
+    return ok();
+}
+
+// Along each lower lid, one place every half millimetre or so. What spills begins on the skin below.
+std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
+    std::vector<SkinBrim> all;
+    for (size_t side = 0; side < 2; ++side) {
+        const std::vector<vec3>& lid = marks_.eyes[side].lowerLid;
+        brimBegin_[side + 1] = brimBegin_[side];
+        if (lid.size() < 2) continue;
+        const float length = lengthOf(lid);
+        SkinBrim brim;
+        const int places = std::max(static_cast<int>(length / kBrimStep), 4);
+        for (int k = 0; k < places; ++k) {
+            const vec3 x = along(lid, length * (static_cast<float>(k) + 0.5F) / static_cast<float>(places));
+            brim.places.push_back(nearestPoint(mesh, x));
+            brim.spills.push_back(nearestPoint(mesh, x + vec3(0.0F, -0.0025F, 0.0015F)));
+        }
+        brimBegin_[side + 1] += static_cast<uint32_t>(places);
+        all.push_back(std::move(brim));
+    }
+    return all;
+}
+
+Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& skin) {
+    const FlowMesh& mesh = flow_->mesh();
+    oily_.assign(mesh.rest.size(), 255);
+    if (!params_.regions.mask.empty()) {
+        Result<std::string> path = findAsset(params_.regions.mask, sceneFolder);
+        if (!path) return path.error();
+        Result<Image> mask = loadImage(*path);
+        if (!mask) return mask.error();
+        if (skin.uvs.empty()) return badInput(fmt::format("{} has no UVs, so {} cannot lie on it", params_.mesh, params_.regions.mask));
+        std::vector<float> grip;
+        grip.reserve(mesh.rest.size());
+        for (size_t p = 0; p < mesh.rest.size(); ++p) {
+            const vec2 uv = skin.uvs[mesh.given[p]] - glm::floor(skin.uvs[mesh.given[p]]);
+            const auto x = std::min(static_cast<size_t>(uv.x * static_cast<float>(mask->width)), static_cast<size_t>(mask->width) - 1);
+            const auto y = std::min(static_cast<size_t>(uv.y * static_cast<float>(mask->height)), static_cast<size_t>(mask->height) - 1);
+            const uint8_t* texel = &mask->rgba[4 * (y * static_cast<size_t>(mask->width) + x)];
+            const float factor[] = {params_.regions.oily, params_.regions.dry, params_.regions.hair, params_.regions.lip};
+            float g = 1;
+            for (size_t k = 0; k < 4; ++k) g *= 1 + (factor[k] - 1) * static_cast<float>(texel[k]) / 255.0F;
+            grip.push_back(g);
+            oily_[p] = texel[0];
+        }
+        flow_->setGrip(grip);
+    }
+    // Drops are strewn where a skin sweats: mostly where it is oily.
+    double sum = 0;
+    for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+        const uint32_t* c = &mesh.corner[3 * size_t{t}];
+        const double area = 0.5 * double{glm::length(glm::cross(mesh.rest[c[1]] - mesh.rest[c[0]], mesh.rest[c[2]] - mesh.rest[c[0]]))};
+        sum += area * (0.03 + (oily_[c[0]] + oily_[c[1]] + oily_[c[2]]) / 765.0);
+        areaTo_.push_back(sum);
+    }
+    return ok();
+}
+
+void FlowComponent::apply(const FlowParams& params) {
+    const FlowParams before = params_;
+    params_ = params;
+    flow_->setParams(params.liquid);
+    layer_->look = params.look;
+    while (sources_.size() < params.sources.size())
+        sources_.push_back({.random = std::mt19937(static_cast<uint32_t>(11 + 7 * sources_.size()))});
+}
+
+bool FlowComponent::needsNew(const FlowParams& params) const {
+    return params.expression.size() != params_.expression.size() || params.mesh != params_.mesh;
+}
+
+SkinPoint FlowComponent::somewhere(const FlowSourceParams& source, Source& state) {
+    const FlowMesh& mesh = flow_->mesh();
+    std::uniform_real_distribution<float> any(0.0F, 1.0F);
+    SkinPoint at;
+    for (int tries = 0; tries < 200; ++tries) {
+        const double wanted = double{any(state.random)} * areaTo_.back();
+        at.triangle = static_cast<uint32_t>(std::lower_bound(areaTo_.begin(), areaTo_.end(), wanted) - areaTo_.begin());
+        at.triangle = std::min(at.triangle, static_cast<uint32_t>(mesh.triangleCount() - 1));
+        const float r = std::sqrt(any(state.random)), s = any(state.random);
+        at.b1 = r * (1 - s);
+        at.b2 = r * s;
+        if (source.radius == 0 || glm::distance(positionOf(mesh, at), source.position) < source.radius) return at;
+    }
+    return nearestPoint(mesh, source.position);
+}
+
+void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint32_t picolitres, std::vector<AirDrop>& air) {
+    std::uniform_real_distribution<float> any(-1.0F, 1.0F);
+    const auto disc = [&] {
+        for (;;) {
+            const vec2 p(any(state.random), any(state.random));
+            if (glm::dot(p, p) <= 1) return p * source.radius;
+        }
+    };
+    emitted_ += picolitres;
+    if (source.kind == "strewn") {
+        flow_->add(somewhere(source, state), picolitres, vec3(0.0F), source.film);
+    } else if (source.kind == "spot") {
+        const vec2 off = disc();
+        // In the plane that faces away from the skin's middle.
+        const vec3 out = source.position - search_->places().front();
+        const vec3 n = glm::length(out) > 0 ? glm::normalize(out) : vec3(0, 1, 0);
+        const vec3 a = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9F ? vec3(0, 1, 0) : vec3(1, 0, 0))), b = glm::cross(n, a);
+        flow_->add(nearestPoint(flow_->mesh(), source.position + a * off.x + b * off.y), picolitres, vec3(0.0F), source.film);
+    } else if (source.kind == "rain") {
+        const Bounds around = bounds();
+        const vec3 way = glm::length(source.along) > 0 ? glm::normalize(source.along) : vec3(0, -1, 0);
+        const vec3 a = glm::normalize(glm::cross(way, std::abs(way.y) < 0.9F ? vec3(0, 1, 0) : vec3(1, 0, 0))), b = glm::cross(way, a);
+        const float reach = 0.5F * glm::length(around.size());
+        const vec3 middle = source.radius > 0 ? vec3(toWorld_ * glm::dvec4(dvec3(source.position), 1)) : around.centre();
+        const vec2 off = source.radius > 0 ? disc() : vec2(any(state.random), any(state.random)) * reach;
+        air.push_back({dvec3(middle + a * off.x + b * off.y - way * (reach * (1.2F + 0.2F * any(state.random)))), dvec3(way * source.speed),
+                       picolitres});
+    } else {
+        const size_t side = source.side == "left" ? 0 : source.side == "right" ? 1 : state.random() % 2;
+        if (source.kind == "corner") {
+            flow_->add(tears_[side], picolitres);
+        } else {
+            const uint32_t from = brimBegin_[side], count = brimBegin_[side + 1] - from;
+            flow_->addToBrim(from + static_cast<uint32_t>(state.random() % std::max(count, 1U)), picolitres);
+        }
+    }
+}
+
+void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air) {
+    for (size_t k = 0; k < params_.sources.size(); ++k) {
+        const FlowSourceParams& source = params_.sources[k];
+        Source& state = sources_[k];
+        if (!(source.rate > 0) || time < double{source.start} || time >= double{source.stop}) continue;
+        const double wave = 1 + double{source.swell} * std::sin(2 * std::numbers::pi * time / double{source.period});
+        state.due += double{source.rate} * kMicrolitre / 60 * seconds * wave;
+        const auto each = static_cast<uint32_t>(std::max(double{source.drop} * kMicrolitre, 1.0));
+        size_t born = 0;
+        for (; state.due >= each && born < kMostABirth; ++born, state.due -= each) emitOne(source, state, each, air);
+        if (born == kMostABirth) state.due = 0;  // more than a step can bear is not let out at all
+    }
+}
+
+Status FlowComponent::step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air) {
+    const double then = time + seconds;
+    toWorld_ = glm::translate(dmat4(1.0), dvec3(params_.position)) * params_.motion.at(then);
+    for (Deformed& d : deformed_) {
+        std::vector<float> weights(d.morphs, 0.0F);
+        for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
+            if (d.morphOf[e] >= 0) weights[static_cast<size_t>(d.morphOf[e])] += static_cast<float>(params_.expression[e].at(then));
+        d.deformer->run(weights, d.bones);
+    }
+    seen_ = false;
+    emit(time, seconds, air);
+    SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld_};
+    if (skinDeformer_) inputs.moved = &skinDeformer_->positions();
+    if (Status moved = flow_->step(inputs, seconds); !moved) return moved;
+    for (const LeftDrop& d : flow_->takeLeft())
+        air.push_back({dvec3(toWorld_ * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld_) * dvec3(d.velocity), d.picolitres});
+    return ok();
+}
+
+void FlowComponent::look() {
+    if (seen_) return;
+    seen_ = true;
+    const FlowView view = flow_->view();
+    search_->follow(device_->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
+}
+
+std::optional<SkinSearch::Hit> FlowComponent::meets(const dvec3& from, const dvec3& to) {
+    look();
+    const dmat4 back = glm::inverse(toWorld_);
+    return search_->first(vec3(back * glm::dvec4(from, 1)), vec3(back * glm::dvec4(to, 1)));
+}
+
+void FlowComponent::land(const SkinSearch::Hit& where, const AirDrop& drop) {
+    // What comes straight at the skin stays there: it keeps the part of its speed that goes along, and no more than runs down by itself.
+    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * drop.velocity);
+    v -= where.normal * glm::dot(v, where.normal);
+    constexpr float kMost = 0.2F;  // m/s
+    if (const float pace = glm::length(v); pace > kMost) v *= kMost / pace;
+    flow_->add(where.at, drop.picolitres, v);
+}
+
+void FlowComponent::placeNode(Scene& scene) const { scene.nodes()[static_cast<size_t>(group_)].local = mat4(toWorld_); }
+
+Status FlowComponent::draw() {
+    if (!texture_) {
+        Result<FlowLayer> made = FlowLayer::create(params_.mapSize);
+        if (!made) return made.error();
+        texture_.emplace(std::move(*made));
+    }
+    maps_->draw(*flow_);
+    texture_->update(*maps_);
+    layer_->texels = &texture_->texture();
+    return ok();
+}
+
+Bounds FlowComponent::bounds() const {
+    Bounds own;
+    for (const vec3& p : search_->places()) own.add(p);
+    return transformBounds(mat4(toWorld_), own);
+}
+
+}  // namespace rivulet

@@ -68,6 +68,7 @@ struct Painter {
         const SceneFile& scene = session.scene();
         Result<FluidView> fluid = upload.view(session.world(), scene.look);
         if (!fluid) return fluid.error();
+        if (Status wet = session.flows().draw(); !wet) return wet.error();
         FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.world().time());
         if (Status drawn = renderer->draw(view, *fluid, session.solids(), scene); !drawn) return drawn.error();
         return renderer->pixels();
@@ -141,7 +142,8 @@ int runHeadless(const RunOptions& options) {
 
     const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
     int frames = options.frames.value_or(static_cast<int>(std::lround(left * kFramesPerSecond)));
-    Loop loop{options, graceful, **session, *to, painter, RunRecorder((*session)->world(), (*session)->fields(), true)};
+    Loop loop{options, graceful, **session,
+              *to,     painter,  RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};
     if (Status done = loop.run(frames); !done) return report(done.error());
     if (to->writer)
         if (Status closed = to->writer->close(); !closed) return report(closed.error());

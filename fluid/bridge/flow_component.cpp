@@ -199,6 +199,7 @@ std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
             brim.spills.push_back(nearestPoint(mesh, x + vec3(0.0F, -0.0025F, 0.0015F)));
         }
         brimBegin_[side + 1] += static_cast<uint32_t>(places);
+        emitted_ += uint64_t{brim.picolitres / static_cast<uint32_t>(places)} * static_cast<uint32_t>(places);
         all.push_back(std::move(brim));
     }
     return all;

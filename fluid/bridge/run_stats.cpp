@@ -99,8 +99,8 @@ bool inSetVoxel(const VoxelGrid& surface, const vec4& p) {
     return ((surface.bits[bit / 8] >> (bit % 8)) & 1U) != 0;
 }
 
-RunRecorder::RunRecorder(FluidWorld& world, SolidFields fields, bool readBack)
-    : world_(&world), fields_(std::move(fields)), readBack_(readBack), penetrated_(world.particles().count) {}
+RunRecorder::RunRecorder(FluidWorld& world, SolidFields fields, bool readBack, const SkinFlows* flows)
+    : world_(&world), flows_(flows), fields_(std::move(fields)), readBack_(readBack), penetrated_(world.particles().count) {}
 
 bool RunRecorder::inSolid(const vec4& p) const {
     if (fields_.still != nullptr && inSetVoxel(fields_.still->surface, p)) return true;
@@ -193,7 +193,15 @@ RunStats RunRecorder::finish(std::string scene) {
     l.emitted = late.emitted;
     l.drained = late.drained;
     l.inWorld = static_cast<double>(within) * volumeOfOne;
-    l.error = l.emitted > 0 ? std::abs(l.emitted - l.inWorld - l.drained) / l.emitted : 0;
+    if (flows_ != nullptr && !flows_->empty()) {
+        const SkinFlows::Ledger skins = flows_->ledger();
+        l.emitted += skins.emitted;
+        l.onSurface = skins.onSurface;
+        l.inAir = skins.inAir;
+        l.evaporated = skins.evaporated;
+        l.drained += skins.drained;
+    }
+    l.error = l.emitted > 0 ? std::abs(l.emitted - l.onSurface - l.inAir - l.inWorld - l.evaporated - l.drained) / l.emitted : 0;
     stats.lost = late.lost;
     stats.nan = late.nan;
     stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));

@@ -72,7 +72,8 @@ std::string writeRunStats(const RunStats& stats);  // one JSON object, ends in a
 class RunRecorder {
   public:
     // `readBack`: reads the particles after each frame, for compression and penetrations; costs time that is not counted as simulation.
-    RunRecorder(FluidWorld& world, SolidFields fields, bool readBack);
+    // `flows`: what is on the scene's skins; null: nothing.
+    RunRecorder(FluidWorld& world, SolidFields fields, bool readBack, const SkinFlows* flows = nullptr);
     // renderMs 0: nothing was drawn.
     void frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
                std::span<const PassTime> renderPasses);
@@ -83,6 +84,7 @@ class RunRecorder {
     bool inSolid(const vec4& p) const;
 
     FluidWorld* world_;
+    const SkinFlows* flows_;
     SolidFields fields_;
     bool readBack_;
     std::vector<double> simulate_, render_, frame_;

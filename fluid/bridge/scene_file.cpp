@@ -266,11 +266,13 @@ void SceneFile::visit(ParamVisitor& v) {
     v.list({.name = "emitters", .doc = "where fluid comes in"}, emitters);
     v.list({.name = "sinks", .doc = "where fluid goes"}, sinks);
     v.list({.name = "bodies", .doc = "what floats or sinks, and is pushed by the fluid", .fixed = kFixed}, bodies);
+    v.list({.name = "flow", .doc = "skins that something flows on: tears, rain, sweat", .fixed = kFixed}, flow);
     v.group({.name = "look", .doc = "how the fluid is drawn"}, look);
     v.group({.name = "camera", .doc = "where the picture is taken from"}, camera);
     v.group({.name = "light", .doc = "the sun"}, light);
     v.group({.name = "background", .doc = "sky and ground"}, background);
     v.group({.name = "budget", .doc = "what a frame may take: picks method, spacing and steps from the measured chart"}, budget);
+    v.list({.name = "presets", .doc = "values that are set together, by a button or --preset"}, presets);
 }
 
 Status checkScene(const SceneFile& scene) {

@@ -8,6 +8,7 @@
 
 #include "engine/core/params.h"
 #include "engine/core/result.h"
+#include "fluid/bridge/flow_params.h"
 #include "fluid/sim/emitter.h"
 #include "fluid/sim/fluid_params.h"
 
@@ -148,11 +149,13 @@ struct SceneFile {
     std::vector<EmitterParams> emitters;
     std::vector<SinkParams> sinks;
     std::vector<BodyParams> bodies;
+    std::vector<FlowParams> flow;
     FluidLookParams look;
     CameraParams camera;
     LightParams light;
     BackgroundParams background;
     BudgetParams budget;
+    std::vector<PresetParams> presets;
     std::string folder;  // of the file it came from; not a Param
     void visit(ParamVisitor& v);
 };

@@ -97,11 +97,16 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     if (Status added = s.addBodies(solids); !added) return added.error();
     Result<Sources> sources = s.importEmitters();
     if (!sources) return sources.error();
-    auto world = FluidWorld::create(device, simulated(s.scene_), solids, log, *sources);
+    // A scene of skins alone has no water to miss.
+    Log quiet = log;
+    if (!s.scene_.flow.empty() && s.scene_.fluid.blocks.empty() && s.scene_.emitters.empty()) quiet.sink = {};
+    auto world = FluidWorld::create(device, simulated(s.scene_), solids, quiet, *sources);
     if (!world) return Error{fmt::format("{}: {}", s.scene_.name, world.error().message), world.error().fault};
     s.world_ = std::move(*world);
+    if (Status flows = s.flows_.create(s.scene_, device, s.solids_, log); !flows)
+        return Error{fmt::format("{}: {}", s.scene_.name, flows.error().message), flows.error().fault};
     s.placeNodes();
-    if (s.world_->particles().count == 0 && s.scene_.emitters.empty())
+    if (s.world_->particles().count == 0 && s.scene_.emitters.empty() && s.scene_.flow.empty())
         log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", s.scene_.name));
     return session;
 }
@@ -304,7 +309,7 @@ bool Session::needsNew(const SceneFile& scene) const {
     if (scene.emitters.size() != scene_.emitters.size() || scene.sinks.size() != scene_.sinks.size()) return true;
     std::vector<uint8_t> surfaceOf;
     (void)surfacesOf(scene, surfaceOf);
-    return surfaceOf != surfaceOf_;
+    return surfaceOf != surfaceOf_ || flows_.needsNew(scene);
 }
 
 void Session::apply(const SceneFile& scene) {
@@ -316,6 +321,7 @@ void Session::apply(const SceneFile& scene) {
     Sources sources{.sinks = scene_.sinks};
     for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
     world_->setSources(sources);
+    flows_.apply(scene_);
     std::vector<uint8_t> unchanged;  // see needsNew
     world_->setSurfaces(surfacesOf(scene_, unchanged));
     for (size_t m = 0; m < meshes_.size() && m < solids_.nodes().size(); ++m) {
@@ -355,6 +361,7 @@ void Session::advance(double seconds, double deviceMs) {
     inputs.shapes = shapes;
     world_->step(inputs, seconds);
     const double gone = world_->time() - before;  // less than asked where time slows
+    if (Status flowed = flows_.step(scene_, *world_, gone, solids_); !flowed) log_.notice(flowed.error().message);
     for (Rigid& r : rigid_) r.turned = std::fmod(r.turned + double{scene_.colliders[r.collider].motion.spin} * gone, 360.0);
 }
 
@@ -374,7 +381,7 @@ double Session::step(double asked, bool wait, double deviceMs) {
     auto start = std::chrono::steady_clock::now();
     const double seconds = world_->taken(asked), before = world_->time();
     // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
-    const bool moving = !rigid_.empty() || !deforming_.empty();
+    const bool moving = !rigid_.empty() || !deforming_.empty() || !flows_.empty();
     const int parts = moving && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
     for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
     if (wait) world_->device().finish();
@@ -397,6 +404,7 @@ void Session::watchBudget(double ms, double seconds) {
 
 void Session::reset() {
     world_->reset();
+    if (Status fresh = flows_.reset(scene_, world_->device(), solids_, log_); !fresh) log_.notice(fresh.error().message);
     for (Rigid& r : rigid_) r.turned = 0;
     if (contacts_) contacts_->moveTo(world_->poses(), 0);
     placeNodes();

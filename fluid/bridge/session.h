@@ -10,6 +10,7 @@
 #include "engine/scene/scene.h"
 #include "fluid/bridge/budget.h"
 #include "fluid/bridge/scene_file.h"
+#include "fluid/bridge/skin_flows.h"
 #include "fluid/bridge/solids_bullet.h"
 #include "fluid/sim/fluid_world.h"
 #include "fluid/voxel/deforming_field.h"
@@ -43,7 +44,9 @@ class Session {
     const VoxelField& field() const { return field_; }  // of the mesh colliders that stand still; empty = none
     SolidFields fields() const;
     const Scene& solids() const { return solids_; }  // the visible colliders, to be drawn
-    Bounds bounds() const;                           // the fluid's box and the solids, m, world
+    SkinFlows& flows() { return flows_; }
+    const SkinFlows& flows() const { return flows_; }
+    Bounds bounds() const;  // the fluid's box and the solids, m, world
 
     // Whether a collider of `scene` moves, bends or stands still where it did not before: its voxels are of another kind then.
     bool needsNew(const SceneFile& scene) const;
@@ -96,6 +99,7 @@ class Session {
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
     std::unique_ptr<FluidWorld> world_;
+    SkinFlows flows_;
 };
 
 }  // namespace rivulet

@@ -212,7 +212,7 @@ void Viewer::step(double seconds) {
     if (recorder_) recorder_->frame(ms, 0, 1000 * seconds, passes, renderer_->times());
 }
 
-void Viewer::record() { recorder_.emplace(session_->world(), session_->fields(), true); }
+void Viewer::record() { recorder_.emplace(session_->world(), session_->fields(), true, &session_->flows()); }
 
 RunStats Viewer::finishRecord() {
     ASSERT(recorder_, "record() comes first");
@@ -228,6 +228,7 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     const SceneFile& scene = session_->scene();
     Result<FluidView> fluid = upload_.view(session_->world(), scene.look);
     if (!fluid) return fluid.error();
+    if (Status wet = session_->flows().draw(); !wet) return wet;
     Camera camera = cameraOf(scene.camera, session_->bounds());
     FrameView view = frameViewOf(camera, scene.light, width, height, session_->world().time());
     if (Status drawn = renderer_->draw(view, *fluid, session_->solids(), scene); !drawn) return drawn;

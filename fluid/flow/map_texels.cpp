@@ -5,43 +5,15 @@
 #include <cmath>
 
 #include "fluid/flow/skin_folds.h"
+#include "fluid/flow/uv_triangle.h"
 #include "shaders/flow/map_step.h"
 
 namespace rivulet {
 
 namespace {
 
-// A triangle's corners in UV, in texels, so that centres are at whole numbers.
-struct Flat {
-    std::array<dvec2, 3> p;
-    double area = 0;  // twice it, negative where mirrored
-    bool good = false;
-};
-
-double cross2(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-// Moved by whole maps so that the least u and v are in 0 to 1.
-Flat flatOf(std::span<const vec2> uv, int size) {
-    Flat f;
-    dvec2 low(1.0e30), high(-1.0e30);
-    for (size_t k = 0; k < 3; ++k) {
-        if (!std::isfinite(uv[k].x) || !std::isfinite(uv[k].y) || std::abs(uv[k].x) > 1.0e5F || std::abs(uv[k].y) > 1.0e5F) return f;
-        f.p[k] = dvec2(uv[k]);
-        low = glm::min(low, f.p[k]);
-        high = glm::max(high, f.p[k]);
-    }
-    if (high.x - low.x > 1 || high.y - low.y > 1) return f;
-    for (dvec2& p : f.p) p = (p - glm::floor(low)) * double(size) - 0.5;
-    f.area = cross2(f.p[1] - f.p[0], f.p[2] - f.p[0]);
-    double longest = 0;
-    for (size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(f.p[k], f.p[(k + 1) % 3]));
-    // Thinner than a hundredth of a texel: its map from UV is rounding.
-    f.good = std::abs(f.area) > 1.0e-2 * longest && std::abs(f.area) > 1.0e-4;
-    return f;
-}
-
 // Squared distance of a point from a triangle, 0 inside.
-double outside(const Flat& f, const dvec2& x) {
+double outside(const UvTriangle& f, const dvec2& x) {
     bool inside = true;
     double least = 1.0e300;
     for (size_t k = 0; k < 3; ++k) {
@@ -59,17 +31,17 @@ class Rasteriser {
     Rasteriser(const FlowMesh& mesh, std::span<const vec2> uvs, int size)
         : size_(size), words_(static_cast<size_t>(size) * static_cast<size_t>(size), TEXEL_NONE) {
         flats_.reserve(mesh.triangleCount());
-        for (size_t t = 0; t < mesh.triangleCount(); ++t) flats_.push_back(flatOf(uvs.subspan(3 * t, 3), size));
+        for (size_t t = 0; t < mesh.triangleCount(); ++t) flats_.push_back(uvTriangle(uvs.subspan(3 * t, 3), size));
         for (uint32_t t = 0; t < flats_.size(); ++t)
-            if (flats_[t].good) fill(t);
+            if (flats_[t].good()) fill(t);
         inside_ = std::count_if(words_.begin(), words_.end(), [](uint32_t w) { return w != TEXEL_NONE; });
         // A chart of less than a texel has one all the same.
         std::vector<bool> shown(flats_.size(), false);
         for (const uint32_t w : words_)
             if (w != TEXEL_NONE) shown[w & TEXEL_TRIANGLE] = true;
         for (uint32_t t = 0; t < flats_.size(); ++t)
-            if (flats_[t].good && !shown[t]) {
-                const dvec2 middle = (flats_[t].p[0] + flats_[t].p[1] + flats_[t].p[2]) / 3.0;
+            if (flats_[t].good() && !shown[t]) {
+                const dvec2 middle = flats_[t].middle();
                 claim(static_cast<int>(std::lround(middle.x)), static_cast<int>(std::lround(middle.y)), t);
             }
     }
@@ -102,7 +74,7 @@ class Rasteriser {
     }
 
     const std::vector<uint32_t>& words() const { return words_; }
-    const std::vector<Flat>& flats() const { return flats_; }
+    const std::vector<UvTriangle>& flats() const { return flats_; }
     size_t inside() const { return static_cast<size_t>(inside_); }
 
   private:
@@ -118,17 +90,7 @@ class Rasteriser {
     }
 
     void fill(uint32_t t) {
-        const Flat& f = flats_[t];
-        const double sign = f.area > 0 ? 1 : -1, loose = -1.0e-9 * std::abs(f.area);
-        const dvec2 low = glm::min(f.p[0], glm::min(f.p[1], f.p[2])), high = glm::max(f.p[0], glm::max(f.p[1], f.p[2]));
-        const int x0 = static_cast<int>(std::ceil(low.x - 1.0e-6)), x1 = static_cast<int>(std::floor(high.x + 1.0e-6));
-        const int y1 = static_cast<int>(std::floor(high.y + 1.0e-6));
-        for (int y = static_cast<int>(std::ceil(low.y - 1.0e-6)); y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x) {
-                bool in = true;
-                for (size_t k = 0; k < 3 && in; ++k) in = sign * cross2(f.p[(k + 1) % 3] - f.p[k], dvec2(x, y) - f.p[k]) >= loose;
-                if (in) claim(x, y, t);
-            }
+        eachCentre(flats_[t], 1.0e-9, [&](int x, int y) { claim(x, y, t); });
     }
 
     uint32_t nearestBeside(uint32_t at) const {
@@ -155,14 +117,14 @@ class Rasteriser {
 
     int size_;
     std::vector<uint32_t> words_;
-    std::vector<Flat> flats_;
+    std::vector<UvTriangle> flats_;
     std::ptrdiff_t inside_ = 0;
 };
 
 // Of a tile's texels those that hang together on the skin are a piece: each has a box of its own in space.
 class PieceMaker {
   public:
-    PieceMaker(const FlowMesh& mesh, const std::vector<Flat>& flats, MapTexels& to)
+    PieceMaker(const FlowMesh& mesh, const std::vector<UvTriangle>& flats, MapTexels& to)
         : mesh_(mesh), flats_(flats), to_(to), seen_(mesh.rest.size(), UINT32_MAX) {}
 
     void add(uint32_t tileX, uint32_t tileY, const std::array<uint32_t, TILE_TEXELS>& words) {
@@ -211,7 +173,7 @@ class PieceMaker {
         for (size_t first = 0; first < members.size();) {
             const uint32_t word = words[members[first]] & ~TEXEL_FOLD;
             uint32_t lowX = 7, highX = 0, lowY = 7, highY = 0;
-            const Flat& f = flats_[word & TEXEL_TRIANGLE];
+            const UvTriangle& f = flats_[word & TEXEL_TRIANGLE];
             bool own = true;
             size_t end = first;
             for (; end < members.size() && (words[members[end]] & ~TEXEL_FOLD) == word; ++end) {
@@ -224,7 +186,7 @@ class PieceMaker {
                 own = own && outside(f, dvec2(x0 + x, y0 + y) + (turns - 1.0) * double(to_.size)) < 1.0e-6;
             }
             first = end;
-            const dvec2 span = glm::max(f.p[0], glm::max(f.p[1], f.p[2])) - glm::min(f.p[0], glm::min(f.p[1], f.p[2]));
+            const dvec2 span = f.high() - f.low();
             if (own && std::max(span.x, span.y) < 8) {
                 for (size_t k = 0; k < 3; ++k) {
                     const uint32_t place = mesh_.corner[3 * size_t{word & TEXEL_TRIANGLE} + k];
@@ -239,20 +201,20 @@ class PieceMaker {
     }
 
     const FlowMesh& mesh_;
-    const std::vector<Flat>& flats_;
+    const std::vector<UvTriangle>& flats_;
     MapTexels& to_;
     std::vector<uint32_t> seen_;
 };
 
-std::vector<vec4> chartsOf(const std::vector<Flat>& flats, std::span<const float> folds, int size) {
+std::vector<vec4> chartsOf(const std::vector<UvTriangle>& flats, std::span<const float> folds, int size) {
     std::vector<vec4> chart;
     chart.reserve(2 * flats.size());
-    for (const Flat& f : flats) {
-        if (!f.good) {
+    for (const UvTriangle& f : flats) {
+        if (!f.good()) {
             chart.insert(chart.end(), 2, vec4(0.0F));
             continue;
         }
-        const dvec2 e1 = f.p[1] - f.p[0], e2 = f.p[2] - f.p[0], middle = (f.p[0] + f.p[1] + f.p[2]) / 3.0;
+        const dvec2 e1 = f.p[1] - f.p[0], e2 = f.p[2] - f.p[0], middle = f.middle();
         const double scale = size / f.area;
         chart.emplace_back(e2.y * scale, -e1.y * scale, -e2.x * scale, e1.x * scale);
         chart.emplace_back((middle.x + 0.5) / size, (middle.y + 0.5) / size, folds[chart.size() / 2], 0);

@@ -92,7 +92,7 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.moved = flow.moved != moved ? 1 : 0;
     s.reach = flow.largestRadius;
     s.trail = std::max(params.trail, 1.0e-6F);
-    s.tap = 0.5F * params.filmCell;
+    s.tap = 0.6F * params.filmCell;
     return s;
 }
 

@@ -65,16 +65,18 @@ TEST_P(FlowMapsParity, TheSameTexels) {
     const std::vector<vec4> here = run(*cpu, nullptr), there = run(*gpu->device, nullptr);
     ASSERT_EQ(here.size(), there.size());
     vec4 largest(0.0F), worst(0.0F);
-    double sum = 0;
+    double high = 0, wet = 0;
     for (size_t k = 0; k < here.size(); ++k) {
         largest = glm::max(largest, glm::abs(here[k]));
         worst = glm::max(worst, glm::abs(here[k] - there[k]));
-        sum += double{glm::abs(here[k] - there[k]).z};
+        high += double{glm::abs(here[k] - there[k]).z};
+        wet += double{glm::abs(here[k] - there[k]).w};
     }
     EXPECT_GT(largest.z, 0.3F);
-    // At a rim, or the film's edge, a texel may fall on one side or the other.
-    for (int k = 0; k < 4; ++k) EXPECT_LT(worst[k], 0.05F * largest[k]) << k;
-    EXPECT_LT(sum / static_cast<double>(here.size()), 1e-5 * double{largest.z});
+    // At a rim a texel may fall on one side or the other; and at the film's edge a cell may be painted or not.
+    for (int k = 0; k < 3; ++k) EXPECT_LT(worst[k], 0.05F * largest[k]) << k;
+    EXPECT_LT(high / static_cast<double>(here.size()), 1e-5 * double{largest.z});
+    EXPECT_LT(wet / static_cast<double>(here.size()), 1e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, FlowMapsParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });

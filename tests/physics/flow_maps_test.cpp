@@ -124,12 +124,17 @@ TEST(FlowMaps, ACapIsDrawnAsItIs) {
         if (share < 0.01) continue;
         ++under;
         EXPECT_NEAR(t.z / (1000 * high), share, 2e-3);
+        // In the texel along the rim the skin beside the drop is seen too.
+        if (share * radius / 2 < 1.1 * glm::length(p.alongU) / 256) {
+            EXPECT_GT(t.w, 0);
+            continue;
+        }
         EXPECT_EQ(t.w, 1);
         const dvec3 gradient = off * (-2 * high / (radius * radius));
         EXPECT_NEAR(t.x, glm::dot(gradient, p.alongU), 2e-3 * 2 * high / radius * glm::length(p.alongU));
         EXPECT_NEAR(t.y, glm::dot(gradient, p.alongV), 2e-3 * 2 * high / radius * glm::length(p.alongV));
     }
-    EXPECT_GT(under, 250U);
+    EXPECT_GT(under, 200U);
     EXPECT_NEAR(d.drawnVolume() / volume, 1, 1e-3);
 }
 
@@ -154,7 +159,7 @@ TEST(FlowMaps, SlopesAreThoseOfTheHeights) {
         if (!left || !right) continue;
         // All under one drop, on one triangle: the cap is smooth there.
         if (left->on.triangle != p.on.triangle || right->on.triangle != p.on.triangle) continue;
-        if (texels[left->at].z < 0.1F || texels[right->at].z < 0.1F) continue;
+        if (texels[left->at].z < 0.25F || texels[right->at].z < 0.25F) continue;
         const double difference = double{texels[right->at].z - texels[left->at].z} * 1e-3 / (2.0 * step / 1024);
         worst = std::max(worst, std::abs(difference - double{texels[p.at].x}) / (0.47 * glm::length(p.alongU)));
         ++compared;
@@ -267,6 +272,39 @@ TEST(FlowMaps, TheOtherLipStaysDry) {
         EXPECT_GT(own, 0);
         EXPECT_LT(other, 1e-3 * own) << row.drop.y;
     }
+}
+
+// A drop has run down a sheet and off it: the film that it left is drawn, all of it, where it lies, and wet where it is a trail's.
+TEST(FlowMaps, TheFilmIsDrawnWhereItLies) {
+    Skin skin;
+    addSheet(skin, vec3(0), vec3(0.02F, 0, 0), vec3(0, 0.04F, 0), 16, vec2(0.05F, 0.05F), vec2(0.45F, 0), vec2(0, 0.9F));
+    SurfaceFlowParams p;
+    p.evaporation = 0;
+    p.hold = 0;
+    Drawn d(skin, 512, p);
+    d.flow->add(nearestPoint(d.flow->mesh(), vec3(0.01F, 0.036F, 0)), 8 * kMicrolitre);
+    for (int k = 0; k < 120; ++k) {
+        EXPECT_TRUE(d.flow->step({}, 1.0 / 60));
+        d.maps->draw(*d.flow);
+    }
+    const SurfaceFlow::Ledger ledger = d.flow->ledger();
+    ASSERT_EQ(ledger.drops, 0U);
+    EXPECT_NEAR(d.drawnVolume() / (ledger.film * 1e-15), 1, 0.01);
+    const std::vector<vec4> texels = d.texels();
+    double thick = 0, wet = 0, beside = 0, n = 0;
+    for (const Drawn::Place& place : d.places()) {
+        const float aside = std::abs(place.x.x - 0.01F);
+        const vec4 t = texels[place.at];
+        if (aside > 0.004F) beside = std::max(beside, double{t.z});
+        if (aside > 0.0005F || place.x.y < 0.003F || place.x.y > 0.034F) continue;
+        thick += double{t.z};
+        wet += double{t.w};
+        ++n;
+    }
+    EXPECT_EQ(beside, 0);
+    // Ten micrometres, less where a row of the painting has missed a cell.
+    EXPECT_NEAR(thick / n, 0.0095, 0.0015);
+    EXPECT_GT(wet / n, 0.9);
 }
 
 // What is drawn after many frames, tile by tile where something changed, is what is drawn at once; and mips are means over the skin in

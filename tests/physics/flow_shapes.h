@@ -34,16 +34,17 @@ inline void addSheet(Skin& s, const vec3& corner, const vec3& across, const vec3
         }
 }
 
-// A ball as a cube blown up: six charts of n x n quads.
+// A ball as a cube blown up: six charts of n x n quads. Points of the cube are whole numbers, so that faces meet exactly.
 inline Skin cubeBall(float radius, uint32_t n) {
     Skin s;
     const vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const auto rows = static_cast<float>(n);
     for (uint32_t f = 0; f < 6; ++f) {
         const vec3 out = axes[f / 2] * (f % 2 == 0 ? 1.0F : -1.0F), a = axes[(f / 2 + 1) % 3], b = glm::cross(out, a);
-        addSheet(s, out - a - b, 2.0F * a, 2.0F * b, n,
+        addSheet(s, rows * (out - a - b), 2.0F * rows * a, 2.0F * rows * b, n,
                  vec2(0.02F + 0.33F * static_cast<float>(f % 3), 0.02F + 0.5F * static_cast<float>(f / 3)), vec2(0.3F, 0), vec2(0, 0.45F));
     }
-    for (vec3& p : s.positions) p = radius * glm::normalize(p);
+    for (vec3& p : s.positions) p = radius * glm::normalize(glm::round(p));
     return s;
 }
 

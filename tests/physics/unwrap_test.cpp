@@ -47,7 +47,7 @@ Skin torus() {
     });
 }
 
-void expectGood(const std::string& name, const FlowMesh& mesh, double mostDistortion) {
+void expectGood(const std::string& name, const FlowMesh& mesh, double mostDistortion, uint32_t mostCharts = UINT32_MAX) {
     const int size = 1024, gutter = 3;
     const Result<Unwrap> made = unwrap(mesh, size, gutter);
     ASSERT_TRUE(made) << name << ": " << made.error().message;
@@ -58,19 +58,17 @@ void expectGood(const std::string& name, const FlowMesh& mesh, double mostDistor
     EXPECT_LT(report.lost, 0.01) << name << ": " << report.sentence();
     EXPECT_GE(made->distortion, 1 - 1e-9) << name;
     EXPECT_LT(made->distortion, mostDistortion) << name;
+    EXPECT_LE(made->charts, mostCharts) << name;
     // Texels of one chart are further from another's than both their gutters.
     std::vector<uint32_t> owner(static_cast<size_t>(size) * size, UINT32_MAX);
-    double used = 0, inUv = 0, onSkin = 0;
+    double inUv = 0, onSkin = 0;
     for (size_t t = 0; t < mesh.triangleCount(); ++t) {
         const UvTriangle f = uvTriangle(std::span(made->uvs).subspan(3 * t, 3), size);
         if (!f.good()) continue;
         inUv += f.area;
         const vec3 a = mesh.rest[mesh.corner[3 * t]];
         onSkin += double{glm::length(glm::cross(mesh.rest[mesh.corner[3 * t + 1]] - a, mesh.rest[mesh.corner[3 * t + 2]] - a))};
-        eachCentre(f, 0, [&](int x, int y) {
-            ++used;
-            owner[static_cast<size_t>(y) * size + static_cast<size_t>(x)] = made->chart[t];
-        });
+        eachCentre(f, 0, [&](int x, int y) { owner[static_cast<size_t>(y) * size + static_cast<size_t>(x)] = made->chart[t]; });
     }
     size_t near = 0;
     for (int y = gutter; y < size - gutter; ++y)
@@ -85,8 +83,6 @@ void expectGood(const std::string& name, const FlowMesh& mesh, double mostDistor
         }
     EXPECT_EQ(near, 0U) << name;
     EXPECT_NEAR(inUv / onSkin / (made->texelsPerMetre * made->texelsPerMetre), 1, 0.02) << name << ": scaled to the skin's metres";
-    printf("%-40s %6zu triangles %4u charts  distortion %.4f  used %.2f\n", name.c_str(), mesh.triangleCount(), made->charts,
-           made->distortion, used / (double{size} * size));
 }
 
 TEST(Unwrap, ShapesAreCutAndLaidFlat) {
@@ -96,7 +92,7 @@ TEST(Unwrap, ShapesAreCutAndLaidFlat) {
         const Result<FlowMesh> mesh = makeFlowMesh(skin.view());
         ASSERT_TRUE(mesh);
         // Those that can be rolled out are, without distortion.
-        expectGood(name, *mesh, name[0] == 'c' ? 1.0001 : 1.05);
+        expectGood(name, *mesh, name[0] == 'c' ? 1.0001 : 1.01, 16);
     }
 }
 
@@ -116,7 +112,7 @@ TEST(Unwrap, EveryTestMeshIsLaidFlat) {
         ASSERT_TRUE(file) << path;
         const Result<FlowMesh> mesh = makeFlowMesh(file->view());
         ASSERT_TRUE(mesh) << path;
-        expectGood(std::filesystem::path(path).filename().string(), *mesh, 1.2);
+        expectGood(std::filesystem::path(path).filename().string(), *mesh, 1.01);
     }
 }
 

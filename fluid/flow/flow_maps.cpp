@@ -17,7 +17,7 @@ struct FlowMaps::Impl {
     int size = 0, mips = 0;
     Kernel caps, thick, frames, bounds, touch, taps, rows, mip;
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
-    Buffer frame, box, cap, film, near, stamp, map;
+    Buffer frame, box, cap, film, near, stamp, map, widest;
     uint32_t tiles = 0, pieces = 0;
     uint32_t drawn = 0;
     uint64_t moved = 0;  // as the flow counted when the boxes were made
@@ -59,7 +59,7 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const MapTexels& made) {
           std::pair(&frame, 2 * made.chart.size() * sizeof(vec4)), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
           std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)), std::pair(&film, flow.film->bytes()),
           std::pair(&near, NEAR_UINTS * made.tiles() * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
-          std::pair(&map, 2 * all * sizeof(uint32_t))}) {
+          std::pair(&widest, sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
         Result<Buffer> room = device->allocate(bytes);
         if (!room) return room.error();
         *buffer = std::move(*room);
@@ -144,9 +144,10 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     }
     if (w.drawn == 1) d.run(w.taps, s, {&w.tile, &w.frame, v.skin, v.basis, &w.texel}, w.tiles * TILE_TEXELS);
     w.moved = v.moved;
-    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap}, s.slots);
+    d.fill(w.widest, 0);
+    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.widest}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, &w.film}, s.triangles);
-    d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp}, w.tiles);
+    d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.widest}, w.tiles);
     d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, 4 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);

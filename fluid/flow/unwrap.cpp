@@ -365,15 +365,15 @@ Result<Unwrap> unwrap(const FlowMesh& mesh, int size, int gutter) {
     double area = 0;
     for (const Chart& c : charts) area += c.size.x * c.size.y;
     std::vector<stbrp_rect> rects, placed;
-    double fits = 0, not_ = size / std::sqrt(area);
+    double fits = 0, tooMuch = size / std::sqrt(area);
     if (pack(charts, 0, size, gutter, rects))
         for (int k = 0; k < 14; ++k) {
-            const double middle = 0.5 * (fits + not_);
+            const double middle = 0.5 * (fits + tooMuch);
             if (pack(charts, middle, size, gutter, rects)) {
                 fits = middle;
                 placed = rects;
             } else
-                not_ = middle;
+                tooMuch = middle;
         }
     if (placed.empty())
         return badInput(

@@ -11,6 +11,7 @@
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/map_texels.h"
 #include "fluid/flow/skin_folds.h"
+#include "fluid/flow/thesis_picture.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "shaders/flow/map_step.h"
 #include "tests/physics/flow_shapes.h"
@@ -390,6 +391,46 @@ TEST(FlowMaps, WhatCannotBeDrawnIsRefused) {
     Result<FlowMaps> none = FlowMaps::create(*flow, uvs, 64);
     ASSERT_FALSE(none);
     EXPECT_NE(none.error().message.find("unwrap"), std::string::npos);
+}
+
+// The thesis's picture, (22) and (23): a disc as printed, normals that lean away from its middle; and its defect, told from ours on a chart
+// that is stretched four times along v: there its drop is four times as long as wide, ours is round.
+TEST(FlowMaps, TheThesissPictureIsStretchedWithItsChart) {
+    const int size = 256;
+    const ThesisParticle drop{vec2(128.5F / 256), 1.0F};
+    const ThesisPicture alone = thesisPicture(std::span(&drop, 1), size, 0.05F, 1.0F);
+    const auto at = [](int x, int y) { return static_cast<size_t>(y) * size + static_cast<size_t>(x); };
+    EXPECT_FLOAT_EQ(alone.height[at(128, 128)], 1);
+    EXPECT_NEAR(alone.height[at(128 + 6, 128)], std::pow(1 - 36 / (12.8 * 12.8), 3), 1e-5);
+    EXPECT_EQ(alone.height[at(128 + 13, 128)], 0);
+    EXPECT_GT(alone.normal[at(133, 128)].x, 0.1F);
+    EXPECT_LT(alone.normal[at(123, 128)].x, -0.1F);
+    EXPECT_NEAR(alone.normal[at(128, 133)].x, 0, 0.1);
+    EXPECT_EQ(alone.normal[at(20, 20)], vec3(0, 0, 1));
+    const ThesisParticle pair[] = {drop, {drop.uv + vec2(0.01F, 0), 0.5F}};
+    EXPECT_GT(thesisPicture(pair, size, 0.05F, 1.0F).height[at(128, 128)], 1.1F);
+
+    // How long a drop is over how wide, in metres: by second moments.
+    const auto stretch = [&](const Drawn& d, auto&& heightAt) {
+        dvec2 moment(0.0);
+        const vec3 middle(0.01F, 0.02F, 0);
+        for (const Drawn::Place& p : d.places()) {
+            const dvec3 off = dvec3(p.x - middle);
+            moment += heightAt(p.at) * p.area * dvec2(off.x * off.x, off.y * off.y);
+        }
+        return std::sqrt(moment.y / moment.x);
+    };
+    Skin skin;
+    addSheet(skin, vec3(0), vec3(0.02F, 0, 0), vec3(0, 0.04F, 0), 8, vec2(0.1F, 0.3F), vec2(0.8F, 0), vec2(0, 0.4F));
+    Drawn d(skin, size, still());
+    d.flow->add(nearestPoint(d.flow->mesh(), vec3(0.01F, 0.02F, 0)), 2 * kMicrolitre);
+    d.stand();
+    d.maps->draw(*d.flow);
+    const std::vector<vec4> ours = d.texels();
+    const ThesisParticle same{vec2(0.5F), 1.0F};
+    const ThesisPicture theirs = thesisPicture(std::span(&same, 1), size, 0.03F, 1.0F);
+    EXPECT_NEAR(stretch(d, [&](size_t k) { return double{ours[k].z}; }), 1, 0.03);
+    EXPECT_NEAR(stretch(d, [&](size_t k) { return double{theirs.height[k]}; }), 4, 0.05);
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// The thesis's picture of a flow, (22) and (23), as printed: discs in UV, their sum a height field, normals by its differences. A reference
+// beside FlowMaps: what lies on a stretched chart is stretched, and what lies over a seam is cut off.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/core/math.h"
+
+namespace rivulet {
+
+struct ThesisParticle {
+    vec2 uv{0.0F};
+    float mass = 0;  // kg
+};
+
+struct ThesisPicture {
+    int size = 0;
+    std::vector<float> height;  // rows from v = 0 up; 1 in the middle of one particle of the largest mass
+    std::vector<vec3> normal;   // tangent space, unit length
+};
+
+// `radius`: UV, of a disc of `largest` (kg), the others' in proportion to their mass. `relief`: how high 1 stands, in texels.
+ThesisPicture thesisPicture(std::span<const ThesisParticle> particles, int size, float radius, float largest, float relief = 4.0F);
+
+}  // namespace rivulet

@@ -81,6 +81,18 @@ std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
         const vec3 n = glm::cross(mesh.rest[mesh.corner[3 * t + 1]] - a, mesh.rest[mesh.corner[3 * t + 2]] - a);
         normal[t] = glm::dot(n, n) > 0 ? glm::normalize(n) : vec3(0.0F);
     }
+    // A ball round each triangle says mostly whether it is within a distance.
+    std::vector<vec4> ball;
+    for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+        const vec3 middle = positionOf(mesh, {t, 1.0F / 3, 1.0F / 3});
+        float radius = 0;
+        for (size_t c = 0; c < 3; ++c) radius = std::max(radius, glm::distance(middle, mesh.rest[mesh.corner[3 * size_t{t} + c]]));
+        ball.emplace_back(middle, radius);
+    }
+    const auto within = [&](uint32_t t, const vec3& x, float most) {
+        const float far = glm::distance(vec3(ball[t]), x);
+        return far < most || (far - ball[t].w < most && distanceTo(mesh, t, x) < most);
+    };
     const Samples samples(mesh, reach);
     std::vector<uint32_t> seen(mesh.triangleCount(), UINT32_MAX), open;
     for (uint32_t k = 0; k < samples.all().size(); ++k) {
@@ -92,11 +104,13 @@ std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
                 const uint32_t across = mesh.across[3 * size_t{open[next]} + edge];
                 if (across == FlowMesh::kOpen || seen[across / 4] == k) continue;
                 seen[across / 4] = k;
-                if (distanceTo(mesh, across / 4, own.x) < kRound * reach) open.push_back(across / 4);
+                if (within(across / 4, own.x, kRound * reach)) open.push_back(across / 4);
             }
         float& nearest = folds[own.triangle];
         samples.eachWithin(own.x, 1.25F * reach, [&](uint32_t other) {
             if (seen[other] == k && glm::dot(normal[own.triangle], normal[other]) >= kAway) return;
+            // From its own middle and corners, where that can be nearer still.
+            if (glm::distance(vec3(ball[other]), vec3(ball[own.triangle])) - ball[other].w - ball[own.triangle].w >= nearest) return;
             nearest = std::min(nearest, distanceTo(mesh, other, own.x));
             for (size_t c = 0; c < 3; ++c)
                 nearest = std::min(nearest, distanceTo(mesh, other, mesh.rest[mesh.corner[3 * size_t{own.triangle} + c]]));

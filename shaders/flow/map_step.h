@@ -32,7 +32,7 @@ namespace rivulet {
 #define NEAR_LIST 7u   /* sorted numbers of MOST_NEAR drops */
 #define MOST_NEAR 9u
 #define WET_EVERY 16u  /* draws: a wet tile is drawn anew that often, for what dries */
-#define ANY_EVERY 32u  /* and a dry one, for what a drop left that went too fast to be seen in between */
+#define ANY_EVERY 64u  /* and a dry one, for what a drop left that went too fast to be seen in between */
 STRUCT(FlowMapStep) {
     vec4  gridOrigin;  // of the flow's grid, see fluid/step_params.h
     vec4  gridScale;

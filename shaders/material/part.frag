@@ -68,13 +68,14 @@ void main() {
     vec3 matte, shine = vec3(0.0), f0 = vec3(0.04), facing = n;
 #if defined(SKIN)
     vec4 region = look(regionsMap, uv, t, mapLod.z);
-    float fade = 1.0 - 0.5 * region.b, variance = 0.0;
-    vec3 slope = reliefSlope(reliefMap, uv, t, 1.0, mapLod.y, variance);
-    vec3 fine = reliefSlope(poresMap, uv, t, poreTiling, mapLod.w, variance) * (skinAmount.y * fade * (1.0 + 0.5 * region.r));
+    float fade = 1.0 - 0.5 * region.b, variance = 0.0, height = 0.0;
+    vec3 slope = reliefSlope(reliefMap, uv, t, 1.0, mapLod.y, variance, height);
+    vec3 fine = reliefSlope(poresMap, uv, t, poreTiling, mapLod.w, variance, height) * (skinAmount.y * fade * (1.0 + 0.5 * region.r));
     variance *= skinAmount.y;
 #if defined(LAYER)
     float filled = 1.0 / (1.0 + q.path / 3.0e-5);  // a film fills the pores
 #endif
+    albedo.rgb *= clamp(1.0 + 3.2 * height * fade, 0.65, 1.12);  // less light comes out of a furrow
     facing = normalize(n - slope - fine);
     vec3 soft = normalize(n - 0.35 * (slope + fine)), blurred = normalize(n - 0.12 * (slope + fine));
     float bend = clamp(abs(curvature), 2.0, 250.0), nl = dot(n, lamp);
@@ -98,6 +99,10 @@ void main() {
     float corner = open * open * (1.0 - 0.75 * region.b) / (1.0 + 0.006 * max(-curvature, 0.0));
     glossLight *= 1.0 - 0.75 * region.b;
     shine = twoLobes(facing, toEye, f0, rough, oily, variance, glossLight, corner);
+    if (!gl_FrontFacing) {  // seen from within, beside an eye
+        matte *= vec3(0.20, 0.06, 0.05);
+        shine = vec3(0.0);
+    }
 #elif defined(EYE)
     shadeEye(uv, n, toEye, albedo.rgb, falling, lit, open, matte, shine);
 #else
@@ -144,7 +149,7 @@ void main() {
     }
 #endif
 #if defined(BLENDED)
-    if (strand > 0.0) shine *= albedo.a;
+    if (strand > 0.0) shine *= 0.3 * albedo.a;
     colour = vec4(matte * albedo.a + shine, albedo.a);  // gloss stays where the body is clear
 #else
     colour = vec4(matte + shine, 1.0);

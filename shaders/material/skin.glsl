@@ -7,11 +7,12 @@ uniform vec3 scatterLength;    // m
 uniform vec2 skinAmount;       // of translucency, of pores
 uniform float poreTiling;      // tiles a unit of uv
 
-// A height's slope in the tangent plane, and the variance of what the mip hides.
-vec3 reliefSlope(sampler2D map, vec2 uv, Tangents t, float stretch, float sizeLod, inout float variance) {
+// A height's slope in the tangent plane; added to `variance` what of it the mip hides, to `height` (mm) where it lies.
+vec3 reliefSlope(sampler2D map, vec2 uv, Tangents t, float stretch, float sizeLod, inout float variance, inout float height) {
     vec4 s = look(map, uv * stretch, t, sizeLod);
     float metric = 0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)) * stretch * stretch;
     variance += max(s.z - dot(s.xy, s.xy), 0.0) * metric;
+    height += s.w;
     return (s.x * t.du + s.y * t.dv) * stretch;
 }
 

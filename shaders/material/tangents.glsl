@@ -15,6 +15,8 @@ Tangents tangentsAt(vec3 posWorld, vec2 uv, vec3 normal) {
     vec3 du = cross(b, normal), dv = cross(normal, t);
     float along = dot(t, du);
     float share = abs(along) > 1.0e-12 ? 1.0 / along : 0.0;
+    const float kMost = 1.0e4;  // 1/m: a triangle that has collapsed, in space or in uv, has no end
+    share *= min(1.0, kMost / max(abs(share) * sqrt(max(dot(du, du), dot(dv, dv))), 1.0e-9));
     float size = max(dot(ux, ux), dot(uy, uy));
     return Tangents(normal, du * share, dv * share, 0.5 * log2(max(size, 1.0e-20)), sqrt(max(dot(px, px), dot(py, py))));
 }

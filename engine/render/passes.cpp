@@ -322,7 +322,7 @@ void bindPlain(Program& p, const PassContext& c, TextureHandle occlusion, const 
 // Solid parts, then those with holes, which write their depth themselves, then what is blended. What has a layer is drawn dry, and then
 // again where it is wet: a liquid costs much more than what lies under it, and most of a skin is dry.
 void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const vec3& camera, TextureHandle occlusion,
-               const LightMaps& light) {
+               const LightMaps& light, TextureHandle colour, TextureHandle behind) {
     auto draw = [&](const DrawnMesh& m) {
         bindPlain(*m.part, c, occlusion, light);
         drawPart(m, *m.part, nullptr);
@@ -343,7 +343,16 @@ void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const 
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (const DrawnMesh* m : blended) draw(*m);
+    if (behind) {
+        const gpu::Texture &from = c.texture(colour), &to = c.texture(behind);
+        glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
+    }
+    for (const DrawnMesh* m : blended) {
+        Program& p = m->wetPart != nullptr ? *m->wetPart : *m->part;
+        bindPlain(p, c, occlusion, light);
+        if (m->wetPart != nullptr) p.texture("behindMap", 12, c.texture(behind));
+        drawPart(*m, p, m->layer);
+    }
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);
@@ -354,7 +363,12 @@ void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const 
 TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
                         std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light, bool floor) {
     const TextureHandle colour = graph.texture("scene colour", sized(view, Format::rgba16f));
-    graph.pass("opaque", {{frame, Usage::uniform}, {depth, Usage::target}, occlusion, light.sharp, light.soft, light.water}, {colour},
+    // What wet panes are looked through at: a copy, since it is read while it is drawn to.
+    const bool wetPanes = std::any_of(meshes.begin(), meshes.end(), [](const DrawnMesh& m) { return m.material.blended && m.wetPart; });
+    const TextureHandle behind = wetPanes ? graph.texture("behind panes", sized(view, Format::rgba16f)) : TextureHandle{};
+    std::vector<gpu::Write> targets = {colour};
+    if (behind) targets.emplace_back(behind);
+    graph.pass("opaque", {{frame, Usage::uniform}, {depth, Usage::target}, occlusion, light.sharp, light.soft, light.water}, targets,
                [=, &programs, drawn = std::move(meshes)](PassContext& c) {
                    c.drawTo({colour}, depth);
                    bindFrame(c, frame);
@@ -378,7 +392,7 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
                        setPlace(programs.mesh, m);
                        m.mesh->draw();
                    }
-                   drawParts(c, drawn, view.cameraPosWorld, occlusion, light);
+                   drawParts(c, drawn, view.cameraPosWorld, occlusion, light, colour, behind);
                });
     return colour;
 }

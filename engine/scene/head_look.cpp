@@ -98,8 +98,8 @@ ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::str
     const vec3 side = glm::normalize(glm::cross(vec3(0, 1, 0.001F), eye.sight)), up = glm::cross(eye.sight, side);
     const std::vector<uint32_t> edge = lowerLidEdge(skin.mesh, eye, side, up);
     if (edge.size() < 6) return part;
-    std::vector<vec3> lid;
-    for (const uint32_t v : edge) lid.push_back(skin.mesh.positions[v]);
+    std::vector<vec3> lid(edge.size());
+    for (size_t k = 0; k < edge.size(); ++k) lid[k] = skin.mesh.positions[edge[k]];
     for (int pass = 0; pass < 4; ++pass) {
         std::vector<vec3> smooth = lid;
         for (size_t k = 1; k + 1 < lid.size(); ++k) smooth[k] = 0.25F * lid[k - 1] + 0.5F * lid[k] + 0.25F * lid[k + 1];

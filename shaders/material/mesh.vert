@@ -24,7 +24,9 @@ void main() {
 #if defined(PART)
     posUv = uv.xy;
     curvature = normal.w / scale;
-#if defined(LAYER)
+#if defined(LAYER) && defined(BLENDED)
+    gl_CullDistance[0] = 1.0;  // what is blended is drawn once, wet and dry together
+#elif defined(LAYER)
     // A triangle whose three corners are dry is not drawn: looked up in a mip wide enough for what is between them, and for what a drop's
     // height and shadow reach.
     float lod = max(log2(max(0.7 * uv.z * float(textureSize(layerMap, 0).x), 1.0)), 3.0);

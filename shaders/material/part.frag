@@ -29,6 +29,9 @@ layout(location = 0) out vec4 colour;
 #endif
 #if defined(LAYER)
 #include "shaders/material/layer.glsl"
+#if defined(BLENDED)
+uniform sampler2D behindMap;  // linear radiance of what is solid
+#endif
 #endif
 
 void main() {
@@ -151,6 +154,16 @@ void main() {
 #if defined(BLENDED)
     if (strand > 0.0) shine *= 0.3 * albedo.a;
     colour = vec4(matte * albedo.a + shine, albedo.a);  // gloss stays where the body is clear
+#if defined(LAYER)
+    // A drop on a pane is a prism: what is behind is seen where the ray is bent to, at about the scene's own distance, or in the studio.
+    float cover = max(q.wet, q.drop) * (1.0 - albedo.a);
+    vec3 bent = normalize(q.slope * (layerLook.x - 1.0) - toEye);
+    vec4 clip = frame.viewProjection * vec4(posWorld + bent * frame.floorFade.z, 1.0);
+    vec2 there = clip.xy / max(clip.w, 1.0e-4) * 0.5 + 0.5;
+    float shown = clip.w > 0.0 && all(equal(there, clamp(there, 0.0, 1.0))) ? 1.0 : 0.0;
+    vec3 behind = mix(environment(bent, 0.05), textureLod(behindMap, there, 0.0).rgb, shown);
+    colour += vec4(behind * exp(-layerAbsorption.rgb * q.path), 1.0) * cover;
+#endif
 #else
     colour = vec4(matte + shine, 1.0);
 #endif

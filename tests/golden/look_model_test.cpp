@@ -173,6 +173,43 @@ TEST_F(LookModel, aDryLayerChangesNothingAndADropOnlyWhereItIs) {
     scene = Scene();
 }
 
+TEST_F(LookModel, aDropOnAPaneTurnsWhatIsBehindItUpsideDown) {
+    constexpr float kSize = 0.04F, kRadius = 2.0e-3F;
+    for (const bool upper : {true, false}) {  // red above, green below
+        ModelPart wall = pane(0.2F);
+        for (vec3& p : wall.mesh.positions) p += vec3(0.0F, upper ? 0.1F : -0.1F, -0.1F);
+        wall.material.baseColour = upper ? vec3(0.8F, 0.05F, 0.05F) : vec3(0.05F, 0.8F, 0.05F);
+        wall.material.roughness = 1.0F;
+        addPart(wall);
+    }
+    ModelPart glass = pane(kSize);
+    glass.material.blended = true;
+    glass.material.opacity = 0.0F;
+    glass.material.roughness = 0.1F;
+    const gpu::Texture drop = wetMap(
+        512, [](vec2 x) { return std::max(1.0e-3F * (1.0F - glm::dot(x, x) / (kRadius * kRadius)), 0.0F); }, kSize);
+    Node& node = addPart(glass);
+    auto layer = std::make_shared<Layer>();
+    layer->texels = &drop;
+    const Camera camera = lookingAt(vec3(0, 0, 0.1F), vec3(0.0F), 16.0F);
+    auto redder = [&](const std::vector<uint8_t>& rgba, float y) {  // m above the drop's middle
+        const float pixel = 2.0F * 0.1F * std::tan(8.0F * kPi / 180.0F) / kHeight;
+        const int row = kHeight / 2 - static_cast<int>(y / pixel);
+        return at(rgba, kWidth / 2, row, 0) - at(rgba, kWidth / 2, row, 1);
+    };
+    const std::vector<uint8_t> dry = picture(camera, kWidth, kHeight, {});
+    node.layer = layer;
+    const std::vector<uint8_t> wet = picture(camera, kWidth, kHeight, {});
+    const float inside = 0.6F * kRadius, outside = 2.0F * kRadius;
+    EXPECT_GT(redder(dry, inside), 40);
+    EXPECT_LT(redder(dry, -inside), -40);
+    EXPECT_LT(redder(wet, inside), -40);
+    EXPECT_GT(redder(wet, -inside), 40);
+    EXPECT_NEAR(redder(wet, outside), redder(dry, outside), 3);
+    EXPECT_NEAR(redder(wet, -outside), redder(dry, -outside), 3);
+    scene = Scene();
+}
+
 TEST_F(LookModel, redBleedsFurthestIntoShade) {
     // A ball of 1 cm of the same grey, as skin and not: at the terminator skin is redder than where the light falls straight.
     ModelPart ball;

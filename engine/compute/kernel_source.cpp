@@ -202,6 +202,7 @@ Result<KernelSource> ShaderFiles::flatten(std::string_view path, std::span<const
     KernelSource source;
     source.text = header;
     if (!header.empty() && header.back() != '\n') source.text += '\n';
+    for (const Define& define : always_) source.text += fmt::format("#define {} {}\n", define.name, define.value);
     for (const Define& define : defines) source.text += fmt::format("#define {} {}\n", define.name, define.value);
     const Status flattened = Flattener(*this, dialect, source).take(std::string(path), *text, true);
     if (!flattened) return flattened.error();

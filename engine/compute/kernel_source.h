@@ -28,6 +28,8 @@ class ShaderFiles {
     explicit ShaderFiles(std::string root = {});
     static ShaderFiles
     developer();  // RIVULET_SHADERS from the environment, else the source tree the build came from if it is still there, else embedded
+    // A define that every text flattened from now on has, before its own.
+    void define(Define define) { always_.push_back(std::move(define)); }
     Result<std::string> load(std::string_view path) const;
     // `path` e.g. "shaders/fluid/reorder.kernel". Each include is taken once. `header` goes before everything (e.g. "#version 450 core\n").
     Result<KernelSource> flatten(std::string_view path, std::span<const Define> defines, Dialect dialect,
@@ -35,6 +37,7 @@ class ShaderFiles {
 
   private:
     std::string root_;
+    std::vector<Define> always_;
 };
 
 // Rewrites "3(12)" or "3:12" (file number, line) of a GLSL log into "shaders/fluid/sph.h:12".

@@ -4,6 +4,7 @@
 #include <stb/stb_image.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -40,14 +41,51 @@ Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& n
     return image;
 }
 
-Result<Image> loadImage(const std::string& path) {
+namespace {
+
+Result<std::string> bytesOf(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return about(path, "cannot be read: there is no such file");
-    if (!std::filesystem::is_regular_file(path, error)) return about(path, "is not a plain file; name a PNG or JPEG");
+    if (!std::filesystem::is_regular_file(path, error)) return about(path, "is not a plain file; name a PNG, JPEG or HDR");
     std::ifstream file(path, std::ios::binary);
     if (!file) return about(path, "cannot be opened: check its permissions");
-    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    return decodeImage(std::as_bytes(std::span(bytes)), path);
+    return std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+Result<Image> loadImage(const std::string& path) {
+    const Result<std::string> bytes = bytesOf(path);
+    if (!bytes) return bytes.error();
+    return decodeImage(std::as_bytes(std::span(*bytes)), path);
+}
+
+Result<HdrImage> loadHdr(const std::string& path) {
+    const Result<std::string> bytes = bytesOf(path);
+    if (!bytes) return bytes.error();
+    if (bytes->empty()) return about(path, "is empty");
+    if (bytes->size() > static_cast<size_t>(std::numeric_limits<int>::max())) return about(path, "is larger than 2 GiB");
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes->data());
+    const int size = static_cast<int>(bytes->size());
+    HdrImage image;
+    image.name = path;
+    int channels = 0;
+    if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0)
+        return about(path, "cannot be read: it is damaged, or no HDR");
+    if (std::max(image.width, image.height) > kWidest)
+        return about(path, fmt::format("is {} x {} texels; make it no wider than {}", image.width, image.height, kWidest));
+    float* texels = stbi_loadf_from_memory(data, size, &image.width, &image.height, &channels, 3);
+    if (texels == nullptr) return about(path, fmt::format("cannot be read: {}", stbi_failure_reason()));
+    const size_t row = static_cast<size_t>(image.width), rows = static_cast<size_t>(image.height);
+    image.texels.resize(row * rows);
+    auto sane = [](float x) { return std::isfinite(x) ? std::clamp(x, 0.0F, 1000.0F) : 0.0F; };
+    for (size_t y = 0; y < rows; ++y)
+        for (size_t x = 0; x < row; ++x) {
+            const float* t = texels + 3 * (y * row + x);
+            image.texels[(rows - 1 - y) * row + x] = vec3(sane(t[0]), sane(t[1]), sane(t[2]));
+        }
+    stbi_image_free(texels);
+    return image;
 }
 
 }  // namespace rivulet

@@ -15,4 +15,7 @@ Result<Image> loadImage(const std::string& path);
 // The same from a file's bytes; `name` is what errors call it.
 Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& name);
 
+// A Radiance .hdr file, or any other picture as linear light. What is not finite, negative or above 1000 is brought back into range.
+Result<HdrImage> loadHdr(const std::string& path);
+
 }  // namespace rivulet

@@ -114,8 +114,16 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     return out;
 }
 
-Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& files) {
+Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& from, const HdrImage* surroundings) {
     std::unique_ptr<SceneRenderer> r(new SceneRenderer());
+    ShaderFiles files = from;
+    if (surroundings != nullptr) {
+        Result<gpu::Texture> map = makeEnvironmentMap(*surroundings);
+        if (!map) return map.error();
+        r->surroundings_ = std::move(*map);
+        r->matteLight_ = matteLight(*surroundings);
+        files.define({"ENVIRONMENT_MAP", "1"});
+    }
     Result<RenderPrograms> render = RenderPrograms::create(files);
     if (!render) return render.error();
     Result<FluidPrograms> fluid = FluidPrograms::create(files);
@@ -238,8 +246,10 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const Bounds box{settings.fluid.box.min, settings.fluid.box.max};
     studio.shown.add(box.min);
     studio.shown.add(box.max);
-    const FrameParams params = packFrame(view, studio, solid, water);
+    FrameParams params = packFrame(view, studio, solid, water);
+    std::copy(matteLight_.begin(), matteLight_.end(), params.matteLight);
     frame_.write(std::as_bytes(std::span(&params, 1)));
+    if (surroundings_) surroundings_.bind(16);  // beyond those that the graph empties before each pass
 
     gpu::FrameGraph graph(pool_);
     const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());

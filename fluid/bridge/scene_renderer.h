@@ -7,10 +7,12 @@
 // Needs a current OpenGL 4.5 context throughout, its destruction included.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "engine/render/environment_map.h"
 #include "engine/render/passes.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/scene.h"
@@ -41,8 +43,9 @@ class FluidUpload {
 
 class SceneRenderer {
   public:
+    // `surroundings`: what lights the scene beside the key light, and is seen behind it; null: the studio.
     // Error (failed): a shader does not compile, or is missing.
-    static Result<std::unique_ptr<SceneRenderer>> create(const ShaderFiles& files);
+    static Result<std::unique_ptr<SceneRenderer>> create(const ShaderFiles& files, const HdrImage* surroundings = nullptr);
 
     // Draws into a picture of its own, of the view's size. Error: an unknown renderer or colouring (badInput); out of GPU memory (failed).
     Status draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings);
@@ -85,6 +88,8 @@ class SceneRenderer {
     };
     std::map<MeshKey, GpuMesh> meshes_;
     GpuImages images_;
+    gpu::Texture surroundings_;  // empty: the studio
+    std::array<vec4, 9> matteLight_{};
 };
 
 }  // namespace rivulet

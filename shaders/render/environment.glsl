@@ -1,5 +1,6 @@
-// The studio that lights everything: a gradient from horizon to zenith, a floor below, and three softboxes. One function for what is
-// seen behind the scene, what meshes reflect and what water reflects. Needs frame.glsl.
+// What lights everything: a studio, or with ENVIRONMENT_MAP a picture.
+// The studio: a gradient from horizon to zenith, a floor below, and three softboxes. One function for what is seen behind the scene, what
+// meshes reflect and what water reflects. Needs frame.glsl.
 
 // Softbox k: a rectangle of light at infinity, facing the origin, its edge blurred over `edge` (tangents of angles).
 vec3 softbox(int k, vec3 dir, float edge) {
@@ -12,8 +13,20 @@ vec3 softbox(int k, vec3 dir, float edge) {
     return frame.boxRadiance[k].rgb * (facing > 0.05 ? inside.x * inside.y * spread.x * spread.y : 0.0);
 }
 
+#if defined(ENVIRONMENT_MAP)
+layout(binding = 16) uniform sampler2D environmentMap;  // see environment_map.h; a unit that passes leave alone
+vec3 surroundings(vec3 dir, float lod) {
+    float edge = 0.5 * exp2(lod) / float(textureSize(environmentMap, 0).y);  // at the poles it must not go on at the other one
+    vec2 uv = vec2(atan(dir.x, -dir.z) * 0.15915494 + 0.5, asin(clamp(dir.y, -1.0, 1.0)) * 0.3183099 + 0.5);
+    return textureLod(environmentMap, vec2(uv.x, clamp(uv.y, edge, 1.0 - edge)), lod).rgb;
+}
+#endif
+
 // Radiance of the sky alone, without softboxes: what is seen directly.
 vec3 skyGradient(vec3 dir) {
+#if defined(ENVIRONMENT_MAP)
+    return surroundings(dir, 1.0);
+#endif
     float up = max(dir.y, 0.0);
     return mix(frame.horizon.rgb, frame.zenith.rgb, 1.0 - exp(-3.2 * up));
 }
@@ -26,6 +39,9 @@ vec3 floorRadiance() {
 
 // Radiance from direction `dir` (world, unit) averaged over a cone; roughness 0: a mirror, 1: about the whole hemisphere.
 vec3 environment(vec3 dir, float roughness) {
+#if defined(ENVIRONMENT_MAP)
+    return surroundings(dir, log2(max(24.0 * roughness * roughness, 1.0)));  // a mip's texels are as wide as the cone
+#endif
     float blur = 0.03 + 0.9 * roughness * roughness;
     vec3 lifted = normalize(dir + vec3(0.0, 0.6 * roughness, 0.0));  // a wide cone at the horizon sees more of the sky's upper part
     vec3 below = mix(frame.horizon.rgb, floorRadiance(), frame.floorFade.w * smoothstep(0.0, 0.25 + blur, -dir.y));
@@ -36,6 +52,11 @@ vec3 environment(vec3 dir, float roughness) {
 
 // Irradiance / pi: what a white matte surface with this normal returns of the sky and the floor, without the key light.
 vec3 ambient(vec3 normal) {
+#if defined(ENVIRONMENT_MAP)
+    vec3 n = normal, sum = frame.matteLight[0].rgb + frame.matteLight[1].rgb * n.y + frame.matteLight[2].rgb * n.z + frame.matteLight[3].rgb * n.x;
+    sum += frame.matteLight[4].rgb * (n.x * n.y) + frame.matteLight[5].rgb * (n.y * n.z) + frame.matteLight[6].rgb * (3.0 * n.z * n.z - 1.0);
+    return max(sum + frame.matteLight[7].rgb * (n.x * n.z) + frame.matteLight[8].rgb * (n.x * n.x - n.y * n.y), 0.0);
+#endif
     vec3 above = mix(frame.horizon.rgb, frame.zenith.rgb, 0.6);
     vec3 below = mix(frame.horizon.rgb * 0.6, floorRadiance(), frame.floorFade.w);
     float up = 0.5 + 0.5 * normal.y;

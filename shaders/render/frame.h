@@ -26,6 +26,7 @@ STRUCT(FrameParams) {
     vec4 boxTowards[3];    // softboxes: unit direction, world; w = half width / distance
     vec4 boxSide[3];       // unit; w = half height / distance
     vec4 boxRadiance[3];
+    vec4 matteLight[9];    // of an environment map, see environment_map.h
     vec4 shadow;           // 1 if the meshes' map was drawn, 1 if the water's was, metres a unit of the first map's depth, of the second's
 };
 #if defined(__cplusplus)

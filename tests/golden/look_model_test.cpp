@@ -210,6 +210,56 @@ TEST_F(LookModel, aDropOnAPaneTurnsWhatIsBehindItUpsideDown) {
     scene = Scene();
 }
 
+HdrImage surroundings(const std::function<float(vec3)>& light) {
+    HdrImage image{"test", 128, 64, {}};
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 128; ++x) {
+            const float up = (static_cast<float>(y) + 0.5F) / 64 * kPi - 0.5F * kPi,
+                        turn = ((static_cast<float>(x) + 0.5F) / 128 - 0.5F) * 2 * kPi;
+            image.texels.emplace_back(light(vec3(std::cos(up) * std::sin(turn), std::sin(up), -std::cos(up) * std::cos(turn))));
+        }
+    return image;
+}
+
+TEST_F(LookModel, aMatteSurfaceGetsTheCosinesShareOfItsSurroundings) {
+    // A cosine leaves 1 of a constant, 2/3 of a gradient, 1/4 of a second order.
+    const std::array<vec4, 9> even = matteLight(surroundings([](vec3) { return 0.7F; }));
+    EXPECT_NEAR(even[0].x, 0.7F, 1e-3F);
+    for (size_t k = 1; k < 9; ++k) EXPECT_NEAR(even[k].y, 0.0F, 1e-3F) << k;
+    const std::array<vec4, 9> slope = matteLight(surroundings([](vec3 d) { return 1.0F + 0.5F * d.y - 0.3F * d.x + 0.2F * d.z; }));
+    EXPECT_NEAR(slope[1].x, 0.5F * 2 / 3, 1e-3F);
+    EXPECT_NEAR(slope[3].x, -0.3F * 2 / 3, 1e-3F);
+    EXPECT_NEAR(slope[2].x, 0.2F * 2 / 3, 1e-3F);
+    const std::array<vec4, 9> saddle =
+        matteLight(surroundings([](vec3 d) { return 1.0F + 0.4F * d.x * d.y + 0.3F * (d.x * d.x - d.y * d.y); }));
+    EXPECT_NEAR(saddle[4].x, 0.4F / 4, 1e-3F);
+    EXPECT_NEAR(saddle[8].x, 0.3F / 4, 1e-3F);
+}
+
+TEST_F(LookModel, surroundingsAreSeenAndMirroredWhereTheyAre) {
+    // Bright at +x, dark at -x: so is the sky to the right, and a mirror that faces right.
+    const HdrImage image = surroundings([](vec3 d) { return d.x > 0 ? 0.9F : 0.05F; });
+    Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::create(ShaderFiles::developer(), &image);
+    ASSERT_TRUE(made) << made.error().message;
+    settings.light.intensity = 0.0F;
+    auto shot = [&](const Camera& camera) {
+        const Status drawn = (*made)->draw(frameViewOf(camera, settings.light, kWidth, kHeight, 0), {}, scene, settings);
+        EXPECT_TRUE(drawn) << (drawn ? "" : drawn.error().message);
+        return (*made)->pixels();
+    };
+    const std::vector<uint8_t> sky = shot(lookingAt(vec3(0, 0, 1), vec3(0.0F), 40.0F));
+    EXPECT_GT(at(sky, kWidth * 3 / 4, kHeight / 2, 1), at(sky, kWidth / 4, kHeight / 2, 1) + 80);
+    ModelPart mirror = pane(4.0F);
+    mirror.material.metallic = 1.0F;
+    mirror.material.roughness = 0.05F;
+    mirror.material.baseColour = vec3(1.0F);
+    addPart(mirror);
+    const std::vector<uint8_t> left = shot(lookingAt(vec3(-0.5F, 0, 0.5F), vec3(0.0F), 10.0F));  // sees what is at the right
+    const std::vector<uint8_t> right = shot(lookingAt(vec3(0.5F, 0, 0.5F), vec3(0.0F), 10.0F));
+    EXPECT_GT(at(left, kWidth / 2, kHeight / 2, 1), at(right, kWidth / 2, kHeight / 2, 1) + 80);
+    scene = Scene();
+}
+
 TEST_F(LookModel, redBleedsFurthestIntoShade) {
     // A ball of 1 cm of the same grey, as skin and not: at the terminator skin is redder than where the light falls straight.
     ModelPart ball;

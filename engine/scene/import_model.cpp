@@ -191,6 +191,7 @@ Result<Model> importModel(const std::string& path) try {
         part.mesh = meshOf(from);
         if (part.mesh.indices.empty()) continue;
         part.material = materials[from.mMaterialIndex];
+        part.materialName = (*scene)->mMaterials[from.mMaterialIndex]->GetName().C_Str();
         part.node = node;
         part.morphs = morphsOf(from);
         if (Status held = gripsOf(from, nodeOf, part); !held) return meshFileError(path, held.error().message);

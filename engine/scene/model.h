@@ -39,6 +39,7 @@ struct ModelPart {
     std::string name;
     Mesh mesh;  // in its node's frame
     Material material;
+    std::string materialName;  // as the file calls it
     int node = 0;
     std::vector<MorphTarget> morphs;
     std::vector<Bone> bones;

@@ -136,6 +136,7 @@ TEST_F(SceneModel, bonesMorphsAndMaterialsAreTheFiles) {
     if (model->nodes[static_cast<size_t>(tip)].name != "tip") tip = part.bones[1].node;
     EXPECT_EQ(model->nodes[static_cast<size_t>(tip)].name, "tip");
     EXPECT_NEAR(part.grips[1].weight.x + part.grips[1].weight.y, 1.0F, 1e-6F);
+    EXPECT_EQ(part.materialName, "leaf");
     const Material& m = part.material;
     EXPECT_EQ(m.baseColour, vec3(0.5F, 0.25F, 1.0F));
     EXPECT_EQ(m.opacity, 0.75F);

@@ -9,6 +9,7 @@
 #include "fluid/flow/footprint.h"
 #include "fluid/sim/neighbor_grid.h"
 #include "fluid/sim/step_context.h"
+#include "shaders/flow/facing.h"
 #include "shaders/flow/flow_step.h"
 
 namespace rivulet {
@@ -57,6 +58,8 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({"evaporation", "m/s", "of the film", 0, 1.0e-5}, evaporation);
     v.value({"filmCell", "m", "cells of what drops leave behind are no wider", 1.0e-5, 0.1, kLog, kFixed}, filmCell);
     v.value({"filmReach", "m", "support radius of the sum that a film's height is", 1.0e-4, 0.1, kLog, kFixed}, filmReach);
+    v.value({.name = "contact", .doc = "whether drops go over to skin that faces them and that they touch: between lips, between lids"},
+            contact);
     v.value({"brimHolds", "ul", "what an eyelid's brim holds before it spills", 0.1, 100, kLog}, brimHolds);
     v.value({"brimWidth", "m", "radius of what lies in a brim", 1.0e-4, 0.01, kLog}, brimWidth);
     v.value({"tear", "ul", "of a drop that spills over a brim", 0.1, 30, kLog}, tear);
@@ -69,11 +72,11 @@ struct SurfaceFlow::Impl {
     SurfaceFlowParams params;
     std::unique_ptr<NeighborGrid> grid;
     Particles drops;  // as the grid sorts them: position.w radius, velocity.w volume
-    Kernel take, rest, basis, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
+    Kernel take, rest, facing, goOver, basis, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
     PairKernel meet, gather, spread, press;
     Buffer skin, given, hostMoved, point, frames, driven, begin, footprint, weight;  // of the mesh
     Buffer drop, motion;                                                             // by id
-    Buffer names, sortedOf, side, into, merged, shift, spreads;                      // sorted
+    Buffer names, sortedOf, side, into, merged, shift, spreads, faces;               // sorted
     Buffer chain, spill;                                                             // of brims
     Buffer film;                                                                     // picolitres, of each cell
     Buffer birth, counter, left;
@@ -108,6 +111,7 @@ struct SurfaceFlow::Impl {
     void bear(const FlowBirth& one);
     void moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f);
     void setStep(FlowStep& f, StepParams& s, double seconds) const;
+    void touchOthers(const FlowStep& f, const StepParams& s);
     Status moveDrops(const FlowStep& f, const StepParams& s);
     void turnFrame(const dmat4& toWorld, double seconds, FlowStep& f);
     FlowStep stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const;
@@ -147,10 +151,11 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         const char* path;
     };
     for (const Wanted& w :
-         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"},
-          Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"}, Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"},
-          Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"}, Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"},
-          Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"}, Wanted{&leave, "flow/leave"}}) {
+         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&facing, "flow/facing"}, Wanted{&goOver, "flow/go_over"},
+          Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"}, Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"},
+          Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"}, Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"},
+          Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"}, Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"},
+          Wanted{&leave, "flow/leave"}}) {
         Result<Kernel> found = on.kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -183,6 +188,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&spill, size_t{brimPlaces} * sizeof(FlowBirth)),
                                  std::pair(&names, n * sizeof(float)),
                                  std::pair(&sortedOf, n * sizeof(uint32_t)),
+                                 std::pair(&faces, n * sizeof(uint32_t)),
                                  std::pair(&into, n * sizeof(float)),
                                  std::pair(&merged, n * sizeof(vec4)),
                                  std::pair(&shift, n * sizeof(vec4)),
@@ -505,6 +511,19 @@ void SurfaceFlow::Impl::setStep(FlowStep& f, StepParams& s, double seconds) cons
     s.spacing = static_cast<float>(reach * kThinnest);
 }
 
+// Other skin that drops touch: only where there could be a drop as high.
+void SurfaceFlow::Impl::touchOthers(const FlowStep& f, const StepParams& s) {
+    if (!params.contact || f.places > FACING_PLACES) return;
+    StepParams c = s;
+    const double volume = std::cbrt(double{params.largestDrop} * kMicrolitre);
+    c.force = vec4(static_cast<float>(contactRadius(meanAngle(params)) * volume), 0.0F, 0.0F, 0.0F);
+    c.iteration = f.places;
+    c.correction = static_cast<float>(s.cellCount / static_cast<uint32_t>(s.cellsX * s.cellsY * s.cellsZ));
+    device->fill(faces, UINT32_MAX);
+    device->run(facing, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &point, &driven, &faces}, f.places);
+    device->run(goOver, f, {&drops.id, &faces, &skin, &driven, &begin, &footprint, &side, &drop}, f.count);
+}
+
 Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     device->run(place, f, {&drops.id, &skin, &frames, &driven, &drop, &motion, &drops.positionNext, &drops.velocityNext}, f.count);
     if (Status sorted = grid->build(s, drops); !sorted) return sorted;
@@ -532,6 +551,7 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     gather.run(context, s, {&neighbors, &x, &v, &names, &into, &side, &merged, &shift}, threads);
     if (told->film) press.run(context, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
     device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
+    touchOthers(f, s);
     device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
     device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);

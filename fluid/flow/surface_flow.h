@@ -35,6 +35,7 @@ struct SurfaceFlowParams {
     float evaporation = 2.0e-8F;     // m/s, of the film
     float filmCell = 7.0e-4F;        // m, the cells of what drops leave behind are no wider
     float filmReach = 5.0e-3F;       // m, support radius of the sum that a film's height is
+    bool contact = true;             // drops go over to skin that faces them
     float brimHolds = 8.0F;          // microlitres, of a brim that is full
     float brimWidth = 6.0e-4F;       // m, radius of what lies in a brim
     float tear = 4.5F;               // microlitres, of a drop that spills over it

@@ -88,6 +88,10 @@ INLINE ivec3 TO_IVEC3(const vec3& v) { return ivec3(static_cast<int>(v.x), stati
 INLINE vec3 TO_VEC3(const ivec3& v) { return vec3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)); }
 INLINE uint FLOAT_BITS(float f) { uint u; memcpy(&u, &f, 4); return u; }
 INLINE float BITS_FLOAT(uint u) { float f; memcpy(&f, &u, 4); return f; }
+INLINE void atomicMin(uint* x, uint v) {
+    uint had = __atomic_load_n(x, __ATOMIC_RELAXED);
+    while (v < had && !__atomic_compare_exchange_n(x, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+}
 #define TO_INT(x) static_cast<int>(x)
 #define TO_UINT(x) static_cast<unsigned>(x)
 #define TO_FLOAT(x) static_cast<float>(x)
@@ -107,6 +111,7 @@ INLINE float BITS_FLOAT(uint u) { float f; memcpy(&f, &u, 4); return f; }
 #define BUFFERS(P)
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
+#define ATOMIC_MIN(x, v) atomicMin(&(x), v)
 #define KERNEL(name, P)                                                                                            \
     static INLINE void name##_one(const uint tid_, [[maybe_unused]] const P& params_ ARGS(RO, RW));                                 \
     void name(uint32_t begin_, uint32_t end_, const void* p_, void* const* buffers_) {                             \

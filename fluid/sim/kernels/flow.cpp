@@ -42,6 +42,12 @@ namespace gather_unit {
 namespace press_unit {
 #include "shaders/flow/press.kernel"
 }
+namespace facing_unit {
+#include "shaders/flow/facing.kernel"
+}
+namespace go_over_unit {
+#include "shaders/flow/go_over.kernel"
+}
 namespace merge_unit {
 #include "shaders/flow/merge.kernel"
 }
@@ -72,15 +78,26 @@ namespace leave_unit {
 
 std::span<const CpuKernelRow> flowRows() {
     static const CpuKernelRow rows[] = {
-        {"flow/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},     {"flow/rest", "", RIVULET_UNIT_ISA, rest_unit::rest, 1024},
-        {"flow/basis", "", RIVULET_UNIT_ISA, basis_unit::basis, 1024},  {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 256},
-        {"flow/born", "", RIVULET_UNIT_ISA, born_unit::born, 256},      {"flow/brim", "", RIVULET_UNIT_ISA, brim_unit::brim, 1},
-        {"flow/place", "", RIVULET_UNIT_ISA, place_unit::place, 256},   {"flow/name", "", RIVULET_UNIT_ISA, name_unit::name, 1024},
-        {"flow/spread", "", RIVULET_UNIT_ISA, spread_unit::spread, 16}, {"flow/meet", "", RIVULET_UNIT_ISA, meet_unit::meet, 16},
-        {"flow/gather", "", RIVULET_UNIT_ISA, gather_unit::gather, 16}, {"flow/press", "", RIVULET_UNIT_ISA, press_unit::press, 16},
-        {"flow/merge", "", RIVULET_UNIT_ISA, merge_unit::merge, 256},   {"flow/law", "", RIVULET_UNIT_ISA, law_unit::law, 64},
-        {"flow/steer", "", RIVULET_UNIT_ISA, steer_unit::steer, 64},    {"flow/walk", "", RIVULET_UNIT_ISA, walk_unit::walk, 64},
-        {"flow/paint", "", RIVULET_UNIT_ISA, paint_unit::paint, 32},    {"flow/dry", "", RIVULET_UNIT_ISA, dry_unit::dry, 256},
+        {"flow/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},
+        {"flow/rest", "", RIVULET_UNIT_ISA, rest_unit::rest, 1024},
+        {"flow/basis", "", RIVULET_UNIT_ISA, basis_unit::basis, 1024},
+        {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 256},
+        {"flow/born", "", RIVULET_UNIT_ISA, born_unit::born, 256},
+        {"flow/brim", "", RIVULET_UNIT_ISA, brim_unit::brim, 1},
+        {"flow/place", "", RIVULET_UNIT_ISA, place_unit::place, 256},
+        {"flow/name", "", RIVULET_UNIT_ISA, name_unit::name, 1024},
+        {"flow/spread", "", RIVULET_UNIT_ISA, spread_unit::spread, 16},
+        {"flow/meet", "", RIVULET_UNIT_ISA, meet_unit::meet, 16},
+        {"flow/gather", "", RIVULET_UNIT_ISA, gather_unit::gather, 16},
+        {"flow/press", "", RIVULET_UNIT_ISA, press_unit::press, 16},
+        {"flow/facing", "", RIVULET_UNIT_ISA, facing_unit::facing, 1024},
+        {"flow/go_over", "", RIVULET_UNIT_ISA, go_over_unit::go_over, 256},
+        {"flow/merge", "", RIVULET_UNIT_ISA, merge_unit::merge, 256},
+        {"flow/law", "", RIVULET_UNIT_ISA, law_unit::law, 64},
+        {"flow/steer", "", RIVULET_UNIT_ISA, steer_unit::steer, 64},
+        {"flow/walk", "", RIVULET_UNIT_ISA, walk_unit::walk, 64},
+        {"flow/paint", "", RIVULET_UNIT_ISA, paint_unit::paint, 32},
+        {"flow/dry", "", RIVULET_UNIT_ISA, dry_unit::dry, 256},
         {"flow/leave", "", RIVULET_UNIT_ISA, leave_unit::leave, 256},
     };
     return rows;

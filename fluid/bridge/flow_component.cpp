@@ -1,11 +1,15 @@
 #include "fluid/bridge/flow_component.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "engine/core/table.h"
 #include "engine/scene/head_look.h"
@@ -13,6 +17,7 @@
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
 #include "fluid/bridge/scene_file.h"
+#include "fluid/flow/unwrap.h"
 
 namespace rivulet {
 
@@ -47,6 +52,61 @@ vec3 along(const std::vector<vec3>& line, float way) {
     return line.front();
 }
 
+// Whether `list` ("M_Iris*, M_EyeBlend") names a part, by its own name or its material's.
+bool named(std::string_view list, const ModelPart& part) {
+    while (!list.empty()) {
+        std::string_view one = list.substr(0, list.find(','));
+        list.remove_prefix(std::min(one.size() + 1, list.size()));
+        while (one.starts_with(' ')) one.remove_prefix(1);
+        const bool like = one.ends_with('*');
+        if (like) one.remove_suffix(1);
+        for (const std::string& name : {part.name, part.materialName})
+            if (!one.empty() && (like ? name.starts_with(one) : name == one)) return true;
+    }
+    return false;
+}
+
+// Vertices anew, one for each UV that a vertex has in `uvs` (3 a triangle of `mesh`, which was made of the part).
+void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
+    Mesh fresh;
+    fresh.name = part.mesh.name;
+    std::map<std::tuple<uint32_t, float, float>, uint32_t> known;
+    std::vector<std::vector<uint32_t>> become(part.mesh.positions.size());
+    std::vector<Grip> grips;
+    for (size_t t = 0; t < mesh.triangleCount(); ++t)
+        for (size_t k = 0; k < 3; ++k) {
+            uint32_t from = mesh.given[mesh.corner[3 * t + k]];
+            for (size_t c = 0; c < 3; ++c)
+                if (const uint32_t i = part.mesh.indices[3 * size_t{mesh.source[t]} + c];
+                    part.mesh.positions[i] == mesh.rest[mesh.corner[3 * t + k]])
+                    from = i;
+            const vec2 uv = uvs[3 * t + k];
+            const auto [at, added] = known.try_emplace({from, uv.x, uv.y}, static_cast<uint32_t>(fresh.positions.size()));
+            if (added) {
+                fresh.positions.push_back(part.mesh.positions[from]);
+                if (!part.mesh.normals.empty()) fresh.normals.push_back(part.mesh.normals[from]);
+                fresh.uvs.push_back(uv);
+                if (!part.grips.empty()) grips.push_back(part.grips[from]);
+                become[from].push_back(at->second);
+            }
+            fresh.indices.push_back(at->second);
+        }
+    for (MorphTarget& morph : part.morphs) {
+        std::vector<std::pair<uint32_t, vec3>> moved;
+        for (size_t k = 0; k < morph.vertices.size(); ++k)
+            for (const uint32_t v : become[morph.vertices[k]]) moved.emplace_back(v, morph.offsets[k]);
+        std::sort(moved.begin(), moved.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        morph.vertices.clear();
+        morph.offsets.clear();
+        for (const auto& [v, offset] : moved) {
+            morph.vertices.push_back(v);
+            morph.offsets.push_back(offset);
+        }
+    }
+    part.mesh = std::move(fresh);
+    part.grips = std::move(grips);
+}
+
 float lengthOf(const std::vector<vec3>& line) {
     float sum = 0;
     for (size_t k = 1; k < line.size(); ++k) sum += glm::distance(line[k - 1], line[k]);
@@ -74,10 +134,12 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
     if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
     if (Status marked = c.readMarks(*path, sceneFolder, to); !marked) return marked.error();
-    if (Status added = c.addParts(*model, scene); !added) return added.error();
-    const ModelPart* skin = model->parts.size() == 1 ? model->parts.data() : model->find(params.part);
-    if (Status ready = c.prepareFlow(skin->mesh, log); !ready) return ready.error();
-    if (Status masked = c.readRegions(sceneFolder, skin->mesh); !masked) return masked.error();
+    Result<ModelPart*> skin = c.skinOf(*model);
+    if (!skin) return skin.error();
+    if (Status laid = c.layOut(**skin, log); !laid) return laid.error();
+    if (Status added = c.addParts(*model, *skin, scene); !added) return added.error();
+    if (Status ready = c.prepareFlow((*skin)->mesh); !ready) return ready.error();
+    if (Status masked = c.readRegions(sceneFolder, (*skin)->mesh); !masked) return masked.error();
     c.apply(params);
     c.placeNode(scene);
     return made;
@@ -106,15 +168,37 @@ Status FlowComponent::readMarks(const std::string& meshPath, const std::string& 
     return ok();
 }
 
-Status FlowComponent::addParts(Model& model, Scene& scene) {
-    std::vector<std::string> names, morphNames;
-    for (const ModelPart& part : model.parts) {
-        names.push_back(part.name);
-        for (const MorphTarget& m : part.morphs) morphNames.push_back(m.name);
+Result<ModelPart*> FlowComponent::skinOf(Model& model) const {
+    if (model.parts.size() == 1) return model.parts.data();
+    std::vector<std::string> names;
+    for (ModelPart& part : model.parts) {
+        if (part.name == params_.part || part.materialName == params_.part) return &part;
+        names.push_back(part.materialName.empty() ? part.name : part.materialName);
     }
-    const ModelPart* skin = model.parts.size() == 1 ? model.parts.data() : model.find(params_.part);
-    if (skin == nullptr)
-        return badInput(fmt::format("{} has no part `{}`; there are {}", params_.mesh, params_.part, fmt::join(names, ", ")));
+    return badInput(fmt::format("{} has no part `{}`; there are {}", params_.mesh, params_.part, fmt::join(names, ", ")));
+}
+
+// UVs that can be drawn into: the mesh's, or own ones, for which its vertices are split where charts end.
+Status FlowComponent::layOut(ModelPart& skin, const Log& log) {
+    Result<FlowMesh> mesh = makeFlowMesh(skin.mesh.view());
+    if (!mesh) return badInput(fmt::format("{}: {}", params_.mesh, mesh.error().message));
+    if (const std::string found = mesh->report.sentence(); !found.empty()) log.info(fmt::format("{}: {}", params_.mesh, found));
+    Result<SkinUvs> uvs = skinUvs(*mesh, skin.mesh.view(), std::clamp(params_.mapSize, 256, 2048));
+    if (!uvs) return badInput(fmt::format("{}: {}", params_.mesh, uvs.error().message));
+    if (!uvs->said.empty()) log.notice(fmt::format("{}: {}", params_.mesh, uvs->said));
+    if (uvs->unwrapped) {
+        split(skin, *mesh, uvs->uvs);
+        mesh = makeFlowMesh(skin.mesh.view());
+        if (!mesh) return mesh.error();
+    }
+    uvs_ = cornerUvs(*mesh, skin.mesh.view());
+    return ok();
+}
+
+Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene) {
+    std::vector<std::string> morphNames;
+    for (const ModelPart& part : model.parts)
+        for (const MorphTarget& m : part.morphs) morphNames.push_back(m.name);
     for (const ExpressionParams& e : params_.expression)
         if (std::find(morphNames.begin(), morphNames.end(), e.morph) == morphNames.end()) {
             const std::string near = nearestName(e.morph, morphNames);
@@ -131,9 +215,14 @@ Status FlowComponent::addParts(Model& model, Scene& scene) {
         node.name = part.name;
         node.parent = group_;
         node.material = part.material;
+        node.visible = !named(params_.hide, part);
+        if (named(params_.skinParts, part)) {
+            auto look = std::make_shared<SkinLook>();
+            node.material.skin = look;
+        }
         if (&part == skin) {
             node.layer = layer_;
-            if (!part.material.colour && !part.material.skin) node.material = params_.material;
+            if (!part.material.colour && !node.material.skin) node.material = params_.material;
         }
         if (!part.morphs.empty() || !part.grips.empty()) {
             Result<Deformer> deformer = Deformer::create(*device_, part);
@@ -158,10 +247,9 @@ Status FlowComponent::addParts(Model& model, Scene& scene) {
     return ok();
 }
 
-Status FlowComponent::prepareFlow(const Mesh& skin, const Log& log) {
+Status FlowComponent::prepareFlow(const Mesh& skin) {
     Result<FlowMesh> mesh = makeFlowMesh(skin.view());
-    if (!mesh) return badInput(fmt::format("{}: {}", params_.mesh, mesh.error().message));
-    if (const std::string found = mesh->report.sentence(); !found.empty()) log.notice(fmt::format("{}: {}", params_.mesh, found));
+    if (!mesh) return mesh.error();
     for (size_t side = 0; side < 2; ++side)
         if (marks_.eyes[side].tear) tears_[side] = nearestPoint(*mesh, *marks_.eyes[side].tear);
     for (const FlowSourceParams& source : params_.sources) {
@@ -171,12 +259,10 @@ Status FlowComponent::prepareFlow(const Mesh& skin, const Log& log) {
                                         params_.mesh, source.kind));
     }
     const std::vector<SkinBrim> along = brims(*mesh);
-    const std::vector<vec2> uvs = cornerUvs(*mesh, skin.view());
-    if (uvs.empty()) return badInput(fmt::format("{} has no UVs to draw into", params_.mesh));
     Result<SurfaceFlow> flow = SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
     if (!flow) return badInput(fmt::format("{}: {}", params_.mesh, flow.error().message));
     flow_.emplace(std::move(*flow));
-    Result<FlowMaps> maps = FlowMaps::create(*flow_, uvs, params_.mapSize);
+    Result<FlowMaps> maps = FlowMaps::create(*flow_, std::exchange(uvs_, {}), params_.mapSize);
     if (!maps) return badInput(fmt::format("{}: {}", params_.mesh, maps.error().message));
     maps_.emplace(std::move(*maps));
     search_.emplace(flow_->mesh());

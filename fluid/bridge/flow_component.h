@@ -62,8 +62,10 @@ class FlowComponent {
     };
 
     FlowComponent() = default;
-    Status addParts(Model& model, Scene& scene);
-    Status prepareFlow(const Mesh& skin, const Log& log);
+    Result<ModelPart*> skinOf(Model& model) const;
+    Status layOut(ModelPart& skin, const Log& log);
+    Status addParts(Model& model, const ModelPart* skin, Scene& scene);
+    Status prepareFlow(const Mesh& skin);
     Status readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& place);
     std::vector<SkinBrim> brims(const FlowMesh& mesh);
     Status readRegions(const std::string& sceneFolder, const Mesh& skin);
@@ -78,6 +80,7 @@ class FlowComponent {
     dmat4 toWorld_{1.0};
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: it keeps its shape
+    std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them
     std::optional<SurfaceFlow> flow_;
     std::optional<FlowMaps> maps_;
     std::optional<FlowLayer> texture_;

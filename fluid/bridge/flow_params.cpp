@@ -75,6 +75,16 @@ void FlowParams::visit(ParamVisitor& v) {
     v.value({.name = "mesh", .doc = "model file: as given, beside the scene, in RIVULET_ASSETS, in assets/", .fixed = kFixed}, mesh);
     v.value({.name = "part", .doc = "of a file with several parts the one that is wet; the others are drawn with it", .fixed = kFixed},
             part);
+    v.value({.name = "instead",
+             .doc = "JSON file of another skin, with the keys of this one that differ: taken where the mesh that it names is found",
+             .fixed = kFixed},
+            instead);
+    v.value({.name = "hide",
+             .doc = "parts that are not drawn, by name or material, ', ' between them; * at the end = and the like",
+             .fixed = kFixed},
+            hide);
+    v.value({.name = "skinParts", .doc = "parts that are made of skin, the same way; the default head knows its own", .fixed = kFixed},
+            skinParts);
     v.value(
         {.name = "marks", .doc = "JSON file of a face's eyes and lids; none = the file beside the mesh, if there is one", .fixed = kFixed},
         marks);

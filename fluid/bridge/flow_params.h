@@ -56,6 +56,9 @@ struct RegionParams {
 struct FlowParams {
     std::string mesh = "meshes/head/head.glb";
     std::string part = "skin";  // of a file with several
+    std::string instead;        // JSON file of another skin, which takes its place where the mesh that it names is found; "" = none
+    std::string hide;           // parts that are not drawn, by name or material, ", " between them; one may end in *
+    std::string skinParts;      // parts that are made of skin, the same way; the default head knows its own
     std::string marks;          // JSON with eyes, lids and where tears begin; "" = beside the mesh, if there is one
     vec3 position{0.0F};        // m
     vec3 rotation{0.0F};        // deg

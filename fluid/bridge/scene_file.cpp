@@ -299,16 +299,36 @@ Result<std::string> findScene(const std::string& path) {
 
 }  // namespace
 
+namespace {
+
+// Skins that give way to another where its mesh is found, and nobody has asked for one.
+Status takeInsteads(SceneFile& scene, std::span<const std::string> assignments) {
+    for (size_t k = 0; k < scene.flow.size(); ++k) {
+        const bool asked = std::any_of(assignments.begin(), assignments.end(),
+                                       [&](const std::string& a) { return a.starts_with(fmt::format("flow.{}.mesh=", k)); });
+        if (scene.flow[k].instead.empty() || asked) continue;
+        const Result<std::string> file = findAsset(scene.flow[k].instead, scene.folder);
+        if (!file) return badInput(fmt::format("flow[{}].instead: {}", k, file.error().message));
+        FlowParams other = scene.flow[k];
+        if (Status read = readJsonFile(*file, [&](ParamVisitor& v) { other.visit(v); }); !read) return read;
+        if (findAsset(other.mesh, scene.folder)) scene.flow[k] = other;
+    }
+    return ok();
+}
+
+}  // namespace
+
 Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments) {
     Result<std::string> file = findScene(path);
     if (!file) return file.error();
     SceneFile scene;
     const VisitFn visit = visiting(scene);
     if (Status read = readJsonFile(*file, visit); !read) return read.error();
+    scene.folder = fs::path(*file).parent_path().string();
+    if (Status taken = takeInsteads(scene, assignments); !taken) return taken.error();
     for (const std::string& assignment : assignments)
         if (Status set = setParam(assignment, visit); !set) return badInput("--set " + assignment + ": " + set.error().message);
     if (Status sense = checkScene(scene); !sense) return badInput(*file + ": " + sense.error().message);
-    scene.folder = fs::path(*file).parent_path().string();
     return scene;
 }
 

@@ -51,6 +51,7 @@ struct Material {
         v.colour({"baseColour", "", "reflectance, linear", 0, 1}, baseColour);
         v.value({"roughness", "", "0 mirror, 1 chalk", 0, 1}, roughness);
         v.value({"metallic", "", "0 dielectric, 1 metal", 0, 1}, metallic);
+        v.value({"opacity", "", "1 = what is behind it is hidden; less, as of glass: it shows through", 0, 1}, opacity);
     }
 };
 

@@ -222,7 +222,10 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
         }
         if (&part == skin) {
             node.layer = layer_;
-            if (!part.material.colour && !node.material.skin) node.material = params_.material;
+            if (!part.material.colour && !node.material.skin) {
+                node.material = params_.material;
+                node.material.blended = params_.material.opacity < 1;
+            }
         }
         if (!part.morphs.empty() || !part.grips.empty()) {
             Result<Deformer> deformer = Deformer::create(*device_, part);

@@ -55,6 +55,7 @@ int runVerb(const Arguments& arguments) {
     std::string scene, size = "1280x720";
     RunOptions options;
     std::vector<std::string> assignments;
+    std::string preset;
     bool headless = false, noRender = false;
     std::optional<double> seconds;
     reader.positional("SCENE.json", "the scene", scene, true);
@@ -72,6 +73,7 @@ int runVerb(const Arguments& arguments) {
     reader.option("--save", "FILE", "the whole state at the run's end, for --resume", options.save);
     reader.option("--resume", "FILE", "go on from a state that --save wrote, of the same scene", options.resume);
     reader.flag("--explain", "at the end, say what was chosen, what was left out, and what the rest cost", options.explain);
+    reader.option("--preset", "NAME", "one of the scene's sets of values, before any --set", preset);
     reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
@@ -83,12 +85,14 @@ int runVerb(const Arguments& arguments) {
     if (noRender && !options.video.empty())
         return report(badInput("--video asks for pictures and --no-render for none; leave one of them out"));
 
-    Result<SceneFile> loaded = loadScene(scene, assignments);
+    Result<SceneFile> loaded = loadScene(scene, assignments, preset);
     if (!loaded) return report(loaded.error());
     if (loaded->budget.frameMs > 0 && (!options.save.empty() || !options.resume.empty()))
         return report(
             badInput("a budget picks anew at each start, and what is saved would not fit: --set budget.frameMs=0, and the method and "
                      "spacing that you want"));
+    if (!loaded->flow.empty() && (!options.save.empty() || !options.resume.empty()))
+        return report(badInput(fmt::format("a state holds no skins, and {} has some: leave --save and --resume out", loaded->name)));
     options.scene = std::move(*loaded);
     options.render = !noRender;
     if (seconds) options.frames = static_cast<int>(std::lround(*seconds * kFramesPerSecond));

@@ -318,7 +318,29 @@ Status takeInsteads(SceneFile& scene, std::span<const std::string> assignments) 
 
 }  // namespace
 
-Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments) {
+Status applyPreset(SceneFile& scene, const std::string& name) {
+    std::vector<std::string> names;
+    for (const PresetParams& preset : scene.presets) names.push_back(preset.name);
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end())
+        return badInput(names.empty()
+                            ? fmt::format("the scene {} has no presets", scene.name)
+                            : fmt::format("the scene {} has no preset `{}`; there are {}", scene.name, name, fmt::join(names, ", ")));
+    SceneFile changed = scene;
+    std::string_view rest = scene.presets[static_cast<size_t>(at - names.begin())].set;
+    while (!rest.empty()) {
+        std::string_view one = rest.substr(0, rest.find(';'));
+        rest.remove_prefix(std::min(one.size() + 1, rest.size()));
+        while (one.starts_with(' ')) one.remove_prefix(1);
+        if (one.empty()) continue;
+        if (Status set = setParam(one, visiting(changed)); !set)
+            return badInput(fmt::format("the preset `{}` of {}: {}", name, scene.name, set.error().message));
+    }
+    scene = std::move(changed);
+    return ok();
+}
+
+Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments, const std::string& preset) {
     Result<std::string> file = findScene(path);
     if (!file) return file.error();
     SceneFile scene;
@@ -326,6 +348,8 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
     if (Status read = readJsonFile(*file, visit); !read) return read.error();
     scene.folder = fs::path(*file).parent_path().string();
     if (Status taken = takeInsteads(scene, assignments); !taken) return taken.error();
+    if (!preset.empty())
+        if (Status set = applyPreset(scene, preset); !set) return set.error();
     for (const std::string& assignment : assignments)
         if (Status set = setParam(assignment, visit); !set) return badInput("--set " + assignment + ": " + set.error().message);
     if (Status sense = checkScene(scene); !sense) return badInput(*file + ": " + sense.error().message);

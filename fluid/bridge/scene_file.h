@@ -162,7 +162,12 @@ struct SceneFile {
 
 // `path`: as findAsset takes it, or the name of a listed scene (`dam_break`). `assignments`: each --set, in order. Error: as readJson and
 // setParam say.
-Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments);
+// `preset`: one of the scene's, set before the assignments; "" = none.
+Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments, const std::string& preset = "");
+
+// Sets what one of its presets says. Error (badInput): no such preset, and which there are; a value that setParam refuses: all is as it
+// was then.
+Status applyPreset(SceneFile& scene, const std::string& name);
 
 // Error: values that make no sense together, each fine by itself. loadScene asks it; who edits a scene asks it too.
 Status checkScene(const SceneFile& scene);

@@ -22,7 +22,8 @@ void drawHelp() {
     } kKeys[] = {{"left drag", "turn the view"},   {"right or middle drag", "move the view"},
                  {"wheel", "nearer, farther"},     {"space", "pause, go on"},
                  {"period", "one step"},           {"R", "start again"},
-                 {"Tab", "show, hide the panels"}, {"H", "show, hide this"}};
+                 {"Tab", "show, hide the panels"}, {"H", "show, hide this"},
+                 {"click", "a drop, on a skin"}};
     ImGui::SetNextWindowPos(ImVec2(display.x / 2, display.y / 2), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     ImGui::Begin("keys", nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
@@ -68,7 +69,10 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     if (!ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
     if (showHelp_) drawHelp();
-    if (!ui_.wantsMouse()) moveCamera(input);
+    if (!ui_.wantsMouse()) {
+        moveCamera(input);
+        touch(input);
+    }
     if (edited_ || recreate) takeEdits(recreate);
     step(seconds);
     Status drawn = draw(input, framebuffer);
@@ -108,6 +112,39 @@ void Viewer::moveCamera(const InputEvents& input) {
     edited_ = true;
 }
 
+void Viewer::touch(const InputEvents& input) {
+    constexpr int kLeft = static_cast<int>(MouseButton::left);
+    constexpr float kStill = 4;  // px: what moved further was a drag
+    if (input.buttonPressed[kLeft]) pressedAt_ = input.mouse;
+    if (!input.buttonReleased[kLeft] || glm::distance(input.mouse, pressedAt_) > kStill || session_->flows().empty()) return;
+    if (input.size.x <= 0 || input.size.y <= 0) return;
+    const Camera camera = cameraOf(draft_.camera, session_->bounds());
+    const vec2 size(input.size);
+    const mat4 back = glm::inverse(camera.projection(size.x / size.y) * camera.view());
+    const vec2 at(2 * input.mouse.x / size.x - 1, 1 - 2 * input.mouse.y / size.y);
+    const vec4 far = back * vec4(at, 1.0F, 1.0F);
+    constexpr uint32_t kTear = 8000000;  // picolitres
+    session_->flows().drip(dvec3(camera.position), dvec3(vec3(far) / far.w - camera.position), kTear);
+}
+
+// A button for each of the scene's presets.
+bool Viewer::drawPresets() {
+    bool chosen = false;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    for (size_t k = 0; k < draft_.presets.size(); ++k) {
+        const PresetParams& preset = draft_.presets[k];
+        const float wide = ImGui::CalcTextSize(preset.name.c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
+        if (k > 0 && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + wide < right) ImGui::SameLine();
+        if (ImGui::Button(fmt::format("{}###preset{}", preset.name, k).c_str())) {
+            if (Status set = applyPreset(draft_, preset.name); !set) message_ = set.error().message;
+            chosen = true;
+            break;
+        }
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", preset.doc.c_str());
+    }
+    return chosen;
+}
+
 bool Viewer::drawPanels() {
     if (!ImGui::IsAnyItemActive()) settled_ = session_->scene();
     ImVec2 display = ImGui::GetIO().DisplaySize;
@@ -131,6 +168,8 @@ bool Viewer::drawPanels() {
         if (actions.step) paused_ = stepOnce_ = true;
         if (actions.reset) session_->reset();
         if (actions.help) showHelp_ = !showHelp_;
+        ImGui::Spacing();
+        edited_ = drawPresets() || edited_;
         ImGui::Spacing();
         ImGui::BeginChild("parameters");
         ParamPanel panel;

@@ -43,7 +43,9 @@ class Viewer {
   private:
     void takeKeys(const InputEvents& input);
     void moveCamera(const InputEvents& input);
-    bool drawPanels();  // whether a new session is wanted
+    void touch(const InputEvents& input);  // a click that is no drag puts a drop on a skin
+    bool drawPresets();                    // whether one was chosen
+    bool drawPanels();                     // whether a new session is wanted
     void takeEdits(bool recreate);
     void step(double seconds);
     Status draw(const InputEvents& input, GLuint framebuffer);
@@ -63,7 +65,8 @@ class Viewer {
     SceneFile settled_;  // as it was before the edit that is under way
     std::string message_;
     bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
-    double waiting_ = 0;  // s on the wall that the water has not been stepped for
+    vec2 pressedAt_{0.0F};  // where the left button went down; window coordinates
+    double waiting_ = 0;    // s on the wall that the water has not been stepped for
     double uiMs_ = 0;
     double deviceMs_ = 0;  // of the passes last heard of
     std::optional<RunRecorder> recorder_;

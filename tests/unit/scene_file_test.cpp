@@ -105,6 +105,7 @@ TEST_F(SceneTest, ShippedScenesHoldAsManyParticlesAsTheySay) {
 TEST_F(SceneTest, CamerasFrameTheWholeBox) {
     for (const fs::directory_entry& entry : fs::directory_iterator(kRoot / "assets/scenes")) {
         const SceneFile scene = load(entry.path().filename().string());
+        if (scene.fluid.blocks.empty() && scene.emitters.empty()) continue;  // skins alone: the box is not in the picture
         const BoxParams& box = scene.fluid.box;
         float widest = 0;
         for (int corner = 0; corner < 8; ++corner) {

@@ -1,0 +1,141 @@
+// Skins in scenes: what a file may say, what is refused, and that nothing is lost on the way from an eye to the ground.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/compute/device_cpu.h"
+#include "engine/core/json.h"
+#include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/session.h"
+#include "fluid/sim/cpu_kernels.h"
+
+namespace rivulet {
+namespace {
+
+std::unique_ptr<CpuDevice> cpu() {
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    return makeCpuDevice(rows);
+}
+
+SceneFile crying(std::vector<std::string> assignments = {}, const std::string& preset = "") {
+    assignments.insert(assignments.begin(), "flow.0.mesh=meshes/head/head.glb");  // wherever an ICT head may be
+    Result<SceneFile> scene = loadScene("crying", assignments, preset);
+    EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+    return scene ? *scene : SceneFile{};
+}
+
+TEST(SceneFlow, NothingIsLostBetweenEyesAirAndGround) {
+    auto device = cpu();
+    // Rain, sobs and sweat at once, gusts, a face that moves.
+    Result<std::unique_ptr<Session>> session =
+        Session::create(crying({"flow.0.sources.0.rate=400", "flow.0.sources.2.rate=2000", "flow.0.sources.3.rate=40000",
+                                "flow.0.wind=3,0,1", "flow.0.motion.swing=8,5,3", "flow.0.motion.period=0.7", "flow.0.mapSize=64"}),
+                        *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    RunRecorder recorder((*session)->world(), (*session)->fields(), true, &(*session)->flows());
+    for (int k = 0; k < 180; ++k) {
+        const double ms = (*session)->step(1.0 / 60, true);
+        recorder.frame(ms, 0, ms, {}, {});
+        for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) EXPECT_TRUE(isFinite(d.position) && isFinite(d.velocity));
+    }
+    const RunStats stats = recorder.finish("crying");
+    EXPECT_EQ(stats.ledger.error, 0.0);
+    EXPECT_NEAR(stats.ledger.emitted, (2.4e-9 + 3.0 / 60 * (400 + 2000 + 40000) * 1e-9), 0.3e-9 + 0.02 * stats.ledger.emitted);
+    EXPECT_GT(stats.ledger.onSurface, 0.0);
+    EXPECT_GT(stats.ledger.drained, 0.0);
+    EXPECT_NEAR(stats.ledger.onSurface + stats.ledger.inAir + stats.ledger.evaporated + stats.ledger.drained, stats.ledger.emitted, 1e-15);
+    // From the start again.
+    (*session)->reset();
+    EXPECT_NEAR((*session)->flows().ledger().emitted, 2.4e-9, 1e-12);
+}
+
+TEST(SceneFlow, AClickPutsADropOnTheSkin) {
+    auto device = cpu();
+    Result<std::unique_ptr<Session>> session = Session::create(crying({"flow.0.sources.0.rate=0", "flow.0.mapSize=64"}), *device, {});
+    ASSERT_TRUE(session);
+    SkinFlows& flows = (*session)->flows();
+    EXPECT_FALSE(flows.drip(dvec3(0, 1, 1), dvec3(0, 0, -2), 8000000));  // over the head
+    EXPECT_TRUE(flows.drip(dvec3(0.03, -0.02, 1), dvec3(0, 0, -2), 8000000));
+    (*session)->step(1.0 / 60, true);
+    size_t there = 0;
+    for (const SkinDrop& d : flows.skins()[0]->flow().drops())
+        if (d.volume > 5e-9) {
+            ++there;
+            EXPECT_LT(glm::distance(d.position, vec3(0.03F, -0.021F, d.position.z)), 0.004F);
+            EXPECT_GT(d.position.z, 0.02F);
+        }
+    EXPECT_EQ(there, 1U);
+}
+
+TEST(SceneFlow, PresetsSetWhatTheySay) {
+    const SceneFile sob = crying({}, "sob"), rain = crying({"flow.0.sources.3.drop=2"}, "rain on a statue");
+    EXPECT_GT(sob.flow[0].sources[0].rate, 100);
+    EXPECT_EQ(rain.flow[0].sources[0].rate, 0);
+    EXPECT_GT(rain.flow[0].sources[3].rate, 0);
+    EXPECT_EQ(rain.flow[0].sources[3].drop, 2);
+    for (const PresetParams& preset : sob.presets) {
+        SceneFile any = sob;
+        EXPECT_TRUE(applyPreset(any, preset.name)) << preset.name;
+    }
+    const Result<SceneFile> none = loadScene("crying", {}, "laugh");
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("quiet cry"), std::string::npos) << none.error().message;
+}
+
+TEST(SceneFlow, WhatMakesNoSenseIsRefusedByName) {
+    struct Row {
+        const char *set, *says;
+    };
+    auto device = cpu();
+    for (const Row& row :
+         {Row{"flow.0.mesh=meshes/none.glb", "meshes/none.glb"}, Row{"flow.0.part=skinn", "there are skin"},
+          Row{"flow.0.expression.0.morph=frwn", "did you mean frown?"}, Row{"flow.0.regions.mask=meshes/none.png", "none.png"},
+          Row{"flow.0.mapSize=1000", "power of two"}, Row{"flow.0.marks=meshes/spot.obj", "spot.obj"}}) {
+        Result<SceneFile> scene = loadScene("crying", std::vector<std::string>{"flow.0.mesh=meshes/head/head.glb", row.set});
+        ASSERT_TRUE(scene) << row.set << ": " << scene.error().message;
+        const auto session = Session::create(*scene, *device, {});
+        ASSERT_FALSE(session) << row.set;
+        EXPECT_NE(session.error().message.find(row.says), std::string::npos) << session.error().message;
+        EXPECT_NE(session.error().message.find("flow[0]"), std::string::npos) << session.error().message;
+    }
+    for (const char* set : {"flow.0.mapSize=0", "flow.0.mapSize=65536", "flow.0.sources.0.drop=0", "flow.0.wind=1e7,0,0"})
+        EXPECT_FALSE(loadScene("crying", std::vector<std::string>{set})) << set;
+    // A mesh without eyes has no lids to fill.
+    Result<SceneFile> cow = loadScene("rain_on_spot", std::vector<std::string>{"flow.0.sources.0.kind=brim"});
+    ASSERT_TRUE(cow);
+    const auto session = Session::create(*cow, *device, {});
+    ASSERT_FALSE(session);
+    EXPECT_NE(session.error().message.find("no marks of eyes"), std::string::npos) << session.error().message;
+}
+
+// A storm blows all there is off, and nothing becomes Inf.
+TEST(SceneFlow, AStormIsNoEnd) {
+    auto device = cpu();
+    Result<std::unique_ptr<Session>> session =
+        Session::create(crying({"flow.0.sources.2.rate=60000", "flow.0.wind=1e6,0,0", "flow.0.mapSize=64"}), *device, {});
+    ASSERT_TRUE(session);
+    for (int k = 0; k < 30; ++k) {
+        (*session)->step(1.0 / 60, true);
+        for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) EXPECT_TRUE(isFinite(d.position) && isFinite(d.velocity));
+    }
+    EXPECT_EQ((*session)->flows().ledger().error, 0.0);
+}
+
+// Without UVs a skin gets its own: the sheet that they are drawn from is split, and drops go where they went.
+TEST(SceneFlow, ASkinWithoutUvsIsLaidOut) {
+    auto device = cpu();
+    std::string said;
+    Log log;
+    log.sink = [&](LogLevel, std::string_view text) { said += text; };
+    Result<SceneFile> scene = loadScene("rain_on_spot", std::vector<std::string>{"flow.0.mesh=meshes/sphere.obj", "flow.0.mapSize=256"});
+    ASSERT_TRUE(scene);
+    Result<std::unique_ptr<Session>> session = Session::create(*scene, *device, log);
+    ASSERT_TRUE(session) << session.error().message;
+    EXPECT_NE(said.find("UV"), std::string::npos) << said;
+    for (int k = 0; k < 60; ++k) (*session)->step(1.0 / 60, true);
+    EXPECT_GT((*session)->flows().skins()[0]->maps().tiles(), 100U);
+    EXPECT_GT((*session)->flows().ledger().onSurface, 0.0);
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -89,7 +89,7 @@ Result<FaceMarks> readFaceMarks(const std::string& path) {
     if (!tree) return tree.error();
     const Reader reader{path, *text};
     FaceMarks marks;
-    const Json::Value root = *tree;
+    const Json::Value& root = *tree;
     if (root.isObject() && root["eyes"].isObject()) {
         if (Status read = readOwn(reader, root["eyes"], marks); !read) return read.error();
     } else if (root.isObject() && root["tear_points"].isObject()) {

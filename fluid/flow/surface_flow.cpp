@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "fluid/flow/footprint.h"
 #include "fluid/sim/neighbor_grid.h"
@@ -98,7 +99,8 @@ struct SurfaceFlow::Impl {
     bool stirring = false;  // the skin has a velocity
     Bounds corners;         // m, of the skin at rest
     uint32_t brims = 0, brimPlaces = 0;
-    dmat4 pose{1.0};  // the skin's frame -> the world, as of the last step
+    std::optional<ThesisTables> thesis;  // of thesis mode
+    dmat4 pose{1.0};                     // the skin's frame -> the world, as of the last step
     bool posed = false;
     uint64_t moves = 0;         // how often it was
     uint32_t largestBirth = 0;  // picolitres
@@ -113,6 +115,8 @@ struct SurfaceFlow::Impl {
     void setStep(FlowStep& f, StepParams& s, double seconds) const;
     void touchOthers(const FlowStep& f, const StepParams& s);
     Status moveDrops(const FlowStep& f, const StepParams& s);
+    Status moveThesis(const FlowStep& f, const StepParams& s);
+    ThesisTables::Of forThesis() { return {skin, frames, driven, drop, motion, spreads, merged, drops, *grid}; }
     void turnFrame(const dmat4& toWorld, double seconds, FlowStep& f);
     FlowStep stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const;
     void takeCounters();
@@ -138,7 +142,8 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                  std::max(double{params.filmReach}, 2 * double{params.touch} * kFilmRadius * double{params.filmReach}));
     constexpr double kCells = 1 << 17;
     const dvec3 all(around.size());
-    const float h = static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / kCells)));
+    const float h = thesis ? thesis->cell() : static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / kCells)));
+    if (thesis) around = thesis->around();
     Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots);
     if (!made) return made.error();
     grid = std::make_unique<NeighborGrid>(std::move(*made));
@@ -167,7 +172,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         *kernel = *found;
     }
     if (Status fits = layLattice(); !fits) return fits;
-    const Footprint under = footprintOf(mesh, params.footprint);
+    const Footprint under = footprintOf(mesh, thesis ? 0.0F : params.footprint);  // the thesis's normals are the model's
     const size_t triangles = mesh.triangleCount(), places = mesh.rest.size(), n = slots;
     const size_t positions = size_t{*std::max_element(mesh.given.begin(), mesh.given.end())} + 1;
     for (auto [buffer, bytes] : {std::pair(&skin, SKIN_UINTS * triangles * sizeof(uint32_t)),
@@ -351,6 +356,24 @@ Result<SurfaceFlow> SurfaceFlow::create(Device& device, FlowMesh mesh, const Sur
     return SurfaceFlow(std::move(impl));
 }
 
+Result<SurfaceFlow> SurfaceFlow::createThesis(Device& device, FlowMesh mesh, std::span<const vec2> uvs, const SurfaceFlowParams& params,
+                                              const ThesisParams& thesis) {
+    Result<ThesisTables> tables = ThesisTables::create(device, mesh, uvs, thesis);
+    if (!tables) return tables.error();
+    auto impl = std::make_unique<Impl>();
+    impl->mesh = std::move(mesh);
+    impl->params = params;
+    impl->params.filmCell = 1.0e6F;  // m: there is no film
+    impl->thesis.emplace(std::move(*tables));
+    if (Status ready = impl->prepare(device, {}); !ready) return ready.error();
+    return SurfaceFlow(std::move(impl));
+}
+
+void SurfaceFlow::setThesis(const ThesisParams& params) {
+    ASSERT(impl_->thesis, "only a flow of createThesis() has these");
+    impl_->thesis->setParams(params);
+}
+
 void SurfaceFlow::setParams(const SurfaceFlowParams& params) {
     SurfaceFlowParams p = params;
     p.capacity = impl_->params.capacity;
@@ -449,9 +472,11 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
         device->run(rest, f, {&driven}, f.places);
         stirring = false;
     }
+    if (thesis && !moved) thesis->makeField(forThesis(), f, false);
     if (!moved) return;
     device->run(basis, f, {&skin, &point, &frames}, f.triangles);
     device->run(drive, f, {&begin, &footprint, &weight, &frames, &driven}, f.places);
+    if (thesis) thesis->makeField(forThesis(), f, true);
     moved = false;
     ++moves;
 }
@@ -486,10 +511,10 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
         w.device->run(w.brim, f, {&w.chain, &w.spill, &w.grid->cellStart(), &w.drops.id, &w.frames, &w.drop, &w.motion, &w.counter},
                       f.brims);
     // What holds a film's edge is stiff; drops know no such thing.
-    const int parts = w.told->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
+    const int parts = w.thesis ? w.thesis->parts(seconds) : w.told->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
     for (int k = 0; k < parts; ++k) {
         w.setStep(f, s, seconds / parts);
-        if (Status moved = w.moveDrops(f, s); !moved) return moved;
+        if (Status moved = w.thesis ? w.moveThesis(f, s) : w.moveDrops(f, s); !moved) return moved;
         f.turn0 = vec4(1, 0, 0, 0);  // the frame has turned, and goes on
         f.turn1 = vec4(0, 1, 0, 0);
         f.turn2 = vec4(0, 0, 1, 0);
@@ -561,19 +586,39 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     return ok();
 }
 
+// The walk is the same, on other tables; what leaves does so from the skin in space.
+Status SurfaceFlow::Impl::moveThesis(const FlowStep& step, const StepParams& s) {
+    FlowStep f = step;
+    f.trail = 0;
+    const Buffer &layout = thesis->skin(), &flat = thesis->flat();
+    if (Status pressed = thesis->press(forThesis(), f, s); !pressed) return pressed;
+    device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &motion}, f.count);
+    device->run(walk, f, {&drops.id, &layout, &flat, &shift, &drop, &motion}, f.count);
+    thesis->letGo(forThesis(), f);
+    device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
+    return ok();
+}
+
 std::vector<SkinDrop> SurfaceFlow::drops() const {
     const Impl& w = *impl_;
     const auto state = w.device->readAll<uint32_t>(w.drop, size_t{w.count()} * DROP_UINTS);
     const auto motion = w.device->readAll<vec4>(w.motion, 2 * size_t{w.count()});
     const auto frames = w.device->readAll<vec4>(w.frames, 5 * w.mesh.triangleCount());
+    std::vector<vec4> flat;
+    if (w.thesis) flat = w.device->readAll<vec4>(w.thesis->flat(), 5 * w.mesh.triangleCount());
     std::vector<SkinDrop> all;
     for (uint32_t k = 0; k < w.count(); ++k) {
         const uint32_t* d = &state[size_t{k} * DROP_UINTS];
         if (d[DROP_VOLUME] == 0) continue;
         const SkinPoint at{d[DROP_TRIANGLE] & DROP_NUMBER, std::bit_cast<float>(d[DROP_B1]), std::bit_cast<float>(d[DROP_B2])};
         const vec4* basis = &frames[5 * size_t{at.triangle}];
-        all.push_back({k, at, vec3(basis[0]) + at.b1 * vec3(basis[1]) + at.b2 * vec3(basis[2]), vec3(motion[2 * size_t{k}]),
-                       d[DROP_VOLUME] * 1.0e-15, double{motion[2 * size_t{k}].w}, double{std::bit_cast<float>(d[DROP_SHARE])}});
+        vec3 velocity(motion[2 * size_t{k}]);
+        if (w.thesis) {  // UV/s
+            const vec4* uv = &flat[5 * size_t{at.triangle}];
+            velocity = vec3(basis[1]) * glm::dot(vec3(uv[3]), velocity) + vec3(basis[2]) * glm::dot(vec3(uv[4]), velocity);
+        }
+        all.push_back({k, at, vec3(basis[0]) + at.b1 * vec3(basis[1]) + at.b2 * vec3(basis[2]), velocity, d[DROP_VOLUME] * 1.0e-15,
+                       double{motion[2 * size_t{k}].w}, double{std::bit_cast<float>(d[DROP_SHARE])}});
     }
     return all;
 }

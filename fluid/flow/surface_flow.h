@@ -10,6 +10,7 @@
 #include "engine/compute/device.h"
 #include "engine/core/params.h"
 #include "fluid/flow/flow_mesh.h"
+#include "fluid/flow/thesis_tables.h"
 #include "shaders/fluid/step_params.h"
 
 namespace rivulet {
@@ -90,6 +91,11 @@ class SurfaceFlow {
   public:
     // `device` must outlive it. Error: a mesh whose skin would not fit; out of memory.
     static Result<SurfaceFlow> create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims = {});
+    // Thesis mode: the same walk on the layout of `uvs` (3 a triangle), by the thesis's forces. Drops do not merge, and leave no trail.
+    // Places and velocities are told in space as ever, but FlowMaps does not know them: thesisPicture() draws them. Error: as create, and
+    // of UVs that are not as many or have no area.
+    static Result<SurfaceFlow> createThesis(Device& device, FlowMesh mesh, std::span<const vec2> uvs, const SurfaceFlowParams& params,
+                                            const ThesisParams& thesis);
     SurfaceFlow(SurfaceFlow&&) noexcept;
     SurfaceFlow& operator=(SurfaceFlow&&) noexcept;
     ~SurfaceFlow();
@@ -97,6 +103,7 @@ class SurfaceFlow {
     const FlowMesh& mesh() const;
     const SurfaceFlowParams& params() const;
     void setParams(const SurfaceFlowParams& params);  // capacity and footprint stay
+    void setThesis(const ThesisParams& params);       // in thesis mode; reach stays
 
     // A drop that appears with the next step. Where no slot is free it is counted as refused.
     // `film`: it is not taken up by others, but part of a film as long as there is one.

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fluid/flow/surface_flow.h"
+#include "fluid/flow/flow_maps.h"
+#include "fluid/validate/flow_shapes.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {
@@ -73,6 +74,42 @@ TEST_P(FlowParity, TheSameDropsAtTheSamePlaces) {
                                     return std::abs(o.volume / d.volume - 1) < 1.0e-3 && glm::distance(o.position, d.position) < 5.0e-5F;
                                 }))
             << d.volume * 1e9 << " microlitres";
+}
+
+// Thesis mode on a cone, so many drops that they push each other.
+After runThesis(Device& device) {
+    const Shape cone = coneShape(0.05F, 0.03F, 0.1F, 32, 20);
+    Result<FlowMesh> mesh = makeFlowMesh(cone.view());
+    EXPECT_TRUE(mesh);
+    const std::vector<vec2> uvs = cornerUvs(*mesh, cone.view());
+    Result<SurfaceFlow> flow = SurfaceFlow::createThesis(device, std::move(*mesh), uvs, {}, {});
+    EXPECT_TRUE(flow) << (flow ? "" : flow.error().message);
+    if (!flow) return {};
+    const dmat4 tilted = glm::rotate(dmat4(1.0), 0.2, dvec3(0, 0, 1));
+    for (int k = 0; k < 40; ++k) {
+        const double a = 0.9 + 0.004 * k;
+        flow->add(nearestPoint(flow->mesh(), vec3(dvec3(0.04 * std::cos(a), 0.09, 0.04 * std::sin(a)))), 900000 + 40000 * (k % 7));
+        EXPECT_TRUE(flow->step({.wind = vec3(1, 0, 0), .toWorld = tilted}, 1.0 / 60));
+    }
+    return {flow->drops(), flow->ledger()};
+}
+
+TEST_P(FlowParity, ThesisModeToo) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    auto cpu = makeTestCpu();
+    const After here = runThesis(*cpu), there = runThesis(*gpu->device);
+    EXPECT_EQ(there.ledger.added, there.ledger.drops + there.ledger.left + there.ledger.refused);
+    EXPECT_EQ(there.ledger.drops, here.ledger.drops);
+    ASSERT_EQ(there.drops.size(), here.drops.size());
+    EXPECT_GT(here.drops.size(), 10U);
+    for (const SkinDrop& d : here.drops)
+        EXPECT_TRUE(std::any_of(there.drops.begin(), there.drops.end(),
+                                [&](const SkinDrop& o) {
+                                    return o.volume == d.volume && glm::distance(o.position, d.position) < 2.0e-4F &&
+                                           glm::distance(o.velocity, d.velocity) < 5.0e-3F;
+                                }))
+            << d.position.x << " " << d.position.y << " " << d.position.z;
 }
 
 INSTANTIATE_TEST_SUITE_P(Gpus, FlowParity, testing::Values("cl", "gl"));

@@ -73,6 +73,27 @@ namespace dry_unit {
 namespace leave_unit {
 #include "shaders/flow/leave.kernel"
 }
+namespace thesis_frame_unit {
+#include "shaders/flow/thesis_frame.kernel"
+}
+namespace thesis_field_unit {
+#include "shaders/flow/thesis_field.kernel"
+}
+namespace thesis_place_unit {
+#include "shaders/flow/thesis_place.kernel"
+}
+namespace thesis_density_unit {
+#include "shaders/flow/thesis_density.kernel"
+}
+namespace thesis_press_unit {
+#include "shaders/flow/thesis_press.kernel"
+}
+namespace thesis_law_unit {
+#include "shaders/flow/thesis_law.kernel"
+}
+namespace thesis_leave_unit {
+#include "shaders/flow/thesis_leave.kernel"
+}
 
 }  // namespace
 
@@ -99,6 +120,13 @@ std::span<const CpuKernelRow> flowRows() {
         {"flow/paint", "", RIVULET_UNIT_ISA, paint_unit::paint, 32},
         {"flow/dry", "", RIVULET_UNIT_ISA, dry_unit::dry, 256},
         {"flow/leave", "", RIVULET_UNIT_ISA, leave_unit::leave, 256},
+        {"flow/thesis_frame", "", RIVULET_UNIT_ISA, thesis_frame_unit::thesis_frame, 1024},
+        {"flow/thesis_field", "", RIVULET_UNIT_ISA, thesis_field_unit::thesis_field, 1024},
+        {"flow/thesis_place", "", RIVULET_UNIT_ISA, thesis_place_unit::thesis_place, 256},
+        {"flow/thesis_density", "", RIVULET_UNIT_ISA, thesis_density_unit::thesis_density, 16},
+        {"flow/thesis_press", "", RIVULET_UNIT_ISA, thesis_press_unit::thesis_press, 16},
+        {"flow/thesis_law", "", RIVULET_UNIT_ISA, thesis_law_unit::thesis_law, 64},
+        {"flow/thesis_leave", "", RIVULET_UNIT_ISA, thesis_leave_unit::thesis_leave, 256},
     };
     return rows;
 }

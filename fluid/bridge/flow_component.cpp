@@ -261,14 +261,17 @@ Status FlowComponent::prepareFlow(const Mesh& skin) {
             return badInput(fmt::format("{} has no marks of eyes: a source of kind {} has nowhere to be; use spot, strewn or rain",
                                         params_.mesh, source.kind));
     }
-    const std::vector<SkinBrim> along = brims(*mesh);
-    Result<SurfaceFlow> flow = SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
+    // The thesis knows no lids: what would fill a brim begins below the eye's corner.
+    const std::vector<SkinBrim> along = thesis() ? std::vector<SkinBrim>() : brims(*mesh);
+    Result<SurfaceFlow> flow = thesis() ? SurfaceFlow::createThesis(*device_, std::move(*mesh), uvs_, params_.liquid, params_.thesis)
+                                        : SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
     if (!flow) return badInput(fmt::format("{}: {}", params_.mesh, flow.error().message));
     flow_.emplace(std::move(*flow));
+    search_.emplace(flow_->mesh());
+    if (thesis()) return ok();  // its picture wants the UVs
     Result<FlowMaps> maps = FlowMaps::create(*flow_, std::exchange(uvs_, {}), params_.mapSize);
     if (!maps) return badInput(fmt::format("{}: {}", params_.mesh, maps.error().message));
     maps_.emplace(std::move(*maps));
-    search_.emplace(flow_->mesh());
     return ok();
 }
 
@@ -333,6 +336,7 @@ void FlowComponent::apply(const FlowParams& params) {
     const FlowParams before = params_;
     params_ = params;
     flow_->setParams(params.liquid);
+    if (thesis()) flow_->setThesis(params.thesis);
     layer_->look = params.look;
     while (sources_.size() < params.sources.size())
         sources_.push_back({.random = std::mt19937(static_cast<uint32_t>(11 + 7 * sources_.size()))});
@@ -387,7 +391,7 @@ void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint3
                        picolitres});
     } else {
         const size_t side = source.side == "left" ? 0 : source.side == "right" ? 1 : state.random() % 2;
-        if (source.kind == "corner") {
+        if (source.kind == "corner" || thesis()) {
             flow_->add(tears_[side], picolitres);
         } else {
             const uint32_t from = brimBegin_[side], count = brimBegin_[side + 1] - from;
@@ -459,10 +463,28 @@ Status FlowComponent::draw() {
         if (!made) return made.error();
         texture_.emplace(std::move(*made));
     }
+    layer_->texels = &texture_->texture();
+    if (thesis()) {
+        drawThesis();
+        return ok();
+    }
     maps_->draw(*flow_);
     texture_->update(*maps_);
-    layer_->texels = &texture_->texture();
     return ok();
+}
+
+// (22) and (23) on the host, so this waits for the device: a baseline, not for speed. A particle's mass is its height, by the contact
+// angle.
+void FlowComponent::drawThesis() {
+    std::vector<ThesisParticle> particles;
+    double largest = 0;  // m^3
+    for (const SkinDrop& d : flow_->drops()) {
+        particles.push_back({uvAt(uvs_, d.at), static_cast<float>(d.volume * double{params_.liquid.density})});
+        largest = std::max(largest, d.volume);
+    }
+    const float mass = static_cast<float>(std::max(largest, 1.0e-15) * double{params_.liquid.density});
+    const ThesisPicture picture = thesisPicture(particles, params_.mapSize, params_.thesis.disc, mass);
+    texture_->update(picture, capHeight(largest, 0.5 * double{params_.liquid.advancing + params_.liquid.receding}));
 }
 
 Bounds FlowComponent::bounds() const {

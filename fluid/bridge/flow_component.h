@@ -46,8 +46,8 @@ class FlowComponent {
     uint64_t emitted() const { return emitted_; }  // picolitres, by sources; not what has landed
     const SurfaceFlow& flow() const { return *flow_; }
     const FlowParams& params() const { return params_; }
-    const FlowMaps& maps() const { return *maps_; }
-    Bounds bounds() const;  // m, world
+    const FlowMaps& maps() const { return *maps_; }  // in mode drops
+    Bounds bounds() const;                           // m, world
 
   private:
     struct Source {
@@ -62,6 +62,8 @@ class FlowComponent {
     };
 
     FlowComponent() = default;
+    bool thesis() const { return params_.mode == "thesis"; }
+    void drawThesis();
     Result<ModelPart*> skinOf(Model& model) const;
     Status layOut(ModelPart& skin, const Log& log);
     Status addParts(Model& model, const ModelPart* skin, Scene& scene);
@@ -80,7 +82,7 @@ class FlowComponent {
     dmat4 toWorld_{1.0};
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: it keeps its shape
-    std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them
+    std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them; of mode thesis for ever
     std::optional<SurfaceFlow> flow_;
     std::optional<FlowMaps> maps_;
     std::optional<FlowLayer> texture_;

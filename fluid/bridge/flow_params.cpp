@@ -72,6 +72,11 @@ void RegionParams::visit(ParamVisitor& v) {
 }
 
 void FlowParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> modes = {"drops", "thesis"};
+    v.choice({.name = "mode",
+              .doc = "drops: they walk the mesh, the same way whatever its UVs; thesis: particles in UV, as the thesis has them",
+              .fixed = kFixed},
+             mode, modes);
     v.value({.name = "mesh", .doc = "model file: as given, beside the scene, in RIVULET_ASSETS, in assets/", .fixed = kFixed}, mesh);
     v.value({.name = "part", .doc = "of a file with several parts the one that is wet; the others are drawn with it", .fixed = kFixed},
             part);
@@ -96,6 +101,7 @@ void FlowParams::visit(ParamVisitor& v) {
     v.value({"mapSize", "", "texels of the map that it is drawn into: a power of two", 16, 8192, kLog, kFixed}, mapSize);
     v.value({"wind", "m/s", "of the air, in the world", -1.0e6, 1.0e6}, wind);
     v.group({.name = "liquid", .doc = "what flows, and how it clings"}, liquid);
+    v.group({.name = "thesis", .doc = "the forces of mode thesis"}, thesis);
     v.group({.name = "motion", .doc = "how the skin turns as a whole"}, motion);
     v.list({.name = "expression", .doc = "how it bends: morph targets of the mesh"}, expression);
     v.list({.name = "sources", .doc = "where drops come from"}, sources);

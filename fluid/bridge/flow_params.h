@@ -54,6 +54,7 @@ struct RegionParams {
 };
 
 struct FlowParams {
+    std::string mode = "drops";  // drops | thesis
     std::string mesh = "meshes/head/head.glb";
     std::string part = "skin";  // of a file with several
     std::string instead;        // JSON file of another skin, which takes its place where the mesh that it names is found; "" = none
@@ -67,6 +68,7 @@ struct FlowParams {
     int mapSize = 1024;  // texels
     vec3 wind{0.0F};     // m/s
     SurfaceFlowParams liquid;
+    ThesisParams thesis;
     FlowMotionParams motion;
     std::vector<ExpressionParams> expression;
     std::vector<FlowSourceParams> sources;

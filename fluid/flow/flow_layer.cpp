@@ -3,6 +3,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <glm/gtc/packing.hpp>
 
 #include "engine/compute/device_cpu.h"
 
@@ -57,6 +58,25 @@ void FlowLayer::update(const FlowMaps& maps) {
             break;
     }
     seen_ = maps.draws();
+}
+
+void FlowLayer::update(const ThesisPicture& picture, double height) {
+    ASSERT(picture.size == texture_.width(), "make the layer as large as the picture");
+    constexpr float kWet = 8.0F;  // a height of one over it is as wet as can be
+    const auto edge = static_cast<size_t>(picture.size);
+    std::vector<uint64_t> texels(edge * edge, 0);
+    for (size_t y = 0; y < edge; ++y)
+        for (size_t x = 0; x < edge; ++x) {
+            const float h = picture.height[y * edge + x], right = picture.height[y * edge + std::min(x + 1, edge - 1)],
+                        above = picture.height[std::min(y + 1, edge - 1) * edge + x];
+            if (h == 0 && right == 0 && above == 0) continue;
+            // (23)'s differences, in metres.
+            const auto slope = static_cast<float>(height * static_cast<double>(edge));
+            texels[y * edge + x] = glm::packHalf4x16(
+                vec4((right - h) * slope, (above - h) * slope, h * static_cast<float>(height) * 1000.0F, std::min(kWet * h, 1.0F)));
+        }
+    takeLevel(0, 0, picture.size, 0, picture.size, texels.data());
+    glGenerateTextureMipmap(texture_.name());
 }
 
 void FlowLayer::takeLevel(int level, int y, int rows, int x, int columns, const void* texels) {

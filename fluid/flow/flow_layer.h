@@ -5,6 +5,7 @@
 
 #include "engine/gpu/texture.h"
 #include "fluid/flow/flow_maps.h"
+#include "fluid/flow/thesis_picture.h"
 
 namespace rivulet {
 
@@ -16,6 +17,8 @@ class FlowLayer {
     // After each draw() of `maps`, whose size is the layer's. Takes what has changed since the last call; from device cl it comes some
     // frames later.
     void update(const FlowMaps& maps);
+    // All of a picture of the layer's size; `height`: m, that its 1 stands for.
+    void update(const ThesisPicture& picture, double height);
 
     // r, g: dh/du, dh/dv (m a unit of u, v); b: height (mm); a: wetness (0 to 1). Wraps round, as UVs do.
     const gpu::Texture& texture() const { return texture_; }

@@ -110,12 +110,14 @@ TEST(FlowThesis, AStepsVelocityIsGravityAlongTheSkinWhateverTheLayout) {
             ThesisParams p = bare();
             p.adhesive = 1;
             Thesis t(shape.view(), p);
-            t.add(vec3(turned * dvec3(0.09, 0.11, 0)));
-            ASSERT_TRUE(t.flow->step({}, kStep));
+            t.add(vec3(turned * dvec3(0.085, 0.112, 0)));
+            // So short that it stays in its triangle: in the next one the same UV/s are other m/s.
+            constexpr double kShort = 1.0e-3;
+            ASSERT_TRUE(t.flow->step({}, kShort));
             const std::vector<SkinDrop> drops = t.flow->drops();
             ASSERT_EQ(drops.size(), 1U);
-            const dvec3 n = turned * dvec3(0, 0, 1), g(0, -kGravity, 0), expected = (g - n * glm::dot(g, n)) * kStep;
-            EXPECT_NEAR(glm::distance(dvec3(drops[0].velocity), expected), 0, 1e-5) << layoutName(layout) << shear;
+            const dvec3 n = turned * dvec3(0, 0, 1), g(0, -kGravity, 0), expected = (g - n * glm::dot(g, n)) * kShort;
+            EXPECT_NEAR(glm::distance(dvec3(drops[0].velocity), expected), 0, 1e-6) << layoutName(layout) << shear;
         }
 }
 
@@ -264,7 +266,7 @@ TEST(FlowThesis, ParticlesPushAndDragAsTheSumsSay) {
     ThesisParams p = bare();
     p.reach = 0.05F;
     p.restDensity = 0.004F;
-    p.stiffness = 0.01F;
+    p.stiffness = 0.5F;
     p.viscosity = 2.0e-4F;
     Thesis t(wall().view(), p);
     std::mt19937 random(9);
@@ -302,7 +304,7 @@ TEST(FlowThesis, ParticlesPushAndDragAsTheSumsSay) {
             const dvec2 d = all[i].uv - all[j].uv;
             const double r = glm::length(d);
             if (i == j || r >= h) continue;
-            const double over = 1 / std::max(rho[j], rest), pressures = 0.01 * (rho[i] + rho[j] - 2 * rest);
+            const double over = 1 / std::max(rho[j], rest), pressures = 0.5 * (rho[i] + rho[j] - 2 * rest);
             a += d / r * (all[j].mass * pressures / 2 * over * 30 / (kPiD * std::pow(h, 5)) * (h - r) * (h - r));
             a += (all[j].v - all[i].v) * (2.0e-4 * rest * all[j].mass * over * 40 / (kPiD * std::pow(h, 5)) * (h - r));
         }
@@ -368,7 +370,7 @@ TEST(FlowThesis, ItsPictureLeansWithTheWind) {
         Thesis t(head.view(), {});
         std::vector<ThesisParticle> particles;
         for (int k = 0; k < 60; ++k) {
-            for (const float side : {-1.0F, 1.0F}) t.add(vec3(0.018F * side, 0.012F, 0.1F), kMicrolitre);
+            for (const float side : {-1.0F, 1.0F}) t.add(vec3(0.020F * side, 0.0234F, 0.0373F), kMicrolitre);
             EXPECT_TRUE(t.flow->step({.gravity = pull}, kStep));
             for (const SkinDrop& d : t.flow->drops()) particles.push_back({uvAt(t.uvs, d.at), static_cast<float>(d.volume * 1005)});
         }
@@ -383,7 +385,7 @@ TEST(FlowThesis, ItsPictureLeansWithTheWind) {
     };
     const double straight = middle(vec3(0, -10, 0)), blown = middle(vec3(10, -10, 0)), back = middle(vec3(0, -10, -10));
     EXPECT_NEAR(straight, 0.5, 0.01);
-    EXPECT_GT(blown, straight + 0.02);
+    EXPECT_GT(blown, straight + 0.01);
     EXPECT_NEAR(back, straight, 0.02);
 }
 

@@ -1,14 +1,11 @@
 // Flow on skins: films, drops that are held and slide, the same way whatever the mesh's layout, and a ledger that closes.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "fluid/flow/surface_flow.h"
-#include "fluid/validate/flow_shapes.h"
-#include "fluid/validate/physics_case.h"
+#include "fluid/validate/flow_case.h"
 #include "fluid/validate/reference_data.h"
 
 namespace rivulet {
@@ -16,31 +13,6 @@ namespace rivulet {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
-constexpr double kStep = 1.0 / 60;
-constexpr double kGravity = 9.81;
-constexpr Layout kLayouts[] = {Layout::own, Layout::stretched, Layout::turned, Layout::pieces};
-
-struct Under {
-    const CaseSettings& settings;
-    Outcome outcome = {};
-    double wall = 0, simulated = 0;  // s
-    double share = 0;                // of the case that is done
-    bool stopped = false;
-
-    // One step. false: stop.
-    bool step(SurfaceFlow& flow, const SurfaceFlowInputs& inputs, double seconds = kStep) {
-        const auto before = std::chrono::steady_clock::now();
-        const Status done = flow.step(inputs, seconds);
-        wall += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-        simulated += seconds;
-        stopped = stopped || !done || !settings.goOn(share);
-        return !stopped;
-    }
-    void found(std::string what, const char* unit, double measured, double reference, double error, std::optional<double> tolerance) {
-        outcome.findings.push_back({std::move(what), unit, measured, reference, error, tolerance});
-    }
-};
-
 Result<SurfaceFlow> flowOn(const Under& u, const Shape& shape, const SurfaceFlowParams& params) {
     Result<FlowMesh> mesh = makeFlowMesh(shape.view());
     if (!mesh) return mesh.error();
@@ -91,11 +63,7 @@ Status heldDrop(Under& u, double advancing, double receding, uint32_t quads, Lay
     const Shape wall = laidOut(sheetShape(vec3(0, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), quads, quads), layout);
     Result<SurfaceFlow> flow = flowOn(u, wall, p);
     if (!flow) return flow.error();
-    // Furmidge 1962: rho g V = k w gamma (cos receding - cos advancing), w the foot of a cap with the mean angle.
-    const double rad = kPiD / 180, h = std::tan(0.25 * (advancing + receding) * rad);
-    const double w = 2 * std::cbrt(6 / (kPiD * h * (3 + h * h)));  // over V^(1/3)
-    const double force = double{p.hold} * w * double{p.surfaceTension} * (std::cos(receding * rad) - std::cos(advancing * rad));
-    const double expected = std::pow(force / (double{p.density} * kGravity), 1.5);
+    const double expected = furmidgeVolume(p);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> strewn(-2.0e-4F, 2.0e-4F);
     double grown = 0, first = 0;
@@ -207,19 +175,7 @@ Result<Way> wayDown(Under& u, const Shape& shape, const vec3& from, float level)
 }
 
 Status samePath(Under& u) {
-    struct Kind {
-        const char* name;
-        Shape shape;
-        vec3 from;
-        float level;
-    };
-    // Bumps of a tenth, so that there is a way to miss.
-    Shape ball = ballShape(0.05F, 48);
-    for (vec3& x : ball.positions) x *= 1.0F + 0.06F * std::sin(90 * x.x + 1.0F) * std::sin(110 * x.y) * std::sin(80 * x.z + 2.0F);
-    const std::vector<Kind> kinds = {{"bumpy ball", ball, vec3(0.012F, 0.06F, 0.014F), -0.02F},
-                                     {"cylinder", coneShape(0.03F, 0.03F, 0.1F, 48, 40), vec3(0.02F, 0.095F, 0.03F), 0.01F},
-                                     {"cone", coneShape(0.06F, 0.02F, 0.1F, 48, 40), vec3(0.012F, 0.095F, 0.016F), 0.01F}};
-    for (const Kind& kind : kinds) {
+    for (const PathCase& kind : pathCases()) {
         Way own;
         double apart = 0, late = 0, length = 0;
         for (const Layout layout : kLayouts) {
@@ -277,7 +233,7 @@ Status ledger(Under& u) {
 Result<Outcome> runFlow(const CaseSettings& settings) {
     Under u{.settings = settings};
     u.outcome.method = "flow";
-    const std::pair<double, std::function<Status()>> parts[] = {
+    const FlowPart parts[] = {
         {0.15, [&] { return film(u); }},
         {0.30,
          [&] {
@@ -293,17 +249,7 @@ Result<Outcome> runFlow(const CaseSettings& settings) {
         {0.65, [&] { return samePath(u); }},
         {1.0, [&] { return ledger(u); }},
     };
-    for (const auto& [share, part] : parts) {
-        if (Status done = part(); !done) return done.error();
-        if (u.stopped) {
-            u.outcome.findings.clear();
-            return u.outcome;
-        }
-        u.share = share;
-    }
-    u.outcome.wallPerSecond = u.wall / std::max(u.simulated, 1.0e-9);
-    u.outcome.stepsPerSecond = 1 / kStep;
-    return u.outcome;
+    return runParts(u, parts);
 }
 
 }  // namespace rivulet

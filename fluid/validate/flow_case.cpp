@@ -1,0 +1,55 @@
+#include "fluid/validate/flow_case.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+namespace rivulet {
+
+bool Under::step(SurfaceFlow& flow, const SurfaceFlowInputs& inputs, double seconds) {
+    const auto before = std::chrono::steady_clock::now();
+    const Status done = flow.step(inputs, seconds);
+    wall += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    simulated += seconds;
+    stopped = stopped || !done || !settings.goOn(share);
+    return !stopped;
+}
+
+void Under::found(std::string what, const char* unit, double measured, double reference, double error, std::optional<double> tolerance) {
+    outcome.findings.push_back({std::move(what), unit, measured, reference, error, tolerance});
+}
+
+Result<Outcome> runParts(Under& u, std::span<const FlowPart> parts) {
+    for (const auto& [share, part] : parts) {
+        if (Status done = part(); !done) return done.error();
+        if (u.stopped) {
+            u.outcome.findings.clear();
+            return u.outcome;
+        }
+        u.share = share;
+    }
+    u.outcome.wallPerSecond = u.wall / std::max(u.simulated, 1.0e-9);
+    u.outcome.stepsPerSecond = 1 / kStep;
+    return u.outcome;
+}
+
+double furmidgeVolume(const SurfaceFlowParams& p) {
+    // rho g V = k w gamma (cos receding - cos advancing), w the foot of a cap with the mean angle.
+    const double rad = std::numbers::pi / 180, advancing = double{p.advancing} * rad, receding = double{p.receding} * rad;
+    const double h = std::tan(0.25 * (advancing + receding));
+    const double w = 2 * std::cbrt(6 / (std::numbers::pi * h * (3 + h * h)));  // over V^(1/3)
+    const double force = double{p.hold} * w * double{p.surfaceTension} * (std::cos(receding) - std::cos(advancing));
+    return std::pow(force / (double{p.density} * kGravity), 1.5);
+}
+
+std::vector<PathCase> pathCases() {
+    // Bumps of a tenth, so that there is a way to miss.
+    Shape ball = ballShape(0.05F, 48);
+    for (vec3& x : ball.positions) x *= 1.0F + 0.06F * std::sin(90 * x.x + 1.0F) * std::sin(110 * x.y) * std::sin(80 * x.z + 2.0F);
+    return {{"bumpy ball", ball, vec3(0.012F, 0.06F, 0.014F), -0.02F},
+            {"cylinder", coneShape(0.03F, 0.03F, 0.1F, 48, 40), vec3(0.02F, 0.095F, 0.03F), 0.01F},
+            {"cone", coneShape(0.06F, 0.02F, 0.1F, 48, 40), vec3(0.012F, 0.095F, 0.016F), 0.01F}};
+}
+
+}  // namespace rivulet

@@ -91,7 +91,7 @@ int validateVerb(const Arguments& arguments) {
         list);
     reader.positional("CASE", "which cases; all of them when none is named", request.names);
     reader.flag("--quick", "each at about 8,000 particles", request.quick);
-    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow", request.method);
+    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis", request.method);
     reader.option("--backend", "B", "cpu, gl or cl", request.backend);
     reader.option("--json", "FILE.json", "also write the figures to a file", request.json);
     reader.option("--pictures", "DIR", "draw each case, measured against reference, as SVG into this folder", request.pictures);

@@ -231,6 +231,7 @@ Status ledger(Under& u) {
 }  // namespace
 
 Result<Outcome> runFlow(const CaseSettings& settings) {
+    if (settings.method == "flow_thesis") return runFlowThesis(settings);
     Under u{.settings = settings};
     u.outcome.method = "flow";
     const FlowPart parts[] = {

@@ -46,4 +46,7 @@ struct PathCase {
 };
 std::vector<PathCase> pathCases();
 
+// The same figures of thesis mode, where they mean something. Only reported.
+Result<Outcome> runFlowThesis(const CaseSettings& settings);
+
 }  // namespace rivulet

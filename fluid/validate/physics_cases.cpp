@@ -81,7 +81,7 @@ Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& d
 Table<PhysicsCase> physicsCases() { return {kCases}; }
 
 std::vector<std::string> methodsOf(const PhysicsCase& row) {
-    if (std::string_view(row.judged) == "flow") return {"flow"};
+    if (std::string_view(row.judged) == "flow") return {"flow", "flow_thesis"};
     return {"dfsph", "pbf", "wcsph", "wcsph_thesis"};
 }
 

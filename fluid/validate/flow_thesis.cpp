@@ -1,0 +1,201 @@
+// Thesis mode of flow on skins, measured as the default is: what depends on the layout, what has no terminal speed, and its ledger. Nothing
+// here is judged.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fluid/flow/flow_maps.h"
+#include "fluid/validate/flow_case.h"
+#include "fluid/validate/thesis_forms.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+Result<SurfaceFlow> thesisOn(const Under& u, const Shape& shape, const ThesisParams& params = {}, const SurfaceFlowParams& liquid = {}) {
+    Result<FlowMesh> mesh = makeFlowMesh(shape.view());
+    if (!mesh) return mesh.error();
+    const std::vector<vec2> uvs = cornerUvs(*mesh, shape.view());
+    return SurfaceFlow::createThesis(*u.settings.device, std::move(*mesh), uvs, liquid, params);
+}
+
+// How far the force along the skin is turned by (12)-(18), over all triangles.
+Status turnedForce(Under& u, const PathCase& kind, Layout layout) {
+    const Shape shape = laidOut(kind.shape, layout);
+    Result<FlowMesh> made = makeFlowMesh(shape.view());
+    if (!made) return made.error();
+    const FlowMesh& mesh = *made;
+    const std::vector<vec2> uvs = cornerUvs(mesh, shape.view());
+    const auto cornerOf = [&](size_t k) { return dvec3(mesh.rest[mesh.corner[k]]); };
+    std::vector<dvec3> normal(mesh.rest.size(), dvec3(0.0));
+    for (size_t k = 0; k < mesh.corner.size(); ++k) {
+        const size_t t = k - k % 3;
+        normal[mesh.corner[k]] += glm::cross(cornerOf(t + 1) - cornerOf(t), cornerOf(t + 2) - cornerOf(t));
+    }
+    std::vector<double> printed, mended;
+    const dvec3 force(0, -kGravity, 0);
+    for (size_t t = 0; t < mesh.corner.size(); t += 3) {
+        const dvec2 a(uvs[t]), ab = dvec2(uvs[t + 1]) - a, ac = dvec2(uvs[t + 2]) - a;
+        if (std::abs(ab.x * ac.y - ab.y * ac.x) < 1.0e-12) continue;
+        const dmat3 m0 = thesisFrame({cornerOf(t), cornerOf(t + 1), cornerOf(t + 2)}, {a, dvec2(uvs[t + 1]), dvec2(uvs[t + 2])});
+        dvec3 n(0.0);
+        for (size_t k = t; k < t + 3; ++k) n += glm::normalize(normal[mesh.corner[k]]);
+        printed.push_back(turnedBy(m0, printedFrame(m0, n), force) * 180 / kPiD);
+        mended.push_back(turnedBy(m0, mendedFrame(m0, n), force) * 180 / kPiD);
+    }
+    for (auto& [name, all] : {std::pair("printed", &printed), std::pair("mended", &mended)}) {
+        std::sort(all->begin(), all->end());
+        const double median = (*all)[all->size() / 2], most = (*all)[all->size() * 95 / 100];
+        u.found(fmt::format("force turned, {}, mesh {}, median (95 % below {:.1f})", name, layoutName(layout), most), "deg", median, 0,
+                median / 180, {});
+    }
+    return ok();
+}
+
+// The largest lone drop that stays on an upright wall.
+Status heldDrop(Under& u, Layout layout) {
+    constexpr int kRow = 7;
+    Shape wall = laidOut(sheetShape(vec3(0, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), 60, 60), layout);
+    Result<SurfaceFlow> flow = thesisOn(u, wall);
+    if (!flow) return flow.error();
+    for (int k = 0; k < kRow * kRow; ++k) {
+        const vec3 at(0.011F + 0.013F * static_cast<float>(k % kRow), 0.011F + 0.013F * static_cast<float>(k / kRow), 0);
+        flow->add(nearestPoint(flow->mesh(), at), static_cast<uint32_t>(2.0e3 * std::pow(1.21, k)));
+    }
+    for (int k = 0; k < 3; ++k)
+        if (!u.step(*flow, {}, 1.0e-3)) return ok();
+    double held = 0;
+    for (const SkinDrop& d : flow->drops())
+        if (glm::length(d.velocity) == 0) held = std::max(held, d.volume);
+    const double tears = furmidgeVolume({});
+    u.found(fmt::format("largest drop held, mesh {}", layoutName(layout)), "ul", held * 1.0e9, tears * 1.0e9, std::abs(held / tears - 1),
+            {});
+    return ok();
+}
+
+Status terminalSpeed(Under& u) {
+    const Shape wall = sheetShape(vec3(0, 20, 0), vec3(0, -20, 0), vec3(2, 0, 0), 20, 2);
+    Result<SurfaceFlow> flow = thesisOn(u, wall);
+    if (!flow) return flow.error();
+    flow->add(nearestPoint(flow->mesh(), vec3(0.9F, 19.5F, 0)), 12000000);
+    double half = 0, speed = 0;
+    for (int k = 1; k <= 60; ++k) {
+        if (!u.step(*flow, {})) return ok();
+        for (const SkinDrop& d : flow->drops()) speed = glm::length(d.velocity);
+        if (k == 30) half = speed;
+    }
+    u.found("speed after 1 s over that after 0.5 s; terminal: 1", "", speed / half, 1, std::abs(speed / half - 1), {});
+    return ok();
+}
+
+struct Way {
+    std::vector<vec3> places;
+    double arrival = -1;  // s; -1: it drained, or stays
+};
+
+Result<Way> wayDown(Under& u, const PathCase& kind, Layout layout) {
+    Result<SurfaceFlow> flow = thesisOn(u, laidOut(kind.shape, layout));
+    if (!flow) return flow.error();
+    flow->add(nearestPoint(flow->mesh(), kind.from), 12000000);
+    Way way;
+    constexpr double kFine = kStep / 8;
+    for (int k = 0; k < 1200; ++k) {
+        if (!u.step(*flow, {}, kFine)) return way;
+        const std::vector<SkinDrop> drops = flow->drops();
+        if (drops.empty()) break;
+        way.places.push_back(drops[0].position);
+        if (drops[0].position.y >= kind.level) continue;
+        way.arrival = k * kFine;
+        break;
+    }
+    return way;
+}
+
+// By place, for they do not arrive at the same time: from each place of one way to the nearest of the other.
+Status samePath(Under& u, const PathCase& kind) {
+    Way own;
+    double apart = 0, late = 0, length = 0, arrived = 0;
+    for (const Layout layout : kLayouts) {
+        Result<Way> way = wayDown(u, kind, layout);
+        if (!way) return way.error();
+        if (u.stopped) return ok();
+        arrived += way->arrival >= 0 ? 1 : 0;
+        if (layout == Layout::own) {
+            own = *way;
+            for (size_t k = 1; k < own.places.size(); ++k) length += double{glm::distance(own.places[k], own.places[k - 1])};
+            continue;
+        }
+        if (way->arrival >= 0 && own.arrival >= 0) late = std::max(late, std::abs(way->arrival / own.arrival - 1));
+        for (const vec3& x : way->places) {
+            double nearest = 1;
+            for (const vec3& y : own.places) nearest = std::min(nearest, double{glm::distance(x, y)});
+            apart = std::max(apart, nearest / length);
+        }
+    }
+    u.found(fmt::format("{}: paths of four layouts, apart over their length", kind.name), "", apart, 0, apart, {});
+    u.found(fmt::format("{}: layouts of four in which it arrives", kind.name), "", arrived, 4, 1 - arrived / 4, {});
+    if (own.arrival >= 0)
+        u.found(fmt::format("{}: their arrival against the own layout's, furthest off", kind.name), "", late, 0, late, {});
+    return ok();
+}
+
+Status ledger(Under& u) {
+    const Shape rest = ballShape(0.06F, 64);
+    Result<SurfaceFlow> flow = thesisOn(u, rest, {}, {.capacity = 512});
+    if (!flow) return flow.error();
+    std::vector<vec3> shape = rest.positions;
+    const double duration = u.settings.quick ? 10 : 60;
+    uint64_t told = 0;
+    for (int k = 0; k < static_cast<int>(duration / kStep); ++k) {
+        const double t = k * kStep;
+        for (const float side : {-1.0F, 1.0F})
+            if (k % 6 == 0) flow->add(nearestPoint(flow->mesh(), vec3(0.02F * side, 0.045F, 0.035F)), 500000);
+        for (size_t i = 0; i < shape.size(); ++i)
+            shape[i] = rest.positions[i] * (1.0F + 0.05F * static_cast<float>(std::sin(3 * t + 40 * double{rest.positions[i].x})));
+        const vec3 wind(static_cast<float>(std::fmod(t, 10) > 8 ? 6 : 0), 0, 0);
+        if (!u.step(*flow, {.wind = wind, .positions = shape})) return ok();
+        for (const LeftDrop& d : flow->takeLeft()) told += d.picolitres;
+    }
+    const SurfaceFlow::Ledger l = flow->ledger();
+    const auto there = static_cast<double>(l.drops + l.film + told + l.evaporated + l.refused), added = static_cast<double>(l.added);
+    u.found(fmt::format("ledger after {:.0f} s: {:.0f} % let go or ran over a seam", duration, 100.0 * static_cast<double>(told) / added),
+            "pl", there, added, std::abs(there - added) / added, {});
+    return ok();
+}
+
+}  // namespace
+
+Result<Outcome> runFlowThesis(const CaseSettings& settings) {
+    Under u{.settings = settings};
+    u.outcome.method = "flow_thesis";
+    const std::vector<PathCase> kinds = pathCases();
+    const FlowPart parts[] = {
+        {0.2,
+         [&] {
+             for (const Layout layout : kLayouts)
+                 if (Status turned = turnedForce(u, kinds[0], layout); !turned) return turned;
+             return ok();
+         }},
+        {0.3,
+         [&] {
+             for (const Layout layout : kLayouts)
+                 if (Status held = heldDrop(u, layout); !held || u.stopped) return held;
+             return ok();
+         }},
+        {0.4, [&] { return terminalSpeed(u); }},
+        {0.6,
+         [&] {
+             for (const PathCase& kind : kinds)
+                 if (Status same = samePath(u, kind); !same || u.stopped) return same;
+             return ok();
+         }},
+        {1.0, [&] { return ledger(u); }},
+    };
+    return runParts(u, parts);
+}
+
+}  // namespace rivulet

@@ -15,12 +15,12 @@
 namespace rivulet {
 
 struct ThesisParams {
-    float reach = 0.012F;         // UV, support radius h
-    float restDensity = 0.04F;    // kg/UV^2
+    float reach = 0.01F;          // UV, support radius h
+    float restDensity = 0.016F;   // kg/UV^2
     float stiffness = 0.02F;      // UV^2/s^2, k of (4)
-    float viscosity = 2.0e-5F;    // UV^2/s, of (6)
-    float friction = 1.5F;        // mu of (21)
-    float adhesive = 1.5e-5F;     // N, F_adhesive of (20)
+    float viscosity = 1.0e-4F;    // UV^2/s, of (6)
+    float friction = 0.45F;       // mu of (21)
+    float adhesive = 8.0e-6F;     // N, F_adhesive of (20)
     float curvature = 1.0e-6F;    // N kg/UV^3, k of (20)
     float curvatureMost = 1e-6F;  // N, what k / |grad rho| is at most
     float windPush = 1.0F;        // 1/s: m/s^2 by each m/s of wind

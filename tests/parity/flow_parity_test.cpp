@@ -87,8 +87,9 @@ After runThesis(Device& device) {
     if (!flow) return {};
     const dmat4 tilted = glm::rotate(dmat4(1.0), 0.2, dvec3(0, 0, 1));
     for (int k = 0; k < 40; ++k) {
-        const double a = 0.9 + 0.004 * k;
-        flow->add(nearestPoint(flow->mesh(), vec3(dvec3(0.04 * std::cos(a), 0.09, 0.04 * std::sin(a)))), 900000 + 40000 * (k % 7));
+        for (const double a : {0.9 + 0.004 * k, 0.93 + 0.003 * k, 1.5})
+            flow->add(nearestPoint(flow->mesh(), vec3(dvec3(0.04 * std::cos(a), 0.09, 0.04 * std::sin(a)))),
+                      static_cast<uint32_t>(900000 + 40000 * (k % 7) + 1000 * a));
         EXPECT_TRUE(flow->step({.wind = vec3(1, 0, 0), .toWorld = tilted}, 1.0 / 60));
     }
     return {flow->drops(), flow->ledger()};

@@ -84,6 +84,18 @@ struct Loop {
     RunRecorder recorder;
     int pictures = 0;
 
+    // Beside a picture of frame `f` the height field of each skin in thesis mode.
+    Status writeHeights(int f) {
+        const auto& skins = session.flows().skins();
+        for (size_t k = 0; k < skins.size(); ++k) {
+            const ThesisPicture& p = skins[k]->picture();
+            if (p.size == 0) continue;
+            const std::string path = fmt::format("{}_{:04}_height{}.png", to.picturePrefix, f, k == 0 ? "" : std::to_string(k));
+            if (Status written = writePng(path, greyOf(p), p.size, p.size); !written) return written;
+        }
+        return ok();
+    }
+
     Status run(int frames) {
         std::set<int> kept = pictureFrames(frames);
         Progress progress(options.scene.name);
@@ -102,6 +114,7 @@ struct Loop {
                     if (Status written = writePng(fmt::format("{}_{:04}.png", to.picturePrefix, f), *pixels, options.width, options.height);
                         !written)
                         return written;
+                    if (Status written = writeHeights(f); !written) return written;
                     ++pictures;
                 }
             }

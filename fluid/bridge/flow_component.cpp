@@ -483,8 +483,8 @@ void FlowComponent::drawThesis() {
         largest = std::max(largest, d.volume);
     }
     const float mass = static_cast<float>(std::max(largest, 1.0e-15) * double{params_.liquid.density});
-    const ThesisPicture picture = thesisPicture(particles, params_.mapSize, params_.thesis.disc, mass);
-    texture_->update(picture, capHeight(largest, 0.5 * double{params_.liquid.advancing + params_.liquid.receding}));
+    picture_ = thesisPicture(particles, params_.mapSize, params_.thesis.disc, mass);
+    texture_->update(picture_, capHeight(largest, 0.5 * double{params_.liquid.advancing + params_.liquid.receding}));
 }
 
 Bounds FlowComponent::bounds() const {

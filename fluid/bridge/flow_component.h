@@ -47,7 +47,9 @@ class FlowComponent {
     const SurfaceFlow& flow() const { return *flow_; }
     const FlowParams& params() const { return params_; }
     const FlowMaps& maps() const { return *maps_; }  // in mode drops
-    Bounds bounds() const;                           // m, world
+    // As last drawn, in mode thesis; of size 0 else.
+    const ThesisPicture& picture() const { return picture_; }
+    Bounds bounds() const;  // m, world
 
   private:
     struct Source {
@@ -85,6 +87,7 @@ class FlowComponent {
     std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them; of mode thesis for ever
     std::optional<SurfaceFlow> flow_;
     std::optional<FlowMaps> maps_;
+    ThesisPicture picture_;
     std::optional<FlowLayer> texture_;
     std::shared_ptr<Layer> layer_;
     std::optional<SkinSearch> search_;

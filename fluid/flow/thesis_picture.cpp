@@ -37,4 +37,16 @@ ThesisPicture thesisPicture(std::span<const ThesisParticle> particles, int size,
     return p;
 }
 
+std::vector<uint8_t> greyOf(const ThesisPicture& picture) {
+    const auto edge = static_cast<size_t>(picture.size);
+    std::vector<uint8_t> rgba;
+    rgba.reserve(4 * edge * edge);
+    for (size_t y = edge; y-- > 0;)
+        for (size_t x = 0; x < edge; ++x) {
+            const auto grey = static_cast<uint8_t>(255 * std::min(picture.height[y * edge + x], 1.0F) + 0.5F);
+            rgba.insert(rgba.end(), {grey, grey, grey, 255});
+        }
+    return rgba;
+}
+
 }  // namespace rivulet

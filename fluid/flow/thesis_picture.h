@@ -2,6 +2,7 @@
 // beside FlowMaps: what lies on a stretched chart is stretched, and what lies over a seam is cut off.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,5 +23,8 @@ struct ThesisPicture {
 
 // `radius`: UV, of a disc of `largest` (kg), the others' in proportion to their mass. `relief`: how high 1 stands, in texels.
 ThesisPicture thesisPicture(std::span<const ThesisParticle> particles, int size, float radius, float largest, float relief = 4.0F);
+
+// The height field as grey, rgba a texel, the top row (v = 1) first; 1 and above is white.
+std::vector<uint8_t> greyOf(const ThesisPicture& picture);
 
 }  // namespace rivulet

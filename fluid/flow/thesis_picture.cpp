@@ -43,7 +43,7 @@ std::vector<uint8_t> greyOf(const ThesisPicture& picture) {
     rgba.reserve(4 * edge * edge);
     for (size_t y = edge; y-- > 0;)
         for (size_t x = 0; x < edge; ++x) {
-            const auto grey = static_cast<uint8_t>(255 * std::min(picture.height[y * edge + x], 1.0F) + 0.5F);
+            const auto grey = static_cast<uint8_t>(std::lround(255 * std::min(picture.height[y * edge + x], 1.0F)));
             rgba.insert(rgba.end(), {grey, grey, grey, 255});
         }
     return rgba;

@@ -63,7 +63,8 @@ Status heldDrop(Under& u, Layout layout) {
     Result<SurfaceFlow> flow = thesisOn(u, wall);
     if (!flow) return flow.error();
     for (int k = 0; k < kRow * kRow; ++k) {
-        const vec3 at(0.011F + 0.013F * static_cast<float>(k % kRow), 0.011F + 0.013F * static_cast<float>(k / kRow), 0);
+        const int row = k / kRow;
+        const vec3 at(0.011F + 0.013F * static_cast<float>(k % kRow), 0.011F + 0.013F * static_cast<float>(row), 0);
         flow->add(nearestPoint(flow->mesh(), at), static_cast<uint32_t>(2.0e3 * std::pow(1.21, k)));
     }
     for (int k = 0; k < 3; ++k)

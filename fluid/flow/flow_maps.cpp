@@ -21,6 +21,7 @@ struct FlowMaps::Impl {
     uint32_t tiles = 0, pieces = 0;
     uint32_t drawn = 0;
     uint64_t moved = 0;  // as the flow counted when the boxes were made
+    uint32_t stepped = 0;  // as it counted when it was last drawn
 
     Status prepare(const FlowView& flow, const MapTexels& made);
     size_t before(int level) const {
@@ -89,6 +90,7 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.pieces = pieces;
     s.size = static_cast<uint32_t>(size);
     s.draw = drawn;
+    s.since = stepped;
     s.moved = flow.moved != moved ? 1 : 0;
     s.reach = flow.largestRadius;
     s.trail = std::max(params.trail, 1.0e-6F);
@@ -144,9 +146,10 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     }
     if (w.drawn == 1) d.run(w.taps, s, {&w.tile, &w.frame, v.skin, v.basis, &w.texel}, w.tiles * TILE_TEXELS);
     w.moved = v.moved;
+    w.stepped = v.steps;
     d.fill(w.widest, 0);
     d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.widest}, s.slots);
-    d.run(w.thick, s, {v.skin, v.basis, v.film, &w.film}, s.triangles);
+    d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.widest}, w.tiles);
     d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, 4 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {

@@ -75,7 +75,7 @@ struct SurfaceFlow::Impl {
     Particles drops;  // as the grid sorts them: position.w radius, velocity.w volume
     Kernel take, rest, facing, goOver, basis, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
     PairKernel meet, gather, spread, press;
-    Buffer skin, given, hostMoved, point, frames, driven, begin, footprint, weight;  // of the mesh
+    Buffer skin, given, hostMoved, point, frames, driven, painted, begin, footprint, weight;  // of the mesh
     Buffer drop, motion;                                                             // by id
     Buffer names, sortedOf, side, into, merged, shift, spreads, faces;               // sorted
     Buffer chain, spill;                                                             // of brims
@@ -103,6 +103,7 @@ struct SurfaceFlow::Impl {
     dmat4 pose{1.0};                     // the skin's frame -> the world, as of the last step
     bool posed = false;
     uint64_t moves = 0;         // how often it was
+    uint32_t steps = 0;
     uint32_t largestBirth = 0;  // picolitres
 
     uint32_t count() const { return drops.count; }
@@ -182,6 +183,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&given, places * sizeof(uint32_t)),
                                  std::pair(&hostMoved, positions * sizeof(vec4)),
                                  std::pair(&driven, 2 * places * sizeof(vec4)),
+                                 std::pair(&painted, triangles * sizeof(uint32_t)),
                                  std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
                                  std::pair(&footprint, under.triangle.size() * sizeof(uint32_t)),
                                  std::pair(&weight, under.weight.size() * sizeof(float)),
@@ -492,6 +494,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     s.h = 1 / s.gridScale.x;
     s.invH = s.gridScale.x;
     FlowStep f = w.stepOf(inputs, s, seconds);
+    f.number = ++w.steps;
     for (double& since : w.sinceTurn) since += seconds;
     w.phase = (w.phase + 1) % DRY_EVERY;
     f.dryPhase = w.phase;
@@ -581,7 +584,7 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
     device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);
-    device->run(paint, f, {&drops.id, &skin, &frames, &motion, &film, &drop}, f.count);
+    device->run(paint, f, {&drops.id, &skin, &frames, &motion, &film, &drop, &painted}, f.count);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
     return ok();
 }
@@ -638,13 +641,15 @@ FlowView SurfaceFlow::view() const {
                .point = &w.point,
                .basis = &w.frames,
                .film = &w.film,
+               .painted = &w.painted,
                .cellStart = &w.grid->cellStart(),
                .position = &w.drops.position,
                .velocity = &w.drops.velocity,
                .slots = w.count(),
                .largestRadius = std::max({static_cast<float>(contactRadius(meanAngle(w.params)) * std::cbrt(largest)),
                                           static_cast<float>(kFilmRadius) * w.params.filmReach, w.params.brimWidth}),
-               .moved = w.moves};
+               .moved = w.moves,
+               .steps = w.steps};
     w.grid->fill(v.grid);
     return v;
 }

@@ -25,6 +25,7 @@ typedef float real; typedef float3 real3;
 #define BITS_FLOAT(u) as_float(u)
 #define ATOMIC_ADD(x, v) atomic_add(&(x), v)
 #define ATOMIC_MIN(x, v) atomic_min(&(x), v)
+#define ATOMIC_MAX(x, v) atomic_max(&(x), v)
 #define ATOMIC_OR(x, v) atomic_or(&(x), v)
 #define FN static inline
 #define STRUCT(n) typedef struct n n; struct n
@@ -55,6 +56,7 @@ typedef float real; typedef float3 real3;
 #define BITS_FLOAT(u) uintBitsToFloat(u)
 #define ATOMIC_ADD(x, v) atomicAdd(x, v)
 #define ATOMIC_MIN(x, v) atomicMin(x, v)
+#define ATOMIC_MAX(x, v) atomicMax(x, v)
 #define ATOMIC_OR(x, v) atomicOr(x, v)
 #define FN
 #define STRUCT(n) struct n

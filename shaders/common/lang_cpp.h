@@ -92,6 +92,10 @@ INLINE void atomicMin(uint* x, uint v) {
     uint had = __atomic_load_n(x, __ATOMIC_RELAXED);
     while (v < had && !__atomic_compare_exchange_n(x, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
 }
+INLINE void atomicMax(uint* p, uint v) {
+    uint had = __atomic_load_n(p, __ATOMIC_RELAXED);
+    while (had < v && !__atomic_compare_exchange_n(p, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+}
 #define TO_INT(x) static_cast<int>(x)
 #define TO_UINT(x) static_cast<unsigned>(x)
 #define TO_FLOAT(x) static_cast<float>(x)
@@ -112,6 +116,7 @@ INLINE void atomicMin(uint* x, uint v) {
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_MIN(x, v) atomicMin(&(x), v)
+#define ATOMIC_MAX(x, v) atomicMax(&(x), v)
 #define KERNEL(name, P)                                                                                            \
     static INLINE void name##_one(const uint tid_, [[maybe_unused]] const P& params_ ARGS(RO, RW));                                 \
     void name(uint32_t begin_, uint32_t end_, const void* p_, void* const* buffers_) {                             \

@@ -56,6 +56,10 @@ STRUCT(FlowMapStep) {
     uint  aboveAt;     // and before the finer one
     uint  stampAt;     // where the stamps of level 3 and above begin
     uint  stampAbove;
+    uint  since;       // number of the flow's step that was drawn last
+    uint  spare0;
+    uint  spare1;
+    uint  spare2;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FlowMapStep) % 16 == 0);

@@ -153,16 +153,17 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.widest}, w.tiles);
     d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, 4 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
+        if (level == 3) continue;  // made with 2
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);
         s.level = static_cast<uint32_t>(level);
+        s.levelTexels = edge * edge;
         s.levelAt = static_cast<uint32_t>(w.before(level));
         s.aboveAt = static_cast<uint32_t>(w.before(level - 1));
         if (level > 3) {
             s.stampAt = s.levelAt - static_cast<uint32_t>(w.before(3));
             s.stampAbove = s.aboveAt - static_cast<uint32_t>(w.before(3));
         }
-        const uint32_t inTile = 8U >> s.level;
-        d.run(w.mip, s, {&w.cover, &w.stamp, &w.map, &w.near}, level <= 3 ? w.tiles * inTile * inTile : edge * edge);
+        d.run(w.mip, s, {&w.cover, &w.stamp, &w.map, &w.near}, level == 2 ? w.tiles : edge * edge);
     }
 }
 

@@ -57,7 +57,7 @@ STRUCT(FlowMapStep) {
     uint  stampAt;     // where the stamps of level 3 and above begin
     uint  stampAbove;
     uint  since;       // number of the flow's step that was drawn last
-    uint  spare0;
+    uint  levelTexels; // of the mip that is made
     uint  spare1;
     uint  spare2;
 };

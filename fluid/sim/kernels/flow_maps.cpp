@@ -41,7 +41,7 @@ std::span<const CpuKernelRow> flowMapRows() {
         {"flow/map_touch", "", RIVULET_UNIT_ISA, map_touch_unit::map_touch, 128},
         {"flow/map_taps", "", RIVULET_UNIT_ISA, map_taps_unit::map_taps, 1024},
         {"flow/map_rows", "", RIVULET_UNIT_ISA, map_rows_unit::map_rows, 128},
-        {"flow/map_mips", "", RIVULET_UNIT_ISA, map_mips_unit::map_mips, 4096},
+        {"flow/map_mips", "", RIVULET_UNIT_ISA, map_mips_unit::map_mips, 512},
     };
     return rows;
 }

@@ -15,7 +15,7 @@ namespace rivulet {
 struct FlowMaps::Impl {
     Device* device = nullptr;
     int size = 0, mips = 0;
-    Kernel caps, thick, frames, bounds, touch, taps, rows, mip;
+    Kernel caps, thick, frames, bounds, touch, around, rows, mip;
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
     Buffer frame, box, cap, film, near, stamp, map, widest;
     uint32_t tiles = 0, pieces = 0;
@@ -23,7 +23,7 @@ struct FlowMaps::Impl {
     uint64_t moved = 0;  // as the flow counted when the boxes were made
     uint32_t stepped = 0;  // as it counted when it was last drawn
 
-    Status prepare(const FlowView& flow, const MapTexels& made);
+    Status prepare(const FlowView& flow, const SurfaceFlowParams& params, MapTexels& made);
     size_t before(int level) const {
         size_t texels = 0;
         for (int k = 0; k < level; ++k) texels += static_cast<size_t>(size >> k) * static_cast<size_t>(size >> k);
@@ -32,7 +32,7 @@ struct FlowMaps::Impl {
     FlowMapStep stepOf(const FlowView& flow, const SurfaceFlowParams& params) const;
 };
 
-Status FlowMaps::Impl::prepare(const FlowView& flow, const MapTexels& made) {
+Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& params, MapTexels& made) {
     device = flow.device;
     size = made.size;
     mips = std::bit_width(static_cast<uint32_t>(size));
@@ -43,34 +43,43 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const MapTexels& made) {
         const char* path;
     };
     for (const Wanted& w : {Wanted{&caps, "flow/map_caps"}, Wanted{&thick, "flow/map_thick"}, Wanted{&frames, "flow/map_frames"},
-                            Wanted{&bounds, "flow/map_bounds"}, Wanted{&touch, "flow/map_touch"}, Wanted{&taps, "flow/map_taps"},
+                            Wanted{&bounds, "flow/map_bounds"}, Wanted{&touch, "flow/map_touch"}, Wanted{&around, "flow/map_taps"},
                             Wanted{&rows, "flow/map_rows"}, Wanted{&mip, "flow/map_mips"}}) {
         Result<Kernel> found = device->kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    std::vector<uint32_t> words;
-    words.reserve(TEXEL_UINTS * made.texel.size());
-    for (const uint32_t word : made.texel) words.insert(words.end(), {word, 0U, 0U, 0U});
+    Buffer shown, taps;
     const size_t above = before(mips) - before(3), all = before(mips);
     for (auto [buffer, bytes] :
-         {std::pair(&tile, made.tile.size() * sizeof(uint32_t)), std::pair(&texel, words.size() * sizeof(uint32_t)),
+         {std::pair(&tile, made.tile.size() * sizeof(uint32_t)), std::pair(&shown, made.texel.size() * sizeof(uint32_t)),
+          std::pair(&taps, 3 * made.texel.size() * sizeof(uint32_t)),
           std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)), std::pair(&pin, made.pin.size() * sizeof(uint32_t)),
           std::pair(&chart, made.chart.size() * sizeof(vec4)), std::pair(&cover, made.cover.size() * sizeof(float)),
           std::pair(&frame, 2 * made.chart.size() * sizeof(vec4)), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
-          std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)), std::pair(&film, flow.film->bytes()),
+          std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)), std::pair(&film, flow.film->bytes() / 2 + made.chart.size() * sizeof(uint32_t)),
           std::pair(&near, NEAR_UINTS * made.tiles() * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
           std::pair(&widest, sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
         Result<Buffer> room = device->allocate(bytes);
         if (!room) return room.error();
         *buffer = std::move(*room);
     }
-    device->writeAll<uint32_t>(tile, made.tile);
-    device->writeAll<uint32_t>(texel, words);
     device->writeAll<uint32_t>(pinBegin, made.pinBegin);
     device->writeAll<uint32_t>(pin, made.pin);
     device->writeAll<vec4>(chart, made.chart);
     device->writeAll<float>(cover, made.cover);
+    // The film's cells about each texel, by the skin as it is now.
+    device->writeAll<uint32_t>(tile, made.tile);
+    device->writeAll<uint32_t>(shown, made.texel);
+    const FlowMapStep s = stepOf(flow, params);
+    device->run(frames, s, {&chart, flow.basis, &frame}, s.triangles);
+    device->run(around, s, {&tile, &frame, flow.skin, flow.basis, &shown, &taps}, tiles * TILE_TEXELS);
+    const std::vector<uint32_t> packed = packTexels(made, device->readAll<uint32_t>(taps, 3 * made.texel.size()));
+    Result<Buffer> room = device->allocate(packed.size() * sizeof(uint32_t));
+    if (!room) return room.error();
+    texel = std::move(*room);
+    device->writeAll<uint32_t>(texel, packed);
+    device->writeAll<uint32_t>(tile, made.tile);
     return ok();
 }
 
@@ -125,10 +134,10 @@ Result<FlowMaps> FlowMaps::create(const SurfaceFlow& flow, std::span<const vec2>
         return badInput(fmt::format("a flow's maps were given {} UVs for {} corners: give each corner of each triangle its own", uvs.size(),
                                     mesh.corner.size()));
     const FlowView view = flow.view();
-    const MapTexels made = layTexels(mesh, uvs, skinFolds(mesh, view.largestRadius), size);
+    MapTexels made = layTexels(mesh, uvs, skinFolds(mesh, view.largestRadius), size);
     if (made.tiles() == 0) return badInput("no triangle of the skin has an area in UV: give it UVs, or unwrap it");
     auto impl = std::make_unique<Impl>();
-    if (Status ready = impl->prepare(view, made); !ready) return ready.error();
+    if (Status ready = impl->prepare(view, flow.params(), made); !ready) return ready.error();
     return FlowMaps(std::move(impl));
 }
 
@@ -144,7 +153,6 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
         d.run(w.frames, s, {&w.chart, v.basis, &w.frame}, s.triangles);
         d.run(w.bounds, s, {&w.pinBegin, &w.pin, v.point, &w.frame, &w.box}, w.pieces);
     }
-    if (w.drawn == 1) d.run(w.taps, s, {&w.tile, &w.frame, v.skin, v.basis, &w.texel}, w.tiles * TILE_TEXELS);
     w.moved = v.moved;
     w.stepped = v.steps;
     d.fill(w.widest, 0);

@@ -270,6 +270,37 @@ MapTexels layTexels(const FlowMesh& mesh, std::span<const vec2> uvs, std::span<c
     return map;
 }
 
+std::vector<uint32_t> packTexels(MapTexels& map, std::span<const uint32_t> taps) {
+    std::vector<uint32_t> packed, words, cells;
+    // At most 64 words and 192 cells: all have a number of one byte, and where there are as many no texel is none.
+    const auto numberOf = [](const std::vector<uint32_t>& names, uint32_t name) {
+        return static_cast<uint32_t>(std::lower_bound(names.begin(), names.end(), name) - names.begin());
+    };
+    for (size_t tile = 0; tile < map.tiles(); ++tile) {
+        words.clear();
+        cells.clear();
+        for (size_t k = tile * TILE_TEXELS; k < (tile + 1) * TILE_TEXELS; ++k) {
+            if (map.texel[k] == TEXEL_NONE) continue;
+            words.push_back(map.texel[k]);
+            cells.insert(cells.end(), {taps[3 * k], taps[3 * k + 1], taps[3 * k + 2]});
+        }
+        for (std::vector<uint32_t>* names : {&words, &cells}) {
+            std::sort(names->begin(), names->end());
+            names->erase(std::unique(names->begin(), names->end()), names->end());
+        }
+        map.tile[TILE_UINTS * tile + 3] = static_cast<uint32_t>(packed.size());
+        const auto first = static_cast<uint32_t>(words.size());
+        for (size_t k = tile * TILE_TEXELS; k < (tile + 1) * TILE_TEXELS; ++k)
+            packed.push_back(map.texel[k] == TEXEL_NONE ? PACKED_NONE
+                                                        : numberOf(words, map.texel[k]) | (first + numberOf(cells, taps[3 * k])) << 8U |
+                                                              (first + numberOf(cells, taps[3 * k + 1])) << 16U |
+                                                              (first + numberOf(cells, taps[3 * k + 2])) << 24U);
+        packed.insert(packed.end(), words.begin(), words.end());
+        packed.insert(packed.end(), cells.begin(), cells.end());
+    }
+    return packed;
+}
+
 SkinPoint skinPointOf(const MapTexels& map, uint32_t word, int x, int y) {
     const uint32_t t = word & TEXEL_TRIANGLE;
     const vec4 slope = map.chart[2 * size_t{t}], middle = map.chart[2 * size_t{t} + 1];

@@ -22,6 +22,9 @@ struct MapTexels {
     size_t tiles() const { return texel.size() / 64; }
 };
 
+// `taps`: 3 a texel of map.texel, of those that are none whatever. As map_step.h has them, a tile's after the other; `map`'s tiles then say where.
+std::vector<uint32_t> packTexels(MapTexels& map, std::span<const uint32_t> taps);
+
 // A texel belongs to the triangle in which its centre lies, of several to the first; `gutter` texels round every chart show what its
 // triangles would if they went on. `uvs`: 3 a triangle. UVs outside 0 to 1 wrap round. Triangles without area in UV, or with UVs that are
 // no numbers or span more than the map, have no texels. `folds`: see fluid/flow/skin_folds.h.

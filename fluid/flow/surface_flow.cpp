@@ -240,6 +240,10 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     s.invH = 1 / h;
     s.count = s.firstSample = slots;
     grid->fill(s);
+    // Who draws asks for the skin at rest.
+    FlowStep f{};
+    f.triangles = static_cast<uint32_t>(triangles);
+    on.run(basis, f, {&skin, &point, &frames}, f.triangles);
     return grid->build(s, drops);
 }
 

@@ -5,18 +5,19 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-// A texel of a tile: four uints. First its triangle; how often the map's width and height, less one, are added to its own place to lie where
-// the triangle's UVs do (they may be outside 0 to 1); and whether other skin is so near that a drop may lie on that instead. Then the three
-// cells of film about it.
-#define TEXEL_UINTS 4u
+// What a texel shows: its triangle; how often the map's width and height, less one, are added to its own place to lie where the triangle's UVs
+// do (they may be outside 0 to 1); and whether other skin is so near that a drop may lie on that instead.
 #define TEXEL_NONE 0xFFFFFFFFu
 #define TEXEL_TRIANGLE 0x07FFFFFFu
 #define TEXEL_TURN_U 27u
 #define TEXEL_TURN_V 29u
 #define TEXEL_FOLD 0x80000000u
 #define TILE_TEXELS 64u
-// A tile: where it lies, in tiles, x | y << 16; its first piece and the one past its last. A piece is what hangs together on the skin.
+// A tile: where it lies, in tiles, x | y << 16; its first piece and the one past its last; and where its texels begin. A piece is what hangs
+// together on the skin. Texels are 64 uints of four bytes, behind them what the bytes number: what a texel shows, and of the film the three
+// cells about it (their places in flow/map_thick). A texel without skin: the first byte is PACKED_NONE.
 #define TILE_UINTS 4u
+#define PACKED_NONE 255u
 // A pin of a piece, of which its bounds are made: a place; or with PIN_RECT a triangle with its turns and then a rectangle of texels, x | y << 13 |
 // (width - 1) << 26 | (height - 1) << 29.
 #define PIN_RECT 0x80000000u
@@ -29,10 +30,13 @@ namespace rivulet {
 #define NEAR_FIRST 4u
 #define NEAR_END 5u
 #define NEAR_PLACE 6u  /* of the tile in the map, see TILE_UINTS */
-#define NEAR_LIST 7u   /* sorted numbers of MOST_NEAR drops */
-#define MOST_NEAR 9u
+#define NEAR_TEXELS 7u /* where its texels begin */
+#define NEAR_LIST 8u   /* sorted numbers of MOST_NEAR drops */
+#define MOST_NEAR 8u
 #define WET_EVERY 16u  /* draws: a wet tile is drawn anew that often, for what dries */
 #define ANY_EVERY 64u  /* and a dry one, for what a drop left that went too fast to be seen in between */
+// Of the film's thickness two halves a uint, mm: where those of a triangle begin, which is the t-th, its cells from `first` on.
+#define THICK_BEGIN(first, t) (2u * (((first) + (t)) >> 1u))
 STRUCT(FlowMapStep) {
     vec4  gridOrigin;  // of the flow's grid, see fluid/step_params.h
     vec4  gridScale;

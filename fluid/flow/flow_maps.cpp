@@ -20,7 +20,7 @@ struct FlowMaps::Impl {
     Buffer frame, box, cap, film, near, stamp, map, widest;
     uint32_t tiles = 0, pieces = 0;
     uint32_t drawn = 0;
-    uint64_t moved = 0;  // as the flow counted when the boxes were made
+    uint64_t moved = 0;    // as the flow counted when the boxes were made
     uint32_t stepped = 0;  // as it counted when it was last drawn
 
     Status prepare(const FlowView& flow, const SurfaceFlowParams& params, MapTexels& made);
@@ -53,11 +53,11 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
     const size_t above = before(mips) - before(3), all = before(mips);
     for (auto [buffer, bytes] :
          {std::pair(&tile, made.tile.size() * sizeof(uint32_t)), std::pair(&shown, made.texel.size() * sizeof(uint32_t)),
-          std::pair(&taps, 3 * made.texel.size() * sizeof(uint32_t)),
-          std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)), std::pair(&pin, made.pin.size() * sizeof(uint32_t)),
-          std::pair(&chart, made.chart.size() * sizeof(vec4)), std::pair(&cover, made.cover.size() * sizeof(float)),
-          std::pair(&frame, 2 * made.chart.size() * sizeof(vec4)), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
-          std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)), std::pair(&film, flow.film->bytes() / 2 + made.chart.size() * sizeof(uint32_t)),
+          std::pair(&taps, 3 * made.texel.size() * sizeof(uint32_t)), std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)),
+          std::pair(&pin, made.pin.size() * sizeof(uint32_t)), std::pair(&chart, made.chart.size() * sizeof(vec4)),
+          std::pair(&cover, made.cover.size() * sizeof(float)), std::pair(&frame, 2 * made.chart.size() * sizeof(vec4)),
+          std::pair(&box, 2 * made.pieces() * sizeof(vec4)), std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)),
+          std::pair(&film, flow.film->bytes() / 2 + made.chart.size() * sizeof(uint32_t)),
           std::pair(&near, NEAR_UINTS * made.tiles() * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
           std::pair(&widest, sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
         Result<Buffer> room = device->allocate(bytes);

@@ -22,7 +22,8 @@ struct MapTexels {
     size_t tiles() const { return texel.size() / 64; }
 };
 
-// `taps`: 3 a texel of map.texel, of those that are none whatever. As map_step.h has them, a tile's after the other; `map`'s tiles then say where.
+// `taps`: 3 a texel of map.texel, of those that are none whatever. As map_step.h has them, a tile's after the other; `map`'s tiles then say
+// where.
 std::vector<uint32_t> packTexels(MapTexels& map, std::span<const uint32_t> taps);
 
 // A texel belongs to the triangle in which its centre lies, of several to the first; `gutter` texels round every chart show what its

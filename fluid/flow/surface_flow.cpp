@@ -102,7 +102,7 @@ struct SurfaceFlow::Impl {
     std::optional<ThesisTables> thesis;  // of thesis mode
     dmat4 pose{1.0};                     // the skin's frame -> the world, as of the last step
     bool posed = false;
-    uint64_t moves = 0;         // how often it was
+    uint64_t moves = 0;  // how often it was
     uint32_t steps = 0;
     uint32_t largestBirth = 0;  // picolitres
 

@@ -80,12 +80,12 @@ struct LeftDrop {
 struct FlowView {
     Device* device = nullptr;
     const Buffer *skin, *point, *basis, *film, *painted;  // as the kernels of shaders/flow have them
-    const Buffer *cellStart, *position, *velocity;  // drops as they were last sorted: position.w radius, m; velocity.w volume, m^3
-    StepParams grid{};                              // the grid's part of it
-    uint32_t slots = 0;                             // of drops
-    float largestRadius = 0;                        // m, of a drop's foot; only where several met at once there are wider ones
-    uint64_t moved = 0;                             // how often the skin has; 0: no step was made yet
-    uint32_t steps = 0;                             // made
+    const Buffer *cellStart, *position, *velocity;        // drops as they were last sorted: position.w radius, m; velocity.w volume, m^3
+    StepParams grid{};                                    // the grid's part of it
+    uint32_t slots = 0;                                   // of drops
+    float largestRadius = 0;                              // m, of a drop's foot; only where several met at once there are wider ones
+    uint64_t moved = 0;                                   // how often the skin has; 0: no step was made yet
+    uint32_t steps = 0;                                   // made
 };
 
 class SurfaceFlow {

@@ -197,8 +197,8 @@ TEST(Flow, IsHeldUntilItIsTooHeavy) {
         }
 }
 
-// No cell of a lattice slips through where a drop paints its way: along the middle of a trail the film is as thick as asked, on right-angled,
-// slanting and long triangles, at any speed.
+// No cell of a lattice slips through where a drop paints its way: along the middle of a trail the film is as thick as asked, on
+// right-angled, slanting and long triangles, at any speed.
 TEST(Flow, ATrailHasNoGaps) {
     auto device = cpu();
     for (const vec2 quads : {vec2(60, 10), vec2(37, 23), vec2(20, 40)})
@@ -219,8 +219,8 @@ TEST(Flow, ATrailHasNoGaps) {
                 for (uint32_t i = 0, at = 0; i < n; ++i)
                     for (uint32_t j = 0; j < 2 * (n - i) - 1; ++j, ++at) {
                         const float third = j % 2 == 0 ? 1.0F / 3 : 2.0F / 3, rows = static_cast<float>(n);
-                        const vec3 x = positionOf(flow.mesh(), {t, (static_cast<float>(i) + third) / rows,
-                                                                (static_cast<float>(j / 2) + third) / rows});
+                        const vec3 x = positionOf(flow.mesh(),
+                                                  {t, (static_cast<float>(i) + third) / rows, (static_cast<float>(j / 2) + third) / rows});
                         if (std::abs(x.x - 0.015F) > 0.0005F || x.y < 0.01F || x.y > 0.09F) continue;
                         sum += double{film[at]};
                         dry += film[at] < 5e-6F ? 1 : 0;

@@ -19,6 +19,7 @@ struct FlowMaps::Impl {
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
     Buffer frame, box, cap, film, near, stamp, map, widest;
     uint32_t tiles = 0, pieces = 0;
+    uint32_t pairs = 1;  // of a tile's rows that a thread draws
     uint32_t drawn = 0;
     uint64_t moved = 0;    // as the flow counted when the boxes were made
     uint32_t stepped = 0;  // as it counted when it was last drawn
@@ -44,11 +45,17 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
     };
     for (const Wanted& w : {Wanted{&caps, "flow/map_caps"}, Wanted{&thick, "flow/map_thick"}, Wanted{&frames, "flow/map_frames"},
                             Wanted{&bounds, "flow/map_bounds"}, Wanted{&touch, "flow/map_touch"}, Wanted{&around, "flow/map_taps"},
-                            Wanted{&rows, "flow/map_rows"}, Wanted{&mip, "flow/map_mips"}}) {
+                            Wanted{&mip, "flow/map_mips"}}) {
         Result<Kernel> found = device->kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
     }
+    if (device->backend() == Backend::cpu) pairs = 4;
+    std::vector<Define> defines;
+    if (pairs > 1) defines.push_back({"PAIRS", std::to_string(pairs)});
+    Result<Kernel> drawing = device->kernel("flow/map_rows", defines);
+    if (!drawing) return drawing.error();
+    rows = *drawing;
     Buffer shown, taps;
     const size_t above = before(mips) - before(3), all = before(mips);
     for (auto [buffer, bytes] :
@@ -159,7 +166,7 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.widest}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.widest}, w.tiles);
-    d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, 4 * w.tiles);
+    d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.tiles * 4 / w.pairs);
     for (int level = 2; level < w.mips; ++level) {
         if (level == 3) continue;  // made with 2
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);

@@ -19,7 +19,7 @@ struct FlowMaps::Impl {
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
     Buffer frame, box, cap, film, near, stamp, map, widest;
     uint32_t tiles = 0, pieces = 0;
-    uint32_t pairs = 1;  // of a tile's rows that a thread draws
+    bool whole = false;  // tiles are drawn by one thread each, with mips 2 and 3
     uint32_t drawn = 0;
     uint64_t moved = 0;    // as the flow counted when the boxes were made
     uint32_t stepped = 0;  // as it counted when it was last drawn
@@ -50,9 +50,9 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    if (device->backend() == Backend::cpu) pairs = 4;
+    whole = device->backend() == Backend::cpu;
     std::vector<Define> defines;
-    if (pairs > 1) defines.push_back({"PAIRS", std::to_string(pairs)});
+    if (whole) defines.push_back({"WHOLE", "1"});
     Result<Kernel> drawing = device->kernel("flow/map_rows", defines);
     if (!drawing) return drawing.error();
     rows = *drawing;
@@ -166,9 +166,9 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.widest}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
     d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.widest}, w.tiles);
-    d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.tiles * 4 / w.pairs);
+    d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 4 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
-        if (level == 3) continue;  // made with 2
+        if (level == 3 || (level == 2 && w.whole)) continue;  // 3 is made with 2
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);
         s.level = static_cast<uint32_t>(level);
         s.levelTexels = edge * edge;

@@ -23,10 +23,11 @@ namespace map_taps_unit {
 #include "shaders/flow/map_taps.kernel"
 }
 #undef RIVULET_WALK_H  // each of the two has its own
-#define PAIRS 4u
+#define WHOLE 1
 namespace map_rows_unit {
 #include "shaders/flow/map_rows.kernel"
 }
+#undef WHOLE
 namespace map_mips_unit {
 #include "shaders/flow/map_mips.kernel"
 }
@@ -41,7 +42,7 @@ std::span<const CpuKernelRow> flowMapRows() {
         {"flow/map_bounds", "", RIVULET_UNIT_ISA, map_bounds_unit::map_bounds, 256},
         {"flow/map_touch", "", RIVULET_UNIT_ISA, map_touch_unit::map_touch, 128},
         {"flow/map_taps", "", RIVULET_UNIT_ISA, map_taps_unit::map_taps, 1024},
-        {"flow/map_rows", "PAIRS=4", RIVULET_UNIT_ISA, map_rows_unit::map_rows, 64},
+        {"flow/map_rows", "WHOLE=1", RIVULET_UNIT_ISA, map_rows_unit::map_rows, 64},
         {"flow/map_mips", "", RIVULET_UNIT_ISA, map_mips_unit::map_mips, 512},
     };
     return rows;

@@ -169,8 +169,10 @@ bool Viewer::drawPanels() {
         if (actions.reset) session_->reset();
         if (actions.help) showHelp_ = !showHelp_;
         ImGui::Spacing();
-        edited_ = drawPresets() || edited_;
-        ImGui::Spacing();
+        if (!draft_.presets.empty()) {
+            edited_ = drawPresets() || edited_;
+            ImGui::Spacing();
+        }
         ImGui::BeginChild("parameters");
         ParamPanel panel;
         draft_.visit(panel);

@@ -1,0 +1,91 @@
+// What a SurfaceFlow is made of. For fluid/flow/surface_flow*.cpp alone.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "fluid/flow/surface_flow.h"
+#include "fluid/flow/thesis_tables.h"
+#include "fluid/sim/neighbor_grid.h"
+#include "fluid/sim/step_context.h"
+#include "shaders/flow/flow_step.h"
+
+namespace rivulet {
+
+inline constexpr double kRadian = 3.14159265358979323846 / 180;
+inline constexpr double kMicrolitre = 1.0e-9;  // m^3
+inline constexpr double kPiD = 3.14159265358979323846;
+// Of the support radius of the film's kernel: the paraboloid whose volume is spread as widely has this radius.
+inline constexpr double kFilmRadius = 0.6455;
+inline constexpr float kJump = 50.0F;        // m/s: a skin that is faster has been set down elsewhere
+inline constexpr double kThinnest = 0.06;    // of the film's reach: of what is thinner the edge is not resolved
+inline constexpr double kFilmStep = 0.0045;  // s: with a film in it a step is no longer
+inline constexpr double kCalming = 0.02;     // s, in which parts of a film come to go as those about them
+inline constexpr double kSettling = 0.2;     // s, in which what is in a brim comes to rest along it
+
+// Radius of the foot of a cap over the cube root of its volume.
+inline double contactRadius(double degrees) {
+    const double c = std::cos(degrees * kRadian), s = std::sin(degrees * kRadian);
+    return std::cbrt(3 * s * s * s / (3.14159265358979323846 * (2 - 3 * c + c * c * c)));
+}
+
+inline double meanAngle(const SurfaceFlowParams& p) { return 0.5 * double{p.advancing + p.receding}; }
+
+struct SurfaceFlow::Impl {
+    Device* device = nullptr;
+    FlowMesh mesh;
+    SurfaceFlowParams params;
+    std::unique_ptr<NeighborGrid> grid;
+    Particles drops;  // as the grid sorts them: position.w radius, velocity.w volume
+    Kernel take, rest, facing, goOver, basis, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
+    PairKernel meet, gather, spread, press;
+    Buffer skin, given, hostMoved, point, frames, driven, painted, begin, footprint, weight;  // of the mesh
+    Buffer drop, motion;                                                                      // by id
+    Buffer names, sortedOf, side, into, merged, shift, spreads, faces;                        // sorted
+    Buffer chain, spill;                                                                      // of brims
+    Buffer film;                                                                              // picolitres, of each cell
+    Buffer birth, counter, left;
+    std::vector<uint32_t> firstCell;   // of each triangle's lattice, and the end
+    uint32_t phase = 0;                // whose turn it is to dry
+    double sinceTurn[DRY_EVERY] = {};  // s
+    std::vector<FlowBirth> births;
+    uint64_t added = 0;  // picolitres
+    // What the device tells: shared with reads that are still on their way.
+    struct Told {
+        uint64_t refused = 0, left = 0, evaporated = 0;  // picolitres
+        uint64_t merges = 0;
+        uint32_t leaving = 0;  // in the step that is being told
+        bool film = false;     // there is some
+        std::vector<LeftDrop> gone;
+    };
+    std::shared_ptr<Told> told = std::make_shared<Told>();
+    bool moved = true;      // the basis is to be made anew
+    bool stirring = false;  // the skin has a velocity
+    Bounds corners;         // m, of the skin at rest
+    uint32_t brims = 0, brimPlaces = 0;
+    std::optional<ThesisTables> thesis;  // of thesis mode
+    dmat4 pose{1.0};                     // the skin's frame -> the world, as of the last step
+    bool posed = false;
+    uint64_t moves = 0;  // how often it was
+    uint32_t steps = 0;
+    uint32_t largestBirth = 0;  // picolitres
+
+    uint32_t count() const { return drops.count; }
+    Status prepare(Device& on, std::span<const SkinBrim> along);
+    Status fillBrims(std::span<const SkinBrim> along);
+    Status layLattice();
+    Status checkPositions(std::span<const vec3> positions) const;
+    void bear(const FlowBirth& one);
+    void moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f);
+    void setStep(FlowStep& f, StepParams& s, double seconds) const;
+    void touchOthers(const FlowStep& f, const StepParams& s);
+    Status moveDrops(const FlowStep& f, const StepParams& s);
+    Status moveThesis(const FlowStep& f, const StepParams& s);
+    ThesisTables::Of forThesis() { return {skin, frames, driven, drop, motion, spreads, merged, drops, *grid}; }
+    void turnFrame(const dmat4& toWorld, double seconds, FlowStep& f);
+    FlowStep stepOf(const SurfaceFlowInputs& inputs, const StepParams& s, double seconds) const;
+    void takeCounters();
+};
+
+}  // namespace rivulet

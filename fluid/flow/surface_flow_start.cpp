@@ -1,0 +1,239 @@
+#include "fluid/flow/surface_flow_impl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fluid/flow/footprint.h"
+
+namespace rivulet {
+
+void SurfaceFlowParams::visit(ParamVisitor& v) {
+    constexpr bool kLog = true, kLinear = false, kFixed = true;
+    v.value({"surfaceTension", "N/m", "", 0.001, 1, kLog}, surfaceTension);
+    v.value({"viscosity", "Pa s", "dynamic", 1.0e-5, 100, kLog}, viscosity);
+    v.value({"density", "kg/m^3", "", 1, 20000, kLog}, density);
+    v.value({"advancing", "deg", "contact angle at a drop's front", 1, 175}, advancing);
+    v.value({"receding", "deg", "contact angle at its back; where it is the larger one, the front's holds for both", 1, 175}, receding);
+    v.value({"hold", "", "of the force that holds a drop, over that of a disc with these angles", 0, 10}, hold);
+    v.value({"drag", "", "of the force that slows it, over its width times viscosity times speed", 0, 10000}, drag);
+    v.value({"adhesion", "", "of the force that keeps a drop on a skin it hangs from", 0, 10}, adhesion);
+    v.value({"airDrag", "", "drag coefficient of a drop in the wind", 0, 10}, airDrag);
+    v.value({"largestDrop", "ul", "what would be more together stays several drops", 0.01, 1000, kLog, kFixed}, largestDrop);
+    v.value({"touch", "", "of the sum of their radii: drops as near are one", 0.1, 1}, touch);
+    v.value({"footprint", "m", "over which a drop's weight is spread", 0, 0.1, kLinear, kFixed}, footprint);
+    v.value({"trail", "m", "thickness of the film that a drop leaves behind; 0 = none", 0, 1.0e-4}, trail);
+    v.value({"trailWidth", "", "of the trail, over the drop's", 0, 1}, trailWidth);
+    v.value({"slip", "", "share of what holds a drop that a wet way takes", 0, 1}, slip);
+    v.value({"steer", "", "how strongly a trail beside its way pulls a drop in, of what holds it", 0, 2}, steer);
+    v.value({"evaporation", "m/s", "of the film", 0, 1.0e-5}, evaporation);
+    v.value({"filmCell", "m", "cells of what drops leave behind are no wider", 1.0e-5, 0.1, kLog, kFixed}, filmCell);
+    v.value({"filmReach", "m", "support radius of the sum that a film's height is", 1.0e-4, 0.1, kLog, kFixed}, filmReach);
+    v.value({.name = "contact", .doc = "whether drops go over to skin that faces them and that they touch: between lips, between lids"},
+            contact);
+    v.value({"brimHolds", "ul", "what an eyelid's brim holds before it spills", 0.1, 100, kLog}, brimHolds);
+    v.value({"brimWidth", "m", "radius of what lies in a brim", 1.0e-4, 0.01, kLog}, brimWidth);
+    v.value({"tear", "ul", "of a drop that spills over a brim", 0.1, 30, kLog}, tear);
+    v.value({"capacity", "", "drops at most", 1, 1 << 20, kLog, kFixed}, capacity);
+}
+
+Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
+    device = &on;
+    brims = static_cast<uint32_t>(along.size());
+    for (const SkinBrim& b : along) brimPlaces += static_cast<uint32_t>(b.places.size());
+    const auto slots = static_cast<uint32_t>(params.capacity) + brimPlaces;
+    Bounds around;
+    for (const vec3& p : mesh.rest) around.add(p);
+    const vec3 size = around.size();
+    const float longest = std::max({size.x, size.y, size.z});
+    // A skin may move within a margin. Cells as wide as two of the largest drops reach; wider on a large skin, whose cells would be too
+    // many: they are counted anew each step.
+    corners = around;
+    const float margin = 0.25F * longest;
+    around.add(around.min - margin);
+    around.add(around.max + margin);
+    const double reach =
+        std::max(2 * double{params.touch} * contactRadius(meanAngle(params)) * std::cbrt(double{params.largestDrop} * kMicrolitre),
+                 std::max(double{params.filmReach}, 2 * double{params.touch} * kFilmRadius * double{params.filmReach}));
+    constexpr double kCells = 1 << 17;
+    const dvec3 all(around.size());
+    const float h = thesis ? thesis->cell() : static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / kCells)));
+    if (thesis) around = thesis->around();
+    Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots);
+    if (!made) return made.error();
+    grid = std::make_unique<NeighborGrid>(std::move(*made));
+    Result<Particles> particles = Particles::create(on, slots);
+    if (!particles) return particles.error();
+    drops = std::move(*particles);
+
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+    };
+    for (const Wanted& w :
+         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&facing, "flow/facing"}, Wanted{&goOver, "flow/go_over"},
+          Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"}, Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"},
+          Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"}, Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"},
+          Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"}, Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"},
+          Wanted{&leave, "flow/leave"}}) {
+        Result<Kernel> found = on.kernel(w.path);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    for (auto [kernel, path] : {std::pair(&meet, "flow/meet"), std::pair(&gather, "flow/gather"), std::pair(&spread, "flow/spread"),
+                                std::pair(&press, "flow/press")}) {
+        Result<PairKernel> found = PairKernel::find(on, path, {});
+        if (!found) return found.error();
+        *kernel = *found;
+    }
+    if (Status fits = layLattice(); !fits) return fits;
+    const Footprint under = footprintOf(mesh, thesis ? 0.0F : params.footprint);  // the thesis's normals are the model's
+    const size_t triangles = mesh.triangleCount(), places = mesh.rest.size(), n = slots;
+    const size_t positions = size_t{*std::max_element(mesh.given.begin(), mesh.given.end())} + 1;
+    for (auto [buffer, bytes] : {std::pair(&skin, SKIN_UINTS * triangles * sizeof(uint32_t)),
+                                 std::pair(&film, firstCell.back() * sizeof(uint32_t)),
+                                 std::pair(&point, places * sizeof(vec4)),
+                                 std::pair(&frames, 5 * triangles * sizeof(vec4)),
+                                 std::pair(&given, places * sizeof(uint32_t)),
+                                 std::pair(&hostMoved, positions * sizeof(vec4)),
+                                 std::pair(&driven, 2 * places * sizeof(vec4)),
+                                 std::pair(&painted, triangles * sizeof(uint32_t)),
+                                 std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
+                                 std::pair(&footprint, under.triangle.size() * sizeof(uint32_t)),
+                                 std::pair(&weight, under.weight.size() * sizeof(float)),
+                                 std::pair(&drop, n * DROP_UINTS * sizeof(uint32_t)),
+                                 std::pair(&motion, 2 * n * sizeof(vec4)),
+                                 std::pair(&side, n * sizeof(vec4)),
+                                 std::pair(&spreads, n * sizeof(vec4)),
+                                 std::pair(&chain, 2 * size_t{brims} * sizeof(uint32_t)),
+                                 std::pair(&spill, size_t{brimPlaces} * sizeof(FlowBirth)),
+                                 std::pair(&names, n * sizeof(float)),
+                                 std::pair(&sortedOf, n * sizeof(uint32_t)),
+                                 std::pair(&faces, n * sizeof(uint32_t)),
+                                 std::pair(&into, n * sizeof(float)),
+                                 std::pair(&merged, n * sizeof(vec4)),
+                                 std::pair(&shift, n * sizeof(vec4)),
+                                 std::pair(&birth, n * sizeof(FlowBirth)),
+                                 std::pair(&counter, FLOW_COUNTERS * sizeof(uint32_t)),
+                                 std::pair(&left, MOST_LEFT * sizeof(FlowLeft))}) {
+        Result<Buffer> room = on.allocate(bytes);
+        if (!room) return room.error();
+        *buffer = std::move(*room);
+    }
+    std::vector<uint32_t> table;
+    table.reserve(SKIN_UINTS * triangles);
+    for (size_t t = 0; t < triangles; ++t) {
+        table.insert(table.end(), {mesh.corner[3 * t], mesh.corner[3 * t + 1], mesh.corner[3 * t + 2]});
+        table.insert(table.end(), {mesh.across[3 * t], mesh.across[3 * t + 1], mesh.across[3 * t + 2]});
+        const uint32_t cells = firstCell[t + 1] - firstCell[t];
+        table.insert(table.end(), {firstCell[t], static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(cells))))});
+    }
+    on.writeAll<uint32_t>(skin, table);
+    std::vector<vec4> at;
+    at.reserve(places);
+    for (const vec3& p : mesh.rest) at.emplace_back(p, 0.0F);
+    on.writeAll<vec4>(point, at);
+    on.writeAll<uint32_t>(given, mesh.given);
+    std::vector<vec4> usual(2 * places, vec4(0.0F));
+    for (size_t p = 0; p < places; ++p) usual[2 * p] = vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    on.writeAll<vec4>(driven, usual);
+    on.writeAll<uint32_t>(begin, under.begin);
+    on.writeAll<uint32_t>(footprint, under.triangle);
+    on.writeAll<float>(weight, under.weight);
+    std::vector<uint32_t> ids(n);
+    for (uint32_t k = 0; k < slots; ++k) ids[k] = k;
+    on.writeAll<uint32_t>(drops.id, ids);
+    std::vector<vec4> free(n, vec4(0.0F, 0.0F, 0.0F, -1.0F));
+    for (size_t k = 0, id = size_t(params.capacity); k < along.size(); ++k)
+        for (const SkinPoint& p : along[k].places) free[id++] = vec4(positionOf(mesh, p), 0.0F);
+    on.writeAll<vec4>(drops.positionNext, free);
+    if (Status filled = fillBrims(along); !filled) return filled;
+    // The first step's births look where the last sort put free slots.
+    StepParams s{};
+    s.h = h;
+    s.invH = 1 / h;
+    s.count = s.firstSample = slots;
+    grid->fill(s);
+    // Who draws asks for the skin at rest.
+    FlowStep f{};
+    f.triangles = static_cast<uint32_t>(triangles);
+    on.run(basis, f, {&skin, &point, &frames}, f.triangles);
+    return grid->build(s, drops);
+}
+
+Status SurfaceFlow::Impl::fillBrims(std::span<const SkinBrim> along) {
+    std::vector<uint32_t> chains, state(size_t{count()} * DROP_UINTS, 0);
+    std::vector<FlowBirth> spills;
+    for (const SkinBrim& b : along) {
+        if (b.places.empty() || b.spills.size() != b.places.size())
+            return badInput(fmt::format("a brim has {} places and {} to spill at: there must be as many, and one at least", b.places.size(),
+                                        b.spills.size()));
+        chains.insert(chains.end(), {static_cast<uint32_t>(spills.size()), static_cast<uint32_t>(b.places.size())});
+        for (size_t k = 0; k < b.places.size(); ++k) {
+            const SkinPoint &p = b.places[k], &s = b.spills[k];
+            ASSERT(p.triangle < mesh.triangleCount() && s.triangle < mesh.triangleCount(), "a brim's triangles are the mesh's");
+            uint32_t* d = &state[(static_cast<size_t>(params.capacity) + spills.size()) * DROP_UINTS];
+            const uint32_t volume = std::max(b.picolitres / static_cast<uint32_t>(b.places.size()), 1U);
+            d[DROP_TRIANGLE] = DROP_BRIM | p.triangle;
+            d[DROP_B1] = std::bit_cast<uint32_t>(p.b1);
+            d[DROP_B2] = std::bit_cast<uint32_t>(p.b2);
+            d[DROP_VOLUME] = volume;
+            added += volume;
+            spills.push_back({vec4(0.0F), s.triangle, s.b1, s.b2, 0});
+        }
+    }
+    device->writeAll<uint32_t>(drop, state);
+    device->writeAll<uint32_t>(chain, chains);
+    device->writeAll<FlowBirth>(spill, spills);
+    return ok();
+}
+
+// Rows so many that no cell's side is longer than asked.
+Status SurfaceFlow::Impl::layLattice() {
+    constexpr uint64_t kMostCells = uint64_t{1} << 28U;
+    firstCell.assign(1, 0);
+    uint64_t cells = 0;
+    for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+        float longest = 0;
+        for (size_t k = 0; k < 3; ++k)
+            longest = std::max(longest, glm::distance(mesh.rest[mesh.corner[3 * t + k]], mesh.rest[mesh.corner[3 * t + (k + 1) % 3]]));
+        const double rows = std::max(std::ceil(double{longest} / double{params.filmCell}), 1.0);
+        cells += static_cast<uint64_t>(std::min(rows * rows, 2.0 * kMostCells));
+        if (cells > kMostCells)
+            return badInput(fmt::format("the skin is so large that its film would have more than {} cells of {} m: make filmCell larger",
+                                        kMostCells, params.filmCell));
+        firstCell.push_back(static_cast<uint32_t>(cells));
+    }
+    return ok();
+}
+
+SurfaceFlow::SurfaceFlow(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SurfaceFlow::SurfaceFlow(SurfaceFlow&&) noexcept = default;
+SurfaceFlow& SurfaceFlow::operator=(SurfaceFlow&&) noexcept = default;
+SurfaceFlow::~SurfaceFlow() = default;
+
+const FlowMesh& SurfaceFlow::mesh() const { return impl_->mesh; }
+const SurfaceFlowParams& SurfaceFlow::params() const { return impl_->params; }
+
+Result<SurfaceFlow> SurfaceFlow::create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims) {
+    auto impl = std::make_unique<Impl>();
+    impl->mesh = std::move(mesh);
+    impl->params = params;
+    if (Status ready = impl->prepare(device, brims); !ready) return ready.error();
+    return SurfaceFlow(std::move(impl));
+}
+
+Result<SurfaceFlow> SurfaceFlow::createThesis(Device& device, FlowMesh mesh, std::span<const vec2> uvs, const SurfaceFlowParams& params,
+                                              const ThesisParams& thesis) {
+    Result<ThesisTables> tables = ThesisTables::create(device, mesh, uvs, thesis);
+    if (!tables) return tables.error();
+    auto impl = std::make_unique<Impl>();
+    impl->mesh = std::move(mesh);
+    impl->params = params;
+    impl->params.filmCell = 1.0e6F;  // m: there is no film
+    impl->thesis.emplace(std::move(*tables));
+    if (Status ready = impl->prepare(device, {}); !ready) return ready.error();
+    return SurfaceFlow(std::move(impl));
+}
+
+}  // namespace rivulet

@@ -145,7 +145,9 @@ int runHeadless(const RunOptions& options) {
         if (Status resumed = resumeFrom(options.resume, **session); !resumed) return report(resumed.error());
     Painter painter;
     if (options.render) {
-        auto renderer = SceneRenderer::create(ShaderFiles::developer());
+        const auto surroundings = surroundingsOf(options.scene);
+        if (!surroundings) return report(surroundings.error());
+        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
         if (!renderer) return report(renderer.error());
         painter.renderer = std::move(*renderer);
     }

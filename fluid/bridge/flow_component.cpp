@@ -284,6 +284,7 @@ std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
         if (lid.size() < 2) continue;
         const float length = lengthOf(lid);
         SkinBrim brim;
+        brim.picolitres = static_cast<uint32_t>(double{params_.liquid.brimStarts} * kMicrolitre);
         const int places = std::max(static_cast<int>(length / kBrimStep), 4);
         for (int k = 0; k < places; ++k) {
             const vec3 x = along(lid, length * (static_cast<float>(k) + 0.5F) / static_cast<float>(places));

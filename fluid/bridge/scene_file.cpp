@@ -228,6 +228,13 @@ void BackgroundParams::visit(ParamVisitor& v) {
     v.value({"floorHeight", "m", "height of the ground", -kFar, kFar}, floorHeight);
     v.value({.name = "showFloor", .doc = "whether the ground is drawn"}, showFloor);
     v.value({.name = "showBox", .doc = "whether the edges of the fluid's box are drawn"}, showBox);
+    v.value(
+        {.name = "surroundings",
+         .doc =
+             "equirectangular picture (.hdr) that lights the scene and is seen behind it, found as a mesh is; none = sky and studio lamps",
+         .fixed = kFixed},
+        surroundings);
+    v.value({"surroundingsLevel", "", "factor on its light", 0, 1000, kLinear, kFixed}, surroundingsLevel);
 }
 
 void FluidLookParams::visit(ParamVisitor& v) {

@@ -117,7 +117,9 @@ struct BackgroundParams {
     vec3 floor{0.56F, 0.55F, 0.53F};  // the ground plane's colour
     float floorHeight = 0.0F;         // m
     bool showFloor = true;
-    bool showBox = true;  // edges of the fluid's box
+    bool showBox = true;             // edges of the fluid's box
+    std::string surroundings;        // an equirectangular picture (.hdr) instead of the studio; "" = none
+    float surroundingsLevel = 1.0F;  // factor on it
     void visit(ParamVisitor& v);
 };
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/scene/light.h"
+#include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
 #include "fluid/sim/liquids.h"
 
@@ -59,6 +60,16 @@ Result<FluidLook> fluidLookOf(const SceneFile& scene) {
     const float most = std::max({look.absorption.x, look.absorption.y, look.absorption.z, 1.0e-6F});
     if (liquid != nullptr) look.scatter = 0.1F * glm::exp(-2.0F * look.absorption / most);
     return look;
+}
+
+Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene) {
+    if (scene.background.surroundings.empty()) return std::optional<HdrImage>();
+    Result<std::string> path = findAsset(scene.background.surroundings, scene.folder);
+    if (!path) return path.error();
+    Result<HdrImage> image = loadHdr(*path);
+    if (!image) return image.error();
+    for (vec3& texel : image->texels) texel *= scene.background.surroundingsLevel;
+    return std::optional<HdrImage>(std::move(*image));
 }
 
 FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time) {

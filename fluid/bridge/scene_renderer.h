@@ -10,6 +10,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/render/environment_map.h"
@@ -26,6 +27,8 @@ namespace rivulet {
 Camera cameraOf(const CameraParams& params, const Bounds& bounds);
 // How the scene's fluid looks: what it leaves to the liquid, as the liquid's row says. Error (badInput): an unknown colouring.
 Result<FluidLook> fluidLookOf(const SceneFile& scene);
+// What surrounds the scene, or nothing where the studio does. Error (badInput): the picture is missing or damaged.
+Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene);
 // A window of 0 pixels gives a view of 1.
 FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time);
 

@@ -57,7 +57,9 @@ Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::strin
     if (!session) return session.error();
     v.session_ = std::move(*session);
     v.draft_ = v.session_->scene();
-    auto renderer = SceneRenderer::create(ShaderFiles::developer());
+    const auto surroundings = surroundingsOf(v.draft_);
+    if (!surroundings) return surroundings.error();
+    auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
     if (!renderer) return renderer.error();
     v.renderer_ = std::move(*renderer);
     return viewer;

@@ -38,6 +38,7 @@ struct SurfaceFlowParams {
     float filmReach = 5.0e-3F;       // m, support radius of the sum that a film's height is
     bool contact = true;             // drops go over to skin that faces them
     float brimHolds = 8.0F;          // microlitres, of a brim that is full
+    float brimStarts = 1.2F;         // microlitres, in a brim at the start
     float brimWidth = 6.0e-4F;       // m, radius of what lies in a brim
     float tear = 4.5F;               // microlitres, of a drop that spills over it
     int capacity = 4096;             // drops at most
@@ -57,7 +58,7 @@ struct SurfaceFlowInputs {
 struct SkinBrim {
     std::vector<SkinPoint> places;
     std::vector<SkinPoint> spills;  // of each place: where what spills begins to run
-    uint32_t picolitres = 1200000;  // in it at the start, all along
+    uint32_t picolitres = 1200000;  // in it at the start, from end to end
 };
 
 struct SkinDrop {

@@ -32,6 +32,7 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({.name = "contact", .doc = "whether drops go over to skin that faces them and that they touch: between lips, between lids"},
             contact);
     v.value({"brimHolds", "ul", "what an eyelid's brim holds before it spills", 0.1, 100, kLog}, brimHolds);
+    v.value({"brimStarts", "ul", "what an eyelid's brim has in it at the start", 0.001, 100, kLog, kFixed}, brimStarts);
     v.value({"brimWidth", "m", "radius of what lies in a brim", 1.0e-4, 0.01, kLog}, brimWidth);
     v.value({"tear", "ul", "of a drop that spills over a brim", 0.1, 30, kLog}, tear);
     v.value({"capacity", "", "drops at most", 1, 1 << 20, kLog, kFixed}, capacity);

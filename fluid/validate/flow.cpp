@@ -205,26 +205,7 @@ Status ledger(Under& u) {
     p.evaporation = 1.0e-7F;
     Result<SurfaceFlow> flow = flowOn(u, rest, p);
     if (!flow) return flow.error();
-    std::vector<vec3> shape = rest.positions;
-    const double duration = u.settings.quick ? 10 : 60;
-    uint64_t told = 0;
-    for (int k = 0; k < static_cast<int>(duration / kStep); ++k) {
-        const double t = k * kStep;
-        for (const float side : {-1.0F, 1.0F})
-            if (k % 6 == 0) flow->add(nearestPoint(flow->mesh(), vec3(0.02F * side, 0.045F, 0.035F)), 50000);  // 30 ul a minute
-        for (size_t i = 0; i < shape.size(); ++i)
-            shape[i] = rest.positions[i] * (1.0F + 0.05F * static_cast<float>(std::sin(3 * t + 40 * double{rest.positions[i].x})));
-        const vec3 wind(static_cast<float>(std::fmod(t, 10) > 8 ? 6 : 0), 0, 0);
-        if (!u.step(*flow, {.wind = wind, .positions = shape})) return ok();
-        for (const LeftDrop& d : flow->takeLeft()) told += d.picolitres;
-    }
-    const SurfaceFlow::Ledger l = flow->ledger();
-    const auto there = static_cast<double>(l.drops + l.film + told + l.evaporated + l.refused);
-    u.found(fmt::format("ledger after {:.0f} s: {} merges, {:.0f} % dripped off, {:.0f} % dried", duration, l.merges,
-                        100.0 * static_cast<double>(told) / static_cast<double>(l.added),
-                        100.0 * static_cast<double>(l.evaporated) / static_cast<double>(l.added)),
-            "pl", there, static_cast<double>(l.added), std::abs(there - static_cast<double>(l.added)) / static_cast<double>(l.added),
-            1.0e-5);
+    breathe(u, *flow, rest, 50000, 1.0e-5);  // 30 microlitres a minute, an eye
     return ok();
 }
 

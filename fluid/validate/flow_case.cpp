@@ -1,5 +1,7 @@
 #include "fluid/validate/flow_case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -50,6 +52,27 @@ std::vector<PathCase> pathCases() {
     return {{"bumpy ball", ball, vec3(0.012F, 0.06F, 0.014F), -0.02F},
             {"cylinder", coneShape(0.03F, 0.03F, 0.1F, 48, 40), vec3(0.02F, 0.095F, 0.03F), 0.01F},
             {"cone", coneShape(0.06F, 0.02F, 0.1F, 48, 40), vec3(0.012F, 0.095F, 0.016F), 0.01F}};
+}
+
+void breathe(Under& u, SurfaceFlow& flow, const Shape& rest, uint32_t picolitres, std::optional<double> tolerance) {
+    std::vector<vec3> shape = rest.positions;
+    const double duration = u.settings.quick ? 10 : 60;
+    uint64_t told = 0;
+    for (int k = 0; k < static_cast<int>(duration / kStep); ++k) {
+        const double t = k * kStep;
+        for (const float side : {-1.0F, 1.0F})
+            if (k % 6 == 0) flow.add(nearestPoint(flow.mesh(), vec3(0.02F * side, 0.045F, 0.035F)), picolitres);
+        for (size_t i = 0; i < shape.size(); ++i)
+            shape[i] = rest.positions[i] * (1.0F + 0.05F * static_cast<float>(std::sin(3 * t + 40 * double{rest.positions[i].x})));
+        const vec3 wind(static_cast<float>(std::fmod(t, 10) > 8 ? 6 : 0), 0, 0);
+        if (!u.step(flow, {.wind = wind, .positions = shape})) return;
+        for (const LeftDrop& d : flow.takeLeft()) told += d.picolitres;
+    }
+    const SurfaceFlow::Ledger l = flow.ledger();
+    const auto there = static_cast<double>(l.drops + l.film + told + l.evaporated + l.refused), added = static_cast<double>(l.added);
+    u.found(fmt::format("ledger after {:.0f} s: {} merges, {:.0f} % let go or ran over an edge, {:.0f} % dried", duration, l.merges,
+                        100.0 * static_cast<double>(told) / added, 100.0 * static_cast<double>(l.evaporated) / added),
+            "pl", there, added, std::abs(there - added) / added, tolerance);
 }
 
 }  // namespace rivulet

@@ -46,6 +46,10 @@ struct PathCase {
 };
 std::vector<PathCase> pathCases();
 
+// The ledger of a minute (quick: ten seconds) on a ball that breathes, with gusts: so many picolitres shed ten times a second and eye, and
+// what is on it, has left it and has dried, against what was shed.
+void breathe(Under& u, SurfaceFlow& flow, const Shape& rest, uint32_t picolitres, std::optional<double> tolerance);
+
 // The same figures of thesis mode, where they mean something. Only reported.
 Result<Outcome> runFlowThesis(const CaseSettings& settings);
 

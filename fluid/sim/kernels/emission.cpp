@@ -4,23 +4,27 @@
 namespace rivulet::RIVULET_KERNEL_UNIT {
 namespace {
 
-// grid.h is included once a unit: here once a form, with the form's own StepParams.
+// grid.h and around.h are included once a unit: here once a form, with the form's own StepParams.
 #undef RIVULET_GRID_H
+#undef RIVULET_AROUND_H
 namespace emit_plain {
 #include "shaders/fluid/emit.kernel"
 }
 #undef RIVULET_GRID_H
+#undef RIVULET_AROUND_H
 #define MATTER 1
 namespace emit_matter {
 #include "shaders/fluid/emit.kernel"
 }
 #undef RIVULET_GRID_H
+#undef RIVULET_AROUND_H
 #define ABSORPTION 1
 namespace emit_matter_absorption {
 #include "shaders/fluid/emit.kernel"
 }
 #undef MATTER
 #undef RIVULET_GRID_H
+#undef RIVULET_AROUND_H
 namespace emit_absorption {
 #include "shaders/fluid/emit.kernel"
 }

@@ -129,7 +129,7 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     const Bounds all = boundsOf(*model, world);
     const Transform asked{params.position, params.rotation, params.scale};
     mat4 to = params.fitSize > 0 ? Transform::fitted(all, params.fitSize, params.position, params.rotation) : asked.matrix();
-    c.toWorld_ = glm::translate(dmat4(1.0), dvec3(params.position));
+    c.toWorld_ = c.worldAt(0);
     to = glm::translate(mat4(1.0F), -params.position) * to;
     for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
     if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
@@ -417,7 +417,8 @@ void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air)
 
 Status FlowComponent::step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air) {
     const double then = time + seconds;
-    toWorld_ = glm::translate(dmat4(1.0), dvec3(params_.position)) * params_.motion.at(then);
+    toWorld_ = worldAt(then);
+    time_ = then;
     for (Deformed& d : deformed_) {
         std::vector<float> weights(d.morphs, 0.0F);
         for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
@@ -441,10 +442,12 @@ void FlowComponent::look() {
     search_->follow(device_->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
 }
 
-std::optional<SkinSearch::Hit> FlowComponent::meets(const dvec3& from, const dvec3& to) {
+dmat4 FlowComponent::worldAt(double time) const { return glm::translate(dmat4(1.0), dvec3(params_.position)) * params_.motion.at(time); }
+
+std::optional<SkinSearch::Hit> FlowComponent::meets(const dvec3& from, const dvec3& to, double then) {
     look();
-    const dmat4 back = glm::inverse(toWorld_);
-    return search_->first(vec3(back * glm::dvec4(from, 1)), vec3(back * glm::dvec4(to, 1)));
+    const dmat4 now = glm::inverse(toWorld_), later = then == time_ ? now : glm::inverse(worldAt(then));
+    return search_->first(vec3(now * glm::dvec4(from, 1)), vec3(later * glm::dvec4(to, 1)));
 }
 
 void FlowComponent::land(const SkinSearch::Hit& where, const AirDrop& drop) {

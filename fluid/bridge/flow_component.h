@@ -34,8 +34,9 @@ class FlowComponent {
         uint32_t picolitres = 0;
     };
     Status step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air);
-    // Where a way through the world first meets the skin as it is now, as a share of it. Nothing: nowhere.
-    std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to);
+    // Where a way through the world first meets the skin, as a share of it. Nothing: nowhere. The skin has the shape it has now; as a
+    // whole it is where it is now when the way begins, and where it will be at `then` (s) when it ends.
+    std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
     // A drop that comes to rest on the skin there.
     void land(const SkinSearch::Hit& where, const AirDrop& drop);
     void placeNode(Scene& scene) const;
@@ -45,6 +46,7 @@ class FlowComponent {
 
     uint64_t emitted() const { return emitted_; }  // picolitres, by sources; not what has landed
     const SurfaceFlow& flow() const { return *flow_; }
+    double time() const { return time_; }  // s, of where it is
     const FlowParams& params() const { return params_; }
     const FlowMaps& maps() const { return *maps_; }  // in mode drops
     // As last drawn, in mode thesis; of size 0 else.
@@ -76,12 +78,14 @@ class FlowComponent {
     void emit(double time, double seconds, std::vector<AirDrop>& air);
     void emitOne(const FlowSourceParams& source, Source& state, uint32_t picolitres, std::vector<AirDrop>& air);
     SkinPoint somewhere(const FlowSourceParams& source, Source& state);
+    dmat4 worldAt(double time) const;
     void look();  // where the skin is now
 
     FlowParams params_;
     Device* device_ = nullptr;
     int group_ = 0;  // the node that all parts hang from
     dmat4 toWorld_{1.0};
+    double time_ = 0;  // s, at which toWorld_ is
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: it keeps its shape
     std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them; of mode thesis for ever

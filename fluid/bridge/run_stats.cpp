@@ -194,11 +194,15 @@ RunStats RunRecorder::finish(std::string scene) {
     l.drained = late.drained;
     l.inWorld = static_cast<double>(within) * volumeOfOne;
     // The world counts in particles, skins in picolitres: each in its own unit, so that rounding is no error.
-    double missing = std::abs(l.emitted - l.inWorld - l.drained);
+    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.taken) / volumeOfOne)) * volumeOfOne;
     if (flows_ != nullptr && !flows_->empty()) {
         const SkinFlows::Ledger skins = flows_->ledger();
-        missing += skins.error * skins.emitted;
-        l.emitted += skins.emitted;
+        l.debt = late.debt;
+        // What went from skins to the world, less what of it was born, is its debt; what it gave is what they took, but for rounding.
+        constexpr double kPicolitre = 1.0e-15;  // m^3
+        const double handed = std::abs(skins.poured - late.poured - late.debt) + std::abs(late.taken - skins.taken);
+        missing += skins.error + (handed < kPicolitre ? 0 : handed);
+        l.emitted += skins.emitted - late.poured;
         l.onSurface = skins.onSurface;
         l.inAir = skins.inAir;
         l.evaporated = skins.evaporated;
@@ -286,7 +290,7 @@ std::string writeRunStats(const RunStats& stats) {
     v["dt"]["max"] = number(stats.dtMax);
     const RunStats::Ledger& l = stats.ledger;
     for (const auto& [name, value] : {std::pair("emitted", l.emitted), std::pair("onSurface", l.onSurface), std::pair("inAir", l.inAir),
-                                      std::pair("inWorld", l.inWorld), std::pair("evaporated", l.evaporated),
+                                      std::pair("inWorld", l.inWorld), std::pair("debt", l.debt), std::pair("evaporated", l.evaporated),
                                       std::pair("drained", l.drained), std::pair("error", l.error)})
         v["ledger"][name] = number(value);
     v["limited"] = Json::Value(Json::arrayValue);

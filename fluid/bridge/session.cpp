@@ -138,6 +138,7 @@ Status Session::importColliders() {
 
 Result<Sources> Session::importEmitters() const {
     Sources sources{.sinks = scene_.sinks, .seconds = static_cast<double>(scene_.duration)};
+    sources.poured = SkinFlows::expectedPoured(scene_, sources.seconds);
     for (const EmitterParams& params : scene_.emitters) {
         Emitter emitter{params, {}};
         if (params.shape == "mesh") {

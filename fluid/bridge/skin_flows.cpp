@@ -12,14 +12,17 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kPicolitre = 1.0e-15;  // m^3
-constexpr double kAirDensity = 1.2;     // kg/m^3
-constexpr double kBallDrag = 0.6;       // drag coefficient of a drop that falls
+constexpr double kPicolitre = 1.0e-15, kCubicMillimetre = 1.0e-9;  // m^3
+constexpr float kWet = 0.3F;                                       // density ratio from which on a drop has met water
+constexpr float kAlone = 0.5F;                                     // up to which a particle is no part of it
+constexpr double kAirDensity = 1.2;                                // kg/m^3
+constexpr double kBallDrag = 0.6;                                  // drag coefficient of a drop that falls
 
 }  // namespace
 
 Status SkinFlows::create(const SceneFile& scene, Device& device, Scene& nodes, const Log& log) {
     firstNode_ = nodes.nodes().size();
+    pools_ = expectedPoured(scene, 0) > 0;
     for (size_t k = 0; k < scene.flow.size(); ++k) {
         auto made = FlowComponent::create(scene.flow[k], scene.folder, device, nodes, log);
         if (!made) return Error{fmt::format("flow[{}]: {}", k, made.error().message), made.error().fault};
@@ -55,10 +58,87 @@ Status SkinFlows::reset(const SceneFile& scene, Device& device, Scene& nodes, co
     return create(scene, device, nodes, log);
 }
 
-// In the air a drop is a ball that falls and drags; it ends on the first skin in its way, or on the ground.
-void SkinFlows::fall(const SceneFile& scene, double seconds) {
+double SkinFlows::expectedPoured(const SceneFile& scene, double seconds) {
+    if (scene.flow.empty() || (scene.fluid.blocks.empty() && scene.emitters.empty())) return 0;
+    double volume = std::pow(double{scene.fluid.spacing}, 3);
+    for (const FlowParams& skin : scene.flow)
+        for (const FlowSourceParams& source : skin.sources) volume += double{source.rate} * kCubicMillimetre / 60 * seconds;
+    return volume;
+}
+
+SkinFlows::First SkinFlows::firstOn(const dvec3& from, const dvec3& to, double then) const {
+    First first;
+    for (const auto& skin : skins_)
+        if (const std::optional<SkinSearch::Hit> hit = skin->meets(from, to, then);
+            hit && (first.skin == nullptr || hit->share < first.where.share))
+            first = {skin.get(), *hit};
+    return first;
+}
+
+// A particle whose way, and half a spacing beyond, meets a skin becomes drops side by side as wide as it was: those that the skin is in the
+// way of land, the others fly by. A skin that has no room for them lets it pass. Water that stands about a skin, or waves against it, stays
+// where it is: what comes down has fallen further than it is wide, or is alone.
+void SkinFlows::takeLanding(const SceneFile& scene, FluidWorld& world, double seconds) {
+    const double spacing = double{world.particles().spacing};
+    const float reach = world.stats().maxSpeed > 0 ? static_cast<float>(world.stats().maxSpeed * seconds) : 0.0F;
+    Bounds near;
+    for (const auto& skin : skins_) {
+        near.add(skin->bounds().min - (reach + 2 * static_cast<float>(spacing)));
+        near.add(skin->bounds().max + (reach + 2 * static_cast<float>(spacing)));
+    }
+    std::vector<uint32_t> slots;
+    std::vector<uint32_t> room(skins_.size(), UINT32_MAX);  // not asked yet
+    const double then = time_ + seconds;
+    for (const WorldParticle& p : world.within(near)) {
+        const dvec3 x(p.position), v(p.velocity);
+        const double speed = glm::length(v);
+        const dvec3 way = speed > 0 ? v / speed : dvec3(0.0), from = x - v * seconds;
+        const bool comes = speed * speed > glm::length(dvec3(scene.fluid.gravity)) * spacing || p.fullness < kAlone;
+        if (!comes || !std::isfinite(speed)) continue;
+        const First first = firstOn(from, x + way * (0.5 * spacing), then);
+        if (first.skin == nullptr) continue;
+        const auto on = static_cast<size_t>(
+            std::find_if(skins_.begin(), skins_.end(), [&](const auto& s) { return s.get() == first.skin; }) - skins_.begin());
+        if (room[on] == UINT32_MAX) room[on] = skins_[on]->flow().room();
+        // Volumes of particles are no whole picolitres: each has what brings the sum nearest.
+        const auto upTo = static_cast<uint64_t>(std::llround(static_cast<double>(particles_ + 1) * std::pow(spacing, 3) / kPicolitre));
+        const uint64_t volume = upTo - taken_;
+        const double most = std::max(double{scene.flow[on].liquid.largestDrop} * kCubicMillimetre / kPicolitre, 1.0);
+        const auto count = static_cast<uint32_t>(std::max(std::ceil(static_cast<double>(volume) / most), 1.0));
+        if (count > room[on]) continue;
+        room[on] -= count;
+        ++particles_;
+        taken_ = upTo;
+        slots.push_back(p.slot);
+        // Sunflower seeds in the disc that a particle's volume has as a ball.
+        const double wide = std::cbrt(3 / (4 * std::numbers::pi)) * spacing;
+        const dvec3 n = speed > 0 ? way : -dvec3(first.where.normal);
+        const dvec3 a = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0))), b = glm::cross(n, a);
+        for (uint32_t k = 0; k < count; ++k) {
+            const double r = wide * std::sqrt((k + 0.5) / count), angle = k * (std::numbers::pi * (3 - std::sqrt(5.0)));
+            const dvec3 off = (a * std::cos(angle) + b * std::sin(angle)) * r;
+            const FlowComponent::AirDrop drop{x + off, v, static_cast<uint32_t>(volume * (k + 1) / count - volume * k / count)};
+            const First own = count == 1 ? first : firstOn(from + off, x + off + n * (2 * spacing), then);
+            if (own.skin != nullptr)
+                own.skin->land(own.where, drop);
+            else
+                air_.push_back(drop);
+        }
+    }
+    world.take(slots);
+}
+
+// In the air a drop is a ball that falls and drags; it ends on the first skin in its way, in the world's water, or on the ground.
+void SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) {
     const vec3 wind = scene.flow.empty() ? vec3(0.0F) : scene.flow[0].wind;
-    size_t kept = 0;
+    struct Way {
+        dvec3 to;
+        First first;
+        size_t begin = 0, count = 0;  // of the places along it
+    };
+    std::vector<Way> ways;
+    std::vector<vec3> places;
+    const double then = time_ + seconds, spacing = double{world.particles().spacing};
     for (FlowComponent::AirDrop& d : air_) {
         const double density = scene.flow.empty() ? 1000 : double{scene.flow[0].liquid.density}, volume = d.picolitres * kPicolitre;
         const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
@@ -66,22 +146,36 @@ void SkinFlows::fall(const SceneFile& scene, double seconds) {
         // Implicit in the drag: no step makes it turn round.
         const double drag = 0.5 * kAirDensity * kBallDrag * std::numbers::pi * radius * radius * glm::length(against) / (density * volume);
         d.velocity += (dvec3(scene.fluid.gravity) + against * drag) * seconds / (1 + drag * seconds);
-        const dvec3 to = d.position + d.velocity * seconds;
-        FlowComponent* first = nullptr;
-        SkinSearch::Hit where;
-        for (const auto& skin : skins_)
-            if (const std::optional<SkinSearch::Hit> hit = skin->meets(d.position, to);
-                hit && (first == nullptr || hit->share < where.share)) {
-                first = skin.get();
-                where = *hit;
-            }
-        if (first != nullptr) {
-            first->land(where, d);
+        Way way{.to = d.position + d.velocity * seconds, .first = {}, .begin = places.size()};
+        way.first = firstOn(d.position, way.to, then);
+        if (pools_ && isFinite(vec3(way.to))) {
+            way.count = static_cast<size_t>(std::min(std::ceil(glm::distance(d.position, way.to) / spacing), 64.0));
+            for (size_t k = 0; k < way.count; ++k)
+                places.emplace_back(glm::mix(d.position, way.to, static_cast<double>(k + 1) / static_cast<double>(way.count)));
+        }
+        ways.push_back(way);
+    }
+    std::vector<float> full;
+    if (!places.empty()) full = world.fullness(places);
+    size_t kept = 0;
+    for (size_t i = 0; i < air_.size(); ++i) {
+        FlowComponent::AirDrop& d = air_[i];
+        const Way& way = ways[i];
+        size_t wet = 0;
+        while (wet < way.count && !(full[way.begin + wet] > kWet)) ++wet;
+        const bool landed = way.first.skin != nullptr;
+        if (wet < way.count && !(landed && double{way.first.where.share} * static_cast<double>(way.count) < static_cast<double>(wet + 1))) {
+            world.pour(places[way.begin + wet], vec3(d.velocity), d.picolitres * kPicolitre);
+            poured_ += d.picolitres;
             continue;
         }
-        d.position = to;
-        const bool somewhere = std::isfinite(glm::dot(to, to)) && glm::dot(to, to) < 1.0e12;
-        if (!somewhere || to.y < floor_)
+        if (landed) {
+            way.first.skin->land(way.first.where, d);
+            continue;
+        }
+        d.position = way.to;
+        const bool somewhere = std::isfinite(glm::dot(way.to, way.to)) && glm::dot(way.to, way.to) < 1.0e12;
+        if (!somewhere || way.to.y < floor_)
             drained_ += d.picolitres;
         else
             air_[kept++] = d;
@@ -90,9 +184,9 @@ void SkinFlows::fall(const SceneFile& scene, double seconds) {
 }
 
 Status SkinFlows::step(const SceneFile& scene, FluidWorld& world, double seconds, Scene& nodes) {
-    (void)world;
     if (empty() || !(seconds > 0)) return ok();
-    fall(scene, seconds);
+    fall(scene, world, seconds);
+    if (pools_) takeLanding(scene, world, seconds);
     for (const auto& skin : skins_) {
         if (Status moved = skin->step(time_, seconds, scene.fluid.gravity, air_); !moved) return moved;
         skin->placeNode(nodes);
@@ -108,16 +202,9 @@ Status SkinFlows::draw() {
 }
 
 bool SkinFlows::drip(const dvec3& from, const dvec3& way, uint32_t picolitres) {
-    FlowComponent* first = nullptr;
-    SkinSearch::Hit where;
-    for (const auto& skin : skins_)
-        if (const std::optional<SkinSearch::Hit> hit = skin->meets(from, from + way);
-            hit && (first == nullptr || hit->share < where.share)) {
-            first = skin.get();
-            where = *hit;
-        }
-    if (first == nullptr) return false;
-    first->land(where, {dvec3(0.0), dvec3(0.0), picolitres});
+    const First first = firstOn(from, from + way, time_);
+    if (first.skin == nullptr) return false;
+    first.skin->land(first.where, {dvec3(0.0), dvec3(0.0), picolitres});
     dripped_ += picolitres;
     return true;
 }
@@ -134,12 +221,14 @@ SkinFlows::Ledger SkinFlows::ledger() const {
     }
     for (const FlowComponent::AirDrop& d : air_) air += d.picolitres;
     l.emitted = static_cast<double>(emitted) * kPicolitre;
+    l.taken = static_cast<double>(taken_) * kPicolitre;
+    l.poured = static_cast<double>(poured_) * kPicolitre;
     l.onSurface = static_cast<double>(surface) * kPicolitre;
     l.inAir = static_cast<double>(air) * kPicolitre;
     l.evaporated = static_cast<double>(evaporated) * kPicolitre;
     l.drained = static_cast<double>(drained_ + refused) * kPicolitre;  // where there was no slot nothing was let out
-    const auto there = static_cast<double>(surface + air + evaporated + drained_ + refused);
-    l.error = emitted > 0 ? std::abs(there - static_cast<double>(emitted)) / static_cast<double>(emitted) : 0;
+    const uint64_t there = surface + air + evaporated + drained_ + refused + poured_, came = emitted + taken_;
+    l.error = static_cast<double>(std::max(there, came) - std::min(there, came)) * kPicolitre;
     return l;
 }
 

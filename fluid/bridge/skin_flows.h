@@ -1,4 +1,5 @@
-// SkinFlows: all skins of a scene, and the drops in the air between them, the pool and the ground. One mass: a ledger in picolitres.
+// SkinFlows: all skins of a scene, and the drops in the air between them, the world's water and the ground. A drop that comes down on the
+// world's water is poured into it; a particle of the world that comes down on a skin becomes drops. One mass: a ledger in picolitres.
 #pragma once
 
 #include <memory>
@@ -26,22 +27,35 @@ class SkinFlows {
     Status draw();
 
     std::vector<std::unique_ptr<FlowComponent>>& skins() { return skins_; }
-    // m^3, as RunStats::Ledger has it: emitted = onSurface + inAir + inWorld (of skins) + evaporated + drained. Waits for the device.
+    // m^3: emitted + taken = onSurface + inAir + evaporated + drained + poured. Waits for the device.
     struct Ledger {
-        double emitted = 0, onSurface = 0, inAir = 0, evaporated = 0, drained = 0, error = 0;
+        double emitted = 0, taken = 0, onSurface = 0, inAir = 0, evaporated = 0, drained = 0, poured = 0;
+        double error = 0;  // what is missing
     };
     Ledger ledger() const;
     size_t inAir() const { return air_.size(); }
+    // What skins and the world will hand to each other in `seconds`, for Sources::poured, m^3. 0: the scene has no skins, or no water
+    // beside.
+    static double expectedPoured(const SceneFile& scene, double seconds);
 
     // The point of a skin that a ray through the world meets first, and a drop put there. false: it meets none.
     bool drip(const dvec3& from, const dvec3& way, uint32_t picolitres);
 
   private:
-    void fall(const SceneFile& scene, double seconds);
+    struct First {
+        FlowComponent* skin = nullptr;
+        SkinSearch::Hit where;
+    };
+    First firstOn(const dvec3& from, const dvec3& to, double then) const;
+    void takeLanding(const SceneFile& scene, FluidWorld& world, double seconds);
+    void fall(const SceneFile& scene, FluidWorld& world, double seconds);
 
     std::vector<std::unique_ptr<FlowComponent>> skins_;
     std::vector<FlowComponent::AirDrop> air_;
+    bool pools_ = false;                  // there is water beside
     uint64_t drained_ = 0, dripped_ = 0;  // picolitres
+    uint64_t poured_ = 0, taken_ = 0;     // picolitres, into the world and out of it
+    uint64_t particles_ = 0;              // taken
     size_t firstNode_ = 0;                // of the scene's, where the skins' begin
     double time_ = 0;
     double floor_ = 0;  // m, below which a drop is gone

@@ -316,6 +316,14 @@ std::vector<SkinDrop> SurfaceFlow::drops() const {
     return all;
 }
 
+uint32_t SurfaceFlow::room() const {
+    const Impl& w = *impl_;
+    const auto state = w.device->readAll<uint32_t>(w.drop, size_t{w.count()} * DROP_UINTS);
+    uint32_t taken = static_cast<uint32_t>(w.births.size());
+    for (uint32_t k = 0; k < w.count(); ++k) taken += state[size_t{k} * DROP_UINTS + DROP_VOLUME] != 0 ? 1 : 0;
+    return taken < w.count() ? w.count() - taken : 0;
+}
+
 std::vector<LeftDrop> SurfaceFlow::takeLeft() {
     std::vector<LeftDrop> taken;
     taken.swap(impl_->told->gone);

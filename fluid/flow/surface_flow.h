@@ -118,6 +118,7 @@ class SurfaceFlow {
 
     // Waits for the device.
     std::vector<SkinDrop> drops() const;
+    uint32_t room() const;             // drops that there are slots for, beside those that were added since the last step; waits
     std::vector<LeftDrop> takeLeft();  // since it was last asked, in the order of their ids each step
     FlowView view() const;
     // The film's thickness, m, of every cell of a triangle's lattice; waits.

@@ -110,7 +110,42 @@ void EmitterFeed::take(const EmitterParams& params) {
     layOut();
 }
 
-void EmitterFeed::reset() { account_ = {}; }
+void EmitterFeed::reset() {
+    account_ = {};
+    flight_ = {};
+}
+
+EmitterFeed EmitterFeed::ofPoured(uint32_t index, float spacing) {
+    EmitterFeed feed(index, spacing);
+    feed.poured_ = true;
+    return feed;
+}
+
+void EmitterFeed::pour(const vec3& place, const vec3& velocity, double volume) {
+    const double share = volume / std::pow(double{spacing_}, 3);
+    account_.due += share;
+    flight_.places[flight_.next] = place;
+    flight_.next = (flight_.next + 1) % flight_.places.size();
+    flight_.count = std::min(flight_.count + 1, static_cast<uint32_t>(flight_.places.size()));
+    // The mean over about as much as a particle holds.
+    flight_.velocity += (velocity - flight_.velocity) * static_cast<float>(std::min(share, 1.0));
+    speed_ = glm::length(flight_.velocity);
+}
+
+// A particle at each place at most, above the water that it came down on: where that is full, at another height the next time.
+void EmitterFeed::offerPoured(const vec3& gravity, size_t most, std::vector<Candidate>& to) {
+    const double want = std::floor(account_.due + 1.0e-6) - static_cast<double>(account_.offered - account_.refused);
+    const uint64_t places = flight_.count;
+    if (!(want >= 1) || places == 0) return;
+    const vec3 against = glm::length(gravity) > 0 ? -gravity : -flight_.velocity;
+    const vec3 up = glm::length(against) > 0 ? glm::normalize(against) : vec3(0, 1, 0);
+    const auto count = static_cast<uint64_t>(std::min({want, static_cast<double>(places), static_cast<double>(most)}));
+    for (uint64_t k = account_.offered; k < account_.offered + count; ++k) {
+        const vec3 at = flight_.places[k % places] + up * (spacing_ * (0.75F + 0.75F * static_cast<float>((k + k / places) % 4)));
+        to.push_back({vec4(at, static_cast<float>(index_)), vec4(flight_.velocity, 0.0F), matter, absorption});
+    }
+    account_.offered += count;
+}
 
 // The closest packing of spheres as layers across the jet, stretched by a hair: the smoothing kernel finds that lattice 1.3 % denser than
 // the cubic one it is calibrated on, and a jet that is born compressed bursts. So many a layer that at the jet's speed layers follow each
@@ -181,6 +216,7 @@ void EmitterFeed::onMesh(uint64_t k, vec3& at, vec3& normal) const {
 }
 
 void EmitterFeed::offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to) {
+    if (poured_) return offerPoured(gravity, most, to);
     const EmitterParams& p = emitter_.params;
     const double perSecond = 1.0e-3 * double{p.litresPerSecond} / std::pow(double{spacing_}, 3);
     const double regular = (volumeAfter(p, time + seconds) - volumeAfter(p, time)) / std::pow(double{spacing_}, 3);

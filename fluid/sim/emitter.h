@@ -2,6 +2,7 @@
 // source_passes.* puts those among the particles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -49,6 +50,8 @@ struct Sources {
     std::vector<Emitter> emitters = {};
     std::vector<SinkParams> sinks = {};
     double seconds = 10;  // how long emitters are expected to run: what fluid.maxParticles = 0 makes room for
+    // m^3 that FluidWorld::pour() is expected to bring in that time, beyond what take() has taken. 0: nobody holds water but the world.
+    double poured = 0;
 };
 
 // Volume an emitter has let out after `seconds`, m^3, if nothing is in its way.
@@ -64,6 +67,9 @@ double layerOf(const EmitterParams& params, float spacing);
 class EmitterFeed {
   public:
     EmitterFeed(const Emitter& emitter, uint32_t index, float spacing);
+    // Of water that others pour in, wherever they do.
+    static EmitterFeed ofPoured(uint32_t index, float spacing);
+    void pour(const vec3& place, const vec3& velocity, double volume);
 
     // Appends what is due when `seconds` more have gone by since `time` (s), at most `most`, as the end of that time finds it.
     void offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to);
@@ -78,7 +84,17 @@ class EmitterFeed {
         uint64_t offered = 0, refused = 0;
     };
     const Account& account() const { return account_; }
-    void restore(const Account& account) { account_ = account; }
+    // Of what is poured: where it came down, and how fast on the whole.
+    struct Flight {
+        std::array<vec3, 32> places{};  // m
+        uint32_t count = 0, next = 0;   // of them; which is the oldest
+        vec3 velocity{0.0F};            // m/s
+    };
+    const Flight& flight() const { return flight_; }
+    void restore(const Account& account, const Flight& flight) {
+        account_ = account;
+        flight_ = flight;
+    }
 
     const Emitter& emitter() const { return emitter_; }
     vec4 matter{1.0F, 1.0F, 0.0F, 0.0F}, absorption{0.0F};  // of its particles
@@ -86,6 +102,8 @@ class EmitterFeed {
     float speed() const { return speed_; }                  // m/s, where they come out
 
   private:
+    EmitterFeed(uint32_t index, float spacing) : index_(index), spacing_(spacing) {}
+    void offerPoured(const vec3& gravity, size_t most, std::vector<Candidate>& to);
     void layOut();
     vec3 onBox(uint64_t k) const;
     void onMesh(uint64_t k, vec3& p, vec3& normal) const;
@@ -97,6 +115,8 @@ class EmitterFeed {
     Account account_;
     std::vector<vec3> layers_[2];  // m, nozzle: offsets of a layer's particles in the opening, one layer after the other in turn
     std::vector<double> areas_;    // mesh: running sum over the triangles
+    bool poured_ = false;
+    Flight flight_;
 };
 
 }  // namespace rivulet

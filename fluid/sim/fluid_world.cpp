@@ -187,6 +187,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     };
     method->step(context);
     iterations += solve.iterations;
+    sorted = built;
     if (!built) return;
     solids.collide(step, *grid, particles);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
@@ -390,6 +391,9 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
             f.emitted = (static_cast<double>(count) + static_cast<double>(sources.given())) * volume;
             f.drained = static_cast<double>(sources.drained()) * volume;
             f.owed = sources.owed() * volume;
+            f.poured = static_cast<double>(sources.born()) * volume;
+            f.debt = sources.debt() * volume;
+            f.taken = static_cast<double>(takenOut) * volume;
             *into = std::move(f);
             if (sources.full())
                 say(fmt::format(
@@ -409,6 +413,35 @@ void FluidWorld::reset() {
     impl_->bodies.reset();
     impl_->fastestWall = 0;
     impl_->writeStart();
+}
+
+void FluidWorld::pour(const vec3& place, const vec3& velocity, double volume) {
+    impl_->sources.pour(place, velocity, volume);
+    impl_->figures->debt = impl_->sources.debt() * std::pow(double{impl_->params.spacing}, 3);
+}
+
+std::vector<float> FluidWorld::fullness(std::span<const vec3> places) {
+    Impl& w = *impl_;
+    ASSERT(w.exchange.any(), "say by Sources::poured that others hold water");
+    if (!w.sorted) return std::vector<float>(places.size(), 0.0F);
+    Result<std::vector<float>> full = w.exchange.fullness(w.step, *w.grid, w.particles, places);
+    if (full) return std::move(*full);
+    w.say(full.error().message);
+    return std::vector<float>(places.size(), 0.0F);
+}
+
+std::vector<WorldParticle> FluidWorld::within(const Bounds& box) {
+    ASSERT(impl_->exchange.any(), "say by Sources::poured that others hold water");
+    return impl_->exchange.within(impl_->step, impl_->particles, box);
+}
+
+void FluidWorld::take(std::span<const uint32_t> slots) {
+    Impl& w = *impl_;
+    ASSERT(w.exchange.any(), "say by Sources::poured that others hold water");
+    const std::vector<NamedBuffer> remembered = w.method->remembered();
+    w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);
+    w.takenOut += slots.size();
+    w.figures->taken = static_cast<double>(w.takenOut) * std::pow(double{w.params.spacing}, 3);
 }
 
 void FluidWorld::setSurfaces(std::span<const Surface> surfaces) { impl_->solids.setSurfaces(surfaces); }

@@ -10,6 +10,7 @@
 #include "fluid/sim/fluid_params.h"
 #include "fluid/sim/solids.h"
 #include "fluid/sim/stats.h"
+#include "fluid/sim/world_particle.h"
 #include "fluid/sim/world_state.h"
 
 namespace rivulet {
@@ -62,6 +63,16 @@ class FluidWorld {
     void setParams(const FluidParams&);                   // takes what can change between steps; `fixed` values wait for a new world
     void setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces
     void setSources(const Sources& sources);              // as many emitters and sinks as there are; shapes and meshes stay as they were
+
+    // Water that others hold too, as skins do: Sources::poured says there are such, else these must not be called. Places m, velocities
+    // m/s. pour: `volume` m^3 has come down there. It is a debt, and whenever that is as much as a particle, one is born above the place.
+    // Volume is what is kept: poured water is of the world's own liquid.
+    void pour(const vec3& place, const vec3& velocity, double volume);
+    // The density ratio that particles make at each place after the last step: 0 in the air, about 1 in the midst of water. Waits.
+    std::vector<float> fullness(std::span<const vec3> places);
+    // The particles in a box now, 16,384 at most; and those of them that go to others, spacing^3 m^3 each. Wait.
+    std::vector<WorldParticle> within(const Bounds& box);
+    void take(std::span<const uint32_t> slots);
 
     const FluidParams& params() const;
     ParticleView particles() const;

@@ -8,6 +8,7 @@
 #include "fluid/sim/block.h"
 #include "fluid/sim/body_passes.h"
 #include "fluid/sim/drawn_positions.h"
+#include "fluid/sim/exchange_passes.h"
 #include "fluid/sim/fluid_world.h"
 #include "fluid/sim/force.h"
 #include "fluid/sim/method.h"
@@ -36,9 +37,12 @@ struct FluidWorld::Impl {
     SolidPasses solids;
     Sources asked;  // emitters and sinks
     SourcePasses sources;
-    uint32_t slots = 0;     // of particles: those of the blocks and room for more
-    bool coloured = false;  // particles differ to the eye
-    float mostViscous = 0;  // m^2/s, of the world's liquids
+    ExchangePasses exchange;  // where others hold water, too
+    uint64_t takenOut = 0;    // particles, by them
+    bool sorted = false;      // the grid is of the particles as they lie
+    uint32_t slots = 0;       // of particles: those of the blocks and room for more
+    bool coloured = false;    // particles differ to the eye
+    float mostViscous = 0;    // m^2/s, of the world's liquids
     BodyPasses bodies;
     Buffer statsRows, corner;
     Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;

@@ -81,6 +81,11 @@ Status FluidWorld::Impl::prepare() {
     Result<SourcePasses> passes = SourcePasses::create(*device, asked, params, traits.matter, coloured);
     if (!passes) return passes.error();
     sources = std::move(*passes);
+    if (asked.poured > 0) {
+        Result<ExchangePasses> handed = ExchangePasses::create(*device, params);
+        if (!handed) return handed.error();
+        exchange = std::move(*handed);
+    }
     if (count == 0) log.notice("the scene has no particles");
     writeStart();
     return ok();
@@ -133,7 +138,7 @@ Status FluidWorld::Impl::findSlots() {
         if (room < held)
             return badInput(fmt::format("fluid.maxParticles is {}, but the blocks hold {} particles: raise it, or 0 makes room for all",
                                         params.maxParticles, start.size()));
-    } else if (!asked.emitters.empty()) {
+    } else if (!asked.emitters.empty() || asked.poured > 0) {
         room = std::min(room, kMostParticles);
         log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
                                static_cast<uint64_t>(room), start.size(), asked.seconds));
@@ -201,6 +206,8 @@ void FluidWorld::Impl::writeStart() {
     device->writeAll<vec4>(particles.velocityNext, velocity);
     device->writeAll<uint32_t>(particles.id, id);
     sources.reset();
+    takenOut = 0;
+    sorted = false;
     gatherColours();
     time = dropped = 0;
     frame = 0;

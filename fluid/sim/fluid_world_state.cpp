@@ -39,6 +39,7 @@ void FluidWorld::save(WorldState& state) {
         state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
     w.solids.save(state);
     w.sources.save(state);
+    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.takenOut, 1));
     w.bodies.save(state);
 }
 
@@ -70,6 +71,12 @@ Status FluidWorld::restore(WorldState& state) {
     if (!places) return places.error();
     Result<SourcePasses::Saved> sources = w.sources.take(state);
     if (!sources) return sources.error();
+    uint64_t taken = 0;
+    if (w.exchange.any()) {
+        Result<std::vector<uint64_t>> count = state.take<uint64_t>("world.taken", 1);
+        if (!count) return count.error();
+        taken = (*count)[0];
+    }
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
     if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
@@ -79,6 +86,7 @@ Status FluidWorld::restore(WorldState& state) {
     w.particles.restore(*w.device, *saved);
     w.gatherColours();
     w.sources.restore(*sources);
+    w.takenOut = taken;
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
     w.time = n[0];
     w.pace.reset(n[1]);
@@ -101,6 +109,9 @@ Status FluidWorld::restore(WorldState& state) {
     f.emitted = (static_cast<double>(w.start.size()) + static_cast<double>(w.sources.given())) * volume;
     f.drained = static_cast<double>(w.sources.drained()) * volume;
     f.owed = w.sources.owed() * volume;
+    f.poured = static_cast<double>(w.sources.born()) * volume;
+    f.debt = w.sources.debt() * volume;
+    f.taken = static_cast<double>(w.takenOut) * volume;
     for (size_t at = 0; at < limited->size();) {
         const size_t end = std::min(limited->find('\n', at), limited->size());
         f.limited.push_back(limited->substr(at, end - at));

@@ -55,6 +55,14 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
         feed.absorption = liquid.absorption + vec4(dyeAbsorption(e.dye, e.dyeAmount), 0.0F);
         s.feeds_.push_back(std::move(feed));
     }
+    s.poured_ = sources.poured > 0;
+    if (s.poured_) {
+        EmitterFeed feed = EmitterFeed::ofPoured(static_cast<uint32_t>(s.feeds_.size()), params.spacing);
+        const LiquidOf liquid = liquidOf(params, "");
+        feed.matter = vec4(1.0F, 1.0F, liquid.viscosity, liquid.row);
+        feed.absorption = liquid.absorption;
+        s.feeds_.push_back(std::move(feed));
+    }
     s.sinkCount_ = sources.sinks.size();
     s.late_ = std::make_shared<Late>();
     if (!s.any()) return s;
@@ -83,7 +91,7 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
 
 double SourcePasses::slotsFor(const Sources& sources, const FluidParams& params) {
     const double volume = std::pow(double{params.spacing}, 3);
-    double slots = 0;
+    double slots = sources.poured > 0 ? std::ceil(sources.poured / volume) + 1 : 0;
     for (const Emitter& e : sources.emitters) slots += std::ceil(volumeAfter(e.params, sources.seconds) / volume) + 1;
     const dvec3 size(params.box.max - params.box.min);
     // A box that is full takes no more; a tenth for what is denser.
@@ -102,10 +110,10 @@ void SourcePasses::writeSinks(const std::vector<SinkParams>& sinks) {
 }
 
 Status SourcePasses::set(const Sources& sources) {
-    if (sources.emitters.size() != feeds_.size() || sources.sinks.size() != sinkCount_)
+    if (sources.emitters.size() + (poured_ ? 1 : 0) != feeds_.size() || sources.sinks.size() != sinkCount_)
         return badInput("emitters and sinks were added or taken away: that needs a new world");
     if (Status s = check(sources, spacing_); !s) return s;
-    for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].take(sources.emitters[k].params);
+    for (size_t k = 0; k < sources.emitters.size(); ++k) feeds_[k].take(sources.emitters[k].params);
     writeSinks(sources.sinks);
     return ok();
 }
@@ -203,6 +211,11 @@ void SourcePasses::run(const World& world, double time, double dt, bool last) {
     if (device_->backend() == Backend::cpu) report();
 }
 
+void SourcePasses::pour(const vec3& place, const vec3& velocity, double volume) {
+    ASSERT(poured_, "say by Sources::poured that there is water from others");
+    feeds_.back().pour(place, velocity, volume);
+}
+
 void SourcePasses::report() {
     if (!any()) return;
     device_->readLater(counters_, counters_.bytes(), [into = late_](std::span<const std::byte> bytes) {
@@ -216,6 +229,10 @@ uint64_t SourcePasses::given() const {
     for (size_t k = 0; k < feeds_.size(); ++k) sum += late_->counters[k * EMITTER_COUNTERS];
     return sum;
 }
+
+uint64_t SourcePasses::born() const { return poured_ ? late_->counters[(feeds_.size() - 1) * EMITTER_COUNTERS] : 0; }
+
+double SourcePasses::debt() const { return poured_ ? feeds_.back().due() - static_cast<double>(born()) : 0; }
 
 uint64_t SourcePasses::drained() const {
     uint64_t sum = 0;
@@ -251,6 +268,7 @@ void SourcePasses::save(WorldState& state) const {
     state.put<uint32_t>("sources.heard", heard_);
     state.put<uint32_t>("sources.counters", late_->counters);
     state.put<double>("sources.waited", std::span(&waited_, 1));
+    if (poured_) state.put<EmitterFeed::Flight>("sources.poured", std::span(&feeds_.back().flight(), 1));
 }
 
 Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
@@ -272,6 +290,13 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
     Result<std::vector<double>> waited = state.take<double>("sources.waited", 1);
     if (!waited) return waited.error();
     bool sound = std::isfinite((*waited)[0]) && (*waited)[0] >= 0;
+    EmitterFeed::Flight flight;
+    if (poured_) {
+        Result<std::vector<EmitterFeed::Flight>> saved = state.take<EmitterFeed::Flight>("sources.poured", 1);
+        if (!saved) return saved.error();
+        flight = (*saved)[0];
+        sound = sound && flight.count <= flight.places.size() && flight.next < flight.places.size() && isFinite(flight.velocity);
+    }
     for (size_t k = 0; k < feeds_.size(); ++k) {
         const EmitterFeed::Account& a = (*accounts)[k];
         const uint32_t* c = &(*counters)[k * EMITTER_COUNTERS];
@@ -280,13 +305,13 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
         sound = sound && std::isfinite(a.due) && a.due >= 0 && a.refused <= a.offered && a.offered < uint64_t{1} << 53U && taken == c[0];
     }
     if (!sound) return badInput("the saved state's accounts of the emitters do not add up: save it again");
-    return Saved{std::move(*accounts), std::move(*heard), std::move(*counters), (*waited)[0]};
+    return Saved{std::move(*accounts), std::move(*heard), std::move(*counters), (*waited)[0], flight};
 }
 
 void SourcePasses::restore(const Saved& saved) {
     if (!any()) return;
     reset();
-    for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].restore(saved.accounts[k]);
+    for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].restore(saved.accounts[k], saved.flight);
     heard_ = saved.heard;
     late_->counters = saved.counters;
     waited_ = saved.waited;

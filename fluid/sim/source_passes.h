@@ -43,20 +43,25 @@ class SourcePasses {
     };
     // After a substep of `dt` that ended at `time`; `last` of its frame.
     void run(const World& world, double time, double dt, bool last);
+    // m^3 from others, that become particles at `place` (m) with the steps to come. sources.poured was more than 0.
+    void pour(const vec3& place, const vec3& velocity, double volume);
     // Has the counts read, late on a GPU.
     void report();
 
     // As far as is known.
-    uint64_t given() const;    // particles, by all emitters
+    uint64_t given() const;    // particles, by all emitters, and of what was poured
+    uint64_t born() const;     // of these, of what was poured
     uint64_t drained() const;  // particles
     bool full() const;         // whether one had to wait because no slot was free
     double owed() const;       // particles due, and not taken yet
+    double debt() const;       // of these, of what was poured
 
     // The emitters' accounts and what is counted. Before save, report and wait for the device.
     struct Saved {
         std::vector<EmitterFeed::Account> accounts;
         std::vector<uint32_t> heard, counters;
         double waited = 0;
+        EmitterFeed::Flight flight;
     };
     void save(WorldState& state) const;
     // Error: as WorldState::take; other emitters or sinks, or accounts that do not add up.
@@ -75,7 +80,8 @@ class SourcePasses {
     Device* device_ = nullptr;
     bool matter_ = false, absorption_ = false;
     float spacing_ = 0;
-    std::vector<EmitterFeed> feeds_;
+    std::vector<EmitterFeed> feeds_;  // of the emitters; behind them that of what is poured, if others do
+    bool poured_ = false;
     std::vector<uint32_t> heard_;  // refused by the device, of each, that its feed knows of; it turns over with the counters
     size_t sinkCount_ = 0;
     Kernel emit_, drain_, forget_;

@@ -137,5 +137,60 @@ TEST(SceneFlow, ASkinWithoutUvsIsLaidOut) {
     EXPECT_GT((*session)->flows().ledger().onSurface, 0.0);
 }
 
+// A jet over a basin: its particles become drops on the cow, what drips from her is poured into the basin, and is born there.
+TEST(SceneFlow, TheSameWaterIsInBothWorlds) {
+    auto device = cpu();
+    Result<SceneFile> scene = loadScene("shower", std::vector<std::string>{"flow.0.mapSize=64", "fluid.spacing=0.008",
+                                                                           "emitters.0.litresPerSecond=0.06", "emitters.0.stop=0.8"});
+    ASSERT_TRUE(scene) << scene.error().message;
+    Result<std::unique_ptr<Session>> session = Session::create(*scene, *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    FluidWorld& world = (*session)->world();
+    RunRecorder recorder(world, (*session)->fields(), true, &(*session)->flows());
+    double most = 0;
+    for (int k = 0; k < 90; ++k) {
+        const double ms = (*session)->step(1.0 / 60, true);
+        recorder.frame(ms, 0, ms, {}, {});
+        most = std::max(most, (*session)->flows().ledger().onSurface);
+    }
+    const RunStats stats = recorder.finish("shower");
+    EXPECT_EQ(stats.ledger.error, 0.0);
+    const RunStats::Ledger& l = stats.ledger;
+    EXPECT_NEAR(l.onSurface + l.inAir + l.inWorld + l.debt + l.evaporated + l.drained, l.emitted, 1e-14);
+    EXPECT_GT(most, 5e-6);
+    const double jet = 0.5 * 0.06e-3;  // m^3: a nozzle lets whole layers out
+    // What is born above the water beside her may come down on her again.
+    EXPECT_GT(world.stats().taken, 0.75 * jet);
+    EXPECT_LT(world.stats().taken, 1.25 * jet + world.stats().poured);
+    EXPECT_GT(world.stats().poured, 0.2 * jet);
+    EXPECT_LT(l.debt, 8 * std::pow(0.008, 3));
+    EXPECT_EQ(stats.lost, 0U);
+    for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) EXPECT_TRUE(isFinite(d.position));
+    (*session)->reset();
+    EXPECT_EQ((*session)->flows().ledger().taken, 0.0);
+    EXPECT_EQ(world.stats().taken, 0.0);
+}
+
+// A drop that hangs in the air is met by a skin that comes to it: faster than the drop is wide in a frame.
+TEST(SceneFlow, ASkinThatMovesMeetsWhatIsInItsWay) {
+    auto device = cpu();
+    Result<SceneFile> scene = loadScene(
+        "rain_on_spot",
+        std::vector<std::string>{"flow.0.mesh=meshes/sphere.obj", "flow.0.fitSize=0.1", "flow.0.mapSize=64", "fluid.gravity=0,0,0",
+                                 "flow.0.position=0,0,0", "flow.0.motion.pivot=0,0,-0.5", "flow.0.motion.swing=40,0,0",
+                                 "flow.0.motion.period=1", "flow.0.sources.0.rate=100000", "flow.0.sources.0.drop=4",
+                                 "flow.0.sources.0.speed=0", "flow.0.sources.0.along=0,-1,0", "flow.0.sources.0.stop=0.02"});
+    ASSERT_TRUE(scene) << scene.error().message;
+    Result<std::unique_ptr<Session>> session = Session::create(*scene, *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    for (int k = 0; k < 3; ++k) (*session)->step(1.0 / 60, true);
+    const size_t hang = (*session)->flows().inAir();
+    ASSERT_GT(hang, 5U);
+    for (int k = 0; k < 60; ++k) (*session)->step(1.0 / 60, true);
+    EXPECT_LT((*session)->flows().inAir(), hang);
+    EXPECT_GT((*session)->flows().ledger().onSurface, 0.0);
+    EXPECT_EQ((*session)->flows().ledger().error, 0.0);
+}
+
 }  // namespace
 }  // namespace rivulet

@@ -35,6 +35,17 @@ namespace drain_unit {
 namespace forget_unit {
 #include "shaders/fluid/forget.kernel"
 }
+#undef RIVULET_GRID_H
+#undef RIVULET_AROUND_H
+namespace fullness_unit {
+#include "shaders/fluid/fullness.kernel"
+}
+namespace within_unit {
+#include "shaders/fluid/within.kernel"
+}
+namespace take_unit {
+#include "shaders/fluid/take.kernel"
+}
 namespace gather_unit {
 #include "shaders/fluid/gather_absorption.kernel"
 }
@@ -49,6 +60,9 @@ std::span<const CpuKernelRow> emissionRows() {
         {"fluid/emit", "ABSORPTION=1;MATTER=1", RIVULET_UNIT_ISA, emit_matter_absorption::emit, 64},
         {"fluid/drain", "", RIVULET_UNIT_ISA, drain_unit::drain, 1024},
         {"fluid/forget", "", RIVULET_UNIT_ISA, forget_unit::forget, 1024},
+        {"fluid/fullness", "", RIVULET_UNIT_ISA, fullness_unit::fullness, 64},
+        {"fluid/within", "", RIVULET_UNIT_ISA, within_unit::within, 1024},
+        {"fluid/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},
         {"fluid/gather_absorption", "", RIVULET_UNIT_ISA, gather_unit::gather_absorption, 1024},
     };
     return rows;

@@ -1,0 +1,19 @@
+// What passes between a world and others who hold water. Layout shared by C++, GLSL (std140, std430) and OpenCL: size % 16 == 0.
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+#pragma once
+#include "shaders/fluid/step_params.h"
+namespace rivulet {
+#endif
+STRUCT(ExchangeParams) {
+    StepParams step;
+    vec4  low;          // xyz m: the box that is asked about
+    vec4  high;
+    uint  count;        // of places asked about, or of slots taken
+    uint  most;         // how many particles fit into the answer
+    float weight;       // a particle's share of the density ratio at distance 0
+    float unused;
+};
+#if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
+static_assert(sizeof(ExchangeParams) % 16 == 0);
+}  // namespace rivulet
+#endif

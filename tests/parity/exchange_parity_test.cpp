@@ -1,0 +1,66 @@
+// Water that others hold beside the world, on cl and gl: as full a place, as many taken, as many born of what is poured.
+#include <gtest/gtest.h>
+
+#include "fluid/sim/fluid_world.h"
+#include "tests/parity/devices.h"
+
+namespace rivulet {
+namespace {
+
+constexpr double kOne = 0x1p-15;  // m^3, of a particle
+
+std::vector<vec3> positions(FluidWorld& world) {
+    const ParticleView view = world.particles();
+    std::vector<vec3> all;
+    for (const vec4& x : world.device().readAll<vec4>(*view.position, view.count))
+        if (!(x.w < 0)) all.emplace_back(x);
+    return all;
+}
+
+class ExchangeParity : public testing::TestWithParam<const char*> {};
+
+TEST_P(ExchangeParity, TheSameOnAGpu) {
+    Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    auto cpu = makeTestCpu();
+    std::vector<float> full[2];
+    std::vector<vec3> left[2];
+    FluidStats stats[2];
+    Device* devices[] = {cpu.get(), gpu->device.get()};
+    for (size_t d = 0; d < 2; ++d) {
+        FluidParams p;
+        p.spacing = 0.03125F;
+        p.box.max = vec3(0.5F);
+        p.blocks = {{vec3(0.0F), vec3(0.5F, 0.2F, 0.5F), vec3(0.0F)}};
+        p.method = "pbf";
+        p.pbf.minSubsteps = 4;
+        auto made = FluidWorld::create(*devices[d], p, {}, {}, {.poured = 100 * kOne});
+        ASSERT_TRUE(made) << made.error().message;
+        FluidWorld& world = **made;
+        for (int k = 0; k < 2; ++k) world.step({}, 1.0 / 60);
+        const std::vector<vec3> places = {vec3(0.25F, 0.1F, 0.25F), vec3(0.25F, 0.2F, 0.25F), vec3(0.25F, 0.26F, 0.25F)};
+        full[d] = world.fullness(places);
+        std::vector<uint32_t> slots;
+        for (const WorldParticle& particle : world.within({vec3(0.1F, 0.05F, 0.1F), vec3(0.3F, 0.5F, 0.3F)}))
+            slots.push_back(particle.slot);
+        world.take(slots);
+        world.pour(vec3(0.4F, 0.3F, 0.4F), vec3(0, -1, 0), 1.5 * kOne);
+        world.step({}, 1.0 / 60);
+        devices[d]->finish();
+        devices[d]->poll();
+        left[d] = positions(world);
+        stats[d] = world.stats();
+    }
+    for (size_t k = 0; k < full[0].size(); ++k) EXPECT_NEAR(full[0][k], full[1][k], 2e-3) << k;
+    EXPECT_EQ(left[0].size(), left[1].size());
+    EXPECT_GT(stats[0].taken, 0.0);
+    EXPECT_EQ(stats[0].taken, stats[1].taken);
+    EXPECT_EQ(stats[0].poured, kOne);
+    EXPECT_EQ(stats[1].poured, kOne);
+    EXPECT_NEAR(stats[1].debt, 0.5 * kOne, 1e-15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, ExchangeParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
+
+}  // namespace
+}  // namespace rivulet

@@ -1,0 +1,173 @@
+// Water that others hold beside the world: what a world says of a place, what it gives, and that what is poured into it is there.
+#include "fluid/sim/exchange_passes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "fluid/sim/fluid_world.h"
+#include "tests/parity/devices.h"
+
+namespace rivulet {
+namespace {
+
+constexpr float kSpacing = 0.03125F;  // m: a float, and so is its cube
+constexpr double kOne = 0x1p-15;      // m^3, of a particle
+
+// A pool 0.1875 m deep in a box of 0.5 m.
+FluidParams pool() {
+    FluidParams p;
+    p.method = "dfsph";
+    p.spacing = kSpacing;
+    p.box.min = vec3(0.0F);
+    p.box.max = vec3(0.5F);
+    p.blocks = {{vec3(0.0F), vec3(0.5F, 0.1875F, 0.5F), vec3(0.0F)}};
+    return p;
+}
+
+std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, double poured = 100 * kOne) {
+    auto world = FluidWorld::create(device, params, {}, {}, {.poured = poured});
+    EXPECT_TRUE(world) << (world ? "" : world.error().message);
+    return world ? std::move(*world) : nullptr;
+}
+
+std::vector<vec3> positions(FluidWorld& world) {
+    const ParticleView view = world.particles();
+    std::vector<vec3> all;
+    for (const vec4& x : world.device().readAll<vec4>(*view.position, view.count))
+        if (!(x.w < 0)) all.emplace_back(x);
+    return all;
+}
+
+TEST(Exchange, AWorldKnowsHowFullAPlaceIs) {
+    auto device = makeTestCpu();
+    auto world = make(*device, pool());
+    const std::vector<vec3> places = {vec3(0.25F, 0.1F, 0.25F), vec3(0.251F, 0.097F, 0.253F), vec3(0.25F, 0.1875F, 0.25F),
+                                      vec3(0.25F, 0.3F, 0.25F), vec3(0.25F, 7.0F, 0.25F),     vec3(NAN)};
+    EXPECT_EQ(world->fullness(places), std::vector<float>(places.size(), 0.0F)) << "before the first step nobody knows";
+    for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
+    const std::vector<float> full = world->fullness(places);
+    // The sum over all particles, with Wendland's kernel (1995) at rest density 1, from its integral.
+    const std::vector<vec3> all = positions(*world);
+    const double h = double{kSpacing} * double{world->params().supportSpacings};
+    for (size_t k = 0; k + 1 < places.size(); ++k) {
+        double sum = 0;
+        for (const vec3& x : all) {
+            const double q = double{glm::distance(x, places[k])} / h;
+            if (q < 1) sum += 21 / (2 * 3.14159265358979 * h * h * h) * std::pow(1 - q, 4) * (4 * q + 1) * kOne;
+        }
+        EXPECT_NEAR(full[k], sum, 0.05) << k;  // a lattice as coarse as this sums to a few per cent beside 1
+    }
+    EXPECT_NEAR(full[0], 1.0, 0.1);
+    EXPECT_NEAR(full[2], 0.5, 0.15);
+    EXPECT_EQ(full[3], 0.0F);
+    EXPECT_EQ(full[4], 0.0F);
+    EXPECT_EQ(full[5], 0.0F);
+}
+
+TEST(Exchange, WhatIsTakenIsGoneAndNothingElse) {
+    auto device = makeTestCpu();
+    auto world = make(*device, pool());
+    for (const bool stepped : {false, true}) {
+        if (stepped)
+            for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
+        const std::vector<vec3> before = positions(*world);
+        const Bounds box{vec3(0.05F, 0.05F, 0.05F), vec3(0.4F, 0.5F, 0.4F)};
+        const std::vector<WorldParticle> found = world->within(box);
+        size_t expected = 0;
+        for (const vec3& x : before)
+            expected += glm::all(glm::greaterThanEqual(x, box.min)) && glm::all(glm::lessThanEqual(x, box.max)) ? 1 : 0;
+        ASSERT_EQ(found.size(), expected);
+        ASSERT_GT(expected, 100U);
+        // Every third.
+        std::vector<uint32_t> slots;
+        std::set<std::tuple<float, float, float>> gone;
+        for (size_t k = 0; k < found.size(); k += 3) {
+            slots.push_back(found[k].slot);
+            gone.insert({found[k].position.x, found[k].position.y, found[k].position.z});
+        }
+        world->take(slots);
+        const std::vector<vec3> after = positions(*world);
+        EXPECT_EQ(after.size(), before.size() - slots.size());
+        for (const vec3& x : after) EXPECT_EQ(gone.count({x.x, x.y, x.z}), 0U);
+    }
+    // It closes over them, and its figures say so.
+    for (int k = 0; k < 30; ++k) world->step({}, 1.0 / 60);
+    EXPECT_NEAR(world->stats().emitted, static_cast<double>(positions(*world).size()) * kOne + world->stats().taken, 1e-12);
+    EXPECT_EQ(world->stats().lost, 0U);
+}
+
+TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
+    auto device = makeTestCpu();
+    auto world = make(*device, pool());
+    for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
+    const size_t before = positions(*world).size();
+    const vec3 place(0.31F, 0.2F, 0.18F);
+    // A tear: less than a particle. It is owed, and nothing is to be seen.
+    world->pour(place, vec3(0, -2, 0), 8.0e-9);
+    for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
+    EXPECT_EQ(positions(*world).size(), before);
+    EXPECT_NEAR(world->stats().debt, 8.0e-9, 1e-18);
+    // Many: the first is born near the place, above the water.
+    double poured = 8.0e-9;
+    size_t now = before;
+    for (int k = 0; k < 60; ++k, poured += 0.21 * kOne) {
+        world->pour(place, vec3(0, -2, 0), 0.21 * kOne);
+        world->step({}, 1.0 / 60);
+        if (const std::vector<vec3> all = positions(*world); all.size() > now) {
+            if (now == before) {
+                float nearest = 1;
+                for (const vec3& x : all)
+                    nearest = std::min(nearest, glm::distance(vec2(x.x, x.z), vec2(place.x, place.z)) + std::max(0.2F - x.y, 0.0F));
+                EXPECT_LT(nearest, kSpacing);
+            }
+            now = all.size();
+        }
+        const FluidStats& s = world->stats();
+        EXPECT_NEAR(s.poured + s.debt, poured + 0.21 * kOne, 1e-15);
+        EXPECT_NEAR(s.poured, static_cast<double>(now - before) * kOne, 1e-15);
+    }
+    for (int k = 0; k < 30; ++k) world->step({}, 1.0 / 60);
+    EXPECT_EQ(positions(*world).size(), before + static_cast<size_t>(poured / kOne));
+    EXPECT_LT(world->stats().debt, kOne);
+    EXPECT_LT(world->stats().maxCompression, 0.05);
+    EXPECT_LT(world->stats().maxSpeed, 1.5);  // nobody was squeezed out
+    world->reset();
+    EXPECT_EQ(positions(*world).size(), before);
+    EXPECT_EQ(world->stats().debt, 0.0);
+    EXPECT_EQ(world->stats().taken, 0.0);
+}
+
+// A debt is part of a saved world, and what comes after is the same.
+TEST(Exchange, ASavedWorldKeepsItsDebts) {
+    auto device = makeTestCpu();
+    auto a = make(*device, pool()), b = make(*device, pool());
+    for (int k = 0; k < 4; ++k) a->step({}, 1.0 / 60);
+    const std::vector<WorldParticle> some = a->within({vec3(0.1F, 0.1F, 0.1F), vec3(0.3F, 0.3F, 0.3F)});
+    std::vector<uint32_t> slots;
+    for (const WorldParticle& p : some) slots.push_back(p.slot);
+    ASSERT_FALSE(slots.empty());
+    a->take(slots);
+    a->pour(vec3(0.3F, 0.22F, 0.3F), vec3(0.1F, -1, 0), 2.6 * kOne);
+    WorldState state;
+    a->save(state);
+    const Status restored = b->restore(state);
+    ASSERT_TRUE(restored) << restored.error().message;
+    EXPECT_EQ(b->stats().debt, a->stats().debt);
+    EXPECT_EQ(b->stats().taken, a->stats().taken);
+    for (int k = 0; k < 20; ++k) {
+        a->step({}, 1.0 / 60);
+        b->step({}, 1.0 / 60);
+    }
+    EXPECT_EQ(positions(*a), positions(*b));
+    EXPECT_EQ(a->stats().poured, 2 * kOne);
+    // One that knows nobody else is no world for it.
+    auto alone = make(*device, pool(), 0);
+    WorldState again;
+    a->save(again);
+    EXPECT_FALSE(alone->restore(again));
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -12,7 +12,10 @@ namespace {
 
 // How far round it one goes along the skin, over `reach`; and how many triangles one looks at there: of a finer skin all is asked.
 constexpr float kRound = 1.6F;
-constexpr size_t kMostSeen = 1500;
+constexpr size_t kMostSeen = 6000;
+// One triangle answers for the smaller ones that lie whole within this share of `reach` of its middle. With the search, 1 + kTogether of
+// `reach`, none that matters is missed.
+constexpr float kTogether = 0.25F;
 // Normals further apart face away from each other.
 constexpr float kAway = -0.2F;
 
@@ -93,10 +96,25 @@ std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
         const float far = glm::distance(vec3(ball[t]), x);
         return far < most || (far - ball[t].w < most && distanceTo(mesh, t, x) < most);
     };
+    std::vector<uint32_t> open, speaker(mesh.triangleCount(), UINT32_MAX);
+    for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+        if (speaker[t] != UINT32_MAX) continue;
+        speaker[t] = t;
+        open.assign(1, t);
+        for (size_t next = 0; next < open.size(); ++next)
+            for (size_t edge = 0; edge < 3; ++edge) {
+                const uint32_t across = mesh.across[3 * size_t{open[next]} + edge], other = across / 4;
+                if (across == FlowMesh::kOpen || speaker[other] != UINT32_MAX) continue;
+                if (glm::distance(vec3(ball[t]), vec3(ball[other])) + ball[other].w > kTogether * reach) continue;
+                speaker[other] = t;
+                open.push_back(other);
+            }
+    }
     const Samples samples(mesh, reach);
-    std::vector<uint32_t> seen(mesh.triangleCount(), UINT32_MAX), open;
+    std::vector<uint32_t> seen(mesh.triangleCount(), UINT32_MAX);
     for (uint32_t k = 0; k < samples.all().size(); ++k) {
         const Sample& own = samples.all()[k];
+        if (speaker[own.triangle] != own.triangle) continue;
         open.assign(1, own.triangle);
         seen[own.triangle] = k;
         for (size_t next = 0; next < open.size() && open.size() < kMostSeen; ++next)
@@ -107,7 +125,7 @@ std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
                 if (within(across / 4, own.x, kRound * reach)) open.push_back(across / 4);
             }
         float& nearest = folds[own.triangle];
-        samples.eachWithin(own.x, 1.25F * reach, [&](uint32_t other) {
+        samples.eachWithin(own.x, (1 + kTogether) * reach, [&](uint32_t other) {
             if (seen[other] == k && glm::dot(normal[own.triangle], normal[other]) >= kAway) return;
             // From its own middle and corners, where that can be nearer still.
             if (glm::distance(vec3(ball[other]), vec3(ball[own.triangle])) - ball[other].w - ball[own.triangle].w >= nearest) return;
@@ -116,6 +134,9 @@ std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
                 nearest = std::min(nearest, distanceTo(mesh, other, mesh.rest[mesh.corner[3 * size_t{own.triangle} + c]]));
         });
     }
+    for (size_t t = 0; t < folds.size(); ++t)
+        if (const float nearest = folds[speaker[t]]; speaker[t] != t && nearest < kNoFold)
+            folds[t] = std::max(nearest - kTogether * reach, 0.0F);
     return folds;
 }
 

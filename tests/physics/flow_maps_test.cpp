@@ -275,6 +275,36 @@ TEST(FlowMaps, TheOtherLipStaysDry) {
     }
 }
 
+// Two sheets back to back, over a slope: of a skin so fine that one triangle answers for many, each still knows the other to half
+// of the reach, and never thinks it is further than it is; where nothing is near, none does.
+TEST(FlowMaps, AFineSkinKnowsWhatIsNear) {
+    constexpr float kReach = 0.004F;
+    Skin skin;
+    addSheet(skin, vec3(0), vec3(0.03F, 0, 0), vec3(0, 0.012F, 0), 90, vec2(0), vec2(0.4F, 0), vec2(0, 1));
+    // Above it, facing it: 0.2 mm off at one end, 8 mm at the other.
+    addSheet(skin, vec3(0, 0.012F, 0.0002F), vec3(0.03F, 0, 0.0078F), vec3(0, -0.012F, 0), 90, vec2(0.5F, 0), vec2(0.4F, 0), vec2(0, 1));
+    Result<FlowMesh> mesh = makeFlowMesh(skin.view());
+    ASSERT_TRUE(mesh);
+    const std::vector<float> folds = skinFolds(*mesh, kReach);
+    size_t near = 0, none = 0;
+    for (uint32_t t = 0; t < mesh->triangleCount(); ++t) {
+        const vec3 x = positionOf(*mesh, {t, 1.0F / 3, 1.0F / 3});
+        if (x.z > 0 || x.x > 0.0295F) continue;  // of the lower sheet, not at its end
+        const float slope = 0.0078F / 0.03F, apart = (0.0002F + slope * x.x) / std::sqrt(1 + slope * slope);
+        if (x.x > 0.0295F - slope * 0.0078F) continue;  // the nearest point would be beyond the other's end
+        if (apart < kReach) {
+            ++near;
+            EXPECT_LE(folds[t], apart + 1e-5F) << x.x;
+            EXPECT_GE(folds[t], apart - 0.51F * kReach - 1e-4F) << x.x;
+        } else if (apart > 1.6F * kReach) {
+            ++none;
+            EXPECT_EQ(folds[t], kNoFold) << x.x;
+        }
+    }
+    EXPECT_GT(near, 5000U);
+    EXPECT_GT(none, 500U);
+}
+
 // A drop has run down a sheet and off it: the film that it left is drawn, all of it, where it lies, and wet where it is a trail's.
 TEST(FlowMaps, TheFilmIsDrawnWhereItLies) {
     Skin skin;

@@ -62,7 +62,7 @@ void FlowMotionParams::visit(ParamVisitor& v) {
 
 void RegionParams::visit(ParamVisitor& v) {
     v.value({.name = "mask",
-             .doc = "picture over the mesh's UVs: red oily, green dry, blue hair, alpha lip; none = the same everywhere",
+             .doc = "picture of any size over the mesh's UVs: red oily, green dry, blue hair, alpha lip; none = the same everywhere",
              .fixed = kFixed},
             mask);
     v.value({"oily", "", "of what holds a drop, where the mask says so", 0, 10, kLinear, kFixed}, oily);

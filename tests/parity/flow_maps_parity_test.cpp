@@ -9,7 +9,7 @@
 #include "engine/app/context_egl.h"
 #include "fluid/flow/flow_layer.h"
 #include "tests/parity/devices.h"
-#include "tests/physics/flow_shapes.h"
+#include "tests/physics/charted_skins.h"
 
 namespace rivulet {
 namespace {

@@ -14,7 +14,7 @@
 #include "fluid/flow/thesis_picture.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "shaders/flow/map_step.h"
-#include "tests/physics/flow_shapes.h"
+#include "tests/physics/charted_skins.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

@@ -9,7 +9,7 @@
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/thesis_picture.h"
 #include "fluid/validate/thesis_forms.h"
-#include "tests/physics/flow_shapes.h"
+#include "tests/physics/charted_skins.h"
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 

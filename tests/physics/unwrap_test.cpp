@@ -10,7 +10,7 @@
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/unwrap.h"
 #include "fluid/flow/uv_triangle.h"
-#include "tests/physics/flow_shapes.h"
+#include "tests/physics/charted_skins.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet {

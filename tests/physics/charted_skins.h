@@ -8,15 +8,11 @@
 #include "engine/core/mesh_view.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/flow/flow_mesh.h"
+#include "fluid/validate/flow_shapes.h"
 
 namespace rivulet::test {
 
-struct Skin {
-    std::vector<vec3> positions;
-    std::vector<vec2> uvs;
-    std::vector<uint32_t> indices;
-    MeshView view() const { return {positions, indices, {}, uvs}; }
-};
+using Skin = Shape;
 
 // n x n quads from `corner`; UVs from `uv` along uvAcross and uvAlong.
 inline void addSheet(Skin& s, const vec3& corner, const vec3& across, const vec3& along, uint32_t n, vec2 uv, vec2 uvAcross, vec2 uvAlong) {

@@ -66,7 +66,7 @@ struct Painter {
 
     Result<std::vector<uint8_t>> paint(Session& session, int width, int height) {
         const SceneFile& scene = session.scene();
-        Result<FluidView> fluid = upload.view(session.world(), scene.look);
+        Result<FluidView> fluid = upload.view(session.world(), scene.look, session.flows().airDrops());
         if (!fluid) return fluid.error();
         if (Status wet = session.flows().draw(); !wet) return wet.error();
         FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.world().time());

@@ -87,7 +87,7 @@ FrameView frameViewOf(const Camera& camera, const LightParams& light, int width,
     return view;
 }
 
-Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look) {
+Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops) {
     const ParticleView particles = world.particles();
     FluidView out;
     out.count = particles.count > 0 ? particles.slots : 0;
@@ -95,6 +95,11 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.radius = look.radiusSpacings * particles.spacing;
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);
+    out.dropCount = static_cast<uint32_t>(drops.size() / 2);
+    if (out.dropCount > 0) {
+        if (Status s = uploadTo(drops_, std::as_bytes(drops)); !s) return s.error();
+        out.drops = drops_.name();
+    }
     if (out.count == 0) return out;
     // The points' shader reads normals where it else reads velocities. There are none before the first step.
     const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
@@ -292,6 +297,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
     const FluidLayers layers = row->add(graph, fluid_, draw);
+    addDrops(graph, fluid_, draw, layers);
     if (background.showBox && (row->opaque || layers.fluidDepth))
         addBox(graph, render_, frame, box, layers.colour, draw.depth, layers.fluidDepth);
 

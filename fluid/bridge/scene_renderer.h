@@ -36,10 +36,11 @@ FrameView frameViewOf(const Camera& camera, const LightParams& light, int width,
 class FluidUpload {
   public:
     // Valid until the next view() and until the world's next step. Error (failed): out of GPU memory.
-    Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look);
+    // `drops`: those in the air, as FluidView::drops has them.
+    Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {});
 
   private:
-    gpu::Buffer position_, velocity_, id_, absorption_;
+    gpu::Buffer position_, velocity_, id_, absorption_, drops_;
     std::vector<vec4> vectors_;
     std::vector<uint32_t> ids_;
 };

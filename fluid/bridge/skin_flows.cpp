@@ -201,6 +201,15 @@ Status SkinFlows::draw() {
     return ok();
 }
 
+std::vector<vec4> SkinFlows::airDrops() const {
+    std::vector<vec4> all;
+    for (const FlowComponent::AirDrop& d : air_) {
+        all.emplace_back(vec3(d.position), static_cast<float>(std::cbrt(3 * d.picolitres * kPicolitre / (4 * std::numbers::pi))));
+        all.emplace_back(vec3(d.velocity), 0.0F);
+    }
+    return all;
+}
+
 bool SkinFlows::drip(const dvec3& from, const dvec3& way, uint32_t picolitres) {
     const First first = firstOn(from, from + way, time_);
     if (first.skin == nullptr) return false;

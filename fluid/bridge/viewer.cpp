@@ -269,7 +269,7 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
         return ok();
     }
     const SceneFile& scene = session_->scene();
-    Result<FluidView> fluid = upload_.view(session_->world(), scene.look);
+    Result<FluidView> fluid = upload_.view(session_->world(), scene.look, session_->flows().airDrops());
     if (!fluid) return fluid.error();
     if (Status wet = session_->flows().draw(); !wet) return wet;
     Camera camera = cameraOf(scene.camera, session_->bounds());

@@ -19,6 +19,9 @@ struct FluidView {
     uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
     float radius = 0.01F;   // m, of a drawn sphere
     float spacing = 0.02F;  // m
+    // Drops in the air, of any size: GL buffer name, two vec4 a drop: xyz m, w radius, m; xyz m/s.
+    unsigned drops = 0;
+    uint32_t dropCount = 0;
     Bounds bounds;  // m, world: the box that the water is in: it is cut there, and its shadow map covers it; empty: no cut, no shadow
 };
 

@@ -15,9 +15,9 @@ constexpr int kTile = 32;  // pixels
 
 const Table<RendererRow>& renderers() { return kRenderers; }
 
-std::array<gpu::Program*, 15> FluidPrograms::all() {
-    return {&points, &pointsShade, &occluder,   &markTiles,       &depth,          &smooth,       &smoothLast, &thickness,
-            &blur,   &shade,       &lightWater, &lightWaterFirst, &lightWaterLast, &thicknessInk, &shadeInk};
+std::array<gpu::Program*, 17> FluidPrograms::all() {
+    return {&points, &pointsShade, &occluder,        &markTiles,      &depth,        &smooth,   &smoothLast, &thickness,     &blur,
+            &shade,  &lightWater,  &lightWaterFirst, &lightWaterLast, &thicknessInk, &shadeInk, &drops,      &dropsOverWater};
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
@@ -41,12 +41,15 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         {&p.lightWaterLast, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"LAST", "1"}})},
         {&p.thicknessInk, Program::create(files, {sphere, folder + "thickness.frag"}, {{"INK", "1"}})},
         {&p.shadeInk, Program::create(files, {tile, folder + "shade.frag"}, {{"INK", "1"}})},
+        {&p.drops, Program::create(files, {folder + "drop.vert", folder + "drop.frag"})},
+        {&p.dropsOverWater, Program::create(files, {folder + "drop.vert", folder + "drop.frag"}, {{"OVER_WATER", "1"}})},
     };
     for (auto& [into, program] : made) {
         if (!program) return program.error();
         *into = std::move(*program);
     }
     p.particles = gpu::VertexArray::create();
+    p.dropFeed = gpu::VertexArray::create();
     p.none = gpu::VertexArray::create();
     return p;
 }

@@ -29,7 +29,8 @@ struct FluidLook {
 struct FluidPrograms {
     gpu::Program points, pointsShade, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
         lightWaterLast, thicknessInk, shadeInk;  // Ink: particles differ in absorption
-    gpu::VertexArray particles, none;
+    gpu::Program drops, dropsOverWater;
+    gpu::VertexArray particles, dropFeed, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
     void drawParticles(const FluidView& fluid);  // a quad each, with the program in use
@@ -37,7 +38,7 @@ struct FluidPrograms {
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 
   private:
-    std::array<gpu::Program*, 15> all();
+    std::array<gpu::Program*, 17> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.
@@ -74,6 +75,9 @@ gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, con
 
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+
+// The drops in the air, into layers.colour.
+void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
 // A particle's volume over its drawn sphere's: what turns lengths within spheres into lengths within water.
 float volumeScale(const FluidView& fluid);

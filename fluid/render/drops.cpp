@@ -1,0 +1,44 @@
+// Drops in the air, each by itself.
+#include "fluid/render/renderers.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr float kShutter = 1.0F / 250;  // s: what falls fast is drawn out, as on a photograph
+
+}  // namespace
+
+void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
+    using gpu::PassContext;
+    using gpu::Usage;
+    if (d.fluid.dropCount == 0) return;
+    const gpu::TextureHandle behind = graph.texture("behind drops", graph.desc(layers.colour));
+    graph.pass("copy scene", {{layers.colour, Usage::copy}}, {{behind, Usage::copy}}, [=](PassContext& c) {
+        const gpu::Texture &from = c.texture(layers.colour), &to = c.texture(behind);
+        glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
+    });
+    const gpu::BufferHandle drops = graph.importBuffer("drops", d.fluid.drops, size_t{d.fluid.dropCount} * 2 * sizeof(vec4));
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {drops, Usage::attribute}, behind, d.depth};
+    if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
+    graph.pass("drops", reads, {layers.colour}, [=, &programs](PassContext& c) {
+        c.drawTo({layers.colour});
+        glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        gpu::Program& p = layers.fluidDepth ? programs.dropsOverWater : programs.drops;
+        p.use();
+        p.set("shutter", kShutter);
+        p.set("refractiveIndex", d.look.refractiveIndex);
+        p.texture("sceneColour", 0, c.texture(behind));
+        p.texture("sceneDepth", 1, c.texture(d.depth));
+        if (layers.fluidDepth) p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
+        for (const int k : {0, 1})
+            programs.dropFeed.attribute(static_cast<GLuint>(k), d.fluid.drops, 4, GL_FLOAT, 2 * sizeof(vec4),
+                                        static_cast<size_t>(k) * sizeof(vec4), 1);
+        programs.dropFeed.bind();
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(d.fluid.dropCount));
+    });
+}
+
+}  // namespace rivulet

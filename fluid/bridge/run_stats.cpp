@@ -198,6 +198,7 @@ RunStats RunRecorder::finish(std::string scene) {
     if (flows_ != nullptr && !flows_->empty()) {
         const SkinFlows::Ledger skins = flows_->ledger();
         l.debt = late.debt;
+        l.inWorld += l.debt;
         // What went from skins to the world, less what of it was born, is its debt; what it gave is what they took, but for rounding.
         constexpr double kPicolitre = 1.0e-15;  // m^3
         const double handed = std::abs(skins.poured - late.poured - late.debt) + std::abs(late.taken - skins.taken);

@@ -61,7 +61,7 @@ struct RunStats {
     double dropped = 0;              // s asked for that were not simulated
     double dtMin = 0, dtMax = 0;     // s
     std::vector<std::string> limited;
-    // m^3; emitted: blocks, and what emitters and sources let out. debt: what came from skins into the world and is not yet a particle.
+    // m^3; emitted: blocks, and what emitters and sources let out. debt: of inWorld, what came from skins and is not yet a particle.
     // error: what is not where the rest is, over emitted.
     struct Ledger {
         double emitted = 0, onSurface = 0, inAir = 0, inWorld = 0, debt = 0, evaporated = 0, drained = 0, error = 0;

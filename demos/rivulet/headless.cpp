@@ -51,7 +51,7 @@ struct Outputs {
         if (Status writable = checkWritable(to.stats); !writable) return writable.error();
         if (!options.save.empty())
             if (Status writable = checkWritable(options.save); !writable) return writable.error();
-        if (!options.render) return to;
+        if (!options.render || !options.stills.empty()) return to;
         Result<VideoWriter> video = VideoWriter::open(to.video, options.width, options.height, kFramesPerSecond);
         if (!video) return video.error();
         to.writer = std::move(*video);
@@ -97,19 +97,20 @@ struct Loop {
     }
 
     Status run(int frames) {
-        std::set<int> kept = pictureFrames(frames);
+        const std::set<int> kept = options.stills.empty() ? pictureFrames(frames) : options.stills;
         Progress progress(options.scene.name);
         for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
             Clock::time_point start = Clock::now();
             double simulateMs = session.step(1.0 / kFramesPerSecond, true), renderMs = 0;
             std::vector<PassTime> drawn;
-            if (options.render) {
+            if (options.render && (to.writer || kept.contains(f))) {
                 Clock::time_point before = Clock::now();
                 Result<std::vector<uint8_t>> pixels = painter.paint(session, options.width, options.height);
                 if (!pixels) return pixels.error();
                 renderMs = msSince(before);
                 drawn = painter.renderer->times();
-                if (Status added = to.writer->add(*pixels); !added) return added;
+                if (to.writer)
+                    if (Status added = to.writer->add(*pixels); !added) return added;
                 if (kept.contains(f)) {
                     if (Status written = writePng(fmt::format("{}_{:04}.png", to.picturePrefix, f), *pixels, options.width, options.height);
                         !written)
@@ -118,6 +119,8 @@ struct Loop {
                     ++pictures;
                 }
             }
+            if (options.render && !to.writer && !kept.contains(f))  // a skin's maps show what has come since they were last drawn
+                if (Status wet = session.flows().draw(); !wet) return wet.error();
             recorder.frame(simulateMs, renderMs, msSince(start), session.world().device().takeTimes(), drawn);
             progress.show(static_cast<double>(f + 1) / frames,
                           fmt::format("{:.2f} s, {:.0f} ms a frame", session.world().time(), msSince(start)));
@@ -157,6 +160,7 @@ int runHeadless(const RunOptions& options) {
 
     const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
     int frames = options.frames.value_or(static_cast<int>(std::lround(left * kFramesPerSecond)));
+    if (!options.stills.empty() && !options.frames) frames = *options.stills.rbegin() + 1;
     Loop loop{options, graceful, **session,
               *to,     painter,  RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};
     if (Status done = loop.run(frames); !done) return report(done.error());
@@ -170,7 +174,8 @@ int runHeadless(const RunOptions& options) {
 
     std::string where = to->stats;
     if (options.render && stats.frames > 0)
-        where = fmt::format("{}, {} pictures {}_*.png and {}", to->video, loop.pictures, to->picturePrefix, to->stats);
+        where =
+            fmt::format("{}{} pictures {}_*.png and {}", to->writer ? to->video + ", " : "", loop.pictures, to->picturePrefix, to->stats);
     if (!options.save.empty()) where += fmt::format(" and {}", options.save);
     if (options.explain) fmt::print("{}", explain(**session, stats));
     fmt::print("{}\n", where);

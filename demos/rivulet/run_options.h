@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct RunOptions {
     std::string out = "out";         // folder of what is written
     std::string video;               // file; empty: out/NAME.mp4
     std::string stats;               // file; empty: out/stats.json, or none in the window
+    std::set<int> stills;            // frames; empty: a video of all, and some pictures
     std::string save, resume;        // files of a state; empty: none
     Log log;
 };

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
@@ -19,6 +20,15 @@ bool hasDisplay() {
         return value != nullptr && *value != '\0';
     };
     return given("DISPLAY") || given("WAYLAND_DISPLAY");
+}
+
+// The frame that shows the scene at a second written as `text`.
+Result<int> frameAt(const std::string& text) {
+    double at = -1;
+    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), at);
+    if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0) || at * kFramesPerSecond > kMostFrames)
+        return badInput(fmt::format("--still {}: give a time in seconds, 0 or more", text));
+    return static_cast<int>(std::lround(at * kFramesPerSecond));
 }
 
 }  // namespace
@@ -56,6 +66,7 @@ int runVerb(const Arguments& arguments) {
     RunOptions options;
     std::vector<std::string> assignments;
     std::string preset;
+    std::vector<std::string> stills;
     bool headless = false, noRender = false;
     std::optional<double> seconds;
     reader.positional("SCENE.json", "the scene", scene, true);
@@ -69,6 +80,7 @@ int runVerb(const Arguments& arguments) {
     reader.option("--size", "WxH", "of the picture, in pixels", size);
     reader.option("--out", "DIR", "folder that the video, pictures and figures go to", options.out);
     reader.option("--video", "FILE.mp4", "the video's file, instead of DIR/NAME.mp4", options.video);
+    reader.option("--still", "S", "draw only the frame at this second, and no video; as often as you like", stills);
     reader.option("--stats", "FILE.json", "the figures' file, instead of DIR/stats.json", options.stats);
     reader.option("--save", "FILE", "the whole state at the run's end, for --resume", options.save);
     reader.option("--resume", "FILE", "go on from a state that --save wrote, of the same scene", options.resume);
@@ -84,6 +96,13 @@ int runVerb(const Arguments& arguments) {
     std::tie(options.width, options.height) = *pixels;
     if (noRender && !options.video.empty())
         return report(badInput("--video asks for pictures and --no-render for none; leave one of them out"));
+
+    if (noRender && !stills.empty()) return report(badInput("--still asks for pictures and --no-render for none; leave one of them out"));
+    for (const std::string& still : stills) {
+        Result<int> frame = frameAt(still);
+        if (!frame) return report(frame.error());
+        options.stills.insert(*frame);
+    }
 
     Result<SceneFile> loaded = loadScene(scene, assignments, preset);
     if (!loaded) return report(loaded.error());
@@ -102,6 +121,7 @@ int runVerb(const Arguments& arguments) {
         options.log.notice("there is no display: running headless");
         headless = true;
     }
+    if (!options.stills.empty()) headless = true;
     return headless || noRender ? runHeadless(options) : runWindow(options);
 }
 

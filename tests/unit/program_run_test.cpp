@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "tests/unit/program_runner.h"
@@ -48,6 +49,38 @@ TEST(ProgramRun, HeadlessLeavesVideoPicturesAndFigures) {
     Json::Value stats = readJson(scratch.path() / "out/stats.json");
     EXPECT_EQ(stats["frames"].asInt(), 12);
     EXPECT_GT(stats["renderMs"]["median"].asDouble(), 0);
+}
+
+// Moments alone: each is the same picture as in a run that is drawn throughout, and there is no video.
+TEST(ProgramRun, StillsAreTheFramesOfTheWholeRun) {
+    Scratch scratch;
+    const std::string scene = scratch.file("small.json", smallScene());
+    const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"run", scene, "--headless", "--backend", "cpu", "--size", "96x64", "--out", out};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runProgram(arguments, in(scratch));
+    };
+    const Outcome whole = run("whole", {"--frames", "11"}), stills = run("stills", {"--still", "0.0667", "--still", "0.1333"});
+    ASSERT_EQ(whole.code, 0) << whole.err;
+    ASSERT_EQ(stills.code, 0) << stills.err;
+    const auto bytes = [&](const std::string& name) {
+        std::ifstream stream(scratch.path() / name, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    std::set<std::string> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(scratch.path() / "stills"))
+        names.insert(entry.path().filename().string());
+    EXPECT_EQ(names, (std::set<std::string>{"small_0004.png", "small_0008.png", "stats.json"}));
+    for (const char* name : {"small_0004.png", "small_0008.png"}) {
+        EXPECT_FALSE(bytes(std::string("stills/") + name).empty());
+        EXPECT_EQ(bytes(std::string("stills/") + name), bytes(std::string("whole/") + name)) << name;
+    }
+    for (const char* text : {"-1", "soon", "1e30"}) {
+        const Outcome refused = run("none", {"--still", text});
+        EXPECT_EQ(refused.code, 2);
+        EXPECT_NE(refused.err.find(text), std::string::npos) << refused.err;
+    }
+    EXPECT_EQ(run("none", {"--still", "0", "--no-render"}).code, 2);
 }
 
 // A solver that iterates says how often, and what it left; one that does not says 0 and null.

@@ -8,6 +8,7 @@
 
 #include "fluid/flow/map_texels.h"
 #include "fluid/flow/skin_folds.h"
+#include "fluid/flow/surface_flow_impl.h"
 #include "shaders/flow/map_step.h"
 
 namespace rivulet {
@@ -111,6 +112,10 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.reach = flow.largestRadius;
     s.trail = std::max(params.trail, 1.0e-6F);
     s.tap = 0.6F * params.filmCell;
+    s.contactRadius = static_cast<float>(contactRadius(meanAngle(params)));
+    // Where viscosity leaves nothing of the receding angle: theta^3 = 9 Ca ln(size / molecule), the logarithm about 10.
+    const float receding = glm::radians(std::max(params.receding, 10.0F));
+    s.inverseCorner = 90.0F * params.viscosity / (std::max(params.surfaceTension, 1.0e-6F) * receding * receding * receding);
     return s;
 }
 

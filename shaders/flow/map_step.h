@@ -62,8 +62,8 @@ STRUCT(FlowMapStep) {
     uint  stampAbove;
     uint  since;       // number of the flow's step that was drawn last
     uint  levelTexels; // of the mip that is made
-    uint  spare1;
-    uint  spare2;
+    float contactRadius;  // of a drop, over the cube root of its volume
+    float inverseCorner;  // s/m: one over the speed at which a drop's back becomes a corner
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FlowMapStep) % 16 == 0);

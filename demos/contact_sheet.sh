@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# A sheet of the crying face: front, three-quarter and macro, drawn at 1920x1080; dry in the first column, then at four moments.
+#   bash demos/contact_sheet.sh SHEET.jpg [SECOND SECOND SECOND SECOND] [-- further arguments of `rivulet run`]
+# Its single pictures are left in the folder SHEET. Needs the built program and ffmpeg.
+set -eu
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+program="${RIVULET:-$root/build/release/bin/rivulet}"
+[[ $# -gt 0 && "$1" == *.jpg ]] || { echo "contact_sheet: name the sheet, a .jpg" >&2; exit 2; }
+sheet="$1" folder="${1%.jpg}" moments=()
+shift
+while [[ $# -gt 0 && "$1" != -- ]]; do moments+=("$1"); shift; done
+[[ $# -eq 0 ]] || shift
+[[ ${#moments[@]} -gt 0 ]] || moments=(1.2 3 5 9)
+[[ ${#moments[@]} -eq 4 ]] || { echo "contact_sheet: give four moments, in seconds" >&2; exit 2; }
+views=("0,0.01,0.48 0,0,0.03 25" "0.27,0.03,0.38 0.01,0,0.03 24" "0.07,0,0.30 0.034,0.012,0.06 10.5")  # position, target, field of view
+
+draw() {  # OUT, a view, further arguments
+    local out="$1"
+    read -r position target field <<< "$2"
+    shift 2
+    "$program" run "$root/assets/scenes/crying.json" --headless --preset sob --size 1920x1080 --out "$out" --set "camera.position=$position" \
+        --set "camera.target=$target" --set "camera.fieldOfView=$field" --set flow.0.motion.swing=0,0,0 "$@" > "$out.log" || { cat "$out.log"; exit 1; }
+}
+
+rm -rf "$folder"
+mkdir -p "$folder"
+inputs=() layout=""
+for row in 0 1 2; do
+    draw "$folder/dry$row" "${views[$row]}" --still "${moments[0]}" --set flow.0.sources.0.rate=0 "$@"
+    draw "$folder/wet$row" "${views[$row]}" "${moments[@]/#/--still=}" "$@"
+    for picture in "$folder/dry$row"/*.png "$folder/wet$row"/*.png; do
+        inputs+=(-i "$picture")
+    done
+done
+filter="" names=""
+for ((k = 0; k < 15; ++k)); do
+    filter+="[$k:v]crop=1440:1080,scale=600:450:flags=lanczos[p$k];"
+    names+="[p$k]"
+    layout+="${layout:+|}$((k % 5 * 600))_$((k / 5 * 450))"
+done
+ffmpeg -y -loglevel error "${inputs[@]}" -filter_complex "$filter${names}xstack=inputs=15:layout=$layout" -frames:v 1 -update 1 -q:v 4 "$sheet"
+echo "$sheet, and its pictures in $folder"

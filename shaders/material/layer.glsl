@@ -16,6 +16,18 @@ struct Liquid {
 
 vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * vec4(layerAbsorption.www, 1.0); }
 
+// A wet way is not flat as tape is: it stands higher in its middle than where it ends, which a map of what is 10 um thick, in texels of
+// 0.3 mm, does not tell. The slope of such a cushion, by how wetness falls over its edge.
+vec3 filmEdge(Tangents t, vec2 uv, float lod) {
+    const float kSoft = 0.6e-3, kCushion = 2.0e-4;  // m, over which it falls; m, how high it is
+    float texels = float(textureSize(layerMap, 0).x);
+    float wide = max(log2(kSoft * texels * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), lod);
+    float e = exp2(wide) / texels;
+    vec2 fall = vec2(textureLod(layerMap, uv + vec2(e, 0.0), wide).w - textureLod(layerMap, uv - vec2(e, 0.0), wide).w,
+                     textureLod(layerMap, uv + vec2(0.0, e), wide).w - textureLod(layerMap, uv - vec2(0.0, e), wide).w);
+    return gradient(t, fall * (0.5 * kCushion / e));
+}
+
 Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     Liquid dry = Liquid(0.0, 0.0, uv, vec3(0.0), 0.0, 1.0, 0.0);
     float lod = max(t.lod + log2(float(textureSize(layerMap, 0).x)), 0.0);
@@ -65,10 +77,11 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     toLamp /= max(sun, 0.4);
     q.light = clamp(1.0 + q.drop * (1.5 * toLamp + 2.2 * max(toLamp, 0.0) * max(toLamp, 0.0)), 0.35, 3.2);
     // Along its edge a drop keeps light in; and it takes some from what lies behind it as the lamp sees it.
-    q.light *= 1.0 - 0.35 * smoothstep(0.25, 0.6, steep) * (1.0 - smoothstep(0.03, 0.14, here.z));
+    q.light *= 1.0 - 0.25 * smoothstep(0.25, 0.6, steep) * (1.0 - smoothstep(0.03, 0.14, here.z));
     const float kShade = 1.5e-4;
     float over = 1.0e-3 * liquidTexel(uv + uvStep(t, across) * (kShade / sun), lod).z - kShade;
     q.light *= 1.0 - 0.6 * (1.0 - q.drop) * smoothstep(0.0, 2.0e-4, over);
+    if (q.drop < 1.0 && lod < 4.0) q.slope += (1.0 - q.drop) * filmEdge(t, uv, lod);
     q.variance = 0.10 * q.drop * smoothstep(3.0e-4, 1.5e-3, t.footprint);
     return q;
 }

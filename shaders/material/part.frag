@@ -89,7 +89,7 @@ void main() {
     // Thin parts: what the light loses between where it enters and here.
     vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.20 * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
-    arriving *= mix(1.0, q.light, 0.8);
+    arriving *= mix(vec3(1.0), vec3(q.light), vec3(0.35, 0.6, 0.75));  // what a drop gathers and shades spreads under it, red furthest
 #endif
     matte = albedo.rgb * (arriving * 0.3183099 + around + glow * falling * vec3(1.0, 0.32, 0.2));
     float oily = 0.30 + 0.75 * region.r - 0.10 * region.g;
@@ -147,8 +147,10 @@ void main() {
         float out_ = 1.0 - (r0 + (1.0 - r0) * pow(1.0 - max(dot(film, toEye), 0.0), 5.0));
         vec3 dimmed = matte * exp(-layerAbsorption.rgb * (2.0 * q.path)) * out_;
         matte = mix(matte, dimmed, cover);
-        // Metal and glass keep their mirror under the liquid, dimmed by it; a dielectric's is lost to one of nearly its own index.
-        shine = mix(shine, shine * (max(max(f0.r, f0.g), f0.b) > 0.1 ? out_ : 0.15) + wetShine, cover);
+        // Metal and glass keep their mirror under the liquid, dimmed by it; a dielectric's is lost to one of nearly its own index, under a film
+        // by half: its coarser relief stands out of it.
+        float kept = max(max(f0.r, f0.g), f0.b) > 0.1 ? out_ : mix(0.5, 0.15, q.drop);
+        shine = mix(shine, shine * kept + wetShine, cover);
     }
 #endif
 #if defined(BLENDED)

@@ -173,6 +173,42 @@ TEST_F(LookModel, aDryLayerChangesNothingAndADropOnlyWhereItIs) {
     scene = Scene();
 }
 
+TEST_F(LookModel, aWetWayShinesOnTheSideThatLeansToTheLamp) {
+    // A stripe of film 2 mm wide that is flat in its map: drawn as a cushion, one side mirrors a lamp to the right, the other one to the
+    // left.
+    constexpr float kSize = 0.016F;
+    ModelPart part = pane(kSize, 40);
+    part.material.baseColour = vec3(0.02F);
+    const gpu::Texture stripe = wetMap(
+        64, [](vec2 x) { return std::abs(x.x) < 1.0e-3F ? 1.0e-5F : 0.0F; }, kSize);
+    Node& node = addPart(part);
+    auto layer = std::make_shared<Layer>();
+    layer->texels = &stripe;
+    node.layer = layer;
+    const Camera camera = lookingAt(vec3(0, 0, 0.1F), vec3(0.0F), 6.0F);
+    const float pixel = 2.0F * 0.1F * std::tan(3.0F * kPi / 180.0F) / kHeight;
+    double sides[2][2];  // of a lamp to the left, to the right: the mean of the stripe's left and right half
+    for (const int to : {0, 1}) {
+        settings.light.direction = vec3(to == 0 ? -0.2F : 0.2F, 0.0F, 1.0F);
+        const std::vector<uint8_t> rgba = picture(camera, kWidth, kHeight, {});
+        for (const int side : {0, 1}) {
+            double sum = 0, count = 0;
+            for (int y = kHeight / 4; y < 3 * kHeight / 4; ++y)
+                for (int x = 0; x < kWidth; ++x) {
+                    const float off = pixel * (static_cast<float>(x) + 0.5F - 0.5F * kWidth) * (side == 0 ? -1.0F : 1.0F);
+                    if (off < 1.0e-4F || off > 0.9e-3F) continue;
+                    sum += at(rgba, x, y, 1);
+                    ++count;
+                }
+            sides[to][side] = sum / count;
+        }
+    }
+    EXPECT_GT(sides[0][0], 1.3 * sides[0][1]);
+    EXPECT_GT(sides[1][1], 1.3 * sides[1][0]);
+    EXPECT_NEAR(sides[0][0] / sides[1][1], 1, 0.1) << "its two sides are alike";
+    scene = Scene();
+}
+
 TEST_F(LookModel, aDropOnAPaneTurnsWhatIsBehindItUpsideDown) {
     constexpr float kSize = 0.04F, kRadius = 2.0e-3F;
     for (const bool upper : {true, false}) {  // red above, green below

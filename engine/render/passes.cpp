@@ -19,9 +19,9 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr int kShadowSize = 1024;     // texels, of the depth map
+constexpr int kShadowSize = 1024;     // texels, of the depth map; the sharp map is half as wide
 constexpr int kShadowSharpReach = 2;  // texels either side
-constexpr int kShadowSoftReach = 9;
+constexpr int kShadowSoftReach = 5;   // of the soft map, which is an eighth as wide
 constexpr float kExposure = 0.55F;
 constexpr float kBoxWidth = 1.2F;                        // pixels
 const float kPoreTiles = std::round(0.36F / kPoreTile);  // a unit of uv: about 0.36 m where a head's chart fills the tile
@@ -225,7 +225,7 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
 }
 
 TextureDesc shadowMapDesc(bool soft) {
-    const int size = soft ? kShadowSize / 4 : kShadowSize;
+    const int size = soft ? kShadowSize / 8 : kShadowSize / 2;
     return {.width = size, .height = size, .format = Format::rg32f};
 }
 
@@ -243,23 +243,27 @@ void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMes
             m.mesh->draw();
         }
     });
-    auto blur = [&](Program& program, TextureHandle from, TextureHandle to, ivec2 axis, int reach) {
+    auto blur = [&](Program& program, TextureHandle from, TextureHandle to, ivec2 axis, int reach, int gap) {
         graph.pass("shadow blur", {from}, {to}, [=, &program](PassContext& c) {
             c.drawTo({to});
             program.use();
             program.texture("source", 0, c.texture(from));
             program.set("axis", axis);
             program.set("reach", reach);
-            program.set("scale", static_cast<float>(c.texture(from).width()) / static_cast<float>(c.texture(to).width()));
+            program.set("gap", gap);
+            program.set("scale",
+                        vec2(c.texture(from).width(), c.texture(from).height()) / vec2(c.texture(to).width(), c.texture(to).height()));
             c.drawFullscreen();
         });
     };
-    const TextureHandle across = graph.texture("shadow across", shadowMapDesc(false)),
-                        wide = graph.texture("shadow wide", shadowMapDesc(true));
-    blur(programs.shadowFirst, depth, across, {1, 0}, kShadowSharpReach);
-    blur(programs.shadowBlur, across, sharp, {0, 1}, kShadowSharpReach);
-    blur(programs.shadowBlur, sharp, wide, {1, 0}, kShadowSoftReach);
-    blur(programs.shadowBlur, wide, soft, {0, 1}, kShadowSoftReach);
+    // As coarse as it may be for how much it is blurred.
+    const TextureDesc half = shadowMapDesc(false);
+    const TextureHandle across = graph.texture("shadow across", {.width = half.width, .height = kShadowSize, .format = half.format});
+    const TextureHandle wide = graph.texture("shadow wide", shadowMapDesc(true));
+    blur(programs.shadowFirst, depth, across, {1, 0}, kShadowSharpReach, 1);
+    blur(programs.shadowBlur, across, sharp, {0, 1}, kShadowSharpReach, 1);
+    blur(programs.shadowBlur, sharp, wide, {1, 0}, kShadowSoftReach, 4);
+    blur(programs.shadowBlur, wide, soft, {0, 1}, kShadowSoftReach, 1);
 }
 
 TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,

@@ -19,7 +19,7 @@ vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * ve
 // A wet way is not flat as tape is: it stands higher in its middle than where it ends, which a map of what is 10 um thick, in texels of
 // 0.3 mm, does not tell. The slope of such a cushion, by how wetness falls over its edge.
 vec3 filmEdge(Tangents t, vec2 uv, float lod) {
-    const float kSoft = 0.6e-3, kCushion = 2.0e-4;  // m, over which it falls; m, how high it is
+    const float kSoft = 0.6e-3, kCushion = 3.0e-4;  // m, over which it falls; m, how high it is
     float texels = float(textureSize(layerMap, 0).x);
     float wide = max(log2(kSoft * texels * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), lod);
     float e = exp2(wide) / texels;

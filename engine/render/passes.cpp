@@ -19,9 +19,9 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr int kShadowSize = 1024;     // texels, of the depth map; the sharp map is half as wide
+constexpr int kShadowSize = 1024;     // texels, of the depth map
 constexpr int kShadowSharpReach = 2;  // texels either side
-constexpr int kShadowSoftReach = 5;   // of the soft map, which is an eighth as wide
+constexpr int kShadowSoftReach = 9;   // of the soft map, a quarter as wide
 constexpr float kExposure = 0.55F;
 constexpr float kBoxWidth = 1.2F;                        // pixels
 const float kPoreTiles = std::round(0.36F / kPoreTile);  // a unit of uv: about 0.36 m where a head's chart fills the tile
@@ -224,13 +224,13 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
     return f;
 }
 
-TextureDesc shadowMapDesc(bool soft) {
-    const int size = soft ? kShadowSize / 8 : kShadowSize / 2;
+TextureDesc shadowMapDesc(bool soft, bool quick) {
+    const int size = kShadowSize / (soft ? 4 : 1) / (quick ? 2 : 1);
     return {.width = size, .height = size, .format = Format::rg32f};
 }
 
 void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection, TextureHandle sharp,
-               TextureHandle soft) {
+               TextureHandle soft, bool quick) {
     const TextureHandle depth = graph.texture("shadow depth", {.width = kShadowSize, .height = kShadowSize, .format = Format::depth32f});
     graph.pass("shadow", {}, {depth}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
         const gpu::Framebuffer& target = c.drawTo({}, depth);
@@ -256,14 +256,14 @@ void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMes
             c.drawFullscreen();
         });
     };
-    // As coarse as it may be for how much it is blurred.
-    const TextureDesc half = shadowMapDesc(false);
-    const TextureHandle across = graph.texture("shadow across", {.width = half.width, .height = kShadowSize, .format = half.format});
-    const TextureHandle wide = graph.texture("shadow wide", shadowMapDesc(true));
+    const TextureDesc narrow = shadowMapDesc(false, quick), coarse = shadowMapDesc(true, quick);
+    const TextureHandle across = graph.texture("shadow across", {.width = narrow.width, .height = kShadowSize, .format = narrow.format});
+    const TextureHandle wide = graph.texture("shadow wide", coarse);
+    const int softReach = quick ? (kShadowSoftReach + 1) / 2 : kShadowSoftReach;
     blur(programs.shadowFirst, depth, across, {1, 0}, kShadowSharpReach, 1);
     blur(programs.shadowBlur, across, sharp, {0, 1}, kShadowSharpReach, 1);
-    blur(programs.shadowBlur, sharp, wide, {1, 0}, kShadowSoftReach, 4);
-    blur(programs.shadowBlur, wide, soft, {0, 1}, kShadowSoftReach, 1);
+    blur(programs.shadowBlur, sharp, wide, {1, 0}, softReach, narrow.width / coarse.width);
+    blur(programs.shadowBlur, wide, soft, {0, 1}, softReach, 1);
 }
 
 TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,

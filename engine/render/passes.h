@@ -68,10 +68,11 @@ struct LightMaps {
 };
 
 // The moments of the meshes' depth as the light sees it, blurred narrowly into `sharp` and widely into `soft`, which are of
-// shadowMapDesc(). They change only with the meshes and the light, so whoever keeps them saves the pass.
-gpu::TextureDesc shadowMapDesc(bool soft);
+// shadowMapDesc(). They change only with the meshes and the light, so whoever keeps them saves the pass; for who cannot, since a mesh
+// deforms in each frame, there are `quick` ones of half the width.
+gpu::TextureDesc shadowMapDesc(bool soft, bool quick);
 void addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection,
-               gpu::TextureHandle sharp, gpu::TextureHandle soft);
+               gpu::TextureHandle sharp, gpu::TextureHandle soft, bool quick);
 // Window depth of meshes and floor, without what is blended or has holes. `frame`: the buffer of a FrameParams.
 gpu::TextureHandle addDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                             std::vector<DrawnMesh> meshes);

@@ -149,10 +149,12 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
     Result<gpu::Texture> nothing = gpu::Texture::create({.width = 1, .height = 1, .format = gpu::Format::rgba8});
     if (!nothing) return nothing.error();
     nothing->clear(vec4(0.0F));
-    for (const auto& [into, soft] : {std::pair(&r->shadowSharp_, false), std::pair(&r->shadowSoft_, true)}) {
-        Result<gpu::Texture> map = gpu::Texture::create(shadowMapDesc(soft));
-        if (!map) return map.error();
-        *into = std::move(*map);
+    for (const bool quick : {false, true}) {
+        for (const auto& [into, soft] : {std::pair(&r->shadowSharp_, false), std::pair(&r->shadowSoft_, true)}) {
+            Result<gpu::Texture> map = gpu::Texture::create(shadowMapDesc(soft, quick));
+            if (!map) return map.error();
+            (*into)[quick ? 1 : 0] = std::move(*map);
+        }
     }
     r->render_ = std::move(*render);
     r->fluid_ = std::move(*fluid);
@@ -216,18 +218,22 @@ Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld, 
 // The maps are drawn anew only when the light or a mesh has moved.
 void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
                                LightMaps& light) {
-    light.sharp = graph.importTexture("shadow, sharp", shadowSharp_);
-    light.soft = graph.importTexture("shadow, soft", shadowSoft_);
+    std::vector<uint64_t> versions;
+    bool deforms = false;
+    for (const Node& node : scene.nodes()) {
+        versions.push_back(node.deformer ? node.deformer->version() : 0);
+        deforms = deforms || node.deformer;
+    }
+    light.sharp = graph.importTexture("shadow, sharp", shadowSharp_[deforms ? 1 : 0]);
+    light.soft = graph.importTexture("shadow, soft", shadowSoft_[deforms ? 1 : 0]);
     std::vector<mat4> places = {projection};
     std::vector<const GpuMesh*> drawn;
     for (const DrawnMesh& m : meshes) {
         places.push_back(m.toWorld);
         drawn.push_back(m.mesh);
     }
-    std::vector<uint64_t> versions;
-    for (const Node& node : scene.nodes()) versions.push_back(node.deformer ? node.deformer->version() : 0);
     if (places == shadowOf_ && drawn == shadowMeshes_ && versions == shadowVersions_) return;
-    addShadow(graph, render_, meshes, projection, light.sharp, light.soft);
+    addShadow(graph, render_, meshes, projection, light.sharp, light.soft, deforms);
     graph.output(light.sharp);
     graph.output(light.soft);
     shadowOf_ = std::move(places);

@@ -76,10 +76,10 @@ class SceneRenderer {
     RenderPrograms render_;
     FluidPrograms fluid_;
     gpu::TransientPool pool_;
-    gpu::Buffer frame_;     // FrameParams
-    gpu::Texture picture_;  // the last frame
-    gpu::Texture shadowSharp_, shadowSoft_;
-    std::vector<mat4> shadowOf_;  // what the shadow maps show: the light's projection, then a matrix a mesh
+    gpu::Buffer frame_;                                     // FrameParams
+    gpu::Texture picture_;                                  // the last frame
+    std::array<gpu::Texture, 2> shadowSharp_, shadowSoft_;  // and the quick ones
+    std::vector<mat4> shadowOf_;                            // what the shadow maps show: the light's projection, then a matrix a mesh
     std::vector<const GpuMesh*> shadowMeshes_;
     gpu::Texture nothing_;                  // stands in for a map of the light that is not there
     std::vector<uint64_t> shadowVersions_;  // of their deformers

@@ -10,9 +10,9 @@ sheet="$1" folder="${1%.jpg}" moments=()
 shift
 while [[ $# -gt 0 && "$1" != -- ]]; do moments+=("$1"); shift; done
 [[ $# -eq 0 ]] || shift
-[[ ${#moments[@]} -gt 0 ]] || moments=(1.2 3 5 9)
+[[ ${#moments[@]} -gt 0 ]] || moments=(1.6 3.1 5 8)
 [[ ${#moments[@]} -eq 4 ]] || { echo "contact_sheet: give four moments, in seconds" >&2; exit 2; }
-views=("0,0.01,0.48 0,0,0.03 25" "0.27,0.03,0.38 0.01,0,0.03 24" "0.07,0,0.30 0.034,0.012,0.06 10.5")  # position, target, field of view
+views=("0,-0.015,0.48 0,-0.016,0.03 21" "0.27,0.0,0.38 0.012,-0.016,0.03 21" "0.07,0,0.30 0.034,0.012,0.06 10.5")  # position, target, field of view
 
 draw() {  # OUT, a view, further arguments
     local out="$1"

@@ -127,9 +127,9 @@ void placeSoftboxes(FrameParams& f) {
 
 }  // namespace
 
-std::array<Program*, 14> RenderPrograms::all() {
-    return {&shadow, &shadowFirst, &shadowBlur, &depth, &floorDepth,   &occlusion, &occlusionBlur,
-            &sky,    &floor,       &mesh,       &box,   &boxOverWater, &tonemap,   &antialias};
+std::array<Program*, 15> RenderPrograms::all() {
+    return {&shadow, &shadowFirst, &shadowHalve, &shadowBlur, &depth,        &floorDepth, &occlusion, &occlusionBlur,
+            &sky,    &floor,       &mesh,        &box,        &boxOverWater, &tonemap,    &antialias};
 }
 
 Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
@@ -139,6 +139,7 @@ Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
     std::pair<Program*, Result<Program>> made[] = {
         {&p.shadow, Program::create(files, {folder + "mesh_depth.vert", folder + "depth.frag"})},
         {&p.shadowFirst, Program::create(files, {full, folder + "shadow_blur.frag"}, {{"FROM_DEPTH", "1"}})},
+        {&p.shadowHalve, Program::create(files, {full, folder + "shadow_blur.frag"}, {{"FROM_DEPTH", "1"}, {"HALVE", "1"}})},
         {&p.shadowBlur, Program::create(files, {full, folder + "shadow_blur.frag"})},
         {&p.depth, Program::create(files, {"shaders/material/mesh.vert", folder + "depth.frag"})},
         {&p.floorDepth, Program::create(files, {full, folder + "background_depth.frag"})},
@@ -243,27 +244,30 @@ void addShadow(FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMes
             m.mesh->draw();
         }
     });
-    auto blur = [&](Program& program, TextureHandle from, TextureHandle to, ivec2 axis, int reach, int gap) {
+    auto blur = [&](Program& program, TextureHandle from, TextureHandle to, ivec2 axis, int reach) {
         graph.pass("shadow blur", {from}, {to}, [=, &program](PassContext& c) {
             c.drawTo({to});
             program.use();
             program.texture("source", 0, c.texture(from));
             program.set("axis", axis);
             program.set("reach", reach);
-            program.set("gap", gap);
-            program.set("scale",
-                        vec2(c.texture(from).width(), c.texture(from).height()) / vec2(c.texture(to).width(), c.texture(to).height()));
+            program.set("scale", static_cast<float>(c.texture(from).width()) / static_cast<float>(c.texture(to).width()));
             c.drawFullscreen();
         });
     };
-    const TextureDesc narrow = shadowMapDesc(false, quick), coarse = shadowMapDesc(true, quick);
-    const TextureHandle across = graph.texture("shadow across", {.width = narrow.width, .height = kShadowSize, .format = narrow.format});
-    const TextureHandle wide = graph.texture("shadow wide", coarse);
+    const TextureDesc narrow = shadowMapDesc(false, quick);
+    const TextureHandle across = graph.texture("shadow across", narrow), wide = graph.texture("shadow wide", shadowMapDesc(true, quick));
     const int softReach = quick ? (kShadowSoftReach + 1) / 2 : kShadowSoftReach;
-    blur(programs.shadowFirst, depth, across, {1, 0}, kShadowSharpReach, 1);
-    blur(programs.shadowBlur, across, sharp, {0, 1}, kShadowSharpReach, 1);
-    blur(programs.shadowBlur, sharp, wide, {1, 0}, softReach, narrow.width / coarse.width);
-    blur(programs.shadowBlur, wide, soft, {0, 1}, softReach, 1);
+    if (quick) {
+        const TextureHandle halved = graph.texture("shadow halved", narrow);
+        blur(programs.shadowHalve, depth, halved, {0, 0}, 0);
+        blur(programs.shadowBlur, halved, across, {1, 0}, kShadowSharpReach);
+    } else {
+        blur(programs.shadowFirst, depth, across, {1, 0}, kShadowSharpReach);
+    }
+    blur(programs.shadowBlur, across, sharp, {0, 1}, kShadowSharpReach);
+    blur(programs.shadowBlur, sharp, wide, {1, 0}, softReach);
+    blur(programs.shadowBlur, wide, soft, {0, 1}, softReach);
 }
 
 TextureHandle addDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,

@@ -20,8 +20,8 @@ namespace rivulet {
 
 // The programs of all passes; a failed reload keeps the last good ones.
 struct RenderPrograms {
-    gpu::Program shadow, shadowFirst, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh, box, boxOverWater, tonemap,
-        antialias;
+    gpu::Program shadow, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh, box,
+        boxOverWater, tonemap, antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
     Status reload();
 
@@ -30,7 +30,7 @@ struct RenderPrograms {
     Result<gpu::Program*> part(const Material& material, bool layered, bool water);
 
   private:
-    std::array<gpu::Program*, 14> all();
+    std::array<gpu::Program*, 15> all();
     ShaderFiles files_;
     std::map<unsigned, gpu::Program> parts_;
 };

@@ -1,9 +1,9 @@
-// Moments of the warped depth (exponential variance shadow map: Lauritzen & McCool 2008), blurred along one axis.
+// Moments of the warped depth (exponential variance shadow map: Lauritzen & McCool 2008), blurred along one axis; or with
+// HALVE made half as wide and high, and no more.
 uniform sampler2D source;   // FROM_DEPTH: a depth map; else moments
 uniform ivec2 axis;         // (1,0) or (0,1)
-uniform int reach;          // steps either side
-uniform int gap;            // texels of the source a step
-uniform vec2 scale;         // of the source's size to the target's
+uniform int reach;          // texels either side
+uniform float scale;        // of the source's size to the target's
 layout(location = 0) out vec2 moments;
 const float kWarp = 40.0;
 vec2 at(ivec2 p, ivec2 last) {
@@ -16,7 +16,10 @@ vec2 at(ivec2 p, ivec2 last) {
 }
 void main() {
     ivec2 last = textureSize(source, 0) - 1, here = ivec2(gl_FragCoord.xy * scale);
-    ivec2 stride = axis * gap;
+#if defined(HALVE)
+    moments = 0.25 * (at(here, last) + at(here - ivec2(1, 0), last) + at(here - ivec2(0, 1), last) + at(here - 1, last));
+#else
+    ivec2 stride = axis * int(scale);
     float inverse = 2.0 / max(float(reach * reach), 1.0);
     vec2 sum = at(here, last);
     float weights = 1.0;
@@ -26,4 +29,5 @@ void main() {
         weights += 2.0 * w;
     }
     moments = sum / weights;
+#endif
 }

@@ -12,17 +12,19 @@ while [[ $# -gt 0 && "$1" != -- ]]; do moments+=("$1"); shift; done
 [[ $# -eq 0 ]] || shift
 [[ ${#moments[@]} -gt 0 ]] || moments=(1.6 3.1 5 8)
 [[ ${#moments[@]} -eq 4 ]] || { echo "contact_sheet: give four moments, in seconds" >&2; exit 2; }
-views=("0,-0.015,0.48 0,-0.016,0.03 21" "0.27,0.0,0.38 0.012,-0.016,0.03 21" "0.07,0,0.30 0.034,0.012,0.06 10.5")  # position, target, field of view
+# position, target, field of view
+views=("0,-0.015,0.48 0,-0.016,0.03 21" "0.27,0.0,0.38 0.012,-0.016,0.03 21" "0.07,0,0.30 0.034,0.012,0.06 10.5")
 
 draw() {  # OUT, a view, further arguments
     local out="$1"
     read -r position target field <<< "$2"
     shift 2
-    "$program" run "$root/assets/scenes/crying.json" --headless --preset sob --size 1920x1080 --out "$out" --set "camera.position=$position" \
-        --set "camera.target=$target" --set "camera.fieldOfView=$field" --set flow.0.motion.swing=0,0,0 "$@" > "$out.log" || { cat "$out.log"; exit 1; }
+    "$program" run "$root/assets/scenes/crying.json" --headless --preset sob --size 1920x1080 --out "$out" \
+        --set "camera.position=$position" --set "camera.target=$target" --set "camera.fieldOfView=$field" \
+        --set flow.0.motion.swing=0,0,0 "$@" > "$out.log" || { cat "$out.log"; exit 1; }
 }
 
-rm -rf "$folder"
+rm -rf "$folder"/{dry,wet}{0,1,2}
 mkdir -p "$folder"
 inputs=() layout=""
 for row in 0 1 2; do
@@ -38,5 +40,6 @@ for ((k = 0; k < 15; ++k)); do
     names+="[p$k]"
     layout+="${layout:+|}$((k % 5 * 600))_$((k / 5 * 450))"
 done
-ffmpeg -y -loglevel error "${inputs[@]}" -filter_complex "$filter${names}xstack=inputs=15:layout=$layout" -frames:v 1 -update 1 -q:v 4 "$sheet"
+ffmpeg -y -loglevel error "${inputs[@]}" -filter_complex "$filter${names}xstack=inputs=15:layout=$layout" -frames:v 1 -update 1 \
+    -q:v 4 "$sheet"
 echo "$sheet, and its pictures in $folder"

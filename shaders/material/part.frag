@@ -141,7 +141,9 @@ void main() {
         film += (facing + q.slope * (layerLook.x - 1.0) - n) * (1.0 - q.drop);
 #endif
         film = normalize(film);
-        if (dot(film, toEye) < 0.02) film = normalize(film + toEye * (0.02 - dot(film, toEye)));
+        // The far side of a mound is behind the mound: what is seen there is its crest.
+        float least = clamp(dot(n, toEye), 0.02, 0.3), seen = dot(film, toEye);
+        if (seen < least) film = normalize(film + toEye * (least - seen));
         float wetRough = mix(layerLook.z, layerLook.y, q.drop);
         vec3 wetShine = gloss(film, toEye, vec3(r0), wetRough, q.variance, falling * lit, mix(open * open, 1.0, 0.3 * q.drop));
         float out_ = 1.0 - (r0 + (1.0 - r0) * pow(1.0 - max(dot(film, toEye), 0.0), 5.0));

@@ -46,6 +46,8 @@ struct alignas(16) vec4 {
     INLINE vec4(float ax, float ay, float az, float aw) : x(ax), y(ay), z(az), w(aw) {}
     INLINE vec4(const vec3& v, float aw) : x(v.x), y(v.y), z(v.z), w(aw) {}
 };
+INLINE vec4 operator+(const vec4& a, const vec4& b) { return vec4(a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w); }
+INLINE vec4 operator*(const vec4& a, float b) { return vec4(a.x * b, a.y * b, a.z * b, a.w * b); }
 struct ivec3 {
     int x, y, z;
     ivec3() = default;
@@ -81,6 +83,8 @@ INLINE float length(const vec3& a) { return sqrt(dot(a, a)); }
 INLINE vec3 cross(const vec3& a, const vec3& b) { return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
 INLINE vec3 min(const vec3& a, const vec3& b) { return vec3(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)); }
 INLINE vec3 max(const vec3& a, const vec3& b) { return vec3(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)); }
+INLINE vec4 min(const vec4& a, const vec4& b) { return vec4(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z), min(a.w, b.w)); }
+INLINE vec4 max(const vec4& a, const vec4& b) { return vec4(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z), max(a.w, b.w)); }
 INLINE vec3 floor(const vec3& a) { return vec3(floor(a.x), floor(a.y), floor(a.z)); }
 INLINE vec3 abs(const vec3& a) { return vec3(abs(a.x), abs(a.y), abs(a.z)); }
 INLINE float mix(float a, float b, float t) { return a + (b - a) * t; }
@@ -115,6 +119,7 @@ INLINE void atomicMax(uint* p, uint v) {
 #define BUFFERS(P)
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
+#define PREFETCH(x) __builtin_prefetch(&(x))
 #define ATOMIC_MIN(x, v) atomicMin(&(x), v)
 #define ATOMIC_MAX(x, v) atomicMax(&(x), v)
 #define KERNEL(name, P)                                                                                            \

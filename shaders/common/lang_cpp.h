@@ -119,6 +119,7 @@ INLINE void atomicMax(uint* p, uint v) {
 #define BUFFERS(P)
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
+#define ATOMIC_READ(x) __atomic_load_n(&(x), __ATOMIC_RELAXED)
 #define PREFETCH(x) __builtin_prefetch(&(x))
 #define ATOMIC_MIN(x, v) atomicMin(&(x), v)
 #define ATOMIC_MAX(x, v) atomicMax(&(x), v)

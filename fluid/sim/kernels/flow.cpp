@@ -21,6 +21,7 @@ namespace born_unit {
 }
 // Headers of functions over a kernel's own buffers: each unit has them anew.
 #undef RIVULET_UNDER_H
+#undef RIVULET_FETCH_H
 namespace place_unit {
 #include "shaders/flow/place.kernel"
 }
@@ -52,18 +53,22 @@ namespace merge_unit {
 #include "shaders/flow/merge.kernel"
 }
 #undef RIVULET_UNDER_H
+#undef RIVULET_FETCH_H
 namespace law_unit {
 #include "shaders/flow/law.kernel"
 }
 #undef RIVULET_WALK_H
+#undef RIVULET_FETCH_H
 namespace steer_unit {
 #include "shaders/flow/steer.kernel"
 }
 #undef RIVULET_WALK_H
+#undef RIVULET_FETCH_H
 namespace walk_unit {
 #include "shaders/flow/walk.kernel"
 }
 #undef RIVULET_WALK_H
+#undef RIVULET_FETCH_H
 namespace paint_unit {
 #include "shaders/flow/paint.kernel"
 }

@@ -8,6 +8,7 @@
 
 #include "fluid/flow/map_texels.h"
 #include "fluid/flow/skin_folds.h"
+#include "shaders/flow/cells.h"
 #include "shaders/flow/map_step.h"
 
 namespace rivulet {
@@ -17,7 +18,7 @@ struct FlowMaps::Impl {
     int size = 0, mips = 0;
     Kernel caps, thick, bounds, touch, around, rows, mip;
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
-    Buffer box, cap, film, near, stamp, map, widest;
+    Buffer box, cap, film, near, stamp, map, reached;
     uint32_t tiles = 0, pieces = 0;
     bool whole = false;  // tiles are drawn by one thread each, with mips 2 and 3
     uint32_t drawn = 0;
@@ -66,7 +67,7 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
           // The last block of cells may end behind the last triangle's.
           std::pair(&film, flow.film->bytes() / 2 + (made.chart.size() + 4) * sizeof(uint32_t)),
           std::pair(&near, ((NEAR_UINTS + 1) * made.tiles() + 1) * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
-          std::pair(&widest, sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
+          std::pair(&reached, (REACHED_WORDS + 1) * sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
         Result<Buffer> room = device->allocate(bytes);
         if (!room) return room.error();
         *buffer = std::move(*room);
@@ -108,6 +109,7 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.since = stepped;
     s.moved = flow.moved != moved ? 1 : 0;
     s.reach = flow.largestRadius;
+    s.inverseReach = 1 / s.reach;
     s.trail = std::max(params.trail, 1.0e-6F);
     s.tap = 0.6F * params.filmCell;
     return s;
@@ -158,10 +160,10 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     if (s.moved > 0) d.run(w.bounds, s, {&w.pinBegin, &w.pin, v.point, &w.chart, v.basis, &w.box}, w.pieces);
     w.moved = v.moved;
     w.stepped = v.steps;
-    d.fill(w.widest, 0);
-    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.widest, &w.near}, s.slots);
+    d.fill(w.reached, 0);
+    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.reached, &w.near}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
-    d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.widest}, w.tiles);
+    d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.reached}, w.tiles);
     d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 4 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
         if (level == 3 || (level == 2 && w.whole)) continue;  // 3 is made with 2

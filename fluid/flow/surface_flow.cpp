@@ -234,12 +234,15 @@ void SurfaceFlow::Impl::touchOthers(const FlowStep& f, const StepParams& s) {
     if (!params.contact || f.places > FACING_PLACES) return;
     StepParams c = s;
     const double volume = std::cbrt(double{params.largestDrop} * kMicrolitre);
-    c.force = vec4(static_cast<float>(contactRadius(meanAngle(params)) * volume), 0.0F, 0.0F, 0.0F);
+    const auto widest = static_cast<float>(contactRadius(meanAngle(params)) * volume);
+    c.force = vec4(widest, 1 / widest, 0.0F, 0.0F);
     c.iteration = f.places;
     const uint32_t finer = s.cellCount / static_cast<uint32_t>(s.cellsX * s.cellsY * s.cellsZ);
     c.correction = static_cast<float>(finer);
     device->fill(faces, UINT32_MAX);
-    device->run(facing, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &point, &driven, &faces}, f.places);
+    device->fill(reached, 0);
+    device->run(mark, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &reached}, f.count);
+    device->run(facing, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &point, &driven, &faces, &reached}, f.places);
     device->run(goOver, f, {&drops.id, &faces, &skin, &driven, &begin, &footprint, &side, &drop}, f.count);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "fluid/flow/footprint.h"
+#include "shaders/flow/cells.h"
 
 namespace rivulet {
 
@@ -72,11 +73,11 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         const char* path;
     };
     for (const Wanted& w :
-         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&facing, "flow/facing"}, Wanted{&goOver, "flow/go_over"},
-          Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"}, Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"},
-          Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"}, Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"},
-          Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"}, Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"},
-          Wanted{&leave, "flow/leave"}}) {
+         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&mark, "flow/mark"}, Wanted{&facing, "flow/facing"},
+          Wanted{&goOver, "flow/go_over"}, Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"}, Wanted{&born, "flow/born"},
+          Wanted{&brim, "flow/brim"}, Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"}, Wanted{&merge, "flow/merge"},
+          Wanted{&law, "flow/law"}, Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"}, Wanted{&paint, "flow/paint"},
+          Wanted{&dry, "flow/dry"}, Wanted{&leave, "flow/leave"}}) {
         Result<Kernel> found = on.kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -111,6 +112,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&names, n * sizeof(float)),
                                  std::pair(&sortedOf, n * sizeof(uint32_t)),
                                  std::pair(&faces, n * sizeof(uint32_t)),
+                                 std::pair(&reached, (REACHED_WORDS + 1) * sizeof(uint32_t)),
                                  std::pair(&into, n * sizeof(float)),
                                  std::pair(&merged, n * sizeof(vec4)),
                                  std::pair(&shift, n * sizeof(vec4)),

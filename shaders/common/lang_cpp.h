@@ -46,8 +46,14 @@ struct alignas(16) vec4 {
     INLINE vec4(float ax, float ay, float az, float aw) : x(ax), y(ay), z(az), w(aw) {}
     INLINE vec4(const vec3& v, float aw) : x(v.x), y(v.y), z(v.z), w(aw) {}
 };
-INLINE vec4 operator+(const vec4& a, const vec4& b) { return vec4(a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w); }
-INLINE vec4 operator*(const vec4& a, float b) { return vec4(a.x * b, a.y * b, a.z * b, a.w * b); }
+typedef float Four __attribute__((vector_size(16)));  // four at once, where the compiler would take one after the other
+INLINE Four fourOf(const vec4& a) { Four v; memcpy(&v, &a, 16); return v; }
+INLINE vec4 vec4Of(Four v) { vec4 a; memcpy(&a, &v, 16); return a; }
+INLINE vec4 operator+(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) + fourOf(b)); }
+INLINE vec4 operator-(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) - fourOf(b)); }
+INLINE vec4 operator*(const vec4& a, float b) { return vec4Of(fourOf(a) * b); }
+INLINE vec4 min(const vec4& a, const vec4& b) { return vec4Of(fourOf(b) < fourOf(a) ? fourOf(b) : fourOf(a)); }
+INLINE vec4 max(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) < fourOf(b) ? fourOf(b) : fourOf(a)); }
 struct ivec3 {
     int x, y, z;
     ivec3() = default;
@@ -83,8 +89,6 @@ INLINE float length(const vec3& a) { return sqrt(dot(a, a)); }
 INLINE vec3 cross(const vec3& a, const vec3& b) { return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
 INLINE vec3 min(const vec3& a, const vec3& b) { return vec3(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)); }
 INLINE vec3 max(const vec3& a, const vec3& b) { return vec3(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)); }
-INLINE vec4 min(const vec4& a, const vec4& b) { return vec4(min(a.x, b.x), min(a.y, b.y), min(a.z, b.z), min(a.w, b.w)); }
-INLINE vec4 max(const vec4& a, const vec4& b) { return vec4(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z), max(a.w, b.w)); }
 INLINE vec3 floor(const vec3& a) { return vec3(floor(a.x), floor(a.y), floor(a.z)); }
 INLINE vec3 abs(const vec3& a) { return vec3(abs(a.x), abs(a.y), abs(a.z)); }
 INLINE float mix(float a, float b, float t) { return a + (b - a) * t; }

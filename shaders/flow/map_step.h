@@ -72,7 +72,7 @@ STRUCT(FlowMapStep) {
     uint  stampAbove;
     uint  since;       // number of the flow's step that was drawn last
     uint  levelTexels; // of the mip that is made
-    uint  spare1;
+    float inverseReach;// 1/m
     uint  spare2;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)

@@ -43,9 +43,15 @@ namespace gather_unit {
 namespace press_unit {
 #include "shaders/flow/press.kernel"
 }
+namespace mark_unit {
+#include "shaders/flow/mark.kernel"
+}
+#undef RIVULET_CELLS_H
+#undef RIVULET_FACING_H
 namespace facing_unit {
 #include "shaders/flow/facing.kernel"
 }
+#undef RIVULET_FACING_H
 namespace go_over_unit {
 #include "shaders/flow/go_over.kernel"
 }
@@ -116,6 +122,7 @@ std::span<const CpuKernelRow> flowRows() {
         {"flow/meet", "", RIVULET_UNIT_ISA, meet_unit::meet, 16},
         {"flow/gather", "", RIVULET_UNIT_ISA, gather_unit::gather, 16},
         {"flow/press", "", RIVULET_UNIT_ISA, press_unit::press, 16},
+        {"flow/mark", "", RIVULET_UNIT_ISA, mark_unit::mark, 256},
         {"flow/facing", "", RIVULET_UNIT_ISA, facing_unit::facing, 1024},
         {"flow/go_over", "", RIVULET_UNIT_ISA, go_over_unit::go_over, 256},
         {"flow/merge", "", RIVULET_UNIT_ISA, merge_unit::merge, 256},

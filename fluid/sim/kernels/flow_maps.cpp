@@ -13,6 +13,7 @@ namespace map_thick_unit {
 namespace map_bounds_unit {
 #include "shaders/flow/map_bounds.kernel"
 }
+#undef RIVULET_CELLS_H
 namespace map_touch_unit {
 #include "shaders/flow/map_touch.kernel"
 }
@@ -33,7 +34,7 @@ namespace map_mips_unit {
 
 std::span<const CpuKernelRow> flowMapRows() {
     static const CpuKernelRow rows[] = {
-        {"flow/map_caps", "", RIVULET_UNIT_ISA, map_caps_unit::map_caps, 1024},
+        {"flow/map_caps", "", RIVULET_UNIT_ISA, map_caps_unit::map_caps, 256},
         {"flow/map_thick", "", RIVULET_UNIT_ISA, map_thick_unit::map_thick, 1024},
         {"flow/map_bounds", "", RIVULET_UNIT_ISA, map_bounds_unit::map_bounds, 256},
         {"flow/map_touch", "", RIVULET_UNIT_ISA, map_touch_unit::map_touch, 128},

@@ -49,7 +49,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     const vec3 size = around.size();
     const float longest = std::max({size.x, size.y, size.z});
     // A skin may move within a margin. Cells as wide as two of the largest drops reach; wider on a large skin, whose cells would be too
-    // many: they are counted anew each step.
+    // many: they are counted anew each step, which on the cpu takes as long as all else that a few drops need.
     corners = around;
     const float margin = 0.25F * longest;
     around.add(around.min - margin);
@@ -57,13 +57,14 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     const double reach =
         std::max(2 * double{params.touch} * contactRadius(meanAngle(params)) * std::cbrt(double{params.largestDrop} * kMicrolitre),
                  std::max(double{params.filmReach}, 2 * double{params.touch} * kFilmRadius * double{params.filmReach}));
-    constexpr double kCells = 1 << 17;
+    const double mostCells = on.backend() == Backend::cpu ? std::clamp(8.0 * slots, 8192.0, 32768.0) : 131072.0;
     const dvec3 all(around.size());
-    const float h = thesis ? thesis->cell() : static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / kCells)));
+    const float h = thesis ? thesis->cell() : static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / mostCells)));
     if (thesis) around = thesis->around();
     Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots);
     if (!made) return made.error();
     grid = std::make_unique<NeighborGrid>(std::move(*made));
+    if (!thesis) grid->setMargin(static_cast<float>(reach) / h);  // the cpu's lists hold who is near, however wide the cells
     Result<Particles> particles = Particles::create(on, slots);
     if (!particles) return particles.error();
     drops = std::move(*particles);

@@ -167,8 +167,10 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
     if (thesis && !moved) thesis->makeField(forThesis(), f, false);
     if (!moved) return;
     device->run(basis, f, {&skin, &point, &frames}, f.triangles);
-    device->run(drive, f, {&begin, &footprint, &weight, &frames, &driven}, f.places);
-    if (thesis) thesis->makeField(forThesis(), f, true);
+    if (thesis) {
+        device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
+        thesis->makeField(forThesis(), f, true);
+    }
     moved = false;
     ++moves;
 }
@@ -185,6 +187,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     s.invH = s.gridScale.x;
     FlowStep f = w.stepOf(inputs, s, seconds);
     f.number = ++w.steps;
+    f.everywhere = w.thesis ? 1 : 0;
     for (double& since : w.sinceTurn) since += seconds;
     w.phase = (w.phase + 1) % DRY_EVERY;
     f.dryPhase = w.phase;
@@ -242,8 +245,8 @@ void SurfaceFlow::Impl::touchOthers(const FlowStep& f, const StepParams& s) {
     device->fill(faces, UINT32_MAX);
     device->fill(reached, 0);
     device->run(mark, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &reached}, f.count);
-    device->run(facing, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &point, &driven, &faces, &reached}, f.places);
-    device->run(goOver, f, {&drops.id, &faces, &skin, &driven, &begin, &footprint, &side, &drop}, f.count);
+    device->run(facing, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &point, &frames, &faces, &reached}, f.places);
+    device->run(goOver, f, {&drops.id, &faces, &skin, &frames, &point, &side, &drop}, f.count);
 }
 
 Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
@@ -274,6 +277,8 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     if (told->film) press.run(context, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
     device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
     touchOthers(f, s);
+    device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);
+    device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
     device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
     device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);

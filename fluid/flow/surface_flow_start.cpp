@@ -75,10 +75,10 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     };
     for (const Wanted& w :
          {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&mark, "flow/mark"}, Wanted{&facing, "flow/facing"},
-          Wanted{&goOver, "flow/go_over"}, Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"}, Wanted{&born, "flow/born"},
-          Wanted{&brim, "flow/brim"}, Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"}, Wanted{&merge, "flow/merge"},
-          Wanted{&law, "flow/law"}, Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"}, Wanted{&paint, "flow/paint"},
-          Wanted{&dry, "flow/dry"}, Wanted{&leave, "flow/leave"}}) {
+          Wanted{&goOver, "flow/go_over"}, Wanted{&basis, "flow/basis"}, Wanted{&stand, "flow/stand"}, Wanted{&drive, "flow/drive"},
+          Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"}, Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"},
+          Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"}, Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"},
+          Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"}, Wanted{&leave, "flow/leave"}}) {
         Result<Kernel> found = on.kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -100,6 +100,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&given, places * sizeof(uint32_t)),
                                  std::pair(&hostMoved, positions * sizeof(vec4)),
                                  std::pair(&driven, 2 * places * sizeof(vec4)),
+                                 std::pair(&wanted, places * sizeof(uint32_t)),
                                  std::pair(&painted, triangles * sizeof(uint32_t)),
                                  std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
                                  std::pair(&footprint, under.triangle.size() * sizeof(uint32_t)),
@@ -135,7 +136,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     on.writeAll<uint32_t>(skin, table);
     std::vector<vec4> at;
     at.reserve(places);
-    for (const vec3& p : mesh.rest) at.emplace_back(p, 0.0F);
+    for (size_t p = 0; p < places; ++p) at.emplace_back(mesh.rest[p], static_cast<float>(under.triangle[under.begin[p]]));
     on.writeAll<vec4>(point, at);
     on.writeAll<uint32_t>(given, mesh.given);
     std::vector<vec4> usual(2 * places, vec4(0.0F));

@@ -13,6 +13,9 @@ namespace rest_unit {
 namespace basis_unit {
 #include "shaders/flow/basis.kernel"
 }
+namespace stand_unit {
+#include "shaders/flow/stand.kernel"
+}
 namespace drive_unit {
 #include "shaders/flow/drive.kernel"
 }
@@ -113,7 +116,8 @@ std::span<const CpuKernelRow> flowRows() {
         {"flow/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},
         {"flow/rest", "", RIVULET_UNIT_ISA, rest_unit::rest, 1024},
         {"flow/basis", "", RIVULET_UNIT_ISA, basis_unit::basis, 1024},
-        {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 256},
+        {"flow/stand", "", RIVULET_UNIT_ISA, stand_unit::stand, 1024},
+        {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 512},
         {"flow/born", "", RIVULET_UNIT_ISA, born_unit::born, 256},
         {"flow/brim", "", RIVULET_UNIT_ISA, brim_unit::brim, 1},
         {"flow/place", "", RIVULET_UNIT_ISA, place_unit::place, 256},

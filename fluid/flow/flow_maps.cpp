@@ -31,6 +31,7 @@ struct FlowMaps::Impl {
         for (int k = 0; k < level; ++k) texels += static_cast<size_t>(size >> k) * static_cast<size_t>(size >> k);
         return texels;
     }
+    int coverLevel() const { return whole ? std::min(3, mips - 1) : 1; }  // whose cover is the first that is asked for
     FlowMapStep stepOf(const FlowView& flow, const SurfaceFlowParams& params) const;
 };
 
@@ -58,11 +59,12 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
     rows = *drawing;
     Buffer shown, taps;
     const size_t above = before(mips) - before(3), all = before(mips);
+    const std::span<const float> asked = std::span(made.cover).subspan(before(coverLevel()) - before(1));
     for (auto [buffer, bytes] :
          {std::pair(&tile, made.tile.size() * sizeof(uint32_t)), std::pair(&shown, made.texel.size() * sizeof(uint32_t)),
           std::pair(&taps, 3 * made.texel.size() * sizeof(uint32_t)), std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)),
           std::pair(&pin, made.pin.size() * sizeof(uint32_t)), std::pair(&chart, made.chart.size() * sizeof(vec4)),
-          std::pair(&cover, made.cover.size() * sizeof(float)), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
+          std::pair(&cover, asked.size_bytes()), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
           std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)),
           // The last block of cells may end behind the last triangle's.
           std::pair(&film, flow.film->bytes() / 2 + (made.chart.size() + 4) * sizeof(uint32_t)),
@@ -75,7 +77,7 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
     device->writeAll<uint32_t>(pinBegin, made.pinBegin);
     device->writeAll<uint32_t>(pin, made.pin);
     device->writeAll<vec4>(chart, made.chart);
-    device->writeAll<float>(cover, made.cover);
+    device->writeAll<float>(cover, asked);
     // The film's cells about each texel, by the skin as it is now.
     device->writeAll<uint32_t>(tile, made.tile);
     device->writeAll<uint32_t>(shown, made.texel);
@@ -110,6 +112,7 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.moved = flow.moved != moved ? 1 : 0;
     s.reach = flow.largestRadius;
     s.inverseReach = 1 / s.reach;
+    s.coverFrom = static_cast<uint32_t>(before(coverLevel()));
     s.trail = std::max(params.trail, 1.0e-6F);
     s.tap = 0.6F * params.filmCell;
     return s;

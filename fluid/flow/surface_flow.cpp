@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "shaders/flow/facing.h"
 
@@ -150,11 +151,14 @@ void SurfaceFlow::Impl::turnFrame(const dmat4& toWorld, double seconds, FlowStep
 void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f) {
     const Buffer* from = inputs.moved;
     if (from == nullptr && !inputs.positions.empty()) {
-        std::vector<vec4> at;
+        // A part at a time: memory of all of them would be got anew from the system each step.
+        std::array<vec4, 4096> part;
         const size_t used = hostMoved.bytes() / sizeof(vec4);
-        at.reserve(used);
-        for (const vec3& p : inputs.positions.first(used)) at.emplace_back(p, 0.0F);
-        device->writeAll<vec4>(hostMoved, at);
+        for (size_t first = 0; first < used; first += part.size()) {
+            const size_t n = std::min(part.size(), used - first);
+            for (size_t k = 0; k < n; ++k) part[k] = vec4(inputs.positions[first + k], 0.0F);
+            device->write(hostMoved, std::as_bytes(std::span(part).first(n)), first * sizeof(vec4));
+        }
         from = &hostMoved;
     }
     if (from != nullptr) {

@@ -73,7 +73,7 @@ STRUCT(FlowMapStep) {
     uint  since;       // number of the flow's step that was drawn last
     uint  levelTexels; // of the mip that is made
     float inverseReach;// 1/m
-    uint  spare2;
+    uint  coverFrom;   // texels before those of which flow/map_mips has the cover
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FlowMapStep) % 16 == 0);

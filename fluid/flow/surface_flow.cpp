@@ -219,7 +219,8 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
         f.turn1 = vec4(0, 1, 0, 0);
         f.turn2 = vec4(0, 0, 1, 0);
     }
-    if (f.dries > 0) w.device->run(w.dry, f, {&w.skin, &w.frames, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
+    if (f.dries > 0)
+        w.device->run(w.dry, f, {&w.skin, &w.frames, &w.painted, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
     w.takeCounters();
     return ok();
 }

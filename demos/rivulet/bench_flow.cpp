@@ -64,6 +64,27 @@ double msSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+constexpr int kEdge = 1024;  // texels, of the maps
+
+struct FlowBytes {
+    size_t flow, maps, coarse;  // coarse: maps of half the edge
+};
+
+// What of it grows with the mesh and what with the maps, and so what both would take of a head of the size that aims are stated for.
+void reportMemory(const BenchContext& context, int drops, const FlowBytes& bytes, size_t triangles) {
+    constexpr double kTexels = double{kEdge} * kEdge, kAim = 34000;
+    const double texel = static_cast<double>(bytes.maps - bytes.coarse) / (0.75 * kTexels);
+    const double triangle = (static_cast<double>(bytes.flow + bytes.maps) - texel * kTexels) / static_cast<double>(triangles);
+    const auto row = [&](std::string what, const char* unit, double value) {
+        context.report({.name = fmt::format("flow, memory of {}", what), .unit = unit, .value = spreadOf({value}), .passes = {}});
+    };
+    row(fmt::format("{} drops on {} triangles", drops, triangles), "MB", static_cast<double>(bytes.flow) / 1.0e6);
+    row(fmt::format("{0} drops, {1} x {1} maps", drops, kEdge), "MB", static_cast<double>(bytes.flow + bytes.maps) / 1.0e6);
+    row(fmt::format("{} drops and maps, a triangle", drops), "B", triangle);
+    row(fmt::format("{} drops and maps, a texel", drops), "B", texel);
+    row(fmt::format("{} drops and maps, were it {} triangles", drops, kAim), "MB", (triangle * kAim + texel * kTexels) / 1.0e6);
+}
+
 }  // namespace
 
 Status benchFlow(const BenchContext& context) {
@@ -81,7 +102,13 @@ Status benchFlow(const BenchContext& context) {
         Result<SurfaceFlow> flow = runningHead(*device, head, drops);
         if (!flow) return flow.error();
         const size_t before = device->bytesAllocated();
-        Result<FlowMaps> maps = FlowMaps::create(*flow, cornerUvs(flow->mesh(), head.view()), 1024);
+        size_t coarse = 0;
+        {
+            const Result<FlowMaps> half = FlowMaps::create(*flow, cornerUvs(flow->mesh(), head.view()), kEdge / 2);
+            if (!half) return half.error();
+            coarse = device->bytesAllocated() - before;
+        }
+        Result<FlowMaps> maps = FlowMaps::create(*flow, cornerUvs(flow->mesh(), head.view()), kEdge);
         if (!maps) return maps.error();
         constexpr int kFrames = 20;
         Status status = ok();
@@ -106,12 +133,8 @@ Status benchFlow(const BenchContext& context) {
         if (!status) return status;
         if (context.interrupted()) return ok();
         context.report(row);
-        for (const auto& [what, bytes] :
-             {std::pair("drops on a head", before), std::pair("them and their 1024 x 1024 maps", device->bytesAllocated())})
-            context.report({.name = fmt::format("flow, memory of {} {}", drops, what),
-                            .unit = "MB",
-                            .value = spreadOf({static_cast<double>(bytes) / 1.0e6}),
-                            .passes = {}});
+        reportMemory(context, drops, {.flow = before, .maps = device->bytesAllocated() - before, .coarse = coarse},
+                     flow->mesh().triangleCount());
     }
     return ok();
 }

@@ -9,6 +9,7 @@
 #include "fluid/flow/map_texels.h"
 #include "fluid/flow/skin_folds.h"
 #include "fluid/flow/surface_flow_impl.h"
+#include "shaders/flow/cells.h"
 #include "shaders/flow/map_step.h"
 
 namespace rivulet {
@@ -16,9 +17,9 @@ namespace rivulet {
 struct FlowMaps::Impl {
     Device* device = nullptr;
     int size = 0, mips = 0;
-    Kernel caps, thick, frames, bounds, touch, around, rows, mip;
+    Kernel caps, thick, bounds, touch, around, rows, mip;
     Buffer tile, texel, pinBegin, pin, chart, cover;  // made once
-    Buffer frame, box, cap, film, near, stamp, map, widest;
+    Buffer box, cap, film, near, stamp, map, reached;
     uint32_t tiles = 0, pieces = 0;
     bool whole = false;  // tiles are drawn by one thread each, with mips 2 and 3
     uint32_t drawn = 0;
@@ -31,6 +32,7 @@ struct FlowMaps::Impl {
         for (int k = 0; k < level; ++k) texels += static_cast<size_t>(size >> k) * static_cast<size_t>(size >> k);
         return texels;
     }
+    int coverLevel() const { return whole ? std::min(3, mips - 1) : 1; }  // whose cover is the first that is asked for
     FlowMapStep stepOf(const FlowView& flow, const SurfaceFlowParams& params) const;
 };
 
@@ -44,9 +46,8 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
         Kernel* kernel;
         const char* path;
     };
-    for (const Wanted& w : {Wanted{&caps, "flow/map_caps"}, Wanted{&thick, "flow/map_thick"}, Wanted{&frames, "flow/map_frames"},
-                            Wanted{&bounds, "flow/map_bounds"}, Wanted{&touch, "flow/map_touch"}, Wanted{&around, "flow/map_taps"},
-                            Wanted{&mip, "flow/map_mips"}}) {
+    for (const Wanted& w : {Wanted{&caps, "flow/map_caps"}, Wanted{&thick, "flow/map_thick"}, Wanted{&bounds, "flow/map_bounds"},
+                            Wanted{&touch, "flow/map_touch"}, Wanted{&around, "flow/map_taps"}, Wanted{&mip, "flow/map_mips"}}) {
         Result<Kernel> found = device->kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -59,15 +60,17 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
     rows = *drawing;
     Buffer shown, taps;
     const size_t above = before(mips) - before(3), all = before(mips);
+    const std::span<const float> asked = std::span(made.cover).subspan(before(coverLevel()) - before(1));
     for (auto [buffer, bytes] :
          {std::pair(&tile, made.tile.size() * sizeof(uint32_t)), std::pair(&shown, made.texel.size() * sizeof(uint32_t)),
           std::pair(&taps, 3 * made.texel.size() * sizeof(uint32_t)), std::pair(&pinBegin, made.pinBegin.size() * sizeof(uint32_t)),
           std::pair(&pin, made.pin.size() * sizeof(uint32_t)), std::pair(&chart, made.chart.size() * sizeof(vec4)),
-          std::pair(&cover, made.cover.size() * sizeof(float)), std::pair(&frame, 2 * made.chart.size() * sizeof(vec4)),
-          std::pair(&box, 2 * made.pieces() * sizeof(vec4)), std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)),
-          std::pair(&film, flow.film->bytes() / 2 + made.chart.size() * sizeof(uint32_t)),
-          std::pair(&near, NEAR_UINTS * made.tiles() * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
-          std::pair(&widest, sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
+          std::pair(&cover, asked.size_bytes()), std::pair(&box, 2 * made.pieces() * sizeof(vec4)),
+          std::pair(&cap, 2 * size_t{flow.slots} * sizeof(vec4)),
+          // The last block of cells may end behind the last triangle's.
+          std::pair(&film, flow.film->bytes() / 2 + (made.chart.size() + 4) * sizeof(uint32_t)),
+          std::pair(&near, ((NEAR_UINTS + 1) * made.tiles() + 1) * sizeof(uint32_t)), std::pair(&stamp, above * sizeof(uint32_t)),
+          std::pair(&reached, (REACHED_WORDS + 1) * sizeof(uint32_t)), std::pair(&map, 2 * all * sizeof(uint32_t))}) {
         Result<Buffer> room = device->allocate(bytes);
         if (!room) return room.error();
         *buffer = std::move(*room);
@@ -75,13 +78,12 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
     device->writeAll<uint32_t>(pinBegin, made.pinBegin);
     device->writeAll<uint32_t>(pin, made.pin);
     device->writeAll<vec4>(chart, made.chart);
-    device->writeAll<float>(cover, made.cover);
+    device->writeAll<float>(cover, asked);
     // The film's cells about each texel, by the skin as it is now.
     device->writeAll<uint32_t>(tile, made.tile);
     device->writeAll<uint32_t>(shown, made.texel);
     const FlowMapStep s = stepOf(flow, params);
-    device->run(frames, s, {&chart, flow.basis, &frame}, s.triangles);
-    device->run(around, s, {&tile, &frame, flow.skin, flow.basis, &shown, &taps}, tiles * TILE_TEXELS);
+    device->run(around, s, {&tile, &chart, flow.skin, flow.basis, &shown, &taps}, tiles * TILE_TEXELS);
     const std::vector<uint32_t> packed = packTexels(made, device->readAll<uint32_t>(taps, 3 * made.texel.size()));
     Result<Buffer> room = device->allocate(packed.size() * sizeof(uint32_t));
     if (!room) return room.error();
@@ -110,6 +112,8 @@ FlowMapStep FlowMaps::Impl::stepOf(const FlowView& flow, const SurfaceFlowParams
     s.since = stepped;
     s.moved = flow.moved != moved ? 1 : 0;
     s.reach = flow.largestRadius;
+    s.inverseReach = 1 / s.reach;
+    s.coverFrom = static_cast<uint32_t>(before(coverLevel()));
     s.trail = std::max(params.trail, 1.0e-6F);
     s.tap = 0.6F * params.filmCell;
     s.contactRadius = static_cast<float>(contactRadius(meanAngle(params)));
@@ -161,17 +165,14 @@ void FlowMaps::draw(const SurfaceFlow& flow) {
     ++w.drawn;
     FlowMapStep s = w.stepOf(v, flow.params());
     Device& d = *w.device;
-    if (s.moved > 0) {
-        d.run(w.frames, s, {&w.chart, v.basis, &w.frame}, s.triangles);
-        d.run(w.bounds, s, {&w.pinBegin, &w.pin, v.point, &w.frame, &w.box}, w.pieces);
-    }
+    if (s.moved > 0) d.run(w.bounds, s, {&w.pinBegin, &w.pin, v.point, &w.chart, v.basis, &w.box}, w.pieces);
     w.moved = v.moved;
     w.stepped = v.steps;
-    d.fill(w.widest, 0);
-    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.widest}, s.slots);
+    d.fill(w.reached, 0);
+    d.run(w.caps, s, {v.cellStart, v.position, v.velocity, &w.cap, &w.reached, &w.near}, s.slots);
     d.run(w.thick, s, {v.skin, v.basis, v.film, v.painted, &w.film}, s.triangles);
-    d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.widest}, w.tiles);
-    d.run(w.rows, s, {&w.texel, &w.frame, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 4 * w.tiles);
+    d.run(w.touch, s, {&w.tile, &w.box, v.cellStart, &w.cap, &w.near, &w.stamp, &w.reached}, w.tiles);
+    d.run(w.rows, s, {&w.texel, &w.chart, v.skin, v.basis, &w.cap, &w.film, &w.near, &w.map}, w.whole ? w.tiles : 4 * w.tiles);
     for (int level = 2; level < w.mips; ++level) {
         if (level == 3 || (level == 2 && w.whole)) continue;  // 3 is made with 2
         const uint32_t edge = s.size >> static_cast<uint32_t>(level);

@@ -165,16 +165,18 @@ class PieceMaker {
         return std::any_of(ca, ca + 3, [cb](uint32_t place) { return std::find(cb, cb + 3, place) != cb + 3; });
     }
 
-    // A small triangle with no texels outside itself is pinned by its corners, which its neighbours share; another by what it shows here.
+    // A small triangle with no texels outside itself is pinned by its corners, which its neighbours share; another by the smaller or larger
+    // triangle about what it shows here, with edges along its own; of a large one by the rectangle about that.
     void pin(uint32_t x0, uint32_t y0, const std::array<uint32_t, TILE_TEXELS>& words, std::vector<uint32_t>& members) {
         std::sort(members.begin(), members.end(),
                   [&](uint32_t a, uint32_t b) { return words[a] != words[b] ? words[a] < words[b] : a < b; });
         const auto stamp = static_cast<uint32_t>(to_.pieces());
         for (size_t first = 0; first < members.size();) {
             const uint32_t word = words[members[first]] & ~TEXEL_FOLD;
-            uint32_t lowX = 7, highX = 0, lowY = 7, highY = 0;
             const UvTriangle& f = flats_[word & TEXEL_TRIANGLE];
-            bool own = true;
+            const uint32_t* corner = &mesh_.corner[3 * size_t{word & TEXEL_TRIANGLE}];
+            uint32_t lowX = 7, highX = 0, lowY = 7, highY = 0;
+            std::array<double, 3> least{1.0e9, 1.0e9, 1.0e9};  // of each corner, what its texels have of it
             size_t end = first;
             for (; end < members.size() && (words[members[end]] & ~TEXEL_FOLD) == word; ++end) {
                 const uint32_t x = members[end] % 8, y = members[end] / 8;
@@ -183,17 +185,25 @@ class PieceMaker {
                 lowY = std::min(lowY, y);
                 highY = std::max(highY, y);
                 const dvec2 turns((word >> TEXEL_TURN_U & 3U), (word >> TEXEL_TURN_V & 3U));
-                own = own && outside(f, dvec2(x0 + x, y0 + y) + (turns - 1.0) * double(to_.size)) < 1.0e-6;
+                const dvec2 at = dvec2(x0 + x, y0 + y) + (turns - 1.0) * double(to_.size);
+                for (size_t k = 0; k < 3; ++k) {
+                    const dvec2 &p = f.p[(k + 1) % 3], &q = f.p[(k + 2) % 3];
+                    least[k] = std::min(least[k], cross2(q - p, at - p) / f.area);
+                }
             }
             first = end;
             const dvec2 span = f.high() - f.low();
-            if (own && std::max(span.x, span.y) < 8) {
+            const double outermost = std::min({least[0], least[1], least[2]});
+            if (outermost > -1.0e-6 && std::max(span.x, span.y) < 8) {
                 for (size_t k = 0; k < 3; ++k) {
-                    const uint32_t place = mesh_.corner[3 * size_t{word & TEXEL_TRIANGLE} + k];
-                    if (seen_[place] == stamp) continue;
-                    seen_[place] = stamp;
-                    to_.pin.push_back(place);
+                    if (seen_[corner[k]] == stamp) continue;
+                    seen_[corner[k]] = stamp;
+                    to_.pin.push_back(corner[k]);
                 }
+            } else if (outermost > -PIN_MOST && std::max(span.x, span.y) < 32) {
+                std::array<uint32_t, 3> share;
+                for (size_t k = 0; k < 3; ++k) share[k] = static_cast<uint32_t>(std::floor((least[k] + PIN_MOST) * PIN_PARTS - 0.01));
+                to_.pin.insert(to_.pin.end(), {PIN_PART | corner[0], corner[1], corner[2], share[0] | share[1] << 16U, share[2]});
             } else
                 to_.pin.insert(to_.pin.end(),
                                {PIN_RECT | word, (x0 + lowX) | (y0 + lowY) << 13U | (highX - lowX) << 26U | (highY - lowY) << 29U});
@@ -271,11 +281,7 @@ MapTexels layTexels(const FlowMesh& mesh, std::span<const vec2> uvs, std::span<c
 }
 
 std::vector<uint32_t> packTexels(MapTexels& map, std::span<const uint32_t> taps) {
-    std::vector<uint32_t> packed, words, cells;
-    // At most 64 words and 192 cells: all have a number of one byte, and where there are as many no texel is none.
-    const auto numberOf = [](const std::vector<uint32_t>& names, uint32_t name) {
-        return static_cast<uint32_t>(std::lower_bound(names.begin(), names.end(), name) - names.begin());
-    };
+    std::vector<uint32_t> packed, words, cells, blocks;
     for (size_t tile = 0; tile < map.tiles(); ++tile) {
         words.clear();
         cells.clear();
@@ -288,15 +294,32 @@ std::vector<uint32_t> packTexels(MapTexels& map, std::span<const uint32_t> taps)
             std::sort(names->begin(), names->end());
             names->erase(std::unique(names->begin(), names->end()), names->end());
         }
+        // Most cells lie beside others: fours, which begin at an even one, where every cell then has a number of one byte.
+        uint32_t shift = 2;
+        const auto lay = [&] {
+            blocks.clear();
+            for (const uint32_t cell : cells)
+                if (blocks.empty() || cell - blocks.back() >= 1U << shift) blocks.push_back(shift > 0 ? cell & ~1U : cell);
+        };
+        lay();
+        if (blocks.size() > 64) {
+            shift = 0;
+            lay();
+        }
+        const auto numberOf = [&](uint32_t cell) {
+            const auto block = std::upper_bound(blocks.begin(), blocks.end(), cell) - blocks.begin() - 1;
+            return (static_cast<uint32_t>(block) << shift) + cell - blocks[static_cast<size_t>(block)];
+        };
         map.tile[TILE_UINTS * tile + 3] = static_cast<uint32_t>(packed.size());
-        const auto first = static_cast<uint32_t>(words.size());
         for (size_t k = tile * TILE_TEXELS; k < (tile + 1) * TILE_TEXELS; ++k)
-            packed.push_back(map.texel[k] == TEXEL_NONE ? PACKED_NONE
-                                                        : numberOf(words, map.texel[k]) | (first + numberOf(cells, taps[3 * k])) << 8U |
-                                                              (first + numberOf(cells, taps[3 * k + 1])) << 16U |
-                                                              (first + numberOf(cells, taps[3 * k + 2])) << 24U);
+            packed.push_back(map.texel[k] == TEXEL_NONE
+                                 ? PACKED_NONE
+                                 : static_cast<uint32_t>(std::lower_bound(words.begin(), words.end(), map.texel[k]) - words.begin()) |
+                                       numberOf(taps[3 * k]) << 8U | numberOf(taps[3 * k + 1]) << 16U | numberOf(taps[3 * k + 2]) << 24U);
+        packed.push_back(static_cast<uint32_t>(words.size()) | static_cast<uint32_t>(blocks.size()) << PACKED_BLOCKS |
+                         (shift > 0 ? PACKED_FOURS : 0));
         packed.insert(packed.end(), words.begin(), words.end());
-        packed.insert(packed.end(), cells.begin(), cells.end());
+        packed.insert(packed.end(), blocks.begin(), blocks.end());
     }
     return packed;
 }

@@ -15,7 +15,7 @@ struct MapTexels {
     std::vector<uint32_t> texel;     // 64 a tile, a word each
     std::vector<uint32_t> pinBegin;  // of each piece's, and the end
     std::vector<uint32_t> pin;
-    std::vector<vec4> chart;   // 2 a triangle, see flow/map_frames; what `folds` says behind
+    std::vector<vec4> chart;   // 2 a triangle, see map_step.h
     std::vector<float> cover;  // of every texel of mip 1 and above: how much of it has skin
     size_t inside = 0;         // texels whose centre lies in their triangle: the others are the charts' gutters
     size_t pieces() const { return pinBegin.size() - 1; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "shaders/flow/facing.h"
 
@@ -150,11 +151,14 @@ void SurfaceFlow::Impl::turnFrame(const dmat4& toWorld, double seconds, FlowStep
 void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f) {
     const Buffer* from = inputs.moved;
     if (from == nullptr && !inputs.positions.empty()) {
-        std::vector<vec4> at;
+        // A part at a time: memory of all of them would be got anew from the system each step.
+        std::array<vec4, 4096> part;
         const size_t used = hostMoved.bytes() / sizeof(vec4);
-        at.reserve(used);
-        for (const vec3& p : inputs.positions.first(used)) at.emplace_back(p, 0.0F);
-        device->writeAll<vec4>(hostMoved, at);
+        for (size_t first = 0; first < used; first += part.size()) {
+            const size_t n = std::min(part.size(), used - first);
+            for (size_t k = 0; k < n; ++k) part[k] = vec4(inputs.positions[first + k], 0.0F);
+            device->write(hostMoved, std::as_bytes(std::span(part).first(n)), first * sizeof(vec4));
+        }
         from = &hostMoved;
     }
     if (from != nullptr) {
@@ -167,8 +171,10 @@ void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep
     if (thesis && !moved) thesis->makeField(forThesis(), f, false);
     if (!moved) return;
     device->run(basis, f, {&skin, &point, &frames}, f.triangles);
-    device->run(drive, f, {&begin, &footprint, &weight, &frames, &driven}, f.places);
-    if (thesis) thesis->makeField(forThesis(), f, true);
+    if (thesis) {
+        device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
+        thesis->makeField(forThesis(), f, true);
+    }
     moved = false;
     ++moves;
 }
@@ -185,6 +191,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     s.invH = s.gridScale.x;
     FlowStep f = w.stepOf(inputs, s, seconds);
     f.number = ++w.steps;
+    f.everywhere = w.thesis ? 1 : 0;
     for (double& since : w.sinceTurn) since += seconds;
     w.phase = (w.phase + 1) % DRY_EVERY;
     f.dryPhase = w.phase;
@@ -212,7 +219,8 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
         f.turn1 = vec4(0, 1, 0, 0);
         f.turn2 = vec4(0, 0, 1, 0);
     }
-    if (f.dries > 0) w.device->run(w.dry, f, {&w.skin, &w.frames, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
+    if (f.dries > 0)
+        w.device->run(w.dry, f, {&w.skin, &w.frames, &w.painted, &w.film, &w.counter}, (f.triangles + DRY_EVERY - 1) / DRY_EVERY);
     w.takeCounters();
     return ok();
 }
@@ -234,13 +242,16 @@ void SurfaceFlow::Impl::touchOthers(const FlowStep& f, const StepParams& s) {
     if (!params.contact || f.places > FACING_PLACES) return;
     StepParams c = s;
     const double volume = std::cbrt(double{params.largestDrop} * kMicrolitre);
-    c.force = vec4(static_cast<float>(contactRadius(meanAngle(params)) * volume), 0.0F, 0.0F, 0.0F);
+    const auto widest = static_cast<float>(contactRadius(meanAngle(params)) * volume);
+    c.force = vec4(widest, 1 / widest, 0.0F, 0.0F);
     c.iteration = f.places;
     const uint32_t finer = s.cellCount / static_cast<uint32_t>(s.cellsX * s.cellsY * s.cellsZ);
     c.correction = static_cast<float>(finer);
     device->fill(faces, UINT32_MAX);
-    device->run(facing, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &point, &driven, &faces}, f.places);
-    device->run(goOver, f, {&drops.id, &faces, &skin, &driven, &begin, &footprint, &side, &drop}, f.count);
+    device->fill(reached, 0);
+    device->run(mark, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &reached}, f.count);
+    device->run(facing, c, {&grid->cellStart(), &drops.position, &drops.velocity, &side, &point, &frames, &faces, &reached}, f.places);
+    device->run(goOver, f, {&drops.id, &faces, &skin, &frames, &point, &side, &drop}, f.count);
 }
 
 Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
@@ -271,6 +282,8 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     if (told->film) press.run(context, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
     device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
     touchOthers(f, s);
+    device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);
+    device->run(drive, f, {&begin, &footprint, &weight, &frames, &wanted, &driven}, f.places);
     device->run(law, f, {&drops.id, &skin, &frames, &driven, &merged, &spreads, &drop, &motion}, f.count);
     device->run(steer, f, {&drops.id, &skin, &frames, &film, &merged, &drop, &motion}, f.count);
     device->run(walk, f, {&drops.id, &skin, &frames, &shift, &drop, &motion}, f.count);

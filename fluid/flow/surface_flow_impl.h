@@ -38,13 +38,13 @@ struct SurfaceFlow::Impl {
     SurfaceFlowParams params;
     std::unique_ptr<NeighborGrid> grid;
     Particles drops;  // as the grid sorts them: position.w radius, velocity.w volume
-    Kernel take, rest, facing, goOver, basis, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
+    Kernel take, rest, mark, facing, goOver, basis, stand, drive, born, brim, place, name, merge, law, steer, walk, paint, dry, leave;
     PairKernel meet, gather, spread, press;
-    Buffer skin, given, hostMoved, point, frames, driven, painted, begin, footprint, weight;  // of the mesh
-    Buffer drop, motion;                                                                      // by id
-    Buffer names, sortedOf, side, into, merged, shift, spreads, faces;                        // sorted
-    Buffer chain, spill;                                                                      // of brims
-    Buffer film;                                                                              // picolitres, of each cell
+    Buffer skin, given, hostMoved, point, frames, driven, wanted, painted, begin, footprint, weight;  // of the mesh
+    Buffer drop, motion;                                                                              // by id
+    Buffer names, sortedOf, side, into, merged, shift, spreads, faces, reached;                       // sorted
+    Buffer chain, spill;                                                                              // of brims
+    Buffer film;                                                                                      // picolitres, of each cell
     Buffer birth, counter, left;
     std::vector<uint32_t> firstCell;   // of each triangle's lattice, and the end
     uint32_t phase = 0;                // whose turn it is to dry

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "fluid/flow/footprint.h"
+#include "shaders/flow/cells.h"
 
 namespace rivulet {
 
@@ -48,7 +49,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     const vec3 size = around.size();
     const float longest = std::max({size.x, size.y, size.z});
     // A skin may move within a margin. Cells as wide as two of the largest drops reach; wider on a large skin, whose cells would be too
-    // many: they are counted anew each step.
+    // many: they are counted anew each step, which on the cpu takes as long as all else that a few drops need.
     corners = around;
     const float margin = 0.25F * longest;
     around.add(around.min - margin);
@@ -56,13 +57,14 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     const double reach =
         std::max(2 * double{params.touch} * contactRadius(meanAngle(params)) * std::cbrt(double{params.largestDrop} * kMicrolitre),
                  std::max(double{params.filmReach}, 2 * double{params.touch} * kFilmRadius * double{params.filmReach}));
-    constexpr double kCells = 1 << 17;
+    const double mostCells = on.backend() == Backend::cpu ? std::clamp(8.0 * slots, 8192.0, 32768.0) : 131072.0;
     const dvec3 all(around.size());
-    const float h = thesis ? thesis->cell() : static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / kCells)));
+    const float h = thesis ? thesis->cell() : static_cast<float>(std::max(reach, std::cbrt(all.x * all.y * all.z / mostCells)));
     if (thesis) around = thesis->around();
     Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots);
     if (!made) return made.error();
     grid = std::make_unique<NeighborGrid>(std::move(*made));
+    if (!thesis) grid->setMargin(static_cast<float>(reach) / h);  // the cpu's lists hold who is near, however wide the cells
     Result<Particles> particles = Particles::create(on, slots);
     if (!particles) return particles.error();
     drops = std::move(*particles);
@@ -72,11 +74,11 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         const char* path;
     };
     for (const Wanted& w :
-         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&facing, "flow/facing"}, Wanted{&goOver, "flow/go_over"},
-          Wanted{&basis, "flow/basis"}, Wanted{&drive, "flow/drive"}, Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"},
-          Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"}, Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"},
-          Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"}, Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"},
-          Wanted{&leave, "flow/leave"}}) {
+         {Wanted{&take, "flow/take"}, Wanted{&rest, "flow/rest"}, Wanted{&mark, "flow/mark"}, Wanted{&facing, "flow/facing"},
+          Wanted{&goOver, "flow/go_over"}, Wanted{&basis, "flow/basis"}, Wanted{&stand, "flow/stand"}, Wanted{&drive, "flow/drive"},
+          Wanted{&born, "flow/born"}, Wanted{&brim, "flow/brim"}, Wanted{&place, "flow/place"}, Wanted{&name, "flow/name"},
+          Wanted{&merge, "flow/merge"}, Wanted{&law, "flow/law"}, Wanted{&steer, "flow/steer"}, Wanted{&walk, "flow/walk"},
+          Wanted{&paint, "flow/paint"}, Wanted{&dry, "flow/dry"}, Wanted{&leave, "flow/leave"}}) {
         Result<Kernel> found = on.kernel(w.path);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -98,6 +100,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&given, places * sizeof(uint32_t)),
                                  std::pair(&hostMoved, positions * sizeof(vec4)),
                                  std::pair(&driven, 2 * places * sizeof(vec4)),
+                                 std::pair(&wanted, places * sizeof(uint32_t)),
                                  std::pair(&painted, triangles * sizeof(uint32_t)),
                                  std::pair(&begin, under.begin.size() * sizeof(uint32_t)),
                                  std::pair(&footprint, under.triangle.size() * sizeof(uint32_t)),
@@ -111,6 +114,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
                                  std::pair(&names, n * sizeof(float)),
                                  std::pair(&sortedOf, n * sizeof(uint32_t)),
                                  std::pair(&faces, n * sizeof(uint32_t)),
+                                 std::pair(&reached, (REACHED_WORDS + 1) * sizeof(uint32_t)),
                                  std::pair(&into, n * sizeof(float)),
                                  std::pair(&merged, n * sizeof(vec4)),
                                  std::pair(&shift, n * sizeof(vec4)),
@@ -132,7 +136,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     on.writeAll<uint32_t>(skin, table);
     std::vector<vec4> at;
     at.reserve(places);
-    for (const vec3& p : mesh.rest) at.emplace_back(p, 0.0F);
+    for (size_t p = 0; p < places; ++p) at.emplace_back(mesh.rest[p], static_cast<float>(under.triangle[under.begin[p]]));
     on.writeAll<vec4>(point, at);
     on.writeAll<uint32_t>(given, mesh.given);
     std::vector<vec4> usual(2 * places, vec4(0.0F));

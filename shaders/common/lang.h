@@ -27,6 +27,8 @@ typedef float real; typedef float3 real3;
 #define ATOMIC_MIN(x, v) atomic_min(&(x), v)
 #define ATOMIC_MAX(x, v) atomic_max(&(x), v)
 #define ATOMIC_OR(x, v) atomic_or(&(x), v)
+#define ATOMIC_READ(x) atomic_add(&(x), 0u)
+#define PREFETCH(x)  /* of memory that is soon asked for: a CPU's threads are few, and each waits */
 #define FN static inline
 #define STRUCT(n) typedef struct n n; struct n
 #define GLOBAL(T, n) __global const T* n,
@@ -58,6 +60,8 @@ typedef float real; typedef float3 real3;
 #define ATOMIC_MIN(x, v) atomicMin(x, v)
 #define ATOMIC_MAX(x, v) atomicMax(x, v)
 #define ATOMIC_OR(x, v) atomicOr(x, v)
+#define ATOMIC_READ(x) atomicAdd(x, 0u)
+#define PREFETCH(x)
 #define FN
 #define STRUCT(n) struct n
 #define GLOBAL(T, n)

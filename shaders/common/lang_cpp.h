@@ -46,6 +46,14 @@ struct alignas(16) vec4 {
     INLINE vec4(float ax, float ay, float az, float aw) : x(ax), y(ay), z(az), w(aw) {}
     INLINE vec4(const vec3& v, float aw) : x(v.x), y(v.y), z(v.z), w(aw) {}
 };
+typedef float Four __attribute__((vector_size(16)));  // four at once, where the compiler would take one after the other
+INLINE Four fourOf(const vec4& a) { Four v; memcpy(&v, &a, 16); return v; }
+INLINE vec4 vec4Of(Four v) { vec4 a; memcpy(&a, &v, 16); return a; }
+INLINE vec4 operator+(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) + fourOf(b)); }
+INLINE vec4 operator-(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) - fourOf(b)); }
+INLINE vec4 operator*(const vec4& a, float b) { return vec4Of(fourOf(a) * b); }
+INLINE vec4 min(const vec4& a, const vec4& b) { return vec4Of(fourOf(b) < fourOf(a) ? fourOf(b) : fourOf(a)); }
+INLINE vec4 max(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) < fourOf(b) ? fourOf(b) : fourOf(a)); }
 struct ivec3 {
     int x, y, z;
     ivec3() = default;
@@ -115,6 +123,8 @@ INLINE void atomicMax(uint* p, uint v) {
 #define BUFFERS(P)
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
+#define ATOMIC_READ(x) __atomic_load_n(&(x), __ATOMIC_RELAXED)
+#define PREFETCH(x) __builtin_prefetch(&(x))
 #define ATOMIC_MIN(x, v) atomicMin(&(x), v)
 #define ATOMIC_MAX(x, v) atomicMax(&(x), v)
 #define KERNEL(name, P)                                                                                            \

@@ -64,7 +64,7 @@ STRUCT(FlowStep) {
     float settle;          // share of the way to rest that a brim goes in a step
     float reach;           // of a cap's height: how near another skin takes a drop over
     uint  number;          // of this step, from 1
-    uint  spare0;
+    uint  everywhere;      // 1: flow/drive is needed at every place
 };
 STRUCT(FlowBirth) {
     vec4  velocity;  // m/s, along the triangle; w: 1 part of a film, 0 a drop

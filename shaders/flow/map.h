@@ -1,8 +1,29 @@
-// Where a texel lies in space: an affine map from UV on each triangle. `x`, `y`: texels of the map, of which `inverse` is one over the edge, a
-// power of two; `word`: the texel's first.
-FN vec3 texelPlace(GLOBAL(vec4, frame) uint word, float x, float y, float inverse) {
-    uint at = 4u * (word & TEXEL_TRIANGLE);
-    float u = (x + 0.5f) * inverse + TO_FLOAT((word >> TEXEL_TURN_U) & 3u) - 1.0f - frame[at].w;
-    float v = (y + 0.5f) * inverse + TO_FLOAT((word >> TEXEL_TURN_V) & 3u) - 1.0f - frame[at + 1u].w;
-    return frame[at].xyz + frame[at + 1u].xyz * u + frame[at + 2u].xyz * v;
+// A triangle as a map shows it: where its places lie depends on UV by an affine map.
+STRUCT(MapSheet) {
+    vec3  middle;  // m
+    vec3  alongU;  // m a unit of u
+    vec3  alongV;
+    vec3  n;       // unit normal
+    float u;       // of its middle, where the map's own go from 0 to 1
+    float v;
+};
+// `word`: a texel's, see map_step.h.
+FN MapSheet sheetOf(GLOBAL(vec4, chart) GLOBAL(vec4, basis) uint word) {
+    uint t = word & TEXEL_TRIANGLE;
+    vec4 slope = chart[2u * t];
+    vec3 e1 = basis[5u * t + 1u].xyz;
+    vec3 e2 = basis[5u * t + 2u].xyz;
+    MapSheet s;
+    s.middle = basis[5u * t].xyz + (e1 + e2) * 0.33333333f;
+    s.alongU = e1 * slope.x + e2 * slope.y;
+    s.alongV = e1 * slope.z + e2 * slope.w;
+    s.n = vec3(basis[5u * t + 1u].w, basis[5u * t + 2u].w, basis[5u * t + 3u].w);
+    s.u = chart[2u * t + 1u].x + 1.0f - TO_FLOAT((word >> TEXEL_TURN_U) & 3u);
+    s.v = chart[2u * t + 1u].y + 1.0f - TO_FLOAT((word >> TEXEL_TURN_V) & 3u);
+    return s;
 }
+// m: of a texel of the map, of which `inverse` is one over the edge, a power of two.
+FN vec3 sheetPlace(MapSheet s, float x, float y, float inverse) {
+    return s.middle + s.alongU * ((x + 0.5f) * inverse - s.u) + s.alongV * ((y + 0.5f) * inverse - s.v);
+}
+FN float sheetInverse(MapSheet s) { return 1.0f / max(sqrt(dot(s.alongU, s.alongU)), 1.0e-15f); }  // units of u a metre

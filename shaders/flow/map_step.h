@@ -14,14 +14,24 @@ namespace rivulet {
 #define TEXEL_FOLD 0x80000000u
 #define TILE_TEXELS 64u
 // A tile: where it lies, in tiles, x | y << 16; its first piece and the one past its last; and where its texels begin. A piece is what hangs
-// together on the skin. Texels are 64 uints of four bytes, behind them what the bytes number: what a texel shows, and of the film the three
-// cells about it (their places in flow/map_thick). A texel without skin: the first byte is PACKED_NONE.
+// together on the skin. Texels are 64 uints of four bytes: which of the tile's words says what it shows, and of the film the three cells about
+// it. Behind them how many words there are and how many blocks (from bit PACKED_BLOCKS), of one cell each or, with PACKED_FOURS, of four; then
+// the words; then the first cell of each block, as flow/map_thick has them. A byte counts the blocks' cells. A texel without skin: the first
+// byte is PACKED_NONE.
 #define TILE_UINTS 4u
 #define PACKED_NONE 255u
-// A pin of a piece, of which its bounds are made: a place; or with PIN_RECT a triangle with its turns and then a rectangle of texels, x | y << 13 |
+#define PACKED_BLOCKS 8u
+#define PACKED_FOURS 0x80000000u
+// A chart, 2 vec4 a triangle: how b1 and b2 grow with u and v, b1u b2u b1v b2v; u and v of its middle, and how near other skin is, m, where it was
+// at rest.
+// A pin of a piece, of which its bounds are made: a place; with PIN_PART the places of a triangle's corners and how much there is of each at least
+// (in PIN_PARTS, from -PIN_MOST; 16 bits each); or with PIN_RECT a triangle with its turns and then a rectangle of texels, x | y << 13 |
 // (width - 1) << 26 | (height - 1) << 29.
 #define PIN_RECT 0x80000000u
-// What a tile knows of drops, 16 uints.
+#define PIN_PART 0x40000000u
+#define PIN_MOST 7.0f
+#define PIN_PARTS 4096.0f
+// What a tile knows of drops, 16 uints. Behind all tiles: how many are to be drawn, and which.
 #define NEAR_UINTS 16u
 #define NEAR_DRAW 0u   /* bit 0: it is to be drawn; 1: all its rows; 4 to 7: where drops were when it was last drawn */
 #define NEAR_HASH 1u   /* of the drops that were there when it was last drawn */
@@ -64,6 +74,10 @@ STRUCT(FlowMapStep) {
     uint  levelTexels; // of the mip that is made
     float contactRadius;  // of a drop, over the cube root of its volume
     float inverseCorner;  // s/m: one over the speed at which a drop's back becomes a corner
+    float inverseReach;// 1/m
+    uint  coverFrom;   // texels before those of which flow/map_mips has the cover
+    uint  unused1;
+    uint  unused2;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FlowMapStep) % 16 == 0);

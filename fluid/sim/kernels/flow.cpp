@@ -13,6 +13,9 @@ namespace rest_unit {
 namespace basis_unit {
 #include "shaders/flow/basis.kernel"
 }
+namespace stand_unit {
+#include "shaders/flow/stand.kernel"
+}
 namespace drive_unit {
 #include "shaders/flow/drive.kernel"
 }
@@ -21,6 +24,7 @@ namespace born_unit {
 }
 // Headers of functions over a kernel's own buffers: each unit has them anew.
 #undef RIVULET_UNDER_H
+#undef RIVULET_FETCH_H
 namespace place_unit {
 #include "shaders/flow/place.kernel"
 }
@@ -42,9 +46,15 @@ namespace gather_unit {
 namespace press_unit {
 #include "shaders/flow/press.kernel"
 }
+namespace mark_unit {
+#include "shaders/flow/mark.kernel"
+}
+#undef RIVULET_CELLS_H
+#undef RIVULET_FACING_H
 namespace facing_unit {
 #include "shaders/flow/facing.kernel"
 }
+#undef RIVULET_FACING_H
 namespace go_over_unit {
 #include "shaders/flow/go_over.kernel"
 }
@@ -52,18 +62,22 @@ namespace merge_unit {
 #include "shaders/flow/merge.kernel"
 }
 #undef RIVULET_UNDER_H
+#undef RIVULET_FETCH_H
 namespace law_unit {
 #include "shaders/flow/law.kernel"
 }
 #undef RIVULET_WALK_H
+#undef RIVULET_FETCH_H
 namespace steer_unit {
 #include "shaders/flow/steer.kernel"
 }
 #undef RIVULET_WALK_H
+#undef RIVULET_FETCH_H
 namespace walk_unit {
 #include "shaders/flow/walk.kernel"
 }
 #undef RIVULET_WALK_H
+#undef RIVULET_FETCH_H
 namespace paint_unit {
 #include "shaders/flow/paint.kernel"
 }
@@ -102,7 +116,8 @@ std::span<const CpuKernelRow> flowRows() {
         {"flow/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},
         {"flow/rest", "", RIVULET_UNIT_ISA, rest_unit::rest, 1024},
         {"flow/basis", "", RIVULET_UNIT_ISA, basis_unit::basis, 1024},
-        {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 256},
+        {"flow/stand", "", RIVULET_UNIT_ISA, stand_unit::stand, 1024},
+        {"flow/drive", "", RIVULET_UNIT_ISA, drive_unit::drive, 512},
         {"flow/born", "", RIVULET_UNIT_ISA, born_unit::born, 256},
         {"flow/brim", "", RIVULET_UNIT_ISA, brim_unit::brim, 1},
         {"flow/place", "", RIVULET_UNIT_ISA, place_unit::place, 256},
@@ -111,6 +126,7 @@ std::span<const CpuKernelRow> flowRows() {
         {"flow/meet", "", RIVULET_UNIT_ISA, meet_unit::meet, 16},
         {"flow/gather", "", RIVULET_UNIT_ISA, gather_unit::gather, 16},
         {"flow/press", "", RIVULET_UNIT_ISA, press_unit::press, 16},
+        {"flow/mark", "", RIVULET_UNIT_ISA, mark_unit::mark, 256},
         {"flow/facing", "", RIVULET_UNIT_ISA, facing_unit::facing, 1024},
         {"flow/go_over", "", RIVULET_UNIT_ISA, go_over_unit::go_over, 256},
         {"flow/merge", "", RIVULET_UNIT_ISA, merge_unit::merge, 256},

@@ -10,12 +10,10 @@ namespace map_caps_unit {
 namespace map_thick_unit {
 #include "shaders/flow/map_thick.kernel"
 }
-namespace map_frames_unit {
-#include "shaders/flow/map_frames.kernel"
-}
 namespace map_bounds_unit {
 #include "shaders/flow/map_bounds.kernel"
 }
+#undef RIVULET_CELLS_H
 namespace map_touch_unit {
 #include "shaders/flow/map_touch.kernel"
 }
@@ -36,9 +34,8 @@ namespace map_mips_unit {
 
 std::span<const CpuKernelRow> flowMapRows() {
     static const CpuKernelRow rows[] = {
-        {"flow/map_caps", "", RIVULET_UNIT_ISA, map_caps_unit::map_caps, 1024},
+        {"flow/map_caps", "", RIVULET_UNIT_ISA, map_caps_unit::map_caps, 256},
         {"flow/map_thick", "", RIVULET_UNIT_ISA, map_thick_unit::map_thick, 1024},
-        {"flow/map_frames", "", RIVULET_UNIT_ISA, map_frames_unit::map_frames, 1024},
         {"flow/map_bounds", "", RIVULET_UNIT_ISA, map_bounds_unit::map_bounds, 256},
         {"flow/map_touch", "", RIVULET_UNIT_ISA, map_touch_unit::map_touch, 128},
         {"flow/map_taps", "", RIVULET_UNIT_ISA, map_taps_unit::map_taps, 1024},

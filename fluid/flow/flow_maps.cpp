@@ -150,6 +150,7 @@ Result<FlowMaps> FlowMaps::create(const SurfaceFlow& flow, std::span<const vec2>
         return badInput(fmt::format("a flow's maps were given {} UVs for {} corners: give each corner of each triangle its own", uvs.size(),
                                     mesh.corner.size()));
     const FlowView view = flow.view();
+    if (view.onLayout) return badInput("a flow in thesis mode has no maps: draw it by thesisPicture()");
     MapTexels made = layTexels(mesh, uvs, skinFolds(mesh, view.largestRadius), size);
     if (made.tiles() == 0) return badInput("no triangle of the skin has an area in UV: give it UVs, or unwrap it");
     auto impl = std::make_unique<Impl>();

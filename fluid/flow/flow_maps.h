@@ -18,7 +18,7 @@ class FlowMaps {
     static constexpr int kLeastSize = 16, kMostSize = 8192;
 
     // `uvs`: 3 a triangle of the flow's mesh. `size`: texels of the map's edge, a power of two. The flow's device must outlive it.
-    // Error: a size that is none, UVs that are not as many or leave no texel (badInput); out of memory.
+    // Error: a size that is none, UVs that are not as many or leave no texel, a flow in thesis mode (badInput); out of memory.
     static Result<FlowMaps> create(const SurfaceFlow& flow, std::span<const vec2> uvs, int size);
     FlowMaps(FlowMaps&&) noexcept;
     FlowMaps& operator=(FlowMaps&&) noexcept;

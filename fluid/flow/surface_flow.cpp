@@ -360,7 +360,8 @@ FlowView SurfaceFlow::view() const {
                .largestRadius = std::max({static_cast<float>(contactRadius(meanAngle(w.params)) * std::cbrt(largest)),
                                           static_cast<float>(kFilmRadius) * w.params.filmReach, w.params.brimWidth}),
                .moved = w.moves,
-               .steps = w.steps};
+               .steps = w.steps,
+               .onLayout = w.thesis.has_value()};
     w.grid->fill(v.grid);
     return v;
 }

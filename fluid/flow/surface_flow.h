@@ -87,6 +87,7 @@ struct FlowView {
     float largestRadius = 0;                              // m, of a drop's foot; only where several met at once there are wider ones
     uint64_t moved = 0;                                   // how often the skin has; 0: no step was made yet
     uint32_t steps = 0;                                   // made
+    bool onLayout = false;                                // thesis mode: drops are sorted by their UV
 };
 
 class SurfaceFlow {

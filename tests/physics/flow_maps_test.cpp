@@ -465,6 +465,11 @@ TEST(FlowMaps, WhatCannotBeDrawnIsRefused) {
         EXPECT_LT(word & 0x7C00U, 0x7C00U);  // no Inf
         EXPECT_LT(word >> 16U & 0x7C00U, 0x7C00U);
     }
+    Result<FlowMesh> again = makeFlowMesh(skin.view());
+    const std::vector<vec2> own = cornerUvs(*again, skin.view());
+    Result<SurfaceFlow> thesis = SurfaceFlow::createThesis(*device, std::move(*again), own, {}, {});
+    ASSERT_TRUE(thesis) << thesis.error().message;
+    EXPECT_FALSE(FlowMaps::create(*thesis, own, 64));
     for (vec2& uv : uvs) uv = vec2(0.5F);
     Result<FlowMaps> none = FlowMaps::create(*flow, uvs, 64);
     ASSERT_FALSE(none);

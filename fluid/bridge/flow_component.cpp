@@ -26,7 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double kMicrolitre = 1.0e6;  // picolitres
 constexpr float kBrimStep = 6.0e-4F;   // m, between the places of a brim
-constexpr size_t kMostABirth = 4096;   // drops of one source in one step
+constexpr int kMostBrimPlaces = 400;
+constexpr size_t kMostABirth = 4096;  // drops of one source in one step
 
 Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
     Bounds all;
@@ -107,6 +108,12 @@ void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) 
     part.grips = std::move(grips);
 }
 
+// Two directions across `n`, a unit vector.
+std::pair<vec3, vec3> across(const vec3& n) {
+    const vec3 a = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9F ? vec3(0, 1, 0) : vec3(1, 0, 0)));
+    return {a, glm::cross(n, a)};
+}
+
 float lengthOf(const std::vector<vec3>& line) {
     float sum = 0;
     for (size_t k = 1; k < line.size(); ++k) sum += glm::distance(line[k - 1], line[k]);
@@ -121,6 +128,7 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     FlowComponent& c = *made;
     c.params_ = params;
     c.device_ = &device;
+    c.log_ = log;
     Result<std::string> path = findAsset(params.mesh, sceneFolder);
     if (!path) return path.error();
     Result<Model> model = importModel(*path);
@@ -200,7 +208,7 @@ Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene
     for (const ModelPart& part : model.parts)
         for (const MorphTarget& m : part.morphs) morphNames.push_back(m.name);
     for (const ExpressionParams& e : params_.expression)
-        if (std::find(morphNames.begin(), morphNames.end(), e.morph) == morphNames.end()) {
+        if (!e.morph.empty() && std::find(morphNames.begin(), morphNames.end(), e.morph) == morphNames.end()) {
             const std::string near = nearestName(e.morph, morphNames);
             return badInput(fmt::format("{} has no morph target `{}`{}", params_.mesh, e.morph,
                                         near.empty() ? std::string() : fmt::format("; did you mean {}?", near)));
@@ -255,12 +263,8 @@ Status FlowComponent::prepareFlow(const Mesh& skin) {
     if (!mesh) return mesh.error();
     for (size_t side = 0; side < 2; ++side)
         if (marks_.eyes[side].tear) tears_[side] = nearestPoint(*mesh, *marks_.eyes[side].tear);
-    for (const FlowSourceParams& source : params_.sources) {
-        const bool needs = source.kind == "corner" || source.kind == "brim";
-        if (needs && (!marks_.eyes[0].tear || marks_.eyes[0].lowerLid.size() < 2))
-            return badInput(fmt::format("{} has no marks of eyes: a source of kind {} has nowhere to be; use spot, strewn or rain",
-                                        params_.mesh, source.kind));
-    }
+    for (const FlowSourceParams& source : params_.sources)
+        if (const std::string fault = faultOf(source); source.rate > 0 && !fault.empty()) return badInput(fault);
     // The thesis knows no lids: what would fill a brim begins below the eye's corner.
     const std::vector<SkinBrim> along = thesis() ? std::vector<SkinBrim>() : brims(*mesh);
     Result<SurfaceFlow> flow = thesis() ? SurfaceFlow::createThesis(*device_, std::move(*mesh), uvs_, params_.liquid, params_.thesis)
@@ -275,6 +279,31 @@ Status FlowComponent::prepareFlow(const Mesh& skin) {
     return ok();
 }
 
+// The eyes that a source may be at: those that its side names, where what its kind needs is marked.
+std::vector<size_t> FlowComponent::eyesOf(const FlowSourceParams& source) const {
+    std::vector<size_t> eyes;
+    for (const size_t side : {size_t{0}, size_t{1}}) {
+        if (source.side == (side == 0 ? "right" : "left")) continue;
+        const bool inBrim = source.kind == "brim" && !thesis();  // the thesis knows no lids
+        if (inBrim ? marks_.eyes[side].lowerLid.size() >= 2 : marks_.eyes[side].tear.has_value()) eyes.push_back(side);
+    }
+    return eyes;
+}
+
+// "", or why nothing can come from there.
+std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
+    if (source.kind != "corner" && source.kind != "brim") return {};
+    if (eyesOf(source).empty())
+        return fmt::format("{} has no marks of {}: a source of kind {} has nowhere to be; use spot, strewn or rain", params_.mesh,
+                           source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind);
+    constexpr float kMostOfAnEye = 1.0e5F;  // microlitres a minute
+    if (source.rate > kMostOfAnEye)
+        return fmt::format(
+            "a source of kind {} lets {:.3g} ul a minute out, and an eye no more than {:.0f}: lower its rate, or use spot or rain",
+            source.kind, source.rate, kMostOfAnEye);
+    return {};
+}
+
 // Along each lower lid, one place every half millimetre or so. What spills begins on the skin below.
 std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
     std::vector<SkinBrim> all;
@@ -285,7 +314,7 @@ std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
         const float length = lengthOf(lid);
         SkinBrim brim;
         brim.picolitres = static_cast<uint32_t>(double{params_.liquid.brimStarts} * kMicrolitre);
-        const int places = std::max(static_cast<int>(length / kBrimStep), 4);
+        const int places = std::clamp(static_cast<int>(std::min(length / kBrimStep, 1.0e6F)), 4, kMostBrimPlaces);
         for (int k = 0; k < places; ++k) {
             const vec3 x = along(lid, length * (static_cast<float>(k) + 0.5F) / static_cast<float>(places));
             brim.places.push_back(nearestPoint(mesh, x));
@@ -334,18 +363,27 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
 }
 
 void FlowComponent::apply(const FlowParams& params) {
-    const FlowParams before = params_;
-    params_ = params;
+    // What tables are sized for, or files were read by, stays: a panel may be dragging it.
+    const FlowParams before = std::exchange(params_, params);
+    params_.mode = before.mode;
+    params_.mesh = before.mesh;
+    params_.part = before.part;
+    params_.position = before.position;
+    params_.mapSize = before.mapSize;
+    params_.regions = before.regions;
+    for (size_t e = 0; e < std::min(before.expression.size(), params_.expression.size()); ++e)
+        params_.expression[e].morph = before.expression[e].morph;
     flow_->setParams(params.liquid);
     if (thesis()) flow_->setThesis(params.thesis);
     layer_->look = params.look;
-    while (sources_.size() < params.sources.size())
-        sources_.push_back({.random = std::mt19937(static_cast<uint32_t>(11 + 7 * sources_.size()))});
+    while (sources_.size() < params.sources.size()) {
+        Source fresh;
+        fresh.random = std::mt19937(static_cast<uint32_t>(11 + 7 * sources_.size()));
+        sources_.push_back(std::move(fresh));
+    }
 }
 
-bool FlowComponent::needsNew(const FlowParams& params) const {
-    return params.expression.size() != params_.expression.size() || params.mesh != params_.mesh;
-}
+bool FlowComponent::needsNew(const FlowParams& params) const { return params.expression.size() != params_.expression.size(); }
 
 SkinPoint FlowComponent::somewhere(const FlowSourceParams& source, Source& state) {
     const FlowMesh& mesh = flow_->mesh();
@@ -375,43 +413,80 @@ void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint3
     if (source.kind == "strewn") {
         flow_->add(somewhere(source, state), picolitres, vec3(0.0F), source.film);
     } else if (source.kind == "spot") {
-        const vec2 off = disc();
-        // In the plane that faces away from the skin's middle.
-        const vec3 out = source.position - search_->places().front();
-        const vec3 n = glm::length(out) > 0 ? glm::normalize(out) : vec3(0, 1, 0);
-        const vec3 a = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9F ? vec3(0, 1, 0) : vec3(1, 0, 0))), b = glm::cross(n, a);
-        flow_->add(nearestPoint(flow_->mesh(), source.position + a * off.x + b * off.y), picolitres, vec3(0.0F), source.film);
+        flow_->add(besideSpot(source, state, disc()), picolitres, vec3(0.0F), source.film);
     } else if (source.kind == "rain") {
-        const Bounds around = bounds();
+        if (around_.empty()) around_ = bounds();
         const vec3 way = glm::length(source.along) > 0 ? glm::normalize(source.along) : vec3(0, -1, 0);
-        const vec3 a = glm::normalize(glm::cross(way, std::abs(way.y) < 0.9F ? vec3(0, 1, 0) : vec3(1, 0, 0))), b = glm::cross(way, a);
-        const float reach = 0.5F * glm::length(around.size());
-        const vec3 middle = source.radius > 0 ? vec3(toWorld_ * glm::dvec4(dvec3(source.position), 1)) : around.centre();
+        const auto [a, b] = across(way);
+        const float reach = 0.5F * glm::length(around_.size());
+        const vec3 middle = source.radius > 0 ? vec3(toWorld_ * glm::dvec4(dvec3(source.position), 1)) : around_.centre();
         const vec2 off = source.radius > 0 ? disc() : vec2(any(state.random), any(state.random)) * reach;
         air.push_back({dvec3(middle + a * off.x + b * off.y - way * (reach * (1.2F + 0.2F * any(state.random)))), dvec3(way * source.speed),
                        picolitres});
     } else {
-        const size_t side = source.side == "left" ? 0 : source.side == "right" ? 1 : state.random() % 2;
+        const std::vector<size_t> eyes = eyesOf(source);
+        const size_t side = eyes[state.random() % eyes.size()];
         if (source.kind == "corner" || thesis()) {
             flow_->add(tears_[side], picolitres);
         } else {
             const uint32_t from = brimBegin_[side], count = brimBegin_[side + 1] - from;
-            flow_->addToBrim(from + static_cast<uint32_t>(state.random() % std::max(count, 1U)), picolitres);
+            flow_->addToBrim(from + static_cast<uint32_t>(state.random() % count), picolitres);
         }
     }
+}
+
+// A point of the disc about a spot, `off` (m) from its middle in the plane of the skin there. All triangles are asked only where the spot
+// has been moved, or the skin turns away under the disc.
+SkinPoint FlowComponent::besideSpot(const FlowSourceParams& source, Source& state, const vec2& off) {
+    const FlowMesh& mesh = flow_->mesh();
+    if (!state.spot || state.spotOf != source.position) {
+        state.spot = nearestPoint(mesh, source.position);
+        state.spotOf = source.position;
+    }
+    if (source.radius == 0) return *state.spot;
+    const uint32_t* c = &mesh.corner[3 * size_t{state.spot->triangle}];
+    const std::vector<vec3>& x = search_->places();
+    const vec3 n = glm::normalize(glm::cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]));
+    if (!isFinite(n)) return *state.spot;
+    const auto [a, b] = across(n);
+    const vec3 at =
+        (1 - state.spot->b1 - state.spot->b2) * x[c[0]] + state.spot->b1 * x[c[1]] + state.spot->b2 * x[c[2]] + a * off.x + b * off.y;
+    const std::optional<SkinSearch::Hit> hit = search_->first(at + n * source.radius, at - n * source.radius);
+    return hit ? hit->at : nearestPoint(mesh, at);
+}
+
+void FlowComponent::sayOnce(const std::string& sentence) {
+    if (std::find(said_.begin(), said_.end(), sentence) != said_.end()) return;
+    said_.push_back(sentence);
+    log_.notice(sentence);
 }
 
 void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air) {
     for (size_t k = 0; k < params_.sources.size(); ++k) {
         const FlowSourceParams& source = params_.sources[k];
         Source& state = sources_[k];
-        if (!(source.rate > 0) || time < double{source.start} || time >= double{source.stop}) continue;
+        if (!(source.rate > 0) || time < double{source.start} || time >= double{source.stop}) {
+            state.begun = false;
+            continue;
+        }
+        if (const std::string fault = faultOf(source); !fault.empty()) {
+            sayOnce(fault);
+            continue;
+        }
         const double wave = 1 + double{source.swell} * std::sin(2 * std::numbers::pi * time / double{source.period});
         state.due += double{source.rate} * kMicrolitre / 60 * seconds * wave;
         const auto each = static_cast<uint32_t>(std::max(double{source.drop} * kMicrolitre, 1.0));
+        // The first drop comes at once, not when the rate has made up for it.
+        if (!std::exchange(state.begun, true)) state.due = std::max(state.due, static_cast<double>(each));
         size_t born = 0;
         for (; state.due >= each && born < kMostABirth; ++born, state.due -= each) emitOne(source, state, each, air);
-        if (born == kMostABirth) state.due = 0;  // more than a step can bear is not let out at all
+        if (born == kMostABirth) {
+            state.due = 0;
+            sayOnce(fmt::format(
+                "flow.sources[{}] would let more than {} drops out at once: the others are not let out; make its drops larger, or "
+                "its rate smaller",
+                k, kMostABirth));
+        }
     }
 }
 
@@ -419,10 +494,12 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
     const double then = time + seconds;
     toWorld_ = worldAt(then);
     time_ = then;
+    around_ = {};
     for (Deformed& d : deformed_) {
         std::vector<float> weights(d.morphs, 0.0F);
         for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
-            if (d.morphOf[e] >= 0) weights[static_cast<size_t>(d.morphOf[e])] += static_cast<float>(params_.expression[e].at(then));
+            if (d.morphOf[e] >= 0)
+                weights[static_cast<size_t>(d.morphOf[e])] += params_.expressive * static_cast<float>(params_.expression[e].at(then));
         d.deformer->run(weights, d.bones);
     }
     seen_ = false;
@@ -430,6 +507,10 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
     SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld_};
     if (skinDeformer_) inputs.moved = &skinDeformer_->positions();
     if (Status moved = flow_->step(inputs, seconds); !moved) return moved;
+    if (flow_->refused() > 0)
+        sayOnce(
+            "a skin has no room for more drops: what finds none is lost, and counted as drained; flow.liquid.capacity says how many there "
+            "may be");
     for (const LeftDrop& d : flow_->takeLeft())
         air.push_back({dvec3(toWorld_ * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld_) * dvec3(d.velocity), d.picolitres});
     return ok();
@@ -452,7 +533,11 @@ std::optional<SkinSearch::Hit> FlowComponent::meets(const dvec3& from, const dve
 
 void FlowComponent::land(const SkinSearch::Hit& where, const AirDrop& drop) {
     // What comes straight at the skin stays there: it keeps the part of its speed that goes along, and no more than runs down by itself.
-    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * drop.velocity);
+    // Against the skin, as it moves as a whole.
+    constexpr double kMoment = 1.0e-4;  // s
+    const glm::dvec4 at(dvec3(where.position), 1);
+    const dvec3 carried = dvec3(worldAt(time_ + kMoment) * at - worldAt(time_) * at) / kMoment;
+    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * (drop.velocity - carried));
     v -= where.normal * glm::dot(v, where.normal);
     constexpr float kMost = 0.2F;  // m/s
     if (const float pace = glm::length(v); pace > kMost) v *= kMost / pace;

@@ -56,6 +56,9 @@ class FlowComponent {
   private:
     struct Source {
         double due = 0;  // picolitres
+        bool begun = false;
+        std::optional<SkinPoint> spot;  // of kind spot, where it was last asked for
+        vec3 spotOf{0.0F};
         std::mt19937 random;
     };
     struct Deformed {
@@ -79,9 +82,16 @@ class FlowComponent {
     void emitOne(const FlowSourceParams& source, Source& state, uint32_t picolitres, std::vector<AirDrop>& air);
     SkinPoint somewhere(const FlowSourceParams& source, Source& state);
     dmat4 worldAt(double time) const;
+    std::vector<size_t> eyesOf(const FlowSourceParams& source) const;
+    std::string faultOf(const FlowSourceParams& source) const;
+    SkinPoint besideSpot(const FlowSourceParams& source, Source& state, const vec2& off);
+    void sayOnce(const std::string& sentence);
     void look();  // where the skin is now
 
     FlowParams params_;
+    Log log_;
+    std::vector<std::string> said_;
+    Bounds around_;  // bounds(), once a step
     Device* device_ = nullptr;
     int group_ = 0;  // the node that all parts hang from
     dmat4 toWorld_{1.0};

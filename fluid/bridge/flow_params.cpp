@@ -32,8 +32,9 @@ void FlowSourceParams::visit(ParamVisitor& v) {
                 "over; rain: from the air"},
         kind, kinds);
     v.choice({.name = "side", .doc = "whose eye, of corner and brim; left is the face's own"}, side, sides);
-    v.value({"rate", "ul/min", "volume, of all together; 0 = off", 0, 1.0e7}, rate);
-    v.value({"drop", "ul", "volume of each drop", 1.0e-4, 1000, kLog}, drop);
+    v.value({"rate", "ul/min", "volume, of all together, the first drop at once; 0 = off; of corner and brim 100,000 at most", 0, 1.0e7},
+            rate);
+    v.value({"drop", "ul", "volume of each drop", 1.0e-4, 100, kLog}, drop);
     v.value({"start", "s", "when it begins", 0, 3600}, start);
     v.value({"stop", "s", "when it ends", 0, 3600}, stop);
     v.value({"swell", "", "0 steady, 1 comes and goes", 0, 1}, swell);
@@ -103,6 +104,7 @@ void FlowParams::visit(ParamVisitor& v) {
     v.group({.name = "liquid", .doc = "what flows, and how it clings"}, liquid);
     v.group({.name = "thesis", .doc = "the forces of mode thesis"}, thesis);
     v.group({.name = "motion", .doc = "how the skin turns as a whole"}, motion);
+    v.value({"expressive", "", "how much of expression: 0 = a statue", 0, 1}, expressive);
     v.list({.name = "expression", .doc = "how it bends: morph targets of the mesh"}, expression);
     v.list({.name = "sources", .doc = "where drops come from"}, sources);
     v.group({.name = "regions", .doc = "where the skin holds more, where less"}, regions);

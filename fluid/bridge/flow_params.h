@@ -13,7 +13,7 @@ namespace rivulet {
 
 // Where drops come from.
 struct FlowSourceParams {
-    std::string kind = "corner";    // corner | brim | spot | strewn | rain
+    std::string kind = "spot";      // corner | brim | spot | strewn | rain
     std::string side = "both";      // of an eye: left | right | both
     float rate = 0;                 // microlitres a minute, all together; 0 = off
     float drop = 1;                 // microlitres, of each
@@ -70,6 +70,7 @@ struct FlowParams {
     SurfaceFlowParams liquid;
     ThesisParams thesis;
     FlowMotionParams motion;
+    float expressive = 1;  // share of all of expression
     std::vector<ExpressionParams> expression;
     std::vector<FlowSourceParams> sources;
     RegionParams regions;

@@ -75,6 +75,15 @@ SkinFlows::First SkinFlows::firstOn(const dvec3& from, const dvec3& to, double t
     return first;
 }
 
+// Whether a skin has slots for `count` more drops in this step; they are then taken. What finds none flies on.
+bool SkinFlows::hasRoom(const FlowComponent* skin, uint32_t count) {
+    const auto [at, asked] = room_.try_emplace(skin, 0U);
+    if (asked) at->second = skin->flow().room();
+    if (count > at->second) return false;
+    at->second -= count;
+    return true;
+}
+
 // A particle whose way, and half a spacing beyond, meets a skin becomes drops side by side as wide as it was: those that the skin is in the
 // way of land, the others fly by. A skin that has no room for them lets it pass. Water that stands about a skin, or waves against it, stays
 // where it is: what comes down has fallen further than it is wide, or is alone.
@@ -87,26 +96,23 @@ void SkinFlows::takeLanding(const SceneFile& scene, FluidWorld& world, double se
         near.add(skin->bounds().max + (reach + 2 * static_cast<float>(spacing)));
     }
     std::vector<uint32_t> slots;
-    std::vector<uint32_t> room(skins_.size(), UINT32_MAX);  // not asked yet
     const double then = time_ + seconds;
-    for (const WorldParticle& p : world.within(near)) {
+    const auto fall = static_cast<float>(std::sqrt(glm::length(dvec3(scene.fluid.gravity)) * spacing));
+    for (const WorldParticle& p : world.within(near, fall, kAlone)) {
         const dvec3 x(p.position), v(p.velocity);
         const double speed = glm::length(v);
         const dvec3 way = speed > 0 ? v / speed : dvec3(0.0), from = x - v * seconds;
-        const bool comes = speed * speed > glm::length(dvec3(scene.fluid.gravity)) * spacing || p.fullness < kAlone;
-        if (!comes || !std::isfinite(speed)) continue;
+        if (!std::isfinite(speed)) continue;
         const First first = firstOn(from, x + way * (0.5 * spacing), then);
         if (first.skin == nullptr) continue;
         const auto on = static_cast<size_t>(
             std::find_if(skins_.begin(), skins_.end(), [&](const auto& s) { return s.get() == first.skin; }) - skins_.begin());
-        if (room[on] == UINT32_MAX) room[on] = skins_[on]->flow().room();
         // Volumes of particles are no whole picolitres: each has what brings the sum nearest.
         const auto upTo = static_cast<uint64_t>(std::llround(static_cast<double>(particles_ + 1) * std::pow(spacing, 3) / kPicolitre));
         const uint64_t volume = upTo - taken_;
         const double most = std::max(double{scene.flow[on].liquid.largestDrop} * kCubicMillimetre / kPicolitre, 1.0);
         const auto count = static_cast<uint32_t>(std::max(std::ceil(static_cast<double>(volume) / most), 1.0));
-        if (count > room[on]) continue;
-        room[on] -= count;
+        if (!hasRoom(first.skin, count)) continue;
         ++particles_;
         taken_ = upTo;
         slots.push_back(p.slot);
@@ -119,7 +125,8 @@ void SkinFlows::takeLanding(const SceneFile& scene, FluidWorld& world, double se
             const dvec3 off = (a * std::cos(angle) + b * std::sin(angle)) * r;
             const FlowComponent::AirDrop drop{x + off, v, static_cast<uint32_t>(volume * (k + 1) / count - volume * k / count)};
             const First own = count == 1 ? first : firstOn(from + off, x + off + n * (2 * spacing), then);
-            if (own.skin != nullptr)
+            // The skin that the particle came down on has room for all of them.
+            if (own.skin != nullptr && (own.skin == first.skin || hasRoom(own.skin)))
                 own.skin->land(own.where, drop);
             else
                 air_.push_back(drop);
@@ -169,7 +176,7 @@ void SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) 
             poured_ += d.picolitres;
             continue;
         }
-        if (landed) {
+        if (landed && hasRoom(way.first.skin)) {
             way.first.skin->land(way.first.where, d);
             continue;
         }
@@ -185,6 +192,7 @@ void SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) 
 
 Status SkinFlows::step(const SceneFile& scene, FluidWorld& world, double seconds, Scene& nodes) {
     if (empty() || !(seconds > 0)) return ok();
+    room_.clear();
     fall(scene, world, seconds);
     if (pools_) takeLanding(scene, world, seconds);
     for (const auto& skin : skins_) {

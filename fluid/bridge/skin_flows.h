@@ -2,6 +2,7 @@
 // world's water is poured into it; a particle of the world that comes down on a skin becomes drops. One mass: a ledger in picolitres.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -48,16 +49,18 @@ class SkinFlows {
         SkinSearch::Hit where;
     };
     First firstOn(const dvec3& from, const dvec3& to, double then) const;
+    bool hasRoom(const FlowComponent* skin, uint32_t count = 1);
     void takeLanding(const SceneFile& scene, FluidWorld& world, double seconds);
     void fall(const SceneFile& scene, FluidWorld& world, double seconds);
 
     std::vector<std::unique_ptr<FlowComponent>> skins_;
     std::vector<FlowComponent::AirDrop> air_;
-    bool pools_ = false;                  // there is water beside
-    uint64_t drained_ = 0, dripped_ = 0;  // picolitres
-    uint64_t poured_ = 0, taken_ = 0;     // picolitres, into the world and out of it
-    uint64_t particles_ = 0;              // taken
-    size_t firstNode_ = 0;                // of the scene's, where the skins' begin
+    std::map<const FlowComponent*, uint32_t> room_;  // drops, of those that were asked in this step
+    bool pools_ = false;                             // there is water beside
+    uint64_t drained_ = 0, dripped_ = 0;             // picolitres
+    uint64_t poured_ = 0, taken_ = 0;                // picolitres, into the world and out of it
+    uint64_t particles_ = 0;                         // taken
+    size_t firstNode_ = 0;                           // of the scene's, where the skins' begin
     double time_ = 0;
     double floor_ = 0;  // m, below which a drop is gone
 };

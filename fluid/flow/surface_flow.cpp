@@ -73,6 +73,10 @@ void SurfaceFlow::setParams(const SurfaceFlowParams& params) {
     p.footprint = impl_->params.footprint;
     p.largestDrop = impl_->params.largestDrop;
     p.filmReach = impl_->params.filmReach;
+    p.filmCell = impl_->params.filmCell;
+    p.advancing = impl_->params.advancing;
+    p.receding = impl_->params.receding;
+    p.touch = impl_->params.touch;
     impl_->params = p;
 }
 
@@ -111,11 +115,10 @@ void SurfaceFlow::Impl::takeCounters() {
         const std::shared_ptr<Told> t = to.lock();
         if (!t) return;  // the flow is no more
         const auto* c = reinterpret_cast<const uint32_t*>(bytes.data());
-        t->refused += c[0];
+        t->refused += c[0] + (uint64_t{c[7]} << 16U);
         t->merges += c[1];
         t->leaving = std::min(c[2], MOST_LEFT);
         t->film = c[6] > 0;
-        t->left += c[3];
         t->evaporated += c[4];
     });
     device->readLater(left, left.bytes(), [to = std::weak_ptr(told)](std::span<const std::byte> bytes) {
@@ -124,7 +127,10 @@ void SurfaceFlow::Impl::takeCounters() {
         const auto* first = reinterpret_cast<const FlowLeft*>(bytes.data());
         std::vector<FlowLeft> some(first, first + t->leaving);
         std::sort(some.begin(), some.end(), [](const FlowLeft& a, const FlowLeft& b) { return a.position.w < b.position.w; });
-        for (const FlowLeft& l : some) t->gone.push_back({vec3(l.position), vec3(l.velocity), l.volume, l.triangle});
+        for (const FlowLeft& l : some) {
+            t->gone.push_back({vec3(l.position), vec3(l.velocity), l.volume, l.triangle});
+            t->left += l.volume;
+        }
     });
 }
 
@@ -328,6 +334,8 @@ std::vector<SkinDrop> SurfaceFlow::drops() const {
     }
     return all;
 }
+
+uint64_t SurfaceFlow::refused() const { return impl_->told->refused; }
 
 uint32_t SurfaceFlow::room() const {
     const Impl& w = *impl_;

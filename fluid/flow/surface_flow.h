@@ -105,7 +105,7 @@ class SurfaceFlow {
 
     const FlowMesh& mesh() const;
     const SurfaceFlowParams& params() const;
-    void setParams(const SurfaceFlowParams& params);  // capacity and footprint stay
+    void setParams(const SurfaceFlowParams& params);  // those that are `fixed` stay: tables are sized for them
     void setThesis(const ThesisParams& params);       // in thesis mode; reach stays
 
     // A drop that appears with the next step. Where no slot is free it is counted as refused.
@@ -119,6 +119,7 @@ class SurfaceFlow {
 
     // Waits for the device.
     std::vector<SkinDrop> drops() const;
+    uint64_t refused() const;          // picolitres that found no slot, as far as is known; does not wait
     uint32_t room() const;             // drops that there are slots for, beside those that were added since the last step; waits
     std::vector<LeftDrop> takeLeft();  // since it was last asked, in the order of their ids each step
     FlowView view() const;

@@ -14,14 +14,16 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
     v.value({"surfaceTension", "N/m", "", 0.001, 1, kLog}, surfaceTension);
     v.value({"viscosity", "Pa s", "dynamic", 1.0e-5, 100, kLog}, viscosity);
     v.value({"density", "kg/m^3", "", 1, 20000, kLog}, density);
-    v.value({"advancing", "deg", "contact angle at a drop's front", 1, 175}, advancing);
-    v.value({"receding", "deg", "contact angle at its back; where it is the larger one, the front's holds for both", 1, 175}, receding);
+    v.value({"advancing", "deg", "contact angle at a drop's front", 1, 175, kLinear, kFixed}, advancing);
+    v.value(
+        {"receding", "deg", "contact angle at its back; where it is the larger one, the front's holds for both", 1, 175, kLinear, kFixed},
+        receding);
     v.value({"hold", "", "of the force that holds a drop, over that of a disc with these angles", 0, 10}, hold);
     v.value({"drag", "", "of the force that slows it, over its width times viscosity times speed", 0, 10000}, drag);
     v.value({"adhesion", "", "of the force that keeps a drop on a skin it hangs from", 0, 10}, adhesion);
     v.value({"airDrag", "", "drag coefficient of a drop in the wind", 0, 10}, airDrag);
-    v.value({"largestDrop", "ul", "what would be more together stays several drops", 0.01, 1000, kLog, kFixed}, largestDrop);
-    v.value({"touch", "", "of the sum of their radii: drops as near are one", 0.1, 1}, touch);
+    v.value({"largestDrop", "ul", "what would be more together stays several drops", 0.01, 100, kLog, kFixed}, largestDrop);
+    v.value({"touch", "", "of the sum of their radii: drops as near are one", 0.1, 1, kLinear, kFixed}, touch);
     v.value({"footprint", "m", "over which a drop's weight is spread", 0, 0.1, kLinear, kFixed}, footprint);
     v.value({"trail", "m", "thickness of the film that a drop leaves behind; 0 = none", 0, 1.0e-4}, trail);
     v.value({"trailWidth", "", "of the trail, over the drop's", 0, 1}, trailWidth);

@@ -110,9 +110,12 @@ void EmitterFeed::take(const EmitterParams& params) {
     layOut();
 }
 
-void EmitterFeed::reset() {
-    account_ = {};
-    flight_ = {};
+void EmitterFeed::reset() { restore({}, {}); }
+
+void EmitterFeed::restore(const Account& account, const Flight& flight) {
+    account_ = account;
+    flight_ = flight;
+    if (poured_) speed_ = glm::length(flight_.velocity);
 }
 
 EmitterFeed EmitterFeed::ofPoured(uint32_t index, float spacing) {

@@ -91,10 +91,7 @@ class EmitterFeed {
         vec3 velocity{0.0F};            // m/s
     };
     const Flight& flight() const { return flight_; }
-    void restore(const Account& account, const Flight& flight) {
-        account_ = account;
-        flight_ = flight;
-    }
+    void restore(const Account& account, const Flight& flight);
 
     const Emitter& emitter() const { return emitter_; }
     vec4 matter{1.0F, 1.0F, 0.0F, 0.0F}, absorption{0.0F};  // of its particles

@@ -57,7 +57,8 @@ Result<std::vector<float>> ExchangePasses::fullness(const StepParams& step, cons
     return device_->readAll<float>(answers_, places.size());
 }
 
-std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const Particles& particles, const Bounds& box) {
+std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const Particles& particles, const Bounds& box, float faster,
+                                                  float looser) {
     if (box.empty()) return {};
     ExchangeParams block{};
     block.step = step;
@@ -65,6 +66,8 @@ std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const 
     block.low = vec4(box.min, 0.0F);
     block.high = vec4(box.max, 0.0F);
     block.most = kMostFound;
+    block.faster = faster;
+    block.looser = looser;
     device_->fill(counter_, 0);
     device_->run(within_, block, {&particles.positionNext, &particles.velocityNext, &counter_, &found_, &slots_}, particles.count);
     const uint32_t count = std::min(device_->readAll<uint32_t>(counter_, 1)[0], kMostFound);

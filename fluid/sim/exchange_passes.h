@@ -25,7 +25,7 @@ class ExchangePasses {
     Result<std::vector<float>> fullness(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
                                         std::span<const vec3> places);
     // By slot. No more than 16,384 at once.
-    std::vector<WorldParticle> within(const StepParams& step, const Particles& particles, const Bounds& box);
+    std::vector<WorldParticle> within(const StepParams& step, const Particles& particles, const Bounds& box, float faster, float looser);
     // No more than within() gives at once. `sorted`: the grid is of the particles as they lie.
     void take(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
               std::span<const uint32_t> slots, bool sorted);

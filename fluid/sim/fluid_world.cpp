@@ -430,9 +430,9 @@ std::vector<float> FluidWorld::fullness(std::span<const vec3> places) {
     return std::vector<float>(places.size(), 0.0F);
 }
 
-std::vector<WorldParticle> FluidWorld::within(const Bounds& box) {
+std::vector<WorldParticle> FluidWorld::within(const Bounds& box, float faster, float looser) {
     ASSERT(impl_->exchange.any(), "say by Sources::poured that others hold water");
-    return impl_->exchange.within(impl_->step, impl_->particles, box);
+    return impl_->exchange.within(impl_->step, impl_->particles, box, faster, looser);
 }
 
 void FluidWorld::take(std::span<const uint32_t> slots) {

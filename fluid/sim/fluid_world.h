@@ -70,8 +70,9 @@ class FluidWorld {
     void pour(const vec3& place, const vec3& velocity, double volume);
     // The density ratio that particles make at each place after the last step: 0 in the air, about 1 in the midst of water. Waits.
     std::vector<float> fullness(std::span<const vec3> places);
-    // The particles in a box now, 16,384 at most; and those of them that go to others, spacing^3 m^3 each. Wait.
-    std::vector<WorldParticle> within(const Bounds& box);
+    // The particles in a box now that are faster (m/s) or of a lower density ratio than that, 16,384 at most; and those of them that go to
+    // others, spacing^3 m^3 each. Wait.
+    std::vector<WorldParticle> within(const Bounds& box, float faster = 0, float looser = 1.0e9F);
     void take(std::span<const uint32_t> slots);
 
     const FluidParams& params() const;

@@ -1,6 +1,8 @@
 // Skins in scenes: what a file may say, what is refused, and that nothing is lost on the way from an eye to the ground.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/compute/device_cpu.h"
@@ -190,6 +192,105 @@ TEST(SceneFlow, ASkinThatMovesMeetsWhatIsInItsWay) {
     EXPECT_LT((*session)->flows().inAir(), hang);
     EXPECT_GT((*session)->flows().ledger().onSurface, 0.0);
     EXPECT_EQ((*session)->flows().ledger().error, 0.0);
+}
+
+// Each preset does what its name says within a few seconds.
+TEST(SceneFlow, PresetsWetTheFace) {
+    auto device = cpu();
+    for (const char* preset : {"single tear", "sob", "sweat", "rain on a statue"}) {
+        Result<std::unique_ptr<Session>> session = Session::create(crying({"flow.0.mapSize=64"}, preset), *device, {});
+        ASSERT_TRUE(session) << session.error().message;
+        for (int k = 0; k < 180; ++k) (*session)->step(1.0 / 60, true);
+        size_t large = 0, all = 0;
+        for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) {
+            large += d.volume > 3e-9 && d.way > 0.005 ? 1 : 0;
+            all += d.volume > 4e-10 ? 1 : 0;
+        }
+        if (std::string(preset) == "single tear")
+            EXPECT_EQ(large, 1U);
+        else if (std::string(preset) == "sob")
+            EXPECT_GE(large, 1U);
+        else
+            EXPECT_GT(all, 50U) << preset;
+        EXPECT_EQ((*session)->flows().ledger().error, 0.0) << preset;
+    }
+}
+
+// What a panel may write while somebody drags, chooses and adds: nothing ends the program, and what cannot be is said once.
+TEST(SceneFlow, APanelMayWriteAnything) {
+    auto device = cpu();
+    std::string said;
+    Log log;
+    log.sink = [&](LogLevel, std::string_view text) { said += std::string(text) + "|"; };
+    for (const char* name : {"cold_bottle", "crying_thesis", "crying"}) {
+        Result<SceneFile> scene = loadScene(name, std::vector<std::string>{"flow.0.mapSize=64"});
+        ASSERT_TRUE(scene);
+        Result<std::unique_ptr<Session>> session = Session::create(*scene, *device, log);
+        ASSERT_TRUE(session) << session.error().message;
+        SceneFile panel = *scene;
+        panel.flow[0].sources.push_back({});
+        const auto steps = [&] {
+            (*session)->apply(panel);
+            for (int k = 0; k < 4; ++k) (*session)->step(1.0 / 60, true);
+            EXPECT_EQ((*session)->flows().ledger().error, 0.0) << name;
+        };
+        for (const char* kind : {"brim", "corner", "spot", "strewn", "rain"})
+            for (const char* side : {"left", "right", "both"}) {
+                for (FlowSourceParams& source : panel.flow[0].sources) {
+                    source.kind = kind;
+                    source.side = side;
+                    source.rate = 3000;
+                }
+                steps();
+            }
+        panel.flow[0].mapSize = 777;
+        panel.flow[0].mode = panel.flow[0].mode == "thesis" ? "drops" : "thesis";
+        panel.flow[0].part = "none";
+        panel.flow[0].liquid.advancing = 3;
+        panel.flow[0].liquid.capacity = 7;
+        steps();
+        EXPECT_EQ((*session)->flows().skins()[0]->params().mode, scene->flow[0].mode);
+        // Made anew with a source and an expression as they come out of a list's button.
+        SceneFile more = *scene;
+        more.flow[0].sources.push_back({});
+        more.flow[0].expression.push_back({});
+        const auto again = Session::create(more, *device, log);
+        EXPECT_TRUE(again) << (again ? "" : again.error().message);
+    }
+    const size_t first = said.find("no marks of eyes");
+    ASSERT_NE(first, std::string::npos) << said;
+}
+
+// As much as an eye may let out: brims spill larger tears, and not a picolitre is lost.
+TEST(SceneFlow, AFloodOfTearsIsCounted) {
+    auto device = cpu();
+    Result<std::unique_ptr<Session>> session = Session::create(
+        crying({"flow.0.sources.0.rate=1e5", "flow.0.sources.0.drop=20", "flow.0.mapSize=64", "flow.0.liquid.capacity=64"}), *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    for (int k = 0; k < 240; ++k) (*session)->step(1.0 / 60, true);
+    EXPECT_EQ((*session)->flows().ledger().error, 0.0);
+    EXPECT_GT((*session)->flows().ledger().emitted, 6e-6);
+    EXPECT_FALSE(loadScene("crying", std::vector<std::string>{"flow.0.sources.0.drop=101"}));
+    EXPECT_FALSE(Session::create(crying({"flow.0.sources.0.rate=1e6"}), *device, {}));
+}
+
+// A disc about a spot is as wide as was asked, along the skin.
+TEST(SceneFlow, ASpotIsRound) {
+    auto device = cpu();
+    Result<SceneFile> scene =
+        loadScene("window_rain", std::vector<std::string>{"flow.0.sources.0.kind=spot", "flow.0.sources.0.radius=0.05",
+                                                          "flow.0.sources.0.position=0,0,0", "flow.0.sources.0.rate=100000",
+                                                          "flow.0.sources.0.drop=0.5", "flow.0.liquid.hold=10", "flow.0.mapSize=64"});
+    ASSERT_TRUE(scene) << scene.error().message;
+    Result<std::unique_ptr<Session>> session = Session::create(*scene, *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    for (int k = 0; k < 10; ++k) (*session)->step(1.0 / 60, true);
+    Bounds wide;
+    for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) wide.add(d.position);
+    std::array<float, 3> size = {wide.size().x, wide.size().y, wide.size().z};
+    std::sort(size.begin(), size.end());
+    EXPECT_NEAR(size[1], 0.1F, 0.012F);
+    EXPECT_NEAR(size[2], 0.1F, 0.012F);
 }
 
 }  // namespace

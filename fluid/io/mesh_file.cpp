@@ -46,8 +46,11 @@ std::string writePly(const MeshView& mesh) {
     out += fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", mesh.positions.size());
     if (!mesh.normals.empty()) out += "property float nx\nproperty float ny\nproperty float nz\n";
     out += fmt::format("element face {}\nproperty list uchar uint vertex_indices\nend_header\n", mesh.triangleCount());
+    const size_t start = out.size();
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         putVector(out, mesh.positions[i]);
+        // Assimp takes a line's end that the data begin with for the header's (its issue 5341): one bit of the first number is in the way.
+        if (i == 0 && (out[start] == '\n' || out[start] == '\r')) out[start] = '\v';
         if (!mesh.normals.empty()) putVector(out, mesh.normals[i]);
     }
     for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {

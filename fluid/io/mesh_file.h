@@ -16,7 +16,7 @@ struct MeshFormat {
 };
 const Table<MeshFormat>& meshFormats();
 
-// Metres, +Y up; with normals if the mesh has them. Numbers read back exactly.
+// Metres, +Y up; with normals if the mesh has them. Numbers read back exactly, but for the last bits of a ply's first, see there.
 std::string writeObj(const MeshView& mesh);
 std::string writePly(const MeshView& mesh);  // binary, little-endian
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <map>
 #include <random>
 
@@ -123,6 +124,22 @@ TEST(MarchingCubes, AssimpReadsTheMeshBack) {
         EXPECT_NEAR(volumeOf(back->view()), volumeOf(mesh.view()), 1e-6 * volumeOf(mesh.view()));
         ASSERT_EQ(back->normals.size(), back->positions.size());
         for (size_t i = 0; i < back->positions.size(); ++i) EXPECT_GT(glm::dot(back->normals[i], glm::normalize(back->positions[i])), 0.5);
+    }
+}
+
+// A number whose lowest byte is a line's end begins the data.
+TEST(MarchingCubes, AssimpReadsAPlyThatBeginsWithALineFeed) {
+    const testing::Scratch scratch;
+    for (const uint32_t bits : {0x3D76F70AU, 0x3D76F70DU}) {
+        const float x = std::bit_cast<float>(bits);
+        const std::vector<vec3> corners = {vec3(x, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)};
+        const std::vector<uint32_t> sides = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+        const std::string path = scratch.file("tetrahedron.ply");
+        ASSERT_TRUE(writeFileAtomic(path, writePly({corners, sides, {}, {}})));
+        Result<Mesh> back = importMesh(path);
+        ASSERT_TRUE(back) << back.error().message;
+        EXPECT_EQ(back->view().triangleCount(), 4U);
+        EXPECT_NEAR(volumeOf(back->view()), volumeOf({corners, sides, {}, {}}), 1e-6);
     }
 }
 

@@ -107,8 +107,12 @@ Result<IsoSurface> IsoSurface::create(std::span<const vec4> particles, float spa
     made.spacing_ = double{spacing};
     const double s = made.spacing_, furthest = 1.0e6 * s;
     std::vector<dvec3> at;
+    std::vector<double> fullness;
     for (const vec4& p : particles)
-        if (p.w >= 0 && glm::all(glm::lessThan(glm::abs(dvec3(p)), dvec3(furthest)))) at.emplace_back(p);
+        if (p.w >= 0 && glm::all(glm::lessThan(glm::abs(dvec3(p)), dvec3(furthest)))) {
+            at.emplace_back(p);
+            fullness.push_back(double{p.w});
+        }
     const Neighborhood near(at, params.support * s);
     const std::vector<dvec3> offsets = offsetsOf(near);
     made.kernels_.resize(at.size());
@@ -116,6 +120,7 @@ Result<IsoSurface> IsoSurface::create(std::span<const vec4> particles, float spa
     tbb::parallel_for(uint32_t{0}, made.count(), [&](uint32_t i) {
         const Axes axes = axesOf(near, i, offsets[i], s);
         Kernel& k = made.kernels_[i];
+        k.fullness = fullness[i];
         k.centre = at[i] + params.smoothing * (offsets[i] - sharedOffset(near, offsets, i));
         double volume = 1;
         for (int axis = 0; axis < 3; ++axis) {
@@ -164,18 +169,29 @@ IsoSurface::Sample IsoSurface::sample(const dvec3& p) const {
     return all;
 }
 
+double IsoSurface::Kernel::value(const dvec3& p) const {
+    const dvec3 d = p - centre;
+    const dvec3 y(xx * d.x + xy * d.y + xz * d.z, xy * d.x + yy * d.y + yz * d.z, xz * d.x + yz * d.y + zz * d.z);
+    const double q2 = glm::dot(y, y);
+    if (q2 >= 1) return 0;
+    const double q = std::sqrt(q2), a2 = (1 - q) * (1 - q);
+    return peak * a2 * a2 * (4 * q + 1);
+}
+
 double IsoSurface::value(const dvec3& p) const {
     double sum = 0;
-    for (const uint32_t i : cells_.items(cells_.cellOf(p))) {
-        const Kernel& k = kernels_[i];
-        const dvec3 d = p - k.centre;
-        const dvec3 y(k.xx * d.x + k.xy * d.y + k.xz * d.z, k.xy * d.x + k.yy * d.y + k.yz * d.z, k.xz * d.x + k.yz * d.y + k.zz * d.z);
-        const double q2 = glm::dot(y, y);
-        if (q2 >= 1) continue;
-        const double q = std::sqrt(q2), a2 = (1 - q) * (1 - q);
-        sum += k.peak * a2 * a2 * (4 * q + 1);
-    }
+    for (const uint32_t i : cells_.items(cells_.cellOf(p))) sum += kernels_[i].value(p);
     return sum;
+}
+
+double IsoSurface::fullness(const dvec3& p) const {
+    double sum = 0, of = 0;
+    for (const uint32_t i : cells_.items(cells_.cellOf(p))) {
+        const double share = kernels_[i].value(p);
+        sum += share;
+        of += share * kernels_[i].fullness;
+    }
+    return sum > 0 ? of / sum : 0;
 }
 
 dvec3 IsoSurface::normal(const dvec3& p) const {

@@ -73,6 +73,17 @@ gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs
 // Marks the tiles of the picture that particles touch: what comes after the spheres runs only there.
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
+// A water surface as the shade pass takes it.
+struct WaterSurface {
+    gpu::TextureHandle tiles;      // as addTiles
+    gpu::TextureHandle depth;      // r32f, m, 1e6 where there is none
+    gpu::TextureHandle thickness;  // m: x of water, y of that as spray
+    gpu::TextureHandle fades;      // what red, green and blue fade by; empty: particles are alike
+};
+// Thickness and fades of the spheres, blurred: the rest of a surface is empty.
+WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles);
+FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const WaterSurface& water);
+
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 

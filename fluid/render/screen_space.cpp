@@ -153,7 +153,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addFilter(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
     }
-    return {tiles, {}, thickness, depths};
+    return {.tiles = tiles, .depth = {}, .thickness = thickness, .normals = {}, .fades = depths};
 }
 
 TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
@@ -202,15 +202,17 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, water.tiles,   d.colour,     d.depth,     water.depth,
                                     water.thickness,           d.shadowSharp, d.shadowSoft, d.waterLight};
     if (ink) reads.emplace_back(water.fades);
+    if (water.normals) reads.emplace_back(water.normals);
     graph.pass("shade", reads, {colour}, [=, &programs](PassContext& c) {
         c.drawTo({colour});
         useFrame(c, d);
-        Program& p = ink ? programs.shadeInk : programs.shade;
+        Program& p = water.normals ? (ink ? programs.shadeNormalsInk : programs.shadeNormals) : ink ? programs.shadeInk : programs.shade;
         p.use();
         p.texture("sceneColour", 0, c.texture(d.colour));
         p.texture("sceneDepth", 1, c.texture(d.depth));
         p.texture("fluidDepth", 2, c.texture(water.depth));
         p.texture("thickness", 3, c.texture(water.thickness));
+        if (water.normals) p.texture("normals", 9, c.texture(water.normals));
         if (ink) p.texture("depths", 8, c.texture(water.fades));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));

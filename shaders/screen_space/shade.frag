@@ -6,6 +6,9 @@ uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;   // window depth
 uniform sampler2D fluidDepth;   // m
 uniform sampler2D thickness;    // m: of water, of that as spray
+#if defined(NORMALS)
+uniform sampler2D normals;      // of the surface, view space, unit; else they come from its depth
+#endif
 uniform float radius;           // m
 uniform vec3 absorption;        // 1/m
 #if defined(INK)
@@ -76,7 +79,11 @@ void main() {
     vec3 toEye = -normalize(p);
     vec2 turn;
     vec3 right = slope(here, ivec2(1, 0), p, depth * frame.ray.x, turn.x), up = slope(here, ivec2(0, 1), p, depth * frame.ray.y, turn.y);
+#if defined(NORMALS)
+    vec3 n = texelFetch(normals, here, 0).xyz;
+#else
     vec3 n = normalize(cross(right, up));
+#endif
     float nv = dot(n, toEye);
     if (nv < 0.02) { n = normalize(n + (0.02 - nv) * toEye); nv = 0.02; }
 

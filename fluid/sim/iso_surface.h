@@ -6,7 +6,7 @@
 // Each particle brings the volume spacing^3, however its kernel is stretched. Centres c are smoothed (shaders/fluid/anisotropy_params.h has
 // the constants), then put back by what the neighbours' centres moved, too (Vollmer et al. 1999): noise goes, the level stays. A
 // lattice that fills a half space has its surface half a spacing beyond the outermost centres, within 0.03 spacings (jittered by a quarter
-// spacing, too: measured 0.51 to 0.52); a particle by itself is a ball of 0.53 spacings, two thirds of its volume.
+// spacing, too: measured 0.47 to 0.49); a particle by itself is a ball of 0.51 spacings, half its volume.
 #pragma once
 
 #include <span>

@@ -9,7 +9,7 @@
 #pragma once
 #endif
 #define ANISOTROPY_SUPPORT 2.0f    /* spacings: R on a GPU, where the neighbours at hand reach no further; the truth's is ANISOTROPY_SUPPORT_HOST */
-#define ANISOTROPY_SUPPORT_HOST 2.5f
+#define ANISOTROPY_SUPPORT_HOST 3.0f
 #define ANISOTROPY_SMOOTHING 0.9f  /* lambda: share of the way to the mean of its neighbours that a centre goes */
 #define ANISOTROPY_FULL 0.15f      /* variance along each axis amid the water, R^2: 1 / ks */
 #define ANISOTROPY_CROWD 2.0943951f
@@ -17,4 +17,4 @@
 #define ANISOTROPY_ALONE 0.5f      /* kn: half axes of a particle by itself */
 #define ANISOTROPY_FEW 0.1f        /* shares */
 #define ANISOTROPY_MANY 0.25f
-#define ANISOTROPY_KERNEL 2.5f     /* spacings: support of a round particle's kernel, Wendland C2 */
+#define ANISOTROPY_KERNEL 2.75f    /* spacings: support of a round particle's kernel, Wendland C2 */

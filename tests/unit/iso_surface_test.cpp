@@ -125,8 +125,9 @@ TEST(IsoSurface, ASheetIsFlatAndADropIsASmallBall) {
 
     const std::vector<vec4> one = {vec4(0, 0, 0, 1)};
     const IsoSurface drop = surfaceOf(one);
-    EXPECT_NEAR(crossing(drop, dvec3(0), {1, 0, 0}, 0, 2), 0.53, 0.01);
-    EXPECT_NEAR(crossing(drop, dvec3(0), glm::normalize(dvec3(1, 1, 1)), 0, 2), 0.53, 0.01);
+    // Where 21 / (2 pi R^3) (1 - q)^4 (4 q + 1) = 0.5, R = 1.375 spacings.
+    EXPECT_NEAR(crossing(drop, dvec3(0), {1, 0, 0}, 0, 2), 0.510, 0.001);
+    EXPECT_NEAR(crossing(drop, dvec3(0), glm::normalize(dvec3(1, 1, 1)), 0, 2), 0.510, 0.001);
 }
 
 TEST(IsoSurface, LeavesOutWhatIsNoParticle) {

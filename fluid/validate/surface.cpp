@@ -332,9 +332,12 @@ Result<Outcome> runSurface(const CaseSettings& settings) {
     Under u{settings, std::move(*probe), {}};
     u.outcome.method = settings.method;
     if (Status s = u.shapes(); !s) return s.error();
-    if (u.truth()) return u.outcome;
-    if (Status s = u.realFrame(); !s) return s.error();
-    if (Status s = u.still(); !s) return s.error();
+    if (!u.truth()) {
+        if (Status s = u.realFrame(); !s) return s.error();
+        if (Status s = u.still(); !s) return s.error();
+    }
+    if (settings.method != surfaceMethods().front())
+        for (Finding& f : u.outcome.findings) f.tolerance.reset();
     return u.outcome;
 }
 

@@ -133,7 +133,9 @@ class Marcher {
         const ivec3 block = blocks_.cellOf(p), cell = surface_.cells().cellOf(p);
         if (!blocks_.occupied(block)) return leaving(ray, block, kBlock * edge_, t) + hair;
         if (!surface_.cells().occupied(cell)) return leaving(ray, cell, edge_, t) + hair;
-        return t + surface_.spacing() / ray.length * std::clamp(0.6 * std::abs(value - IsoSurface::kLevel), 0.08, 0.4);
+        // Half a spacing and more lies between the surface and values such as these; a hole or a sheet is not narrower.
+        const double far = value < 0.02 ? 0.5 : value > 0.85 ? 0.7 : 0;
+        return t + surface_.spacing() / ray.length * std::max(far, std::clamp(0.6 * std::abs(value - IsoSurface::kLevel), 0.08, 0.4));
     }
     static double leaving(const Ray& ray, const ivec3& cell, double edge, double t) {
         double end = std::numeric_limits<double>::infinity();

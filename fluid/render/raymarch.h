@@ -28,7 +28,7 @@ struct RaymarchOptions {
 };
 
 // Rays through the centres of pixels, from the near plane to the far one. Cells without particles are skipped; elsewhere a step is 0.08 to
-// 0.4 spacings, by how far the value is from the surface's, and a peak between steps is looked at. Hits are bisected to 1e-4 spacings.
+// 0.7 spacings, by how far the value is from the surface's, and a peak between steps is looked at. Hits are bisected to 1e-4 spacings.
 RaymarchPicture raymarch(const IsoSurface& surface, const FrameView& view, const RaymarchOptions& options = {});
 
 }  // namespace rivulet

@@ -12,11 +12,10 @@ namespace rivulet {
 
 namespace {
 
-constexpr int kTile = 16;                    // pixels
-constexpr int kBlock = 8;                    // cells: the larger of two sizes of emptiness
-constexpr double kNearest = 1e-4;            // spacings, of a hit
-constexpr double kPeak = 0.2;                // a peak of less between two steps does not reach the surface
-constexpr double kSprayed[] = {0.42, 0.72};  // density ratios: below all is spray, above nothing (shaders/screen_space/particle.glsl)
+constexpr int kTile = 16;          // pixels
+constexpr int kBlock = 8;          // cells: the larger of two sizes of emptiness
+constexpr double kNearest = 1e-4;  // spacings, of a hit
+constexpr double kPeak = 0.2;      // a peak of less between two steps does not reach the surface
 
 struct Ray {
     dvec3 from{0.0}, along{0.0};  // world; `along` for a metre of depth
@@ -48,8 +47,8 @@ Span through(const Ray& ray, const dvec3& low, const dvec3& high) {
 
 struct Hit {
     double depth = double{kNoDepth};
-    dvec3 normal{0.0};              // world
-    double water = 0, sprayed = 0;  // m
+    dvec3 normal{0.0};  // world
+    double water = 0;   // m
 };
 
 class Marcher {
@@ -96,9 +95,7 @@ class Marcher {
             hit.normal = surface_.normal(ray.at(at));
         };
         const auto leave = [&](double at) {
-            const double length = (at - entered) * ray.length;
-            hit.water += length;
-            hit.sprayed += length * sprayedAt(ray.at(0.5 * (entered + at)));
+            hit.water += (at - entered) * ray.length;
             inside = false;
         };
         while (t < end) {
@@ -164,10 +161,6 @@ class Marcher {
         }
         return 0.5 * (a + b);
     }
-    double sprayedAt(const dvec3& p) const {
-        const double x = std::clamp((surface_.fullness(p) - kSprayed[0]) / (kSprayed[1] - kSprayed[0]), 0.0, 1.0);
-        return 1 - x * x * (3 - 2 * x);
-    }
 
     const IsoSurface& surface_;
     double edge_;
@@ -184,7 +177,6 @@ RaymarchPicture raymarch(const IsoSurface& surface, const FrameView& view, const
     const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
     picture.depth.assign(pixels, kNoDepth);
     picture.water.assign(pixels, vec4(0.0F));
-    picture.sprayed.assign(pixels, 0.0F);
     if (surface.count() == 0) return picture;
     const Marcher marcher(surface);
     const dmat4 toWorld = glm::inverse(dmat4(view.view)), projection(view.projection);
@@ -203,7 +195,6 @@ RaymarchPicture raymarch(const IsoSurface& surface, const FrameView& view, const
         if (hit.depth >= double{kNoDepth}) return;
         picture.depth[at] = static_cast<float>(hit.depth);
         picture.water[at] = vec4(vec3(glm::transpose(turn) * hit.normal), static_cast<float>(hit.water));
-        picture.sprayed[at] = static_cast<float>(hit.sprayed);
     };
     tbb::parallel_for(0, tiles, [&](int tile) {
         if (stopped) return;

@@ -15,9 +15,8 @@ constexpr float kNoDepth = 1.0e6F;  // m: shaders/render/frame.glsl's depth of n
 // A pixel each, in OpenGL's order: the bottom row first.
 struct RaymarchPicture {
     int width = 0, height = 0;
-    std::vector<float> depth;    // m along the view axis, to where the ray enters the water; kNoDepth: it does not
-    std::vector<vec4> water;     // xyz: the normal there, view space, unit, w: m of water along the whole ray
-    std::vector<float> sprayed;  // m of that which is spray
+    std::vector<float> depth;  // m along the view axis, to where the ray enters the water; kNoDepth: it does not
+    std::vector<vec4> water;   // xyz: the normal there, view space, unit, w: m of water along the whole ray
 };
 
 struct RaymarchOptions {

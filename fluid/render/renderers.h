@@ -82,7 +82,7 @@ struct WaterSurface {
     gpu::TextureHandle tiles;      // as addTiles
     gpu::TextureHandle depth;      // r32f, m, 1e6 where there is none
     gpu::TextureHandle thickness;  // m: x of water, y of that as spray
-    gpu::TextureHandle normals;    // xyz, view space; empty: they come from the depth
+    gpu::TextureHandle normals;    // xyz view space, w m of water instead of thickness.x; empty: they come from the depth
     gpu::TextureHandle fades;      // what red, green and blue fade by; empty: particles are alike
 };
 // Thickness and fades of the spheres, blurred: the rest of a surface is empty.

@@ -32,31 +32,25 @@ std::vector<float> sceneDepths(const gpu::Texture& window, const FrameView& view
 FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
     gpu::TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-    WaterSurface water;
+    // Spray and dye are matters of particles, not of their surface.
+    WaterSurface water = addThickness(graph, programs, d, addTiles(graph, programs, d));
     water.depth = graph.texture("truth depth", size);
     size.format = Format::rgba32f;
     water.normals = graph.texture("truth normals", size);
-    size.format = Format::rg32f;
-    water.thickness = graph.texture("truth thickness", size);
     water.tiles = graph.texture("all tiles", {.width = 1, .height = 1, .format = Format::r8});
     graph.pass("all tiles", {}, {water.tiles}, [=](PassContext& c) { c.drawTo({water.tiles}).clearColour(vec4(1.0F)); });
     graph.pass(
-        "truth", {{d.position, Usage::copy}, {d.depth, Usage::copy}},
-        {{water.depth, Usage::copy}, {water.normals, Usage::copy}, {water.thickness, Usage::copy}}, [=](PassContext& c) {
+        "truth", {{d.position, Usage::copy}, {d.depth, Usage::copy}}, {{water.depth, Usage::copy}, {water.normals, Usage::copy}},
+        [=](PassContext& c) {
             std::vector<vec4> particles(d.fluid.count);
             glGetNamedBufferSubData(c.buffer(d.position), 0, static_cast<GLsizeiptr>(particles.size() * sizeof(vec4)), particles.data());
             const Result<IsoSurface> surface = IsoSurface::create(particles, d.fluid.spacing);
             ASSERT(surface, "a FluidView has a spacing of more than 0");
             const std::vector<float> until = sceneDepths(c.texture(d.depth), d.view);
             const RaymarchPicture picture = raymarch(*surface, d.view, {.box = d.fluid.bounds, .until = until, .progress = d.progress});
-            std::vector<vec2> thickness(picture.water.size());
-            for (size_t i = 0; i < thickness.size(); ++i) thickness[i] = vec2(picture.water[i].w, picture.sprayed[i]);
             upload(c.texture(water.depth), picture.depth);
             upload(c.texture(water.normals), picture.water);
-            upload(c.texture(water.thickness), thickness);
         });
-    // Dye is a matter of particles, not of their surface.
-    if (d.fluid.absorption != 0) water.fades = addThickness(graph, programs, d, addTiles(graph, programs, d)).fades;
     return addShade(graph, programs, d, water);
 }
 

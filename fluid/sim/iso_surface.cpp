@@ -107,12 +107,8 @@ Result<IsoSurface> IsoSurface::create(std::span<const vec4> particles, float spa
     made.spacing_ = double{spacing};
     const double s = made.spacing_, furthest = 1.0e6 * s;
     std::vector<dvec3> at;
-    std::vector<double> fullness;
     for (const vec4& p : particles)
-        if (p.w >= 0 && glm::all(glm::lessThan(glm::abs(dvec3(p)), dvec3(furthest)))) {
-            at.emplace_back(p);
-            fullness.push_back(double{p.w});
-        }
+        if (p.w >= 0 && glm::all(glm::lessThan(glm::abs(dvec3(p)), dvec3(furthest)))) at.emplace_back(p);
     const Neighborhood near(at, params.support * s);
     const std::vector<dvec3> offsets = offsetsOf(near);
     made.kernels_.resize(at.size());
@@ -120,7 +116,6 @@ Result<IsoSurface> IsoSurface::create(std::span<const vec4> particles, float spa
     tbb::parallel_for(uint32_t{0}, made.count(), [&](uint32_t i) {
         const Axes axes = axesOf(near, i, offsets[i], s);
         Kernel& k = made.kernels_[i];
-        k.fullness = fullness[i];
         k.centre = at[i] + params.smoothing * (offsets[i] - sharedOffset(near, offsets, i));
         double volume = 1;
         for (int axis = 0; axis < 3; ++axis) {
@@ -182,16 +177,6 @@ double IsoSurface::value(const dvec3& p) const {
     double sum = 0;
     for (const uint32_t i : cells_.items(cells_.cellOf(p))) sum += kernels_[i].value(p);
     return sum;
-}
-
-double IsoSurface::fullness(const dvec3& p) const {
-    double sum = 0, of = 0;
-    for (const uint32_t i : cells_.items(cells_.cellOf(p))) {
-        const double share = kernels_[i].value(p);
-        sum += share;
-        of += share * kernels_[i].fullness;
-    }
-    return sum > 0 ? of / sum : 0;
 }
 
 dvec3 IsoSurface::normal(const dvec3& p) const {

@@ -41,8 +41,6 @@ class IsoSurface {
     dvec3 gradient(const dvec3& p) const { return sample(p).gradient; }
     dvec3 normal(const dvec3& p) const;  // outward, unit; +y where there is no gradient
 
-    double fullness(const dvec3& p) const;  // density ratio of the particles that make the value there; 0 where there are none
-
     uint32_t count() const { return static_cast<uint32_t>(kernels_.size()); }  // particles in it
     double spacing() const { return spacing_; }                                // m
     // Cells outside of which the value is 0.
@@ -56,7 +54,6 @@ class IsoSurface {
         double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  // G, 1/m
         double peak = 0;                                        // value at the centre
         double reach = 0;                                       // m
-        double fullness = 0;                                    // density ratio
     };
 
     double spacing_ = 0;

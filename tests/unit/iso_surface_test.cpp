@@ -98,6 +98,7 @@ TEST(IsoSurface, TurnsAndMovesWithItsParticles) {
     const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(dvec3(1, 2, -0.5)));
     const dvec3 move = double{kSpacing} * dvec3(3.3, -7.1, 2.2);
     std::vector<vec4> turned;
+    turned.reserve(some.size());
     for (const vec4& p : some) turned.emplace_back(vec3(turn * dvec3(p) + move), p.w);
     std::reverse(turned.begin(), turned.end());
     const IsoSurface a = surfaceOf(some), b = surfaceOf(turned);

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/app/context_egl.h"
-#include "engine/render/passes.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
+#include "fluid/bridge/surface_probe.h"
 #include "fluid/render/raymarch.h"
 #include "fluid/validate/image_flip.h"
 #include "fluid/validate/surface.h"
@@ -145,63 +144,9 @@ SurfaceMap truthMap(const Particles& particles, const FrameView& view) {
     return map;
 }
 
-// Draws particles into an empty scene, and hands out the depth that is then shaded.
-class Probe {
-  public:
-    static Result<Probe> create() {
-        Result<FluidPrograms> programs = FluidPrograms::create(ShaderFiles::developer());
-        if (!programs) return programs.error();
-        Probe probe;
-        probe.programs_ = std::move(*programs);
-        for (auto [into, format] : {std::pair(&probe.colour_, gpu::Format::rgba16f), std::pair(&probe.window_, gpu::Format::depth32f)}) {
-            Result<gpu::Texture> made = gpu::Texture::create({.width = kWidth, .height = kHeight, .format = format});
-            if (!made) return made.error();
-            *into = std::move(*made);
-            into->clear(vec4(1.0F));
-        }
-        return probe;
-    }
-
-    Result<SurfaceMap> draw(const Particles& particles, const FrameView& view, const FluidLook& look, float radius) {
-        const FrameParams frame = packFrame(view, {}, {}, {});
-        Result<gpu::Buffer> block = gpu::Buffer::from(std::vector<FrameParams>{frame});
-        Result<gpu::Buffer> position = gpu::Buffer::from(particles.at);
-        if (!block) return block.error();
-        if (!position) return position.error();
-        gpu::TransientPool pool;
-        gpu::FrameGraph graph(pool);
-        FluidDraw d;
-        d.view = view;
-        d.look = look;
-        d.fluid = {.position = position->name(),
-                   .velocity = position->name(),
-                   .id = position->name(),
-                   .count = static_cast<uint32_t>(particles.at.size()),
-                   .radius = radius,
-                   .spacing = particles.spacing,
-                   .bounds = particles.box};
-        d.frame = graph.importBuffer("frame", block->name(), block->bytes());
-        d.position = graph.importBuffer("positions", position->name(), position->bytes());
-        d.colour = graph.importTexture("colour", colour_);
-        d.depth = graph.importTexture("depth", window_);
-        d.shadowSharp = d.shadowSoft = d.waterLight = graph.importTexture("nothing", colour_);
-        const FluidLayers layers = addScreenSpace(graph, programs_, d);
-        graph.output(layers.fluidDepth);
-        if (Status ran = graph.execute(); !ran) return ran.error();
-        SurfaceMap map{kWidth, kHeight, std::vector<float>(size_t{kWidth} * kHeight), {}};
-        graph.result(layers.fluidDepth).read(std::as_writable_bytes(std::span(map.depth)));
-        fillNormals(map, view, radius);
-        return map;
-    }
-
-  private:
-    FluidPrograms programs_;
-    gpu::Texture colour_, window_;
-};
-
 struct Under {
     const CaseSettings& settings;
-    Probe probe;
+    SurfaceProbe probe;
     SceneFile plain;  // whose look the shapes have
     Outcome outcome = {};
 
@@ -220,7 +165,13 @@ struct Under {
         if (truth()) return truthMap(particles, view);
         const Result<FluidLook> look = fluidLookOf(scene);
         if (!look) return look.error();
-        return probe.draw(particles, view, *look, scene.look.radiusSpacings * particles.spacing);
+        const float radius = scene.look.radiusSpacings * particles.spacing;
+        Result<std::vector<float>> depth =
+            probe.depth(particles.at, {.radius = radius, .spacing = particles.spacing, .bounds = particles.box}, view, *look);
+        if (!depth) return depth.error();
+        SurfaceMap map{view.width, view.height, std::move(*depth), {}};
+        fillNormals(map, view, radius);
+        return map;
     }
 
     Status shape(const std::string& name, const Particles& particles, const FrameView& view, const SurfaceMap& reference, bool whole,
@@ -291,7 +242,7 @@ struct Under {
         if (!session) return session.error();
         Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(ShaderFiles::developer());
         if (!renderer) return renderer.error();
-        const int settling = settings.quick ? 60 : 120, frames = settings.quick ? 30 : 120;
+        const int settling = 120, frames = settings.quick ? 30 : 120;
         const FrameView view = frameViewOf(cameraOf(scene->camera, (*session)->bounds()), scene->light, kWidth, kHeight, 0);
         FluidUpload upload;
         std::optional<Flicker> flicker;
@@ -321,14 +272,9 @@ struct Under {
 std::vector<std::string> surfaceMethods() { return {"narrow_range", kTruth}; }
 
 Result<Outcome> runSurface(const CaseSettings& settings) {
-    std::optional<ContextEgl> context;  // of a gl device there is one
-    if (settings.device->backend() != Backend::gl) {
-        Result<ContextEgl> made = ContextEgl::create();
-        if (!made) return failed(fmt::format("the case surface draws what it measures, and needs OpenGL: {}", made.error().message));
-        context = std::move(*made);
-    }
-    Result<Probe> probe = Probe::create();
-    if (!probe) return probe.error();
+    // A gl device has a context that is current.
+    Result<SurfaceProbe> probe = SurfaceProbe::create(settings.device->backend() != Backend::gl);
+    if (!probe) return failed(fmt::format("the case surface draws what it measures, and that needs OpenGL: {}", probe.error().message));
     Under u{settings, std::move(*probe), {}};
     u.outcome.method = settings.method;
     if (Status s = u.shapes(); !s) return s.error();

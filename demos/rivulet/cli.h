@@ -32,6 +32,7 @@ int voxelizeVerb(const Arguments& arguments);
 int benchVerb(const Arguments& arguments);
 int validateVerb(const Arguments& arguments);
 int chartVerb(const Arguments& arguments);
+int exportVerb(const Arguments& arguments);
 
 // "rivulet: sentence" on stderr; returns the exit code that the error's fault asks for.
 int report(const Error& error);

@@ -99,6 +99,11 @@ struct Loop {
     Status run(int frames) {
         const std::set<int> kept = options.stills.empty() ? pictureFrames(frames) : options.stills;
         Progress progress(options.scene.name);
+        if (options.render)
+            painter.renderer->onProgress([&](double share) {
+                progress.show(share, fmt::format("drawing {:.2f} s", session.world().time()));
+                return !graceful.interrupted();
+            });
         for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
             Clock::time_point start = Clock::now();
             double simulateMs = session.step(1.0 / kFramesPerSecond, true), renderMs = 0;

@@ -22,6 +22,7 @@ Table<Verb> verbs() {
         {"bench", "measure speed and memory", benchVerb},
         {"validate", "measure the simulation against nature, papers and formulas", validateVerb},
         {"chart", "speed against accuracy, into a page", chartVerb},
+        {"export", "run a scene, and write its surface as meshes", exportVerb},
     };
     return {rows};
 }

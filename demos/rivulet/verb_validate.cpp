@@ -47,7 +47,9 @@ void print(const PhysicsCase& row, const Outcome& o) {
         fmt::print("{}, {}: refused: {}\n", row.name, o.method, o.refused);
         return;
     }
-    if (o.particles == 0)
+    if (o.wallPerSecond == 0)
+        fmt::print("{}, {}: {} particles\n", row.name, o.method, o.particles);
+    else if (o.particles == 0)
         fmt::print("{}, {}: {:.3g} s per simulated second\n", row.name, o.method, o.wallPerSecond);
     else
         fmt::print("{}, {}: {} particles, {:.3g} s and {:.3g} sweeps per simulated second, {:.3g} % compressed\n", row.name, o.method,
@@ -87,11 +89,12 @@ int validateVerb(const Arguments& arguments) {
     for (const PhysicsCase& row : physicsCases().rows) list += fmt::format("\n  {:<16}{}", row.name, row.doc);
     reader.footer(
         "On gl and cl a case runs for half a second at 8,000 particles and is compared with the cpu.\nAims hold for the method dfsph, "
-        "on skins for flow; the others are reported beside it.\n\nCases:" +
+        "on skins for flow, of surfaces for the first filter; the others are reported beside it.\n\nCases:" +
         list);
     reader.positional("CASE", "which cases; all of them when none is named", request.names);
     reader.flag("--quick", "each at about 8,000 particles", request.quick);
-    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis", request.method);
+    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter, truth",
+                  request.method);
     reader.option("--backend", "B", "cpu, gl or cl", request.backend);
     reader.option("--json", "FILE.json", "also write the figures to a file", request.json);
     reader.option("--pictures", "DIR", "draw each case, measured against reference, as SVG into this folder", request.pictures);

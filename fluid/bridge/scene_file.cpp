@@ -238,9 +238,11 @@ void BackgroundParams::visit(ParamVisitor& v) {
 }
 
 void FluidLookParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> renderers = {"points", "screen_space"};
+    static const std::vector<std::string> renderers = {"points", "screen_space", "truth"};
     static const std::vector<std::string> colourings = {"speed", "density", "id", "dye", "normal", "surface"};
-    v.choice({.name = "renderer", .doc = "particles as points, or a water surface found on the screen"}, renderer, renderers);
+    v.choice({.name = "renderer",
+              .doc = "particles as points, a water surface found on the screen, or their iso-surface at full precision, seconds a frame"},
+             renderer, renderers);
     v.choice({.name = "colourBy",
               .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"},
              colourBy, colourings);

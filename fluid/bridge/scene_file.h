@@ -125,7 +125,7 @@ struct BackgroundParams {
 
 // How the fluid is drawn.
 struct FluidLookParams {
-    std::string renderer = "screen_space";  // a row of renderers(): points | screen_space
+    std::string renderer = "screen_space";  // a row of renderers(): points | screen_space | truth
     std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
     float radiusSpacings = 0.6F;            // drawn radius = this * spacing
     float smoothing = 3.0F;                 // reach of the smoothing, in drawn radii

@@ -283,6 +283,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.fluid = fluid;
     draw.look = *look;
     draw.frame = frame;
+    draw.progress = progress_;
     if (fluid.count > 0) {
         draw.position = graph.importBuffer("positions", fluid.position, size_t{fluid.count} * sizeof(vec4));
         draw.velocity = graph.importBuffer("velocities", fluid.velocity, size_t{fluid.count} * sizeof(vec4));

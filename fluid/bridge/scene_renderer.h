@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -54,6 +55,9 @@ class SceneRenderer {
     // Draws into a picture of its own, of the view's size. Error: an unknown renderer or colouring (badInput); out of GPU memory (failed).
     Status draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings);
 
+    // Of a renderer that takes seconds: told the share that is done, from any thread; false: the rest of the picture may stay empty.
+    void onProgress(std::function<bool(double)> told) { progress_ = std::move(told); }
+
     // The last picture, scaled into a framebuffer of this size (0: the window).
     void present(GLuint framebuffer, int width, int height) const;
     // The last picture: RGBA8, sRGB, top row first, alpha 255. Waits for the GPU.
@@ -92,6 +96,7 @@ class SceneRenderer {
     };
     std::map<MeshKey, GpuMesh> meshes_;
     GpuImages images_;
+    std::function<bool(double)> progress_ = [](double) { return true; };
     gpu::Texture surroundings_;  // empty: the studio
     std::array<vec4, 9> matteLight_{};
 };

@@ -8,6 +8,7 @@ namespace {
 constexpr RendererRow kRows[] = {
     {"points", "every particle as a lit sphere, coloured by speed, density, id, dye, normal or surface", true, addPoints},
     {"screen_space", "a water surface from the particles' smoothed depth: refraction, absorption, reflection", false, addScreenSpace},
+    {"truth", "the same shading of the particles' iso-surface, ray-marched at full precision: seconds a frame", false, addTruth},
 };
 constexpr Table<RendererRow> kRenderers{kRows};
 constexpr int kTile = 32;  // pixels
@@ -15,9 +16,10 @@ constexpr int kTile = 32;  // pixels
 
 const Table<RendererRow>& renderers() { return kRenderers; }
 
-std::array<gpu::Program*, 17> FluidPrograms::all() {
-    return {&points, &pointsShade, &occluder,        &markTiles,      &depth,        &smooth,   &smoothLast, &thickness,     &blur,
-            &shade,  &lightWater,  &lightWaterFirst, &lightWaterLast, &thicknessInk, &shadeInk, &drops,      &dropsOverWater};
+std::array<gpu::Program*, 19> FluidPrograms::all() {
+    return {&points,    &pointsShade, &occluder,       &markTiles,    &depth,           &smooth,         &smoothLast,
+            &thickness, &blur,        &shade,          &lightWater,   &lightWaterFirst, &lightWaterLast, &thicknessInk,
+            &shadeInk,  &drops,       &dropsOverWater, &shadeNormals, &shadeNormalsInk};
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
@@ -41,6 +43,8 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         {&p.lightWaterLast, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"LAST", "1"}})},
         {&p.thicknessInk, Program::create(files, {sphere, folder + "thickness.frag"}, {{"INK", "1"}})},
         {&p.shadeInk, Program::create(files, {tile, folder + "shade.frag"}, {{"INK", "1"}})},
+        {&p.shadeNormals, Program::create(files, {tile, folder + "shade.frag"}, {{"NORMALS", "1"}})},
+        {&p.shadeNormalsInk, Program::create(files, {tile, folder + "shade.frag"}, {{"NORMALS", "1"}, {"INK", "1"}})},
         {&p.drops, Program::create(files, {folder + "drop.vert", folder + "drop.frag"})},
         {&p.dropsOverWater, Program::create(files, {folder + "drop.vert", folder + "drop.frag"}, {{"OVER_WATER", "1"}})},
     };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 
 #include "engine/compute/kernel_source.h"
@@ -29,6 +30,7 @@ struct FluidLook {
 struct FluidPrograms {
     gpu::Program points, pointsShade, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
         lightWaterLast, thicknessInk, shadeInk;  // Ink: particles differ in absorption
+    gpu::Program shadeNormals, shadeNormalsInk;  // Normals: they are given
     gpu::Program drops, dropsOverWater;
     gpu::VertexArray particles, dropFeed, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
@@ -38,7 +40,7 @@ struct FluidPrograms {
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 
   private:
-    std::array<gpu::Program*, 17> all();
+    std::array<gpu::Program*, 19> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.
@@ -51,6 +53,8 @@ struct FluidDraw {
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
+    // Of a renderer that takes its time: the share that is done; false: it need not go on.
+    std::function<bool(double)> progress = [](double) { return true; };
 };
 
 struct FluidLayers {
@@ -73,8 +77,22 @@ gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs
 // Marks the tiles of the picture that particles touch: what comes after the spheres runs only there.
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
+// A water surface as the shade pass takes it.
+struct WaterSurface {
+    gpu::TextureHandle tiles;      // as addTiles
+    gpu::TextureHandle depth;      // r32f, m, 1e6 where there is none
+    gpu::TextureHandle thickness;  // m: x of water, y of that as spray
+    gpu::TextureHandle normals;    // xyz view space, w m of water instead of thickness.x; empty: they come from the depth
+    gpu::TextureHandle fades;      // what red, green and blue fade by; empty: particles are alike
+};
+// Thickness and fades of the spheres, blurred: the rest of a surface is empty.
+WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles);
+FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const WaterSurface& water);
+
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+// Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds.
+FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
 // The drops in the air, into layers.colour.
 void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);

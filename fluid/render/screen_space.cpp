@@ -112,11 +112,9 @@ TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidD
     return depth;
 }
 
-// Thickness, and where particles differ in absorption what each channel fades by.
-struct Thick {
-    TextureHandle thickness, depths;
-};
-Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
+}  // namespace
+
+WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
     const TextureDesc size{.width = (d.view.width + kThicknessScale - 1) / kThicknessScale,
                            .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
                            .format = Format::rg16f};
@@ -155,10 +153,8 @@ Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addFilter(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
     }
-    return {thickness, depths};
+    return {.tiles = tiles, .depth = {}, .thickness = thickness, .normals = {}, .fades = depths};
 }
-
-}  // namespace
 
 TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
     const TextureDesc raw{.width = kLightMap, .height = kLightMap, .format = Format::rg16f};
@@ -196,31 +192,28 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     return from;
 }
 
-FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
-    if (d.fluid.count == 0) return {d.colour, {}};
-    const TextureHandle tiles = addTiles(graph, programs, d);
-    const TextureHandle depth = addSmooth(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
-    const Thick made = addThickness(graph, programs, d, tiles);
-    const TextureHandle thick = made.thickness, fades = made.depths;
+FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const WaterSurface& water) {
     const bool ink = d.fluid.absorption != 0;
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
     graph.pass("copy scene", {{d.colour, Usage::copy}}, {{colour, Usage::copy}}, [=](PassContext& c) {
         const gpu::Texture &from = c.texture(d.colour), &to = c.texture(colour);
         glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
     });
-    std::vector<gpu::Read> reads = {
-        {d.frame, Usage::uniform}, tiles, d.colour, d.depth, depth, thick, d.shadowSharp, d.shadowSoft, d.waterLight};
-    if (ink) reads.emplace_back(fades);
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, water.tiles,   d.colour,     d.depth,     water.depth,
+                                    water.thickness,           d.shadowSharp, d.shadowSoft, d.waterLight};
+    if (ink) reads.emplace_back(water.fades);
+    if (water.normals) reads.emplace_back(water.normals);
     graph.pass("shade", reads, {colour}, [=, &programs](PassContext& c) {
         c.drawTo({colour});
         useFrame(c, d);
-        Program& p = ink ? programs.shadeInk : programs.shade;
+        Program& p = water.normals ? (ink ? programs.shadeNormalsInk : programs.shadeNormals) : ink ? programs.shadeInk : programs.shade;
         p.use();
         p.texture("sceneColour", 0, c.texture(d.colour));
         p.texture("sceneDepth", 1, c.texture(d.depth));
-        p.texture("fluidDepth", 2, c.texture(depth));
-        p.texture("thickness", 3, c.texture(thick));
-        if (ink) p.texture("depths", 8, c.texture(fades));
+        p.texture("fluidDepth", 2, c.texture(water.depth));
+        p.texture("thickness", 3, c.texture(water.thickness));
+        if (water.normals) p.texture("normals", 9, c.texture(water.normals));
+        if (ink) p.texture("depths", 8, c.texture(water.fades));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
         p.texture("waterLight", 6, c.texture(d.waterLight));
@@ -229,9 +222,18 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
         if (!ink) p.set("absorption", d.look.absorption);
         if (!ink) p.set("scatter", d.look.scatter);
         p.set("refractiveIndex", d.look.refractiveIndex);
-        programs.drawTiles(p, c.texture(tiles), 7);
+        programs.drawTiles(p, c.texture(water.tiles), 7);
     });
-    return {colour, depth};
+    return {colour, water.depth};
+}
+
+FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+    if (d.fluid.count == 0) return {d.colour, {}};
+    const TextureHandle tiles = addTiles(graph, programs, d);
+    const TextureHandle depth = addSmooth(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
+    WaterSurface water = addThickness(graph, programs, d, tiles);
+    water.depth = depth;
+    return addShade(graph, programs, d, water);
 }
 
 }  // namespace rivulet

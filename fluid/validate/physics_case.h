@@ -68,8 +68,8 @@ struct PhysicsCase {
     const char* quick;  // assignments, "; " between them, that make it about 8,000 particles
     // Error: the scene is missing, or cannot be run so. A run that was stopped has no findings.
     Result<Outcome> (*run)(const CaseSettings& settings);
-    // The method whose tolerances hold, the others beside it; "flow": not a scene of particles but flow on skins, run as it is on any
-    // device.
+    // The method whose tolerances hold, the others beside it. Flow on skins and the drawn surface have methods of their own, and run as
+    // they are on any device.
     const char* judged = "dfsph";
 };
 std::vector<std::string> methodsOf(const PhysicsCase& row);  // that it can be run with, the judged one first

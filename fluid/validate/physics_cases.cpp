@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fluid/validate/surface.h"
 #include "fluid/validate/trial.h"
 
 namespace rivulet {
@@ -29,7 +30,12 @@ constexpr PhysicsCase kCases[] = {
      runTension},
     {"flow", "drops and films on skins: Nusselt 1916, Furmidge 1962, Le Grand et al. 2005, one path whatever the layout, the ledger", "",
      runFlow, "flow"},
+    {"surface", "the drawn surface against a sphere, a level and the ray-marched truth, and how still a still pool's picture is", "",
+     runSurface, "narrow_range"},
 };
+
+// Not run as a scene of particles on a device.
+bool ownMethods(const PhysicsCase& row) { return row.run == runFlow || row.run == runSurface; }
 
 struct Half {
     dvec3 centre{0.0};
@@ -82,11 +88,12 @@ Table<PhysicsCase> physicsCases() { return {kCases}; }
 
 std::vector<std::string> methodsOf(const PhysicsCase& row) {
     if (std::string_view(row.judged) == "flow") return {"flow", "flow_thesis"};
+    if (row.run == runSurface) return surfaceMethods();
     return {"dfsph", "pbf", "wcsph", "wcsph_thesis"};
 }
 
 Result<Outcome> runCase(const PhysicsCase& row, const CaseSettings& settings, Device* cpu) {
-    if (std::string_view(row.judged) == "flow") return row.run(settings);
+    if (ownMethods(row)) return row.run(settings);
     Result<Outcome> outcome = cpu == nullptr ? row.run(settings) : compareWithCpu(row, settings, *cpu);
     if (outcome || outcome.error().fault != Fault::badInput || settings.method == "dfsph") return outcome;
     // What the method refuses, dfsph takes; what is wrong with the scene or the assignments, nobody does.

@@ -6,6 +6,9 @@ uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;   // window depth
 uniform sampler2D fluidDepth;   // m
 uniform sampler2D thickness;    // m: of water, of that as spray
+#if defined(NORMALS)
+uniform sampler2D normals;      // of the surface, view space, unit; w: m of water, instead of thickness's. Else they come from the depth
+#endif
 uniform float radius;           // m
 uniform vec3 absorption;        // 1/m
 #if defined(INK)
@@ -15,6 +18,13 @@ uniform vec3 scatter;           // what deep water throws back
 uniform float refractiveIndex;
 layout(location = 0) out vec4 colour;
 
+vec2 waterAt(vec2 uv) {
+#if defined(NORMALS)
+    return vec2(textureLod(normals, uv, 0.0).w, textureLod(thickness, uv, 0.0).g);
+#else
+    return texture(thickness, uv).rg;
+#endif
+}
 float surfaceDepth(ivec2 p) { return texelFetch(fluidDepth, clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r; }
 vec3 surfaceAt(ivec2 p, float depth) { return viewRay(vec2(p) + 0.5) * depth; }
 
@@ -76,13 +86,17 @@ void main() {
     vec3 toEye = -normalize(p);
     vec2 turn;
     vec3 right = slope(here, ivec2(1, 0), p, depth * frame.ray.x, turn.x), up = slope(here, ivec2(0, 1), p, depth * frame.ray.y, turn.y);
+#if defined(NORMALS)
+    vec3 n = texelFetch(normals, here, 0).xyz;
+#else
     vec3 n = normalize(cross(right, up));
+#endif
     float nv = dot(n, toEye);
     if (nv < 0.02) { n = normalize(n + (0.02 - nv) * toEye); nv = 0.02; }
 
     // Behind: along the refracted ray as far as the water is thick, then on through the air, turned halfway back: a slab would turn it back
     // wholly, a prism not at all.
-    vec2 water = texture(thickness, gl_FragCoord.xy * frame.viewport.zw).rg;
+    vec2 water = waterAt(gl_FragCoord.xy * frame.viewport.zw);
     float through = water.x;
 #if defined(INK)
     vec3 fades = texture(depths, gl_FragCoord.xy * frame.viewport.zw).rgb;
@@ -97,7 +111,7 @@ void main() {
         vec2 inside = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
         if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else something in front of the water would leak into it
             back = texture(sceneColour, inside).rgb;
-            through = mix(through, texture(thickness, inside).r, 0.5);
+            through = mix(through, waterAt(inside).x, 0.5);
 #if defined(INK)
             fades = mix(fades, texture(depths, inside).rgb, 0.5);
 #endif

@@ -44,7 +44,7 @@ class LookSurface : public LookTest {
         d.colour = graph.importTexture("colour", colour);
         d.depth = graph.importTexture("depth", sceneDepth);
         d.shadowSharp = d.shadowSoft = d.waterLight = graph.importTexture("nothing", colour);
-        const FluidLayers layers = addScreenSpace(graph, programs, d);
+        const FluidLayers layers = add(graph, programs, d);
         graph.output(layers.fluidDepth);
         graph.output(layers.colour);
         const Status ran = graph.execute();
@@ -68,6 +68,7 @@ class LookSurface : public LookTest {
         return disc < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>((b - std::sqrt(disc)) / a);
     }
 
+    FluidLayers (*add)(gpu::FrameGraph&, FluidPrograms&, const FluidDraw&) = addScreenSpace;
     FluidPrograms programs;
     gpu::TransientPool pool;
     Camera camera;
@@ -94,6 +95,29 @@ TEST_F(LookSurface, aDropIsAnExactSphereAlsoAtThePicturesEdge) {
                     EXPECT_NEAR(at(x, y), wanted, 1e-3F) << x << " " << y;
                 } else {
                     EXPECT_GT(wanted, -centreView.z - 0.2F * radius) << "a hole at " << x << " " << y;
+                }
+            }
+        EXPECT_GT(hit, 120);
+    }
+}
+
+// As the iso-surface has it: 0.51 spacings, see IsoSurface.ASheetIsFlatAndADropIsASmallBall; wherever in the picture it is.
+TEST_F(LookSurface, theTruthOfADropIsAnExactSphere) {
+    add = addTruth;
+    for (const vec3& centre : {vec3(0.0F), vec3(0.9F, 0.5F, 0.2F), vec3(-1.0F, -0.4F, -0.3F)}) {
+        TestParticles drop;
+        drop.spacing = 0.2F;
+        drop.add(centre);
+        draw(drop);
+        int hit = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const float wanted = sphereDepth(x, y, centre - camera.position, 0.51007F * drop.spacing);
+                if (std::isnan(wanted)) {
+                    EXPECT_EQ(at(x, y), kNothing) << x << " " << y;
+                } else if (at(x, y) != kNothing) {
+                    ++hit;
+                    EXPECT_NEAR(at(x, y), wanted, 1e-3F) << x << " " << y;
                 }
             }
         EXPECT_GT(hit, 120);

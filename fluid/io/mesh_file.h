@@ -1,0 +1,23 @@
+// Meshes to files: OBJ and PLY.
+#pragma once
+
+#include <string>
+
+#include "engine/core/mesh_view.h"
+#include "engine/core/result.h"
+#include "engine/core/table.h"
+
+namespace rivulet {
+
+struct MeshFormat {
+    const char* name;  // and the file's ending
+    const char* doc;
+    std::string (*write)(const MeshView& mesh);  // the file's bytes
+};
+const Table<MeshFormat>& meshFormats();
+
+// Metres, +Y up; with normals if the mesh has them. Numbers read back exactly, but for the last bits of a ply's first, see there.
+std::string writeObj(const MeshView& mesh);
+std::string writePly(const MeshView& mesh);  // binary, little-endian
+
+}  // namespace rivulet

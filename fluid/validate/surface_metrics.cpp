@@ -1,0 +1,89 @@
+#include "fluid/validate/surface_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/assert.h"
+
+namespace rivulet {
+
+void fillNormals(SurfaceMap& map, const FrameView& view, float radius) {
+    const dmat4 projection(view.projection);
+    const auto depthAt = [&](int x, int y) {
+        return double{map.depth[static_cast<size_t>(std::clamp(y, 0, map.height - 1)) * static_cast<size_t>(map.width) +
+                                static_cast<size_t>(std::clamp(x, 0, map.width - 1))]};
+    };
+    const auto point = [&](int x, int y, double depth) {
+        const double u = 2 * (x + 0.5) / map.width - 1, v = 2 * (y + 0.5) / map.height - 1;
+        return depth * dvec3((u + projection[2][0]) / projection[0][0], (v + projection[2][1]) / projection[1][1], -1);
+    };
+    map.normal.assign(map.depth.size(), vec3(0, 0, 1));
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            const size_t i = static_cast<size_t>(y) * static_cast<size_t>(map.width) + static_cast<size_t>(x);
+            if (!map.there(i)) continue;
+            const double here = depthAt(x, y), near = 0.5 * double{radius};
+            const dvec3 p = point(x, y, here);
+            dvec3 along[2];
+            for (int axis = 0; axis < 2; ++axis) {
+                const int dx = axis == 0 ? 1 : 0, dy = 1 - dx;
+                const double ahead = depthAt(x + dx, y + dy), behind = depthAt(x - dx, y - dy);
+                const dvec3 to = point(x + dx, y + dy, ahead) - p, from = p - point(x - dx, y - dy, behind);
+                const double a = std::abs(ahead - here), b = std::abs(behind - here);
+                along[axis] = a < near && b < near ? 0.5 * (to + from) : a < b ? to : from;
+            }
+            map.normal[i] = vec3(glm::normalize(glm::cross(along[0], along[1])));
+        }
+}
+
+SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& reference, float radius) {
+    ASSERT(measured.depth.size() == reference.depth.size(), "surfaces are compared at one size");
+    SurfaceErrors e;
+    std::vector<double> angles;
+    double squares = 0;
+    size_t either = 0;
+    for (size_t i = 0; i < measured.depth.size(); ++i) {
+        const bool a = measured.there(i), b = reference.there(i);
+        either += a || b ? 1 : 0;
+        if (!a || !b) continue;
+        const dvec3 m(measured.normal[i]), r(reference.normal[i]);
+        angles.push_back(glm::degrees(std::atan2(glm::length(glm::cross(m, r)), glm::dot(m, r))));
+        const double off = double{measured.depth[i]} - double{reference.depth[i]};
+        squares += off * off;
+        e.normalMean += angles.back();
+    }
+    e.pixels = angles.size();
+    e.overlap = either > 0 ? static_cast<double>(e.pixels) / static_cast<double>(either) : 1;
+    if (e.pixels == 0) return e;
+    e.normalMean /= static_cast<double>(e.pixels);
+    e.depthRms = std::sqrt(squares / static_cast<double>(e.pixels)) / double{radius};
+    const auto at = angles.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(e.pixels - 1));
+    std::nth_element(angles.begin(), at, angles.end());
+    e.normal95 = *at;
+    return e;
+}
+
+void Flicker::add(std::span<const uint8_t> rgba) {
+    ASSERT(rgba.size() == 4 * where_.size(), "frames have the size of the mask");
+    for (size_t i = 0; i < where_.size(); ++i)
+        for (size_t c = 0; c < 3 && where_[i]; ++c) {
+            const double v = rgba[4 * i + c];
+            sum_[3 * i + c] += v;
+            squares_[3 * i + c] += v * v;
+        }
+    ++frames_;
+}
+
+double Flicker::rms() const {
+    double variance = 0;
+    size_t count = 0;
+    for (size_t k = 0; k < sum_.size(); ++k) {
+        if (!where_[k / 3]) continue;
+        const double mean = sum_[k] / std::max(frames_, 1);
+        variance += std::max(squares_[k] / std::max(frames_, 1) - mean * mean, 0.0);
+        ++count;
+    }
+    return count > 0 ? std::sqrt(variance / static_cast<double>(count)) : 0;
+}
+
+}  // namespace rivulet

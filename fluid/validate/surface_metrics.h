@@ -1,0 +1,45 @@
+// How far a drawn surface is from another: pixel by pixel, in degrees, particle radii and 255ths.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/render/frame_view.h"
+
+namespace rivulet {
+
+// A surface as a camera sees it, a pixel each, the bottom row first.
+struct SurfaceMap {
+    int width = 0, height = 0;
+    std::vector<float> depth;  // m along the view axis; 1e6: there is none
+    std::vector<vec3> normal;  // view space, unit; where there is depth
+    bool there(size_t i) const { return depth[i] < 1.0e5F; }
+};
+
+// The normals that the shade pass sees in depths: the central difference where the surface runs on to both sides, else the side whose depth
+// changes less. `radius`: m, of a drawn particle.
+void fillNormals(SurfaceMap& map, const FrameView& view, float radius);
+
+struct SurfaceErrors {
+    double normalMean = 0, normal95 = 0;  // deg, over pixels where both have a surface
+    double depthRms = 0;                  // radii, there
+    double overlap = 0;                   // of the silhouettes: pixels in both over pixels in either; 1 if there are none
+    size_t pixels = 0;                    // where both have a surface
+};
+SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& reference, float radius);
+
+// What frames of one size differ by from their own mean in time, rms over the pixels of `where` and their channels, of 255.
+class Flicker {
+  public:
+    explicit Flicker(std::vector<bool> where) : where_(std::move(where)), sum_(3 * where_.size()), squares_(sum_.size()) {}
+    void add(std::span<const uint8_t> rgba);
+    double rms() const;  // 0 before the second frame
+
+  private:
+    std::vector<bool> where_;
+    std::vector<double> sum_, squares_;
+    int frames_ = 0;
+};
+
+}  // namespace rivulet

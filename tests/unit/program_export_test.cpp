@@ -1,0 +1,70 @@
+// `rivulet export`: the meshes it leaves behind, and how it ends when things go wrong.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "engine/scene/import_assimp.h"
+#include "tests/unit/program_runner.h"
+
+namespace rivulet::testing {
+namespace {
+
+RunOptions in(const Scratch& scratch) {
+    RunOptions options;
+    options.folder = scratch.path();
+    return options;
+}
+
+double volumeOf(const Mesh& mesh) {
+    double sum = 0;
+    for (size_t k = 0; k < mesh.indices.size(); k += 3) {
+        const dvec3 a(mesh.positions[mesh.indices[k]]), b(mesh.positions[mesh.indices[k + 1]]), c(mesh.positions[mesh.indices[k + 2]]);
+        sum += glm::dot(a, glm::cross(b, c)) / 6;
+    }
+    return sum;
+}
+
+constexpr double kBlock = 0.16 * 0.16 * 0.12;  // m^3
+
+// A block falls for six frames and is still whole.
+TEST(ProgramExport, WritesASurfaceEveryNthFrame) {
+    for (const char* format : {"obj", "ply"}) {
+        Scratch scratch;
+        scratch.file("s.json", R"({"name": "small", "fluid": {"spacing": 0.02, "box": {"min": [0, 0, 0], "max": [0.4, 0.4, 0.4]},
+            "blocks": [{"min": [0.06, 0.1, 0.06], "max": [0.22, 0.26, 0.18]}]}})");
+        const Outcome outcome =
+            runProgram({"export", "s.json", "--surface", format, "--every", "3", "--seconds", "0.1", "--out", "meshes", "--backend", "cpu"},
+                       in(scratch));
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        const std::string zero = std::string("meshes/small_0000.") + format, three = std::string("meshes/small_0003.") + format;
+        EXPECT_EQ(scratch.contents(), (std::vector<std::string>{"meshes", zero, three, "s.json"}));
+        double low = 1;
+        for (const std::string& file : {zero, three}) {
+            const Result<Mesh> mesh = importMesh((scratch.path() / file).string());
+            ASSERT_TRUE(mesh) << mesh.error().message;
+            EXPECT_NEAR(volumeOf(*mesh) / kBlock, 1, 0.08);  // its edges are round
+            EXPECT_LT(mesh->bounds().min.y, low) << "it falls";
+            low = mesh->bounds().min.y;
+        }
+    }
+}
+
+TEST(ProgramExport, SaysWhatIsWrong) {
+    Scratch scratch;
+    scratch.file("s.json", smallScene());
+    scratch.file("file", "not a folder");
+    expectRefusal(runProgram({"export", "s.json"}, in(scratch)), 2, "--surface obj or ply");
+    expectRefusal(runProgram({"export", "s.json", "--surface", "objj"}, in(scratch)), 2, "did you mean 'obj'");
+    expectRefusal(runProgram({"export", "s.json", "--surface", "stl"}, in(scratch)), 2, "there are: obj, ply");
+    expectRefusal(runProgram({"export", "none.json", "--surface", "obj"}, in(scratch)), 2, "none.json");
+    expectRefusal(runProgram({"export", "s.json", "--surface", "obj", "--every", "0"}, in(scratch)), 2, "--every");
+    expectRefusal(runProgram({"export", "s.json", "--surface", "obj", "--out", "file/meshes"}, in(scratch)), 1, "file/meshes");
+    scratch.file("dry.json", R"({"name": "dry", "fluid": {"spacing": 0.02, "box": {"min": [0, 0, 0], "max": [0.4, 0.4, 0.4]}}})");
+    const Outcome dry = runProgram({"export", "dry.json", "--surface", "obj", "--seconds", "0.05", "--backend", "cpu"}, in(scratch));
+    EXPECT_EQ(dry.code, 1);
+    EXPECT_NE(dry.err.find("dry has no particles within 0.05 s"), std::string::npos) << dry.err;
+}
+
+}  // namespace
+}  // namespace rivulet::testing

@@ -1,0 +1,103 @@
+// The metrics of surfaces on surfaces whose errors are known.
+#include "fluid/validate/surface_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace rivulet {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 90;
+
+FrameView view() {
+    FrameView v;
+    v.width = kWidth;
+    v.height = kHeight;
+    v.projection = glm::perspective(0.7F, 16.0F / 9, 0.1F, 10.0F);
+    return v;
+}
+
+// A plane through (0, 0, -2) with this normal, in view space; tan of the angle of view's half is 0.365.
+SurfaceMap plane(const dvec3& n) {
+    SurfaceMap map{kWidth, kHeight, {}, {}};
+    const double tangent = std::tan(0.35);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const dvec3 way((2 * (x + 0.5) / kWidth - 1) * tangent * 16 / 9, (2 * (y + 0.5) / kHeight - 1) * tangent, -1);
+            map.depth.push_back(static_cast<float>(-2 * n.z / glm::dot(way, n)));
+            map.normal.emplace_back(n);
+        }
+    return map;
+}
+dvec3 tilted(double degrees) { return {std::sin(glm::radians(degrees)), 0, std::cos(glm::radians(degrees))}; }
+
+TEST(SurfaceMetrics, NormalsOfAPlaneAreItsOwn) {
+    for (const double degrees : {0.0, 20.0, -50.0}) {
+        const SurfaceMap exact = plane(tilted(degrees));
+        SurfaceMap found = exact;
+        fillNormals(found, view(), 1.0F);
+        for (int y = 0; y < kHeight; ++y)  // beyond the picture nothing is known
+            for (const int x : {0, kWidth - 1}) found.depth[static_cast<size_t>(y * kWidth + x)] = 1.0e6F;
+        for (int x = 0; x < kWidth; ++x)
+            for (const int y : {0, kHeight - 1}) found.depth[static_cast<size_t>(y * kWidth + x)] = 1.0e6F;
+        const SurfaceErrors e = compareSurfaces(found, exact, 0.01F);
+        EXPECT_LT(e.normalMean, 0.01) << degrees;
+        EXPECT_EQ(e.depthRms, 0);
+        EXPECT_EQ(e.pixels, size_t{kWidth - 2} * (kHeight - 2));
+    }
+}
+
+// A step of more than half a radius is an edge: normals beside it are those of either side.
+TEST(SurfaceMetrics, NormalsDoNotBendOverAnEdge) {
+    SurfaceMap step = plane(tilted(0));
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = kWidth / 2; x < kWidth; ++x) step.depth[static_cast<size_t>(y * kWidth + x)] += 0.1F;
+    SurfaceMap found = step;
+    fillNormals(found, view(), 0.1F);
+    EXPECT_LT(compareSurfaces(found, step, 0.1F).normalMean, 0.01);
+    fillNormals(found, view(), 0.5F);
+    EXPECT_GT(compareSurfaces(found, step, 0.5F).normalMean, 0.5);
+}
+
+TEST(SurfaceMetrics, FiguresAreWhatWasDone) {
+    const SurfaceMap exact = plane(tilted(0));
+    SurfaceMap off = plane(tilted(10));
+    off.depth = exact.depth;
+    for (size_t i = 0; i < off.depth.size(); ++i) off.depth[i] += i % 2 == 0 ? 0.03F : -0.03F;
+    SurfaceErrors e = compareSurfaces(off, exact, 0.01F);
+    EXPECT_NEAR(e.normalMean, 10, 1e-4);
+    EXPECT_NEAR(e.normal95, 10, 1e-4);
+    EXPECT_NEAR(e.depthRms, 3, 1e-4);
+
+    // 6 % of the normals are right round: the 95th percentile is among them, the mean is 6 % of 180 more.
+    const size_t wrong = off.normal.size() * 6 / 100;
+    for (size_t i = 0; i < off.normal.size(); ++i) off.normal[i] = i < wrong ? vec3(0, 0, -1) : vec3(0, 0, 1);
+    e = compareSurfaces(off, exact, 0.01F);
+    EXPECT_NEAR(e.normal95, 180, 1e-4);
+    EXPECT_NEAR(e.normalMean, 10.8, 1e-2);
+
+    // A quarter is missing there, another quarter here: half of the whole is in both, and nothing is in neither.
+    SurfaceMap left = exact, right = exact;
+    for (size_t i = 0; i < exact.depth.size() / 4; ++i) left.depth[i] = right.depth[exact.depth.size() - 1 - i] = 1.0e6F;
+    EXPECT_NEAR(compareSurfaces(left, right, 0.01F).overlap, 0.5, 1e-9);
+    SurfaceMap none = exact;
+    none.depth.assign(none.depth.size(), 1.0e6F);
+    EXPECT_EQ(compareSurfaces(none, none, 0.01F).overlap, 1);
+    EXPECT_EQ(compareSurfaces(none, exact, 0.01F).overlap, 0);
+}
+
+TEST(SurfaceMetrics, FlickerIsTheSpreadInTime) {
+    Flicker flicker({true, false});
+    EXPECT_EQ(flicker.rms(), 0);
+    for (int f = 0; f < 40; ++f) {
+        const auto v = static_cast<uint8_t>(100 + (f % 2 == 0 ? 3 : -3)), wild = static_cast<uint8_t>(f * 5);
+        const uint8_t rgba[] = {v, v, v, static_cast<uint8_t>(f), wild, wild, wild, 255};  // alpha and what is masked do not count
+        flicker.add(rgba);
+    }
+    EXPECT_NEAR(flicker.rms(), 3, 1e-9);
+}
+
+}  // namespace
+}  // namespace rivulet

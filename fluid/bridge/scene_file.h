@@ -128,7 +128,9 @@ struct FluidLookParams {
     std::string renderer = "screen_space";  // a row of renderers(): points | screen_space
     std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
     float radiusSpacings = 0.6F;            // drawn radius = this * spacing
-    float smoothing = 3.0F;                 // reach of the smoothing, in drawn radii
+    std::string filter = "narrow_range";    // a row of filters(): how the surface is found
+    float smoothing = 0.0F;                 // m, reach of the smoothing, two deviations; 0 = from the spacing
+    float smoothingRange = 0.0F;            // m, how far apart depths of one surface may be; 0 = from the spacing
     vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = as the liquid's
     float refractiveIndex = 0.0F;           // 0 = as the liquid's
     void visit(ParamVisitor& v);

@@ -8,6 +8,7 @@
 #include "engine/scene/light.h"
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
+#include "fluid/render/filters.h"
 #include "fluid/sim/liquids.h"
 
 namespace rivulet {
@@ -49,7 +50,9 @@ Camera cameraOf(const CameraParams& params, const Bounds& bounds) {
 Result<FluidLook> fluidLookOf(const SceneFile& scene) {
     Result<ColourBy> colourBy = colourByName(scene.look.colourBy);
     if (!colourBy) return colourBy.error();
-    FluidLook look{.colourBy = *colourBy, .smoothing = scene.look.smoothing};
+    const FilterRow* filter = filters().find(scene.look.filter);
+    if (filter == nullptr) return badInput(fmt::format("look.filter '{}' is not known", scene.look.filter));
+    FluidLook look{.colourBy = *colourBy, .filter = filter, .smoothing = scene.look.smoothing, .smoothingRange = scene.look.smoothingRange};
     const LiquidRow* liquid = liquids().find(scene.fluid.liquid);
     const bool own = glm::all(glm::greaterThanEqual(scene.look.absorption, vec3(0.0F)));
     if (own) look.absorption = scene.look.absorption;

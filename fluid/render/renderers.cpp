@@ -15,9 +15,14 @@ constexpr int kTile = 32;  // pixels
 
 const Table<RendererRow>& renderers() { return kRenderers; }
 
-std::array<gpu::Program*, 17> FluidPrograms::all() {
-    return {&points, &pointsShade, &occluder,        &markTiles,      &depth,        &smooth,   &smoothLast, &thickness,     &blur,
-            &shade,  &lightWater,  &lightWaterFirst, &lightWaterLast, &thicknessInk, &shadeInk, &drops,      &dropsOverWater};
+std::vector<gpu::Program*> FluidPrograms::all() {
+    std::vector<gpu::Program*> programs = {&points,         &pointsShade,  &occluder, &markTiles,  &depth,
+                                           &thickness,      &blur,         &shade,    &lightWater, &lightWaterFirst,
+                                           &lightWaterLast, &thicknessInk, &shadeInk, &drops,      &dropsOverWater};
+    for (FilterPrograms* filter : {&narrowRange, &bilateral, &curvatureFlow, &unfiltered})
+        for (gpu::Program* program : {&filter->step, &filter->last})
+            if (*program) programs.push_back(program);
+    return programs;
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
@@ -31,8 +36,13 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         {&p.occluder, Program::create(files, {folder + "occluder.vert", "shaders/render/depth.frag"})},
         {&p.markTiles, Program::create(files, {folder + "mark_tiles.vert", folder + "mark_tiles.frag"})},
         {&p.depth, Program::create(files, {sphere, folder + "depth.frag"})},
-        {&p.smooth, Program::create(files, {tile, folder + "smooth.frag"})},
-        {&p.smoothLast, Program::create(files, {tile, folder + "smooth.frag"}, {{"LAST", "1"}})},
+        {&p.narrowRange.step, Program::create(files, {tile, folder + "narrow_range.frag"})},
+        {&p.narrowRange.last, Program::create(files, {tile, folder + "narrow_range.frag"}, {{"LAST", "1"}})},
+        {&p.bilateral.step, Program::create(files, {tile, folder + "bilateral.frag"})},
+        {&p.bilateral.last, Program::create(files, {tile, folder + "bilateral.frag"}, {{"LAST", "1"}})},
+        {&p.curvatureFlow.step, Program::create(files, {tile, folder + "curvature_flow.frag"})},
+        {&p.curvatureFlow.last, Program::create(files, {tile, folder + "curvature_flow.frag"}, {{"LAST", "1"}})},
+        {&p.unfiltered.last, Program::create(files, {tile, folder + "unfiltered.frag"}, {{"LAST", "1"}})},
         {&p.thickness, Program::create(files, {sphere, folder + "thickness.frag"})},
         {&p.blur, Program::create(files, {tile, folder + "blur.frag"})},
         {&p.shade, Program::create(files, {tile, folder + "shade.frag"})},

@@ -1,8 +1,8 @@
 // Renderers: the ways to draw a fluid, as passes added to a frame graph after the scene's opaque pass.
 #pragma once
 
-#include <array>
 #include <memory>
+#include <vector>
 
 #include "engine/compute/kernel_source.h"
 #include "engine/core/table.h"
@@ -14,22 +14,32 @@
 
 namespace rivulet {
 
+struct FilterRow;  // fluid/render/filters.h
+
 enum class ColourBy { speed, density, id, dye, normal, surface };
 
 struct FluidLook {
     ColourBy colourBy = ColourBy::speed;   // points
     float fullSpeed = 3.0F;                // m/s: the end of the colour map
-    float smoothing = 2.5F;                // reach of the smoothing, in drawn radii
+    const FilterRow* filter = nullptr;     // of the surface's depth; null: the first row of filters()
+    float smoothing = 0.0F;                // m, reach of the smoothing, two deviations; 0 = from the spacing
+    float smoothingRange = 0.0F;           // m, how far apart depths of one surface may be; 0 = from the spacing
     vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
     vec3 scatter{0.008F, 0.060F, 0.085F};  // what deep water throws back
     float refractiveIndex = 1.333F;        // > 1
 };
 
+// A filter's passes: each, and the one that ends it.
+struct FilterPrograms {
+    gpu::Program step, last;
+};
+
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
-    gpu::Program points, pointsShade, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
-        lightWaterLast, thicknessInk, shadeInk;  // Ink: particles differ in absorption
+    gpu::Program points, pointsShade, occluder, markTiles, depth, thickness, blur, shade, lightWater, lightWaterFirst, lightWaterLast,
+        thicknessInk, shadeInk;  // Ink: particles differ in absorption
     gpu::Program drops, dropsOverWater;
+    FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
     gpu::VertexArray particles, dropFeed, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
@@ -38,7 +48,7 @@ struct FluidPrograms {
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 
   private:
-    std::array<gpu::Program*, 17> all();
+    std::vector<gpu::Program*> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.

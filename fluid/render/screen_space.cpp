@@ -1,8 +1,7 @@
-// A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a narrow-range filter (Truong & Yuksel 2018).
+// A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a row of filters().
 #include <algorithm>
-#include <cmath>
-#include <span>
 
+#include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
 
 namespace rivulet {
@@ -16,37 +15,12 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr float kFar = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothing
-// Steps of the smoothing's levels, relative; the small ones last: they iron out what the holes of the others leave.
-constexpr float kSteps[] = {3, 5, 7, 4, 2, 1};
-constexpr float kStepsNear[] = {4, 9, 13, 8, 5, 3, 2, 1};  // for a camera so near that holes between the former would be wide
-constexpr float kUnitPixels = 3.0F;                        // a step of 1 is no wider than this
-constexpr float kRange = 7.0F;                             // radii
-constexpr float kBend = 0.5F;                              // radii
-constexpr int kThicknessScale = 2;                         // of the resolution
-constexpr int kThicknessBlur = 4;                          // texels either side
-constexpr int kLightMap = 256;                             // texels
+constexpr float kFar = 1.0e6F;      // m, shaders/render/frame.glsl's depth of nothing
+constexpr int kThicknessScale = 2;  // of the resolution
+constexpr int kThicknessBlur = 4;   // texels either side
+constexpr int kLightMap = 256;      // texels
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
-
-// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere.
-template <class Setup>
-TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, Program& program,
-                        TextureHandle tiles, TextureHandle from, const TextureDesc& desc, float empty, Setup setup,
-                        TextureHandle second = {}) {
-    const TextureHandle to = graph.texture(name, desc);
-    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, tiles, from};
-    if (second) reads.emplace_back(second);
-    graph.pass(name, reads, {to}, [=, &programs, &program](PassContext& c) {
-        c.drawTo({to}).clearColour(vec4(empty));
-        useFrame(c, d);
-        program.use();
-        program.texture("source", 0, c.texture(from));
-        setup(program, c);
-        programs.drawTiles(program, c.texture(tiles), 1);
-    });
-    return to;
-}
 
 // x: depth of the bulk, y: of the spray; m.
 TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
@@ -72,43 +46,6 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         programs.depth.set("radius", d.fluid.radius);
         programs.drawParticles(d.fluid);
     });
-    return depth;
-}
-
-TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
-    TextureHandle depth = spheres;
-    const float radius = d.fluid.radius;
-    const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-    const Bounds& bounds = d.fluid.bounds;
-    const float huge = 1.0e5F;
-    const Bounds box = bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : bounds;
-    // A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two standard deviations.
-    auto unitOf = [&](std::span<const float> steps) {
-        float squares = 0;
-        for (const float step : steps) squares += 0.5F * step * step;
-        return 0.5F * d.look.smoothing * radius / std::sqrt(squares);
-    };
-    const float away = bounds.empty() ? 1.0F : glm::length(d.view.cameraPosWorld - glm::clamp(d.view.cameraPosWorld, box.min, box.max));
-    const float pixelsPerMetre = 0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / std::max(away, d.view.nearPlane);
-    const bool near = unitOf(kSteps) * pixelsPerMetre > kUnitPixels;
-    const std::span<const float> steps = near ? std::span<const float>(kStepsNear) : std::span<const float>(kSteps);
-    const float unit = unitOf(steps);
-    for (size_t level = 0; level < steps.size(); ++level) {
-        const float step = steps[level];
-        const bool final = level + 1 == steps.size();
-        Program& program = final ? programs.smoothLast : programs.smooth;
-        const auto setup = [=](Program& p, const PassContext& c) {
-            p.set("step_", step * unit);
-            p.set("maxStep", step * kUnitPixels);
-            p.set("range", kRange * radius);
-            p.set("bend", kBend * radius);
-            if (!final) return;
-            p.texture("spray", 2, c.texture(spheres));
-            p.set("low", box.min);
-            p.set("high", box.max);
-        };
-        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, size, kFar, setup, final ? spheres : TextureHandle{});
-    }
     return depth;
 }
 
@@ -152,8 +89,8 @@ Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
             p.set("axis", axis);
             p.set("reach", kThicknessBlur);
         };
-        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
-        if (ink) depths = addFilter(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
+        thickness = addTiled(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
+        if (ink) depths = addTiled(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
     }
     return {thickness, depths};
 }
@@ -199,7 +136,8 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
 FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
     const TextureHandle tiles = addTiles(graph, programs, d);
-    const TextureHandle depth = addSmooth(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
+    const TextureHandle depth = (d.look.filter != nullptr ? *d.look.filter : filters().rows.front())
+                                    .add(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
     const Thick made = addThickness(graph, programs, d, tiles);
     const TextureHandle thick = made.thickness, fades = made.depths;
     const bool ink = d.fluid.absorption != 0;

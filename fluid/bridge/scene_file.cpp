@@ -245,6 +245,19 @@ void FluidLookParams::visit(ParamVisitor& v) {
     v.choice({.name = "colourBy",
               .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"},
              colourBy, colourings);
+    static const std::vector<std::string> splatKinds = {"spheres", "ellipsoids"}, qualities = {"auto", "fast", "fine"};
+    static const std::vector<std::string> viewNames = waterViews().names();
+    v.choice(
+        {.name = "splats",
+         .doc = "what a particle of the surface is drawn as; ellipsoids lie along the surface, and cost a sweep over neighbours a frame"},
+        splats, splatKinds);
+    v.choice({.name = "view", .doc = "the water, or what its surface is made from"}, view, viewNames);
+    v.value({.name = "split", .doc = "the renderer of the picture's right half, to compare; none = the whole picture is look.renderer's"},
+            split);
+    v.choice({.name = "quality",
+              .doc = "fast: fewer levels of smoothing, coarser thickness, no reflection of the picture in itself; auto: fast where the "
+                     "renderer is software"},
+             quality, qualities);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
     static const std::vector<std::string> filterNames = filters().names();
     v.choice({.name = "filter", .doc = "how a surface is made of the particles' depth; rivulet list filters says what each is"}, filter,

@@ -127,6 +127,10 @@ struct BackgroundParams {
 struct FluidLookParams {
     std::string renderer = "screen_space";  // a row of renderers(): points | screen_space
     std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
+    std::string splats = "ellipsoids";      // what a particle is drawn as: spheres | ellipsoids
+    std::string view = "water";             // a row of waterViews()
+    std::string split;                      // a row of renderers(), for the picture's right half; "" = none
+    std::string quality = "auto";           // auto | fast | fine
     float radiusSpacings = 0.6F;            // drawn radius = this * spacing
     std::string filter = "narrow_range";    // a row of filters(): how the surface is found
     float smoothing = 0.0F;                 // m, reach of the smoothing, two deviations; 0 = from the spacing

@@ -41,6 +41,7 @@ class FluidUpload {
 
   private:
     gpu::Buffer position_, velocity_, id_, absorption_, drops_;
+    std::array<gpu::Buffer, 3> ellipsoids_;
     std::vector<vec4> vectors_;
     std::vector<uint32_t> ids_;
 };
@@ -94,6 +95,7 @@ class SceneRenderer {
     GpuImages images_;
     gpu::Texture surroundings_;  // empty: the studio
     std::array<vec4, 9> matteLight_{};
+    bool software_ = false;  // GL runs on the CPU
 };
 
 }  // namespace rivulet

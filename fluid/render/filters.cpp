@@ -17,6 +17,7 @@ constexpr float kFar = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothi
 // Steps of the levels, relative; the small ones last: they iron out what the holes of the others leave. The nearer the camera, the more
 // pixels the same metres are, and the more levels there are between a pixel and the widest.
 constexpr float kFarSteps[] = {3, 5, 7, 4, 2, 1};
+constexpr float kFastSteps[] = {2, 4, 2, 1};
 constexpr float kMiddleSteps[] = {4, 9, 13, 8, 5, 3, 2, 1};
 constexpr float kNearSteps[] = {6, 14, 22, 13, 8, 5, 3, 2, 1};
 constexpr float kNearestSteps[] = {10, 24, 37, 22, 13, 8, 5, 3, 2, 1};
@@ -36,8 +37,9 @@ Levels levelsOf(const FluidDraw& d, float reach) {
     const float away = box.empty() ? 1.0F : glm::length(d.view.cameraPosWorld - glm::clamp(d.view.cameraPosWorld, box.min, box.max));
     const float pixelsPerMetre = 0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / std::max(away, d.view.nearPlane);
     Levels levels{};
-    for (const std::span<const float> steps : {std::span<const float>(kFarSteps), std::span<const float>(kMiddleSteps),
-                                               std::span<const float>(kNearSteps), std::span<const float>(kNearestSteps)}) {
+    const std::span<const float> fewest = d.look.fast ? std::span<const float>(kFastSteps) : std::span<const float>(kFarSteps);
+    for (const std::span<const float> steps :
+         {fewest, std::span<const float>(kMiddleSteps), std::span<const float>(kNearSteps), std::span<const float>(kNearestSteps)}) {
         float squares = 0;
         for (const float step : steps) squares += 0.5F * step * step;
         levels = {steps, 0.5F * reach / std::sqrt(squares)};

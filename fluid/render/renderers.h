@@ -18,6 +18,15 @@ struct FilterRow;  // fluid/render/filters.h
 
 enum class ColourBy { speed, density, id, dye, normal, surface };
 
+// What of the water is shown: the water, or what it is made from.
+enum class WaterView { water, normals, depth, spheres, thickness };
+struct ViewRow {
+    const char* name;
+    const char* doc;
+    WaterView view;
+};
+const Table<ViewRow>& waterViews();
+
 struct FluidLook {
     ColourBy colourBy = ColourBy::speed;   // points
     float fullSpeed = 3.0F;                // m/s: the end of the colour map
@@ -27,6 +36,8 @@ struct FluidLook {
     vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
     vec3 scatter{0.008F, 0.060F, 0.085F};  // what deep water throws back
     float refractiveIndex = 1.333F;        // > 1
+    WaterView view = WaterView::water;     // screen_space
+    bool fast = false;                     // half the resolution for the surface, no reflection of the picture in itself
 };
 
 // A filter's passes: each, and the one that ends it.
@@ -34,10 +45,16 @@ struct FilterPrograms {
     gpu::Program step, last;
 };
 
+// What draws particles' depth and thickness: as spheres, or as ellipsoids. Ink: particles differ in absorption.
+struct SplatPrograms {
+    gpu::Program occluder, markTiles, depth, thickness, thicknessInk;
+};
+
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
-    gpu::Program points, pointsShade, occluder, markTiles, depth, thickness, blur, shade, lightWater, lightWaterFirst, lightWaterLast,
-        thicknessInk, shadeInk;  // Ink: particles differ in absorption
+    gpu::Program points, pointsShade, blur, shade, lightWater, lightWaterFirst, lightWaterLast, shadeInk, showView;
+    SplatPrograms spheres, ellipsoids;
+    SplatPrograms& splats(const FluidView& fluid) { return fluid.ellipsoids[0] != 0 ? ellipsoids : spheres; }
     gpu::Program drops, dropsOverWater;
     FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
     gpu::VertexArray particles, dropFeed, none;
@@ -58,6 +75,7 @@ struct FluidDraw {
     FluidLook look;
     gpu::BufferHandle frame;                                 // a FrameParams (shaders/render/frame.h)
     gpu::BufferHandle position, velocity, id, absorption;    // fluid's, imported
+    std::vector<gpu::BufferHandle> ellipsoids;               // likewise; empty: spheres
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
@@ -79,6 +97,9 @@ const Table<RendererRow>& renderers();
 // What the light passes through on its way: x thickness (m), y that times its depth (0..1), z thickness relative to the surroundings (m).
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
+
+// The particles' buffers, as a pass that draws splats reads them.
+std::vector<gpu::Read> splatReads(const FluidDraw& draw);
 
 // Marks the tiles of the picture that particles touch: what comes after the spheres runs only there.
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);

@@ -17,8 +17,10 @@ using gpu::Usage;
 
 constexpr float kFar = 1.0e6F;      // m, shaders/render/frame.glsl's depth of nothing
 constexpr int kThicknessScale = 2;  // of the resolution
-constexpr int kThicknessBlur = 4;   // texels either side
-constexpr int kLightMap = 256;      // texels
+constexpr int kThicknessScaleFast = 4;
+constexpr int kThicknessBlur = 4;  // texels either side, of kThicknessScale
+constexpr int kLightMap = 256;     // texels
+constexpr int kLightMapFast = 128;
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
@@ -28,22 +30,23 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
     const TextureHandle depth = graph.texture("sphere depth", size);
     size.format = Format::depth32f;
     const TextureHandle hidden = graph.texture("fluid occluders", size);
-    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {depth, hidden}, [=, &programs](PassContext& c) {
+    graph.pass("fluid depth", splatReads(d), {depth, hidden}, [=, &programs](PassContext& c) {
+        SplatPrograms& splats = programs.splats(d.fluid);
         const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
         useFrame(c, d);
         target.clearColour(vec4(kFar));
         target.clearDepth();
         glEnable(GL_DEPTH_TEST);
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        programs.occluder.use();
-        programs.occluder.set("radius", d.fluid.radius);
+        splats.occluder.use();
+        splats.occluder.set("radius", d.fluid.radius);
         programs.drawParticles(d.fluid);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glDepthMask(GL_FALSE);
         glEnable(GL_BLEND);
         glBlendEquation(GL_MIN);
-        programs.depth.use();
-        programs.depth.set("radius", d.fluid.radius);
+        splats.depth.use();
+        splats.depth.set("radius", d.fluid.radius);
         programs.drawParticles(d.fluid);
     });
     return depth;
@@ -54,14 +57,15 @@ struct Thick {
     TextureHandle thickness, depths;
 };
 Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
-    const TextureDesc size{.width = (d.view.width + kThicknessScale - 1) / kThicknessScale,
-                           .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
-                           .format = Format::rg16f};
+    const int scale = d.look.fast ? kThicknessScaleFast : kThicknessScale;
+    const TextureDesc size{
+        .width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::rg16f};
     const bool ink = d.fluid.absorption != 0;
     TextureDesc inkSize = size;
     inkSize.format = Format::rgba16f;
     TextureHandle thickness = graph.texture("thickness", size), depths;
-    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth};
+    std::vector<gpu::Read> reads = splatReads(d);
+    reads.emplace_back(d.depth);
     std::vector<gpu::Write> writes = {thickness};
     if (ink) {
         depths = graph.texture("ink depths", inkSize);
@@ -75,19 +79,19 @@ Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         useFrame(c, d);
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE);
-        Program& p = ink ? programs.thicknessInk : programs.thickness;
+        Program& p = ink ? programs.splats(d.fluid).thicknessInk : programs.splats(d.fluid).thickness;
         p.use();
         if (ink) p.set("ownAbsorption", d.look.absorption);
         p.set("radius", d.fluid.radius);
         p.set("spacing", d.fluid.spacing);
-        p.set("scale", kThicknessScale);
+        p.set("scale", scale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
         programs.drawParticles(d.fluid);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
             p.set("axis", axis);
-            p.set("reach", kThicknessBlur);
+            p.set("reach", kThicknessBlur * kThicknessScale / scale);
         };
         thickness = addTiled(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addTiled(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
@@ -95,11 +99,47 @@ Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
     return {thickness, depths};
 }
 
+// What the surface is made from, instead of the water.
+struct Shown {
+    TextureHandle tiles, depth, thickness, colour;
+};
+void addView(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const Shown& of) {
+    vec2 depths(d.view.nearPlane, d.view.farPlane);
+    float wide = d.view.farPlane;
+    if (!d.fluid.bounds.empty()) {
+        depths = vec2(d.view.farPlane, d.view.nearPlane);
+        for (int k = 0; k < 8; ++k) {
+            const Bounds& b = d.fluid.bounds;
+            const vec3 corner((k & 1) != 0 ? b.max.x : b.min.x, (k & 2) != 0 ? b.max.y : b.min.y, (k & 4) != 0 ? b.max.z : b.min.z);
+            const float depth = std::max(-(d.view.view * vec4(corner, 1.0F)).z, d.view.nearPlane);
+            depths = vec2(std::min(depths.x, depth), std::max(depths.y, depth));
+        }
+        const vec3 size = d.fluid.bounds.size();
+        wide = std::max({size.x, size.y, size.z});
+    }
+    graph.pass("view", {{d.frame, Usage::uniform}, of.tiles, of.depth, of.thickness, d.colour, d.depth}, {of.colour},
+               [=, &programs](PassContext& c) {
+                   c.drawTo({of.colour});
+                   useFrame(c, d);
+                   Program& p = programs.showView;
+                   p.use();
+                   p.texture("sceneColour", 0, c.texture(d.colour));
+                   p.texture("sceneDepth", 1, c.texture(d.depth));
+                   p.texture("fluidDepth", 2, c.texture(of.depth));
+                   p.texture("thickness", 3, c.texture(of.thickness));
+                   p.set("what", static_cast<int>(d.look.view));
+                   p.set("depths", depths);
+                   p.set("fullThickness", wide);
+                   programs.drawTiles(p, c.texture(of.tiles), 4);
+               });
+}
+
 }  // namespace
 
 TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
-    const TextureDesc raw{.width = kLightMap, .height = kLightMap, .format = Format::rg16f};
-    const TextureDesc map{.width = kLightMap, .height = kLightMap, .format = Format::rgba16f};
+    const int side = d.look.fast ? kLightMapFast : kLightMap;
+    const TextureDesc raw{.width = side, .height = side, .format = Format::rg16f};
+    const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
     graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {drawn}, [=, &programs](PassContext& c) {
@@ -115,7 +155,8 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         programs.drawParticles(d.fluid);
     });
     // The narrow blur hides the single particles: its reach is 1.5 spacings.
-    const int reach = std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * kLightMap), 2, 6);
+    const int reach =
+        std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side)), 2, 6);
     TextureHandle from = drawn;
     for (const bool first : {true, false}) {
         const TextureHandle to = graph.texture("water light", map);
@@ -136,8 +177,11 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
 FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
     const TextureHandle tiles = addTiles(graph, programs, d);
-    const TextureHandle depth = (d.look.filter != nullptr ? *d.look.filter : filters().rows.front())
-                                    .add(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
+    const FilterRow& unfiltered = *filters().find("none");
+    const FilterRow& filter = d.look.view == WaterView::spheres ? unfiltered
+                              : d.look.filter != nullptr        ? *d.look.filter
+                                                                : filters().rows.front();
+    const TextureHandle depth = filter.add(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
     const Thick made = addThickness(graph, programs, d, tiles);
     const TextureHandle thick = made.thickness, fades = made.depths;
     const bool ink = d.fluid.absorption != 0;
@@ -149,6 +193,10 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     std::vector<gpu::Read> reads = {
         {d.frame, Usage::uniform}, tiles, d.colour, d.depth, depth, thick, d.shadowSharp, d.shadowSoft, d.waterLight};
     if (ink) reads.emplace_back(fades);
+    if (d.look.view != WaterView::water) {
+        addView(graph, programs, d, {tiles, depth, thick, colour});
+        return {colour, depth};
+    }
     graph.pass("shade", reads, {colour}, [=, &programs](PassContext& c) {
         c.drawTo({colour});
         useFrame(c, d);
@@ -167,6 +215,7 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
         if (!ink) p.set("absorption", d.look.absorption);
         if (!ink) p.set("scatter", d.look.scatter);
         p.set("refractiveIndex", d.look.refractiveIndex);
+        p.set("mirrorSteps", d.look.fast ? 0 : 10);
         programs.drawTiles(p, c.texture(tiles), 7);
     });
     return {colour, depth};

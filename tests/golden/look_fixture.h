@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -15,7 +16,9 @@ namespace rivulet {
 struct TestParticles {
     std::vector<vec4> position;  // w = density / rest density
     float spacing = 0.02F;
+    std::array<std::vector<vec4>, 3> ellipsoids;  // centre, spread, slant; empty: spheres
     void add(const vec3& p, float density = 1.0F) { position.emplace_back(p, density); }
+    void findEllipsoids();  // as a world would
 };
 
 // One context and one renderer for all tests of a program; tests skip where there is no OpenGL 4.5.
@@ -43,6 +46,7 @@ class LookTest : public ::testing::Test {
     static std::optional<gpu::DebugMessages> messages_;
     static std::unique_ptr<SceneRenderer> renderer_;
     gpu::Buffer position_, velocity_, id_;
+    std::array<gpu::Buffer, 3> ellipsoids_;
 };
 
 // 0..255 a channel.

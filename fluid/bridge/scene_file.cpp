@@ -255,8 +255,9 @@ void FluidLookParams::visit(ParamVisitor& v) {
     v.value({.name = "split", .doc = "the renderer of the picture's right half, to compare; none = the whole picture is look.renderer's"},
             split);
     v.choice({.name = "quality",
-              .doc = "fast: fewer levels of smoothing, coarser thickness, no reflection of the picture in itself; auto: fast where the "
-                     "renderer is software"},
+              .doc = "fast: spheres, fewer levels of smoothing, coarser light in the water, no reflection of the picture in itself; auto: "
+                     "fast in a "
+                     "window drawn by software"},
              quality, qualities);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
     static const std::vector<std::string> filterNames = filters().names();

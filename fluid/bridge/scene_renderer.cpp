@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/gpu/device_gl.h"
 #include "engine/scene/light.h"
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
@@ -201,7 +200,6 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
     r->fluid_ = std::move(*fluid);
     r->frame_ = std::move(*frame);
     r->nothing_ = std::move(*nothing);
-    r->software_ = isSoftwareRenderer(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
     return r;
 }
 
@@ -290,7 +288,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (other == nullptr && !settings.look.split.empty()) return badInput(fmt::format("look.split '{}' is not known", settings.look.split));
     Result<FluidLook> look = fluidLookOf(settings);
     if (!look) return look.error();
-    if (settings.look.quality == "auto") look->fast = software_;
+    if (settings.look.quality == "auto") look->fast = hurries_;
     if (Status s = prepare(view, scene); !s) return s;
 
     std::vector<DrawnMesh> meshes;
@@ -327,6 +325,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.view = view;
     draw.fluid = fluid;
     draw.look = *look;
+    if (look->fast) draw.fluid.ellipsoids = {};
     draw.frame = frame;
     if (fluid.count > 0) {
         draw.position = graph.importBuffer("positions", fluid.position, size_t{fluid.count} * sizeof(vec4));
@@ -335,8 +334,8 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
         if (fluid.absorption != 0)
             draw.absorption = graph.importBuffer("absorptions", fluid.absorption, size_t{fluid.count} * sizeof(vec4));
     }
-    if (fluid.count > 0 && fluid.ellipsoids[0] != 0)
-        for (const unsigned name : fluid.ellipsoids)
+    if (fluid.count > 0 && draw.fluid.ellipsoids[0] != 0)
+        for (const unsigned name : draw.fluid.ellipsoids)
             draw.ellipsoids.push_back(graph.importBuffer("ellipsoids", name, size_t{fluid.count} * sizeof(vec4)));
     if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through

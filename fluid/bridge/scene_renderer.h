@@ -64,6 +64,8 @@ class SceneRenderer {
 
     // GPU time a pass, some frames late.
     const std::vector<PassTime>& times() const { return pool_.times(); }
+    // Whether look.quality auto is fast: in a window that software draws. Else it is fine.
+    void hurry(bool yes) { hurries_ = yes; }
     // Reads the shaders again. Error: as create; the last good ones stay in use.
     Status reload();
 
@@ -95,7 +97,7 @@ class SceneRenderer {
     GpuImages images_;
     gpu::Texture surroundings_;  // empty: the studio
     std::array<vec4, 9> matteLight_{};
-    bool software_ = false;  // GL runs on the CPU
+    bool hurries_ = false;
 };
 
 }  // namespace rivulet

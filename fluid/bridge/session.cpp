@@ -23,7 +23,7 @@ FluidParams simulated(const SceneFile& scene) {
     const bool shown = scene.look.colourBy == "normal" || scene.look.colourBy == "surface";
     if (shown && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
     const bool surface = scene.look.renderer == "screen_space" || scene.look.split == "screen_space";
-    fluid.ellipsoids = fluid.ellipsoids || (surface && scene.look.splats == "ellipsoids");
+    fluid.ellipsoids = fluid.ellipsoids || (surface && scene.look.splats == "ellipsoids" && scene.look.quality != "fast");
     return fluid;
 }
 

@@ -17,9 +17,8 @@ using gpu::Usage;
 
 constexpr float kFar = 1.0e6F;      // m, shaders/render/frame.glsl's depth of nothing
 constexpr int kThicknessScale = 2;  // of the resolution
-constexpr int kThicknessScaleFast = 4;
-constexpr int kThicknessBlur = 4;  // texels either side, of kThicknessScale
-constexpr int kLightMap = 256;     // texels
+constexpr int kThicknessBlur = 4;   // texels either side
+constexpr int kLightMap = 256;      // texels
 constexpr int kLightMapFast = 128;
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
@@ -57,9 +56,9 @@ struct Thick {
     TextureHandle thickness, depths;
 };
 Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
-    const int scale = d.look.fast ? kThicknessScaleFast : kThicknessScale;
-    const TextureDesc size{
-        .width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::rg16f};
+    const TextureDesc size{.width = (d.view.width + kThicknessScale - 1) / kThicknessScale,
+                           .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
+                           .format = Format::rg16f};
     const bool ink = d.fluid.absorption != 0;
     TextureDesc inkSize = size;
     inkSize.format = Format::rgba16f;
@@ -84,14 +83,14 @@ Thick addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         if (ink) p.set("ownAbsorption", d.look.absorption);
         p.set("radius", d.fluid.radius);
         p.set("spacing", d.fluid.spacing);
-        p.set("scale", scale);
+        p.set("scale", kThicknessScale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
         programs.drawParticles(d.fluid);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
             p.set("axis", axis);
-            p.set("reach", kThicknessBlur * kThicknessScale / scale);
+            p.set("reach", kThicknessBlur);
         };
         thickness = addTiled(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addTiled(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);

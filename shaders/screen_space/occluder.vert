@@ -7,8 +7,8 @@ void main() {
     Splat s = splatOf(particle);
     vec3 c = s.centre;
 #if defined(ELLIPSOIDS)
-    mat3 shape = inverse(s.squares);
-    float inner = inversesqrt(shape[0][0] + shape[1][1] + shape[2][2]);  // no more than its shortest half axis
+    // No more than its shortest half axis: the product of the other two squares is no more than a quarter of the trace's.
+    float inner = 2.0 * sqrt(determinant(s.squares)) / (s.squares[0][0] + s.squares[1][1] + s.squares[2][2]);
 #else
     float inner = drawnRadius(particle);
 #endif

@@ -110,7 +110,7 @@ std::vector<uint8_t> LookTest::picture(const Camera& camera, int width, int heig
     return renderer_->pixels();
 }
 
-void LookTest::compareWith(const std::string& name, int width, int height, const std::vector<uint8_t>& rgba) {
+void LookTest::compareWith(const std::string& name, int width, int height, const std::vector<uint8_t>& rgba, double tolerance) {
     const std::string path = std::string(RIVULET_SOURCE_DIR) + "/tests/golden/" + name + ".png";
     if (std::getenv("RIVULET_UPDATE_GOLDEN") != nullptr) {
         const Status written = writePng(path, rgba, width, height);
@@ -126,9 +126,9 @@ void LookTest::compareWith(const std::string& name, int width, int height, const
     ASSERT_EQ(loadedWidth, width);
     ASSERT_EQ(loadedHeight, height);
     const double error = meanAbsoluteError(rgba, golden);
-    if (error >= 1.0) (void)writePng((std::filesystem::temp_directory_path() / (name + "_now.png")).string(), rgba, width, height);
-    EXPECT_LT(error, 1.0) << "the picture changed: look at " << name
-                          << "_now.png in the temporary folder; if it is better, RIVULET_UPDATE_GOLDEN=1";
+    if (error >= tolerance) (void)writePng((std::filesystem::temp_directory_path() / (name + "_now.png")).string(), rgba, width, height);
+    EXPECT_LT(error, tolerance) << "the picture changed: look at " << name
+                                << "_now.png in the temporary folder; if it is better, RIVULET_UPDATE_GOLDEN=1";
 }
 
 double meanAbsoluteError(std::span<const uint8_t> a, std::span<const uint8_t> b) {

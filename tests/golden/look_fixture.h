@@ -33,8 +33,8 @@ class LookTest : public ::testing::Test {
     FluidView upload(const TestParticles& particles);
     // Top row first, RGBA8.
     std::vector<uint8_t> picture(const Camera& camera, int width, int height, const FluidView& fluid);
-    // Against tests/golden/NAME.png, which RIVULET_UPDATE_GOLDEN=1 writes anew.
-    static void compareWith(const std::string& name, int width, int height, const std::vector<uint8_t>& rgba);
+    // Against tests/golden/NAME.png, which RIVULET_UPDATE_GOLDEN=1 writes anew. `tolerance`: of the mean difference, 0..255.
+    static void compareWith(const std::string& name, int width, int height, const std::vector<uint8_t>& rgba, double tolerance = 1.0);
     SceneRenderer& renderer() { return *renderer_; }
     static bool onLlvmpipe();
 

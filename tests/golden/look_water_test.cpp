@@ -146,6 +146,22 @@ TEST_F(LookWater, aSplitsHalvesAreThoseOfTheTwoRenderers) {
     EXPECT_FALSE(renderer().draw(frameViewOf(camera, settings.light, 8, 8, 0), {}, scene, settings));
 }
 
+TEST_F(LookWater, goldenNormals) {
+    TestParticles water = pool(0.25F);
+    for (vec4& p : water.position) p.y *= 1.0F + 0.3F * std::sin(9.0F * p.x) * std::cos(7.0F * p.z);
+    water.findEllipsoids();
+    settings.look.view = "normals";
+    compareWith("normals", kWidth, kHeight, shot(bounded(water)), 0.6);
+}
+
+TEST_F(LookWater, goldenWithinTheWater) {
+    camera.fieldOfView = 90.0F;
+    camera.position = vec3(0.5F, 0.25F, 0.8F);
+    camera.target = vec3(0.5F, 0.6F, 0.3F);
+    camera.setPlanes(Bounds{vec3(0.0F), vec3(1.0F)});
+    compareWith("within", kWidth, kHeight, shot(bounded(pool(0.6F))), 0.6);
+}
+
 TEST_F(LookWater, fastIsTheSamePictureButForDetail) {
     const FluidView water = bounded(pool(0.3F));
     settings.look.quality = "fine";

@@ -57,6 +57,8 @@ class LookSurface : public LookTest {
         ASSERT_TRUE(ran) << ran.error().message;
         depth.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
         graph.result(layers.fluidDepth).read(std::as_writable_bytes(std::span(depth)));
+        radiance.resize(depth.size());
+        graph.result(layers.colour).read(std::as_writable_bytes(std::span(radiance)));
     }
 
     float at(int x, int y) const { return depth[static_cast<size_t>(y) * width + static_cast<size_t>(x)]; }
@@ -82,6 +84,7 @@ class LookSurface : public LookTest {
     Camera camera;
     FrameParams frame{};
     std::vector<float> depth;
+    std::vector<vec4> radiance;  // linear
 };
 
 TEST_F(LookSurface, aDropIsAnExactSphereAlsoAtThePicturesEdge) {
@@ -209,6 +212,31 @@ TEST_F(LookSurface, theSurfaceIsSmoothedAsMuchFromAfarAsFromNear) {
     EXPECT_GT(far, 0.3);
     EXPECT_LT(far, 0.9);
     EXPECT_NEAR(near / far, 1.0, 0.12);
+}
+
+TEST_F(LookSurface, theSunGlintsAndNoPixelOfItIsAFirefly) {
+    TestParticles slab;
+    slab.spacing = 0.03F;
+    TestRandom random;
+    for (float x = -0.6F; x <= 0.6F; x += slab.spacing)
+        for (float z = -0.6F; z <= 0.6F; z += slab.spacing)
+            for (int layer = 0; layer < 4; ++layer)
+                slab.add(vec3(x, -static_cast<float>(layer) * slab.spacing, z) + 0.3F * slab.spacing * random.inCube());
+    camera.position = vec3(0.0F, 0.8F, 1.5F);
+    settings.light.direction = vec3(0.0F, 0.8F, -1.5F);  // where the middle of the slab mirrors it to the eye
+    settings.light.colour = vec3(1.0F);
+    settings.light.intensity = 3.0F;
+    draw(slab);
+    const std::vector<vec4> lit = radiance;
+    settings.light.intensity = 0.0F;
+    draw(slab);
+    float brightest = 0;
+    for (size_t i = 0; i < lit.size(); ++i) {
+        ASSERT_TRUE(std::isfinite(lit[i].y));
+        brightest = std::max(brightest, lit[i].y - radiance[i].y);
+    }
+    EXPECT_GT(brightest, 3.0F);                // as bright as the sun's own light
+    EXPECT_LT(brightest, 8.0F * 3.0F + 3.0F);  // what the glint may be at most, and what the water throws back
 }
 
 // Water of 10 layers, jittered, within a distance function (m, negative inside).

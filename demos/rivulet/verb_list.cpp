@@ -4,6 +4,7 @@
 #include "engine/core/json.h"
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/scene_file.h"
+#include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
 #include "fluid/sim/liquids.h"
 #include "fluid/sim/method.h"
@@ -47,6 +48,7 @@ Table<ListRow> lists() {
         {"methods", "fluid.method: how pressure is found", [] { rows(methods()); }},
         {"liquids", "fluid.liquid: what flows, in SI units, with its source", liquidRows},
         {"renderers", "look.renderer: how the water is drawn", [] { rows(renderers()); }},
+        {"filters", "look.filter: how a surface is made of the particles' depth", [] { rows(filters()); }},
         {"voxels", "voxelize --mode: how a mesh becomes voxels", [] { rows(voxelModes()); }},
         {"devices", "--backend: what can simulate", [] { rows(backends()); }},
     };

@@ -31,6 +31,7 @@ constexpr Part kParts[] = {
     {"vorticity confinement", "fluid.forces.vorticity is 0", "fluid/vorticity|fluid/confinement", ""},
     {"air", "fluid.forces.airDrag is 0", "fluid/air", ""},
     {"normals of the surface", "fluid.forces.normals is none", "fluid/normals", ""},
+    {"ellipsoids about particles", "fluid.ellipsoids is false, and look asks for spheres", "fluid/ellipsoids", ""},
     {"emitters", "the scene has none", "fluid/emit", ""},
     {"sinks", "the scene has none", "fluid/drain", ""},
     {"dyes", "all particles look alike", "fluid/gather_absorption", ""},

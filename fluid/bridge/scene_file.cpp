@@ -9,6 +9,7 @@
 
 #include "engine/core/json.h"
 #include "engine/core/table.h"
+#include "fluid/render/filters.h"
 #include "fluid/sim/solids.h"
 
 namespace rivulet {
@@ -246,8 +247,26 @@ void FluidLookParams::visit(ParamVisitor& v) {
     v.choice({.name = "colourBy",
               .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"},
              colourBy, colourings);
+    static const std::vector<std::string> splatKinds = {"spheres", "ellipsoids"}, qualities = {"auto", "fast", "fine"};
+    static const std::vector<std::string> viewNames = waterViews().names();
+    v.choice(
+        {.name = "splats",
+         .doc = "what a particle of the surface is drawn as; ellipsoids lie along the surface, and cost a sweep over neighbours a frame"},
+        splats, splatKinds);
+    v.choice({.name = "view", .doc = "the water, or what its surface is made from"}, view, viewNames);
+    v.value({.name = "split", .doc = "the renderer of the picture's right half, to compare; none = the whole picture is look.renderer's"},
+            split);
+    v.choice({.name = "quality",
+              .doc = "fast: spheres, fewer levels of smoothing, coarser light in the water, no reflection of the picture in itself; auto: "
+                     "fast in a "
+                     "window drawn by software"},
+             quality, qualities);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
-    v.value({"smoothing", "", "reach of the surface's smoothing, in drawn radii; 0 = none", 0, 20}, smoothing);
+    static const std::vector<std::string> filterNames = filters().names();
+    v.choice({.name = "filter", .doc = "how a surface is made of the particles' depth; rivulet list filters says what each is"}, filter,
+             filterNames);
+    v.value({"smoothing", "m", "reach of the surface's smoothing, two standard deviations; 0 = 1.8 spacings", 0, 10}, smoothing);
+    v.value({"smoothingRange", "m", "how far apart depths of one surface may be; 0 = 4.2 spacings", 0, 100}, smoothingRange);
     v.value({"absorption", "1/m",
              "how fast red, green and blue fade in the fluid (Beer-Lambert); -1 = as the row of fluid.liquid says, or 4.5, 1.1, 0.5 where "
              "none is named",

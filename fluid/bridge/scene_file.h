@@ -127,8 +127,14 @@ struct BackgroundParams {
 struct FluidLookParams {
     std::string renderer = "screen_space";  // a row of renderers(): points | screen_space | truth
     std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
+    std::string splats = "ellipsoids";      // what a particle is drawn as: spheres | ellipsoids
+    std::string view = "water";             // a row of waterViews()
+    std::string split;                      // a row of renderers(), for the picture's right half; "" = none
+    std::string quality = "auto";           // auto | fast | fine
     float radiusSpacings = 0.6F;            // drawn radius = this * spacing
-    float smoothing = 3.0F;                 // reach of the smoothing, in drawn radii
+    std::string filter = "narrow_range";    // a row of filters(): how the surface is found
+    float smoothing = 0.0F;                 // m, reach of the smoothing, two deviations; 0 = from the spacing
+    float smoothingRange = 0.0F;            // m, how far apart depths of one surface may be; 0 = from the spacing
     vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = as the liquid's
     float refractiveIndex = 0.0F;           // 0 = as the liquid's
     void visit(ParamVisitor& v);

@@ -8,6 +8,7 @@
 #include "engine/scene/light.h"
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
+#include "fluid/render/filters.h"
 #include "fluid/sim/liquids.h"
 
 namespace rivulet {
@@ -35,6 +36,32 @@ Status uploadTo(gpu::Buffer& buffer, std::span<const std::byte> bytes) {
     return ok();
 }
 
+void copyTexels(const gpu::Texture& from, const gpu::Texture& to, int left) {
+    glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, left, 0, 0, to.name(), GL_TEXTURE_2D, 0, left, 0, 0, from.width() - left,
+                       from.height(), 1);
+}
+
+gpu::TextureHandle addCopy(gpu::FrameGraph& graph, gpu::TextureHandle of) {
+    const gpu::TextureHandle copy = graph.texture("copy for the split", graph.desc(of));
+    graph.pass("split copy", {{of, gpu::Usage::copy}}, {{copy, gpu::Usage::copy}},
+               [=](gpu::PassContext& c) { copyTexels(c.texture(of), c.texture(copy), 0); });
+    return copy;
+}
+
+// The right half of a picture into another, and a line where they meet.
+void addRightHalf(gpu::FrameGraph& graph, gpu::TextureHandle from, gpu::TextureHandle into) {
+    graph.pass("split", {{from, gpu::Usage::copy}}, {into}, [=](gpu::PassContext& c) {
+        const gpu::Texture& to = c.texture(into);
+        const int middle = to.width() / 2;
+        copyTexels(c.texture(from), to, middle);
+        const gpu::Framebuffer& target = c.drawTo({into});
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(middle, 0, 1, to.height());
+        target.clearColour(vec4(1.0F));
+        glDisable(GL_SCISSOR_TEST);
+    });
+}
+
 }  // namespace
 
 Camera cameraOf(const CameraParams& params, const Bounds& bounds) {
@@ -49,7 +76,13 @@ Camera cameraOf(const CameraParams& params, const Bounds& bounds) {
 Result<FluidLook> fluidLookOf(const SceneFile& scene) {
     Result<ColourBy> colourBy = colourByName(scene.look.colourBy);
     if (!colourBy) return colourBy.error();
-    FluidLook look{.colourBy = *colourBy, .smoothing = scene.look.smoothing};
+    const FilterRow* filter = filters().find(scene.look.filter);
+    if (filter == nullptr) return badInput(fmt::format("look.filter '{}' is not known", scene.look.filter));
+    FluidLook look{.colourBy = *colourBy, .filter = filter, .smoothing = scene.look.smoothing, .smoothingRange = scene.look.smoothingRange};
+    const ViewRow* view = waterViews().find(scene.look.view);
+    if (view == nullptr) return badInput(fmt::format("look.view '{}' is not known", scene.look.view));
+    look.view = view->view;
+    look.fast = scene.look.quality == "fast";
     const LiquidRow* liquid = liquids().find(scene.fluid.liquid);
     const bool own = glm::all(glm::greaterThanEqual(scene.look.absorption, vec3(0.0F)));
     if (own) look.absorption = scene.look.absorption;
@@ -104,18 +137,24 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     // The points' shader reads normals where it else reads velocities. There are none before the first step.
     const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
     const Buffer& velocity = normals ? *particles.normal : *particles.velocity;
+    const bool ellipsoids = look.splats == "ellipsoids" && particles.ellipsoids[0] != nullptr;
     Device& device = world.device();
     if (device.backend() == Backend::gl) {
         out.position = static_cast<unsigned>(particles.drawn->handle());
         out.velocity = static_cast<unsigned>(velocity.handle());
         out.id = static_cast<unsigned>(particles.id->handle());
         if (particles.absorption != nullptr) out.absorption = static_cast<unsigned>(particles.absorption->handle());
+        for (size_t k = 0; ellipsoids && k < 3; ++k) out.ellipsoids[k] = static_cast<unsigned>(particles.ellipsoids[k]->handle());
         return out;
     }
     vectors_.resize(out.count);
     ids_.resize(out.count);
-    const std::pair<const Buffer*, gpu::Buffer*> all[] = {
-        {particles.drawn, &position_}, {&velocity, &velocity_}, {particles.absorption, &absorption_}};
+    const std::pair<const Buffer*, gpu::Buffer*> all[] = {{particles.drawn, &position_},
+                                                          {&velocity, &velocity_},
+                                                          {particles.absorption, &absorption_},
+                                                          {ellipsoids ? particles.ellipsoids[0] : nullptr, &ellipsoids_[0]},
+                                                          {ellipsoids ? particles.ellipsoids[1] : nullptr, &ellipsoids_[1]},
+                                                          {ellipsoids ? particles.ellipsoids[2] : nullptr, &ellipsoids_[2]}};
     for (const auto& [from, to] : all) {
         if (from == nullptr) continue;
         device.read(*from, std::as_writable_bytes(std::span(vectors_)));
@@ -127,6 +166,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     out.velocity = velocity_.name();
     out.id = id_.name();
     if (particles.absorption != nullptr) out.absorption = absorption_.name();
+    for (size_t k = 0; ellipsoids && k < 3; ++k) out.ellipsoids[k] = ellipsoids_[k].name();
     return out;
 }
 
@@ -244,8 +284,11 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
 Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings) {
     const RendererRow* row = renderers().find(settings.look.renderer);
     if (row == nullptr) return badInput(fmt::format("look.renderer '{}' is not known", settings.look.renderer));
+    const RendererRow* other = settings.look.split.empty() ? nullptr : renderers().find(settings.look.split);
+    if (other == nullptr && !settings.look.split.empty()) return badInput(fmt::format("look.split '{}' is not known", settings.look.split));
     Result<FluidLook> look = fluidLookOf(settings);
     if (!look) return look.error();
+    if (settings.look.quality == "auto") look->fast = hurries_;
     if (Status s = prepare(view, scene); !s) return s;
 
     std::vector<DrawnMesh> meshes;
@@ -282,6 +325,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.view = view;
     draw.fluid = fluid;
     draw.look = *look;
+    if (look->fast) draw.fluid.ellipsoids = {};
     draw.frame = frame;
     draw.progress = progress_;
     if (fluid.count > 0) {
@@ -291,6 +335,9 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
         if (fluid.absorption != 0)
             draw.absorption = graph.importBuffer("absorptions", fluid.absorption, size_t{fluid.count} * sizeof(vec4));
     }
+    if (fluid.count > 0 && draw.fluid.ellipsoids[0] != 0)
+        for (const unsigned name : draw.fluid.ellipsoids)
+            draw.ellipsoids.push_back(graph.importBuffer("ellipsoids", name, size_t{fluid.count} * sizeof(vec4)));
     if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through
 
@@ -303,8 +350,18 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.waterLight = light.water;
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
-    const FluidLayers layers = row->add(graph, fluid_, draw);
+    FluidDraw second = draw;
+    if (other != nullptr) {
+        second.colour = addCopy(graph, draw.colour);
+        second.depth = addCopy(graph, draw.depth);
+    }
+    FluidLayers layers = row->add(graph, fluid_, draw);
     addDrops(graph, fluid_, draw, layers);
+    if (other != nullptr) {
+        const FluidLayers right = other->add(graph, fluid_, second);
+        addDrops(graph, fluid_, second, right);
+        addRightHalf(graph, right.colour, layers.colour);
+    }
     if (background.showBox && (row->opaque || layers.fluidDepth))
         addBox(graph, render_, frame, box, layers.colour, draw.depth, layers.fluidDepth);
 

@@ -42,6 +42,7 @@ class FluidUpload {
 
   private:
     gpu::Buffer position_, velocity_, id_, absorption_, drops_;
+    std::array<gpu::Buffer, 3> ellipsoids_;
     std::vector<vec4> vectors_;
     std::vector<uint32_t> ids_;
 };
@@ -67,6 +68,8 @@ class SceneRenderer {
 
     // GPU time a pass, some frames late.
     const std::vector<PassTime>& times() const { return pool_.times(); }
+    // Whether look.quality auto is fast: in a window that software draws. Else it is fine.
+    void hurry(bool yes) { hurries_ = yes; }
     // Reads the shaders again. Error: as create; the last good ones stay in use.
     Status reload();
 
@@ -99,6 +102,7 @@ class SceneRenderer {
     std::function<bool(double)> progress_ = [](double) { return true; };
     gpu::Texture surroundings_;  // empty: the studio
     std::array<vec4, 9> matteLight_{};
+    bool hurries_ = false;
 };
 
 }  // namespace rivulet

@@ -62,6 +62,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::strin
     auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
     if (!renderer) return renderer.error();
     v.renderer_ = std::move(*renderer);
+    v.renderer_->hurry(v.gl_.software);
     return viewer;
 }
 

@@ -1,6 +1,7 @@
 // FluidView: what a fluid renderer draws: particles as OpenGL buffers, whichever Device simulated them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -16,6 +17,9 @@ struct FluidView {
     // GL buffer name, vec4: xyz what red, green and blue fade by in its liquid and dye, 1/m; w how much of FluidLook::absorption is to be
     // added. 0: all particles are alike.
     unsigned absorption = 0;
+    // GL buffer names, vec4 each, of the ellipsoids about the particles, as shaders/fluid/ellipsoids.kernel writes them: centre, spread,
+    // slant. 0: they are drawn as spheres.
+    std::array<unsigned, 3> ellipsoids = {};
     uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
     float radius = 0.01F;   // m, of a drawn sphere
     float spacing = 0.02F;  // m

@@ -11,15 +11,31 @@ constexpr RendererRow kRows[] = {
     {"truth", "the same shading of the particles' iso-surface, ray-marched at full precision: seconds a frame", false, addTruth},
 };
 constexpr Table<RendererRow> kRenderers{kRows};
+constexpr ViewRow kViewRows[] = {
+    {"water", "the water", WaterView::water},
+    {"normals", "the surface's normals: their parts along x, y, z as red, green, blue", WaterView::normals},
+    {"depth", "the surface's depth, as the filter leaves it: white is near", WaterView::depth},
+    {"spheres", "the particles' depth, before the filter", WaterView::spheres},
+    {"thickness", "how much water there is along the line of sight", WaterView::thickness},
+};
+constexpr Table<ViewRow> kViews{kViewRows};
 constexpr int kTile = 32;  // pixels
 }  // namespace
 
 const Table<RendererRow>& renderers() { return kRenderers; }
+const Table<ViewRow>& waterViews() { return kViews; }
 
-std::array<gpu::Program*, 19> FluidPrograms::all() {
-    return {&points,    &pointsShade, &occluder,       &markTiles,    &depth,           &smooth,         &smoothLast,
-            &thickness, &blur,        &shade,          &lightWater,   &lightWaterFirst, &lightWaterLast, &thicknessInk,
-            &shadeInk,  &drops,       &dropsOverWater, &shadeNormals, &shadeNormalsInk};
+std::vector<gpu::Program*> FluidPrograms::all() {
+    std::vector<gpu::Program*> programs = {&points,          &pointsShade,    &blur,           &shade,    &lightWater,
+                                           &lightWaterFirst, &lightWaterLast, &shadeInk,       &showView, &drops,
+                                           &dropsOverWater,  &shadeNormals,   &shadeNormalsInk};
+    for (SplatPrograms* splat : {&spheres, &ellipsoids})
+        for (gpu::Program* program : {&splat->occluder, &splat->markTiles, &splat->depth, &splat->thickness, &splat->thicknessInk})
+            programs.push_back(program);
+    for (FilterPrograms* filter : {&narrowRange, &bilateral, &curvatureFlow, &unfiltered})
+        for (gpu::Program* program : {&filter->step, &filter->last})
+            if (*program) programs.push_back(program);
+    return programs;
 }
 
 Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
@@ -27,27 +43,42 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     const std::string folder = "shaders/screen_space/", full = "shaders/render/fullscreen.vert", tile = folder + "tile.vert",
                       sphere = folder + "sphere.vert";
     FluidPrograms p;
-    std::pair<Program*, Result<Program>> made[] = {
+    std::vector<std::pair<Program*, Result<Program>>> made;
+    for (SplatPrograms* splat : {&p.spheres, &p.ellipsoids}) {
+        std::vector<Define> shape, ink = {{"INK", "1"}};
+        if (splat == &p.ellipsoids) {
+            shape = {{"ELLIPSOIDS", "1"}};
+            ink.push_back(shape.front());
+        }
+        made.emplace_back(&splat->occluder, Program::create(files, {folder + "occluder.vert", "shaders/render/depth.frag"}, shape));
+        made.emplace_back(&splat->markTiles, Program::create(files, {folder + "mark_tiles.vert", folder + "mark_tiles.frag"}, shape));
+        made.emplace_back(&splat->depth, Program::create(files, {sphere, folder + "depth.frag"}, shape));
+        made.emplace_back(&splat->thickness, Program::create(files, {sphere, folder + "thickness.frag"}, shape));
+        made.emplace_back(&splat->thicknessInk, Program::create(files, {sphere, folder + "thickness.frag"}, ink));
+    }
+    std::pair<Program*, Result<Program>> others[] = {
+        {&p.showView, Program::create(files, {tile, folder + "show_view.frag"})},
         {&p.points, Program::create(files, {folder + "points.vert", folder + "points.frag"})},
         {&p.pointsShade, Program::create(files, {tile, folder + "points_shade.frag"})},
-        {&p.occluder, Program::create(files, {folder + "occluder.vert", "shaders/render/depth.frag"})},
-        {&p.markTiles, Program::create(files, {folder + "mark_tiles.vert", folder + "mark_tiles.frag"})},
-        {&p.depth, Program::create(files, {sphere, folder + "depth.frag"})},
-        {&p.smooth, Program::create(files, {tile, folder + "smooth.frag"})},
-        {&p.smoothLast, Program::create(files, {tile, folder + "smooth.frag"}, {{"LAST", "1"}})},
-        {&p.thickness, Program::create(files, {sphere, folder + "thickness.frag"})},
+        {&p.narrowRange.step, Program::create(files, {tile, folder + "narrow_range.frag"})},
+        {&p.narrowRange.last, Program::create(files, {tile, folder + "narrow_range.frag"}, {{"LAST", "1"}})},
+        {&p.bilateral.step, Program::create(files, {tile, folder + "bilateral.frag"})},
+        {&p.bilateral.last, Program::create(files, {tile, folder + "bilateral.frag"}, {{"LAST", "1"}})},
+        {&p.curvatureFlow.step, Program::create(files, {tile, folder + "curvature_flow.frag"})},
+        {&p.curvatureFlow.last, Program::create(files, {tile, folder + "curvature_flow.frag"}, {{"LAST", "1"}})},
+        {&p.unfiltered.last, Program::create(files, {tile, folder + "unfiltered.frag"}, {{"LAST", "1"}})},
         {&p.blur, Program::create(files, {tile, folder + "blur.frag"})},
         {&p.shade, Program::create(files, {tile, folder + "shade.frag"})},
         {&p.lightWater, Program::create(files, {folder + "light_water.vert", folder + "light_water.frag"})},
         {&p.lightWaterFirst, Program::create(files, {full, folder + "light_water_blur.frag"})},
         {&p.lightWaterLast, Program::create(files, {full, folder + "light_water_blur.frag"}, {{"LAST", "1"}})},
-        {&p.thicknessInk, Program::create(files, {sphere, folder + "thickness.frag"}, {{"INK", "1"}})},
         {&p.shadeInk, Program::create(files, {tile, folder + "shade.frag"}, {{"INK", "1"}})},
         {&p.shadeNormals, Program::create(files, {tile, folder + "shade.frag"}, {{"NORMALS", "1"}})},
         {&p.shadeNormalsInk, Program::create(files, {tile, folder + "shade.frag"}, {{"NORMALS", "1"}, {"INK", "1"}})},
         {&p.drops, Program::create(files, {folder + "drop.vert", folder + "drop.frag"})},
         {&p.dropsOverWater, Program::create(files, {folder + "drop.vert", folder + "drop.frag"}, {{"OVER_WATER", "1"}})},
     };
+    for (auto& other : others) made.push_back(std::move(other));
     for (auto& [into, program] : made) {
         if (!program) return program.error();
         *into = std::move(*program);
@@ -69,23 +100,32 @@ void FluidPrograms::drawParticles(const FluidView& fluid) {
     particles.attribute(1, fluid.velocity, 4, GL_FLOAT, 16, 0, 1);
     particles.integerAttribute(2, fluid.id, 1, GL_UNSIGNED_INT, 4, 0, 1);
     particles.attribute(3, fluid.absorption != 0 ? fluid.absorption : fluid.position, 4, GL_FLOAT, 16, 0, 1);
+    for (size_t k = 0; k < fluid.ellipsoids.size(); ++k)
+        particles.attribute(static_cast<GLuint>(4 + k), fluid.ellipsoids[k] != 0 ? fluid.ellipsoids[k] : fluid.position, 4, GL_FLOAT, 16, 0,
+                            1);
     particles.bind();
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(fluid.count));
+}
+
+std::vector<gpu::Read> splatReads(const FluidDraw& d) {
+    std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::attribute}};
+    for (const gpu::BufferHandle ellipsoids : d.ellipsoids) reads.emplace_back(ellipsoids, gpu::Usage::attribute);
+    return reads;
 }
 
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     const gpu::TextureDesc size{
         .width = (d.view.width + kTile - 1) / kTile, .height = (d.view.height + kTile - 1) / kTile, .format = gpu::Format::r8};
     const gpu::TextureHandle tiles = graph.texture("water tiles", size);
-    graph.pass("tiles", {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::attribute}}, {tiles},
-               [=, &programs](gpu::PassContext& c) {
-                   c.drawTo({tiles}).clearColour(vec4(0.0F));
-                   glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
-                   programs.markTiles.use();
-                   programs.markTiles.set("radius", d.fluid.radius);
-                   programs.markTiles.set("tiles", vec2(size.width, size.height));
-                   programs.drawParticles(d.fluid);
-               });
+    graph.pass("tiles", splatReads(d), {tiles}, [=, &programs](gpu::PassContext& c) {
+        c.drawTo({tiles}).clearColour(vec4(0.0F));
+        glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+        gpu::Program& mark = programs.splats(d.fluid).markTiles;
+        mark.use();
+        mark.set("radius", d.fluid.radius);
+        mark.set("tiles", vec2(size.width, size.height));
+        programs.drawParticles(d.fluid);
+    });
     return tiles;
 }
 

@@ -1,9 +1,9 @@
 // Renderers: the ways to draw a fluid, as passes added to a frame graph after the scene's opaque pass.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "engine/compute/kernel_source.h"
 #include "engine/core/table.h"
@@ -15,23 +15,50 @@
 
 namespace rivulet {
 
+struct FilterRow;  // fluid/render/filters.h
+
 enum class ColourBy { speed, density, id, dye, normal, surface };
+
+// What of the water is shown: the water, or what it is made from.
+enum class WaterView { water, normals, depth, spheres, thickness };
+struct ViewRow {
+    const char* name;
+    const char* doc;
+    WaterView view;
+};
+const Table<ViewRow>& waterViews();
 
 struct FluidLook {
     ColourBy colourBy = ColourBy::speed;   // points
     float fullSpeed = 3.0F;                // m/s: the end of the colour map
-    float smoothing = 2.5F;                // reach of the smoothing, in drawn radii
+    const FilterRow* filter = nullptr;     // of the surface's depth; null: the first row of filters()
+    float smoothing = 0.0F;                // m, reach of the smoothing, two deviations; 0 = from the spacing
+    float smoothingRange = 0.0F;           // m, how far apart depths of one surface may be; 0 = from the spacing
     vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
     vec3 scatter{0.008F, 0.060F, 0.085F};  // what deep water throws back
     float refractiveIndex = 1.333F;        // > 1
+    WaterView view = WaterView::water;     // screen_space
+    bool fast = false;                     // half the resolution for the surface, no reflection of the picture in itself
+};
+
+// A filter's passes: each, and the one that ends it.
+struct FilterPrograms {
+    gpu::Program step, last;
+};
+
+// What draws particles' depth and thickness: as spheres, or as ellipsoids. Ink: particles differ in absorption.
+struct SplatPrograms {
+    gpu::Program occluder, markTiles, depth, thickness, thicknessInk;
 };
 
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
-    gpu::Program points, pointsShade, occluder, markTiles, depth, smooth, smoothLast, thickness, blur, shade, lightWater, lightWaterFirst,
-        lightWaterLast, thicknessInk, shadeInk;  // Ink: particles differ in absorption
-    gpu::Program shadeNormals, shadeNormalsInk;  // Normals: they are given
+    gpu::Program points, pointsShade, blur, shade, lightWater, lightWaterFirst, lightWaterLast, shadeInk, showView;
+    gpu::Program shadeNormals, shadeNormalsInk;  // Ink: particles differ in absorption; Normals: they are given
+    SplatPrograms spheres, ellipsoids;
+    SplatPrograms& splats(const FluidView& fluid) { return fluid.ellipsoids[0] != 0 ? ellipsoids : spheres; }
     gpu::Program drops, dropsOverWater;
+    FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
     gpu::VertexArray particles, dropFeed, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
@@ -40,7 +67,7 @@ struct FluidPrograms {
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 
   private:
-    std::array<gpu::Program*, 19> all();
+    std::vector<gpu::Program*> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.
@@ -50,6 +77,7 @@ struct FluidDraw {
     FluidLook look;
     gpu::BufferHandle frame;                                 // a FrameParams (shaders/render/frame.h)
     gpu::BufferHandle position, velocity, id, absorption;    // fluid's, imported
+    std::vector<gpu::BufferHandle> ellipsoids;               // likewise; empty: spheres
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
@@ -73,6 +101,9 @@ const Table<RendererRow>& renderers();
 // What the light passes through on its way: x thickness (m), y that times its depth (0..1), z thickness relative to the surroundings (m).
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
+
+// The particles' buffers, as a pass that draws splats reads them.
+std::vector<gpu::Read> splatReads(const FluidDraw& draw);
 
 // Marks the tiles of the picture that particles touch: what comes after the spheres runs only there.
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);

@@ -1,8 +1,7 @@
-// A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a narrow-range filter (Truong & Yuksel 2018).
+// A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a row of filters().
 #include <algorithm>
-#include <cmath>
-#include <span>
 
+#include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
 
 namespace rivulet {
@@ -16,37 +15,13 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr float kFar = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothing
-// Steps of the smoothing's levels, relative; the small ones last: they iron out what the holes of the others leave.
-constexpr float kSteps[] = {3, 5, 7, 4, 2, 1};
-constexpr float kStepsNear[] = {4, 9, 13, 8, 5, 3, 2, 1};  // for a camera so near that holes between the former would be wide
-constexpr float kUnitPixels = 3.0F;                        // a step of 1 is no wider than this
-constexpr float kRange = 7.0F;                             // radii
-constexpr float kBend = 0.5F;                              // radii
-constexpr int kThicknessScale = 2;                         // of the resolution
-constexpr int kThicknessBlur = 4;                          // texels either side
-constexpr int kLightMap = 256;                             // texels
+constexpr float kFar = 1.0e6F;      // m, shaders/render/frame.glsl's depth of nothing
+constexpr int kThicknessScale = 2;  // of the resolution
+constexpr int kThicknessBlur = 4;   // texels either side
+constexpr int kLightMap = 256;      // texels
+constexpr int kLightMapFast = 128;
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
-
-// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere.
-template <class Setup>
-TextureHandle addFilter(FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, Program& program,
-                        TextureHandle tiles, TextureHandle from, const TextureDesc& desc, float empty, Setup setup,
-                        TextureHandle second = {}) {
-    const TextureHandle to = graph.texture(name, desc);
-    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, tiles, from};
-    if (second) reads.emplace_back(second);
-    graph.pass(name, reads, {to}, [=, &programs, &program](PassContext& c) {
-        c.drawTo({to}).clearColour(vec4(empty));
-        useFrame(c, d);
-        program.use();
-        program.texture("source", 0, c.texture(from));
-        setup(program, c);
-        programs.drawTiles(program, c.texture(tiles), 1);
-    });
-    return to;
-}
 
 // x: depth of the bulk, y: of the spray; m.
 TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
@@ -54,62 +29,61 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
     const TextureHandle depth = graph.texture("sphere depth", size);
     size.format = Format::depth32f;
     const TextureHandle hidden = graph.texture("fluid occluders", size);
-    graph.pass("fluid depth", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {depth, hidden}, [=, &programs](PassContext& c) {
+    graph.pass("fluid depth", splatReads(d), {depth, hidden}, [=, &programs](PassContext& c) {
+        SplatPrograms& splats = programs.splats(d.fluid);
         const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
         useFrame(c, d);
         target.clearColour(vec4(kFar));
         target.clearDepth();
         glEnable(GL_DEPTH_TEST);
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        programs.occluder.use();
-        programs.occluder.set("radius", d.fluid.radius);
+        splats.occluder.use();
+        splats.occluder.set("radius", d.fluid.radius);
         programs.drawParticles(d.fluid);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glDepthMask(GL_FALSE);
         glEnable(GL_BLEND);
         glBlendEquation(GL_MIN);
-        programs.depth.use();
-        programs.depth.set("radius", d.fluid.radius);
+        splats.depth.use();
+        splats.depth.set("radius", d.fluid.radius);
         programs.drawParticles(d.fluid);
     });
     return depth;
 }
 
-TextureHandle addSmooth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
-    TextureHandle depth = spheres;
-    const float radius = d.fluid.radius;
-    const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-    const Bounds& bounds = d.fluid.bounds;
-    const float huge = 1.0e5F;
-    const Bounds box = bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : bounds;
-    // A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two standard deviations.
-    auto unitOf = [&](std::span<const float> steps) {
-        float squares = 0;
-        for (const float step : steps) squares += 0.5F * step * step;
-        return 0.5F * d.look.smoothing * radius / std::sqrt(squares);
-    };
-    const float away = bounds.empty() ? 1.0F : glm::length(d.view.cameraPosWorld - glm::clamp(d.view.cameraPosWorld, box.min, box.max));
-    const float pixelsPerMetre = 0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / std::max(away, d.view.nearPlane);
-    const bool near = unitOf(kSteps) * pixelsPerMetre > kUnitPixels;
-    const std::span<const float> steps = near ? std::span<const float>(kStepsNear) : std::span<const float>(kSteps);
-    const float unit = unitOf(steps);
-    for (size_t level = 0; level < steps.size(); ++level) {
-        const float step = steps[level];
-        const bool final = level + 1 == steps.size();
-        Program& program = final ? programs.smoothLast : programs.smooth;
-        const auto setup = [=](Program& p, const PassContext& c) {
-            p.set("step_", step * unit);
-            p.set("maxStep", step * kUnitPixels);
-            p.set("range", kRange * radius);
-            p.set("bend", kBend * radius);
-            if (!final) return;
-            p.texture("spray", 2, c.texture(spheres));
-            p.set("low", box.min);
-            p.set("high", box.max);
-        };
-        depth = addFilter(graph, "smooth", programs, d, program, tiles, depth, size, kFar, setup, final ? spheres : TextureHandle{});
+// What the surface is made from, instead of the water.
+struct Shown {
+    TextureHandle tiles, depth, thickness, colour;
+};
+void addView(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const Shown& of) {
+    vec2 depths(d.view.nearPlane, d.view.farPlane);
+    float wide = d.view.farPlane;
+    if (!d.fluid.bounds.empty()) {
+        depths = vec2(d.view.farPlane, d.view.nearPlane);
+        for (int k = 0; k < 8; ++k) {
+            const Bounds& b = d.fluid.bounds;
+            const vec3 corner((k & 1) != 0 ? b.max.x : b.min.x, (k & 2) != 0 ? b.max.y : b.min.y, (k & 4) != 0 ? b.max.z : b.min.z);
+            const float depth = std::max(-(d.view.view * vec4(corner, 1.0F)).z, d.view.nearPlane);
+            depths = vec2(std::min(depths.x, depth), std::max(depths.y, depth));
+        }
+        const vec3 size = d.fluid.bounds.size();
+        wide = std::max({size.x, size.y, size.z});
     }
-    return depth;
+    graph.pass("view", {{d.frame, Usage::uniform}, of.tiles, of.depth, of.thickness, d.colour, d.depth}, {of.colour},
+               [=, &programs](PassContext& c) {
+                   c.drawTo({of.colour});
+                   useFrame(c, d);
+                   Program& p = programs.showView;
+                   p.use();
+                   p.texture("sceneColour", 0, c.texture(d.colour));
+                   p.texture("sceneDepth", 1, c.texture(d.depth));
+                   p.texture("fluidDepth", 2, c.texture(of.depth));
+                   p.texture("thickness", 3, c.texture(of.thickness));
+                   p.set("what", static_cast<int>(d.look.view));
+                   p.set("depths", depths);
+                   p.set("fullThickness", wide);
+                   programs.drawTiles(p, c.texture(of.tiles), 4);
+               });
 }
 
 }  // namespace
@@ -122,7 +96,8 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
     TextureDesc inkSize = size;
     inkSize.format = Format::rgba16f;
     TextureHandle thickness = graph.texture("thickness", size), depths;
-    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {d.position, Usage::attribute}, d.depth};
+    std::vector<gpu::Read> reads = splatReads(d);
+    reads.emplace_back(d.depth);
     std::vector<gpu::Write> writes = {thickness};
     if (ink) {
         depths = graph.texture("ink depths", inkSize);
@@ -136,7 +111,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         useFrame(c, d);
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE);
-        Program& p = ink ? programs.thicknessInk : programs.thickness;
+        Program& p = ink ? programs.splats(d.fluid).thicknessInk : programs.splats(d.fluid).thickness;
         p.use();
         if (ink) p.set("ownAbsorption", d.look.absorption);
         p.set("radius", d.fluid.radius);
@@ -150,15 +125,16 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
             p.set("axis", axis);
             p.set("reach", kThicknessBlur);
         };
-        thickness = addFilter(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
-        if (ink) depths = addFilter(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
+        thickness = addTiled(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
+        if (ink) depths = addTiled(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
     }
     return {.tiles = tiles, .depth = {}, .thickness = thickness, .normals = {}, .fades = depths};
 }
 
 TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
-    const TextureDesc raw{.width = kLightMap, .height = kLightMap, .format = Format::rg16f};
-    const TextureDesc map{.width = kLightMap, .height = kLightMap, .format = Format::rgba16f};
+    const int side = d.look.fast ? kLightMapFast : kLightMap;
+    const TextureDesc raw{.width = side, .height = side, .format = Format::rg16f};
+    const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
     graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {drawn}, [=, &programs](PassContext& c) {
@@ -174,7 +150,8 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         programs.drawParticles(d.fluid);
     });
     // The narrow blur hides the single particles: its reach is 1.5 spacings.
-    const int reach = std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * kLightMap), 2, 6);
+    const int reach =
+        std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side)), 2, 6);
     TextureHandle from = drawn;
     for (const bool first : {true, false}) {
         const TextureHandle to = graph.texture("water light", map);
@@ -203,6 +180,10 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
                                     water.thickness,           d.shadowSharp, d.shadowSoft, d.waterLight};
     if (ink) reads.emplace_back(water.fades);
     if (water.normals) reads.emplace_back(water.normals);
+    if (d.look.view != WaterView::water) {
+        addView(graph, programs, d, {water.tiles, water.depth, water.thickness, colour});
+        return {colour, water.depth};
+    }
     graph.pass("shade", reads, {colour}, [=, &programs](PassContext& c) {
         c.drawTo({colour});
         useFrame(c, d);
@@ -222,6 +203,7 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
         if (!ink) p.set("absorption", d.look.absorption);
         if (!ink) p.set("scatter", d.look.scatter);
         p.set("refractiveIndex", d.look.refractiveIndex);
+        p.set("mirrorSteps", d.look.fast ? 0 : 10);
         programs.drawTiles(p, c.texture(water.tiles), 7);
     });
     return {colour, water.depth};
@@ -230,7 +212,11 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
 FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
     const TextureHandle tiles = addTiles(graph, programs, d);
-    const TextureHandle depth = addSmooth(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
+    const FilterRow& unfiltered = *filters().find("none");
+    const FilterRow& filter = d.look.view == WaterView::spheres ? unfiltered
+                              : d.look.filter != nullptr        ? *d.look.filter
+                                                                : filters().rows.front();
+    const TextureHandle depth = filter.add(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
     WaterSurface water = addThickness(graph, programs, d, tiles);
     water.depth = depth;
     return addShade(graph, programs, d, water);

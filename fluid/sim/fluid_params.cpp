@@ -143,6 +143,10 @@ void FluidParams::visit(ParamVisitor& v) {
     v.value({"cfl", "", "a step's length, as a share of the time that sound takes across a smoothing length", 0.01, 4, kLog}, cfl);
     v.value({"maxSubsteps", "", "steps in one frame at most; beyond that simulated time slows down", 1, 100000, kLog}, maxSubsteps);
     v.value({"longestFrame", "s", "of a longer frame only this is simulated: the rest is dropped", 0.001, 10, kLog}, longestFrame);
+    v.value({.name = "ellipsoids",
+             .doc = "whether the ellipsoids that stand for particles amid their neighbours are found (Yu and Turk 2013), to be drawn by "
+                    "look.splats"},
+            ellipsoids);
     v.value({"fixedStep", "s",
              "time goes on in whole steps of this length (each of as many substeps as it needs), and pictures show what is between; 0 = as "
              "frames come",

@@ -251,6 +251,11 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.lastSubsteps = substeps;
     w.time += stepped;
     w.gatherColours();
+    if (p.ellipsoids && substeps > 0) {
+        if (Status ready = w.ellipsoids.prepare(*w.device, w.traits, w.particles.count); !ready) w.say(ready.error().message);
+        w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
+    }
+    if (!p.ellipsoids) w.ellipsoids.forget();
     const double lost = w.pace.end(stepped);
     // What rounding leaves of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
@@ -499,7 +504,8 @@ ParticleView FluidWorld::particles() const {
             .matterOf = w.traits.matter ? &w.particles.matterOf : nullptr,
             .spacing = w.params.spacing,
             .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
-            .drawn = &w.drawn.positions(w.particles)};
+            .drawn = &w.drawn.positions(w.particles),
+            .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{}};
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,

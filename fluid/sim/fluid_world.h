@@ -1,6 +1,7 @@
 // FluidWorld: the one object a host owns. Particles, neighbour grid, method, boundaries; stepped once a frame.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "engine/compute/device.h"
@@ -32,6 +33,8 @@ struct ParticleView {
     float mass = 0;                    // kg, of one of the world's own liquid
     // Positions at the time that has been asked for: with fluid.fixedStep between the last two steps, one step late; else `position`.
     const Buffer* drawn = nullptr;  // vec4: as position
+    // The ellipsoids about them: Ellipsoids::buffers(). Null unless fluid.ellipsoids asks for them, and before the first step.
+    std::array<const Buffer*, 3> ellipsoids = {};
 };
 
 // What the scene says to the fluid each frame.

@@ -8,6 +8,7 @@
 #include "fluid/sim/block.h"
 #include "fluid/sim/body_passes.h"
 #include "fluid/sim/drawn_positions.h"
+#include "fluid/sim/ellipsoids.h"
 #include "fluid/sim/exchange_passes.h"
 #include "fluid/sim/fluid_world.h"
 #include "fluid/sim/force.h"
@@ -57,6 +58,7 @@ struct FluidWorld::Impl {
     double iterations = 0;  // of this frame's substeps, all of them
     Pace pace;
     DrawnPositions drawn;
+    Ellipsoids ellipsoids;
     std::vector<Pose> posesBefore;                                         // the rigid solids', before the last fixed step
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};

@@ -216,6 +216,7 @@ void FluidWorld::Impl::writeStart() {
     budgetSaid = false;
     pace.reset();
     drawn.forget();
+    ellipsoids.forget();
     posesBefore.clear();
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
     method->forget();

@@ -7,6 +7,7 @@
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/surface_probe.h"
+#include "fluid/render/filters.h"
 #include "fluid/render/raymarch.h"
 #include "fluid/validate/image_flip.h"
 #include "fluid/validate/surface.h"
@@ -151,6 +152,9 @@ struct Under {
     Outcome outcome = {};
 
     bool truth() const { return settings.method == kTruth; }
+    void choose(SceneFile& scene) const {
+        if (!truth()) scene.look.filter = settings.method;
+    }
     void found(std::string what, const char* unit, double measured, double reference, std::optional<double> tolerance = {}) {
         outcome.findings.push_back({std::move(what), unit, measured, reference, std::abs(measured - reference), tolerance});
     }
@@ -200,6 +204,7 @@ struct Under {
     Status realFrame() {
         Result<SceneFile> scene = loadScene("dam_break.json", settings.assignments);
         if (!scene) return scene.error();
+        choose(*scene);
         Result<std::unique_ptr<Session>> session = Session::create(*scene, *settings.device, settings.log);
         if (!session) return session.error();
         FluidWorld& world = (*session)->world();
@@ -238,6 +243,7 @@ struct Under {
         assignments.insert(assignments.end(), settings.assignments.begin(), settings.assignments.end());
         Result<SceneFile> scene = loadScene("cases/hydrostatic.json", assignments);
         if (!scene) return scene.error();
+        choose(*scene);
         Result<std::unique_ptr<Session>> session = Session::create(*scene, *settings.device, settings.log);
         if (!session) return session.error();
         Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(ShaderFiles::developer());
@@ -269,13 +275,20 @@ struct Under {
 
 }  // namespace
 
-std::vector<std::string> surfaceMethods() { return {"narrow_range", kTruth}; }
+std::vector<std::string> surfaceMethods() {
+    std::vector<std::string> names;
+    for (const FilterRow& row : filters().rows)
+        if (std::string_view(row.name) != "none") names.emplace_back(row.name);
+    names.emplace_back(kTruth);
+    return names;
+}
 
 Result<Outcome> runSurface(const CaseSettings& settings) {
     // A gl device has a context that is current.
     Result<SurfaceProbe> probe = SurfaceProbe::create(settings.device->backend() != Backend::gl);
     if (!probe) return failed(fmt::format("the case surface draws what it measures, and that needs OpenGL: {}", probe.error().message));
     Under u{settings, std::move(*probe), {}};
+    u.choose(u.plain);
     u.outcome.method = settings.method;
     if (Status s = u.shapes(); !s) return s.error();
     if (!u.truth()) {

@@ -3,7 +3,6 @@
 #include "shaders/screen_space/particle.glsl"
 uniform vec2 tiles;  // how many
 void main() {
-    vec3 c = (frame.view * vec4(particle.xyz, 1.0)).xyz;
-    gl_Position = lost(particle) ? kNowhere : sphereQuad(c, drawnRadius(particle));
+    gl_Position = lost(particle) ? kNowhere : splatQuad(splatOf(particle));
     gl_Position.xy += (corner() - 0.5) * 2.0 / tiles * gl_Position.w;  // half a texel, so that a texel that is only grazed is drawn too
 }

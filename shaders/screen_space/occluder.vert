@@ -1,9 +1,17 @@
 // A square inside the sphere, facing the camera: whatever lies behind it is behind the sphere's near side too. Drawn first, depth only and
-// without a fragment shader's work, it spares the spheres deep in the water theirs. Spray hides nothing: the water's surface goes on behind it.
+// without a fragment shader's work, it spares the spheres deep in the water theirs. Spray hides nothing: the water's surface goes on behind it. What the near plane cuts hides nothing either: it
+// is drawn just behind that plane itself.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 void main() {
-    vec3 c = (frame.view * vec4(particle.xyz, 1.0)).xyz;
-    c.xy += (corner() - 0.5) * 1.40 * drawnRadius(particle);  // half the side: 0.70 radii < 1 / sqrt(2)
-    gl_Position = lost(particle) || spray(particle) > 0.5 || -c.z < frame.planes.x ? kNowhere : frame.projection * vec4(c, 1.0);
+    Splat s = splatOf(particle);
+    vec3 c = s.centre;
+#if defined(ELLIPSOIDS)
+    // No more than its shortest half axis: the product of the other two squares is no more than a quarter of the trace's.
+    float inner = 2.0 * sqrt(determinant(s.squares)) / (s.squares[0][0] + s.squares[1][1] + s.squares[2][2]);
+#else
+    float inner = drawnRadius(particle);
+#endif
+    c.xy += (corner() - 0.5) * 1.40 * inner;  // half the side: 0.70 radii < 1 / sqrt(2)
+    gl_Position = lost(particle) || spray(particle) > 0.5 || -c.z < frame.planes.x * 1.01 ? kNowhere : frame.projection * vec4(c, 1.0);
 }

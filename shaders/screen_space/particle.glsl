@@ -1,28 +1,65 @@
-// A particle as a quad that just covers the sphere's picture. Instanced: 4 vertices of a strip, one instance a particle.
-// Needs frame.glsl.
+// A particle as a quad that just covers the picture of its sphere, or with ELLIPSOIDS of its ellipsoid. Instanced: 4 vertices of a strip, one
+// instance a particle. Needs frame.glsl.
 layout(location = 0) in vec4 particle;  // xyz m, world
+#if defined(ELLIPSOIDS)
+layout(location = 4) in vec4 toCentre;  // xyz m: see fluid/ellipsoids.kernel
+layout(location = 5) in vec4 spread;    // xx, yy, zz of the squared half axes, a round particle's 1
+layout(location = 6) in vec4 slant;     // yz, zx, xy
+#endif
 uniform float radius;                   // m
 
 const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);
+const float kOverlap = 1.35;  // radii: drawn so large, spheres cover the water without gaps
 vec2 corner() { return vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)); }
 // Spray is finer than the particles that stand for it: those with few neighbours are drawn smaller.
 float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
-float drawnRadius(vec4 p) { return radius * mix(1.35, 0.5, spray(p)); }
+float drawnRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
 // NaN, too; and where there is no particle: a free slot, or a sample on a body.
 bool lost(vec4 p) { return p.w < 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
 
-// Slopes (x / depth) between which a circle around (x, depth) is seen: its two tangents through the origin.
-vec2 tangents(float x, float depth, float r) {
-    float t = sqrt(x * x + depth * depth - r * r);
-    return vec2((x * t - r * depth) / (depth * t + x * r), (x * t + r * depth) / (depth * t - x * r));
+// What is drawn, in view space: the points p with (p - centre)^T squares^-1 (p - centre) < 1.
+struct Splat {
+    vec3 centre;   // m
+    mat3 squares;  // m^2
+};
+Splat splatOf(vec4 p) {
+    float r = drawnRadius(p);
+    Splat s = Splat((frame.view * vec4(p.xyz, 1.0)).xyz, mat3(r * r));
+#if defined(ELLIPSOIDS)
+    // One that was born after the ellipsoids were found has none yet.
+    float sum = spread.x + spread.y + spread.z;
+    if (sum > 0.05 && sum < 50.0 && dot(toCentre.xyz, toCentre.xyz) < 9.0 * radius * radius) {
+        float wide = radius * kOverlap;
+        mat3 view = mat3(frame.view);
+        s.centre += view * toCentre.xyz;
+        s.squares = view * (wide * wide * mat3(spread.x, slant.z, slant.y, slant.z, spread.y, slant.x, slant.y, slant.x, spread.z)) * transpose(view);
+    }
+#endif
+    return s;
 }
 
-// Clip position of this vertex of a quad around the sphere, in the plane through its nearest point. `centre` in view space.
-vec4 sphereQuad(vec3 centre, float r) {
-    float depth = -centre.z;
-    if (depth - r < frame.planes.x) return kNowhere;  // the camera is in it, or it is behind
-    vec2 x = tangents(centre.x, depth, r), y = tangents(centre.y, depth, r);
-    vec2 at = mix(vec2(x.x, y.x), vec2(x.y, y.y), corner());
-    float front = depth - r;
-    return frame.projection * vec4(at * front, -front, 1.0);
+// Slopes (x / depth) between which it is seen along one axis: its two tangents through the origin.
+vec2 tangents(float c, float depth, float cc, float cz, float zz) {
+    float a = depth * depth - zz, b = -c * depth - cz, t = sqrt(max(b * b - a * (c * c - cc), 0.0));
+    return vec2(-b - t, -b + t) / a;
+}
+
+// Clip position of this vertex of a quad around it, in the plane through its nearest point; of one that the near plane cuts, in that plane.
+vec4 splatQuad(Splat s) {
+    float depth = -s.centre.z, ahead = sqrt(s.squares[2][2]), near = frame.planes.x * 1.001;
+    if (!(depth + ahead > near)) return kNowhere;
+    vec2 low, high;
+    float front = depth - ahead;
+    if (front > near) {
+        vec2 x = tangents(s.centre.x, depth, s.squares[0][0], s.squares[2][0], s.squares[2][2]);
+        vec2 y = tangents(s.centre.y, depth, s.squares[1][1], s.squares[2][1], s.squares[2][2]);
+        low = vec2(x.x, y.x);
+        high = vec2(x.y, y.y);
+    } else {  // a box about it, from the near plane on
+        vec2 wide = sqrt(vec2(s.squares[0][0], s.squares[1][1])), a = s.centre.xy - wide, b = s.centre.xy + wide;
+        low = min(a / near, a / (depth + ahead));
+        high = max(b / near, b / (depth + ahead));
+        front = near;
+    }
+    return frame.projection * vec4(mix(low, high, corner()) * front, -front, 1.0);
 }

@@ -13,7 +13,7 @@ flat out vec4 centreView;  // w: radius
 flat out vec3 baseColour;
 void main() {
     centreView = vec4((frame.view * vec4(particle.xyz, 1.0)).xyz, drawnRadius(particle));
-    gl_Position = lost(particle) ? kNowhere : sphereQuad(centreView.xyz, centreView.w);
+    gl_Position = lost(particle) ? kNowhere : splatQuad(splatOf(particle));
     if (colourBy == 0) baseColour = ramp(length(velocity.xyz) / fullSpeed);
     else if (colourBy == 1) baseColour = ramp(0.5 + 5.0 * (particle.w - 1.0));  // 0.9 .. 1.1 of the rest density
     else if (colourBy == 3) {

@@ -16,6 +16,7 @@ uniform sampler2D depths;       // what red, green and blue fade by, instead: e^
 #endif
 uniform vec3 scatter;           // what deep water throws back
 uniform float refractiveIndex;
+uniform int mirrorSteps;        // of the search for what the picture's own things reflect; 0: none
 layout(location = 0) out vec4 colour;
 
 vec2 waterAt(vec2 uv) {
@@ -72,6 +73,46 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     vec2 uv = pixelOf(from + dir * high) * frame.viewport.zw;
     vec2 edge = smoothstep(vec2(0.5), vec2(0.42), abs(uv - 0.5));
     return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y);
+}
+
+// The sun's glint: GGX (Walter et al. 2007) of water whose normal turns by `turn` from pixel to pixel. The sun is a disc and the water has
+// ripples finer than particles, so that it is nowhere sharper than `kFinest`; and none is brighter than the picture can take without sparkling.
+const float kFinest = 0.035, kMostGlint = 8.0;
+vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 light) {
+    float nl = dot(n, frame.lightDir.xyz), nv = max(dot(n, toEye), 0.02);
+    if (nl <= 0.0) return vec3(0.0);
+    vec3 h = normalize(toEye + frame.lightDir.xyz);
+    float nh = max(dot(n, h), 0.0), a = min(kFinest + 0.5 * length(turn), 0.5), a2 = a * a;
+    float k = nh * nh * (a2 - 1.0) + 1.0;
+    float lobe = a2 / (3.1415927 * k * k) * 0.5 / (mix(2.0 * nl * nv, nl + nv, a) + 1.0e-4) * nl;
+    return light * min(lobe * mirror, kMostGlint);
+}
+
+// Where the ray through a pixel leaves the water that the eye is in, m, view space.
+vec3 wayOut(vec2 pixel) { return normalize(viewRay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
+// What the eye sees that is in the water: the scene in it as it is, what is above through Snell's window, and about the window the water's own
+// colour `deep`, mirrored. `scene`: m along the ray.
+vec3 fromWithin(vec3 dir, float through, float scene, vec3 straight, vec3 deep) {
+    // The surface is level but for what thickness says of it, which is blurred: little of that is to be believed. Whoever looks down, or
+    // through a wall of the box, sees straight on.
+    const float apart = 12.0;  // pixels
+    vec2 at = gl_FragCoord.xy;
+    vec3 right = wayOut(at + vec2(apart, 0.0)) - wayOut(at - vec2(apart, 0.0)), above_ = wayOut(at + vec2(0.0, apart)) - wayOut(at - vec2(0.0, apart));
+    vec3 level = transpose(mat3(frame.inverseView)) * vec3(0.0, 1.0, 0.0);
+    vec3 waved = cross(right, above_);
+    waved *= sign(dot(waved, level)) / max(length(waved), 1.0e-9);
+    vec3 outwards = normalize(level + 0.12 * (waved - dot(waved, level) * level));
+    float leaves = smoothstep(1.0, 0.85, through / max(scene, 1.0e-4)) * smoothstep(0.03, 0.12, dot(dir, level));
+    vec3 beyond = refract(dir, -outwards, refractiveIndex);
+    vec3 above = deep;
+    if (dot(beyond, beyond) > 0.0) {
+        vec3 met = dir * through + beyond * clamp(scene - through, 0.0, 60.0 * radius);
+        vec2 uv = clamp(pixelOf(met) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
+        bool seen = met.z < -frame.planes.x && depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < 0.5 * frame.planes.y;
+        vec3 window = seen ? textureLod(sceneColour, uv, 0.0).rgb : environment(directionToWorld(beyond), 0.1);
+        above = mix(window, deep, fresnel(clamp(dot(beyond, outwards), 0.02, 1.0), refractiveIndex));
+    }
+    return mix(straight, above, leaves);
 }
 
 void main() {
@@ -134,6 +175,12 @@ void main() {
     vec3 glow = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
     vec3 scattered = thrown * glow * (1.0 - exp(-2.5 * through));
     vec3 transmitted = back * passed + scattered;
+    float under = 1.0 - smoothstep(frame.planes.x + 0.5 * radius, frame.planes.x + 2.5 * radius, depth);  // the eye is in the water
+    vec3 within = vec3(0.0);
+    if (under > 0.0) {
+        vec3 deep = thrown * glow;
+        within = fromWithin(-toEye, water.x, behind * length(p) / depth, texelFetch(sceneColour, here, 0).rgb, deep) * passed + scattered;
+    }
     float white = 1.0 - exp(-water.y * 0.24 / radius);
     transmitted = mix(transmitted, 0.9 * (ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * (0.35 + 0.65 * max(dot(nWorld, frame.lightDir.xyz), 0.0)))), 0.75 * white);
 
@@ -143,9 +190,11 @@ void main() {
     vec3 reflected = environment(mirrored, rough) * mix(0.6, 1.0, lit);
     // The fringe of the water, less than a particle thick, is a matter of where particles happen to be: it does not mirror.
     float mirror = fresnel(nv, refractiveIndex) * smoothstep(0.0, 0.8 * radius, through);
-    vec4 met = mirroredScene(p, reflect(-toEye, n), mirror > 0.03 ? 10 : 0);
+    vec4 met = mirroredScene(p, reflect(-toEye, n), mirror > 0.03 ? mirrorSteps : 0);
     reflected = mix(reflected, met.rgb, met.a);
+    vec3 sun = glint(nWorld, eyeWorld, turn, fresnel(max(dot(eyeWorld, normalize(eyeWorld + frame.lightDir.xyz)), 0.02), refractiveIndex), frame.lightColour.rgb * lit) *
+               smoothstep(0.0, 0.8 * radius, through);
     // Where it meets a solid, at the rim of a film on it and at its own outline, the water does not end in a line.
     float there = smoothstep(0.0, 1.2 * radius, behind - depth) * smoothstep(0.0, 0.5 * radius, water.x);
-    colour.rgb = mix(colour.rgb, mix(transmitted, reflected, mirror), there);
+    colour.rgb = mix(mix(colour.rgb, mix(transmitted, reflected, mirror) + sun, there), within, under);
 }

@@ -6,12 +6,19 @@ uniform vec3 ownAbsorption;               // 1/m
 flat out vec3 ink;                        // 1/m
 #endif
 flat out float sprayed;
-flat out vec4 centreView;  // w: radius
+flat out vec4 centreView;  // w: radius, of an ellipsoid that of the ball of its volume
+#if defined(ELLIPSOIDS)
+flat out mat3 shapeView;  // 1/m^2: 1 on the surface
+#endif
 void main() {
-    centreView = vec4((frame.view * vec4(particle.xyz, 1.0)).xyz, drawnRadius(particle));
+    Splat s = splatOf(particle);
+    centreView = vec4(s.centre, pow(determinant(s.squares), 1.0 / 6.0));
+#if defined(ELLIPSOIDS)
+    shapeView = inverse(s.squares);
+#endif
 #if defined(INK)
     ink = absorption.xyz + absorption.w * ownAbsorption;
 #endif
     sprayed = spray(particle);
-    gl_Position = lost(particle) ? kNowhere : sphereQuad(centreView.xyz, centreView.w);
+    gl_Position = lost(particle) ? kNowhere : splatQuad(s);
 }

@@ -6,6 +6,9 @@ uniform int scale;
 uniform sampler2D sceneDepth;
 flat in vec4 centreView;
 flat in float sprayed;
+#if defined(ELLIPSOIDS)
+flat in mat3 shapeView;
+#endif
 layout(location = 0) out vec2 thickness;
 #if defined(INK)
 flat in vec3 ink;                  // 1/m
@@ -14,7 +17,11 @@ layout(location = 1) out vec4 depths;  // what red, green and blue fade by: e^-d
 void main() {
     vec2 pixel = gl_FragCoord.xy * float(scale);
     float front, through;
+#if defined(ELLIPSOIDS)
+    if (!hitEllipsoid(pixel, centreView.xyz, shapeView, front, through)) discard;
+#else
     if (!hitSphere(pixel, centreView.xyz, centreView.w, front, through)) discard;
+#endif
     float scene = depthOfWindow(texelFetch(sceneDepth, min(ivec2(pixel), ivec2(frame.viewport.xy) - 1), 0).r);
     float r = centreView.w / spacing;
     float share = min(0.2387324 / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -15,7 +16,9 @@ namespace rivulet {
 struct TestParticles {
     std::vector<vec4> position;  // w = density / rest density
     float spacing = 0.02F;
+    std::array<std::vector<vec4>, 3> ellipsoids;  // centre, spread, slant; empty: spheres
     void add(const vec3& p, float density = 1.0F) { position.emplace_back(p, density); }
+    void findEllipsoids();  // as a world would
 };
 
 // One context and one renderer for all tests of a program; tests skip where there is no OpenGL 4.5.
@@ -30,8 +33,8 @@ class LookTest : public ::testing::Test {
     FluidView upload(const TestParticles& particles);
     // Top row first, RGBA8.
     std::vector<uint8_t> picture(const Camera& camera, int width, int height, const FluidView& fluid);
-    // Against tests/golden/NAME.png, which RIVULET_UPDATE_GOLDEN=1 writes anew.
-    static void compareWith(const std::string& name, int width, int height, const std::vector<uint8_t>& rgba);
+    // Against tests/golden/NAME.png, which RIVULET_UPDATE_GOLDEN=1 writes anew. `tolerance`: of the mean difference, 0..255.
+    static void compareWith(const std::string& name, int width, int height, const std::vector<uint8_t>& rgba, double tolerance = 1.0);
     SceneRenderer& renderer() { return *renderer_; }
     static bool onLlvmpipe();
 
@@ -43,6 +46,7 @@ class LookTest : public ::testing::Test {
     static std::optional<gpu::DebugMessages> messages_;
     static std::unique_ptr<SceneRenderer> renderer_;
     gpu::Buffer position_, velocity_, id_;
+    std::array<gpu::Buffer, 3> ellipsoids_;
 };
 
 // 0..255 a channel.

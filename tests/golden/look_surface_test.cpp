@@ -2,14 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <map>
 
+#include "fluid/render/filters.h"
 #include "tests/golden/look_fixture.h"
 
 namespace rivulet {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 180;
 constexpr float kNothing = 1.0e6F;
 
 // The surface's depth (m), bottom row first, as the screen-space renderer finds it in an empty scene.
@@ -28,18 +30,22 @@ class LookSurface : public LookTest {
     }
 
     void draw(const TestParticles& particles) {
-        const FrameView view = frameViewOf(camera, settings.light, kWidth, kHeight, 0);
+        const FrameView view = frameViewOf(camera, settings.light, width, height, 0);
         frame = packFrame(view, {}, {}, {});
         const gpu::Buffer block = std::move(*gpu::Buffer::from(std::vector<FrameParams>{frame}));
-        gpu::Texture colour = std::move(*gpu::Texture::create({.width = kWidth, .height = kHeight, .format = gpu::Format::rgba16f}));
-        gpu::Texture sceneDepth = std::move(*gpu::Texture::create({.width = kWidth, .height = kHeight, .format = gpu::Format::depth32f}));
+        gpu::Texture colour = std::move(*gpu::Texture::create({.width = width, .height = height, .format = gpu::Format::rgba16f}));
+        gpu::Texture sceneDepth = std::move(*gpu::Texture::create({.width = width, .height = height, .format = gpu::Format::depth32f}));
         colour.clear(vec4(0.5F));
         sceneDepth.clear(vec4(1.0F));
         gpu::FrameGraph graph(pool);
         FluidDraw d;
         d.view = view;
         d.fluid = upload(particles);
+        d.fluid.bounds = bounds;
+        d.look.filter = filters().find(filter);
         d.frame = graph.importBuffer("frame", block.name(), block.bytes());
+        for (const unsigned name : d.fluid.ellipsoids)
+            if (name != 0) d.ellipsoids.push_back(graph.importBuffer("ellipsoids", name, particles.position.size() * sizeof(vec4)));
         d.position = graph.importBuffer("positions", d.fluid.position, particles.position.size() * sizeof(vec4));
         d.colour = graph.importTexture("colour", colour);
         d.depth = graph.importTexture("depth", sceneDepth);
@@ -49,11 +55,13 @@ class LookSurface : public LookTest {
         graph.output(layers.colour);
         const Status ran = graph.execute();
         ASSERT_TRUE(ran) << ran.error().message;
-        depth.resize(size_t{kWidth} * kHeight);
+        depth.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
         graph.result(layers.fluidDepth).read(std::as_writable_bytes(std::span(depth)));
+        radiance.resize(depth.size());
+        graph.result(layers.colour).read(std::as_writable_bytes(std::span(radiance)));
     }
 
-    float at(int x, int y) const { return depth[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)]; }
+    float at(int x, int y) const { return depth[static_cast<size_t>(y) * width + static_cast<size_t>(x)]; }
     vec3 ray(float x, float y) const {  // through a pixel's centre, z = -1
         return vec3((x + 0.5F) * frame.ray.x + frame.ray.z, (y + 0.5F) * frame.ray.y + frame.ray.w, -1.0F);
     }
@@ -69,11 +77,15 @@ class LookSurface : public LookTest {
     }
 
     FluidLayers (*add)(gpu::FrameGraph&, FluidPrograms&, const FluidDraw&) = addScreenSpace;
+    int width = 320, height = 180;
+    std::string filter = "narrow_range";
+    Bounds bounds;
     FluidPrograms programs;
     gpu::TransientPool pool;
     Camera camera;
     FrameParams frame{};
     std::vector<float> depth;
+    std::vector<vec4> radiance;  // linear
 };
 
 TEST_F(LookSurface, aDropIsAnExactSphereAlsoAtThePicturesEdge) {
@@ -85,8 +97,8 @@ TEST_F(LookSurface, aDropIsAnExactSphereAlsoAtThePicturesEdge) {
         const vec3 centreView = centre - camera.position;
         const float radius = 0.5F * 0.6F * drop.spacing;
         int hit = 0;
-        for (int y = 0; y < kHeight; ++y)
-            for (int x = 0; x < kWidth; ++x) {
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
                 const float wanted = sphereDepth(x, y, centreView, radius);
                 if (std::isnan(wanted)) {
                     EXPECT_EQ(at(x, y), kNothing) << x << " " << y;
@@ -110,14 +122,48 @@ TEST_F(LookSurface, theTruthOfADropIsAnExactSphere) {
         drop.add(centre);
         draw(drop);
         int hit = 0;
-        for (int y = 0; y < kHeight; ++y)
-            for (int x = 0; x < kWidth; ++x) {
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
                 const float wanted = sphereDepth(x, y, centre - camera.position, 0.51007F * drop.spacing);
                 if (std::isnan(wanted)) {
                     EXPECT_EQ(at(x, y), kNothing) << x << " " << y;
                 } else if (at(x, y) != kNothing) {
                     ++hit;
                     EXPECT_NEAR(at(x, y), wanted, 1e-3F) << x << " " << y;
+                }
+            }
+        EXPECT_GT(hit, 120);
+    }
+}
+
+TEST_F(LookSurface, anEllipsoidIsExactAlsoAtThePicturesEdge) {
+    filter = "none";
+    for (const vec3& at_ : {vec3(0.0F), vec3(0.9F, 0.5F, 0.2F), vec3(-1.0F, -0.4F, -0.3F)}) {
+        TestParticles one;
+        one.spacing = 0.2F;
+        one.add(at_);
+        const vec3 off(0.03F, -0.02F, 0.01F);
+        // Half axes 1.2, 0.8 and 0.3, turned.
+        const mat3 turn = mat3(glm::rotate(glm::rotate(mat4(1.0F), 0.7F, vec3(0.0F, 1.0F, 0.0F)), 0.5F, vec3(1.0F, 0.0F, 0.0F)));
+        const mat3 squares = turn * mat3(1.44F, 0.0F, 0.0F, 0.0F, 0.64F, 0.0F, 0.0F, 0.0F, 0.09F) * glm::transpose(turn);
+        one.ellipsoids = {std::vector<vec4>{vec4(off, 1.0F)}, std::vector<vec4>{vec4(squares[0][0], squares[1][1], squares[2][2], 0.0F)},
+                          std::vector<vec4>{vec4(squares[1][2], squares[2][0], squares[0][1], 0.0F)}};
+        draw(one);
+        const float radius = 1.35F * 0.6F * one.spacing;
+        // To where it is a unit ball.
+        const glm::dmat3 toBall = glm::inverse(glm::dmat3(turn) * (glm::dmat3(1.2, 0, 0, 0, 0.8, 0, 0, 0, 0.3)) * double{radius});
+        const glm::dvec3 centre = toBall * glm::dvec3(at_ + off - camera.position);
+        int hit = 0;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                const glm::dvec3 v = toBall * glm::dvec3(ray(static_cast<float>(x), static_cast<float>(y)));
+                const double a = glm::dot(v, v), b = glm::dot(v, centre), disc = b * b - a * (glm::dot(centre, centre) - 1);
+                const double wanted = (b - std::sqrt(std::max(disc, 0.0))) / a;
+                if (disc < -2.0e-5 * b * b) {
+                    EXPECT_EQ(at(x, y), kNothing) << x << " " << y;
+                } else if (disc > 2.0e-5 * b * b) {
+                    ++hit;
+                    EXPECT_NEAR(at(x, y), wanted, 1e-3) << x << " " << y;
                 }
             }
         EXPECT_GT(hit, 120);
@@ -137,14 +183,14 @@ TEST_F(LookSurface, aBallOfParticlesHasTheBallsDepthAndNormal) {
             }
     draw(ball);
     const vec3 centre = -camera.position;
-    const float found = at(kWidth / 2, kHeight / 2);
-    EXPECT_NEAR(found, sphereDepth(kWidth / 2, kHeight / 2, centre, radius), 0.6F * ball.spacing);
-    EXPECT_GT(normal(kWidth / 2, kHeight / 2).z, std::cos(6.0F * kPi / 180.0F));
+    const float found = at(width / 2, height / 2);
+    EXPECT_NEAR(found, sphereDepth(width / 2, height / 2, centre, radius), 0.6F * ball.spacing);
+    EXPECT_GT(normal(width / 2, height / 2).z, std::cos(6.0F * kPi / 180.0F));
     // Over the inner three quarters of the disc: no bump of a single particle is left in depth or normal.
     double worst = 0, angle = 0;
     int count = 0;
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
             const float wanted = sphereDepth(x, y, centre, 0.75F * radius);
             if (std::isnan(wanted)) continue;
             ASSERT_LT(at(x, y), kNothing) << "a hole at " << x << " " << y;
@@ -171,8 +217,8 @@ TEST_F(LookSurface, theSurfaceIsSmoothedAsMuchFromAfarAsFromNear) {
     auto ripple = [&] {  // the amplitude of the surface's sine along the middle row
         double sine = 0, cosine = 0, mean = 0;
         std::vector<vec3> points;
-        for (int x = 1; x + 1 < kWidth; ++x) {
-            const vec3 p = point(x, kHeight / 2) + camera.position;
+        for (int x = 1; x + 1 < width; ++x) {
+            const vec3 p = point(x, height / 2) + camera.position;
             if (std::abs(p.x) < 12.0F * sheet.spacing) points.push_back(p);
         }
         for (const vec3& p : points) mean += p.z / static_cast<double>(points.size());
@@ -191,6 +237,164 @@ TEST_F(LookSurface, theSurfaceIsSmoothedAsMuchFromAfarAsFromNear) {
     EXPECT_LT(far, 0.9);
     EXPECT_NEAR(near / far, 1.0, 0.12);
 }
+
+TEST_F(LookSurface, theSunGlintsAndNoPixelOfItIsAFirefly) {
+    TestParticles slab;
+    slab.spacing = 0.03F;
+    TestRandom random;
+    for (float x = -0.6F; x <= 0.6F; x += slab.spacing)
+        for (float z = -0.6F; z <= 0.6F; z += slab.spacing)
+            for (int layer = 0; layer < 4; ++layer)
+                slab.add(vec3(x, -static_cast<float>(layer) * slab.spacing, z) + 0.3F * slab.spacing * random.inCube());
+    camera.position = vec3(0.0F, 0.8F, 1.5F);
+    settings.light.direction = vec3(0.0F, 0.8F, -1.5F);  // where the middle of the slab mirrors it to the eye
+    settings.light.colour = vec3(1.0F);
+    settings.light.intensity = 3.0F;
+    draw(slab);
+    const std::vector<vec4> lit = radiance;
+    settings.light.intensity = 0.0F;
+    draw(slab);
+    float brightest = 0;
+    for (size_t i = 0; i < lit.size(); ++i) {
+        ASSERT_TRUE(std::isfinite(lit[i].y));
+        brightest = std::max(brightest, lit[i].y - radiance[i].y);
+    }
+    EXPECT_GT(brightest, 3.0F);                // as bright as the sun's own light
+    EXPECT_LT(brightest, 8.0F * 3.0F + 3.0F);  // what the glint may be at most, and what the water throws back
+}
+
+// Water of 10 layers, jittered, within a distance function (m, negative inside).
+template <class Distance>
+TestParticles filled(const vec3& low, const vec3& high, float spacing, Distance distance) {
+    TestParticles water;
+    water.spacing = spacing;
+    TestRandom random;
+    for (float x = low.x; x <= high.x; x += spacing)
+        for (float y = low.y; y <= high.y; y += spacing)
+            for (float z = low.z; z <= high.z; z += spacing) {
+                const vec3 p = vec3(x, y, z) + 0.2F * spacing * random.inCube();
+                if (distance(vec3(x, y, z)) <= -0.5F * spacing) water.add(p);
+            }
+    return water;
+}
+
+// Three resolutions, three distances: the normals, by where on the surface they are, are the same, and right.
+// The other filters are made for other ends, and smooth steep bumps less: their errors are larger, and steadier than they are small.
+struct FilterBounds {
+    const char* name;
+    bool ellipsoids;
+    double ball, slab, frame, apart;  // degrees
+};
+class LookFilters : public LookSurface, public ::testing::WithParamInterface<FilterBounds> {
+  protected:
+    struct Shot {
+        double error = 0;                              // degrees, mean
+        std::map<std::pair<int, int>, vec3> normalAt;  // by x, y on the surface in half spacings
+    };
+    // `exact(p)`: the normal at p (m, world), or 0 where it is not asked for.
+    template <class Exact>
+    Shot take(const TestParticles& water, int tall, float distance, Exact exact) {
+        height = tall;
+        width = 16 * tall / 9;
+        camera.position = glm::normalize(from) * distance;
+        draw(water);
+        const mat3 toWorld = glm::transpose(mat3(camera.view()));
+        Shot shot;
+        std::map<std::pair<int, int>, std::pair<vec3, int>> sums;
+        int count = 0;
+        for (int y = 1; y + 1 < height; ++y)
+            for (int x = 1; x + 1 < width; ++x) {
+                if (at(x, y) >= kNothing) continue;
+                const vec3 p = toWorld * point(x, y) + camera.position, wanted = exact(p);
+                if (wanted == vec3(0.0F)) continue;
+                const vec3 n = toWorld * normal(x, y);
+                shot.error += std::acos(std::min(1.0F, glm::dot(n, wanted))) * 180.0 / double{kPi};
+                ++count;
+                const vec2 cell = glm::floor(vec2(p.x, p.y + p.z) * 2.0F / water.spacing);
+                auto& [sum, many] = sums[{static_cast<int>(cell.x), static_cast<int>(cell.y)}];
+                sum += n;
+                ++many;
+            }
+        EXPECT_GT(count, 100);
+        shot.error /= count;
+        for (const auto& [cell, sum] : sums) shot.normalAt[cell] = glm::normalize(sum.first);
+        return shot;
+    }
+    // Degrees between the normals of two pictures of one surface, mean over the places that both show.
+    static double apart(const Shot& a, const Shot& b) {
+        double sum = 0;
+        int count = 0;
+        for (const auto& [cell, n] : a.normalAt)
+            if (const auto found = b.normalAt.find(cell); found != b.normalAt.end()) {
+                sum += std::acos(std::min(1.0F, glm::dot(n, found->second))) * 180.0 / double{kPi};
+                ++count;
+            }
+        EXPECT_GT(count, 50);
+        return sum / std::max(count, 1);
+    }
+    template <class Exact>
+    void compare(const char* what, TestParticles water, double mostError, Exact exact) {
+        filter = GetParam().name;
+        ellipsoids = GetParam().ellipsoids;
+        if (ellipsoids) water.findEllipsoids();
+        const double mostApart = GetParam().apart;
+        const Shot middle = take(water, 360, 2.0F, exact);
+        EXPECT_LT(middle.error, mostError) << what;
+        RecordProperty(std::string(what) + "MeanNormalErrorDegrees", std::to_string(middle.error));
+        for (const auto& [tall, distance] : {std::pair(180, 2.0F), std::pair(720, 2.0F), std::pair(360, 1.0F), std::pair(360, 4.0F)}) {
+            const Shot other = take(water, tall, distance, exact);
+            const double off = apart(middle, other);
+            EXPECT_LT(other.error, mostError) << what << " " << tall << " " << distance;
+            EXPECT_LT(off, mostApart) << what << " " << tall << " " << distance;
+        }
+    }
+    vec3 from{0.0F, 0.0F, 1.0F};
+    bool ellipsoids = false;
+};
+
+TEST_P(LookFilters, aBallHasTheSameNormalsAtAnyResolutionAndDistance) {
+    const float radius = 0.3F;
+    bounds = Bounds{vec3(-0.5F), vec3(0.5F)};
+    const TestParticles ball = filled(vec3(-radius), vec3(radius), 0.02F, [&](const vec3& p) { return glm::length(p) - radius; });
+    compare("ball", ball, GetParam().ball,
+            [&](const vec3& p) { return glm::length(vec2(p)) < 0.7F * radius ? glm::normalize(p) : vec3(0.0F); });
+}
+
+TEST_P(LookFilters, aSlabSeenAtASlantHasTheSameNormalsAtAnyResolutionAndDistance) {
+    from = vec3(0.0F, 0.5F, 1.0F);
+    bounds = Bounds{vec3(-0.5F), vec3(0.5F)};
+    const TestParticles slab = filled(vec3(-0.4F, -0.14F, -0.4F), vec3(0.4F, 0.0F, 0.4F), 0.02F, [](const vec3& p) { return p.y; });
+    compare("slab", slab, GetParam().slab, [](const vec3& p) {
+        return std::abs(p.x) < 0.3F && std::abs(p.z) < 0.25F && p.y > -0.03F ? vec3(0.0F, 1.0F, 0.0F) : vec3(0.0F);
+    });
+}
+
+TEST_P(LookFilters, aFrameKeepsItsHole) {
+    // A slab with a square hole of 8 spacings: smoothing must not close it, nor pull what is behind to its rim.
+    bounds = Bounds{vec3(-0.6F), vec3(0.6F)};
+    const auto ring = [](const vec3& p) {
+        return std::max(
+            {std::abs(p.x) - 0.3F, std::abs(p.y) - 0.3F, 0.08F - std::max(std::abs(p.x), std::abs(p.y)), std::abs(p.z) - 0.06F});
+    };
+    const TestParticles water = filled(vec3(-0.3F), vec3(0.3F), 0.02F, ring);
+    compare("frame", water, GetParam().frame, [](const vec3& p) {
+        const float out = std::max(std::abs(p.x), std::abs(p.y));
+        return out > 0.13F && out < 0.25F && p.z > 0.03F ? vec3(0.0F, 0.0F, 1.0F) : vec3(0.0F);
+    });
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            if (at(x, y) >= kNothing) continue;
+            const vec3 p = point(x, y) + camera.position;
+            EXPECT_GT(std::max(std::abs(p.x), std::abs(p.y)), 0.06F) << "water in the hole at " << x << " " << y;
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, LookFilters,
+                         ::testing::Values(FilterBounds{"narrow_range", false, 4.2, 1.4, 2.5, 1.3},
+                                           FilterBounds{"narrow_range", true, 3.2, 1.3, 2.5, 1.3},
+                                           FilterBounds{"bilateral", false, 6.0, 4.5, 2.5, 2.0},
+                                           FilterBounds{"curvature_flow", false, 6.0, 5.0, 2.8, 2.6}),
+                         [](const auto& row) { return std::string(row.param.name) + (row.param.ellipsoids ? "_ellipsoids" : ""); });
 
 }  // namespace
 }  // namespace rivulet

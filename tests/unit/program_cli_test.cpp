@@ -57,7 +57,7 @@ TEST(ProgramCli, ArgumentsThatMakeNoSenseAreRefused) {
 }
 
 TEST(ProgramCli, ListAndInfoAnswer) {
-    for (const char* what : {"scenes", "methods", "renderers", "voxels", "devices"}) {
+    for (const char* what : {"scenes", "methods", "renderers", "filters", "voxels", "devices"}) {
         Outcome list = runProgram({"list", what});
         EXPECT_EQ(list.code, 0) << what << ": " << list.err;
         EXPECT_GT(linesIn(list.out), 0U) << what;

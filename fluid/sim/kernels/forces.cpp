@@ -77,6 +77,9 @@ namespace finish_unit {
 #define PAIR_UNIT normals_coulomb
 #include "fluid/sim/kernels/pair_forms.h"
 #undef COULOMB
+#define PAIR_KERNEL "shaders/fluid/ellipsoids.kernel"
+#define PAIR_UNIT ellipsoids_unit
+#include "fluid/sim/kernels/pair_forms.h"
 #define PAIR_KERNEL "shaders/fluid/tension_thesis.kernel"
 #define PAIR_UNIT tension
 #include "fluid/sim/kernels/pair_forms.h"
@@ -130,6 +133,7 @@ std::span<const CpuKernelRow> forceRows() {
         PAIR_ROWS(normals_gradient, normals, ""),
         PAIR_ROWS(normals_walled, normals, "WALLED=1"),
         PAIR_ROWS(normals_coulomb, normals, "COULOMB=1"),
+        PAIR_ROWS(ellipsoids_unit, ellipsoids, ""),
         PAIR_ROWS(tension, tension_thesis, ""),
         PAIR_ROWS(cohesion_unit, cohesion, ""),
         {"fluid/cohesion", "MATTER=1;SAMPLES=1", RIVULET_UNIT_ISA, cohesion_samples::cohesion, 64},

@@ -1,0 +1,139 @@
+#include "fluid/render/filters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace rivulet {
+namespace {
+
+using gpu::FrameGraph;
+using gpu::PassContext;
+using gpu::Program;
+using gpu::TextureDesc;
+using gpu::TextureHandle;
+
+constexpr float kFar = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothing
+// Steps of the levels, relative; the small ones last: they iron out what the holes of the others leave. The nearer the camera, the more
+// pixels the same metres are, and the more levels there are between a pixel and the widest.
+constexpr float kFarSteps[] = {3, 5, 7, 4, 2, 1};
+constexpr float kFastSteps[] = {2, 4, 2, 1};
+constexpr float kMiddleSteps[] = {4, 9, 13, 8, 5, 3, 2, 1};
+constexpr float kNearSteps[] = {6, 14, 22, 13, 8, 5, 3, 2, 1};
+constexpr float kNearestSteps[] = {10, 24, 37, 22, 13, 8, 5, 3, 2, 1};
+constexpr float kUnitPixels = 3.0F;      // a step of 1 is no wider than this
+constexpr float kUnitPixelsFast = 1.5F;  // of the few levels, which leave wider holes between them
+constexpr float kMostBilateral = 96;     // pixels either side
+constexpr float kReachSpacings = 1.8F;
+constexpr float kRangeSpacings = 4.2F;
+constexpr float kBendSpacings = 0.3F;
+
+// The steps, and how long one of 1 is, m. A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two deviations.
+struct Levels {
+    std::span<const float> steps;
+    float unit;
+};
+Levels levelsOf(const FluidDraw& d, float reach) {
+    const Bounds& box = d.fluid.bounds;
+    const float away = box.empty() ? 1.0F : glm::length(d.view.cameraPosWorld - glm::clamp(d.view.cameraPosWorld, box.min, box.max));
+    const float pixelsPerMetre = 0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / std::max(away, d.view.nearPlane);
+    Levels levels{};
+    const std::span<const float> fewest = d.look.fast ? std::span<const float>(kFastSteps) : std::span<const float>(kFarSteps);
+    for (const std::span<const float> steps : {fewest, std::span<const float>(kFarSteps), std::span<const float>(kMiddleSteps),
+                                               std::span<const float>(kNearSteps), std::span<const float>(kNearestSteps)}) {
+        float squares = 0;
+        for (const float step : steps) squares += 0.5F * step * step;
+        levels = {steps, 0.5F * reach / std::sqrt(squares)};
+        if (levels.unit * pixelsPerMetre <= (steps.data() == kFastSteps ? kUnitPixelsFast : kUnitPixels)) break;
+    }
+    return levels;
+}
+
+TextureDesc depthDesc(const FluidDraw& d) { return {.width = d.view.width, .height = d.view.height, .format = gpu::Format::r32f}; }
+
+// A filter's pass; the last one puts the spray back and cuts at the box.
+template <class Setup>
+TextureHandle addStep(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, FilterPrograms& filter, TextureHandle tiles,
+                      TextureHandle from, TextureHandle spheres, bool final, Setup setup) {
+    const float huge = 1.0e5F;
+    const Bounds box = d.fluid.bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : d.fluid.bounds;
+    return addTiled(
+        graph, "smooth", programs, d, final ? filter.last : filter.step, tiles, from, depthDesc(d), kFar,
+        [=](Program& p, const PassContext& c) {
+            setup(p);
+            if (!final) return;
+            p.texture("spray", 2, c.texture(spheres));
+            p.set("low", box.min);
+            p.set("high", box.max);
+        },
+        final ? spheres : TextureHandle{});
+}
+
+TextureHandle addNarrowRange(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+    const FilterReach f = filterReach(d.look, d.fluid.spacing);
+    const Levels levels = levelsOf(d, f.reach);
+    TextureHandle depth = spheres;
+    for (size_t k = 0; k < levels.steps.size(); ++k) {
+        const float step = levels.steps[k];
+        depth = addStep(graph, programs, d, programs.narrowRange, tiles, depth, spheres, k + 1 == levels.steps.size(), [=](Program& p) {
+            p.set("step_", step * levels.unit);
+            p.set("maxStep", step * kUnitPixels);
+            p.set("range", f.range);
+            p.set("bend", f.bend);
+        });
+    }
+    return depth;
+}
+
+TextureHandle addBilateral(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+    const FilterReach f = filterReach(d.look, d.fluid.spacing);
+    TextureHandle depth = spheres;
+    for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
+        depth = addStep(graph, programs, d, programs.bilateral, tiles, depth, spheres, axis.y == 1, [=](Program& p) {
+            p.set("axis", axis);
+            p.set("reach", f.reach);
+            p.set("range", f.range);
+            p.set("most", kMostBilateral);
+        });
+    return depth;
+}
+
+TextureHandle addCurvatureFlow(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+    const FilterReach f = filterReach(d.look, d.fluid.spacing);
+    const Levels levels = levelsOf(d, f.reach);
+    TextureHandle depth = spheres;
+    for (size_t k = 0; k < 2 * levels.steps.size(); ++k) {  // each twice: a step flows half as far as a level smooths
+        const float step = levels.steps[k / 2];
+        depth =
+            addStep(graph, programs, d, programs.curvatureFlow, tiles, depth, spheres, k + 1 == 2 * levels.steps.size(), [=](Program& p) {
+                p.set("step_", step * levels.unit);
+                p.set("maxStep", step * kUnitPixels);
+                p.set("range", f.range);
+            });
+    }
+    return depth;
+}
+
+// The spheres as they are: what the others begin with.
+TextureHandle addNone(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+    return addStep(graph, programs, d, programs.unfiltered, tiles, spheres, spheres, true, [](Program&) {});
+}
+
+constexpr FilterRow kRows[] = {
+    {"narrow_range", "depths near a straight line are one surface (Truong & Yuksel 2018), in levels with holes", addNarrowRange},
+    {"bilateral", "the thesis's: near in the picture and near in depth (Tomasi & Manduchi 1998), one axis after the other", addBilateral},
+    {"curvature_flow", "the surface moves by its mean curvature (van der Laan et al. 2009)", addCurvatureFlow},
+    {"none", "the particles' depth as it is", addNone},
+};
+constexpr Table<FilterRow> kFilters{kRows};
+
+}  // namespace
+
+const Table<FilterRow>& filters() { return kFilters; }
+
+FilterReach filterReach(const FluidLook& look, float spacing) {
+    const auto orOf = [&](float given, float spacings) { return given > 0 ? given : spacings * spacing; };
+    return {orOf(look.smoothing, kReachSpacings), orOf(look.smoothingRange, kRangeSpacings), kBendSpacings * spacing};
+}
+
+}  // namespace rivulet

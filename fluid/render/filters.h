@@ -1,0 +1,47 @@
+// Filters: the ways to make a surface of the particles' depth. What they are told is in metres: neither the resolution nor the distance
+// changes the surface that they find.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "fluid/render/renderers.h"
+
+namespace rivulet {
+
+struct FilterRow {
+    const char* name;
+    const char* doc;
+    // `spheres`: rg32f, depth of the bulk and of the spray, m. The depth of the surface: r32f, m, 1e6 where there is none.
+    gpu::TextureHandle (*add)(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles,
+                              gpu::TextureHandle spheres);
+};
+const Table<FilterRow>& filters();
+
+// The look's figures, those that are 0 from the spacing; m.
+struct FilterReach {
+    float reach, range, bend;
+};
+FilterReach filterReach(const FluidLook& look, float spacing);
+
+// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere. `setup(program, context)` sets what the program wants;
+// unit 0 is the source's, 1 the tiles'.
+template <class Setup>
+gpu::TextureHandle addTiled(gpu::FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, gpu::Program& program,
+                            gpu::TextureHandle tiles, gpu::TextureHandle from, const gpu::TextureDesc& desc, float empty, Setup setup,
+                            gpu::TextureHandle second = {}) {
+    const gpu::TextureHandle to = graph.texture(name, desc);
+    std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, tiles, from};
+    if (second) reads.emplace_back(second);
+    graph.pass(name, reads, {to}, [=, &programs, &program](gpu::PassContext& c) {
+        c.drawTo({to}).clearColour(vec4(empty));
+        glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+        program.use();
+        program.texture("source", 0, c.texture(from));
+        setup(program, c);
+        programs.drawTiles(program, c.texture(tiles), 1);
+    });
+    return to;
+}
+
+}  // namespace rivulet

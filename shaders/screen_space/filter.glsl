@@ -1,0 +1,28 @@
+// What the filters of depth share: the source, and with LAST what ends each of them. Needs frame.glsl.
+uniform sampler2D source;  // m
+#if defined(LAST)
+uniform sampler2D spray;   // y, m: drops stay as they are
+uniform vec3 low, high;    // m, world: the box that the water cannot leave
+#endif
+layout(location = 0) out float depth;
+
+ivec2 here, last;
+float at(ivec2 p) { return texelFetch(source, clamp(p, ivec2(0), last), 0).r; }
+// The depth of this pixel, unfiltered; call it first.
+float begin() {
+    here = ivec2(gl_FragCoord.xy);
+    last = textureSize(source, 0) - 1;
+    return texelFetch(source, here, 0).r;
+}
+void end(float filtered) {
+    depth = filtered;
+#if defined(LAST)
+    depth = min(depth, texelFetch(spray, here, 0).g);
+    // The spheres reach a little out of the box. Cut, its walls are as flat as glass.
+    vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy));
+    vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;
+    vec3 enter = min(a, b), leave = max(a, b);
+    float entry = max(max(enter.x, enter.y), enter.z), exit_ = min(min(leave.x, leave.y), leave.z);
+    depth = entry > exit_ || depth > exit_ ? kFar : max(depth, entry);
+#endif
+}

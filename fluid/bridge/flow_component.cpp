@@ -379,7 +379,7 @@ void FlowComponent::apply(const FlowParams& params) {
     while (sources_.size() < params.sources.size()) {
         Source fresh;
         fresh.random = std::mt19937(static_cast<uint32_t>(11 + 7 * sources_.size()));
-        sources_.push_back(std::move(fresh));
+        sources_.push_back(fresh);
     }
 }
 

@@ -263,29 +263,14 @@ void SurfaceFlow::Impl::touchOthers(const FlowStep& f, const StepParams& s) {
 Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     device->run(place, f, {&drops.id, &skin, &frames, &driven, &drop, &motion, &drops.positionNext, &drops.velocityNext}, f.count);
     if (Status sorted = grid->build(s, drops); !sorted) return sorted;
-    SolveFigures none;
-    FluidParams unused;
-    const Buffer nothing;
-    StepContext context{.device = *device,
-                        .fluid = unused,
-                        .params = s,
-                        .grid = *grid,
-                        .particles = drops,
-                        .solve = none,
-                        .stats = nothing,
-                        .build = {},
-                        .pushSamples = {},
-                        .planes = nothing,
-                        .boundary = {},
-                        .forces = {}};
     device->run(name, f, {&drops.id, &drop, &frames, &names, &sortedOf, &side, &counter}, f.count);
     const uint32_t threads = grid->pairThreads();
     const Buffer& neighbors = grid->neighbors();
     const Buffer &x = drops.position, &v = drops.velocity;
-    spread.run(context, s, {&neighbors, &x, &v, &side, &names, &spreads}, threads);
-    meet.run(context, s, {&neighbors, &x, &v, &side, &names, &into}, threads);
-    gather.run(context, s, {&neighbors, &x, &v, &names, &into, &side, &merged, &shift}, threads);
-    if (told->film) press.run(context, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
+    spread.run(*device, drops, s, {&neighbors, &x, &v, &side, &names, &spreads}, threads);
+    meet.run(*device, drops, s, {&neighbors, &x, &v, &side, &names, &into}, threads);
+    gather.run(*device, drops, s, {&neighbors, &x, &v, &names, &into, &side, &merged, &shift}, threads);
+    if (told->film) press.run(*device, drops, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
     device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
     touchOthers(f, s);
     device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);

@@ -173,24 +173,9 @@ Status ThesisTables::press(const Of& of, const FlowStep& f, StepParams s) {
     s.stiffness = static_cast<float>(std::min(double{params_.stiffness}, std::pow(0.25 * h / dt, 2)));
     s.force =
         vec4(f.density, params_.restDensity, 1 / params_.reach, static_cast<float>(std::min(double{params_.viscosity}, 0.02 * h * h / dt)));
-    SolveFigures none;
-    FluidParams unused;
-    const Buffer nothing;
-    StepContext context{.device = *device_,
-                        .fluid = unused,
-                        .params = s,
-                        .grid = of.grid,
-                        .particles = p,
-                        .solve = none,
-                        .stats = nothing,
-                        .build = {},
-                        .pushSamples = {},
-                        .planes = nothing,
-                        .boundary = {},
-                        .forces = {}};
     const Buffer& neighbors = of.grid.neighbors();
-    density_.run(context, s, {&neighbors, &p.position, &p.velocity, &of.spread}, of.grid.pairThreads());
-    press_.run(context, s, {&neighbors, &p.position, &p.velocity, &of.spread, &of.merged}, of.grid.pairThreads());
+    density_.run(*device_, p, s, {&neighbors, &p.position, &p.velocity, &of.spread}, of.grid.pairThreads());
+    press_.run(*device_, p, s, {&neighbors, &p.position, &p.velocity, &of.spread, &of.merged}, of.grid.pairThreads());
     device_->run(law_, t, {&p.id, &force_, &of.spread, &of.merged, &of.drop, &of.motion}, f.count);
     return ok();
 }

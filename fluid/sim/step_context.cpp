@@ -14,10 +14,15 @@ Result<PairKernel> PairKernel::find(Device& device, std::string_view path, const
 }
 
 void PairKernel::run(StepContext& c, const StepParams& params, std::initializer_list<const Buffer*> buffers, uint32_t threads) const {
-    std::vector<const Buffer*> all(buffers);
-    if (matter) all.push_back(&c.particles.matter);
     ++c.solve.sweeps;
-    c.device.dispatch(kernel, std::as_bytes(std::span(&params, 1)), all, threads);
+    run(c.device, c.particles, params, buffers, threads);
+}
+
+void PairKernel::run(Device& device, const Particles& particles, const StepParams& params, std::initializer_list<const Buffer*> buffers,
+                     uint32_t threads) const {
+    std::vector<const Buffer*> all(buffers);
+    if (matter) all.push_back(&particles.matter);
+    device.dispatch(kernel, std::as_bytes(std::span(&params, 1)), all, threads);
 }
 
 }  // namespace rivulet

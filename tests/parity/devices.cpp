@@ -1,11 +1,17 @@
 #include "tests/parity/devices.h"
 
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
 #include "engine/app/context_egl.h"
 #include "engine/gpu/device_gl.h"
 
 namespace rivulet {
 
-Result<TestGpu> makeTestGpu(const std::string& name) {
+namespace {
+
+Result<TestGpu> open(const std::string& name) {
     const ShaderFiles files = ShaderFiles::developer();
     TestGpu gpu;
     if (name == "cl") {
@@ -22,6 +28,15 @@ Result<TestGpu> makeTestGpu(const std::string& name) {
         return gpu;
     }
     return failed("no device is called " + name);
+}
+
+}  // namespace
+
+Result<TestGpu> makeTestGpu(const std::string& name) {
+    Result<TestGpu> gpu = open(name);
+    if (!gpu && std::getenv("RIVULET_TEST_DEVICES") != nullptr)
+        ADD_FAILURE() << name << " must be here, and is not: " << gpu.error().message;
+    return gpu;
 }
 
 }  // namespace rivulet

@@ -9,6 +9,7 @@
 #include "engine/compute/device_cpu.h"
 #include "engine/compute/kernel_source.h"
 #include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/fluid_world.h"
 
 namespace rivulet {
 
@@ -22,6 +23,16 @@ struct TestGpu {
     std::shared_ptr<void> context;  // gl: the OpenGL context
     std::unique_ptr<Device> device;
 };
-Result<TestGpu> makeTestGpu(const std::string& name);  // "cl" or "gl"
+// "cl" or "gl". Where RIVULET_TEST_DEVICES is set, as by tests/run.sh, one that is not there is a failure of the test that asks.
+Result<TestGpu> makeTestGpu(const std::string& name);
+
+// m, of the particles that there are; waits.
+inline std::vector<vec3> positions(FluidWorld& world) {
+    const ParticleView view = world.particles();
+    std::vector<vec3> all;
+    for (const vec4& x : world.device().readAll<vec4>(*view.position, view.count))
+        if (!(x.w < 0)) all.emplace_back(x);
+    return all;
+}
 
 }  // namespace rivulet

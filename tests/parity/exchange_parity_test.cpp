@@ -9,14 +9,6 @@ namespace {
 
 constexpr double kOne = 0x1p-15;  // m^3, of a particle
 
-std::vector<vec3> positions(FluidWorld& world) {
-    const ParticleView view = world.particles();
-    std::vector<vec3> all;
-    for (const vec4& x : world.device().readAll<vec4>(*view.position, view.count))
-        if (!(x.w < 0)) all.emplace_back(x);
-    return all;
-}
-
 class ExchangeParity : public testing::TestWithParam<const char*> {};
 
 TEST_P(ExchangeParity, TheSameOnAGpu) {

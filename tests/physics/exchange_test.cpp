@@ -32,14 +32,6 @@ std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, doub
     return world ? std::move(*world) : nullptr;
 }
 
-std::vector<vec3> positions(FluidWorld& world) {
-    const ParticleView view = world.particles();
-    std::vector<vec3> all;
-    for (const vec4& x : world.device().readAll<vec4>(*view.position, view.count))
-        if (!(x.w < 0)) all.emplace_back(x);
-    return all;
-}
-
 TEST(Exchange, AWorldKnowsHowFullAPlaceIs) {
     auto device = makeTestCpu();
     auto world = make(*device, pool());

@@ -10,6 +10,7 @@
 #include "engine/core/json.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/io/mesh_file.h"
+#include "tests/unit/mesh_volume.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet {
@@ -49,15 +50,6 @@ SurfaceMesh meshOf(std::span<const vec4> particles, int cells) {
     Result<SurfaceMesh> mesh = marchingCubes(*surface, cells);
     EXPECT_TRUE(mesh);
     return std::move(*mesh);
-}
-
-double volumeOf(const MeshView& mesh) {
-    double sum = 0;
-    for (size_t k = 0; k < mesh.indices.size(); k += 3) {
-        const dvec3 a(mesh.positions[mesh.indices[k]]), b(mesh.positions[mesh.indices[k + 1]]), c(mesh.positions[mesh.indices[k + 2]]);
-        sum += glm::dot(a, glm::cross(b, c)) / 6;
-    }
-    return sum;
 }
 
 // Each directed edge once, and its opposite too.

@@ -122,7 +122,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
           Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
           Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
           Wanted{&s.frictionMoving_, "fluid/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
-          Wanted{&s.walls_, "fluid/walls", {}, !s.rigid_.empty() || !s.deforming_.empty() || (still && thesis)},
+          Wanted{&s.walls_, "fluid/walls", {}, s.walled_},
           Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.collide_, "fluid/collide", collide(""), still},
           Wanted{&s.collideRigid_, "fluid/collide", collide("MOVING"), !s.rigid_.empty()},
@@ -420,20 +420,38 @@ void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Par
 }
 
 void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
-    const uint32_t n = particles.count;
-    const Buffer *from = &particles.position, *to = &particles.positionNext, *velocity = &particles.velocityNext,
-                 *start = &grid.cellStart();
-    for (const Moving& m : deforming_)
-        device_->run(collideDeforming_, m.motion, {from, to, velocity, start, &m.on.bits, &m.on.distance, &m.on.normal, &m.displacement},
-                     n);
-    for (const Moving& m : rigid_)
-        device_->run(collideRigid_, m.motion, {from, to, velocity, start, &m.on.bits, &m.on.distance, &m.on.normal}, n);
-    if (!rigid_.empty() || !deforming_.empty()) device_->run(walls_, step, {start, &planes_, to, velocity}, n);
+    collide(step,
+            {&particles.position, &particles.positionNext, &particles.velocityNext, &grid.cellStart(), step.cellCount, particles.count},
+            !rigid_.empty() || !deforming_.empty());
+}
+
+void SolidPasses::keepOut(const StepParams& step, const Movers& movers) { collide(step, movers, true); }
+
+// `planes`: what is pushed may be beyond the box or a plane.
+void SolidPasses::collide(const StepParams& step, const Movers& m, bool planes) {
+    StepParams walls = step;
+    walls.cellCount = m.index;
+    for (Moving& solid : deforming_) {
+        MotionParams motion = solid.motion;
+        motion.field.countIndex = m.index;
+        device_->run(collideDeforming_, motion,
+                     {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal, &solid.displacement},
+                     m.slots);
+    }
+    for (Moving& solid : rigid_) {
+        MotionParams motion = solid.motion;
+        motion.field.countIndex = m.index;
+        device_->run(collideRigid_, motion, {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal},
+                     m.slots);
+    }
+    if (planes && walled_) device_->run(walls_, walls, {m.counts, &planes_, m.to, m.velocity}, m.slots);
     // Last: what stands still is never entered, whatever squeezes.
     if (static_.field == nullptr) return;
-    device_->run(collide_, block_, {from, to, velocity, start, &static_.bits, &static_.distance, &static_.normal}, n);
+    FieldParams block = block_;
+    block.countIndex = m.index;
+    device_->run(collide_, block, {m.from, m.to, m.velocity, m.counts, &static_.bits, &static_.distance, &static_.normal}, m.slots);
     // The thesis's way back by a voxel asks nothing of the box: a mesh beside a wall would put particles beyond it, and they would be lost.
-    if (thesis_) device_->run(walls_, step, {start, &planes_, to, velocity}, n);
+    if (thesis_) device_->run(walls_, walls, {m.counts, &planes_, m.to, m.velocity}, m.slots);
 }
 
 }  // namespace rivulet

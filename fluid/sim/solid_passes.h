@@ -60,6 +60,14 @@ class SolidPasses {
     void adhesion(const StepParams& step, const NeighborGrid& grid, Particles& particles);
     // Moves particles.positionNext and velocityNext out of the solids.
     void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);
+    // Anything else that moves: vec4 each, xyz m or m/s, w passed through. `from` is in no solid.
+    struct Movers {
+        const Buffer *from, *to, *velocity;
+        const Buffer* counts;  // uint; [index]: how many there are, the first ones
+        uint32_t index, slots;
+    };
+    // The same, of these, and out of planes and the box.
+    void keepOut(const StepParams& step, const Movers& movers);
 
     const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now
     uint64_t voxelsRewritten() const { return voxelsRewritten_; }  // of the deforming ones, since the start
@@ -85,6 +93,7 @@ class SolidPasses {
     };
 
     Status addMoving(Moving moving);
+    void collide(const StepParams& step, const Movers& movers, bool planes);
     uint64_t voxelsHash() const;  // of what was baked and stays
     Status deform(Moving& moving, double share, double seconds);
     void setMotion(Moving& moving, const Pose& start, const Pose& end, float dt);

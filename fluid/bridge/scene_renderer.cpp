@@ -133,6 +133,20 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         if (Status s = uploadTo(drops_, std::as_bytes(drops)); !s) return s.error();
         out.drops = drops_.name();
     }
+    if (particles.foam != nullptr) {
+        out.foamCount = particles.foamSlots;
+        for (auto [from, into, name] :
+             {std::tuple(particles.foam, &foam_[0], &out.foam[0]), std::tuple(particles.foamVelocity, &foam_[1], &out.foam[1])}) {
+            if (world.device().backend() == Backend::gl) {
+                *name = static_cast<unsigned>(from->handle());
+                continue;
+            }
+            vectors_.resize(out.foamCount);
+            world.device().read(*from, std::as_writable_bytes(std::span(vectors_)));
+            if (Status s = uploadTo(*into, std::as_bytes(std::span(vectors_))); !s) return s.error();
+            *name = into->name();
+        }
+    }
     if (out.count == 0) return out;
     // The points' shader reads normals where it else reads velocities. There are none before the first step.
     const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
@@ -356,9 +370,11 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
         second.depth = addCopy(graph, draw.depth);
     }
     FluidLayers layers = row->add(graph, fluid_, draw);
+    addFoam(graph, fluid_, draw, layers);
     addDrops(graph, fluid_, draw, layers);
     if (other != nullptr) {
         const FluidLayers right = other->add(graph, fluid_, second);
+        addFoam(graph, fluid_, second, right);
         addDrops(graph, fluid_, second, right);
         addRightHalf(graph, right.colour, layers.colour);
     }

@@ -42,6 +42,7 @@ class FluidUpload {
 
   private:
     gpu::Buffer position_, velocity_, id_, absorption_, drops_;
+    std::array<gpu::Buffer, 2> foam_;
     std::array<gpu::Buffer, 3> ellipsoids_;
     std::vector<vec4> vectors_;
     std::vector<uint32_t> ids_;

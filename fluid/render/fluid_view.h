@@ -23,6 +23,9 @@ struct FluidView {
     uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
     float radius = 0.01F;   // m, of a drawn sphere
     float spacing = 0.02F;  // m
+    // Spray, foam and bubbles: GL buffer names, as ParticleView::foam and foamVelocity.
+    std::array<unsigned, 2> foam = {};
+    uint32_t foamCount = 0;
     // Drops in the air, of any size: GL buffer name, two vec4 a drop: xyz m, w radius, m; xyz m/s.
     unsigned drops = 0;
     uint32_t dropCount = 0;

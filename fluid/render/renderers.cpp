@@ -26,9 +26,9 @@ const Table<RendererRow>& renderers() { return kRenderers; }
 const Table<ViewRow>& waterViews() { return kViews; }
 
 std::vector<gpu::Program*> FluidPrograms::all() {
-    std::vector<gpu::Program*> programs = {&points,          &pointsShade,    &blur,           &shade,    &lightWater,
-                                           &lightWaterFirst, &lightWaterLast, &shadeInk,       &showView, &drops,
-                                           &dropsOverWater,  &shadeNormals,   &shadeNormalsInk};
+    std::vector<gpu::Program*> programs = {&points,          &pointsShade, &blur,         &shade, &lightWater,     &lightWaterFirst,
+                                           &lightWaterLast,  &shadeInk,    &showView,     &drops, &dropsOverWater, &shadeNormals,
+                                           &shadeNormalsInk, &foam,        &foamOverWater};
     for (SplatPrograms* splat : {&spheres, &ellipsoids})
         for (gpu::Program* program : {&splat->occluder, &splat->markTiles, &splat->depth, &splat->thickness, &splat->thicknessInk})
             programs.push_back(program);
@@ -77,6 +77,8 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         {&p.shadeNormalsInk, Program::create(files, {tile, folder + "shade.frag"}, {{"NORMALS", "1"}, {"INK", "1"}})},
         {&p.drops, Program::create(files, {folder + "drop.vert", folder + "drop.frag"})},
         {&p.dropsOverWater, Program::create(files, {folder + "drop.vert", folder + "drop.frag"}, {{"OVER_WATER", "1"}})},
+        {&p.foam, Program::create(files, {folder + "foam.vert", folder + "foam.frag"})},
+        {&p.foamOverWater, Program::create(files, {folder + "foam.vert", folder + "foam.frag"}, {{"OVER_WATER", "1"}})},
     };
     for (auto& other : others) made.push_back(std::move(other));
     for (auto& [into, program] : made) {
@@ -84,6 +86,7 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         *into = std::move(*program);
     }
     p.particles = gpu::VertexArray::create();
+    p.foamFeed = gpu::VertexArray::create();
     p.dropFeed = gpu::VertexArray::create();
     p.none = gpu::VertexArray::create();
     return p;

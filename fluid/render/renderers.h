@@ -57,9 +57,9 @@ struct FluidPrograms {
     gpu::Program shadeNormals, shadeNormalsInk;  // Ink: particles differ in absorption; Normals: they are given
     SplatPrograms spheres, ellipsoids;
     SplatPrograms& splats(const FluidView& fluid) { return fluid.ellipsoids[0] != 0 ? ellipsoids : spheres; }
-    gpu::Program drops, dropsOverWater;
+    gpu::Program drops, dropsOverWater, foam, foamOverWater;
     FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
-    gpu::VertexArray particles, dropFeed, none;
+    gpu::VertexArray particles, dropFeed, foamFeed, none;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
     void drawParticles(const FluidView& fluid);  // a quad each, with the program in use
@@ -124,6 +124,9 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 // Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds.
 FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+
+// Spray, foam and bubbles, into layers.colour.
+void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
 // The drops in the air, into layers.colour.
 void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);

@@ -25,6 +25,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::emissionRows());
     add(kernels_generic::bodyRows());
     add(kernels_generic::forceRows());
+    add(kernels_generic::foamRows());
     add(kernels_generic::flowRows());
     add(kernels_generic::deformRows());
     add(kernels_generic::flowMapRows());
@@ -37,6 +38,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx2::emissionRows());
     add(kernels_avx2::bodyRows());
     add(kernels_avx2::forceRows());
+    add(kernels_avx2::foamRows());
     add(kernels_avx2::flowRows());
     add(kernels_avx2::deformRows());
     add(kernels_avx2::flowMapRows());
@@ -49,6 +51,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx512::emissionRows());
     add(kernels_avx512::bodyRows());
     add(kernels_avx512::forceRows());
+    add(kernels_avx512::foamRows());
     add(kernels_avx512::flowRows());
     add(kernels_avx512::deformRows());
     add(kernels_avx512::flowMapRows());

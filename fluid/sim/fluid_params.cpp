@@ -114,6 +114,21 @@ void ForcesParams::visit(ParamVisitor& v) {
     v.value({"wind", "m/s", "velocity of the air; does nothing where airDrag is 0", -kFast, kFast}, wind);
 }
 
+void FoamParams::visit(ParamVisitor& v) {
+    v.value({"most", "", "spray, foam and bubbles (Ihmsen et al. 2012): how many at once; 0 = none", 0, 4.0e6, kLog, kFixed}, most);
+    v.value({"trappedAir", "1/s", "how many a particle makes where water falls into water", 0, 1.0e5, kLog}, trappedAir);
+    v.value({"waveCrest", "1/s", "how many a particle makes on a crest that breaks", 0, 1.0e5, kLog}, waveCrest);
+    v.value({"airFrom", "m/s", "mean speed at which neighbours meet, from which on air is caught", 0, 100}, airFrom);
+    v.value({"airTo", "m/s", "and from which on it is no more; above airFrom", 0, 100}, airTo);
+    v.value({"crestFrom", "", "mean 1 - cos between normals on a crest, from which on it breaks", 0, 2}, crestFrom);
+    v.value({"crestTo", "", "and from which on it does wholly; above crestFrom", 0, 2}, crestTo);
+    v.value({"speedFrom", "m/s", "water that is slower makes none", 0, 100}, speedFrom);
+    v.value({"speedTo", "m/s", "and from here on as much as it can; above speedFrom", 0, 100}, speedTo);
+    v.value({"life", "s", "how long foam lies on the water, at most; some of it half as long", 0.05, 60, kLog}, life);
+    v.value({"buoyancy", "", "of bubbles, over gravity", 0, 20}, buoyancy);
+    v.value({"drag", "1/s", "how soon bubbles go with the water", 0, 1000}, drag);
+}
+
 void FluidParams::visit(ParamVisitor& v) {
     const std::vector<std::string> names = methods().names();
     v.choice({.name = "method", .doc = "how pressure is found; rivulet list says what each is", .fixed = kFixed}, method, names);
@@ -171,6 +186,7 @@ void FluidParams::visit(ParamVisitor& v) {
     v.group({.name = "pbf", .doc = "of method pbf"}, pbf);
     v.group({.name = "dfsph", .doc = "of method dfsph"}, dfsph);
     v.group({.name = "forces", .doc = "beside pressure and gravity"}, forces);
+    v.group({.name = "foam", .doc = "what the water carries, and is white"}, foam);
     v.group({.name = "box", .doc = "walls around the fluid; what leaves them is lost"}, box);
     v.group({.name = "collision", .doc = "how fluid meets what is solid"}, collision);
     v.list({.name = "blocks", .doc = "boxes of fluid that are there at the start", .fixed = kFixed}, blocks);

@@ -71,6 +71,18 @@ struct ForcesParams {
     void visit(ParamVisitor& v);
 };
 
+// Spray, foam and bubbles. Defaults after Ihmsen et al. 2012, in SI units.
+struct FoamParams {
+    int most = 0;                               // at once; 0 = none
+    float trappedAir = 1500, waveCrest = 1500;  // 1/s, that a particle makes at most
+    float airFrom = 0.3F, airTo = 1.5F;         // m/s, mean speed at which neighbours meet
+    float crestFrom = 0.1F, crestTo = 0.4F;     // mean 1 - cos between a crest's normals
+    float speedFrom = 0.5F, speedTo = 3.0F;     // m/s
+    float life = 2.5F;                          // s, on the water; the longest
+    float buoyancy = 2.0F, drag = 10.0F;        // of bubbles: over gravity; 1/s
+    void visit(ParamVisitor& v);
+};
+
 struct FluidParams {
     std::string method = "pbf";       // a row of methods()
     std::string kernel = "wendland";  // wendland | cubic_spline
@@ -95,6 +107,7 @@ struct FluidParams {
     PbfParams pbf = {};
     DfsphParams dfsph = {};
     ForcesParams forces = {};
+    FoamParams foam = {};
     BoxParams box = {};
     CollisionParams collision = {};
     std::vector<BlockParams> blocks = {};

@@ -256,6 +256,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
     }
     if (!p.ellipsoids) w.ellipsoids.forget();
+    if (w.foam && stepped > 0) w.foam->run(p, w.step, *w.grid, w.particles, w.solids, stepped);
     const double lost = w.pace.end(stepped);
     // What rounding leaves of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
@@ -473,6 +474,7 @@ void FluidWorld::setParams(const FluidParams& params) {
     next.blocks = old.blocks;
     next.liquid = old.liquid;
     next.maxParticles = old.maxParticles;
+    next.foam.most = old.foam.most;
     if (Status s = takeLiquid(next); !s) return impl_->say(s.error().message);
     if (impl_->traits.matter) {  // particles have theirs for life
         next.restDensity = old.restDensity;
@@ -505,7 +507,10 @@ ParticleView FluidWorld::particles() const {
             .spacing = w.params.spacing,
             .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
             .drawn = &w.drawn.positions(w.particles),
-            .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{}};
+            .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{},
+            .foam = w.foam ? &w.foam->foam() : nullptr,
+            .foamVelocity = w.foam ? &w.foam->velocity() : nullptr,
+            .foamSlots = w.foam ? w.foam->slots() : 0};
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,

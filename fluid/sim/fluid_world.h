@@ -35,6 +35,11 @@ struct ParticleView {
     const Buffer* drawn = nullptr;  // vec4: as position
     // The ellipsoids about them: Ellipsoids::buffers(). Null unless fluid.ellipsoids asks for them, and before the first step.
     std::array<const Buffer*, 3> ellipsoids = {};
+    // Spray, foam and bubbles, a vec4 each: xyz m, w what is left of its life, s (0: none is there); and xyz m/s, w size (0.5 to 1) + 1
+    // spray, 2 foam, 3 bubble. Null unless fluid.foam.most asks for them.
+    const Buffer* foam = nullptr;
+    const Buffer* foamVelocity = nullptr;
+    uint32_t foamSlots = 0;
 };
 
 // What the scene says to the fluid each frame.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "fluid/sim/ellipsoids.h"
 #include "fluid/sim/exchange_passes.h"
 #include "fluid/sim/fluid_world.h"
+#include "fluid/sim/foam_passes.h"
 #include "fluid/sim/force.h"
 #include "fluid/sim/method.h"
 #include "fluid/sim/neighbor_grid.h"
@@ -40,10 +42,11 @@ struct FluidWorld::Impl {
     SourcePasses sources;
     ExchangePasses exchange;  // where others hold water, too
     uint64_t takenOut = 0;    // particles, by them
-    bool sorted = false;      // the grid is of the particles as they lie
-    uint32_t slots = 0;       // of particles: those of the blocks and room for more
-    bool coloured = false;    // particles differ to the eye
-    float mostViscous = 0;    // m^2/s, of the world's liquids
+    std::optional<FoamPasses> foam;
+    bool sorted = false;    // the grid is of the particles as they lie
+    uint32_t slots = 0;     // of particles: those of the blocks and room for more
+    bool coloured = false;  // particles differ to the eye
+    float mostViscous = 0;  // m^2/s, of the world's liquids
     BodyPasses bodies;
     Buffer statsRows, corner;
     Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;

@@ -86,6 +86,11 @@ Status FluidWorld::Impl::prepare() {
         if (!handed) return handed.error();
         exchange = std::move(*handed);
     }
+    if (params.foam.most > 0) {
+        Result<FoamPasses> foaming = FoamPasses::create(*device, params, traits, count);
+        if (!foaming) return foaming.error();
+        foam = std::move(*foaming);
+    }
     if (count == 0) log.notice("the scene has no particles");
     writeStart();
     return ok();
@@ -207,6 +212,7 @@ void FluidWorld::Impl::writeStart() {
     device->writeAll<uint32_t>(particles.id, id);
     sources.reset();
     takenOut = 0;
+    if (foam) foam->reset();
     sorted = false;
     gatherColours();
     time = dropped = 0;

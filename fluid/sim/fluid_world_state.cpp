@@ -39,6 +39,7 @@ void FluidWorld::save(WorldState& state) {
         state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
     w.solids.save(state);
     w.sources.save(state);
+    if (w.foam) w.foam->save(state);
     if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.takenOut, 1));
     w.bodies.save(state);
 }
@@ -77,6 +78,12 @@ Status FluidWorld::restore(WorldState& state) {
         if (!count) return count.error();
         taken = (*count)[0];
     }
+    FoamPasses::Saved foam;
+    if (w.foam) {
+        Result<FoamPasses::Saved> foamed = w.foam->take(state);
+        if (!foamed) return foamed.error();
+        foam = std::move(*foamed);
+    }
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
     if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
@@ -87,6 +94,7 @@ Status FluidWorld::restore(WorldState& state) {
     w.gatherColours();
     w.sources.restore(*sources);
     w.takenOut = taken;
+    if (w.foam) w.foam->restore(foam);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
     w.time = n[0];
     w.pace.reset(n[1]);

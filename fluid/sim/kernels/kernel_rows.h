@@ -15,6 +15,7 @@
     std::span<const CpuKernelRow> emissionRows(); \
     std::span<const CpuKernelRow> bodyRows();     \
     std::span<const CpuKernelRow> forceRows();    \
+    std::span<const CpuKernelRow> foamRows();     \
     std::span<const CpuKernelRow> flowRows();     \
     std::span<const CpuKernelRow> deformRows();   \
     std::span<const CpuKernelRow> flowMapRows();  \

@@ -1,0 +1,35 @@
+// Spray, foam and bubbles as flecks.
+#include "fluid/render/renderers.h"
+
+namespace rivulet {
+
+void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
+    using gpu::PassContext;
+    using gpu::Usage;
+    if (d.fluid.foamCount == 0) return;
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, d.depth, d.shadowSharp, d.shadowSoft};
+    for (const unsigned name : d.fluid.foam)
+        reads.emplace_back(graph.importBuffer("foam", name, d.fluid.foamCount * sizeof(vec4)), Usage::attribute);
+    if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
+    graph.pass("foam", reads, {layers.colour}, [=, &programs](PassContext& c) {
+        c.drawTo({layers.colour});
+        glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        gpu::Program& p = layers.fluidDepth ? programs.foamOverWater : programs.foam;
+        p.use();
+        p.set("radius", 0.2F * d.fluid.spacing);
+        p.texture("sceneDepth", 0, c.texture(d.depth));
+        p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
+        p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
+        if (layers.fluidDepth) {
+            p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
+            p.set("absorption", d.look.absorption);
+        }
+        for (const unsigned k : {0U, 1U}) programs.foamFeed.attribute(k, d.fluid.foam[k], 4, GL_FLOAT, sizeof(vec4), 0, 1);
+        programs.foamFeed.bind();
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(d.fluid.foamCount));
+    });
+}
+
+}  // namespace rivulet

@@ -1,0 +1,227 @@
+// Spray, foam and bubbles: where water is calm there are none, where it breaks there are; each moves by its own law, and none is forgotten.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fluid/sim/fluid_world.h"
+#include "fluid/voxel/voxel_field.h"
+#include "tests/parity/devices.h"
+#include "tests/unit/voxel_test_meshes.h"
+
+namespace rivulet {
+namespace {
+
+constexpr double kFrame = 1.0 / 60;
+
+struct Fleck {
+    vec3 position, velocity;
+    float life = 0, kind = 0;
+};
+
+// A box of 1 x 1 x 0.5 m, water on its floor and, with `falls`, a column at one end.
+FluidParams boxOf(float depth, bool falls, int most = 4096) {
+    FluidParams p;
+    p.method = "pbf";
+    p.spacing = 0.025F;
+    p.box.max = vec3(1.0F, 1.0F, 0.5F);
+    p.blocks = {{vec3(0.0F), vec3(1.0F, depth, 0.5F), vec3(0.0F)}};
+    if (falls) p.blocks.push_back({vec3(0.0F, depth, 0.0F), vec3(0.3F, 0.7F, 0.5F), vec3(0.0F)});
+    p.foam.most = most;
+    return p;
+}
+
+std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, const Solids& solids = {}) {
+    auto world = FluidWorld::create(device, params, solids, {});
+    EXPECT_TRUE(world) << (world ? "" : world.error().message);
+    return world ? std::move(*world) : nullptr;
+}
+
+std::vector<Fleck> flecks(FluidWorld& world) {
+    const ParticleView view = world.particles();
+    std::vector<Fleck> all;
+    const std::vector<vec4> at = world.device().readAll<vec4>(*view.foam, view.foamSlots);
+    const std::vector<vec4> v = world.device().readAll<vec4>(*view.foamVelocity, view.foamSlots);
+    for (size_t k = 0; k < view.foamSlots; ++k)
+        if (at[k].w > 0) all.push_back({vec3(at[k]), vec3(v[k]), at[k].w, std::floor(v[k].w)});
+    return all;
+}
+
+// Puts flecks into a world, by way of a saved state.
+void put(FluidWorld& world, const std::vector<Fleck>& some) {
+    WorldState saved, changed;
+    world.save(saved);
+    for (const auto& [name, bytes] : saved.sections()) {
+        if (name != "foam.slots" && name != "foam.velocity") {
+            changed.putBytes(name, bytes);
+            continue;
+        }
+        std::vector<vec4> slots(bytes.size() / sizeof(vec4), vec4(0.0F));
+        for (size_t k = 0; k < some.size(); ++k)
+            slots[k] = name == "foam.slots" ? vec4(some[k].position, some[k].life) : vec4(some[k].velocity, 2.75F);
+        changed.put<vec4>(name, slots);
+    }
+    const Status done = world.restore(changed);
+    ASSERT_TRUE(done) << done.error().message;
+}
+
+TEST(Foam, CalmWaterMakesNone) {
+    auto device = makeTestCpu();
+    auto world = make(*device, boxOf(0.3F, false));
+    for (int k = 0; k < 60; ++k) {
+        world->step({}, kFrame);
+        EXPECT_EQ(flecks(*world).size(), 0U) << k;
+    }
+    // And where nobody asked for it there is none.
+    EXPECT_EQ(make(*device, boxOf(0.3F, false, 0))->particles().foam, nullptr);
+}
+
+TEST(Foam, FallingWaterMakesSomeAndNeverMoreThanThereIsRoomFor) {
+    auto device = makeTestCpu();
+    for (const int most : {4096, 300}) {
+        auto world = make(*device, boxOf(0.1F, true, most));
+        size_t largest = 0, sprayed = 0, lay = 0, under = 0;
+        for (int k = 0; k < 90; ++k) {
+            world->step({}, kFrame);
+            const std::vector<Fleck> all = flecks(*world);
+            largest = std::max(largest, all.size());
+            for (const Fleck& f : all) {
+                ASSERT_TRUE(isFinite(f.position) && isFinite(f.velocity));
+                EXPECT_TRUE(glm::all(glm::greaterThanEqual(f.position, vec3(-0.06F))) &&
+                            glm::all(glm::lessThanEqual(f.position, vec3(1.06F, 1.06F, 0.56F))));
+                (f.kind == 1 ? sprayed : f.kind == 2 ? lay : under) += 1;
+            }
+        }
+        EXPECT_GT(largest, 100U);
+        EXPECT_LE(largest, static_cast<size_t>(most));
+        EXPECT_GT(sprayed, 0U);
+        EXPECT_GT(lay, 0U);
+        EXPECT_GT(under, 0U);
+        world->reset();
+        EXPECT_EQ(flecks(*world).size(), 0U);
+    }
+}
+
+// Thrown, it flies as a stone does: drag of a drop of 3 mm takes a per cent of it.
+TEST(Foam, SprayFlies) {
+    auto device = makeTestCpu();
+    auto world = make(*device, boxOf(0.1F, false));
+    world->step({}, kFrame);
+    put(*world, {{vec3(0.3F, 0.5F, 0.25F), vec3(1.0F, 1.0F, 0.0F), 2.0F, 0}});
+    for (int k = 0; k < 12; ++k) world->step({}, kFrame);
+    const std::vector<Fleck> all = flecks(*world);
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_EQ(all[0].kind, 1.0F);
+    EXPECT_EQ(all[0].life, 2.0F) << "in the air it does not age";
+    const float t = 0.2F;
+    EXPECT_NEAR(all[0].position.x, 0.3F + t, 0.02F * t);
+    EXPECT_NEAR(all[0].position.y, 0.5F + t - 0.5F * 9.81F * t * t, 0.025F);
+    EXPECT_NEAR(all[0].velocity.y, 1.0F - 9.81F * t, 0.05F);
+}
+
+TEST(Foam, ABubbleRisesAsFastAsBuoyancyAndDragHaveIt) {
+    auto device = makeTestCpu();
+    FluidParams p = boxOf(0.7F, false);
+    p.foam.buoyancy = 1.0F;
+    p.foam.drag = 30.0F;                          // 0.327 m/s
+    p.foam.trappedAir = p.foam.waveCrest = 0.0F;  // so deep, water is not calm while it settles
+    auto world = make(*device, p);
+    for (int k = 0; k < 5; ++k) world->step({}, kFrame);
+    put(*world, {{vec3(0.5F, 0.1F, 0.25F), vec3(0.0F), 2.0F, 0}});
+    for (int k = 0; k < 30; ++k) world->step({}, kFrame);
+    const float before = flecks(*world)[0].position.y;
+    for (int k = 0; k < 30; ++k) world->step({}, kFrame);
+    const std::vector<Fleck> all = flecks(*world);
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_EQ(all[0].kind, 3.0F);
+    EXPECT_NEAR((all[0].position.y - before) / 0.5F, 9.81F / 30.0F, 0.03F);
+}
+
+// A ball that hangs in its way, a sloping plane, the walls of the box: it is in none of them.
+TEST(Foam, SolidsStopSpray) {
+    auto device = makeTestCpu();
+    const vec3 middle(0.5F, 0.5F, 0.25F);
+    const float radius = 0.12F;
+    const test::Mesh ball = test::makeSphere(middle, radius);
+    const MeshView view = ball.view();
+    VoxelFieldOptions options;
+    options.resolution = 64;
+    options.band = 0.04F;
+    const Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), options);
+    ASSERT_TRUE(field);
+    Solids solids;
+    solids.field = &*field;
+    const vec3 slope = glm::normalize(vec3(-1.0F, 2.0F, 0.0F)), foot(0.8F, 0.2F, 0.0F);
+    solids.planes = {{foot, slope, 0}};
+    FluidParams p = boxOf(0.1F, false);
+    p.foam.trappedAir = p.foam.waveCrest = 0.0F;
+    auto world = make(*device, p, solids);
+    world->step({}, kFrame);
+    std::vector<Fleck> thrown;
+    for (int k = 0; k < 200; ++k) {  // at the ball from all sides but below; and beyond it the plane and the walls
+        const float a = 2.4F * static_cast<float>(k), y = static_cast<float>(k) / 200;
+        const vec3 from = middle + 0.2F * vec3(std::cos(a) * std::sqrt(1 - y * y), y, std::sin(a) * std::sqrt(1 - y * y));
+        thrown.push_back(
+            {from, 3.0F * glm::normalize(middle + 0.05F * vec3(std::sin(3.0F * a), 0.0F, std::cos(5.0F * a)) - from), 2.0F, 0});
+    }
+    put(*world, thrown);
+    for (int k = 0; k < 60; ++k) {
+        world->step({}, kFrame);
+        const std::vector<Fleck> all = flecks(*world);
+        for (const Fleck& f : all) {
+            ASSERT_GT(glm::distance(f.position, middle), 0.98F * radius) << k;
+            ASSERT_GT(glm::dot(f.position - foot, slope), -1e-4F) << k;
+            ASSERT_TRUE(glm::all(glm::greaterThanEqual(f.position, vec3(-1e-5F))) &&
+                        glm::all(glm::lessThanEqual(f.position, vec3(1.0F, 1.0F, 0.5F) + 1e-5F)))
+                << k;
+        }
+        if (k == 5) EXPECT_EQ(all.size(), thrown.size());  // stopped, not swallowed
+    }
+}
+
+// On the water it lies still, lives as long as it has, and is gone.
+TEST(Foam, OnCalmWaterItLiesAndAges) {
+    auto device = makeTestCpu();
+    auto world = make(*device, boxOf(0.3F, false));
+    for (int k = 0; k < 30; ++k) world->step({}, kFrame);
+    put(*world, {{vec3(0.5F, 0.3F, 0.25F), vec3(0.0F), 0.5F, 0}});
+    for (int k = 0; k < 24; ++k) world->step({}, kFrame);
+    std::vector<Fleck> all = flecks(*world);
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_EQ(all[0].kind, 2.0F);
+    EXPECT_LT(glm::distance(all[0].position, vec3(0.5F, 0.3F, 0.25F)), 0.03F);
+    EXPECT_NEAR(all[0].life, 0.1F, 0.02F);
+    for (int k = 0; k < 9; ++k) world->step({}, kFrame);
+    EXPECT_EQ(flecks(*world).size(), 0U);
+}
+
+// Who is born, and where, depends on no thread; and a saved world goes on with what it had.
+TEST(Foam, TheSameRunMakesTheSame) {
+    auto device = makeTestCpu();
+    const auto sorted = [](FluidWorld& world) {
+        std::vector<std::array<float, 4>> all;
+        for (const Fleck& f : flecks(world)) all.push_back({f.position.x, f.position.y, f.position.z, f.life});
+        std::sort(all.begin(), all.end());
+        return all;
+    };
+    auto a = make(*device, boxOf(0.1F, true)), b = make(*device, boxOf(0.1F, true)), c = make(*device, boxOf(0.1F, true));
+    for (int k = 0; k < 40; ++k) {
+        a->step({}, kFrame);
+        b->step({}, kFrame);
+    }
+    EXPECT_GT(sorted(*a).size(), 50U);
+    EXPECT_EQ(sorted(*a), sorted(*b));
+    WorldState state;
+    a->save(state);
+    const Status restored = c->restore(state);
+    ASSERT_TRUE(restored) << restored.error().message;
+    for (int k = 0; k < 10; ++k) {
+        a->step({}, kFrame);
+        c->step({}, kFrame);
+    }
+    EXPECT_EQ(sorted(*a), sorted(*c));
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -9,7 +9,11 @@ layout(location = 6) in vec4 slant;     // yz, zx, xy
 uniform float radius;                   // m
 
 const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);
-const float kOverlap = 1.35;  // radii: drawn so large, spheres cover the water without gaps
+const float kOverlap = 1.35;  // radii: drawn so large, they cover the water without gaps. Spheres make it 0.3 radii too thick by that
+// The mean of a particle's neighbours lies inward of the surface: of the way to it this much, in radii, is no noise that is smoothed but
+// the shrinking that Yu & Turk 2013 name, and is given back. Then a level surface, once filtered, lies half a spacing over its topmost
+// particles, where their volume ends: within 0.1 radii, seen from any angle, for radii of 0.6 spacings.
+const float kShrunk = 0.77;
 vec2 corner() { return vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)); }
 // Spray is finer than the particles that stand for it: those with few neighbours are drawn smaller.
 float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
@@ -31,7 +35,7 @@ Splat splatOf(vec4 p) {
     if (sum > 0.05 && sum < 50.0 && dot(toCentre.xyz, toCentre.xyz) < 9.0 * radius * radius) {
         float wide = radius * kOverlap;
         mat3 view = mat3(frame.view);
-        s.centre += view * toCentre.xyz;
+        s.centre += view * (toCentre.xyz * (1.0 - kShrunk * radius / max(length(toCentre.xyz), 0.3 * radius)));
         s.squares = view * (wide * wide * mat3(spread.x, slant.z, slant.y, slant.z, spread.y, slant.x, slant.y, slant.x, spread.z)) * transpose(view);
     }
 #endif

@@ -13,6 +13,8 @@ constexpr bool kFixed = true;                 // until the scene is loaded anew
 }  // namespace
 
 void BlockParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> shapes = {"box", "ball"};
+    v.choice({.name = "shape", .doc = "all between min and max, or the ellipsoid that fits there", .fixed = kFixed}, shape, shapes);
     v.value({"min", "m", "low corner", -kFar, kFar, kLinear, kFixed}, min);
     v.value({"max", "m", "high corner", -kFar, kFar, kLinear, kFixed}, max);
     v.value({"velocity", "m/s", "at the start", -kFast, kFast, kLinear, kFixed}, velocity);
@@ -23,6 +25,10 @@ void BlockParams::visit(ParamVisitor& v) {
              "how far particles may stand off their lattice at the start: a perfect one resists shear like a crystal until it is stirred",
              0, 0.5, kLinear, kFixed},
             jitter);
+    v.value({.name = "cut",
+             .doc = "whether it is meant to reach into solids, which cut it to shape; else a notice counts what they leave out",
+             .fixed = kFixed},
+            cut);
 }
 
 void BoxParams::visit(ParamVisitor& v) {

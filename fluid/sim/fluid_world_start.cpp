@@ -123,8 +123,11 @@ void FluidWorld::Impl::fillStart() {
         fillBlock(params.blocks[k], params.spacing, start);
         for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
     }
-    const size_t left = std::erase_if(start, [&](const NewParticle& p) {
-        return !solids.mayBeBorn(p.position, params.spacing) || !bodies.mayBeBorn(p.position, params.spacing);
+    size_t left = 0;
+    std::erase_if(start, [&](const NewParticle& p) {
+        const bool may = solids.mayBeBorn(p.position, params.spacing) && bodies.mayBeBorn(p.position, params.spacing);
+        if (!may && !params.blocks[p.block].cut) ++left;
+        return !may;
     });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }

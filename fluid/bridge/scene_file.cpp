@@ -289,6 +289,7 @@ void SceneFile::visit(ParamVisitor& v) {
     v.value({.name = "name", .doc = "what outputs are called after"}, name);
     v.value({.name = "doc", .doc = "one sentence on what is to be seen"}, doc);
     v.value({"duration", "s", "simulated time of a run that is given no other", 0, 3600}, duration);
+    v.value({"timeScale", "", "simulated seconds in a second that is shown: 0.1 = ten times slower than life", 1.0e-4, 1, kLog}, timeScale);
     v.group({.name = "fluid", .doc = "what flows, and how it is simulated"}, fluid);
     v.list({.name = "colliders", .doc = "what is solid", .fixed = kFixed}, colliders);
     v.list({.name = "emitters", .doc = "where fluid comes in"}, emitters);

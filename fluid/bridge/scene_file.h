@@ -151,7 +151,8 @@ struct BudgetParams {
 struct SceneFile {
     std::string name = "unnamed";
     std::string doc;
-    float duration = 5.0F;  // s
+    float duration = 5.0F;   // s
+    float timeScale = 1.0F;  // simulated seconds in a second of what is shown; less than 1: slow motion
     FluidParams fluid;
     std::vector<ColliderParams> colliders;
     std::vector<EmitterParams> emitters;

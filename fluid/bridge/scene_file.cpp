@@ -171,6 +171,10 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.group({.name = "wave", .doc = "a wave that bends a mesh"}, wave);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
+    v.value({"metallic", "", "0 = stone or paint, 1 = metal", 0, 1}, metallic);
+    v.value(
+        {"opacity", "", "1 = what is behind it is hidden; less: glass, whose wall takes this share of the light and tints the rest", 0, 1},
+        opacity);
     v.value({.name = "visible", .doc = "whether it is drawn; it is solid either way"}, visible);
 }
 

@@ -59,6 +59,8 @@ struct ColliderParams {
     ColliderWave wave;
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
+    float metallic = 0.0F;
+    float opacity = 1.0F;  // less than 1: glass
     bool visible = true;
     void visit(ParamVisitor& v);
 };

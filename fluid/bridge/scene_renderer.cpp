@@ -350,6 +350,10 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.waterLight = light.water;
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
+    const auto glass = [&](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth, GlassSide side) {
+        addGlass(graph, render_, frame, meshes, colour, draw.depth, light, fluidDepth ? side : GlassSide::all, fluidDepth);
+    };
+    draw.behind = [&](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth) { glass(colour, fluidDepth, GlassSide::behind); };
     FluidDraw second = draw;
     if (other != nullptr) {
         second.colour = addCopy(graph, draw.colour);
@@ -357,9 +361,11 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     }
     FluidLayers layers = row->add(graph, fluid_, draw);
     addDrops(graph, fluid_, draw, layers);
+    glass(layers.colour, layers.fluidDepth, GlassSide::before);
     if (other != nullptr) {
         const FluidLayers right = other->add(graph, fluid_, second);
         addDrops(graph, fluid_, second, right);
+        glass(right.colour, right.fluidDepth, GlassSide::before);
         addRightHalf(graph, right.colour, layers.colour);
     }
     if (background.showBox && (row->opaque || layers.fluidDepth))

@@ -81,6 +81,8 @@ struct FluidDraw {
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
+    // Draws what is clear and lies behind the water into `colour`, before the water is; `fluidDepth` as FluidLayers has it.
+    std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
     // Of a renderer that takes its time: the share that is done; false: it need not go on.
     std::function<bool(double)> progress = [](double) { return true; };
 };

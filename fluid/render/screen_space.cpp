@@ -171,6 +171,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
 
 FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const WaterSurface& water) {
     const bool ink = d.fluid.absorption != 0;
+    d.behind(d.colour, water.depth);
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
     graph.pass("copy scene", {{d.colour, Usage::copy}}, {{colour, Usage::copy}}, [=](PassContext& c) {
         const gpu::Texture &from = c.texture(d.colour), &to = c.texture(colour);

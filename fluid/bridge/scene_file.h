@@ -138,6 +138,7 @@ struct FluidLookParams {
     float smoothing = 0.0F;                 // m, reach of the smoothing, two deviations; 0 = from the spacing
     float smoothingRange = 0.0F;            // m, how far apart depths of one surface may be; 0 = from the spacing
     vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = as the liquid's
+    vec3 scattering{-1.0F};                 // 1/m, reduced, per channel; -1 = as the liquid's
     float refractiveIndex = 0.0F;           // 0 = as the liquid's
     void visit(ParamVisitor& v);
 };

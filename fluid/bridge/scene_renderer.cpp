@@ -89,14 +89,23 @@ Result<FluidLook> fluidLookOf(const SceneFile& scene) {
     if (!own && liquid != nullptr) look.absorption = liquid->absorption;
     if (scene.look.refractiveIndex > 0 || liquid != nullptr)
         look.refractiveIndex = scene.look.refractiveIndex > 0 ? scene.look.refractiveIndex : liquid->refractiveIndex;
-    // What a liquid absorbs least it throws back most; the default is that of the default absorption.
-    const float most = std::max({look.absorption.x, look.absorption.y, look.absorption.z, 1.0e-6F});
-    if (liquid != nullptr) look.scatter = 0.1F * glm::exp(-2.0F * look.absorption / most);
+    if (glm::all(glm::greaterThanEqual(scene.look.scattering, vec3(0.0F))))
+        look.scattering = scene.look.scattering;
+    else if (liquid != nullptr)
+        look.scattering = liquid->scattering;
     return look;
 }
 
 Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene) {
-    if (scene.background.surroundings.empty()) return std::optional<HdrImage>();
+    const BackgroundParams& background = scene.background;
+    if (background.surroundings.empty() && background.sky == "studio") return std::optional<HdrImage>();
+    if (background.surroundings.empty())
+        return std::optional(makeSky({.sun = glm::normalize(scene.light.direction),
+                                      .sunlight = scene.light.colour * scene.light.intensity,
+                                      .horizon = background.horizon,
+                                      .zenith = background.zenith,
+                                      .ground = background.floor,
+                                      .clouds = background.clouds}));
     Result<std::string> path = findAsset(scene.background.surroundings, scene.folder);
     if (!path) return path.error();
     Result<HdrImage> image = loadHdr(*path);

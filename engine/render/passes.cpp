@@ -401,6 +401,7 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
                    for (const DrawnMesh& m : drawn) {
                        if (m.part != nullptr || m.material.clear) continue;
                        setPlace(programs.mesh, m);
+                       programs.mesh.set("grain", vec2(m.material.grain, m.material.grainSize));
                        m.mesh->draw();
                    }
                    drawParts(c, drawn, view.cameraPosWorld, occlusion, light, colour, behind);

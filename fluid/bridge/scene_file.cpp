@@ -175,6 +175,8 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.value(
         {"opacity", "", "1 = what is behind it is hidden; less: glass, whose wall takes this share of the light and tints the rest", 0, 1},
         opacity);
+    v.value({"grain", "", "0 = smooth and of one colour, 1 = coarse, mottled stone", 0, 1}, grain);
+    v.value({"grainSize", "m", "of the grain's largest spots; there are finer ones in them", 1.0e-4, kFar, kLog}, grainSize);
     v.value({.name = "visible", .doc = "whether it is drawn; it is solid either way"}, visible);
 }
 

@@ -60,7 +60,9 @@ struct ColliderParams {
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
     float metallic = 0.0F;
-    float opacity = 1.0F;  // less than 1: glass
+    float opacity = 1.0F;    // less than 1: glass
+    float grain = 0.0F;      // 0 = smooth and of one colour, 1 = coarse stone
+    float grainSize = 0.1F;  // m
     bool visible = true;
     void visit(ParamVisitor& v);
 };

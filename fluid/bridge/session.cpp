@@ -80,6 +80,8 @@ void dress(Node& node, const ColliderParams& collider) {
     node.material.roughness = collider.roughness;
     node.material.metallic = collider.metallic;
     node.material.opacity = collider.opacity;
+    node.material.grain = collider.grain;
+    node.material.grainSize = collider.grainSize;
     node.material.clear = node.material.blended = collider.opacity < 1;
     node.visible = collider.visible;
 }

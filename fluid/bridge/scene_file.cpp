@@ -235,12 +235,16 @@ void BackgroundParams::visit(ParamVisitor& v) {
     v.value({"floorHeight", "m", "height of the ground", -kFar, kFar}, floorHeight);
     v.value({.name = "showFloor", .doc = "whether the ground is drawn"}, showFloor);
     v.value({.name = "showBox", .doc = "whether the edges of the fluid's box are drawn"}, showBox);
-    v.value(
-        {.name = "surroundings",
-         .doc =
-             "equirectangular picture (.hdr) that lights the scene and is seen behind it, found as a mesh is; none = sky and studio lamps",
-         .fixed = kFixed},
-        surroundings);
+    static const std::vector<std::string> skies = {"studio", "clouds"};
+    v.choice({.name = "sky",
+              .doc = "a gradient and lamps, or the sun's glow and clouds outdoors, made when the scene is loaded",
+              .fixed = kFixed},
+             sky, skies);
+    v.value({"clouds", "", "share of the sky that they cover", 0, 1, kLinear, kFixed}, clouds);
+    v.value({.name = "surroundings",
+             .doc = "equirectangular picture (.hdr) that lights the scene and is seen behind it, found as a mesh is; none = as sky says",
+             .fixed = kFixed},
+            surroundings);
     v.value({"surroundingsLevel", "", "factor on its light", 0, 1000, kLinear, kFixed}, surroundingsLevel);
 }
 

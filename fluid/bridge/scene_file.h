@@ -122,6 +122,8 @@ struct BackgroundParams {
     float floorHeight = 0.0F;         // m
     bool showFloor = true;
     bool showBox = true;             // edges of the fluid's box
+    std::string sky = "studio";      // studio | clouds: what there is where no picture surrounds the scene
+    float clouds = 0.5F;             // share of such a sky that they cover
     std::string surroundings;        // an equirectangular picture (.hdr) instead of the studio; "" = none
     float surroundingsLevel = 1.0F;  // factor on it
     void visit(ParamVisitor& v);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/render/made_sky.h"
 #include "engine/scene/light.h"
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
@@ -328,7 +329,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     gpu::FrameGraph graph(pool_);
     const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());
     const gpu::TextureHandle nothing = graph.importTexture("nothing", nothing_);
-    LightMaps light{nothing, nothing, nothing, look->absorption};
+    LightMaps light{nothing, nothing, nothing, look->absorption + look->scattering};
     if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, scene, light);
     FluidDraw draw;
     draw.view = view;

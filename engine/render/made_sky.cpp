@@ -32,7 +32,7 @@ float octaves(vec2 p) {
 }
 
 float cover(const vec2& p, float clouds) {
-    const float from = 0.78F - 0.56F * clouds;
+    const float from = 0.70F - 0.54F * clouds;
     return glm::smoothstep(from, from + 0.30F, octaves(p));
 }
 

@@ -283,8 +283,8 @@ void FluidLookParams::visit(ParamVisitor& v) {
              -1, 1.0e5},
             absorption);
     v.value({"scattering", "1/m",
-             "how much of red, green and blue is thrown to all sides on its way (reduced); -1 = as the row of fluid.liquid says, or 0.024, "
-             "0.18, 0.25 where none is named",
+             "how much of red, green and blue is thrown to all sides on its way (reduced); -1 = as the row of fluid.liquid says, or 0.05, "
+             "0.3, 0.27 where none is named",
              -1, 1.0e5},
             scattering);
     v.value({"refractiveIndex", "", "of the fluid; 0 = as the row of fluid.liquid says, or 1.333 where none is named", 0, 3},

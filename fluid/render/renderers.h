@@ -29,16 +29,16 @@ struct ViewRow {
 const Table<ViewRow>& waterViews();
 
 struct FluidLook {
-    ColourBy colourBy = ColourBy::speed;    // points
-    float fullSpeed = 3.0F;                 // m/s: the end of the colour map
-    const FilterRow* filter = nullptr;      // of the surface's depth; null: the first row of filters()
-    float smoothing = 0.0F;                 // m, reach of the smoothing, two deviations; 0 = from the spacing
-    float smoothingRange = 0.0F;            // m, how far apart depths of one surface may be; 0 = from the spacing
-    vec3 absorption{4.5F, 1.1F, 0.5F};      // 1/m, Beer-Lambert per channel
-    vec3 scattering{0.024F, 0.18F, 0.25F};  // 1/m, reduced, per channel
-    float refractiveIndex = 1.333F;         // > 1
-    WaterView view = WaterView::water;      // screen_space
-    bool fast = false;                      // half the resolution for the surface, no reflection of the picture in itself
+    ColourBy colourBy = ColourBy::speed;   // points
+    float fullSpeed = 3.0F;                // m/s: the end of the colour map
+    const FilterRow* filter = nullptr;     // of the surface's depth; null: the first row of filters()
+    float smoothing = 0.0F;                // m, reach of the smoothing, two deviations; 0 = from the spacing
+    float smoothingRange = 0.0F;           // m, how far apart depths of one surface may be; 0 = from the spacing
+    vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
+    vec3 scattering{0.05F, 0.30F, 0.27F};  // 1/m, reduced, per channel
+    float refractiveIndex = 1.333F;        // > 1
+    WaterView view = WaterView::water;     // screen_space
+    bool fast = false;                     // half the resolution for the surface, no reflection of the picture in itself
 };
 
 // A filter's passes: each, and the one that ends it.

@@ -191,9 +191,9 @@ TEST_F(LookScenes, aMadeSkyIsBrightestAboutTheSunAndCloudsCoverIt) {
 }
 
 TEST_F(LookScenes, goldenGlass) { compareScene("glass", 0.9, {"fluid.spacing=0.0036"}, 1.0); }
-TEST_F(LookScenes, goldenFountain) { compareScene("fountain", 0.5, {"fluid.spacing=0.018"}, 1.5); }
-TEST_F(LookScenes, goldenCove) { compareScene("cove", 1.2, {"fluid.spacing=0.11"}, 1.5); }
-TEST_F(LookScenes, goldenSplashCrown) { compareScene("splash_crown", 0.012, {"fluid.spacing=0.0007", "timeScale=0.05"}, 1.5); }
+TEST_F(LookScenes, goldenFountain) { compareScene("fountain", 0.5, {"fluid.spacing=0.018"}, 0.4); }
+TEST_F(LookScenes, goldenCove) { compareScene("cove", 0.7, {"fluid.spacing=0.09"}, 0.4); }
+TEST_F(LookScenes, goldenSplashCrown) { compareScene("splash_crown", 0.012, {"fluid.spacing=0.0007", "timeScale=0.05"}, 0.8); }
 
 }  // namespace
 }  // namespace rivulet

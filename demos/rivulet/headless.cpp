@@ -106,7 +106,7 @@ struct Loop {
             });
         for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
             Clock::time_point start = Clock::now();
-            double simulateMs = session.step(1.0 / kFramesPerSecond, true), renderMs = 0;
+            double simulateMs = session.step(frameSeconds(options.scene), true), renderMs = 0;
             std::vector<PassTime> drawn;
             if (options.render && (to.writer || kept.contains(f))) {
                 Clock::time_point before = Clock::now();
@@ -164,7 +164,7 @@ int runHeadless(const RunOptions& options) {
     if (!to) return report(to.error());
 
     const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
-    int frames = options.frames.value_or(static_cast<int>(std::lround(left * kFramesPerSecond)));
+    int frames = options.frames.value_or(static_cast<int>(std::lround(left / frameSeconds(options.scene))));
     if (!options.stills.empty() && !options.frames) frames = *options.stills.rbegin() + 1;
     Loop loop{options, graceful, **session,
               *to,     painter,  RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};

@@ -48,12 +48,13 @@ int exportAs(const ExportRequest& request, SceneFile scene) {
 
     const Graceful graceful;
     const int every = request.every.value_or(1);
-    const auto frames = static_cast<int>(std::lround(request.seconds.value_or((*session)->scene().duration) * kFramesPerSecond));
+    const auto frames =
+        static_cast<int>(std::lround(request.seconds.value_or((*session)->scene().duration) / frameSeconds((*session)->scene())));
     size_t files = 0, triangles = 0;
     int dry = 0;
     Progress progress((*session)->scene().name);
     for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
-        (*session)->step(1.0 / kFramesPerSecond, true);
+        (*session)->step(frameSeconds((*session)->scene()), true);
         progress.show(static_cast<double>(f + 1) / frames, fmt::format("{:.2f} s", (*session)->world().time()));
         if (f % every != 0) continue;
         const HostParticles particles = readParticles((*session)->world());
@@ -90,7 +91,7 @@ int exportVerb(const Arguments& arguments) {
     reader.footer("Surfaces:" + formats);
     reader.positional("SCENE.json", "the scene", request.scene, true);
     reader.option("--surface", "FORMAT", fmt::format("{}", fmt::join(meshFormats().names(), " or ")), request.surface);
-    reader.option("--every", "N", "a mesh every so many frames, 60 a simulated second; default: 1", request.every, 1, kMostEvery);
+    reader.option("--every", "N", "a mesh every so many frames, 60 a second that is shown; default: 1", request.every, 1, kMostEvery);
     reader.option("--seconds", "S", "how long, simulated; default: the scene's duration", request.seconds, 0,
                   static_cast<double>(kMostFrames) / kFramesPerSecond);
     reader.option("--cells", "N", "cells along a particle spacing: how fine the mesh is; default: 2", request.cells, 1,

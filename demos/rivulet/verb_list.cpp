@@ -31,8 +31,9 @@ void scenes() {
 void liquidRows() {
     for (const LiquidRow& l : liquids().rows) {
         row(l.name, l.doc);
-        fmt::print("{:<18}{} kg/m^3, {} Pa s, {} N/m, absorbs {}, {}, {} 1/m, refracts {}\n", "", l.density, l.viscosity, l.surfaceTension,
-                   l.absorption.x, l.absorption.y, l.absorption.z, l.refractiveIndex);
+        fmt::print("{:<18}{} kg/m^3, {} Pa s, {} N/m, absorbs {}, {}, {} 1/m, scatters {:.2g}, {:.2g}, {:.2g} 1/m, refracts {}\n", "",
+                   l.density, l.viscosity, l.surfaceTension, l.absorption.x, l.absorption.y, l.absorption.z, l.scattering.x, l.scattering.y,
+                   l.scattering.z, l.refractiveIndex);
         fmt::print("{:<18}{}\n", "", l.source);
     }
 }

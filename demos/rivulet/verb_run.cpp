@@ -22,13 +22,13 @@ bool hasDisplay() {
     return given("DISPLAY") || given("WAYLAND_DISPLAY");
 }
 
-// The frame that shows the scene at a second written as `text`.
-Result<int> frameAt(const std::string& text) {
+// The frame that shows the scene at a second written as `text`; `frame`: s.
+Result<int> frameAt(const std::string& text, double frame) {
     double at = -1;
     const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), at);
-    if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0) || at * kFramesPerSecond > kMostFrames)
+    if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0) || at / frame > kMostFrames)
         return badInput(fmt::format("--still {}: give a time in seconds, 0 or more", text));
-    return static_cast<int>(std::lround(at * kFramesPerSecond));
+    return static_cast<int>(std::lround(at / frame));
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ int runVerb(const Arguments& arguments) {
     reader.option("--backend", "NAME", "what simulates: auto, cpu, gl or cl", options.backend);
     reader.flag("--headless", "no window: write a video, pictures and figures", headless);
     reader.flag("--no-render", "no pictures at all: simulate and write figures", noRender);
-    reader.option("--frames", "N", "how many frames, 60 a simulated second", options.frames, 0, kMostFrames);
+    reader.option("--frames", "N", "how many frames, 60 a second that is shown", options.frames, 0, kMostFrames);
     reader.option("--seconds", "S", "how long, simulated; headless default: the scene's duration", seconds, 0,
                   static_cast<double>(kMostFrames) / kFramesPerSecond);
     reader.exclude("--seconds", "--frames");
@@ -98,14 +98,13 @@ int runVerb(const Arguments& arguments) {
         return report(badInput("--video asks for pictures and --no-render for none; leave one of them out"));
 
     if (noRender && !stills.empty()) return report(badInput("--still asks for pictures and --no-render for none; leave one of them out"));
+    Result<SceneFile> loaded = loadScene(scene, assignments, preset);
+    if (!loaded) return report(loaded.error());
     for (const std::string& still : stills) {
-        Result<int> frame = frameAt(still);
+        Result<int> frame = frameAt(still, frameSeconds(*loaded));
         if (!frame) return report(frame.error());
         options.stills.insert(*frame);
     }
-
-    Result<SceneFile> loaded = loadScene(scene, assignments, preset);
-    if (!loaded) return report(loaded.error());
     if (loaded->budget.frameMs > 0 && (!options.save.empty() || !options.resume.empty()))
         return report(
             badInput("a budget picks anew at each start, and what is saved would not fit: --set budget.frameMs=0, and the method and "
@@ -114,7 +113,7 @@ int runVerb(const Arguments& arguments) {
         return report(badInput(fmt::format("a state holds no skins, and {} has some: leave --save and --resume out", loaded->name)));
     options.scene = std::move(*loaded);
     options.render = !noRender;
-    if (seconds) options.frames = static_cast<int>(std::lround(*seconds * kFramesPerSecond));
+    if (seconds) options.frames = static_cast<int>(std::min(std::lround(*seconds / frameSeconds(options.scene)), long{kMostFrames}));
     options.log = stderrLog();
 
     if (!headless && !noRender && !hasDisplay()) {

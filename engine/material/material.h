@@ -37,7 +37,10 @@ struct Material {
     float metallic = 0.0F;
 
     float opacity = 1.0F;                            // where blended: of what is matte; gloss stays
+    float grain = 0.0F;                              // of stone or sand: how rough and how mottled, 0..1
+    float grainSize = 0.1F;                          // m, of its largest spots
     bool blended = false;                            // drawn over what is opaque, farthest first
+    bool clear = false;                              // and each face mirrors: a glass, baseColour and opacity say what a wall lets through
     float cutoff = 0.0F;                             // alpha below which there is nothing
     float strand = 0.0F;                             // of blended ribbons: share of u, about its middle, that is a hair; 0: no ribbons
     bool doubleSided = true;                         // or seen from outside only

@@ -7,7 +7,7 @@
 namespace rivulet {
 namespace {
 
-constexpr int kWidth = 256, kHeight = 128;
+constexpr int kNarrowest = 256, kWidest = 1024;
 
 struct Picture {
     int width = 0, height = 0;
@@ -85,10 +85,12 @@ std::array<vec4, 9> matteLight(const HdrImage& from) {
 }
 
 Result<gpu::Texture> makeEnvironmentMap(const HdrImage& from) {
-    Result<gpu::Texture> map = gpu::Texture::create({.width = kWidth, .height = kHeight, .format = gpu::Format::rgba16f, .mips = 0});
+    int width = kNarrowest;
+    while (2 * width <= std::min(from.width, kWidest)) width *= 2;
+    Result<gpu::Texture> map = gpu::Texture::create({.width = width, .height = width / 2, .format = gpu::Format::rgba16f, .mips = 0});
     if (!map) return map;
     map->setSampling({.wrap = gpu::Wrap::repeat});
-    Picture level = shrunk({from.width, from.height, from.texels}, kWidth, kHeight);
+    Picture level = shrunk({from.width, from.height, from.texels}, width, width / 2);
     for (int mip = 0; mip < map->desc().mips; ++mip) {
         if (mip > 0) level = shrunk(blurred(level), map->width(mip), map->height(mip));
         std::vector<vec4> texels;

@@ -12,7 +12,8 @@ namespace rivulet {
 // Hanrahan 2001). By normal n: 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2.
 std::array<vec4, 9> matteLight(const HdrImage& surroundings);
 
-// 256 x 128, rgba16f: each mip is blurred by about its own texel, so that roughness picks one. Error (failed): out of GPU memory.
+// 256 x 128, or as wide as the picture up to 1024, rgba16f: each mip is blurred by about its own texel, so that roughness picks one. Error
+// (failed): out of GPU memory.
 Result<gpu::Texture> makeEnvironmentMap(const HdrImage& surroundings);
 
 }  // namespace rivulet

@@ -127,9 +127,9 @@ void placeSoftboxes(FrameParams& f) {
 
 }  // namespace
 
-std::array<Program*, 15> RenderPrograms::all() {
-    return {&shadow, &shadowFirst, &shadowHalve, &shadowBlur, &depth,        &floorDepth, &occlusion, &occlusionBlur,
-            &sky,    &floor,       &mesh,        &box,        &boxOverWater, &tonemap,    &antialias};
+std::array<Program*, 16> RenderPrograms::all() {
+    return {&shadow, &shadowFirst, &shadowHalve, &shadowBlur, &depth, &floorDepth,   &occlusion, &occlusionBlur,
+            &sky,    &floor,       &mesh,        &glass,      &box,   &boxOverWater, &tonemap,   &antialias};
 }
 
 Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
@@ -148,6 +148,7 @@ Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
         {&p.sky, Program::create(files, {full, folder + "background.frag"})},
         {&p.floor, Program::create(files, {full, folder + "background.frag"}, {{"FLOOR", "1"}})},
         {&p.mesh, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/mesh.frag"})},
+        {&p.glass, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/glass.frag"})},
         {&p.box, Program::create(files, {box, folder + "box.frag"})},
         {&p.boxOverWater, Program::create(files, {box, folder + "box.frag"}, {{"OVER_WATER", "1"}})},
         {&p.tonemap, Program::create(files, {full, folder + "tonemap.frag"})},
@@ -187,7 +188,9 @@ Result<Program*> RenderPrograms::part(const Material& material, bool layered, bo
     return &parts_.emplace(key, std::move(*made)).first->second;
 }
 
-bool isPart(const Material& m) { return m.skin || m.eye || m.blended || m.cutoff > 0 || !m.doubleSided || !imagesOf(m).empty(); }
+bool isPart(const Material& m) {
+    return !m.clear && (m.skin || m.eye || m.blended || m.cutoff > 0 || !m.doubleSided || !imagesOf(m).empty());
+}
 
 FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds& meshes, const Bounds& water) {
     FrameParams f{};
@@ -396,13 +399,50 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
                    glDepthFunc(GL_LEQUAL);
                    bindPlain(programs.mesh, c, occlusion, light);
                    for (const DrawnMesh& m : drawn) {
-                       if (m.part != nullptr) continue;
+                       if (m.part != nullptr || m.material.clear) continue;
                        setPlace(programs.mesh, m);
+                       programs.mesh.set("grain", vec2(m.material.grain, m.material.grainSize));
                        m.mesh->draw();
                    }
                    drawParts(c, drawn, view.cameraPosWorld, occlusion, light, colour, behind);
                });
     return colour;
+}
+
+void addGlass(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, std::vector<DrawnMesh> meshes, TextureHandle colour,
+              TextureHandle depth, const LightMaps& light, GlassSide side, TextureHandle fluidDepth) {
+    std::erase_if(meshes, [](const DrawnMesh& m) { return !m.material.clear; });
+    if (meshes.empty()) return;
+    std::vector<gpu::Read> reads = {{frame, Usage::uniform}, {depth, Usage::target}, light.sharp, light.soft, light.water};
+    if (side != GlassSide::all) reads.emplace_back(fluidDepth);
+    graph.pass("glass", reads, {colour}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
+        c.drawTo({colour}, depth);
+        bindFrame(c, frame);
+        Program& p = programs.glass;
+        p.use();
+        p.set("side", static_cast<int>(side));
+        bindLight(p, c, light, 1);
+        if (side != GlassSide::all) p.texture("fluidDepth", 0, c.texture(fluidDepth));
+        glEnable(GL_DEPTH_TEST);
+        glDepthMask(GL_FALSE);
+        glDepthFunc(GL_LEQUAL);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_SRC1_COLOR);
+        glEnable(GL_CULL_FACE);
+        for (const DrawnMesh& m : drawn) {
+            setPlace(p, m);
+            p.set("opacity", m.material.opacity);
+            glFrontFace(glm::determinant(mat3(m.toWorld)) < 0 ? GL_CW : GL_CCW);
+            for (const GLenum hidden : {GL_FRONT, GL_BACK}) {  // far sides first
+                glCullFace(hidden);
+                m.mesh->draw();
+            }
+        }
+        glCullFace(GL_BACK);
+        glDisable(GL_CULL_FACE);
+        glFrontFace(GL_CCW);
+        glDisable(GL_BLEND);
+    });
 }
 
 void addBox(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const Bounds& box, TextureHandle colour, TextureHandle depth,

@@ -20,7 +20,7 @@ namespace rivulet {
 
 // The programs of all passes; a failed reload keeps the last good ones.
 struct RenderPrograms {
-    gpu::Program shadow, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh, box,
+    gpu::Program shadow, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh, glass, box,
         boxOverWater, tonemap, antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
     Status reload();
@@ -30,7 +30,7 @@ struct RenderPrograms {
     Result<gpu::Program*> part(const Material& material, bool layered, bool water);
 
   private:
-    std::array<gpu::Program*, 15> all();
+    std::array<gpu::Program*, 16> all();
     ShaderFiles files_;
     std::map<unsigned, gpu::Program> parts_;
 };
@@ -83,6 +83,12 @@ gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs
 gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                              std::vector<DrawnMesh> meshes, gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light,
                              bool floor = true);
+// What is clear among the meshes, drawn into `colour`: each face mirrors and dims what is behind it. `side`: of the water, whose depth is
+// `fluidDepth` (m, r32f; 1e6 where there is none, and there all is behind); all: there is no water, and fluidDepth may be empty.
+enum class GlassSide { all, behind, before };
+void addGlass(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, std::vector<DrawnMesh> meshes,
+              gpu::TextureHandle colour, gpu::TextureHandle depth, const LightMaps& light, GlassSide side,
+              gpu::TextureHandle fluidDepth = {});
 // The edges of a box, drawn into `colour`. With `fluidDepth` (m, r32f): only those in front of the water.
 void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour,
             gpu::TextureHandle depth, gpu::TextureHandle fluidDepth = {});

@@ -171,6 +171,12 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.group({.name = "wave", .doc = "a wave that bends a mesh"}, wave);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
+    v.value({"metallic", "", "0 = stone or paint, 1 = metal", 0, 1}, metallic);
+    v.value(
+        {"opacity", "", "1 = what is behind it is hidden; less: glass, whose wall takes this share of the light and tints the rest", 0, 1},
+        opacity);
+    v.value({"grain", "", "0 = smooth and of one colour, 1 = coarse, mottled stone", 0, 1}, grain);
+    v.value({"grainSize", "m", "of the grain's largest spots; there are finer ones in them", 1.0e-4, kFar, kLog}, grainSize);
     v.value({.name = "visible", .doc = "whether it is drawn; it is solid either way"}, visible);
 }
 
@@ -229,12 +235,16 @@ void BackgroundParams::visit(ParamVisitor& v) {
     v.value({"floorHeight", "m", "height of the ground", -kFar, kFar}, floorHeight);
     v.value({.name = "showFloor", .doc = "whether the ground is drawn"}, showFloor);
     v.value({.name = "showBox", .doc = "whether the edges of the fluid's box are drawn"}, showBox);
-    v.value(
-        {.name = "surroundings",
-         .doc =
-             "equirectangular picture (.hdr) that lights the scene and is seen behind it, found as a mesh is; none = sky and studio lamps",
-         .fixed = kFixed},
-        surroundings);
+    static const std::vector<std::string> skies = {"studio", "clouds"};
+    v.choice({.name = "sky",
+              .doc = "a gradient and lamps, or the sun's glow and clouds outdoors, made when the scene is loaded",
+              .fixed = kFixed},
+             sky, skies);
+    v.value({"clouds", "", "share of the sky that they cover", 0, 1, kLinear, kFixed}, clouds);
+    v.value({.name = "surroundings",
+             .doc = "equirectangular picture (.hdr) that lights the scene and is seen behind it, found as a mesh is; none = as sky says",
+             .fixed = kFixed},
+            surroundings);
     v.value({"surroundingsLevel", "", "factor on its light", 0, 1000, kLinear, kFixed}, surroundingsLevel);
 }
 
@@ -272,6 +282,11 @@ void FluidLookParams::visit(ParamVisitor& v) {
              "none is named",
              -1, 1.0e5},
             absorption);
+    v.value({"scattering", "1/m",
+             "how much of red, green and blue is thrown to all sides on its way (reduced); -1 = as the row of fluid.liquid says, or 0.05, "
+             "0.3, 0.27 where none is named",
+             -1, 1.0e5},
+            scattering);
     v.value({"refractiveIndex", "", "of the fluid; 0 = as the row of fluid.liquid says, or 1.333 where none is named", 0, 3},
             refractiveIndex);
 }
@@ -289,6 +304,7 @@ void SceneFile::visit(ParamVisitor& v) {
     v.value({.name = "name", .doc = "what outputs are called after"}, name);
     v.value({.name = "doc", .doc = "one sentence on what is to be seen"}, doc);
     v.value({"duration", "s", "simulated time of a run that is given no other", 0, 3600}, duration);
+    v.value({"timeScale", "", "simulated seconds in a second that is shown: 0.1 = ten times slower than life", 1.0e-4, 1, kLog}, timeScale);
     v.group({.name = "fluid", .doc = "what flows, and how it is simulated"}, fluid);
     v.list({.name = "colliders", .doc = "what is solid", .fixed = kFixed}, colliders);
     v.list({.name = "emitters", .doc = "where fluid comes in"}, emitters);

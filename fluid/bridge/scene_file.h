@@ -59,6 +59,10 @@ struct ColliderParams {
     ColliderWave wave;
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
+    float metallic = 0.0F;
+    float opacity = 1.0F;    // less than 1: glass
+    float grain = 0.0F;      // 0 = smooth and of one colour, 1 = coarse stone
+    float grainSize = 0.1F;  // m
     bool visible = true;
     void visit(ParamVisitor& v);
 };
@@ -118,6 +122,8 @@ struct BackgroundParams {
     float floorHeight = 0.0F;         // m
     bool showFloor = true;
     bool showBox = true;             // edges of the fluid's box
+    std::string sky = "studio";      // studio | clouds: what there is where no picture surrounds the scene
+    float clouds = 0.5F;             // share of such a sky that they cover
     std::string surroundings;        // an equirectangular picture (.hdr) instead of the studio; "" = none
     float surroundingsLevel = 1.0F;  // factor on it
     void visit(ParamVisitor& v);
@@ -136,6 +142,7 @@ struct FluidLookParams {
     float smoothing = 0.0F;                 // m, reach of the smoothing, two deviations; 0 = from the spacing
     float smoothingRange = 0.0F;            // m, how far apart depths of one surface may be; 0 = from the spacing
     vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = as the liquid's
+    vec3 scattering{-1.0F};                 // 1/m, reduced, per channel; -1 = as the liquid's
     float refractiveIndex = 0.0F;           // 0 = as the liquid's
     void visit(ParamVisitor& v);
 };
@@ -151,7 +158,8 @@ struct BudgetParams {
 struct SceneFile {
     std::string name = "unnamed";
     std::string doc;
-    float duration = 5.0F;  // s
+    float duration = 5.0F;   // s
+    float timeScale = 1.0F;  // simulated seconds in a second of what is shown; less than 1: slow motion
     FluidParams fluid;
     std::vector<ColliderParams> colliders;
     std::vector<EmitterParams> emitters;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/render/made_sky.h"
 #include "engine/scene/light.h"
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
@@ -89,14 +90,23 @@ Result<FluidLook> fluidLookOf(const SceneFile& scene) {
     if (!own && liquid != nullptr) look.absorption = liquid->absorption;
     if (scene.look.refractiveIndex > 0 || liquid != nullptr)
         look.refractiveIndex = scene.look.refractiveIndex > 0 ? scene.look.refractiveIndex : liquid->refractiveIndex;
-    // What a liquid absorbs least it throws back most; the default is that of the default absorption.
-    const float most = std::max({look.absorption.x, look.absorption.y, look.absorption.z, 1.0e-6F});
-    if (liquid != nullptr) look.scatter = 0.1F * glm::exp(-2.0F * look.absorption / most);
+    if (glm::all(glm::greaterThanEqual(scene.look.scattering, vec3(0.0F))))
+        look.scattering = scene.look.scattering;
+    else if (liquid != nullptr)
+        look.scattering = liquid->scattering;
     return look;
 }
 
 Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene) {
-    if (scene.background.surroundings.empty()) return std::optional<HdrImage>();
+    const BackgroundParams& background = scene.background;
+    if (background.surroundings.empty() && background.sky == "studio") return std::optional<HdrImage>();
+    if (background.surroundings.empty())
+        return std::optional(makeSky({.sun = glm::normalize(scene.light.direction),
+                                      .sunlight = scene.light.colour * scene.light.intensity,
+                                      .horizon = background.horizon,
+                                      .zenith = background.zenith,
+                                      .ground = background.floor,
+                                      .clouds = background.clouds}));
     Result<std::string> path = findAsset(scene.background.surroundings, scene.folder);
     if (!path) return path.error();
     Result<HdrImage> image = loadHdr(*path);
@@ -333,7 +343,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     gpu::FrameGraph graph(pool_);
     const gpu::BufferHandle frame = graph.importBuffer("frame", frame_.name(), frame_.bytes());
     const gpu::TextureHandle nothing = graph.importTexture("nothing", nothing_);
-    LightMaps light{nothing, nothing, nothing, look->absorption};
+    LightMaps light{nothing, nothing, nothing, look->absorption + look->scattering};
     if (!meshes.empty()) addShadows(graph, meshes, params.shadowProjection, scene, light);
     FluidDraw draw;
     draw.view = view;
@@ -364,6 +374,10 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.waterLight = light.water;
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
+    const auto glass = [&](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth, GlassSide side) {
+        addGlass(graph, render_, frame, meshes, colour, draw.depth, light, fluidDepth ? side : GlassSide::all, fluidDepth);
+    };
+    draw.behind = [&](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth) { glass(colour, fluidDepth, GlassSide::behind); };
     FluidDraw second = draw;
     if (other != nullptr) {
         second.colour = addCopy(graph, draw.colour);
@@ -372,10 +386,12 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     FluidLayers layers = row->add(graph, fluid_, draw);
     addFoam(graph, fluid_, draw, layers);
     addDrops(graph, fluid_, draw, layers);
+    glass(layers.colour, layers.fluidDepth, GlassSide::before);
     if (other != nullptr) {
         const FluidLayers right = other->add(graph, fluid_, second);
         addFoam(graph, fluid_, second, right);
         addDrops(graph, fluid_, second, right);
+        glass(right.colour, right.fluidDepth, GlassSide::before);
         addRightHalf(graph, right.colour, layers.colour);
     }
     if (background.showBox && (row->opaque || layers.fluidDepth))

@@ -75,6 +75,17 @@ Error about(const Error& error, size_t collider, const ColliderParams& params) {
     return {fmt::format("colliders[{}] ({}): {}", collider, params.mesh, error.message), error.fault};
 }
 
+void dress(Node& node, const ColliderParams& collider) {
+    node.material.baseColour = collider.colour;
+    node.material.roughness = collider.roughness;
+    node.material.metallic = collider.metallic;
+    node.material.opacity = collider.opacity;
+    node.material.grain = collider.grain;
+    node.material.grainSize = collider.grainSize;
+    node.material.clear = node.material.blended = collider.opacity < 1;
+    node.visible = collider.visible;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, const Log& log) {
@@ -130,9 +141,7 @@ Status Session::importColliders() {
         Node node;
         node.name = collider.mesh;
         node.mesh = std::make_shared<const Mesh>(meshes_.back());
-        node.material.baseColour = collider.colour;
-        node.material.roughness = collider.roughness;
-        node.visible = collider.visible;
+        dress(node, collider);
         solids_.add(std::move(node));
     }
     return ok();
@@ -331,9 +340,7 @@ void Session::apply(const SceneFile& scene) {
         if (colliderOf_[m] >= scene_.colliders.size()) continue;
         const ColliderParams& collider = scene_.colliders[colliderOf_[m]];
         Node& node = solids_.nodes()[m];
-        node.material.baseColour = collider.colour;
-        node.material.roughness = collider.roughness;
-        node.visible = collider.visible;
+        dress(node, collider);
     }
     for (size_t k = 0; k < bodyNodes_.size() && k < scene_.bodies.size(); ++k) {
         Node& node = solids_.nodes()[bodyNodes_[k]];

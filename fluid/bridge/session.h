@@ -18,7 +18,9 @@
 
 namespace rivulet {
 
-inline constexpr int kFramesPerSecond = 60;  // of simulated time
+inline constexpr int kFramesPerSecond = 60;  // of simulated time, where a scene is not in slow motion
+// Simulated time from picture to picture, s.
+inline double frameSeconds(const SceneFile& scene) { return double{scene.timeScale} / kFramesPerSecond; }
 
 // The voxels of a scene's meshes. Pointers hold as long as the session.
 struct SolidFields {

@@ -231,7 +231,8 @@ void Viewer::takeEdits(bool recreate) {
 }
 
 void Viewer::step(double seconds) {
-    constexpr double kStep = 1.0 / kFramesPerSecond;
+    constexpr double kStep = 1.0 / kFramesPerSecond;  // on the wall
+    const double simulated = session_->scene().timeScale;
     waiting_ = std::min(waiting_ + std::max(seconds, 0.0), 2 * kStep);
     bool due = waiting_ >= kStep;
     if (due) waiting_ -= kStep;
@@ -243,7 +244,7 @@ void Viewer::step(double seconds) {
     }
     if ((paused_ || !due) && !stepOnce_) return;
     stepOnce_ = false;
-    double ms = session_->step(fixed ? seconds : kStep, false, deviceMs_);
+    double ms = session_->step(simulated * (fixed ? seconds : kStep), false, deviceMs_);
     ++steps_;
     if (const int repicked = session_->budget() ? session_->budget()->repicked() : 0; repicked != repicked_) {
         repicked_ = repicked;

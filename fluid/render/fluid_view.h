@@ -14,8 +14,8 @@ struct FluidView {
     unsigned position = 0;  // GL buffer name, vec4: xyz m, w = density / rest density; negative: not drawn
     unsigned velocity = 0;  // GL buffer name, vec4: xyz m/s; coloured by normal or surface: normals, w their length
     unsigned id = 0;        // GL buffer name, uint
-    // GL buffer name, vec4: xyz what red, green and blue fade by in its liquid and dye, 1/m; w how much of FluidLook::absorption is to be
-    // added. 0: all particles are alike.
+    // GL buffer name, vec4: xyz what red, green and blue fade by in its liquid and dye, w what is scattered there, 1/m, on top of
+    // FluidLook's; w < 0: instead of FluidLook's, and -1 - w is scattered. 0: all particles are alike.
     unsigned absorption = 0;
     // GL buffer names, vec4 each, of the ellipsoids about the particles, as shaders/fluid/ellipsoids.kernel writes them: centre, spread,
     // slant. 0: they are drawn as spheres.

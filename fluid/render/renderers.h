@@ -35,7 +35,7 @@ struct FluidLook {
     float smoothing = 0.0F;                // m, reach of the smoothing, two deviations; 0 = from the spacing
     float smoothingRange = 0.0F;           // m, how far apart depths of one surface may be; 0 = from the spacing
     vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
-    vec3 scatter{0.008F, 0.060F, 0.085F};  // what deep water throws back
+    vec3 scattering{0.05F, 0.30F, 0.27F};  // 1/m, reduced, per channel
     float refractiveIndex = 1.333F;        // > 1
     WaterView view = WaterView::water;     // screen_space
     bool fast = false;                     // half the resolution for the surface, no reflection of the picture in itself
@@ -81,6 +81,8 @@ struct FluidDraw {
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
+    // Draws what is clear and lies behind the water into `colour`, before the water is; `fluidDepth` as FluidLayers has it.
+    std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
     // Of a renderer that takes its time: the share that is done; false: it need not go on.
     std::function<bool(double)> progress = [](double) { return true; };
 };

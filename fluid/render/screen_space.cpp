@@ -113,7 +113,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         glBlendFunc(GL_ONE, GL_ONE);
         Program& p = ink ? programs.splats(d.fluid).thicknessInk : programs.splats(d.fluid).thickness;
         p.use();
-        if (ink) p.set("ownAbsorption", d.look.absorption);
+        if (ink) p.set("ownAbsorption", vec4(d.look.absorption, d.look.scattering.y));
         p.set("radius", d.fluid.radius);
         p.set("spacing", d.fluid.spacing);
         p.set("scale", kThicknessScale);
@@ -171,6 +171,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
 
 FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const WaterSurface& water) {
     const bool ink = d.fluid.absorption != 0;
+    d.behind(d.colour, water.depth);
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
     graph.pass("copy scene", {{d.colour, Usage::copy}}, {{colour, Usage::copy}}, [=](PassContext& c) {
         const gpu::Texture &from = c.texture(d.colour), &to = c.texture(colour);
@@ -198,10 +199,10 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
         p.texture("waterLight", 6, c.texture(d.waterLight));
-        p.set("waterAbsorption", d.look.absorption);
+        p.set("waterAbsorption", d.look.absorption + d.look.scattering);
         p.set("radius", d.fluid.radius);
         if (!ink) p.set("absorption", d.look.absorption);
-        if (!ink) p.set("scatter", d.look.scatter);
+        if (!ink) p.set("scattering", d.look.scattering);
         p.set("refractiveIndex", d.look.refractiveIndex);
         p.set("mirrorSteps", d.look.fast ? 0 : 10);
         programs.drawTiles(p, c.texture(water.tiles), 7);

@@ -32,11 +32,14 @@ void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to
     const vec3 first = b.min + 0.5F * (b.max - b.min - lattice) + vec3(0.5F * spacing);
     const vec3 last = first + lattice - vec3(spacing);
     to.reserve(to.size() + static_cast<size_t>(blockCount(b, spacing)));
+    const bool ball = b.shape == "ball";
+    const vec3 middle = 0.5F * (b.min + b.max), half = 0.5F * (b.max - b.min);
     uint32_t place = 0;
     for (int z = 0; z < nz; ++z)
         for (int y = 0; y < ny; ++y)
             for (int x = 0; x < nx; ++x, ++place) {
                 vec3 at = first + vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * spacing;
+                if (ball && glm::length((at - middle) / half) > 1) continue;
                 if (b.jitter > 0)
                     at = glm::clamp(at + b.jitter * spacing * vec3(strewn(place, 0), strewn(place, 1), strewn(place, 2)), first, last);
                 to.push_back({at, b.velocity});

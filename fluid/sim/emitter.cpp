@@ -61,6 +61,9 @@ void EmitterParams::visit(ParamVisitor& v) {
     v.value({.name = "liquid", .doc = "what comes in, a row of rivulet list liquids; empty = as fluid.liquid", .fixed = kFixed}, liquid);
     v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
     v.value({"dyeAmount", "1/m", "how much dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed}, dyeAmount);
+    v.value(
+        {"dyeScattering", "1/m", "how cloudy the dye makes it, on top: milk scatters about 3000; 0 = clear as ink", 0, 1.0e4, kLog, kFixed},
+        dyeScattering);
 }
 
 void SinkParams::visit(ParamVisitor& v) {

@@ -28,6 +28,7 @@ struct EmitterParams {
     std::string liquid = {};            // a row of liquids(); "" = the world's
     vec3 dye{1.0F};                     // linear; white = none
     float dyeAmount = 20.0F;            // 1/m
+    float dyeScattering = 0.0F;         // 1/m
     void visit(ParamVisitor& v);
 };
 

@@ -13,16 +13,25 @@ constexpr bool kFixed = true;                 // until the scene is loaded anew
 }  // namespace
 
 void BlockParams::visit(ParamVisitor& v) {
+    static const std::vector<std::string> shapes = {"box", "ball"};
+    v.choice({.name = "shape", .doc = "all between min and max, or the ellipsoid that fits there", .fixed = kFixed}, shape, shapes);
     v.value({"min", "m", "low corner", -kFar, kFar, kLinear, kFixed}, min);
     v.value({"max", "m", "high corner", -kFar, kFar, kLinear, kFixed}, max);
     v.value({"velocity", "m/s", "at the start", -kFast, kFast, kLinear, kFixed}, velocity);
     v.value({.name = "liquid", .doc = "what it is of, a row of rivulet list liquids; empty = as fluid.liquid", .fixed = kFixed}, liquid);
     v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
     v.value({"dyeAmount", "1/m", "how much dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed}, dyeAmount);
+    v.value(
+        {"dyeScattering", "1/m", "how cloudy the dye makes it, on top: milk scatters about 3000; 0 = clear as ink", 0, 1.0e4, kLog, kFixed},
+        dyeScattering);
     v.value({"jitter", "spacings",
              "how far particles may stand off their lattice at the start: a perfect one resists shear like a crystal until it is stirred",
              0, 0.5, kLinear, kFixed},
             jitter);
+    v.value({.name = "cut",
+             .doc = "whether it is meant to reach into solids, which cut it to shape; else a notice counts what they leave out",
+             .fixed = kFixed},
+            cut);
 }
 
 void BoxParams::visit(ParamVisitor& v) {

@@ -8,14 +8,17 @@
 
 namespace rivulet {
 
-// A box of particles at rest spacing, present at t = 0.
+// A body of particles at rest spacing, present at t = 0.
 struct BlockParams {
     vec3 min{0.0F}, max{0.0F};
     vec3 velocity{0.0F};
-    std::string liquid = {};  // a row of liquids(); "" = the world's
-    vec3 dye{1.0F};           // linear; white = none
-    float dyeAmount = 20.0F;  // 1/m
-    float jitter = 0.0F;      // spacings that a particle may stand off its place in the lattice, along each axis
+    std::string liquid = {};     // a row of liquids(); "" = the world's
+    vec3 dye{1.0F};              // linear; white = none
+    float dyeAmount = 20.0F;     // 1/m
+    float dyeScattering = 0.0F;  // 1/m
+    float jitter = 0.0F;         // spacings that a particle may stand off its place in the lattice, along each axis
+    std::string shape = "box";   // box | ball: the ellipsoid between min and max
+    bool cut = false;            // solids cut it to shape, and nothing is said of what they leave out
     void visit(ParamVisitor& v);
 };
 

@@ -128,8 +128,11 @@ void FluidWorld::Impl::fillStart() {
         fillBlock(params.blocks[k], params.spacing, start);
         for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
     }
-    const size_t left = std::erase_if(start, [&](const NewParticle& p) {
-        return !solids.mayBeBorn(p.position, params.spacing) || !bodies.mayBeBorn(p.position, params.spacing);
+    size_t left = 0;
+    std::erase_if(start, [&](const NewParticle& p) {
+        const bool may = solids.mayBeBorn(p.position, params.spacing) && bodies.mayBeBorn(p.position, params.spacing);
+        if (!may && !params.blocks[p.block].cut) ++left;
+        return !may;
     });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }
@@ -155,14 +158,14 @@ Status FluidWorld::Impl::findSlots() {
 // Whether particles differ, in what they are or in what they look like.
 void FluidWorld::Impl::findLiquids() {
     std::vector<LiquidOf> all = {liquidOf(params, "")};
-    const auto add = [&](const std::string& name, const vec3& dye, float amount) {
+    const auto add = [&](const std::string& name, const vec3& dye, float amount, float scattering) {
         if (liquids().find(name) == nullptr && !name.empty()) return;  // said when sources are made
         all.push_back(liquidOf(params, name));
         if (all.back().row != 0) traits.matter = coloured = true;
-        if (dye != vec3(1.0F) && amount > 0) coloured = true;
+        if ((dye != vec3(1.0F) && amount > 0) || scattering > 0) coloured = true;
     };
-    for (const BlockParams& b : params.blocks) add(b.liquid, b.dye, b.dyeAmount);
-    for (const Emitter& e : asked.emitters) add(e.params.liquid, e.params.dye, e.params.dyeAmount);
+    for (const BlockParams& b : params.blocks) add(b.liquid, b.dye, b.dyeAmount, b.dyeScattering);
+    for (const Emitter& e : asked.emitters) add(e.params.liquid, e.params.dye, e.params.dyeAmount, e.params.dyeScattering);
     // A pair has the harmonic mean of the two.
     mostViscous = 0;
     for (const LiquidOf& a : all)
@@ -198,7 +201,7 @@ void FluidWorld::Impl::writeStart() {
         const BlockParams& b = params.blocks[p.block];
         const LiquidOf liquid = liquidOf(params, b.liquid);
         if (traits.matter) matterOf.emplace_back(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
-        if (coloured) absorptionOf.push_back(liquid.absorption + vec4(dyeAbsorption(b.dye, b.dyeAmount), 0.0F));
+        if (coloured) absorptionOf.push_back(dyed(liquid, b.dye, b.dyeAmount, b.dyeScattering));
     }
     if (traits.matter) {
         matterOf.resize(slots, vec4(1.0F, 1.0F, params.viscosity * params.restDensity, 0.0F));

@@ -15,6 +15,7 @@ struct LiquidRow {
     float viscosity;       // Pa s, dynamic
     float surfaceTension;  // N/m, against air
     vec3 absorption;       // 1/m, of red, green and blue light (620, 550 and 450 nm)
+    vec3 scattering;       // 1/m, reduced: as if it went evenly to all sides
     float refractiveIndex;
     const char* source;
 };
@@ -28,12 +29,15 @@ struct LiquidOf {
     float density;    // kg/m^3
     float viscosity;  // Pa s
     float row;        // 0: the world's own, else 1 + that in liquids()
-    vec4 absorption;  // xyz 1/m; w 1: with what the world's own absorbs, 0: instead of it
+    // xyz what it absorbs, w what it scatters beside the world's own, 1/m; w < 0: instead of the world's own, and it scatters -1 - w.
+    vec4 absorption;
 };
 LiquidOf liquidOf(const FluidParams& world, const std::string& name);
 
 // xyz what a dye adds to absorption, 1/m: after 1 / amount metres of it white light has the dye's colour. `colour` linear, 0..1; `amount`
 // 1/m.
 vec3 dyeAbsorption(const vec3& colour, float amount);
+// The same with what it scatters, 1/m, added to what a liquid does to light.
+vec4 dyed(const LiquidOf& liquid, const vec3& colour, float amount, float scattering);
 
 }  // namespace rivulet

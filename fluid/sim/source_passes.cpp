@@ -52,7 +52,7 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
         const LiquidOf liquid = liquidOf(params, e.liquid);
         EmitterFeed feed(sources.emitters[k], static_cast<uint32_t>(k), params.spacing);
         feed.matter = vec4(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
-        feed.absorption = liquid.absorption + vec4(dyeAbsorption(e.dye, e.dyeAmount), 0.0F);
+        feed.absorption = dyed(liquid, e.dye, e.dyeAmount, e.dyeScattering);
         s.feeds_.push_back(std::move(feed));
     }
     s.poured_ = sources.poured > 0;

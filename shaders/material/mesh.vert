@@ -13,6 +13,7 @@ out vec2 posUv;
 out float curvature;  // 1/m
 #else
 layout(location = 1) in vec3 normal;
+out vec3 posOwn;  // in the mesh's own frame
 #endif
 uniform mat4 toWorldMatrix;
 uniform mat3 normalMatrix;
@@ -33,6 +34,8 @@ void main() {
     vec4 around = textureLod(layerMap, uv.xy, lod);
     gl_CullDistance[0] = max(around.z, around.w) - 1.0e-6;
 #endif
+#else
+    posOwn = position;
 #endif
     gl_Position = frame.viewProjection * vec4(posWorld, 1.0);
 }

@@ -40,7 +40,8 @@ vec3 floorRadiance() {
 // Radiance from direction `dir` (world, unit) averaged over a cone; roughness 0: a mirror, 1: about the whole hemisphere.
 vec3 environment(vec3 dir, float roughness) {
 #if defined(ENVIRONMENT_MAP)
-    return surroundings(dir, log2(max(24.0 * roughness * roughness, 1.0)));  // a mip's texels are as wide as the cone
+    float fine = float(textureSize(environmentMap, 0).x) / 256.0;
+    return surroundings(dir, log2(max(24.0 * roughness * roughness, 1.0) * fine));  // a mip's texels are as wide as the cone
 #endif
     float blur = 0.03 + 0.9 * roughness * roughness;
     vec3 lifted = normalize(dir + vec3(0.0, 0.6 * roughness, 0.0));  // a wide cone at the horizon sees more of the sky's upper part

@@ -3,7 +3,7 @@
 #include "shaders/screen_space/ramp.glsl"
 layout(location = 1) in vec4 velocity;  // normal, surface: normals, w their length
 layout(location = 2) in uint id;
-layout(location = 3) in vec4 absorption;  // xyz 1/m, w share of ownAbsorption added
+layout(location = 3) in vec4 absorption;  // see FluidView
 uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye, 4 normal, 5 surface
 uniform int alike;        // 1: absorption is not given
 uniform vec3 ownAbsorption;  // 1/m
@@ -17,7 +17,7 @@ void main() {
     if (colourBy == 0) baseColour = ramp(length(velocity.xyz) / fullSpeed);
     else if (colourBy == 1) baseColour = ramp(0.5 + 5.0 * (particle.w - 1.0));  // 0.9 .. 1.1 of the rest density
     else if (colourBy == 3) {
-        vec3 a = (alike == 1 ? ownAbsorption : absorption.xyz + absorption.w * ownAbsorption) * dyeDepth;
+        vec3 a = (alike == 1 ? ownAbsorption : absorption.xyz + (absorption.w < 0.0 ? vec3(0.0) : ownAbsorption)) * dyeDepth;
         // Of what lets next to nothing through the hue is left.
         baseColour = 0.9 * exp(-(a - max(min(a.x, min(a.y, a.z)) - 1.0, 0.0)));
     }

@@ -12,9 +12,9 @@ uniform sampler2D normals;      // of the surface, view space, unit; w: m of wat
 uniform float radius;           // m
 uniform vec3 absorption;        // 1/m
 #if defined(INK)
-uniform sampler2D depths;       // what red, green and blue fade by, instead: e^-depth is left
+uniform sampler2D depths;       // what red, green and blue fade by, instead: e^-depth is left; w: by scattering
 #endif
-uniform vec3 scatter;           // what deep water throws back
+uniform vec3 scattering;        // 1/m, reduced
 uniform float refractiveIndex;
 uniform int mirrorSteps;        // of the search for what the picture's own things reflect; 0: none
 layout(location = 0) out vec4 colour;
@@ -40,6 +40,15 @@ vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
     float steep = 0.5 * (a - b) / pixel;
     turn = both ? abs(a + b + 2.0 * p.z) / (pixel * (1.0 + steep * steep)) : 0.5;
     return both ? 0.5 * (ahead + back) : da < db ? ahead : back;
+}
+
+// Light that went to all sides, and the same comes from: what a layer throws back, and in `through` what it lets through (Kubelka and Munk 1931;
+// the coefficients of a reduced scattering after Thennadil 2008). `absorbed`, `thrown`: what fades by each, e^-x of a ray being left.
+vec3 layer(vec3 absorbed, vec3 thrown, out vec3 through) {
+    vec3 k = 2.0 * absorbed, s = 0.75 * thrown, q = max(sqrt(k * (k + 2.0 * s)), 1.0e-4), e = exp(-q), t = (1.0 - e * e) / (1.0 + e * e);
+    vec3 rest = (k + s) * t + q;
+    through = 2.0 * q * e / ((1.0 + e * e) * rest);
+    return s * t / rest;
 }
 
 // Exact for unpolarised light (Fresnel 1823). `c` = cosine of the angle of incidence, from air into index n.
@@ -140,7 +149,7 @@ void main() {
     vec2 water = waterAt(gl_FragCoord.xy * frame.viewport.zw);
     float through = water.x;
 #if defined(INK)
-    vec3 fades = texture(depths, gl_FragCoord.xy * frame.viewport.zw).rgb;
+    vec4 fades = texture(depths, gl_FragCoord.xy * frame.viewport.zw);
 #endif
     vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
     vec3 back = colour.rgb;
@@ -154,7 +163,7 @@ void main() {
             back = texture(sceneColour, inside).rgb;
             through = mix(through, waterAt(inside).x, 0.5);
 #if defined(INK)
-            fades = mix(fades, texture(depths, inside).rgb, 0.5);
+            fades = mix(fades, texture(depths, inside), 0.5);
 #endif
             break;
         }
@@ -164,21 +173,25 @@ void main() {
     vec3 nWorld = directionToWorld(n), eyeWorld = directionToWorld(toEye);
     float lit = meshShadow(posWorld, nWorld);
 #if defined(INK)
-    vec3 passed = exp(-fades);
-    // Thrown back is what fades least.
-    vec3 thrown = 0.1 * exp(-2.0 * fades / max(max(fades.r, max(fades.g, fades.b)), 1.0e-6));
+    vec3 absorbed = fades.rgb, thrown = vec3(fades.w);
 #else
-    vec3 passed = exp(-absorption * through);
-    vec3 thrown = scatter;
+    vec3 absorbed = absorption * through, thrown = scattering * through;
 #endif
-    // A little of what is absorbed comes back scattered, so that deep water has a colour of its own.
-    vec3 glow = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
-    vec3 scattered = thrown * glow * (1.0 - exp(-2.5 * through));
+    vec3 passed = exp(-absorbed - thrown), diffuse;
+    vec3 returned = layer(absorbed, thrown, diffuse);
+    // A clear liquid glows with the light that comes in from above, wherever; in a cloudy one it comes out where it went in, or right behind.
+    vec3 cloudy = 1.0 - exp(-0.3 * thrown);
+    float facing = dot(nWorld, frame.lightDir.xyz);
+    vec3 above = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
+    vec3 front = ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * max(0.85 * facing + 0.15, 0.0));
+    vec3 rear = ambient(-nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * max(-facing, 0.0));
+    vec3 glow = mix(above, front, cloudy);
+    vec3 scattered = returned * glow + max(diffuse - passed, 0.0) * mix(above, rear, cloudy);
     vec3 transmitted = back * passed + scattered;
     float under = 1.0 - smoothstep(frame.planes.x + 0.5 * radius, frame.planes.x + 2.5 * radius, depth);  // the eye is in the water
     vec3 within = vec3(0.0);
     if (under > 0.0) {
-        vec3 deep = thrown * glow;
+        vec3 deep = layer(40.0 * absorbed, 40.0 * thrown, diffuse) * glow;  // as much as comes back of depths that one sees no end of
         within = fromWithin(-toEye, water.x, behind * length(p) / depth, texelFetch(sceneColour, here, 0).rgb, deep) * passed + scattered;
     }
     float white = 1.0 - exp(-water.y * 0.24 / radius);

@@ -11,8 +11,8 @@ flat in mat3 shapeView;
 #endif
 layout(location = 0) out vec2 thickness;
 #if defined(INK)
-flat in vec3 ink;                  // 1/m
-layout(location = 1) out vec4 depths;  // what red, green and blue fade by: e^-depth is left
+flat in vec4 ink;                  // 1/m; w: scattering
+layout(location = 1) out vec4 depths;  // what red, green and blue fade by: e^-depth is left; w: by scattering, all alike
 #endif
 void main() {
     vec2 pixel = gl_FragCoord.xy * float(scale);
@@ -28,6 +28,6 @@ void main() {
     float water = share * clamp(scene - front, 0.0, through);
     thickness = vec2(water, water * sprayed);
 #if defined(INK)
-    depths = vec4(min(ink * water, vec3(600.0)), 0.0);  // a half float holds the sum of a hundred such
+    depths = min(ink * water, vec4(600.0));  // a half float holds the sum of a hundred such
 #endif
 }

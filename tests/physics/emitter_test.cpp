@@ -305,8 +305,8 @@ TEST(Emitter, SpawningInsideWaterIsRefusedNotExploded) {
 TEST(Emitter, WhatMakesNoSenseIsRefusedInWords) {
     auto device = makeTestCpu();
     Emitter narrow = nozzle(10.0F, 0.5F, 0.01F), astray = nozzle(1.0F, 0.0F, 0.05F, vec3(0.5F), vec3(0.0F)), odd = nozzle(1, 0, 0.05F);
-    odd.params.liquid = "milk";
-    for (const auto& [emitter, words] : {std::pair(narrow, "lets out"), std::pair(astray, "direction"), std::pair(odd, "milk")}) {
+    odd.params.liquid = "lava";
+    for (const auto& [emitter, words] : {std::pair(narrow, "lets out"), std::pair(astray, "direction"), std::pair(odd, "lava")}) {
         const auto world = FluidWorld::create(*device, boxWorld(0.02F), {}, {}, {.emitters = {emitter}});
         ASSERT_FALSE(world);
         EXPECT_NE(world.error().message.find(words), std::string::npos) << world.error().message;

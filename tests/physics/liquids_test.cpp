@@ -72,6 +72,7 @@ TEST(Liquids, EveryRowIsWholeAndSaysItsSource) {
         EXPECT_GE(l.refractiveIndex, 1.33F) << l.name;
         EXPECT_GT(std::string(l.source).size(), 20U) << l.name;
         EXPECT_TRUE(glm::all(glm::greaterThan(l.absorption, vec3(0.0F)))) << l.name;
+        EXPECT_TRUE(glm::all(glm::greaterThan(l.scattering, vec3(0.0F)))) << l.name;
     }
     // Independent of the table: oil floats on water, honey sinks in the sea; honey is the stiffest.
     const auto of = [](const char* name) { return *liquids().find(name); };
@@ -188,6 +189,7 @@ TEST(Liquids, DyeStaysWithItsParticles) {
     red.max = vec3(1.0F, 0.3F, 0.5F);
     red.dye = vec3(0.8F, 0.1F, 0.1F);
     red.dyeAmount = 10;
+    red.dyeScattering = 700;
     p.blocks = {clear, red};
     Emitter green;
     green.params.dye = vec3(0.1F, 0.9F, 0.1F);
@@ -208,7 +210,7 @@ TEST(Liquids, DyeStaysWithItsParticles) {
         const vec3 colour = kind == 0 ? vec3(1.0F) : kind == 1 ? red.dye : green.params.dye;
         const float amount = kind == 1 ? 10.0F : 20.0F;
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(std::exp(-a[i][k] / amount), colour[k], 1e-5);
-        EXPECT_EQ(a[i].w, 1.0F);
+        EXPECT_EQ(a[i].w, kind == 1 ? 700.0F : 0.0F);
     }
     EXPECT_EQ(seen.size(), 3U);
 }

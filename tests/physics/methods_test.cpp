@@ -90,6 +90,19 @@ TEST(Block, JitterStrewsParticlesAboutTheirLattice) {
     }
 }
 
+// A ball holds what an ellipsoid's volume does, and nobody stands outside it.
+TEST(Block, ABallIsTheEllipsoidBetweenItsCorners) {
+    BlockParams b;
+    b.shape = "ball";
+    b.min = vec3(-0.4F, 1.0F, 2.0F);
+    b.max = vec3(0.4F, 2.0F, 2.6F);
+    std::vector<NewParticle> made;
+    fillBlock(b, 0.02F, made);
+    const double volume = double{kPi} / 6 * 0.8 * 1.0 * 0.6;
+    EXPECT_NEAR(static_cast<double>(made.size()) * 8.0e-6 / volume, 1.0, 0.01);
+    for (const NewParticle& p : made) EXPECT_LE(glm::length((p.position - vec3(0.0F, 1.5F, 2.3F)) / vec3(0.4F, 0.5F, 0.3F)), 1.0001F);
+}
+
 // On average the pressure halfway down is the weight above. It is what pairs press with: a lattice with a support of 2 spacings passes on
 // 0.95 of that (a third of the sum of V r W'), so that it must be a little more.
 TEST_P(Methods, PressureIsTheWeightAbove) {

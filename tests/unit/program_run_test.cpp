@@ -51,6 +51,19 @@ TEST(ProgramRun, HeadlessLeavesVideoPicturesAndFigures) {
     EXPECT_GT(stats["renderMs"]["median"].asDouble(), 0);
 }
 
+// Ten times slower than life: a frame is a tenth of the time, and moments are still told in simulated seconds.
+TEST(ProgramRun, SlowMotionTakesShorterStepsBetweenFrames) {
+    Scratch scratch;
+    const std::string scene = scratch.file("small.json", smallScene());
+    Outcome outcome =
+        runProgram({"run", scene, "--no-render", "--frames", "12", "--set", "timeScale=0.1", "--stats", "a.json"}, in(scratch));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(readJson(scratch.path() / "a.json")["seconds"].asDouble(), 0.02, 1e-9);
+    outcome = runProgram({"run", scene, "--size", "32x32", "--still", "0.01", "--set", "timeScale=0.1"}, in(scratch));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(readJson(scratch.path() / "out/stats.json")["frames"].asInt(), 7) << "the frame at a hundredth is the seventh";
+}
+
 // Moments alone: each is the same picture as in a run that is drawn throughout, and there is no video.
 TEST(ProgramRun, StillsAreTheFramesOfTheWholeRun) {
     Scratch scratch;

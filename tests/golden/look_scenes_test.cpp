@@ -1,0 +1,199 @@
+// Glass, cloudy liquids and skies, and what the scenes made of them looked like when somebody last looked at them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/render/made_sky.h"
+#include "fluid/bridge/session.h"
+#include "fluid/sim/cpu_kernels.h"
+#include "tests/golden/look_fixture.h"
+
+namespace rivulet {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 180;
+
+class LookScenes : public LookTest {
+  protected:
+    void SetUp() override {
+        LookTest::SetUp();
+        if (IsSkipped()) return;
+        settings.fluid.box = {.min = vec3(0.0F), .max = vec3(1.0F)};
+        settings.background.showBox = settings.background.showFloor = false;
+        camera.position = vec3(0.5F, 0.5F, 2.6F);
+        camera.target = vec3(0.5F, 0.5F, 0.5F);
+        camera.fieldOfView = 36.0F;
+        camera.setPlanes(Bounds{vec3(-0.5F), vec3(1.5F)});
+    }
+    static TestParticles cloud() {
+        TestParticles water;
+        TestRandom random;
+        for (float x = 0.3F; x < 0.7F; x += water.spacing)
+            for (float y = 0.3F; y < 0.7F; y += water.spacing)
+                for (float z = 0.4F; z < 0.6F; z += water.spacing) water.add(vec3(x, y, z) + 0.15F * water.spacing * random.inCube());
+        return water;
+    }
+    // A square pane, 5 mm thick, its middle at `middle`.
+    Node pane(const vec3& middle, float half, const vec3& colour, float opacity) {
+        Mesh box;
+        const vec3 size(half, half, 0.0025F);
+        for (int k = 0; k < 8; ++k)
+            box.positions.push_back(middle + size * vec3((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1));
+        const std::array<std::array<uint32_t, 4>, 6> sides = {
+            {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+        Mesh flat;  // each side has corners of its own
+        for (const auto& side : sides) {
+            const auto first = static_cast<uint32_t>(flat.positions.size());
+            const vec3 a = box.positions[side[0]], n = glm::normalize(glm::cross(box.positions[side[1]] - a, box.positions[side[2]] - a));
+            for (const uint32_t corner : side) {
+                flat.positions.push_back(box.positions[corner]);
+                flat.normals.push_back(n);
+            }
+            for (const uint32_t k : {0U, 1U, 2U, 0U, 2U, 3U}) flat.indices.push_back(first + k);
+        }
+        Node node;
+        node.mesh = std::make_shared<const Mesh>(std::move(flat));
+        node.material.baseColour = colour;
+        node.material.opacity = opacity;
+        node.material.roughness = 0.0F;
+        node.material.clear = node.material.blended = true;
+        return node;
+    }
+    // Drawn by a renderer of its own, amid `around`.
+    std::vector<uint8_t> amid(const HdrImage& around, const FluidView& fluid) {
+        auto own = SceneRenderer::create(ShaderFiles::developer(), &around);
+        EXPECT_TRUE(own) << (own ? "" : own.error().message);
+        const Status drawn = (*own)->draw(frameViewOf(camera, settings.light, kWidth, kHeight, 0), fluid, scene, settings);
+        EXPECT_TRUE(drawn) << (drawn ? "" : drawn.error().message);
+        return (*own)->pixels();
+    }
+    static const uint8_t* at(const std::vector<uint8_t>& rgba, int x, int y) {
+        return &rgba[(static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)) * 4];
+    }
+    static int mostApart(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+        int most = 0;
+        for (size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+        return most;
+    }
+
+    // A shipped scene, coarser, after so many seconds, against its golden picture.
+    void compareScene(const std::string& name, double seconds, const std::vector<std::string>& coarser, double tolerance) {
+        Result<SceneFile> file = loadScene(name, coarser);
+        ASSERT_TRUE(file) << file.error().message;
+        const std::vector<CpuKernelRow> rows = cpuKernels();
+        const std::unique_ptr<Device> device = makeCpuDevice(rows, {});
+        auto session = Session::create(*file, *device, {});
+        ASSERT_TRUE(session) << session.error().message;
+        const auto frames = static_cast<int>(std::lround(seconds / frameSeconds(*file)));
+        for (int k = 0; k < frames; ++k) (*session)->step(frameSeconds(*file), true);
+        const auto around = surroundingsOf(*file);
+        ASSERT_TRUE(around);
+        auto own = SceneRenderer::create(ShaderFiles::developer(), *around ? &**around : nullptr);
+        ASSERT_TRUE(own) << own.error().message;
+        FluidUpload particles;
+        const Result<FluidView> fluid = particles.view((*session)->world(), file->look);
+        ASSERT_TRUE(fluid) << fluid.error().message;
+        const FrameView view = frameViewOf(cameraOf(file->camera, (*session)->bounds()), file->light, kWidth, kHeight, 0);
+        const Status drawn = (*own)->draw(view, *fluid, (*session)->solids(), *file);
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        compareWith(name, kWidth, kHeight, (*own)->pixels(), tolerance);
+    }
+
+    Camera camera;
+};
+
+// The furnace: where as much light comes from everywhere, what absorbs nothing cannot be seen, however it mirrors, bends or scatters.
+TEST_F(LookScenes, whatAbsorbsNothingIsNotSeenInAFurnace) {
+    const HdrImage furnace{.name = "furnace", .width = 16, .height = 8, .texels = std::vector<vec3>(128, vec3(0.6F))};
+    settings.light.intensity = 0;
+    settings.look.absorption = vec3(0.0F);
+    settings.look.scattering = vec3(0.0F);
+    const FluidView water = upload(cloud());
+    const std::vector<uint8_t> empty = amid(furnace, {});
+    EXPECT_LE(mostApart(empty, amid(furnace, water)), 2) << "clear water";
+    for (const float scattering : {1.0F, 10.0F, 300.0F, 3000.0F}) {
+        settings.look.scattering = vec3(scattering);
+        EXPECT_LE(mostApart(empty, amid(furnace, water)), 2) << scattering << " 1/m";
+    }
+    for (const float z : {0.9F, 0.1F}) scene.add(pane({0.5F, 0.5F, z}, 0.3F, vec3(1.0F), 0.0F));
+    EXPECT_LE(mostApart(empty, amid(furnace, water)), 2) << "milk between panes";
+    settings.look.absorption = vec3(0.0F, 0.0F, 2000.0F);
+    const std::vector<uint8_t> yellow = amid(furnace, water);
+    const uint8_t *middle = at(yellow, kWidth / 2, kHeight / 2), *sky = at(empty, kWidth / 2, kHeight / 2);
+    EXPECT_NEAR(middle[0], sky[0], 2) << "what absorbs blue leaves red";
+    EXPECT_LT(middle[2], sky[2] - 40);
+}
+
+// A red pane before the water, and one behind it: red is what both let through, and water what only the one behind is seen through.
+TEST_F(LookScenes, aPaneIsBeforeTheWaterOrBehindIt) {
+    settings.look.absorption = vec3(6.0F, 0.0F, 12.0F);
+    const FluidView water = upload(cloud());
+    for (const char* name : {"screen_space", "truth"}) {
+        settings.look.renderer = name;
+        scene = Scene();
+        const std::vector<uint8_t> wet = picture(camera, kWidth, kHeight, water);
+        std::vector<std::vector<uint8_t>> reds;
+        for (const float z : {0.9F, 0.1F}) {
+            scene = Scene();
+            scene.add(pane({0.5F, 0.5F, z}, 0.5F, vec3(1.0F, 0.02F, 0.02F), 0.0F));
+            const std::vector<uint8_t> dry = picture(camera, kWidth, kHeight, {}), both = picture(camera, kWidth, kHeight, water);
+            const uint8_t *p = at(both, kWidth / 2 + 20, kHeight / 2 + 8), *w = at(wet, kWidth / 2 + 20, kHeight / 2 + 8);
+            EXPECT_LT(p[1], w[1] / 3) << name << " " << z << ": green comes through no red pane";
+            EXPECT_NEAR(p[0], w[0], 40) << name << " " << z << ": red does";
+            reds.push_back(both);
+            EXPECT_GT(meanAbsoluteError(dry, both), 0.3) << name << " " << z << ": the water is seen";
+        }
+        // At a grazing edge the water mirrors what no pane behind it dims, and a pane before it does.
+        double before = 0, behind = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                before += at(reds[0], x, y)[1];
+                behind += at(reds[1], x, y)[1];
+            }
+        EXPECT_LT(before, behind) << name;
+    }
+}
+
+TEST_F(LookScenes, aMadeSkyIsBrightestAboutTheSunAndCloudsCoverIt) {
+    const vec3 sun = glm::normalize(vec3(0.3F, 0.5F, -0.6F));
+    const auto skyOf = [&](float clouds) { return makeSky({.sun = sun, .sunlight = vec3(3.0F), .clouds = clouds}); };
+    const HdrImage clear = skyOf(0.0F), half = skyOf(0.5F), full = skyOf(1.0F);
+    const auto towards = [&](int x, int y) {
+        const float up = ((static_cast<float>(y) + 0.5F) / static_cast<float>(clear.height) - 0.5F) * kPi;
+        const float turn = ((static_cast<float>(x) + 0.5F) / static_cast<float>(clear.width) - 0.5F) * 2 * kPi;
+        return vec3(std::cos(up) * std::sin(turn), std::sin(up), -std::cos(up) * std::cos(turn));
+    };
+    vec3 brightest(0.0F);
+    float most = 0;
+    double covered[2] = {0, 0}, texels = 0;
+    for (int y = 0; y < clear.height; ++y)
+        for (int x = 0; x < clear.width; ++x) {
+            const size_t i = static_cast<size_t>(y) * static_cast<size_t>(clear.width) + static_cast<size_t>(x);
+            ASSERT_TRUE(glm::all(glm::greaterThan(clear.texels[i], vec3(0.0F))));
+            if (clear.texels[i].y > most) {
+                most = clear.texels[i].y;
+                brightest = towards(x, y);
+            }
+            if (y < clear.height / 2) {
+                EXPECT_EQ(clear.texels[i], full.texels[i]) << "no clouds below the horizon";
+                continue;
+            }
+            const vec3 d = towards(x, y);
+            if (d.y < 0.35F) continue;  // lower they fade into haze
+            const double area = std::sqrt(1.0 - double{d.y} * double{d.y});
+            texels += area;
+            covered[0] += glm::distance(clear.texels[i], half.texels[i]) > 0.02F ? area : 0;
+            covered[1] += glm::distance(clear.texels[i], full.texels[i]) > 0.02F ? area : 0;
+        }
+    EXPECT_GT(glm::dot(brightest, sun), std::cos(1.0F * kPi / 180));
+    EXPECT_NEAR(covered[0] / texels, 0.5, 0.15);
+    EXPECT_GT(covered[1] / texels, 0.95);
+}
+
+TEST_F(LookScenes, goldenGlass) { compareScene("glass", 0.9, {"fluid.spacing=0.0036"}, 1.0); }
+TEST_F(LookScenes, goldenFountain) { compareScene("fountain", 0.5, {"fluid.spacing=0.018"}, 0.4); }
+TEST_F(LookScenes, goldenCove) { compareScene("cove", 0.7, {"fluid.spacing=0.09"}, 0.4); }
+TEST_F(LookScenes, goldenSplashCrown) { compareScene("splash_crown", 0.012, {"fluid.spacing=0.0007", "timeScale=0.05"}, 0.8); }
+
+}  // namespace
+}  // namespace rivulet

@@ -1,25 +1,24 @@
-// A particle as a quad that just covers the picture of its sphere, or with ELLIPSOIDS of its ellipsoid. Instanced: 4 vertices of a strip, one
-// instance a particle. Needs frame.glsl.
-layout(location = 0) in vec4 particle;  // xyz m, world
+// A particle as a quad that just covers the picture of its sphere, or with ELLIPSOIDS of its ellipsoid. Needs frame.glsl.
+#include "shaders/screen_space/quads.glsl"
+ROWS(1, Particles, vec4, particles)  // xyz m, world
 #if defined(ELLIPSOIDS)
-layout(location = 4) in vec4 toCentre;  // xyz m: see fluid/ellipsoids.kernel
-layout(location = 5) in vec4 spread;    // xx, yy, zz of the squared half axes, a round particle's 1
-layout(location = 6) in vec4 slant;     // yz, zx, xy
+ROWS(5, Centres, vec4, centres)      // xyz m: see fluid/ellipsoids.kernel
+ROWS(6, Spreads, vec4, spreads)      // xx, yy, zz of the squared half axes, a round particle's 1
+ROWS(7, Slants, vec4, slants)        // yz, zx, xy
 #endif
+vec4 particle = particles[row()];
 uniform float radius;                   // m
 
-const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);
 const float kOverlap = 1.35;  // radii: drawn so large, they cover the water without gaps. Spheres make it 0.3 radii too thick by that
 // The mean of a particle's neighbours lies inward of the surface: of the way to it this much, in radii, is no noise that is smoothed but
 // the shrinking that Yu & Turk 2013 name, and is given back. Then a level surface, once filtered, lies half a spacing over its topmost
 // particles, where their volume ends: within 0.1 radii, seen from any angle, for radii of 0.6 spacings.
 const float kShrunk = 0.77;
-vec2 corner() { return vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)); }
 // Spray is finer than the particles that stand for it: those with few neighbours are drawn smaller.
 float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
 float drawnRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
 // NaN, too; and where there is no particle: a free slot, or a sample on a body.
-bool lost(vec4 p) { return p.w < 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
+bool lost(vec4 p) { return beyond() || p.w < 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
 
 // What is drawn, in view space: the points p with (p - centre)^T squares^-1 (p - centre) < 1.
 struct Splat {
@@ -30,12 +29,15 @@ Splat splatOf(vec4 p) {
     float r = drawnRadius(p);
     Splat s = Splat((frame.view * vec4(p.xyz, 1.0)).xyz, mat3(r * r));
 #if defined(ELLIPSOIDS)
+    vec3 toCentre = centres[row()].xyz, spread = spreads[row()].xyz, slant = slants[row()].xyz;
     // One that was born after the ellipsoids were found has none yet.
     float sum = spread.x + spread.y + spread.z;
-    if (sum > 0.05 && sum < 50.0 && dot(toCentre.xyz, toCentre.xyz) < 9.0 * radius * radius) {
+    if (sum > 0.05 && sum < 50.0 && dot(toCentre, toCentre) < 9.0 * radius * radius) {
         float wide = radius * kOverlap;
         mat3 view = mat3(frame.view);
-        s.centre += view * (toCentre.xyz * (1.0 - kShrunk * radius / max(length(toCentre.xyz), 0.3 * radius)));
+        // In a thin sheet there is nothing to give back, and what is left is noise.
+        float way = length(toCentre) / radius;
+        s.centre += view * (toCentre * (1.0 - kShrunk * smoothstep(0.25, 0.6, way) / max(way, 1.0e-6)));
         s.squares = view * (wide * wide * mat3(spread.x, slant.z, slant.y, slant.z, spread.y, slant.x, slant.y, slant.x, spread.z)) * transpose(view);
     }
 #endif

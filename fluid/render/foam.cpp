@@ -9,7 +9,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
     if (d.fluid.foamCount == 0) return;
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, d.depth, d.shadowSharp, d.shadowSoft};
     for (const unsigned name : d.fluid.foam)
-        reads.emplace_back(graph.importBuffer("foam", name, d.fluid.foamCount * sizeof(vec4)), Usage::attribute);
+        reads.emplace_back(graph.importBuffer("foam", name, d.fluid.foamCount * sizeof(vec4)), Usage::storage);
     if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
     graph.pass("foam", reads, {layers.colour}, [=, &programs](PassContext& c) {
         c.drawTo({layers.colour});
@@ -26,9 +26,8 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
             p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
             p.set("absorption", d.look.absorption);
         }
-        for (const unsigned k : {0U, 1U}) programs.foamFeed.attribute(k, d.fluid.foam[k], 4, GL_FLOAT, sizeof(vec4), 0, 1);
-        programs.foamFeed.bind();
-        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(d.fluid.foamCount));
+        for (const unsigned k : {0U, 1U}) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, k + 1, d.fluid.foam[k]);
+        programs.drawQuads(p, d.fluid.foamCount);
     });
 }
 

@@ -12,8 +12,8 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
     size.format = gpu::Format::rg16f;
     const gpu::TextureHandle normal = graph.texture("points normal", size);
     std::vector<gpu::Read> reads = {
-        {d.frame, Usage::uniform}, {d.position, Usage::attribute}, {d.velocity, Usage::attribute}, {d.id, Usage::attribute}};
-    if (d.absorption) reads.emplace_back(d.absorption, Usage::attribute);
+        {d.frame, Usage::uniform}, {d.position, Usage::storage}, {d.velocity, Usage::storage}, {d.id, Usage::storage}};
+    if (d.absorption) reads.emplace_back(d.absorption, Usage::storage);
     graph.pass("points", reads, {surface, normal, d.depth}, [=, &programs](PassContext& c) {
         const gpu::Framebuffer& target = c.drawTo({surface, normal}, d.depth);
         target.clearColour(vec4(0.0F), 0);
@@ -27,7 +27,7 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
         p.set("alike", d.fluid.absorption == 0 ? 1 : 0);
         p.set("ownAbsorption", d.look.absorption);
         p.set("dyeDepth", 5.0F * d.fluid.spacing);
-        programs.drawParticles(d.fluid);
+        programs.drawParticles(p, d.fluid);
     });
     const gpu::TextureHandle tiles = addTiles(graph, programs, d);
     graph.pass("points shade", {{d.frame, Usage::uniform}, surface, normal, d.depth, tiles, d.shadowSharp, d.shadowSoft, d.waterLight},

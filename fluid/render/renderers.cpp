@@ -19,7 +19,8 @@ constexpr ViewRow kViewRows[] = {
     {"thickness", "how much water there is along the line of sight", WaterView::thickness},
 };
 constexpr Table<ViewRow> kViews{kViewRows};
-constexpr int kTile = 32;  // pixels
+constexpr int kTile = 32;             // pixels
+constexpr uint32_t kQuadRows = 4096;  // as quads.glsl: their indices fit 16 bits
 }  // namespace
 
 const Table<RendererRow>& renderers() { return kRenderers; }
@@ -85,9 +86,14 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         if (!program) return program.error();
         *into = std::move(*program);
     }
-    p.particles = gpu::VertexArray::create();
-    p.foamFeed = gpu::VertexArray::create();
-    p.dropFeed = gpu::VertexArray::create();
+    std::vector<uint16_t> corners;
+    for (uint32_t k = 0; k < kQuadRows; ++k)
+        for (const uint32_t corner : {0U, 1U, 2U, 2U, 1U, 3U}) corners.push_back(static_cast<uint16_t>(4 * k + corner));
+    Result<gpu::Buffer> indices = gpu::Buffer::from(corners);
+    if (!indices) return indices.error();
+    p.quadIndices = std::move(*indices);
+    p.quads = gpu::VertexArray::create();
+    p.quads.elements(p.quadIndices.name());
     p.none = gpu::VertexArray::create();
     return p;
 }
@@ -98,21 +104,25 @@ Status FluidPrograms::reload() {
     return ok();
 }
 
-void FluidPrograms::drawParticles(const FluidView& fluid) {
-    particles.attribute(0, fluid.position, 4, GL_FLOAT, 16, 0, 1);
-    particles.attribute(1, fluid.velocity, 4, GL_FLOAT, 16, 0, 1);
-    particles.integerAttribute(2, fluid.id, 1, GL_UNSIGNED_INT, 4, 0, 1);
-    particles.attribute(3, fluid.absorption != 0 ? fluid.absorption : fluid.position, 4, GL_FLOAT, 16, 0, 1);
-    for (size_t k = 0; k < fluid.ellipsoids.size(); ++k)
-        particles.attribute(static_cast<GLuint>(4 + k), fluid.ellipsoids[k] != 0 ? fluid.ellipsoids[k] : fluid.position, 4, GL_FLOAT, 16, 0,
-                            1);
-    particles.bind();
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(fluid.count));
+void FluidPrograms::drawQuads(gpu::Program& program, uint32_t rows) {
+    if (rows == 0) return;
+    program.set("rows", rows);
+    quads.bind();
+    const uint32_t instances = (rows + kQuadRows - 1) / kQuadRows, each = instances > 1 ? kQuadRows : rows;
+    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * each), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
+}
+
+void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid) {
+    const unsigned buffers[] = {fluid.position,      fluid.velocity,      fluid.id,           fluid.absorption,
+                                fluid.ellipsoids[0], fluid.ellipsoids[1], fluid.ellipsoids[2]};
+    for (GLuint k = 0; k < std::size(buffers); ++k)
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, k + 1, buffers[k] != 0 ? buffers[k] : fluid.position);
+    drawQuads(program, fluid.count);
 }
 
 std::vector<gpu::Read> splatReads(const FluidDraw& d) {
-    std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::attribute}};
-    for (const gpu::BufferHandle ellipsoids : d.ellipsoids) reads.emplace_back(ellipsoids, gpu::Usage::attribute);
+    std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::storage}};
+    for (const gpu::BufferHandle ellipsoids : d.ellipsoids) reads.emplace_back(ellipsoids, gpu::Usage::storage);
     return reads;
 }
 
@@ -127,7 +137,7 @@ gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, con
         mark.use();
         mark.set("radius", d.fluid.radius);
         mark.set("tiles", vec2(size.width, size.height));
-        programs.drawParticles(d.fluid);
+        programs.drawParticles(mark, d.fluid);
     });
     return tiles;
 }

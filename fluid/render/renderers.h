@@ -59,10 +59,14 @@ struct FluidPrograms {
     SplatPrograms& splats(const FluidView& fluid) { return fluid.ellipsoids[0] != 0 ? ellipsoids : spheres; }
     gpu::Program drops, dropsOverWater, foam, foamOverWater;
     FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
-    gpu::VertexArray particles, dropFeed, foamFeed, none;
+    gpu::VertexArray quads, none;
+    gpu::Buffer quadIndices;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
-    void drawParticles(const FluidView& fluid);  // a quad each, with the program in use
+    // A quad for each of `rows`, whose vertex shader includes quads.glsl, with the program in use.
+    void drawQuads(gpu::Program& program, uint32_t rows);
+    // The same for each particle, whose vertex shader includes particle.glsl.
+    void drawParticles(gpu::Program& program, const FluidView& fluid);
     // The marked ones, with the program in use, whose vertex shader is tile.vert; the mask is bound to `unit`.
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 

@@ -39,14 +39,14 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
         splats.occluder.use();
         splats.occluder.set("radius", d.fluid.radius);
-        programs.drawParticles(d.fluid);
+        programs.drawParticles(splats.occluder, d.fluid);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glDepthMask(GL_FALSE);
         glEnable(GL_BLEND);
         glBlendEquation(GL_MIN);
         splats.depth.use();
         splats.depth.set("radius", d.fluid.radius);
-        programs.drawParticles(d.fluid);
+        programs.drawParticles(splats.depth, d.fluid);
     });
     return depth;
 }
@@ -101,7 +101,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
     std::vector<gpu::Write> writes = {thickness};
     if (ink) {
         depths = graph.texture("ink depths", inkSize);
-        reads.emplace_back(d.absorption, Usage::attribute);
+        reads.emplace_back(d.absorption, Usage::storage);
         writes.emplace_back(depths);
     }
     graph.pass("thickness", reads, writes, [=, &programs](PassContext& c) {
@@ -118,7 +118,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         p.set("spacing", d.fluid.spacing);
         p.set("scale", kThicknessScale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
-        programs.drawParticles(d.fluid);
+        programs.drawParticles(p, d.fluid);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
@@ -137,7 +137,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::attribute}}, {drawn}, [=, &programs](PassContext& c) {
+    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::storage}}, {drawn}, [=, &programs](PassContext& c) {
         c.drawTo({drawn}).clearColour(vec4(0.0F));
         useFrame(c, d);
         glEnable(GL_BLEND);
@@ -147,7 +147,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         p.set("clipRadius", clipRadius);
         p.set("radius", d.fluid.radius);
         p.set("volumeScale", volumeScale(d.fluid));
-        programs.drawParticles(d.fluid);
+        programs.drawParticles(p, d.fluid);
     });
     // The narrow blur hides the single particles: its reach is 1.5 spacings.
     const int reach =

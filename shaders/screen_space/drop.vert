@@ -1,13 +1,18 @@
-// A drop in the air as a quad that covers it and the way it goes while the shutter is open. Instanced: 4 vertices of a strip.
+// A drop in the air as a quad that covers it and the way it goes while the shutter is open.
 #include "shaders/render/frame.glsl"
-layout(location = 0) in vec4 drop;      // xyz m, world; w m, radius
-layout(location = 1) in vec4 velocity;  // xyz m/s
-uniform float shutter;                  // s
+#include "shaders/screen_space/quads.glsl"
+struct Drop {
+    vec4 at;        // xyz m, world; w m, radius
+    vec4 velocity;  // xyz m/s
+};
+ROWS(1, Drops, Drop, drops)
+uniform float shutter;     // s
 flat out vec4 centreView;  // xyz m; w m, radius as drawn: no less than most of a pixel
 flat out vec4 wayView;     // xyz unit, across the line of sight; w m, half the way
 flat out float share;      // of what is behind that it hides
 out vec2 place;            // m, along the way and across
 void main() {
+    vec4 drop = drops[row()].at, velocity = drops[row()].velocity;
     vec3 c = (frame.view * vec4(drop.xyz, 1.0)).xyz, v = mat3(frame.view) * velocity.xyz;
     float depth = -c.z;
     vec3 toEye = -normalize(c);
@@ -17,11 +22,10 @@ void main() {
     float radius = max(drop.w, least), way = 0.5 * speed * shutter;
     // It is wherever it was for its share of the time.
     share = min(drop.w / radius, 1.0) * radius / (radius + 0.7 * way);
-    vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
     float margin = radius + least;
-    place = corner * vec2(way + margin, margin);
+    place = (corner() * 2.0 - 1.0) * vec2(way + margin, margin);
     centreView = vec4(c, radius);
     wayView = vec4(along, way);
     vec3 at = c + along * place.x + cross(toEye, along) * place.y;
-    gl_Position = depth - radius > frame.planes.x ? frame.projection * vec4(at, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+    gl_Position = !beyond() && depth - radius > frame.planes.x ? frame.projection * vec4(at, 1.0) : kNowhere;
 }

@@ -1,15 +1,17 @@
-// A fleck of spray or foam, or a bubble, as a quad. Instanced: 4 vertices of a strip.
+// A fleck of spray or foam, or a bubble, as a quad.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"
-layout(location = 0) in vec4 fleck;     // xyz m, world; w s, what is left of its life
-layout(location = 1) in vec4 velocity;  // xyz m/s; w size 0.5..1, + 1 spray, 2 foam, 3 bubble
-uniform float radius;                   // m, of a fleck of size 1
+#include "shaders/screen_space/quads.glsl"
+ROWS(1, Flecks, vec4, flecks)          // xyz m, world; w s, what is left of its life
+ROWS(2, Velocities, vec4, velocities)  // xyz m/s; w size 0.5..1, + 1 spray, 2 foam, 3 bubble
+uniform float radius;  // m, of a fleck of size 1
 flat out vec4 white;  // rgb radiance, a how much of what is behind it hides in its middle
 flat out float depth; // m
 flat out float kind;
 out vec2 place;
 void main() {
+    vec4 fleck = flecks[row()], velocity = velocities[row()];
     kind = floor(velocity.w);
     float r = radius * fract(velocity.w) * (kind == 1.0 ? 0.6 : kind == 3.0 ? 0.8 : 1.0);
     vec3 c = (frame.view * vec4(fleck.xyz, 1.0)).xyz;
@@ -17,9 +19,9 @@ void main() {
     // One that is less than a pixel hides less of it.
     float least = 0.7 * depth * frame.ray.x, drawn = max(r, least);
     float share = (r / drawn) * (r / drawn);
-    place = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
+    place = corner() * 2.0 - 1.0;
     vec3 light = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (0.3183099 * meshShadow(fleck.xyz, frame.lightDir.xyz) * (0.4 + 0.6 * max(frame.lightDir.y, 0.0)));
     white = vec4(0.92 * light, share * (kind == 2.0 ? 0.55 * smoothstep(0.0, 0.5, fleck.w) : kind == 1.0 ? 0.45 : 0.35));
-    bool there = fleck.w > 0.0 && dot(fleck.xyz, fleck.xyz) < 1.0e12 && depth - drawn > frame.planes.x;
-    gl_Position = there ? frame.projection * vec4(c + vec3(place * drawn, 0.0), 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+    bool there = !beyond() && fleck.w > 0.0 && dot(fleck.xyz, fleck.xyz) < 1.0e12 && depth - drawn > frame.planes.x;
+    gl_Position = there ? frame.projection * vec4(c + vec3(place * drawn, 0.0), 1.0) : kNowhere;
 }

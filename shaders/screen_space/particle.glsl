@@ -37,7 +37,7 @@ Splat splatOf(vec4 p) {
         mat3 view = mat3(frame.view);
         // In a thin sheet there is nothing to give back, and what is left is noise.
         float way = length(toCentre) / radius;
-        s.centre += view * (toCentre * (1.0 - kShrunk * smoothstep(0.25, 0.6, way) / max(way, 1.0e-6)));
+        s.centre += view * (toCentre * (1.0 - kShrunk * smoothstep(0.15, 0.45, way) / max(way, 1.0e-6)));
         s.squares = view * (wide * wide * mat3(spread.x, slant.z, slant.y, slant.z, spread.y, slant.x, slant.y, slant.x, spread.z)) * transpose(view);
     }
 #endif

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sheets of the scenes glass, fountain, cove and splash_crown: four moments, and below each the same particles ray-marched.
-#   bash demos/scene_sheets.sh DIR [SCENE...]           DIR/SCENE.jpg, and its single pictures in DIR/SCENE and DIR/SCENE_truth
+#   bash demos/scene_sheets.sh DIR [SCENE...]           DIR/SCENE_sheet.jpg, and its single pictures in DIR/SCENE and DIR/SCENE_truth
 #   bash demos/scene_sheets.sh --video DIR [SCENE...]   DIR/SCENE.mp4 instead, 1280x720, 8 s each
 # Needs the built program and ffmpeg; a scene takes some minutes.
 set -eu
@@ -45,6 +45,6 @@ for scene in "${scenes[@]}"; do
         k=$((k + 1))
     done
     ffmpeg -y -loglevel error "${inputs[@]}" -filter_complex "$filter${names}xstack=inputs=8:layout=$layout" -frames:v 1 -update 1 \
-        -q:v 4 "$folder/$scene.jpg"
-    echo "$folder/$scene.jpg"
+        -q:v 4 "$folder/${scene}_sheet.jpg"
+    echo "$folder/${scene}_sheet.jpg"
 done

@@ -11,7 +11,7 @@ video=""
 [[ $# -gt 0 ]] || { echo "scene_sheets: name the folder that the sheets go to" >&2; exit 2; }
 folder="$1"
 shift
-declare -A moments=([glass]="0.9 2 3.6 7" [fountain]="0.35 1.5 3 6" [cove]="1.4 3.2 5 7" [splash_crown]="0.0025 0.010 0.020 0.042")
+declare -A moments=([glass]="0.4 0.9 2 3.6" [fountain]="0.35 1.5 3 6" [cove]="1.4 3.2 5 7" [splash_crown]="0.0025 0.010 0.020 0.042")
 scenes=("$@")
 [[ ${#scenes[@]} -gt 0 ]] || scenes=(glass fountain cove splash_crown)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sheets of the scenes glass, fountain, cove and splash_crown: four moments, and below each the same particles ray-marched.
-#   bash demos/scene_sheets.sh DIR [SCENE...]           DIR/SCENE.jpg, and its single pictures in DIR/SCENE and DIR/SCENE_truth
+#   bash demos/scene_sheets.sh DIR [SCENE...]           DIR/SCENE_sheet.jpg, and its single pictures in DIR/SCENE and DIR/SCENE_truth
 #   bash demos/scene_sheets.sh --video DIR [SCENE...]   DIR/SCENE.mp4 instead, 1280x720, 8 s each
 # Needs the built program and ffmpeg; a scene takes some minutes.
 set -eu
@@ -11,7 +11,7 @@ video=""
 [[ $# -gt 0 ]] || { echo "scene_sheets: name the folder that the sheets go to" >&2; exit 2; }
 folder="$1"
 shift
-declare -A moments=([glass]="0.9 2 3.6 7" [fountain]="0.35 1.5 3 6" [cove]="1.4 3.2 5 7" [splash_crown]="0.0025 0.010 0.020 0.042")
+declare -A moments=([glass]="0.4 0.9 2 3.6" [fountain]="0.35 1.5 3 6" [cove]="1.4 3.2 5 7" [splash_crown]="0.0025 0.010 0.020 0.042")
 scenes=("$@")
 [[ ${#scenes[@]} -gt 0 ]] || scenes=(glass fountain cove splash_crown)
 
@@ -45,6 +45,6 @@ for scene in "${scenes[@]}"; do
         k=$((k + 1))
     done
     ffmpeg -y -loglevel error "${inputs[@]}" -filter_complex "$filter${names}xstack=inputs=8:layout=$layout" -frames:v 1 -update 1 \
-        -q:v 4 "$folder/$scene.jpg"
-    echo "$folder/$scene.jpg"
+        -q:v 4 "$folder/${scene}_sheet.jpg"
+    echo "$folder/${scene}_sheet.jpg"
 done

@@ -20,7 +20,7 @@ constexpr uint64_t kTimesLate = 2;      // frames before a pass's time is asked 
 constexpr size_t kMaxTimedFrames = 16;  // whose times may be on their way
 
 bool fitsTexture(Usage usage) { return usage == Usage::sampled || usage == Usage::image || usage == Usage::target || usage == Usage::copy; }
-bool fitsBuffer(Usage usage) { return !fitsTexture(usage) || usage == Usage::copy; }
+bool fitsBuffer(Usage usage) { return !fitsTexture(usage) || usage == Usage::copy || usage == Usage::sampled; }
 
 // Writes that OpenGL shows to nobody without a barrier.
 bool incoherent(Usage usage) { return usage == Usage::image || usage == Usage::storage; }

@@ -29,7 +29,7 @@ namespace rivulet::gpu {
 
 // How a pass touches a resource. It decides the barriers: what shaders write by image or storage is not visible elsewhere without one.
 enum class Usage {
-    sampled,    // texture: texture(), texelFetch()
+    sampled,    // texture: texture(), texelFetch(); buffer: texelFetch() of a buffer texture
     image,      // texture: imageLoad, imageStore
     target,     // texture: drawn into; as a read: depth-tested against, not written
     storage,    // buffer: SSBO

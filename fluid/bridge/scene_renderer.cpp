@@ -223,6 +223,9 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
     r->render_ = std::move(*render);
     r->fluid_ = std::move(*fluid);
     r->frame_ = std::move(*frame);
+    Result<gpu::Buffer> coarse = gpu::Buffer::create(sizeof(FrameParams));
+    if (!coarse) return coarse.error();
+    r->coarse_ = std::move(*coarse);
     r->nothing_ = std::move(*nothing);
     return r;
 }
@@ -338,6 +341,13 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     FrameParams params = packFrame(view, studio, solid, water);
     std::copy(matteLight_.begin(), matteLight_.end(), params.matteLight);
     frame_.write(std::as_bytes(std::span(&params, 1)));
+    if (look->fast) {
+        FrameView coarse = view;
+        coarse.width = (view.width + 1) / 2;
+        coarse.height = (view.height + 1) / 2;
+        const FrameParams half = packFrame(coarse, studio, solid, water);
+        coarse_.write(std::as_bytes(std::span(&half, 1)));
+    }
     if (surroundings_) surroundings_.bind(16);  // beyond those that the graph empties before each pass
 
     gpu::FrameGraph graph(pool_);
@@ -351,6 +361,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.look = *look;
     if (look->fast) draw.fluid.ellipsoids = {};
     draw.frame = frame;
+    if (look->fast) draw.coarse = graph.importBuffer("coarse frame", coarse_.name(), coarse_.bytes());
     draw.progress = progress_;
     if (fluid.count > 0) {
         draw.position = graph.importBuffer("positions", fluid.position, size_t{fluid.count} * sizeof(vec4));

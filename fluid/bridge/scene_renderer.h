@@ -84,7 +84,7 @@ class SceneRenderer {
     RenderPrograms render_;
     FluidPrograms fluid_;
     gpu::TransientPool pool_;
-    gpu::Buffer frame_;                                     // FrameParams
+    gpu::Buffer frame_, coarse_;                            // FrameParams; of half the resolution
     gpu::Texture picture_;                                  // the last frame
     std::array<gpu::Texture, 2> shadowSharp_, shadowSoft_;  // and the quick ones
     std::vector<mat4> shadowOf_;                            // what the shadow maps show: the light's projection, then a matrix a mesh

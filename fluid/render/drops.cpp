@@ -19,7 +19,7 @@ void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
     });
     const gpu::BufferHandle drops = graph.importBuffer("drops", d.fluid.drops, size_t{d.fluid.dropCount} * 2 * sizeof(vec4));
-    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {drops, Usage::storage}, behind, d.depth};
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {drops, Usage::sampled}, behind, d.depth};
     if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
     graph.pass("drops", reads, {layers.colour}, [=, &programs](PassContext& c) {
         c.drawTo({layers.colour});
@@ -33,8 +33,8 @@ void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         p.texture("sceneColour", 0, c.texture(behind));
         p.texture("sceneDepth", 1, c.texture(d.depth));
         if (layers.fluidDepth) p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, d.fluid.drops);
-        programs.drawQuads(p, d.fluid.dropCount);
+        const QuadRows rows[] = {{d.fluid.drops}};
+        programs.drawQuads(p, d.fluid.dropCount, rows);
     });
 }
 

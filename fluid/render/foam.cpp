@@ -9,7 +9,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
     if (d.fluid.foamCount == 0) return;
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, d.depth, d.shadowSharp, d.shadowSoft};
     for (const unsigned name : d.fluid.foam)
-        reads.emplace_back(graph.importBuffer("foam", name, d.fluid.foamCount * sizeof(vec4)), Usage::storage);
+        reads.emplace_back(graph.importBuffer("foam", name, d.fluid.foamCount * sizeof(vec4)), Usage::sampled);
     if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
     graph.pass("foam", reads, {layers.colour}, [=, &programs](PassContext& c) {
         c.drawTo({layers.colour});
@@ -26,8 +26,8 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
             p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
             p.set("absorption", d.look.absorption);
         }
-        for (const unsigned k : {0U, 1U}) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, k + 1, d.fluid.foam[k]);
-        programs.drawQuads(p, d.fluid.foamCount);
+        const QuadRows rows[] = {{d.fluid.foam[0]}, {d.fluid.foam[1]}};
+        programs.drawQuads(p, d.fluid.foamCount, rows);
     });
 }
 

@@ -12,8 +12,8 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
     size.format = gpu::Format::rg16f;
     const gpu::TextureHandle normal = graph.texture("points normal", size);
     std::vector<gpu::Read> reads = {
-        {d.frame, Usage::uniform}, {d.position, Usage::storage}, {d.velocity, Usage::storage}, {d.id, Usage::storage}};
-    if (d.absorption) reads.emplace_back(d.absorption, Usage::storage);
+        {d.frame, Usage::uniform}, {d.position, Usage::sampled}, {d.velocity, Usage::sampled}, {d.id, Usage::sampled}};
+    if (d.absorption) reads.emplace_back(d.absorption, Usage::sampled);
     graph.pass("points", reads, {surface, normal, d.depth}, [=, &programs](PassContext& c) {
         const gpu::Framebuffer& target = c.drawTo({surface, normal}, d.depth);
         target.clearColour(vec4(0.0F), 0);

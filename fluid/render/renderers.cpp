@@ -20,6 +20,7 @@ constexpr ViewRow kViewRows[] = {
 };
 constexpr Table<ViewRow> kViews{kViewRows};
 constexpr int kTile = 32;             // pixels
+constexpr GLuint kRowUnit = 24;       // as quads.glsl
 constexpr uint32_t kQuadRows = 4096;  // as quads.glsl: their indices fit 16 bits
 }  // namespace
 
@@ -27,9 +28,9 @@ const Table<RendererRow>& renderers() { return kRenderers; }
 const Table<ViewRow>& waterViews() { return kViews; }
 
 std::vector<gpu::Program*> FluidPrograms::all() {
-    std::vector<gpu::Program*> programs = {&points,          &pointsShade, &blur,         &shade, &lightWater,     &lightWaterFirst,
-                                           &lightWaterLast,  &shadeInk,    &showView,     &drops, &dropsOverWater, &shadeNormals,
-                                           &shadeNormalsInk, &foam,        &foamOverWater};
+    std::vector<gpu::Program*> programs = {&waterBlocks, &waterTiles,     &refine,          &points,          &pointsShade, &blur,
+                                           &shade,       &lightWater,     &lightWaterFirst, &lightWaterLast,  &shadeInk,    &showView,
+                                           &drops,       &dropsOverWater, &shadeNormals,    &shadeNormalsInk, &foam,        &foamOverWater};
     for (SplatPrograms* splat : {&spheres, &ellipsoids})
         for (gpu::Program* program : {&splat->occluder, &splat->markTiles, &splat->depth, &splat->thickness, &splat->thicknessInk})
             programs.push_back(program);
@@ -58,6 +59,9 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
         made.emplace_back(&splat->thicknessInk, Program::create(files, {sphere, folder + "thickness.frag"}, ink));
     }
     std::pair<Program*, Result<Program>> others[] = {
+        {&p.waterBlocks, Program::create(files, {full, folder + "water_blocks.frag"})},
+        {&p.waterTiles, Program::create(files, {full, folder + "water_tiles.frag"})},
+        {&p.refine, Program::create(files, {tile, folder + "refine.frag"})},
         {&p.showView, Program::create(files, {tile, folder + "show_view.frag"})},
         {&p.points, Program::create(files, {folder + "points.vert", folder + "points.frag"})},
         {&p.pointsShade, Program::create(files, {tile, folder + "points_shade.frag"})},
@@ -93,6 +97,11 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     if (!indices) return indices.error();
     p.quadIndices = std::move(*indices);
     p.quads = gpu::VertexArray::create();
+    for (gpu::TextureName& texture : p.rowTextures) {
+        GLuint name = 0;
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
+        texture = gpu::TextureName(name);
+    }
     p.quads.elements(p.quadIndices.name());
     p.none = gpu::VertexArray::create();
     return p;
@@ -104,31 +113,37 @@ Status FluidPrograms::reload() {
     return ok();
 }
 
-void FluidPrograms::drawQuads(gpu::Program& program, uint32_t rows) {
-    if (rows == 0) return;
-    program.set("rows", rows);
+void FluidPrograms::drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows) {
+    if (count == 0) return;
+    for (GLuint k = 0; k < rows.size(); ++k) {
+        if (rows[k].buffer == 0) continue;
+        glTextureBuffer(rowTextures[k].name(), rows[k].format, rows[k].buffer);
+        glBindTextureUnit(kRowUnit + k, rowTextures[k].name());
+    }
+    program.set("rows", count);
     quads.bind();
-    const uint32_t instances = (rows + kQuadRows - 1) / kQuadRows, each = instances > 1 ? kQuadRows : rows;
+    const uint32_t instances = (count + kQuadRows - 1) / kQuadRows, each = instances > 1 ? kQuadRows : count;
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * each), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
 }
 
 void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid) {
-    const unsigned buffers[] = {fluid.position,      fluid.velocity,      fluid.id,           fluid.absorption,
-                                fluid.ellipsoids[0], fluid.ellipsoids[1], fluid.ellipsoids[2]};
-    for (GLuint k = 0; k < std::size(buffers); ++k)
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, k + 1, buffers[k] != 0 ? buffers[k] : fluid.position);
-    drawQuads(program, fluid.count);
+    const QuadRows rows[] = {{fluid.position},      {fluid.velocity},      {fluid.id, GL_R32UI}, {fluid.absorption},
+                             {fluid.ellipsoids[0]}, {fluid.ellipsoids[1]}, {fluid.ellipsoids[2]}};
+    drawQuads(program, fluid.count, rows);
 }
 
 std::vector<gpu::Read> splatReads(const FluidDraw& d) {
-    std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::storage}};
-    for (const gpu::BufferHandle ellipsoids : d.ellipsoids) reads.emplace_back(ellipsoids, gpu::Usage::storage);
+    std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::sampled}};
+    for (const gpu::BufferHandle ellipsoids : d.ellipsoids) reads.emplace_back(ellipsoids, gpu::Usage::sampled);
     return reads;
 }
 
+gpu::TextureDesc tilesOf(const FrameView& view) {
+    return {.width = (view.width + kTile - 1) / kTile, .height = (view.height + kTile - 1) / kTile, .format = gpu::Format::r8};
+}
+
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
-    const gpu::TextureDesc size{
-        .width = (d.view.width + kTile - 1) / kTile, .height = (d.view.height + kTile - 1) / kTile, .format = gpu::Format::r8};
+    const gpu::TextureDesc size = tilesOf(d.view);
     const gpu::TextureHandle tiles = graph.texture("water tiles", size);
     graph.pass("tiles", splatReads(d), {tiles}, [=, &programs](gpu::PassContext& c) {
         c.drawTo({tiles}).clearColour(vec4(0.0F));

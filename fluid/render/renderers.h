@@ -51,8 +51,15 @@ struct SplatPrograms {
     gpu::Program occluder, markTiles, depth, thickness, thicknessInk;
 };
 
+// What a quad's vertex shader reads of each row.
+struct QuadRows {
+    unsigned buffer = 0;  // GL name; 0: none
+    GLenum format = GL_RGBA32F;
+};
+
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
+    gpu::Program waterBlocks, waterTiles, refine;
     gpu::Program points, pointsShade, blur, shade, lightWater, lightWaterFirst, lightWaterLast, shadeInk, showView;
     gpu::Program shadeNormals, shadeNormalsInk;  // Ink: particles differ in absorption; Normals: they are given
     SplatPrograms spheres, ellipsoids;
@@ -61,10 +68,11 @@ struct FluidPrograms {
     FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
     gpu::VertexArray quads, none;
     gpu::Buffer quadIndices;
+    std::array<gpu::TextureName, 7> rowTextures;
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
-    // A quad for each of `rows`, whose vertex shader includes quads.glsl, with the program in use.
-    void drawQuads(gpu::Program& program, uint32_t rows);
+    // A quad for each of `count` rows, whose vertex shader includes quads.glsl, with the program in use; rows[k] is its ROWS(k, ...).
+    void drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows);
     // The same for each particle, whose vertex shader includes particle.glsl.
     void drawParticles(gpu::Program& program, const FluidView& fluid);
     // The marked ones, with the program in use, whose vertex shader is tile.vert; the mask is bound to `unit`.
@@ -80,6 +88,7 @@ struct FluidDraw {
     FluidView fluid;
     FluidLook look;
     gpu::BufferHandle frame;                                 // a FrameParams (shaders/render/frame.h)
+    gpu::BufferHandle coarse;                                // of a picture half as large each way, rounded up; empty: look.fast is finer
     gpu::BufferHandle position, velocity, id, absorption;    // fluid's, imported
     std::vector<gpu::BufferHandle> ellipsoids;               // likewise; empty: spheres
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
@@ -111,7 +120,8 @@ gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs
 // The particles' buffers, as a pass that draws splats reads them.
 std::vector<gpu::Read> splatReads(const FluidDraw& draw);
 
-// Marks the tiles of the picture that particles touch: what comes after the spheres runs only there.
+// Marks the tiles of the picture that particles touch: what comes after runs only there.
+gpu::TextureDesc tilesOf(const FrameView& view);
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
 // A water surface as the shade pass takes it.

@@ -15,16 +15,17 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr float kFar = 1.0e6F;      // m, shaders/render/frame.glsl's depth of nothing
-constexpr int kThicknessScale = 2;  // of the resolution
-constexpr int kThicknessBlur = 4;   // texels either side
-constexpr int kLightMap = 256;      // texels
+constexpr float kFar = 1.0e6F;                               // m, shaders/render/frame.glsl's depth of nothing
+constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolution
+constexpr int kThicknessBlur = 4;                            // texels either side
+constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
-// x: depth of the bulk, y: of the spray; m.
-TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+// x: depth of the bulk, y: of the spray; m. `prepare`: draws first what hides spheres deep in the water; worth it where they are many
+// pixels.
+TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, bool prepare) {
     TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::rg32f};
     const TextureHandle depth = graph.texture("sphere depth", size);
     size.format = Format::depth32f;
@@ -35,13 +36,15 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         useFrame(c, d);
         target.clearColour(vec4(kFar));
         target.clearDepth();
-        glEnable(GL_DEPTH_TEST);
-        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        splats.occluder.use();
-        splats.occluder.set("radius", d.fluid.radius);
-        programs.drawParticles(splats.occluder, d.fluid);
-        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glDepthMask(GL_FALSE);
+        if (prepare) {
+            glEnable(GL_DEPTH_TEST);
+            glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+            splats.occluder.use();
+            splats.occluder.set("radius", d.fluid.radius);
+            programs.drawParticles(splats.occluder, d.fluid);
+            glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+            glDepthMask(GL_FALSE);
+        }
         glEnable(GL_BLEND);
         glBlendEquation(GL_MIN);
         splats.depth.use();
@@ -49,6 +52,28 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         programs.drawParticles(splats.depth, d.fluid);
     });
     return depth;
+}
+
+// The tiles in which there is water, from the spheres' depth: that is less than to draw all particles once more.
+TextureHandle addTilesOf(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle spheres) {
+    const TextureDesc from = graph.desc(spheres), size = tilesOf(d.view);
+    const TextureHandle blocks =
+        graph.texture("water blocks", {.width = (from.width + 7) / 8, .height = (from.height + 7) / 8, .format = Format::r8});
+    const TextureHandle tiles = graph.texture("water tiles", size);
+    graph.pass("tiles", {spheres}, {blocks}, [=, &programs](PassContext& c) {
+        c.drawTo({blocks});
+        programs.waterBlocks.use();
+        programs.waterBlocks.texture("depths", 0, c.texture(spheres));
+        c.drawFullscreen();
+    });
+    graph.pass("tiles", {blocks}, {tiles}, [=, &programs](PassContext& c) {
+        c.drawTo({tiles});
+        programs.waterTiles.use();
+        programs.waterTiles.texture("blocks", 0, c.texture(blocks));
+        programs.waterTiles.set("perTile", vec2(from.width, from.height) / vec2(size.width, size.height));
+        c.drawFullscreen();
+    });
+    return tiles;
 }
 
 // What the surface is made from, instead of the water.
@@ -89,9 +114,9 @@ void addView(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, con
 }  // namespace
 
 WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
-    const TextureDesc size{.width = (d.view.width + kThicknessScale - 1) / kThicknessScale,
-                           .height = (d.view.height + kThicknessScale - 1) / kThicknessScale,
-                           .format = Format::rg16f};
+    const int scale = d.look.fast ? kThicknessScaleFast : kThicknessScale;
+    const TextureDesc size{
+        .width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::rg16f};
     const bool ink = d.fluid.absorption != 0;
     TextureDesc inkSize = size;
     inkSize.format = Format::rgba16f;
@@ -101,7 +126,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
     std::vector<gpu::Write> writes = {thickness};
     if (ink) {
         depths = graph.texture("ink depths", inkSize);
-        reads.emplace_back(d.absorption, Usage::storage);
+        reads.emplace_back(d.absorption, Usage::sampled);
         writes.emplace_back(depths);
     }
     graph.pass("thickness", reads, writes, [=, &programs](PassContext& c) {
@@ -116,14 +141,14 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         if (ink) p.set("ownAbsorption", vec4(d.look.absorption, d.look.scattering.y));
         p.set("radius", d.fluid.radius);
         p.set("spacing", d.fluid.spacing);
-        p.set("scale", kThicknessScale);
+        p.set("scale", scale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
         programs.drawParticles(p, d.fluid);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
             p.set("axis", axis);
-            p.set("reach", kThicknessBlur);
+            p.set("reach", kThicknessBlur * kThicknessScale / scale);
         };
         thickness = addTiled(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addTiled(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
@@ -137,7 +162,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::storage}}, {drawn}, [=, &programs](PassContext& c) {
+    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {drawn}, [=, &programs](PassContext& c) {
         c.drawTo({drawn}).clearColour(vec4(0.0F));
         useFrame(c, d);
         glEnable(GL_BLEND);
@@ -212,12 +237,26 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
 
 FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
-    const TextureHandle tiles = addTiles(graph, programs, d);
     const FilterRow& unfiltered = *filters().find("none");
     const FilterRow& filter = d.look.view == WaterView::spheres ? unfiltered
                               : d.look.filter != nullptr        ? *d.look.filter
                                                                 : filters().rows.front();
-    const TextureHandle depth = filter.add(graph, programs, d, tiles, addSphereDepth(graph, programs, d));
+    // Where there is no time, the surface is found at half the resolution, and only its light in full.
+    const bool half = d.look.fast && static_cast<bool>(d.coarse);
+    FluidDraw s = d;
+    if (half) {
+        s.frame = d.coarse;
+        s.view.width = (d.view.width + 1) / 2;
+        s.view.height = (d.view.height + 1) / 2;
+    }
+    const TextureHandle spheres = addSphereDepth(graph, programs, s, !half);
+    const TextureHandle tiles = addTilesOf(graph, programs, d, spheres);
+    TextureHandle depth = filter.add(graph, programs, s, tiles, spheres);
+    if (half) {
+        const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
+        depth = addTiled(graph, "refine", programs, d, programs.refine, tiles, depth, size, kFar,
+                         [=](Program& p, const PassContext&) { p.set("range", d.fluid.radius); });
+    }
     WaterSurface water = addThickness(graph, programs, d, tiles);
     water.depth = depth;
     return addShade(graph, programs, d, water);

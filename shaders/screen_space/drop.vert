@@ -1,18 +1,14 @@
 // A drop in the air as a quad that covers it and the way it goes while the shutter is open.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/quads.glsl"
-struct Drop {
-    vec4 at;        // xyz m, world; w m, radius
-    vec4 velocity;  // xyz m/s
-};
-ROWS(1, Drops, Drop, drops)
+ROWS(0, drops)             // two a drop: xyz m, world, w m, radius; xyz m/s
 uniform float shutter;     // s
 flat out vec4 centreView;  // xyz m; w m, radius as drawn: no less than most of a pixel
 flat out vec4 wayView;     // xyz unit, across the line of sight; w m, half the way
 flat out float share;      // of what is behind that it hides
 out vec2 place;            // m, along the way and across
 void main() {
-    vec4 drop = drops[row()].at, velocity = drops[row()].velocity;
+    vec4 drop = texelFetch(drops, 2 * row()), velocity = texelFetch(drops, 2 * row() + 1);
     vec3 c = (frame.view * vec4(drop.xyz, 1.0)).xyz, v = mat3(frame.view) * velocity.xyz;
     float depth = -c.z;
     vec3 toEye = -normalize(c);

@@ -1,12 +1,12 @@
 // A particle as a quad that just covers the picture of its sphere, or with ELLIPSOIDS of its ellipsoid. Needs frame.glsl.
 #include "shaders/screen_space/quads.glsl"
-ROWS(1, Particles, vec4, particles)  // xyz m, world
+ROWS(0, particles) // xyz m, world
 #if defined(ELLIPSOIDS)
-ROWS(5, Centres, vec4, centres)      // xyz m: see fluid/ellipsoids.kernel
-ROWS(6, Spreads, vec4, spreads)      // xx, yy, zz of the squared half axes, a round particle's 1
-ROWS(7, Slants, vec4, slants)        // yz, zx, xy
+ROWS(4, centres)    // xyz m: see fluid/ellipsoids.kernel
+ROWS(5, spreads)    // xx, yy, zz of the squared half axes, a round particle's 1
+ROWS(6, slants)     // yz, zx, xy
 #endif
-vec4 particle = particles[row()];
+vec4 particle = texelFetch(particles, row());
 uniform float radius;                   // m
 
 const float kOverlap = 1.35;  // radii: drawn so large, they cover the water without gaps. Spheres make it 0.3 radii too thick by that
@@ -29,7 +29,7 @@ Splat splatOf(vec4 p) {
     float r = drawnRadius(p);
     Splat s = Splat((frame.view * vec4(p.xyz, 1.0)).xyz, mat3(r * r));
 #if defined(ELLIPSOIDS)
-    vec3 toCentre = centres[row()].xyz, spread = spreads[row()].xyz, slant = slants[row()].xyz;
+    vec3 toCentre = texelFetch(centres, row()).xyz, spread = texelFetch(spreads, row()).xyz, slant = texelFetch(slants, row()).xyz;
     // One that was born after the ellipsoids were found has none yet.
     float sum = spread.x + spread.y + spread.z;
     if (sum > 0.05 && sum < 50.0 && dot(toCentre, toCentre) < 9.0 * radius * radius) {

@@ -1,9 +1,9 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 #include "shaders/screen_space/ramp.glsl"
-ROWS(2, Velocities, vec4, velocities)    // normal, surface: normals, w their length
-ROWS(3, Ids, uint, ids)
-ROWS(4, Absorptions, vec4, absorptions)  // see FluidView
+ROWS(1, velocities)   // normal, surface: normals, w their length
+layout(binding = 26) uniform usamplerBuffer ids;
+ROWS(3, absorptions)  // see FluidView
 uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye, 4 normal, 5 surface
 uniform int alike;        // 1: absorption is not given
 uniform vec3 ownAbsorption;  // 1/m
@@ -12,8 +12,8 @@ uniform float fullSpeed;  // m/s, the colour map's end
 flat out vec4 centreView;  // w: radius
 flat out vec3 baseColour;
 void main() {
-    vec4 velocity = velocities[row()], absorption = absorptions[row()];
-    uint id = ids[row()];
+    vec4 velocity = texelFetch(velocities, row()), absorption = texelFetch(absorptions, row());
+    uint id = texelFetch(ids, row()).r;
     centreView = vec4((frame.view * vec4(particle.xyz, 1.0)).xyz, drawnRadius(particle));
     gl_Position = lost(particle) ? kNowhere : splatQuad(splatOf(particle));
     if (colourBy == 0) baseColour = ramp(length(velocity.xyz) / fullSpeed);

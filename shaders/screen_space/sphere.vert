@@ -1,9 +1,9 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 #if defined(INK)
-ROWS(4, Absorptions, vec4, absorptions)  // see FluidView
-uniform vec4 ownAbsorption;              // 1/m; w: scattering
-flat out vec4 ink;                       // 1/m; w: scattering
+ROWS(3, absorptions)         // see FluidView
+uniform vec4 ownAbsorption;  // 1/m; w: scattering
+flat out vec4 ink;           // 1/m; w: scattering
 #endif
 flat out float sprayed;
 flat out vec4 centreView;  // w: radius, of an ellipsoid that of the ball of its volume
@@ -17,7 +17,7 @@ void main() {
     shapeView = inverse(s.squares);
 #endif
 #if defined(INK)
-    vec4 absorption = absorptions[row()];
+    vec4 absorption = texelFetch(absorptions, row());
     ink = absorption.w < 0.0 ? vec4(absorption.xyz, -1.0 - absorption.w) : absorption + ownAbsorption;
 #endif
     sprayed = spray(particle);

@@ -1,5 +1,6 @@
 // A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a row of filters().
 #include <algorithm>
+#include <cmath>
 
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
@@ -20,6 +21,7 @@ constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolutio
 constexpr int kThicknessBlur = 4;                            // texels either side
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
+constexpr uint32_t kLightShare = 4;  // of particles, where there is no time
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
@@ -169,10 +171,15 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         glBlendFunc(GL_ONE, GL_ONE);
         Program& p = programs.lightWater;
         p.use();
-        p.set("clipRadius", clipRadius);
-        p.set("radius", d.fluid.radius);
+        // One of each few stands for all of them: they lie in the order of their cells, and the blur hides that it is larger.
+        const uint32_t each = d.look.fast ? kLightShare : 1;
+        const float larger = std::cbrt(static_cast<float>(each));
+        p.set("each", static_cast<int>(each));
+        p.set("clipRadius", larger * clipRadius);
+        p.set("radius", larger * d.fluid.radius);
         p.set("volumeScale", volumeScale(d.fluid));
-        programs.drawParticles(p, d.fluid);
+        const QuadRows rows[] = {{d.fluid.position}};
+        programs.drawQuads(p, (d.fluid.count + each - 1) / each, rows);
     });
     // The narrow blur hides the single particles: its reach is 1.5 spacings.
     const int reach =

@@ -17,13 +17,11 @@ constexpr float kFar = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothi
 // Steps of the levels, relative; the small ones last: they iron out what the holes of the others leave. The nearer the camera, the more
 // pixels the same metres are, and the more levels there are between a pixel and the widest.
 constexpr float kFarSteps[] = {3, 5, 7, 4, 2, 1};
-constexpr float kFastSteps[] = {2, 4, 2, 1};
 constexpr float kMiddleSteps[] = {4, 9, 13, 8, 5, 3, 2, 1};
 constexpr float kNearSteps[] = {6, 14, 22, 13, 8, 5, 3, 2, 1};
 constexpr float kNearestSteps[] = {10, 24, 37, 22, 13, 8, 5, 3, 2, 1};
-constexpr float kUnitPixels = 3.0F;      // a step of 1 is no wider than this
-constexpr float kUnitPixelsFast = 1.5F;  // of the few levels, which leave wider holes between them
-constexpr float kMostBilateral = 96;     // pixels either side
+constexpr float kUnitPixels = 3.0F;   // a step of 1 is no wider than this
+constexpr float kMostBilateral = 96;  // pixels either side
 constexpr float kReachSpacings = 1.8F;
 constexpr float kRangeSpacings = 4.2F;
 constexpr float kBendSpacings = 0.3F;
@@ -38,13 +36,12 @@ Levels levelsOf(const FluidDraw& d, float reach) {
     const float away = box.empty() ? 1.0F : glm::length(d.view.cameraPosWorld - glm::clamp(d.view.cameraPosWorld, box.min, box.max));
     const float pixelsPerMetre = 0.5F * static_cast<float>(d.view.height) * d.view.projection[1][1] / std::max(away, d.view.nearPlane);
     Levels levels{};
-    const std::span<const float> fewest = d.look.fast ? std::span<const float>(kFastSteps) : std::span<const float>(kFarSteps);
-    for (const std::span<const float> steps : {fewest, std::span<const float>(kFarSteps), std::span<const float>(kMiddleSteps),
+    for (const std::span<const float> steps : {std::span<const float>(kFarSteps), std::span<const float>(kMiddleSteps),
                                                std::span<const float>(kNearSteps), std::span<const float>(kNearestSteps)}) {
         float squares = 0;
         for (const float step : steps) squares += 0.5F * step * step;
         levels = {steps, 0.5F * reach / std::sqrt(squares)};
-        if (levels.unit * pixelsPerMetre <= (steps.data() == kFastSteps ? kUnitPixelsFast : kUnitPixels)) break;
+        if (levels.unit * pixelsPerMetre <= kUnitPixels) break;
     }
     return levels;
 }

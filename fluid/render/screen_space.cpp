@@ -21,7 +21,7 @@ constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolutio
 constexpr int kThicknessBlur = 4;                            // texels either side
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
-constexpr uint32_t kLightShare = 4;  // of particles, where there is no time
+constexpr uint32_t kLightShare = 2;  // of particles, where there is no time
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
@@ -164,6 +164,9 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
+    // One of each few stands for all of them: they lie in the order of their cells, and the blur hides that it is larger.
+    const uint32_t each = d.look.fast ? kLightShare : 1;
+    const float larger = std::cbrt(static_cast<float>(each));
     graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {drawn}, [=, &programs](PassContext& c) {
         c.drawTo({drawn}).clearColour(vec4(0.0F));
         useFrame(c, d);
@@ -171,9 +174,6 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         glBlendFunc(GL_ONE, GL_ONE);
         Program& p = programs.lightWater;
         p.use();
-        // One of each few stands for all of them: they lie in the order of their cells, and the blur hides that it is larger.
-        const uint32_t each = d.look.fast ? kLightShare : 1;
-        const float larger = std::cbrt(static_cast<float>(each));
         p.set("each", static_cast<int>(each));
         p.set("clipRadius", larger * clipRadius);
         p.set("radius", larger * d.fluid.radius);
@@ -181,9 +181,9 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         const QuadRows rows[] = {{d.fluid.position}};
         programs.drawQuads(p, (d.fluid.count + each - 1) / each, rows);
     });
-    // The narrow blur hides the single particles: its reach is 1.5 spacings.
-    const int reach =
-        std::clamp(static_cast<int>(1.5F * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side)), 2, 6);
+    // The narrow blur hides the single particles: its reach is 1.5 spacings of those that are drawn.
+    const float texels = 1.5F * larger * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side);
+    const int reach = std::clamp(static_cast<int>(texels), 2, 6);
     TextureHandle from = drawn;
     for (const bool first : {true, false}) {
         const TextureHandle to = graph.texture("water light", map);
@@ -262,7 +262,7 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     if (half) {
         const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
         depth = addTiled(graph, "refine", programs, d, programs.refine, tiles, depth, size, kFar,
-                         [=](Program& p, const PassContext&) { p.set("range", d.fluid.radius); });
+                         [=](Program& p, const PassContext&) { p.set("range", filterReach(d.look, d.fluid.spacing).range); });
     }
     WaterSurface water = addThickness(graph, programs, d, tiles);
     water.depth = depth;

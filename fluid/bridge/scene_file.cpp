@@ -266,11 +266,11 @@ void FluidLookParams::visit(ParamVisitor& v) {
     v.choice({.name = "view", .doc = "the water, or what its surface is made from"}, view, viewNames);
     v.value({.name = "split", .doc = "the renderer of the picture's right half, to compare; none = the whole picture is look.renderer's"},
             split);
-    v.choice({.name = "quality",
-              .doc = "fast: spheres, fewer levels of smoothing, coarser light in the water, no reflection of the picture in itself; auto: "
-                     "fast in a "
-                     "window drawn by software"},
-             quality, qualities);
+    v.choice(
+        {.name = "quality",
+         .doc = "fast: spheres, the surface at half the resolution, coarser light in the water, no reflection of the picture in itself; "
+                "auto: in a window as its frames allow, else fine"},
+        quality, qualities);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
     static const std::vector<std::string> filterNames = filters().names();
     v.choice({.name = "filter", .doc = "how a surface is made of the particles' depth; rivulet list filters says what each is"}, filter,

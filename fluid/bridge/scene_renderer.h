@@ -69,7 +69,7 @@ class SceneRenderer {
 
     // GPU time a pass, some frames late.
     const std::vector<PassTime>& times() const { return pool_.times(); }
-    // Whether look.quality auto is fast: in a window that software draws. Else it is fine.
+    // Whether look.quality auto is fast. It is fine until this says so.
     void hurry(bool yes) { hurries_ = yes; }
     // Reads the shaders again. Error: as create; the last good ones stay in use.
     Status reload();

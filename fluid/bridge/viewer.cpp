@@ -62,7 +62,8 @@ Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::strin
     auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
     if (!renderer) return renderer.error();
     v.renderer_ = std::move(*renderer);
-    v.renderer_->hurry(v.gl_.software);
+    v.haste_.begin(v.gl_.software);
+    v.renderer_->hurry(v.haste_.fast());
     return viewer;
 }
 
@@ -290,6 +291,12 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     if (renderer_->times().empty()) return ok();  // none has come back yet
     const PassTime ui[] = {{.name = "ui", .ms = uiMs_, .calls = 1}};
     profiler_.add("render", ui);
+    if (scene.look.split.empty()) {  // a half that is ray-marched says nothing of the other
+        double ms = 0;
+        for (const PassTime& pass : renderer_->times()) ms += pass.ms;
+        haste_.frame(ms);
+        renderer_->hurry(haste_.fast());
+    }
     return ok();
 }
 

@@ -13,6 +13,7 @@
 #include "engine/ui/profiler_panel.h"
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/fluid_panel.h"
+#include "fluid/bridge/haste.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
@@ -60,6 +61,7 @@ class Viewer {
     ProfilerPanel profiler_;
     VoxelPanel voxels_;
     gpu::Timer uiTimer_;
+    Haste haste_;
     GlFacts gl_;
     SceneFile draft_;    // what the panel edits; becomes the session's when it makes sense
     SceneFile settled_;  // as it was before the edit that is under way

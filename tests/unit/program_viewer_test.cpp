@@ -185,6 +185,34 @@ TEST_F(Person, AWindowOfNoSizeIsNoError) {
     frame();
 }
 
+// On a display of two pixels a window coordinate the picture has every pixel of its own, and the same things in it.
+TEST_F(Person, ADisplayOfTwiceThePixelsShowsTheSameInAllOfThem) {
+    viewer_.reset();
+    SceneFile scene;
+    scene.fluid.spacing = 0.05F;
+    scene.fluid.blocks = {{.min = vec3(0.2F), .max = vec3(0.6F)}};
+    scene.look.quality = "fine";
+    auto viewer = Viewer::create(scene, "cpu", {});
+    ASSERT_TRUE(viewer) << viewer.error().message;
+    viewer_ = std::move(*viewer);
+    key(GLFW_KEY_SPACE);
+    key(GLFW_KEY_TAB);
+    auto shot = [this] {
+        for (int k = 0; k < 3; ++k) frame();
+        std::vector<uint8_t> texels(picture_.hostBytes());
+        picture_.read(std::as_writable_bytes(std::span(texels)));
+        return texels;
+    };
+    input_.size = input_.framebuffer = kPixels;
+    const std::vector<uint8_t> plain = shot();
+    input_.size = kPixels / 2;
+    EXPECT_EQ(shot(), plain);
+    input_.framebuffer = kPixels / 2;  // the window goes to a display of one pixel a coordinate, and back
+    EXPECT_NE(shot(), plain);
+    input_.framebuffer = kPixels;
+    EXPECT_EQ(shot(), plain);
+}
+
 // Every row of the panel is pressed and dragged: no crash, what changed is a scene that could be read from a file, and where a value is
 // one that needs a new world there is one.
 TEST_F(Person, EverySliderMayBeDragged) {

@@ -1,8 +1,10 @@
 // Renderers: the ways to draw a fluid, as passes added to a frame graph after the scene's opaque pass.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/compute/kernel_source.h"
@@ -57,6 +59,8 @@ struct QuadRows {
     GLenum format = GL_RGBA32F;
 };
 
+struct MarchedTruth;
+
 // The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
     gpu::Program waterBlocks, waterTiles, refine;
@@ -69,6 +73,7 @@ struct FluidPrograms {
     gpu::VertexArray quads, none;
     gpu::Buffer quadIndices;
     std::array<gpu::TextureName, 7> rowTextures;
+    std::shared_ptr<MarchedTruth> marched;  // by the row `truth`, the last time
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
     // A quad for each of `count` rows, whose vertex shader includes quads.glsl, with the program in use; rows[k] is its ROWS(k, ...).
@@ -138,7 +143,7 @@ FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const Flui
 
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
-// Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds.
+// Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds, where anything has changed.
 FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
 // Spray, foam and bubbles, into layers.colour.

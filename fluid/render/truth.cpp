@@ -1,10 +1,22 @@
 // The truth as a renderer: the iso-surface of the particles (Yu & Turk 2013), ray-marched on the host, in the light of the others.
 #include <cstddef>
+#include <cstring>
 
 #include "fluid/render/raymarch.h"
 #include "fluid/render/renderers.h"
 
 namespace rivulet {
+
+// What the last picture was marched from, and what came of it.
+struct MarchedTruth {
+    std::vector<vec4> particles;
+    std::vector<float> until;
+    FrameView view;
+    Bounds box;
+    float spacing = 0;
+    RaymarchPicture picture;
+};
+
 namespace {
 
 using gpu::Format;
@@ -27,6 +39,32 @@ std::vector<float> sceneDepths(const gpu::Texture& window, const FrameView& view
     return depths;
 }
 
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+// A window that shows water at rest marches it once.
+const RaymarchPicture& march(std::shared_ptr<MarchedTruth>& last, MarchedTruth now, const std::function<bool(double)>& progress) {
+    const bool same = last && sameBytes(last->particles, now.particles) && sameBytes(last->until, now.until) &&
+                      last->view.view == now.view.view && last->view.projection == now.view.projection &&
+                      last->view.width == now.view.width && last->view.height == now.view.height && last->box.min == now.box.min &&
+                      last->box.max == now.box.max && last->spacing == now.spacing;
+    if (same) return last->picture;
+    const Result<IsoSurface> surface = IsoSurface::create(now.particles, now.spacing);
+    ASSERT(surface, "a FluidView has a spacing of more than 0");
+    bool whole = true;
+    const auto told = [&](double share) {
+        const bool on = progress(share);
+        whole = whole && on;
+        return on;
+    };
+    now.picture = raymarch(*surface, now.view, {.box = now.box, .until = now.until, .progress = told});
+    last = std::make_shared<MarchedTruth>(std::move(now));
+    if (!whole) last->particles.clear();  // marched anew the next time
+    return last->picture;
+}
+
 }  // namespace
 
 FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
@@ -39,18 +77,22 @@ FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const Flui
     water.normals = graph.texture("truth normals", size);
     water.tiles = graph.texture("all tiles", {.width = 1, .height = 1, .format = Format::r8});
     graph.pass("all tiles", {}, {water.tiles}, [=](PassContext& c) { c.drawTo({water.tiles}).clearColour(vec4(1.0F)); });
-    graph.pass(
-        "truth", {{d.position, Usage::copy}, {d.depth, Usage::copy}}, {{water.depth, Usage::copy}, {water.normals, Usage::copy}},
-        [=](PassContext& c) {
-            std::vector<vec4> particles(d.fluid.count);
-            glGetNamedBufferSubData(c.buffer(d.position), 0, static_cast<GLsizeiptr>(particles.size() * sizeof(vec4)), particles.data());
-            const Result<IsoSurface> surface = IsoSurface::create(particles, d.fluid.spacing);
-            ASSERT(surface, "a FluidView has a spacing of more than 0");
-            const std::vector<float> until = sceneDepths(c.texture(d.depth), d.view);
-            const RaymarchPicture picture = raymarch(*surface, d.view, {.box = d.fluid.bounds, .until = until, .progress = d.progress});
-            upload(c.texture(water.depth), picture.depth);
-            upload(c.texture(water.normals), picture.water);
-        });
+    graph.pass("truth", {{d.position, Usage::copy}, {d.depth, Usage::copy}}, {{water.depth, Usage::copy}, {water.normals, Usage::copy}},
+               [=, &programs](PassContext& c) {
+                   std::vector<vec4> particles(d.fluid.count);
+                   glGetNamedBufferSubData(c.buffer(d.position), 0, static_cast<GLsizeiptr>(particles.size() * sizeof(vec4)),
+                                           particles.data());
+                   const RaymarchPicture& picture = march(programs.marched,
+                                                          {.particles = std::move(particles),
+                                                           .until = sceneDepths(c.texture(d.depth), d.view),
+                                                           .view = d.view,
+                                                           .box = d.fluid.bounds,
+                                                           .spacing = d.fluid.spacing,
+                                                           .picture = {}},
+                                                          d.progress);
+                   upload(c.texture(water.depth), picture.depth);
+                   upload(c.texture(water.normals), picture.water);
+               });
     return addShade(graph, programs, d, water);
 }
 

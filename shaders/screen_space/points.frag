@@ -5,6 +5,8 @@ flat in vec4 centreView;
 flat in vec3 baseColour;
 layout(location = 0) out vec4 surface;  // colour, 1
 layout(location = 1) out vec2 normal;   // x and y, view; z is what is missing to 1
+// The quad lies in the plane through its sphere's nearest point: what that hides needs no shading.
+layout(depth_greater) out float gl_FragDepth;
 void main() {
     float depth, through;
     if (!hitSphere(gl_FragCoord.xy, centreView.xyz, centreView.w, depth, through)) discard;

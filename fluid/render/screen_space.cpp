@@ -21,7 +21,7 @@ constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolutio
 constexpr int kThicknessBlur = 4;                            // texels either side
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
-constexpr uint32_t kLightShare = 2;  // of particles, where there is no time
+constexpr uint32_t kFastShare = 2;  // of particles, where there is no time
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
@@ -141,11 +141,13 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         Program& p = ink ? programs.splats(d.fluid).thicknessInk : programs.splats(d.fluid).thickness;
         p.use();
         if (ink) p.set("ownAbsorption", vec4(d.look.absorption, d.look.scattering.y));
-        p.set("radius", d.fluid.radius);
+        const uint32_t each = d.look.fast ? kFastShare : 1;
+        p.set("radius", d.fluid.radius * std::cbrt(static_cast<float>(each)));
+        p.set("standsFor", static_cast<float>(each));
         p.set("spacing", d.fluid.spacing);
         p.set("scale", scale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
-        programs.drawParticles(p, d.fluid);
+        programs.drawParticles(p, d.fluid, each);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
@@ -165,7 +167,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
     // One of each few stands for all of them: they lie in the order of their cells, and the blur hides that it is larger.
-    const uint32_t each = d.look.fast ? kLightShare : 1;
+    const uint32_t each = d.look.fast ? kFastShare : 1;
     const float larger = std::cbrt(static_cast<float>(each));
     graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {drawn}, [=, &programs](PassContext& c) {
         c.drawTo({drawn}).clearColour(vec4(0.0F));
@@ -174,12 +176,10 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         glBlendFunc(GL_ONE, GL_ONE);
         Program& p = programs.lightWater;
         p.use();
-        p.set("each", static_cast<int>(each));
         p.set("clipRadius", larger * clipRadius);
         p.set("radius", larger * d.fluid.radius);
         p.set("volumeScale", volumeScale(d.fluid));
-        const QuadRows rows[] = {{d.fluid.position}};
-        programs.drawQuads(p, (d.fluid.count + each - 1) / each, rows);
+        programs.drawParticles(p, d.fluid, each);
     });
     // The narrow blur hides the single particles: its reach is 1.5 spacings of those that are drawn.
     const float texels = 1.5F * larger * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side);

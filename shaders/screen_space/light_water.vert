@@ -2,12 +2,10 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 uniform float clipRadius;  // of a particle in the light's clip space
-uniform int each;          // of so many particles one is drawn
 out vec2 inDisc;
 flat out float depth;
 void main() {
     inDisc = corner() * 2.0 - 1.0;
-    vec4 particle = texelFetch(particles, row() * each);
     vec4 clip = frame.waterProjection * vec4(particle.xyz, 1.0);
     depth = clip.z * 0.5 + 0.5;
     gl_Position = lost(particle) ? kNowhere : clip + vec4(inDisc * clipRadius, 0.0, 0.0);

@@ -2,6 +2,7 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/sphere.glsl"
 uniform float spacing;      // m
+uniform float standsFor;    // so many particles
 uniform int scale;
 uniform sampler2D sceneDepth;
 flat in vec4 centreView;
@@ -24,7 +25,7 @@ void main() {
 #endif
     float scene = depthOfWindow(texelFetch(sceneDepth, min(ivec2(pixel), ivec2(frame.viewport.xy) - 1), 0).r);
     float r = centreView.w / spacing;
-    float share = min(0.2387324 / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
+    float share = min(0.2387324 * standsFor / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
     float water = share * clamp(scene - front, 0.0, through);
     thickness = vec2(water, water * sprayed);
 #if defined(INK)

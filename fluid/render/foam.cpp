@@ -18,7 +18,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
         glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
         gpu::Program& p = layers.fluidDepth ? programs.foamOverWater : programs.foam;
         p.use();
-        p.set("radius", 0.2F * d.fluid.spacing);
+        p.set("radius", 0.15F * d.fluid.spacing);
         p.texture("sceneDepth", 0, c.texture(d.depth));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));

@@ -1,0 +1,32 @@
+// Shapes whose surface a formula knows, filled with particles: what a drawn surface is measured on without a simulation.
+#pragma once
+
+#include <vector>
+
+#include "engine/render/frame_view.h"
+#include "fluid/validate/surface_metrics.h"
+
+namespace rivulet {
+
+constexpr int kSurfaceWidth = 640, kSurfaceHeight = 360;  // pixels, of all that the case surface draws
+
+// What is drawn: particles that need no world.
+struct SplatSet {
+    std::vector<vec4> at;  // m; w: density ratio
+    float spacing = 0;     // m
+    Bounds box;            // m, that cuts the water; empty: none does
+};
+
+struct SurfaceShape {
+    const char* name;
+    SplatSet splats;
+    FrameView view;
+    SurfaceMap reference;
+    bool whole;   // its silhouette is seen
+    bool judged;  // its particles lie as water leaves them
+};
+
+// A sphere and a level, as water leaves them and as a lattice has them.
+std::vector<SurfaceShape> surfaceShapes();
+
+}  // namespace rivulet

@@ -1,0 +1,71 @@
+// SurfaceTrial: what the case surface and its chart look at: spheres and levels, a dam break's moment and a pool at rest, each drawn in as
+// many looks as are asked for.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fluid/bridge/scene_renderer.h"
+#include "fluid/bridge/session.h"
+#include "fluid/bridge/surface_probe.h"
+#include "fluid/validate/physics_case.h"
+#include "fluid/validate/surface_shapes.h"
+
+namespace rivulet {
+
+// A way to draw.
+struct SurfaceLook {
+    std::string filter;        // a row of filters(), or kSurfaceTruth: the ray-marched iso-surface itself
+    std::string quality = {};  // of look.quality; "" = as the scene says
+};
+inline constexpr const char* kSurfaceTruth = "truth";
+
+struct ShapeErrors {
+    const SurfaceShape* shape;  // the trial's
+    SurfaceErrors errors;
+};
+struct MomentErrors {
+    SurfaceErrors errors;
+    double flip = 0;
+};
+
+class SurfaceTrial {
+  public:
+    // Error: there is no OpenGL (failed); an assignment makes no sense.
+    static Result<SurfaceTrial> create(const CaseSettings& settings);
+
+    Result<std::vector<ShapeErrors>> shapes(const SurfaceLook& look);
+    // A dam that breaks, at a moment: the surface and the picture against the truth's, which is no look here.
+    Result<MomentErrors> moment(const SurfaceLook& look);
+    // A pool that has come to rest goes on being simulated: what moves in its picture should not. Of 255, a look each.
+    Result<std::vector<double>> flicker(std::span<const SurfaceLook> looks);
+
+    int stillFrames() const { return settings_.quick ? 30 : 120; }
+    bool stopped() const { return stopped_; }  // by CaseSettings::goOn: what was found last is not whole
+
+  private:
+    SurfaceTrial(const CaseSettings& settings, SurfaceProbe probe) : settings_(settings), probe_(std::move(probe)) {}
+    bool goOn(double share);
+    Result<SurfaceMap> drawn(const SplatSet& splats, const FrameView& view, const SceneFile& scene);
+    Result<std::vector<uint8_t>> pictureOf(const SceneFile& scene);
+    Status reachMoment();
+
+    CaseSettings settings_;
+    SurfaceProbe probe_;  // before what lives in its context
+    SceneFile scene_;     // the dam break; shapes have its look
+    std::vector<SurfaceShape> shapes_;
+    std::unique_ptr<SceneRenderer> renderer_;
+
+    // At the moment; null: not there yet.
+    std::unique_ptr<Session> session_;
+    FluidUpload upload_;
+    SplatSet now_;
+    FrameView view_;
+    SurfaceMap truth_;
+    std::vector<uint8_t> truthPicture_;
+    bool stopped_ = false;
+};
+
+}  // namespace rivulet

@@ -32,8 +32,8 @@ void Ellipsoids::find(Device& device, const StepParams& params, NeighborGrid& gr
     found_ = true;
 }
 
-Result<std::array<std::vector<vec4>, 3>> ellipsoidsOf(Device& device, std::span<const vec4> particles, float spacing) {
-    std::array<std::vector<vec4>, 3> all;
+Result<HostEllipsoids> ellipsoidsOf(Device& device, std::span<const vec4> particles, float spacing) {
+    HostEllipsoids all;
     if (particles.empty()) return all;
     const auto count = static_cast<uint32_t>(particles.size());
     Bounds box;

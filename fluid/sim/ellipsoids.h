@@ -31,8 +31,11 @@ class Ellipsoids {
     bool prepared_ = false, found_ = false;
 };
 
-// Of particles that no world steps (xyz m, w = density / rest density), found on `device` and read back: centre, spread and slant, vec4
-// each, in their order. Neighbours are nearer than two spacings (m). Error (failed): out of memory; a kernel does not compile.
-Result<std::array<std::vector<vec4>, 3>> ellipsoidsOf(Device& device, std::span<const vec4> particles, float spacing);
+// Read back: centre, spread and slant, in the particles' order. Empty: there are none.
+using HostEllipsoids = std::array<std::vector<vec4>, 3>;
+
+// Of particles that no world steps: xyz m, w = density / rest density. Neighbours are nearer than two spacings (m). Error (failed): out of
+// memory; a kernel does not compile.
+Result<HostEllipsoids> ellipsoidsOf(Device& device, std::span<const vec4> particles, float spacing);
 
 }  // namespace rivulet

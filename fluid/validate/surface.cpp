@@ -24,8 +24,10 @@ struct Under {
     }
     void found(const std::string& of, const SurfaceErrors& e, bool silhouette, std::optional<double> degrees = {}) {
         found(of + ": normals, mean", "deg", e.normalMean, 0, degrees);
+        found(of + ": normals, median", "deg", e.normalMedian, 0);
         found(of + ": normals, 95 % below", "deg", e.normal95, 0);
         found(of + ": depth, rms", "radii", e.depthRms, 0);
+        found(of + ": depth, median", "radii", e.depthMedian, 0);
         if (silhouette) found(of + ": silhouettes' overlap", "", e.overlap, 1);
     }
 };

@@ -122,7 +122,6 @@ SurfaceMap levelMap(const FrameView& view) {
 std::vector<SurfaceShape> surfaceShapes() {
     const FrameView ball = viewOf({0.25F, 0.35F, 0.8F}, vec3(0.0F), 34), level = viewOf({0.1F, 0.42F, 0.85F}, vec3(0, 0, 0), 34);
     const SurfaceMap sphere = sphereMap(ball, double{kBall}), plane = levelMap(level);
-    // A ball cut out of a lattice has terraces, a drop at rest has none: the former is only reported.
     const auto inBall = [](const vec3& p) { return glm::length(p) < kBall; };
     return {{"sphere", settledBall(0.1), ball, sphere, true, true},
             {"sphere cut from a lattice", lattice(0, inBall), ball, sphere, true, false},

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/render/frame_view.h"
+#include "fluid/sim/ellipsoids.h"
 #include "fluid/validate/surface_metrics.h"
 
 namespace rivulet {
@@ -15,6 +16,7 @@ struct SplatSet {
     std::vector<vec4> at;  // m; w: density ratio
     float spacing = 0;     // m
     Bounds box;            // m, that cuts the water; empty: none does
+    HostEllipsoids ellipsoids = {};
 };
 
 struct SurfaceShape {
@@ -26,7 +28,8 @@ struct SurfaceShape {
     bool judged;  // its particles lie as water leaves them
 };
 
-// A sphere and a level, as water leaves them and as a lattice has them.
+// A sphere and a level. The sphere that is judged is a drop that has settled: one that is cut from a lattice has real terraces, and its true
+// surface, ray-marched, is off the sphere's normals by 5.7 deg itself.
 std::vector<SurfaceShape> surfaceShapes();
 
 }  // namespace rivulet

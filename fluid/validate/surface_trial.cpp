@@ -50,6 +50,11 @@ Result<SurfaceTrial> SurfaceTrial::create(const CaseSettings& settings) {
     if (!renderer) return renderer.error();
     trial.renderer_ = std::move(*renderer);
     trial.shapes_ = surfaceShapes();
+    for (SurfaceShape& shape : trial.shapes_) {
+        Result<HostEllipsoids> found = ellipsoidsOf(*settings.device, shape.splats.at, shape.splats.spacing);
+        if (!found) return found.error();
+        shape.splats.ellipsoids = std::move(*found);
+    }
     return trial;
 }
 
@@ -63,7 +68,8 @@ Result<SurfaceMap> SurfaceTrial::drawn(const SplatSet& splats, const FrameView& 
     if (!look) return look.error();
     const float radius = scene.look.radiusSpacings * splats.spacing;
     Result<std::vector<float>> depth =
-        probe_.depth(splats.at, {.radius = radius, .spacing = splats.spacing, .bounds = splats.box}, view, *look);
+        probe_.depth(splats.at, {.radius = radius, .spacing = splats.spacing, .bounds = splats.box}, view, *look,
+                     scene.look.splats == "ellipsoids" && !look->fast ? splats.ellipsoids : HostEllipsoids{});
     if (!depth) return depth.error();
     SurfaceMap map{view.width, view.height, std::move(*depth), {}};
     fillNormals(map, view, radius);
@@ -98,7 +104,11 @@ Status SurfaceTrial::reachMoment() {
         if (!goOn(0.3 * world.time() / kMoment)) return ok();
         session_->step(1.0 / kFramesPerSecond, true);
     }
-    now_ = {readParticles(world).position, world.params().spacing, {}};
+    const ParticleView water = world.particles();
+    Device& device = world.device();
+    now_ = {device.readAll<vec4>(*water.drawn, water.slots), world.params().spacing, {}};
+    for (size_t k = 0; k < 3 && water.ellipsoids[0] != nullptr; ++k)
+        now_.ellipsoids[k] = device.readAll<vec4>(*water.ellipsoids[k], water.slots);
     now_.box.add(world.params().box.min);
     now_.box.add(world.params().box.max);
     view_ = viewOf(scene_, *session_);

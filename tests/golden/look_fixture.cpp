@@ -15,7 +15,7 @@ namespace rivulet {
 void TestParticles::findEllipsoids() {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     const std::unique_ptr<Device> device = makeCpuDevice(rows, {});
-    Result<std::array<std::vector<vec4>, 3>> found = ellipsoidsOf(*device, position, spacing);
+    Result<HostEllipsoids> found = ellipsoidsOf(*device, position, spacing);
     ASSERT_TRUE(found) << found.error().message;
     ellipsoids = std::move(*found);
 }

@@ -60,10 +60,12 @@ Result<Outcome> runSurface(const CaseSettings& settings) {
         if (trial->stopped()) return u.outcome;
         u.found("dam break", moment->errors, true);
         u.found("dam break: FLIP", "", moment->flip, 0);
-        const Result<std::vector<double>> flicker = trial->flicker(std::span(&look, 1));
-        if (!flicker) return flicker.error();
+        const Result<StillPool> pool = trial->flicker(std::span(&look, 1));
+        if (!pool) return pool.error();
         if (trial->stopped()) return u.outcome;
-        u.found(fmt::format("still pool over {} frames: flicker, rms", trial->stillFrames()), "/255", flicker->front(), 0, kMostFlicker);
+        u.found(fmt::format("still pool over {} frames: flicker, rms", trial->stillFrames()), "/255", pool->flicker.front(), 0,
+                kMostFlicker);
+        u.found("still pool: fastest particle", "mm/s", pool->fastest, 0);
     }
     if (settings.method != surfaceMethods().front())
         for (Finding& f : u.outcome.findings) f.tolerance.reset();

@@ -66,14 +66,14 @@ SplatSet pool(double jitter) {
     return p;
 }
 
-FrameView viewOf(const vec3& from, const vec3& target, float fieldOfView) {
+FrameView viewOf(const vec3& from, const vec3& target, int width, int height) {
     Camera camera;
     camera.position = from;
     camera.target = target;
-    camera.fieldOfView = fieldOfView;
+    camera.fieldOfView = 34;
     camera.nearPlane = 0.05F;
     camera.farPlane = 10;
-    return frameViewOf(camera, LightParams{}, kSurfaceWidth, kSurfaceHeight, 0);
+    return frameViewOf(camera, LightParams{}, width, height, 0);
 }
 
 // What `depth` (along a world ray whose view depth is 1, from the camera) says a surface is; normals by `normal` (world).
@@ -119,8 +119,9 @@ SurfaceMap levelMap(const FrameView& view) {
 
 }  // namespace
 
-std::vector<SurfaceShape> surfaceShapes() {
-    const FrameView ball = viewOf({0.25F, 0.35F, 0.8F}, vec3(0.0F), 34), level = viewOf({0.1F, 0.42F, 0.85F}, vec3(0, 0, 0), 34);
+std::vector<SurfaceShape> surfaceShapes(int width, int height) {
+    const FrameView ball = viewOf({0.25F, 0.35F, 0.8F}, vec3(0.0F), width, height),
+                    level = viewOf({0.1F, 0.42F, 0.85F}, vec3(0.0F), width, height);
     const SurfaceMap sphere = sphereMap(ball, double{kBall}), plane = levelMap(level);
     const auto inBall = [](const vec3& p) { return glm::length(p) < kBall; };
     return {{"sphere", settledBall(0.1), ball, sphere, true, true},

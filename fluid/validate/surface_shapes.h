@@ -9,8 +9,6 @@
 
 namespace rivulet {
 
-constexpr int kSurfaceWidth = 640, kSurfaceHeight = 360;  // pixels, of all that the case surface draws
-
 // What is drawn: particles that need no world.
 struct SplatSet {
     std::vector<vec4> at;  // m; w: density ratio
@@ -28,8 +26,8 @@ struct SurfaceShape {
     bool judged;  // its particles lie as water leaves them
 };
 
-// A sphere and a level. The sphere that is judged is a drop that has settled: one that is cut from a lattice has real terraces, and its true
-// surface, ray-marched, is off the sphere's normals by 5.7 deg itself.
-std::vector<SurfaceShape> surfaceShapes();
+// A sphere and a level. The sphere that is judged is a drop that has settled: one that is cut from a lattice has real terraces, and its
+// true surface, ray-marched, is off the sphere's normals by 5.7 deg itself. In pixels.
+std::vector<SurfaceShape> surfaceShapes(int width, int height);
 
 }  // namespace rivulet

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <optional>
+#include <algorithm>
 
 #include "engine/core/assert.h"
 #include "fluid/bridge/run_stats.h"
@@ -14,11 +14,15 @@ namespace rivulet {
 namespace {
 
 constexpr double kMoment = 0.6;  // s, of the dam break
-constexpr int kSettling = 120;   // frames, of the pool
+// Frames, of the pool: what tension, walls and the lattice have set in motion dies until then, and the largest speed is 6 mm/s. After half
+// as many it is 130 mm/s, and the truth's picture changes more than the drawn one (1.55 and 1.11 of 255).
+constexpr int kSettling = 240;
 
 SceneFile sceneOf(const SceneFile& scene, const SurfaceLook& look) {
     SceneFile out = scene;
-    out.look.filter = look.filter;
+    const bool truth = look.filter == kSurfaceTruth;
+    out.look.renderer = truth ? "truth" : "screen_space";
+    if (!truth) out.look.filter = look.filter;
     if (!look.quality.empty()) out.look.quality = look.quality;
     return out;
 }
@@ -30,10 +34,6 @@ SurfaceMap truthMap(const SplatSet& splats, const FrameView& view) {
     SurfaceMap map{picture.width, picture.height, std::move(picture.depth), {}};
     for (const vec4& water : picture.water) map.normal.emplace_back(water);
     return map;
-}
-
-FrameView viewOf(const SceneFile& scene, const Session& session) {
-    return frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, kSurfaceWidth, kSurfaceHeight, 0);
 }
 
 }  // namespace
@@ -49,13 +49,17 @@ Result<SurfaceTrial> SurfaceTrial::create(const CaseSettings& settings) {
     Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(ShaderFiles::developer());
     if (!renderer) return renderer.error();
     trial.renderer_ = std::move(*renderer);
-    trial.shapes_ = surfaceShapes();
+    trial.shapes_ = surfaceShapes(trial.width(), trial.height());
     for (SurfaceShape& shape : trial.shapes_) {
         Result<HostEllipsoids> found = ellipsoidsOf(*settings.device, shape.splats.at, shape.splats.spacing);
         if (!found) return found.error();
         shape.splats.ellipsoids = std::move(*found);
     }
     return trial;
+}
+
+FrameView SurfaceTrial::viewOf(const SceneFile& scene, const Session& session) const {
+    return frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width(), height(), 0);
 }
 
 bool SurfaceTrial::goOn(double share) {
@@ -113,9 +117,7 @@ Status SurfaceTrial::reachMoment() {
     now_.box.add(world.params().box.max);
     view_ = viewOf(scene_, *session_);
     truth_ = truthMap(now_, view_);
-    SceneFile truth = scene_;
-    truth.look.renderer = "truth";
-    Result<std::vector<uint8_t>> picture = pictureOf(truth);
+    Result<std::vector<uint8_t>> picture = pictureOf(sceneOf(scene_, {kSurfaceTruth}));
     if (!picture) return picture.error();
     truthPicture_ = std::move(*picture);
     return ok();
@@ -124,17 +126,16 @@ Status SurfaceTrial::reachMoment() {
 Result<MomentErrors> SurfaceTrial::moment(const SurfaceLook& look) {
     if (Status s = reachMoment(); !s) return s.error();
     if (stopped_) return MomentErrors{};
-    SceneFile scene = sceneOf(scene_, look);
-    scene.look.renderer = "screen_space";
+    const SceneFile scene = sceneOf(scene_, look);
     const Result<SurfaceMap> map = drawn(now_, view_, scene);
     if (!map) return map.error();
     const Result<std::vector<uint8_t>> picture = pictureOf(scene);
     if (!picture) return picture.error();
     return MomentErrors{compareSurfaces(*map, truth_, scene.look.radiusSpacings * now_.spacing),
-                        flipMean(truthPicture_, *picture, kSurfaceWidth, kSurfaceHeight)};
+                        flipMean(truthPicture_, *picture, width(), height())};
 }
 
-Result<std::vector<double>> SurfaceTrial::flicker(std::span<const SurfaceLook> looks) {
+Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks) {
     std::vector<std::string> assignments = {"fluid.spacing=0.025", "camera.position=0.95,0.85,1.2", "camera.target=0.25,0.28,0.25",
                                             "camera.fieldOfView=36"};
     assignments.insert(assignments.end(), settings_.assignments.begin(), settings_.assignments.end());
@@ -147,15 +148,18 @@ Result<std::vector<double>> SurfaceTrial::flicker(std::span<const SurfaceLook> l
     const int frames = kSettling + stillFrames();
     FluidUpload upload;
     std::vector<Flicker> all;
+    StillPool pool;
     for (int f = 0; f < frames; ++f) {
-        if (!goOn(0.3 + 0.7 * f / frames)) return std::vector<double>(looks.size());
+        if (!goOn(0.3 + 0.7 * f / frames)) return StillPool{};
         (*session)->step(1.0 / kFramesPerSecond, true);
         if (f < kSettling) continue;
         if (f == kSettling) {
-            const SurfaceMap map = truthMap({readParticles(world).position, scene->fluid.spacing, {}}, view);
+            const HostParticles now = readParticles(world);
+            for (const vec4& v : now.velocity) pool.fastest = std::max(pool.fastest, 1000 * double{glm::length(vec3(v))});
+            const SurfaceMap map = truthMap({now.position, scene->fluid.spacing, {}}, view);
             std::vector<bool> water(map.depth.size());  // pictures have their top row first
-            for (size_t i = 0; i < water.size(); ++i)
-                water[i] = map.there((size_t{kSurfaceHeight} - 1 - i / kSurfaceWidth) * kSurfaceWidth + i % kSurfaceWidth);
+            const auto row = static_cast<size_t>(width()), rows = static_cast<size_t>(height());
+            for (size_t i = 0; i < water.size(); ++i) water[i] = map.there((rows - 1 - i / row) * row + i % row);
             all.assign(looks.size(), Flicker(std::move(water)));
         }
         const Result<FluidView> fluid = upload.view(world, scene->look);
@@ -165,9 +169,8 @@ Result<std::vector<double>> SurfaceTrial::flicker(std::span<const SurfaceLook> l
             all[k].add(renderer_->pixels());
         }
     }
-    std::vector<double> rms;
-    for (const Flicker& flicker : all) rms.push_back(flicker.rms());
-    return rms;
+    for (const Flicker& flicker : all) pool.flicker.push_back(flicker.rms());
+    return pool;
 }
 
 }  // namespace rivulet

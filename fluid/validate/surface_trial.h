@@ -31,6 +31,11 @@ struct MomentErrors {
     double flip = 0;
 };
 
+struct StillPool {
+    std::vector<double> flicker;  // of 255, a look each
+    double fastest = 0;           // mm/s, of its particles when it is first drawn
+};
+
 class SurfaceTrial {
   public:
     // Error: there is no OpenGL (failed); an assignment makes no sense.
@@ -39,15 +44,19 @@ class SurfaceTrial {
     Result<std::vector<ShapeErrors>> shapes(const SurfaceLook& look);
     // A dam that breaks, at a moment: the surface and the picture against the truth's, which is no look here.
     Result<MomentErrors> moment(const SurfaceLook& look);
-    // A pool that has come to rest goes on being simulated: what moves in its picture should not. Of 255, a look each.
-    Result<std::vector<double>> flicker(std::span<const SurfaceLook> looks);
+    // A pool that has come to rest goes on being simulated: what moves in its picture should not.
+    Result<StillPool> flicker(std::span<const SurfaceLook> looks);
 
     int stillFrames() const { return settings_.quick ? 30 : 120; }
+    // Pixels.
+    int width() const { return settings_.quick ? 320 : 640; }
+    int height() const { return width() * 9 / 16; }
     bool stopped() const { return stopped_; }  // by CaseSettings::goOn: what was found last is not whole
 
   private:
     SurfaceTrial(const CaseSettings& settings, SurfaceProbe probe) : settings_(settings), probe_(std::move(probe)) {}
     bool goOn(double share);
+    FrameView viewOf(const SceneFile& scene, const Session& session) const;
     Result<SurfaceMap> drawn(const SplatSet& splats, const FrameView& view, const SceneFile& scene);
     Result<std::vector<uint8_t>> pictureOf(const SceneFile& scene);
     Status reachMoment();

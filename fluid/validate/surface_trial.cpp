@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "engine/core/assert.h"
-#include "fluid/bridge/run_stats.h"
 #include "fluid/render/raymarch.h"
 #include "fluid/validate/image_flip.h"
 
@@ -13,7 +13,8 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kMoment = 0.6;  // s, of the dam break
+constexpr double kMoment = 0.6;          // s, of the dam break
+constexpr int kBefore = 3, kDraws = 15;  // of a picture that is timed
 // Frames, of the pool: what tension, walls and the lattice have set in motion dies until then, and the largest speed is 6 mm/s. After half
 // as many it is 130 mm/s, and the truth's picture changes more than the drawn one (1.55 and 1.11 of 255).
 constexpr int kSettling = 240;
@@ -134,6 +135,37 @@ Result<MomentErrors> SurfaceTrial::moment(const SurfaceLook& look) {
     return MomentErrors{compareSurfaces(*map, truth_, scene.look.radiusSpacings * now_.spacing),
                         flipMean(truthPicture_, *picture, width(), height())};
 }
+
+Result<std::vector<double>> SurfaceTrial::drawMs(const SceneFile& scene, const FluidView& fluid, int before, int count) {
+    std::vector<double> ms;
+    for (int k = -before; k < count; ++k) {
+        const auto start = std::chrono::steady_clock::now();
+        if (Status s = renderer_->draw(view_, fluid, session_->solids(), scene); !s) return s.error();
+        glFinish();
+        if (k >= 0) ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+    return ms;
+}
+
+Result<DrawTimes> SurfaceTrial::times(const SurfaceLook& look) {
+    if (Status s = reachMoment(); !s) return s.error();
+    if (stopped_) return DrawTimes{};
+    const SceneFile scene = sceneOf(scene_, look);
+    const Result<FluidView> fluid = upload_.view(session_->world(), scene.look);
+    if (!fluid) return fluid.error();
+    const bool truth = look.filter == kSurfaceTruth;
+    const Result<std::vector<double>> dry = drawMs(scene, FluidView{}, kBefore, kDraws);
+    if (!dry) return dry.error();
+    Result<std::vector<double>> wet = drawMs(scene, *fluid, truth ? 0 : kBefore, truth ? 1 : kDraws);
+    if (!wet) return wet.error();
+    DrawTimes times{spreadOf(*wet), {}};
+    const double without = spreadOf(*dry).median;
+    for (double& ms : *wet) ms -= without;
+    times.water = spreadOf(std::move(*wet));
+    return times;
+}
+
+std::string SurfaceTrial::drawnBy() const { return reinterpret_cast<const char*>(glGetString(GL_RENDERER)); }
 
 Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks) {
     std::vector<std::string> assignments = {"fluid.spacing=0.025", "camera.position=0.95,0.85,1.2", "camera.target=0.25,0.28,0.25",

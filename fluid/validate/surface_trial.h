@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
 #include "fluid/bridge/surface_probe.h"
@@ -31,6 +32,9 @@ struct MomentErrors {
     double flip = 0;
 };
 
+struct DrawTimes {
+    Spread frame, water;  // ms on the wall until it is drawn: all of it, and what it takes beyond the scene without water
+};
 struct StillPool {
     std::vector<double> flicker;  // of 255, a look each
     double fastest = 0;           // mm/s, of its particles when it is first drawn
@@ -44,6 +48,8 @@ class SurfaceTrial {
     Result<std::vector<ShapeErrors>> shapes(const SurfaceLook& look);
     // A dam that breaks, at a moment: the surface and the picture against the truth's, which is no look here.
     Result<MomentErrors> moment(const SurfaceLook& look);
+    // What a picture of that moment takes; the truth's is drawn once.
+    Result<DrawTimes> times(const SurfaceLook& look);
     // A pool that has come to rest goes on being simulated: what moves in its picture should not.
     Result<StillPool> flicker(std::span<const SurfaceLook> looks);
 
@@ -51,6 +57,8 @@ class SurfaceTrial {
     // Pixels.
     int width() const { return settings_.quick ? 320 : 640; }
     int height() const { return width() * 9 / 16; }
+    size_t momentParticles() const { return now_.at.size(); }
+    std::string drawnBy() const;               // OpenGL's name of the renderer
     bool stopped() const { return stopped_; }  // by CaseSettings::goOn: what was found last is not whole
 
   private:
@@ -60,6 +68,8 @@ class SurfaceTrial {
     Result<SurfaceMap> drawn(const SplatSet& splats, const FrameView& view, const SceneFile& scene);
     Result<std::vector<uint8_t>> pictureOf(const SceneFile& scene);
     Status reachMoment();
+    // ms of each of `count` draws of the moment, after `before` that do not count.
+    Result<std::vector<double>> drawMs(const SceneFile& scene, const FluidView& fluid, int before, int count);
 
     CaseSettings settings_;
     SurfaceProbe probe_;  // before what lives in its context

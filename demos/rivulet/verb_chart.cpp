@@ -9,12 +9,14 @@
 #include "fluid/sim/cpu_kernels.h"
 #include "fluid/validate/chart.h"
 #include "fluid/validate/envelope.h"
+#include "fluid/validate/surface_chart.h"
 
 namespace rivulet {
 
 namespace {
 
 constexpr const char* kStability = "stability";
+constexpr const char* kSurface = "surface";
 
 // Where methods fail: stability.md with its table and its picture.
 int chartStability(Device& device, const Graceful& graceful, Progress& progress, const std::string& folder) {
@@ -32,6 +34,29 @@ int chartStability(Device& device, const Graceful& graceful, Progress& progress,
     return kDone;
 }
 
+// How good the drawn surface is, and what it costs: surface.md with its table and its picture.
+int chartSurface(const SurfaceChartRequest& request, const std::string& folder, const std::string& command) {
+    const Result<SurfaceChart> chart = runSurfaceChart(request);
+    if (!chart) return report(chart.error());
+    if (chart->stopped) return kInterrupted;
+    if (Status written = writeSurfaceChart(*chart, folder, machineName(), command); !written) return report(written.error());
+    fmt::print("{}\n", (std::filesystem::path(folder) / "surface.md").string());
+    return kDone;
+}
+
+// Speed against accuracy: speed_accuracy.md with its table and its pictures.
+int chartMethods(const ChartRequest& request, const std::string& folder) {
+    const Result<Chart> chart = runChart(request);
+    if (!chart) return report(chart.error());
+    if (chart->stopped) return kInterrupted;
+    std::string command = "rivulet chart";
+    for (const std::string& name : request.names) command += ' ' + name;
+    if (request.quick) command += " --quick";
+    if (Status written = writeChart(*chart, folder, machineName(), command); !written) return report(written.error());
+    fmt::print("{}\n", (std::filesystem::path(folder) / "speed_accuracy.md").string());
+    return kDone;
+}
+
 }  // namespace
 
 int chartVerb(const Arguments& arguments) {
@@ -40,16 +65,17 @@ int chartVerb(const Arguments& arguments) {
     std::string folder = "docs";
     reader.footer(
         "Writes speed_accuracy.md, its table and its pictures, and what pbf adds to viscosity;\nand stability.md: where methods fail once "
-        "their limits are off.");
-    reader.positional("CASE", "which cases; all that are charted, and stability, when none is named", request.names);
+        "their limits are off;\nand surface.md: how far off the drawn surface is, by filter and quality, and its ms.");
+    reader.positional("CASE", "which cases; all that are charted, stability and surface, when none is named", request.names);
     reader.flag("--quick", "fewer cases and sizes", request.quick);
     reader.option("--out", "DIR", "the folder that all is written to; docs if not given", folder);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     std::vector<std::string> known = chartCases();
-    known.emplace_back(kStability);
+    known.insert(known.end(), {kStability, kSurface});
     for (const std::string& name : request.names)
         if (Status right = checkWord("charted case", name, known); !right) return report(right.error());
     const bool all = request.names.empty(), stability = all || std::erase(request.names, kStability) > 0;
+    const bool surface = all || std::erase(request.names, kSurface) > 0;
     const bool cases = all || !request.names.empty();
     if (Status made = makeFolder(folder); !made) return report(made.error());
 
@@ -63,15 +89,13 @@ int chartVerb(const Arguments& arguments) {
         return !graceful.interrupted();
     };
     if (stability)
-        if (const int code = chartStability(*device, graceful, progress, folder); code != kDone || !cases) return code;
-    const Result<Chart> chart = runChart(request);
-    if (!chart) return report(chart.error());
-    if (chart->stopped) return kInterrupted;
-    std::string command = "rivulet chart";
-    for (const std::string& name : request.names) command += ' ' + name;
-    if (request.quick) command += " --quick";
-    if (Status written = writeChart(*chart, folder, machineName(), command); !written) return report(written.error());
-    fmt::print("{}\n", (std::filesystem::path(folder) / "speed_accuracy.md").string());
+        if (const int code = chartStability(*device, graceful, progress, folder); code != kDone) return code;
+    if (cases)
+        if (const int code = chartMethods(request, folder); code != kDone) return code;
+    if (surface) {
+        const SurfaceChartRequest drawn{device.get(), {}, request.goOn, request.quick};
+        return chartSurface(drawn, folder, request.quick ? "rivulet chart surface --quick" : "rivulet chart surface");
+    }
     return kDone;
 }
 

@@ -18,7 +18,7 @@ Result<SurfaceProbe> SurfaceProbe::create(bool ownContext) {
 }
 
 Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, FluidView fluid, const FrameView& view,
-                                               const FluidLook& look) {
+                                               const FluidLook& look, const HostEllipsoids& ellipsoids) {
     const FrameParams frame = packFrame(view, {}, {}, {});
     Result<gpu::Buffer> block = gpu::Buffer::from(std::vector<FrameParams>{frame});
     if (!block) return block.error();
@@ -40,6 +40,14 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     d.fluid.count = static_cast<uint32_t>(particles.size());
     d.frame = graph.importBuffer("frame", block->name(), block->bytes());
     d.position = graph.importBuffer("positions", position->name(), position->bytes());
+    std::array<gpu::Buffer, 3> about;
+    for (size_t k = 0; k < 3 && !ellipsoids[0].empty(); ++k) {
+        Result<gpu::Buffer> buffer = gpu::Buffer::from(ellipsoids[k]);
+        if (!buffer) return buffer.error();
+        about[k] = std::move(*buffer);
+        d.fluid.ellipsoids[k] = about[k].name();
+        d.ellipsoids.push_back(graph.importBuffer("ellipsoids", about[k].name(), about[k].bytes()));
+    }
     d.colour = graph.importTexture("colour", *colour);
     d.depth = graph.importTexture("depth", *window);
     d.shadowSharp = d.shadowSoft = d.waterLight = graph.importTexture("nothing", *colour);

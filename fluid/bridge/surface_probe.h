@@ -8,6 +8,7 @@
 #include "engine/app/context_egl.h"
 #include "engine/render/frame_view.h"
 #include "fluid/render/renderers.h"
+#include "fluid/sim/ellipsoids.h"
 
 namespace rivulet {
 
@@ -18,8 +19,10 @@ class SurfaceProbe {
     static Result<SurfaceProbe> create(bool ownContext);
 
     // m along the view axis, a pixel each, the bottom row first; 1e6 where there is none. `fluid`: radius, spacing and bounds; the buffers
-    // are made of `particles` (xyz m, w density ratio). Error (failed): out of GPU memory.
-    Result<std::vector<float>> depth(std::span<const vec4> particles, FluidView fluid, const FrameView& view, const FluidLook& look);
+    // are made of `particles` (xyz m, w density ratio) and of the ellipsoids about them; none: they are spheres. Error (failed): out of GPU
+    // memory.
+    Result<std::vector<float>> depth(std::span<const vec4> particles, FluidView fluid, const FrameView& view, const FluidLook& look,
+                                     const HostEllipsoids& ellipsoids = {});
 
   private:
     SurfaceProbe() = default;

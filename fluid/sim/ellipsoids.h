@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <vector>
 
 #include "engine/compute/device.h"
 #include "fluid/sim/neighbor_grid.h"
@@ -28,5 +30,12 @@ class Ellipsoids {
     std::array<Buffer, 3> of_;
     bool prepared_ = false, found_ = false;
 };
+
+// Read back: centre, spread and slant, in the particles' order. Empty: there are none.
+using HostEllipsoids = std::array<std::vector<vec4>, 3>;
+
+// Of particles that no world steps: xyz m, w = density / rest density. Neighbours are nearer than two spacings (m). Error (failed): out of
+// memory; a kernel does not compile.
+Result<HostEllipsoids> ellipsoidsOf(Device& device, std::span<const vec4> particles, float spacing);
 
 }  // namespace rivulet

@@ -7,6 +7,17 @@
 
 namespace rivulet {
 
+namespace {
+
+// Reorders them.
+double percentile(std::vector<double>& of, double share) {
+    const auto at = of.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(of.size() - 1));
+    std::nth_element(of.begin(), at, of.end());
+    return *at;
+}
+
+}  // namespace
+
 void fillNormals(SurfaceMap& map, const FrameView& view, float radius) {
     const dmat4 projection(view.projection);
     const auto depthAt = [&](int x, int y) {
@@ -39,7 +50,7 @@ void fillNormals(SurfaceMap& map, const FrameView& view, float radius) {
 SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& reference, float radius) {
     ASSERT(measured.depth.size() == reference.depth.size(), "surfaces are compared at one size");
     SurfaceErrors e;
-    std::vector<double> angles;
+    std::vector<double> angles, offs;
     double squares = 0;
     size_t either = 0;
     for (size_t i = 0; i < measured.depth.size(); ++i) {
@@ -49,6 +60,7 @@ SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& refe
         const dvec3 m(measured.normal[i]), r(reference.normal[i]);
         angles.push_back(glm::degrees(std::atan2(glm::length(glm::cross(m, r)), glm::dot(m, r))));
         const double off = double{measured.depth[i]} - double{reference.depth[i]};
+        offs.push_back(std::abs(off) / double{radius});
         squares += off * off;
         e.normalMean += angles.back();
     }
@@ -57,9 +69,9 @@ SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& refe
     if (e.pixels == 0) return e;
     e.normalMean /= static_cast<double>(e.pixels);
     e.depthRms = std::sqrt(squares / static_cast<double>(e.pixels)) / double{radius};
-    const auto at = angles.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(e.pixels - 1));
-    std::nth_element(angles.begin(), at, angles.end());
-    e.normal95 = *at;
+    e.normalMedian = percentile(angles, 0.5);
+    e.normal95 = percentile(angles, 0.95);
+    e.depthMedian = percentile(offs, 0.5);
     return e;
 }
 

@@ -15,37 +15,9 @@ namespace rivulet {
 void TestParticles::findEllipsoids() {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     const std::unique_ptr<Device> device = makeCpuDevice(rows, {});
-    const uint32_t count = static_cast<uint32_t>(position.size());
-    Bounds box;
-    for (const vec4& p : position) box.add(vec3(p));
-    box.min -= vec3(2 * spacing);
-    box.max += vec3(2 * spacing);
-    auto grid = NeighborGrid::create(*device, box, 2 * spacing, count, {});
-    auto particles = Particles::create(*device, count);
-    Ellipsoids found;
-    ASSERT_TRUE(grid && particles && found.prepare(*device, {}, count));
-    std::vector<uint32_t> id(count);
-    for (uint32_t i = 0; i < count; ++i) id[i] = i;
-    device->writeAll<vec4>(particles->positionNext, position);
-    device->writeAll<vec4>(particles->velocityNext, std::vector<vec4>(count));
-    device->writeAll<uint32_t>(particles->id, id);
-    StepParams s{};
-    s.boxMin = vec4(box.min, 1.0F);
-    s.boxMax = vec4(box.max, 0.0F);
-    s.count = count;
-    s.h = 2 * spacing;
-    s.invH = 1 / s.h;
-    s.spacing = spacing;
-    s.firstSample = count;
-    grid->fill(s);
-    ASSERT_TRUE(grid->build(s, *particles));
-    found.find(*device, s, *grid, *particles);
-    const std::vector<uint32_t> order = device->readAll<uint32_t>(particles->id, count);
-    for (size_t k = 0; k < 3; ++k) {
-        const std::vector<vec4> sorted = device->readAll<vec4>(*found.buffers()[k], count);
-        ellipsoids[k].resize(count);
-        for (uint32_t i = 0; i < count; ++i) ellipsoids[k][order[i]] = sorted[i];
-    }
+    Result<HostEllipsoids> found = ellipsoidsOf(*device, position, spacing);
+    ASSERT_TRUE(found) << found.error().message;
+    ellipsoids = std::move(*found);
 }
 
 std::optional<ContextEgl> LookTest::context_;

@@ -69,7 +69,9 @@ TEST(SurfaceMetrics, FiguresAreWhatWasDone) {
     SurfaceErrors e = compareSurfaces(off, exact, 0.01F);
     EXPECT_NEAR(e.normalMean, 10, 1e-4);
     EXPECT_NEAR(e.normal95, 10, 1e-4);
+    EXPECT_NEAR(e.normalMedian, 10, 1e-4);
     EXPECT_NEAR(e.depthRms, 3, 1e-4);
+    EXPECT_NEAR(e.depthMedian, 3, 1e-4);
 
     // 6 % of the normals are right round: the 95th percentile is among them, the mean is 6 % of 180 more.
     const size_t wrong = off.normal.size() * 6 / 100;
@@ -77,6 +79,14 @@ TEST(SurfaceMetrics, FiguresAreWhatWasDone) {
     e = compareSurfaces(off, exact, 0.01F);
     EXPECT_NEAR(e.normal95, 180, 1e-4);
     EXPECT_NEAR(e.normalMean, 10.8, 1e-2);
+    EXPECT_NEAR(e.normalMedian, 0, 1e-4);
+
+    // Two fifths are spray, 30 radii off, and behind; the rest is one radius off, and before: the median knows nothing of the spray.
+    off.depth = exact.depth;
+    for (size_t i = 0; i < off.depth.size(); ++i) off.depth[i] += i % 5 < 2 ? 0.3F : -0.01F;
+    e = compareSurfaces(off, exact, 0.01F);
+    EXPECT_NEAR(e.depthMedian, 1, 1e-4);
+    EXPECT_NEAR(e.depthRms, std::sqrt(0.4 * 900 + 0.6), 1e-3);
 
     // A quarter is missing there, another quarter here: half of the whole is in both, and nothing is in neither.
     SurfaceMap left = exact, right = exact;

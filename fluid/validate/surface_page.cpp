@@ -1,0 +1,149 @@
+// What the surface's chart leaves behind: a table, a picture, and a page that reads them aloud.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/core/json.h"
+#include "fluid/render/filters.h"
+#include "fluid/validate/surface.h"
+#include "fluid/validate/surface_chart.h"
+
+namespace rivulet {
+
+namespace {
+
+// What filters are compared by: the less the better.
+struct Figure {
+    const char* name;
+    double (*of)(const SurfaceChartRow& row);
+};
+constexpr Figure kFigures[] = {
+    {"the dam break's normals (median)", [](const SurfaceChartRow& r) { return r.moment->errors.normalMedian; }},
+    {"its depth (median)", [](const SurfaceChartRow& r) { return r.moment->errors.depthMedian; }},
+    {"its silhouette", [](const SurfaceChartRow& r) { return 1 - r.moment->errors.overlap; }},
+    {"its picture (FLIP)", [](const SurfaceChartRow& r) { return r.moment->flip; }},
+    {"the sphere's normals", [](const SurfaceChartRow& r) { return r.sphere.normalMean; }},
+    {"the slab's normals", [](const SurfaceChartRow& r) { return r.slab.normalMean; }},
+    {"stillness", [](const SurfaceChartRow& r) { return r.flicker; }},
+    {"time", [](const SurfaceChartRow& r) { return r.times.water.median; }},
+};
+
+constexpr double kAlike = 0.03;  // a fraction: what is nearer to the best is as good
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (size_t k = 0; k < words.size(); ++k) text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
+    return text;
+}
+
+std::string verdict(const SurfaceChart& chart, const std::string& quality) {
+    std::vector<const SurfaceChartRow*> rows;
+    for (const SurfaceChartRow& row : chart.rows)
+        if (row.moment && row.look.quality == quality) rows.push_back(&row);
+    const SurfaceChartRow& standard = *rows.front();
+    std::vector<std::vector<std::string>> best(rows.size());
+    std::vector<std::string> beaten;
+    for (const Figure& f : kFigures) {
+        const auto least = std::min_element(rows.begin(), rows.end(), [&](const auto* a, const auto* b) { return f.of(*a) < f.of(*b); });
+        const double reach = (1 + kAlike) * f.of(**least);
+        // Who is as good as the best is not beaten by it.
+        const size_t winner = f.of(standard) <= reach ? 0 : static_cast<size_t>(least - rows.begin());
+        best[winner].emplace_back(f.name);
+        if (winner != 0)
+            beaten.push_back(fmt::format("{} ({:.3g} against {}'s {:.3g})", f.name, f.of(standard), (*least)->look.filter, f.of(**least)));
+    }
+    std::string text = fmt::format("At quality {}, ", quality);
+    std::vector<std::string> parts;
+    for (size_t k = 0; k < rows.size(); ++k)
+        parts.push_back(fmt::format("**{}** is best at {}", rows[k]->look.filter, best[k].empty() ? "nothing" : joined(best[k])));
+    for (size_t k = 0; k < parts.size(); ++k) text += (k > 0 ? "; " : "") + parts[k];
+    text += fmt::format(" (what is within {:.0f} % of the best counts as the default's). ", 100 * kAlike);
+    return text + (beaten.empty() ? fmt::format("The default, {}, is beaten nowhere.", standard.look.filter)
+                                  : fmt::format("The default, {}, is beaten at {}.", standard.look.filter, joined(beaten)));
+}
+
+std::string csvOf(const SurfaceChart& chart, const std::string& machine) {
+    std::string csv = fmt::format(
+        "# {}; {}x{} pixels by {}\n"
+        "filter,quality,frameMs,frameMsLeast,frameMsMost,waterMs,waterMsLeast,waterMsMost,normalMean,normalMedian,depthMedian,depthRms,"
+        "overlap,flip,flicker,sphereNormalMean,sphereDepthRms,slabNormalMean,slabDepthRms\n",
+        machine, chart.width, chart.height, chart.drawnBy);
+    for (const SurfaceChartRow& r : chart.rows) {
+        csv += fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.look.filter, r.look.quality, r.times.frame.median,
+                           r.times.frame.min, r.times.frame.max, r.times.water.median, r.times.water.min, r.times.water.max);
+        csv += r.moment
+                   ? fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.moment->errors.normalMean, r.moment->errors.normalMedian,
+                                 r.moment->errors.depthMedian, r.moment->errors.depthRms, r.moment->errors.overlap, r.moment->flip)
+                   : ",,,,,,";
+        csv += fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}\n", r.flicker, r.sphere.normalMean, r.sphere.depthRms, r.slab.normalMean,
+                           r.slab.depthRms);
+    }
+    return csv;
+}
+
+Plot plotOf(const SurfaceChart& chart) {
+    Plot plot{"The drawn dam break against the truth", "ms for the water", "normals off, median, deg", {}};
+    for (const SurfaceChartRow& r : chart.rows)
+        if (r.moment)
+            plot.curves.push_back(
+                {fmt::format("{}, {}", r.look.filter, r.look.quality), false, {{r.times.water.median, r.moment->errors.normalMedian}}});
+    return plot;
+}
+
+std::string msText(const Spread& ms) {
+    return ms.count > 1 ? fmt::format("{:.1f} ({:.1f} to {:.1f})", ms.median, ms.min, ms.max) : fmt::format("{:.0f}", ms.median);
+}
+
+std::string pageOf(const SurfaceChart& chart, const std::string& machine, const std::string& command, bool picture) {
+    std::string text = fmt::format(
+        "# The drawn surface: quality against time\n\n"
+        "Written by `{}` on: {}, drawn by {}, at {}x{} pixels, from [surface.csv](surface.csv). The truth is the iso-surface of the same "
+        "particles, ray-marched in double; how figures are taken is what `rivulet validate surface` does.\n\n",
+        command, machine, chart.drawnBy, chart.width, chart.height);
+    if (picture) text += "![normals' error against ms](surface.svg)\n\n";
+    text += verdict(chart, "fine") + "\n\n" + verdict(chart, "fast") + "\n\n";
+    text += "| filter | what it is |\n| --- | --- |\n";
+    for (const SurfaceChartRow& r : chart.rows)
+        if (const FilterRow* filter = filters().find(r.look.filter); filter != nullptr && r.look.quality == "fine")
+            text += fmt::format("| {} | {} |\n", filter->name, filter->doc);
+    text += fmt::format(
+        "\n## A dam that breaks, {} particles\n\nms on the wall of a whole picture, and of what the water adds to it: median, least and "
+        "most. Normals and depth (in radii of a drawn particle) where both have a surface; spray and edges are the means, not the medians. "
+        "Overlap: of the silhouettes, 1 is best. FLIP: of the pictures, 0 to 1.\n\n"
+        "| filter | quality | frame, ms | water, ms | normals, mean, deg | median | depth, median, radii | rms | overlap | FLIP |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        chart.particles);
+    for (const SurfaceChartRow& r : chart.rows) {
+        text += fmt::format("| {} | {} | {} | {} | ", r.look.filter, r.look.quality, msText(r.times.frame), msText(r.times.water));
+        text += r.moment ? fmt::format("{:.1f} | {:.1f} | {:.3f} | {:.2f} | {:.3f} | {:.4f} |\n", r.moment->errors.normalMean,
+                                       r.moment->errors.normalMedian, r.moment->errors.depthMedian, r.moment->errors.depthRms,
+                                       r.moment->errors.overlap, r.moment->flip)
+                         : " | | | | | |\n";
+    }
+    text += fmt::format(
+        "\n## What is known exactly, and what should not move\n\nA drop that has settled against a sphere, and a pool's level; then a "
+        "pool at rest that goes on being simulated, {} frames of it: flicker is what its pixels differ from their mean by, rms. The "
+        "truth's "
+        "own is how far the water does move.\n\n"
+        "| filter | quality | sphere: normals, mean, deg | depth, rms, radii | slab: normals | depth | flicker, of 255 |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n",
+        chart.stillFrames);
+    for (const SurfaceChartRow& r : chart.rows)
+        text += fmt::format("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", r.look.filter, r.look.quality,
+                            r.sphere.normalMean, r.sphere.depthRms, r.slab.normalMean, r.slab.depthRms, r.flicker);
+    return text;
+}
+
+}  // namespace
+
+Status writeSurfaceChart(const SurfaceChart& chart, const std::string& folder, const std::string& machine, const std::string& command) {
+    const std::filesystem::path to(folder);
+    if (Status wrote = writeFileAtomic((to / "surface.csv").string(), csvOf(chart, machine)); !wrote) return wrote;
+    const Status drawn = drawPlot(plotOf(chart), (to / "surface.svg").string());
+    const std::string page = pageOf(chart, machine, command, static_cast<bool>(drawn));
+    if (Status wrote = writeFileAtomic((to / "surface.md").string(), page); !wrote) return wrote;
+    return drawn;
+}
+
+}  // namespace rivulet

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <tuple>
 
 #include "engine/core/json.h"
 #include "engine/core/table.h"
@@ -39,6 +40,10 @@ std::string contradiction(const SceneFile& scene) {
             return fmt::format("fluid.blocks[{}] from {} to {} reaches out of fluid.box from {} to {}", i, shown(block.min),
                                shown(block.max), shown(box.min), shown(box.max));
     }
+    const FoamParams& foam = scene.fluid.foam;
+    for (const auto& [name, from, to] : {std::tuple("air", foam.airFrom, foam.airTo), std::tuple("crest", foam.crestFrom, foam.crestTo),
+                                         std::tuple("speed", foam.speedFrom, foam.speedTo)})
+        if (!(from < to)) return fmt::format("fluid.foam.{0}From is {1}: it must lie below {0}To, which is {2}", name, from, to);
     std::set<std::pair<float, float>> kinds;
     for (const ColliderParams& collider : scene.colliders) kinds.emplace(collider.friction, collider.restitution);
     if (scene.colliders.size() > kMostSurfaces && kinds.size() > kMostSurfaces)

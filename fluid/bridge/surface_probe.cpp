@@ -22,6 +22,11 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     const FrameParams frame = packFrame(view, {}, {}, {});
     Result<gpu::Buffer> block = gpu::Buffer::from(std::vector<FrameParams>{frame});
     if (!block) return block.error();
+    FrameView half = view;
+    half.width = (view.width + 1) / 2;
+    half.height = (view.height + 1) / 2;
+    Result<gpu::Buffer> coarse = gpu::Buffer::from(std::vector<FrameParams>{packFrame(half, {}, {}, {})});
+    if (!coarse) return coarse.error();
     Result<gpu::Buffer> position = gpu::Buffer::from(std::vector<vec4>(particles.begin(), particles.end()));
     if (!position) return position.error();
     Result<gpu::Texture> colour = gpu::Texture::create({.width = view.width, .height = view.height, .format = gpu::Format::rgba16f});
@@ -39,6 +44,7 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     d.fluid.position = d.fluid.velocity = d.fluid.id = position->name();
     d.fluid.count = static_cast<uint32_t>(particles.size());
     d.frame = graph.importBuffer("frame", block->name(), block->bytes());
+    d.coarse = graph.importBuffer("coarse frame", coarse->name(), coarse->bytes());
     d.position = graph.importBuffer("positions", position->name(), position->bytes());
     std::array<gpu::Buffer, 3> about;
     for (size_t k = 0; k < 3 && !ellipsoids[0].empty(); ++k) {

@@ -132,6 +132,7 @@ TEST_F(SceneTest, EveryAssetHasItsOriginAndLicenceWrittenDown) {
 
 TEST_F(SceneTest, WhatMakesNoSenseTogetherIsRefusedByName) {
     const std::pair<const char*, const char*> refusals[] = {
+        {R"({"fluid": {"foam": {"airTo": 0.25}}})", "x.json: fluid.foam.airFrom is 0.3: it must lie below airTo, which is 0.25"},
         {R"({"fluid": {"box": {"min": [0, 2, 0]}}})",
          "x.json: fluid.box.min (0, 2, 0) must lie below fluid.box.max (1, 1, 1) on every axis"},
         {R"({"fluid": {"box": {"max": [1, 1, 0]}}})",

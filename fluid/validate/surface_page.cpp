@@ -103,6 +103,9 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
         command, machine, chart.drawnBy, chart.width, chart.height);
     if (picture) text += "![normals' error against ms](surface.svg)\n\n";
     text += verdict(chart, "fine") + "\n\n" + verdict(chart, "fast") + "\n\n";
+    text +=
+        "The default smooths the widest. That makes level water level and still; where a surface has an edge, as at a tank's walls, it "
+        "rounds it over more pixels than the others do, and the dam break has many such.\n\n";
     text += "| filter | what it is |\n| --- | --- |\n";
     for (const SurfaceChartRow& r : chart.rows)
         if (const FilterRow* filter = filters().find(r.look.filter); filter != nullptr && r.look.quality == "fine")

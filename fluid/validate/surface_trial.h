@@ -69,7 +69,7 @@ class SurfaceTrial {
     Result<std::vector<uint8_t>> pictureOf(const SceneFile& scene);
     Status reachMoment();
     // ms of each of `count` draws of the moment, after `before` that do not count.
-    Result<std::vector<double>> drawMs(const SceneFile& scene, const FluidView& fluid, int before, int count);
+    Result<std::vector<double>> drawMs(const FrameView& view, const SceneFile& scene, const FluidView& fluid, int before, int count);
 
     CaseSettings settings_;
     SurfaceProbe probe_;  // before what lives in its context

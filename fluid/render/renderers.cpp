@@ -126,6 +126,7 @@ void FluidPrograms::drawQuads(gpu::Program& program, uint32_t count, std::span<c
     quads.bind();
     const uint32_t instances = (count + kQuadRows - 1) / kQuadRows, quadsEach = instances > 1 ? kQuadRows : count;
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * quadsEach), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
+    for (GLuint k = 0; k < rows.size(); ++k) glBindTextureUnit(kRowUnit + k, 0);
 }
 
 void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t each) {

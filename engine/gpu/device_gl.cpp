@@ -22,7 +22,8 @@ constexpr size_t kHarvestAbove = 1024;            // timed dispatches that may w
 
 // What a dispatch wrote is there for everything that a Buffer may be used for, here and in drawing.
 constexpr GLbitfield kReaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
-                                GL_ELEMENT_ARRAY_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
+                                GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT |
+                                GL_COMMAND_BARRIER_BIT;
 
 class Fence {
   public:

@@ -385,24 +385,31 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.waterLight = light.water;
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
-    const auto glass = [&](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth, GlassSide side) {
-        addGlass(graph, render_, frame, meshes, colour, draw.depth, light, fluidDepth ? side : GlassSide::all, fluidDepth);
+    const auto glass = [&](gpu::TextureHandle colour, gpu::TextureHandle depth, gpu::TextureHandle fluidDepth, GlassSide side) {
+        addGlass(graph, render_, frame, meshes, colour, depth, light, fluidDepth ? side : GlassSide::all, fluidDepth);
     };
-    draw.behind = [&](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth) { glass(colour, fluidDepth, GlassSide::behind); };
     FluidDraw second = draw;
     if (other != nullptr) {
         second.colour = addCopy(graph, draw.colour);
         second.depth = addCopy(graph, draw.depth);
     }
+    for (FluidDraw* d : {&draw, &second})
+        d->behind = [&glass, depth = d->depth](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth) {
+            glass(colour, depth, fluidDepth, GlassSide::behind);
+        };
+    // What shows how the surface is made is of the surface alone.
+    const bool whole = look->view == WaterView::water;
+    const auto addRest = [&](const FluidDraw& d, const FluidLayers& of) {
+        if (!whole) return;
+        addFoam(graph, fluid_, d, of);
+        addDrops(graph, fluid_, d, of);
+        glass(of.colour, d.depth, of.fluidDepth, GlassSide::before);
+    };
     FluidLayers layers = row->add(graph, fluid_, draw);
-    addFoam(graph, fluid_, draw, layers);
-    addDrops(graph, fluid_, draw, layers);
-    glass(layers.colour, layers.fluidDepth, GlassSide::before);
+    addRest(draw, layers);
     if (other != nullptr) {
         const FluidLayers right = other->add(graph, fluid_, second);
-        addFoam(graph, fluid_, second, right);
-        addDrops(graph, fluid_, second, right);
-        glass(right.colour, right.fluidDepth, GlassSide::before);
+        addRest(second, right);
         addRightHalf(graph, right.colour, layers.colour);
     }
     if (background.showBox && (row->opaque || layers.fluidDepth))

@@ -291,7 +291,7 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     if (renderer_->times().empty()) return ok();  // none has come back yet
     const PassTime ui[] = {{.name = "ui", .ms = uiMs_, .calls = 1}};
     profiler_.add("render", ui);
-    if (scene.look.split.empty()) {  // a half that is ray-marched says nothing of the other
+    if (scene.look.split.empty() && scene.look.quality == "auto") {  // a half that is ray-marched says nothing of the other
         double ms = 0;
         for (const PassTime& pass : renderer_->times()) ms += pass.ms;
         haste_.frame(ms);

@@ -12,7 +12,6 @@ namespace {
 
 // Density ratios between which foam lies on water: below it flies, above it is a bubble. Ihmsen et al. count 6 and 20 neighbours of 30.
 constexpr float kSprayBelow = 0.2F, kBubbleAbove = 0.7F;
-// What a bubble's and a spray drop's air does.
 constexpr float kSprayDrag = 0.15F;  // 1/m: of a drop of 3 mm
 // Full up to this share of its slots, foam is born as ever; from there on less, so that none has to go before its time.
 constexpr float kRoomy = 0.7F;
@@ -67,6 +66,7 @@ Result<FoamPasses> FoamPasses::create(Device& device, const FluidParams& params,
         *buffer = std::move(*made);
     }
     device.fill(f.most_, f.slots_);
+    device.fill(f.airs_, 0);  // of samples on bodies nobody writes it
     return f;
 }
 
@@ -116,7 +116,6 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
         const auto* words = reinterpret_cast<const uint32_t*>(bytes.data());
         const uint32_t born = std::min(words[1], words[3]);
         t->alive = words[0] + born;
-        t->refused += words[2] - born;
     });
 }
 

@@ -36,12 +36,10 @@ class FoamPasses {
     const Buffer& foam() const { return foam_; }          // see shaders/fluid/foam_params.h
     const Buffer& velocity() const { return velocity_; }  // as it says
     uint32_t alive() const { return told_->alive; }       // on a GPU some frames ago
-    uint64_t refused() const { return told_->refused; }   // for which there was no slot
 
   private:
     struct Told {
         uint32_t alive = 0;
-        uint64_t refused = 0;
     };
     Device* device_ = nullptr;
     uint32_t slots_ = 0, frame_ = 0;

@@ -13,7 +13,7 @@ namespace {
 // The first byte is no letter and a line's end follows, so that a transfer as text shows.
 constexpr std::array<uint8_t, 8> kMagic = {0x89, 'R', 'S', 'T', 'A', '\r', '\n', 0x1A};
 constexpr uint32_t kByteOrder = 0x01020304, kOtherByteOrder = 0x04030201;
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;  // 2: absorption's w is scattering
 constexpr uint32_t kMostSections = 4096;
 
 struct Header {

@@ -6,7 +6,7 @@ namespace rivulet {
 #endif
 STRUCT(FoamStep) {
     StepParams step;
-    vec4  wind;         // m/s; w 1/s, how soon it carries spray along, over its speed in it (1/m)
+    vec4  wind;         // m/s; w 1/m: how soon it carries spray along, 1/s, over the spray's speed in it
     uint  slots;        // of foam
     uint  seed;         // of this frame
     float seconds;      // of this frame

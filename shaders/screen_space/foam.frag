@@ -8,7 +8,6 @@ uniform vec3 absorption;       // 1/m
 #endif
 flat in vec4 white;
 flat in float depth;
-flat in float kind;
 in vec2 place;
 layout(location = 0) out vec4 colour;
 void main() {

@@ -8,11 +8,10 @@ ROWS(1, velocities)    // xyz m/s; w size 0.5..1, + 1 spray, 2 foam, 3 bubble
 uniform float radius;  // m, of a fleck of size 1
 flat out vec4 white;  // rgb radiance, a how much of what is behind it hides in its middle
 flat out float depth; // m
-flat out float kind;
 out vec2 place;
 void main() {
     vec4 fleck = texelFetch(flecks, row()), velocity = texelFetch(velocities, row());
-    kind = floor(velocity.w);
+    float kind = floor(velocity.w);
     float r = radius * fract(velocity.w) * (kind == 1.0 ? 0.6 : kind == 3.0 ? 0.8 : 1.0);
     vec3 c = (frame.view * vec4(fleck.xyz, 1.0)).xyz;
     depth = -c.z;

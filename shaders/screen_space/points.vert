@@ -12,7 +12,7 @@ uniform float fullSpeed;  // m/s, the colour map's end
 flat out vec4 centreView;  // w: radius
 flat out vec3 baseColour;
 void main() {
-    vec4 velocity = texelFetch(velocities, row()), absorption = texelFetch(absorptions, row());
+    vec4 velocity = texelFetch(velocities, row()), absorption = alike == 1 ? vec4(0.0) : texelFetch(absorptions, row());
     uint id = texelFetch(ids, row()).r;
     centreView = vec4((frame.view * vec4(particle.xyz, 1.0)).xyz, drawnRadius(particle));
     gl_Position = lost(particle) ? kNowhere : splatQuad(splatOf(particle));

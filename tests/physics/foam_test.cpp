@@ -180,6 +180,30 @@ TEST(Foam, SolidsStopSpray) {
     }
 }
 
+// What comes down where it is dry does not stay there for good.
+TEST(Foam, SprayOnADryShelfAges) {
+    auto device = makeTestCpu();
+    const test::Mesh shelf = test::makeBox(vec3(0.3F, 0.4F, 0.1F), vec3(0.7F, 0.5F, 0.4F));
+    const MeshView view = shelf.view();
+    VoxelFieldOptions options;
+    options.resolution = 32;
+    options.band = 0.04F;
+    const Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), options);
+    ASSERT_TRUE(field);
+    Solids solids;
+    solids.field = &*field;
+    FluidParams p = boxOf(0.1F, false);
+    p.foam.trappedAir = p.foam.waveCrest = 0.0F;
+    auto world = make(*device, p, solids);
+    world->step({}, kFrame);
+    put(*world, {{vec3(0.5F, 0.6F, 0.25F), vec3(0.0F), 0.5F, 0}});
+    for (int k = 0; k < 15; ++k) world->step({}, kFrame);
+    ASSERT_EQ(flecks(*world).size(), 1U);
+    EXPECT_GT(flecks(*world)[0].position.y, 0.49F);
+    for (int k = 0; k < 60; ++k) world->step({}, kFrame);
+    EXPECT_EQ(flecks(*world).size(), 0U);
+}
+
 // On the water it lies still, lives as long as it has, and is gone.
 TEST(Foam, OnCalmWaterItLiesAndAges) {
     auto device = makeTestCpu();

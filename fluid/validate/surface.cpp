@@ -60,11 +60,11 @@ Result<Outcome> runSurface(const CaseSettings& settings) {
         if (trial->stopped()) return u.outcome;
         u.found("dam break", moment->errors, true);
         u.found("dam break: FLIP", "", moment->flip, 0);
-        const Result<StillPool> pool = trial->flicker(std::span(&look, 1));
+        const int stillFrames = settings.quick ? 30 : 120;
+        const Result<StillPool> pool = trial->flicker(std::span(&look, 1), stillFrames);
         if (!pool) return pool.error();
         if (trial->stopped()) return u.outcome;
-        u.found(fmt::format("still pool over {} frames: flicker, rms", trial->stillFrames()), "/255", pool->flicker.front(), 0,
-                kMostFlicker);
+        u.found(fmt::format("still pool over {} frames: flicker, rms", stillFrames), "/255", pool->flicker.front(), 0, kMostFlicker);
         u.found("still pool: fastest particle", "mm/s", pool->fastest, 0);
     }
     if (settings.method != surfaceMethods().front())

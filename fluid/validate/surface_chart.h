@@ -10,6 +10,9 @@
 
 namespace rivulet {
 
+// Spacings: the default filter is charted with this reach, too, to tell how it smooths from how far.
+constexpr float kShortReach = 1.0F;
+
 struct SurfaceChartRow {
     SurfaceLook look;
     DrawTimes times;                     // of the dam break's moment

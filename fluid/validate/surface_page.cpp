@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "engine/core/json.h"
@@ -37,10 +38,29 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
+std::string nameOf(const SurfaceLook& look) {
+    return look.reach > 0 ? fmt::format("{}, reach {:.1f} spacings", look.filter, look.reach) : look.filter;
+}
+
+// What the default becomes when it smooths less far.
+std::string reachText(const SurfaceChart& chart) {
+    const auto shorter = std::find_if(chart.rows.begin(), chart.rows.end(), [](const SurfaceChartRow& r) { return r.look.reach > 0; });
+    if (shorter == chart.rows.end()) return {};
+    std::vector<std::string> better, worse;
+    for (const Figure& f : kFigures) {
+        const double own = f.of(chart.rows.front()), now = f.of(*shorter);
+        if (std::abs(now - own) > kAlike * own)
+            (now < own ? better : worse).push_back(fmt::format("{} ({:.3g} to {:.3g})", f.name, own, now));
+    }
+    return fmt::format(
+        "How far a filter smooths matters beside how: the default with a reach of {:.1f} spacings is better at {} and worse at {}.",
+        shorter->look.reach, better.empty() ? "nothing" : joined(better), worse.empty() ? "nothing" : joined(worse));
+}
+
 std::string verdict(const SurfaceChart& chart, const std::string& quality) {
     std::vector<const SurfaceChartRow*> rows;
     for (const SurfaceChartRow& row : chart.rows)
-        if (row.moment && row.look.quality == quality) rows.push_back(&row);
+        if (row.moment && row.look.quality == quality && row.look.reach == 0) rows.push_back(&row);
     const SurfaceChartRow& standard = *rows.front();
     std::vector<std::vector<std::string>> best(rows.size());
     std::vector<std::string> beaten;
@@ -66,12 +86,14 @@ std::string verdict(const SurfaceChart& chart, const std::string& quality) {
 std::string csvOf(const SurfaceChart& chart, const std::string& machine) {
     std::string csv = fmt::format(
         "# {}; {}x{} pixels by {}\n"
-        "filter,quality,frameMs,frameMsLeast,frameMsMost,waterMs,waterMsLeast,waterMsMost,normalMean,normalMedian,depthMedian,depthRms,"
+        "filter,quality,reach,frameMs,frameMsLeast,frameMsMost,waterMs,waterMsLeast,waterMsMost,normalMean,normalMedian,depthMedian,"
+        "depthRms,"
         "overlap,flip,flicker,sphereNormalMean,sphereDepthRms,slabNormalMean,slabDepthRms\n",
         machine, chart.width, chart.height, chart.drawnBy);
     for (const SurfaceChartRow& r : chart.rows) {
-        csv += fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.look.filter, r.look.quality, r.times.frame.median,
-                           r.times.frame.min, r.times.frame.max, r.times.water.median, r.times.water.min, r.times.water.max);
+        csv += fmt::format("{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.look.filter, r.look.quality, r.look.reach,
+                           r.times.frame.median, r.times.frame.min, r.times.frame.max, r.times.water.median, r.times.water.min,
+                           r.times.water.max);
         csv += r.moment
                    ? fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.moment->errors.normalMean, r.moment->errors.normalMedian,
                                  r.moment->errors.depthMedian, r.moment->errors.depthRms, r.moment->errors.overlap, r.moment->flip)
@@ -87,7 +109,7 @@ Plot plotOf(const SurfaceChart& chart) {
     for (const SurfaceChartRow& r : chart.rows)
         if (r.moment)
             plot.curves.push_back(
-                {fmt::format("{}, {}", r.look.filter, r.look.quality), false, {{r.times.water.median, r.moment->errors.normalMedian}}});
+                {fmt::format("{}, {}", nameOf(r.look), r.look.quality), false, {{r.times.water.median, r.moment->errors.normalMedian}}});
     return plot;
 }
 
@@ -102,13 +124,10 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
         "particles, ray-marched in double; how figures are taken is what `rivulet validate surface` does.\n\n",
         command, machine, chart.drawnBy, chart.width, chart.height);
     if (picture) text += "![normals' error against ms](surface.svg)\n\n";
-    text += verdict(chart, "fine") + "\n\n" + verdict(chart, "fast") + "\n\n";
-    text +=
-        "The default smooths the widest. That makes level water level and still; where a surface has an edge, as at a tank's walls, it "
-        "rounds it over more pixels than the others do, and the dam break has many such.\n\n";
+    text += verdict(chart, "fine") + "\n\n" + reachText(chart) + "\n\n" + verdict(chart, "fast") + "\n\n";
     text += "| filter | what it is |\n| --- | --- |\n";
     for (const SurfaceChartRow& r : chart.rows)
-        if (const FilterRow* filter = filters().find(r.look.filter); filter != nullptr && r.look.quality == "fine")
+        if (const FilterRow* filter = filters().find(r.look.filter); filter != nullptr && r.look.quality == "fine" && r.look.reach == 0)
             text += fmt::format("| {} | {} |\n", filter->name, filter->doc);
     text += fmt::format(
         "\n## A dam that breaks, {} particles\n\nms on the wall of a whole picture, and of what the water adds to it: median, least and "
@@ -118,7 +137,7 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
         chart.particles);
     for (const SurfaceChartRow& r : chart.rows) {
-        text += fmt::format("| {} | {} | {} | {} | ", r.look.filter, r.look.quality, msText(r.times.frame), msText(r.times.water));
+        text += fmt::format("| {} | {} | {} | {} | ", nameOf(r.look), r.look.quality, msText(r.times.frame), msText(r.times.water));
         text += r.moment ? fmt::format("{:.1f} | {:.1f} | {:.3f} | {:.2f} | {:.3f} | {:.4f} |\n", r.moment->errors.normalMean,
                                        r.moment->errors.normalMedian, r.moment->errors.depthMedian, r.moment->errors.depthRms,
                                        r.moment->errors.overlap, r.moment->flip)
@@ -133,7 +152,7 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
         "| --- | --- | --- | --- | --- | --- | --- |\n",
         chart.stillFrames);
     for (const SurfaceChartRow& r : chart.rows)
-        text += fmt::format("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", r.look.filter, r.look.quality,
+        text += fmt::format("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", nameOf(r.look), r.look.quality,
                             r.sphere.normalMean, r.sphere.depthRms, r.slab.normalMean, r.slab.depthRms, r.flicker);
     return text;
 }

@@ -19,12 +19,14 @@ constexpr int kBefore = 3, kDraws = 15;  // of a picture that is timed
 // as many it is 130 mm/s, and the truth's picture changes more than the drawn one (1.55 and 1.11 of 255).
 constexpr int kSettling = 240;
 
-SceneFile sceneOf(const SceneFile& scene, const SurfaceLook& look) {
+// `spacing`: m, of what is drawn.
+SceneFile sceneOf(const SceneFile& scene, const SurfaceLook& look, float spacing) {
     SceneFile out = scene;
     const bool truth = look.filter == kSurfaceTruth;
     out.look.renderer = truth ? "truth" : "screen_space";
     if (!truth) out.look.filter = look.filter;
     if (!look.quality.empty()) out.look.quality = look.quality;
+    if (look.reach > 0) out.look.smoothing = look.reach * spacing;
     return out;
 }
 
@@ -84,8 +86,9 @@ Result<SurfaceMap> SurfaceTrial::drawn(const SplatSet& splats, const FrameView& 
 Result<std::vector<ShapeErrors>> SurfaceTrial::shapes(const SurfaceLook& look) {
     std::vector<ShapeErrors> all;
     for (const SurfaceShape& shape : shapes_) {
-        Result<SurfaceMap> map =
-            look.filter == kSurfaceTruth ? truthMap(shape.splats, shape.view) : drawn(shape.splats, shape.view, sceneOf(scene_, look));
+        Result<SurfaceMap> map = look.filter == kSurfaceTruth
+                                     ? truthMap(shape.splats, shape.view)
+                                     : drawn(shape.splats, shape.view, sceneOf(scene_, look, shape.splats.spacing));
         if (!map) return map.error();
         all.push_back({&shape, compareSurfaces(*map, shape.reference, scene_.look.radiusSpacings * shape.splats.spacing)});
     }
@@ -118,7 +121,7 @@ Status SurfaceTrial::reachMoment() {
     now_.box.add(world.params().box.max);
     view_ = viewOf(scene_, *session_);
     truth_ = truthMap(now_, view_);
-    Result<std::vector<uint8_t>> picture = pictureOf(sceneOf(scene_, {kSurfaceTruth}));
+    Result<std::vector<uint8_t>> picture = pictureOf(sceneOf(scene_, {kSurfaceTruth}, now_.spacing));
     if (!picture) return picture.error();
     truthPicture_ = std::move(*picture);
     return ok();
@@ -127,7 +130,7 @@ Status SurfaceTrial::reachMoment() {
 Result<MomentErrors> SurfaceTrial::moment(const SurfaceLook& look) {
     if (Status s = reachMoment(); !s) return s.error();
     if (stopped_) return MomentErrors{};
-    const SceneFile scene = sceneOf(scene_, look);
+    const SceneFile scene = sceneOf(scene_, look, now_.spacing);
     const Result<SurfaceMap> map = drawn(now_, view_, scene);
     if (!map) return map.error();
     const Result<std::vector<uint8_t>> picture = pictureOf(scene);
@@ -151,7 +154,7 @@ Result<std::vector<double>> SurfaceTrial::drawMs(const FrameView& view, const Sc
 Result<DrawTimes> SurfaceTrial::times(const SurfaceLook& look) {
     if (Status s = reachMoment(); !s) return s.error();
     if (stopped_) return DrawTimes{};
-    const SceneFile scene = sceneOf(scene_, look);
+    const SceneFile scene = sceneOf(scene_, look, now_.spacing);
     const Result<FluidView> fluid = upload_.view(session_->world(), scene.look);
     if (!fluid) return fluid.error();
     const bool truth = look.filter == kSurfaceTruth;
@@ -171,7 +174,7 @@ Result<DrawTimes> SurfaceTrial::times(const SurfaceLook& look) {
 
 std::string SurfaceTrial::drawnBy() const { return reinterpret_cast<const char*>(glGetString(GL_RENDERER)); }
 
-Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks) {
+Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks, int stillFrames) {
     std::vector<std::string> assignments = {"fluid.spacing=0.025", "camera.position=0.95,0.85,1.2", "camera.target=0.25,0.28,0.25",
                                             "camera.fieldOfView=36"};
     assignments.insert(assignments.end(), settings_.assignments.begin(), settings_.assignments.end());
@@ -181,7 +184,7 @@ Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks) {
     if (!session) return session.error();
     FluidWorld& world = (*session)->world();
     const FrameView view = viewOf(*scene, **session);
-    const int frames = kSettling + stillFrames();
+    const int frames = kSettling + stillFrames;
     FluidUpload upload;
     std::vector<Flicker> all;
     StillPool pool;
@@ -201,7 +204,8 @@ Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks) {
         const Result<FluidView> fluid = upload.view(world, scene->look);
         if (!fluid) return fluid.error();
         for (size_t k = 0; k < looks.size(); ++k) {
-            if (Status s = renderer_->draw(view, *fluid, (*session)->solids(), sceneOf(*scene, looks[k])); !s) return s.error();
+            if (Status s = renderer_->draw(view, *fluid, (*session)->solids(), sceneOf(*scene, looks[k], scene->fluid.spacing)); !s)
+                return s.error();
             all[k].add(renderer_->pixels());
         }
     }

@@ -20,6 +20,7 @@ namespace rivulet {
 struct SurfaceLook {
     std::string filter;        // a row of filters(), or kSurfaceTruth: the ray-marched iso-surface itself
     std::string quality = {};  // of look.quality; "" = as the scene says
+    float reach = 0;           // spacings, of the smoothing; 0 = as the scene says
 };
 inline constexpr const char* kSurfaceTruth = "truth";
 
@@ -51,9 +52,8 @@ class SurfaceTrial {
     // What a picture of that moment takes; the truth's is drawn once.
     Result<DrawTimes> times(const SurfaceLook& look);
     // A pool that has come to rest goes on being simulated: what moves in its picture should not.
-    Result<StillPool> flicker(std::span<const SurfaceLook> looks);
+    Result<StillPool> flicker(std::span<const SurfaceLook> looks, int stillFrames);
 
-    int stillFrames() const { return settings_.quick ? 30 : 120; }
     // Pixels.
     int width() const { return settings_.quick ? 320 : 640; }
     int height() const { return width() * 9 / 16; }

@@ -3,6 +3,7 @@
 #include <json/json.h>
 
 #include <fstream>
+#include <map>
 
 #include "tests/unit/program_runner.h"
 
@@ -59,6 +60,51 @@ TEST(ProgramValidate, AMissedAimIsAFailureOfTheQualityMethodOnly) {
         EXPECT_EQ(rows[0]["tolerance"].isNull(), std::string(method) == "wcsph");
         EXPECT_EQ(outcome.out.find("MISSED") != std::string::npos, std::string(method) == "dfsph");
     }
+}
+
+// The default filter holds its bounds, and what is drawn is near the truth: further off, or equal to it, and something is not measured.
+TEST(ProgramValidate, TheSurfaceIsNearTheTruth) {
+    Scratch scratch;
+    RunOptions in;
+    in.folder = scratch.path();
+    const Outcome outcome = runProgram({"validate", "surface", "--quick", "--method", "narrow_range", "--json", "v.json"}, in);
+    if (outcome.code == 1 && outcome.err.find("needs OpenGL") != std::string::npos) GTEST_SKIP() << "no OpenGL 4.5 here";
+    ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+    std::map<std::string, Json::Value> rows;
+    for (const Json::Value& row : readJson(scratch.path() / "v.json")) {
+        EXPECT_EQ(row["method"], "narrow_range");
+        EXPECT_TRUE(row["pass"].asBool()) << row["case"];
+        rows[row["case"].asString()] = row;
+    }
+    struct Expected {
+        const char* name;
+        double least, most;
+        bool judged;
+    };
+    const Expected all[] = {{"sphere: normals, mean", 0.5, 2, true},
+                            {"sphere: normals, median", 0.5, 2, false},
+                            {"sphere: normals, 95 % below", 1.5, 5, false},
+                            {"sphere: depth, median", 0.02, 0.2, false},
+                            {"sphere: depth, rms", 0.1, 0.6, false},
+                            {"sphere: silhouettes' overlap", 0.97, 0.9999, false},
+                            {"slab: normals, mean", 0.2, 2, true},
+                            {"slab: depth, rms", 0.03, 0.3, false},
+                            {"dam break: normals, median", 2, 12, false},
+                            {"dam break: depth, median", 0.1, 0.4, false},
+                            {"dam break: silhouettes' overlap", 0.85, 0.99, false},
+                            {"dam break: FLIP", 0.01, 0.04, false},
+                            {"still pool over 30 frames: flicker, rms", 0.05, 1, true},
+                            {"still pool: fastest particle", 0.5, 20, false}};
+    for (const Expected& e : all) {
+        const Json::Value row = rows[std::string("surface: ") + e.name];
+        ASSERT_TRUE(row.isObject()) << e.name;
+        EXPECT_GT(row["measured"].asDouble(), e.least) << e.name;
+        EXPECT_LT(row["measured"].asDouble(), e.most) << e.name;
+        EXPECT_EQ(!row["tolerance"].isNull(), e.judged) << e.name;
+    }
+    // A mean is spray's, a median is not.
+    EXPECT_LT(rows["surface: dam break: depth, median"]["measured"].asDouble(),
+              0.3 * rows["surface: dam break: depth, rms"]["measured"].asDouble());
 }
 
 TEST(ProgramValidate, WhatMakesNoSenseIsSaidInASentence) {

@@ -80,6 +80,9 @@ TEST(SurfaceMetrics, FiguresAreWhatWasDone) {
     EXPECT_NEAR(e.normal95, 180, 1e-4);
     EXPECT_NEAR(e.normalMean, 10.8, 1e-2);
     EXPECT_NEAR(e.normalMedian, 0, 1e-4);
+    for (size_t i = 0; i < off.normal.size(); ++i)
+        off.normal[i] = i % 5 == 0 ? vec3(0, 0, 1) : i % 5 == 1 ? vec3(0, 0, -1) : vec3(tilted(10));
+    EXPECT_NEAR(compareSurfaces(off, exact, 0.01F).normalMedian, 10, 1e-4);
 
     // Two fifths are spray, 30 radii off, and behind; the rest is one radius off, and before: the median knows nothing of the spray.
     off.depth = exact.depth;

@@ -35,7 +35,7 @@ std::string scriptOf(const Plot& plot) {
         script += fmt::format("set xtics ({}) rotate by -40\nset xrange [-0.5:{}]\nset format y '%g'\n", names,
                               static_cast<double>(plot.ticks.size()) - 0.5);
     }
-    constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#8c564b", "#444444"};
+    constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#8c564b", "#444444", "#e377c2"};
     std::string curves, data;
     for (size_t k = 0; k < plot.curves.size(); ++k) {
         const Curve& c = plot.curves[k];

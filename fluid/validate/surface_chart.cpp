@@ -23,8 +23,9 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
     std::vector<SurfaceLook> looks;
     for (const std::string& filter : surfaceMethods()) {
         looks.push_back({filter, "fine"});
-        if (looks.size() == 1) looks.push_back({filter, "fine", kShortReach});
-        if (filter != kSurfaceTruth) looks.push_back({filter, "fast"});
+        if (filter == kSurfaceTruth) continue;
+        looks.push_back({filter, "fine", kShortReach});
+        looks.push_back({filter, "fast"});
     }
     for (const SurfaceLook& look : looks) {
         SurfaceChartRow row;

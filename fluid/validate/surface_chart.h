@@ -10,7 +10,7 @@
 
 namespace rivulet {
 
-// Spacings: the default filter is charted with this reach, too, to tell how it smooths from how far.
+// Spacings: all filters are charted with this reach, too, to tell how they smooth from how far.
 constexpr float kShortReach = 1.0F;
 
 struct SurfaceChartRow {

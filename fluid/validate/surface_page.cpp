@@ -57,23 +57,24 @@ std::string reachText(const SurfaceChart& chart) {
         shorter->look.reach, better.empty() ? "nothing" : joined(better), worse.empty() ? "nothing" : joined(worse));
 }
 
-std::string verdict(const SurfaceChart& chart, const std::string& quality) {
+std::string verdict(const SurfaceChart& chart, const std::string& quality, float reach = 0) {
     std::vector<const SurfaceChartRow*> rows;
     for (const SurfaceChartRow& row : chart.rows)
-        if (row.moment && row.look.quality == quality && row.look.reach == 0) rows.push_back(&row);
+        if (row.moment && row.look.quality == quality && row.look.reach == reach) rows.push_back(&row);
     const SurfaceChartRow& standard = *rows.front();
     std::vector<std::vector<std::string>> best(rows.size());
     std::vector<std::string> beaten;
     for (const Figure& f : kFigures) {
         const auto least = std::min_element(rows.begin(), rows.end(), [&](const auto* a, const auto* b) { return f.of(*a) < f.of(*b); });
-        const double reach = (1 + kAlike) * f.of(**least);
+        const double alike = (1 + kAlike) * f.of(**least);
         // Who is as good as the best is not beaten by it.
-        const size_t winner = f.of(standard) <= reach ? 0 : static_cast<size_t>(least - rows.begin());
+        const size_t winner = f.of(standard) <= alike ? 0 : static_cast<size_t>(least - rows.begin());
         best[winner].emplace_back(f.name);
         if (winner != 0)
             beaten.push_back(fmt::format("{} ({:.3g} against {}'s {:.3g})", f.name, f.of(standard), (*least)->look.filter, f.of(**least)));
     }
-    std::string text = fmt::format("At quality {}, ", quality);
+    std::string text =
+        fmt::format("At quality {}{}, ", quality, reach > 0 ? fmt::format(" and a reach of {:.1f} spacings for all", reach) : "");
     std::vector<std::string> parts;
     for (size_t k = 0; k < rows.size(); ++k)
         parts.push_back(fmt::format("**{}** is best at {}", rows[k]->look.filter, best[k].empty() ? "nothing" : joined(best[k])));
@@ -124,7 +125,8 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
         "particles, ray-marched in double; how figures are taken is what `rivulet validate surface` does.\n\n",
         command, machine, chart.drawnBy, chart.width, chart.height);
     if (picture) text += "![normals' error against ms](surface.svg)\n\n";
-    text += verdict(chart, "fine") + "\n\n" + reachText(chart) + "\n\n" + verdict(chart, "fast") + "\n\n";
+    text += verdict(chart, "fine") + "\n\n" + reachText(chart) + " " + verdict(chart, "fine", kShortReach) + "\n\n" +
+            verdict(chart, "fast") + "\n\n";
     text += "| filter | what it is |\n| --- | --- |\n";
     for (const SurfaceChartRow& r : chart.rows)
         if (const FilterRow* filter = filters().find(r.look.filter); filter != nullptr && r.look.quality == "fine" && r.look.reach == 0)

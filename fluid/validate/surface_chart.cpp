@@ -42,8 +42,9 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
             if (!moment) return moment.error();
             row.moment = *moment;
         }
-        if (trial->stopped()) break;
         chart.rows.push_back(std::move(row));
+        what = "each way to draw it";
+        if (!trial->goOn(kMomentShare)) break;
     }
     what = "a pool at rest";
     const Result<StillPool> pool = trial->flicker(looks, chart.stillFrames);

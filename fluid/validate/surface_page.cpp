@@ -53,8 +53,12 @@ std::string reachText(const SurfaceChart& chart) {
             (now < own ? better : worse).push_back(fmt::format("{} ({:.3g} to {:.3g})", f.name, own, now));
     }
     return fmt::format(
-        "How far a filter smooths matters beside how: the default with a reach of {:.1f} spacings is better at {} and worse at {}.",
-        shorter->look.reach, better.empty() ? "nothing" : joined(better), worse.empty() ? "nothing" : joined(worse));
+        "How far a filter smooths matters beside how: the default with a reach of {:.1f} spacings is better at {} and worse at {}. It "
+        "stays at "
+        "{:.1f} because the iso-surface's bumps are the particles' and not the water's: with the shorter reach milk, honey and waves look "
+        "lumpy.",
+        shorter->look.reach, better.empty() ? "nothing" : joined(better), worse.empty() ? "nothing" : joined(worse),
+        filterReach({}, 1.0F).reach);
 }
 
 std::string verdict(const SurfaceChart& chart, const std::string& quality, float reach = 0) {

@@ -109,7 +109,7 @@ Status SurfaceTrial::reachMoment() {
     session_ = std::move(*session);
     FluidWorld& world = session_->world();
     while (world.time() < kMoment - 1e-6) {
-        if (!goOn(0.3 * world.time() / kMoment)) return ok();
+        if (!goOn(kMomentShare * world.time() / kMoment)) return ok();
         session_->step(1.0 / kFramesPerSecond, true);
     }
     const ParticleView water = world.particles();
@@ -189,7 +189,7 @@ Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks, int 
     std::vector<Flicker> all;
     StillPool pool;
     for (int f = 0; f < frames; ++f) {
-        if (!goOn(0.3 + 0.7 * f / frames)) return StillPool{};
+        if (!goOn(kMomentShare + (1 - kMomentShare) * f / frames)) return StillPool{};
         (*session)->step(1.0 / kFramesPerSecond, true);
         if (f < kSettling) continue;
         if (f == kSettling) {

@@ -23,6 +23,7 @@ struct SurfaceLook {
     float reach = 0;           // spacings, of the smoothing; 0 = as the scene says
 };
 inline constexpr const char* kSurfaceTruth = "truth";
+constexpr double kMomentShare = 0.3;  // of the whole, when the moment is reached
 
 struct ShapeErrors {
     const SurfaceShape* shape;  // the trial's
@@ -59,11 +60,11 @@ class SurfaceTrial {
     int height() const { return width() * 9 / 16; }
     size_t momentParticles() const { return now_.at.size(); }
     std::string drawnBy() const;               // OpenGL's name of the renderer
+    bool goOn(double share);                   // tells how much is done; false: CaseSettings::goOn said that it is enough
     bool stopped() const { return stopped_; }  // by CaseSettings::goOn: what was found last is not whole
 
   private:
     SurfaceTrial(const CaseSettings& settings, SurfaceProbe probe) : settings_(settings), probe_(std::move(probe)) {}
-    bool goOn(double share);
     FrameView viewOf(const SceneFile& scene, const Session& session) const;
     Result<SurfaceMap> drawn(const SplatSet& splats, const FrameView& view, const SceneFile& scene);
     Result<std::vector<uint8_t>> pictureOf(const SceneFile& scene);

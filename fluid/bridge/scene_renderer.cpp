@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "engine/render/made_sky.h"
@@ -171,8 +172,25 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         for (size_t k = 0; ellipsoids && k < 3; ++k) out.ellipsoids[k] = static_cast<unsigned>(particles.ellipsoids[k]->handle());
         return out;
     }
-    vectors_.resize(out.count);
     ids_.resize(out.count);
+    device.read(*particles.id, std::as_writable_bytes(std::span(ids_)));
+    // Those of even number first: half of them by place would be another half whenever a particle changes its cell, and still water would
+    // flicker.
+    const bool hurried = look.quality != "fine";
+    if (hurried) {
+        order_.resize(out.count);
+        std::iota(order_.begin(), order_.end(), 0U);
+        const auto odd = std::stable_partition(order_.begin(), order_.end(), [this](uint32_t i) { return ids_[i] % 2 == 0; });
+        out.half = static_cast<uint32_t>(odd - order_.begin());
+    }
+    const auto upload = [&]<class T>(gpu::Buffer& to, std::vector<T>& read, std::vector<T>& sorted) {
+        if (hurried) {
+            sorted.resize(read.size());
+            std::transform(order_.begin(), order_.end(), sorted.begin(), [&read](uint32_t i) { return read[i]; });
+        }
+        return uploadTo(to, std::as_bytes(std::span(hurried ? sorted : read)));
+    };
+    vectors_.resize(out.count);
     const std::pair<const Buffer*, gpu::Buffer*> all[] = {{particles.drawn, &position_},
                                                           {&velocity, &velocity_},
                                                           {particles.absorption, &absorption_},
@@ -182,10 +200,9 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     for (const auto& [from, to] : all) {
         if (from == nullptr) continue;
         device.read(*from, std::as_writable_bytes(std::span(vectors_)));
-        if (Status s = uploadTo(*to, std::as_bytes(std::span(vectors_))); !s) return s.error();
+        if (Status s = upload(*to, vectors_, sortedVectors_); !s) return s.error();
     }
-    device.read(*particles.id, std::as_writable_bytes(std::span(ids_)));
-    if (Status s = uploadTo(id_, std::as_bytes(std::span(ids_))); !s) return s.error();
+    if (Status s = upload(id_, ids_, sortedIds_); !s) return s.error();
     out.position = position_.name();
     out.velocity = velocity_.name();
     out.id = id_.name();

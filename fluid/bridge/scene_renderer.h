@@ -44,8 +44,8 @@ class FluidUpload {
     gpu::Buffer position_, velocity_, id_, absorption_, drops_;
     std::array<gpu::Buffer, 2> foam_;
     std::array<gpu::Buffer, 3> ellipsoids_;
-    std::vector<vec4> vectors_;
-    std::vector<uint32_t> ids_;
+    std::vector<vec4> vectors_, sortedVectors_;
+    std::vector<uint32_t> ids_, sortedIds_, order_;
 };
 
 class SceneRenderer {

@@ -21,6 +21,7 @@ struct FluidView {
     // slant. 0: they are drawn as spheres.
     std::array<unsigned, 3> ellipsoids = {};
     uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
+    uint32_t half = 0;      // the first so many are every second particle, the same ones each frame; 0: they are in no such order
     float radius = 0.01F;   // m, of a drawn sphere
     float spacing = 0.02F;  // m
     // Spray, foam and bubbles: GL buffer names, as ParticleView::foam and foamVelocity.

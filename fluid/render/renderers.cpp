@@ -113,26 +113,24 @@ Status FluidPrograms::reload() {
     return ok();
 }
 
-void FluidPrograms::drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows, uint32_t each) {
+void FluidPrograms::drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows) {
     if (count == 0) return;
     for (GLuint k = 0; k < rows.size(); ++k) {
         if (rows[k].buffer == 0) continue;
         glTextureBuffer(rowTextures[k].name(), rows[k].format, rows[k].buffer);
         glBindTextureUnit(kRowUnit + k, rowTextures[k].name());
     }
-    count = (count + each - 1) / each;
     program.set("rows", count);
-    program.set("each", each);
     quads.bind();
     const uint32_t instances = (count + kQuadRows - 1) / kQuadRows, quadsEach = instances > 1 ? kQuadRows : count;
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * quadsEach), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
     for (GLuint k = 0; k < rows.size(); ++k) glBindTextureUnit(kRowUnit + k, 0);
 }
 
-void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t each) {
+void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t count) {
     const QuadRows rows[] = {{fluid.position},      {fluid.velocity},      {fluid.id, GL_R32UI}, {fluid.absorption},
                              {fluid.ellipsoids[0]}, {fluid.ellipsoids[1]}, {fluid.ellipsoids[2]}};
-    drawQuads(program, fluid.count, rows, each);
+    drawQuads(program, count, rows);
 }
 
 std::vector<gpu::Read> splatReads(const FluidDraw& d) {
@@ -155,7 +153,7 @@ gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, con
         mark.use();
         mark.set("radius", d.fluid.radius);
         mark.set("tiles", vec2(size.width, size.height));
-        programs.drawParticles(mark, d.fluid);
+        programs.drawParticles(mark, d.fluid, d.fluid.count);
     });
     return tiles;
 }

@@ -77,10 +77,10 @@ struct FluidPrograms {
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
     // A quad for each of `count` rows, whose vertex shader includes quads.glsl, with the program in use; rows[k] is its ROWS(k, ...).
-    void drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows, uint32_t each = 1);
+    void drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows);
     // The same for one of `each` particles, whose vertex shader includes particle.glsl. They lie in the order of their cells: one that is
     // larger by the cube root of `each` stands for the others.
-    void drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t each = 1);
+    void drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t count);
     // The marked ones, with the program in use, whose vertex shader is tile.vert; the mask is bound to `unit`.
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 

@@ -21,7 +21,16 @@ constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolutio
 constexpr int kThicknessBlur = 4;                            // texels either side
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
-constexpr uint32_t kFastShare = 2;  // of particles, where there is no time
+
+// Where there is no time, half of the particles stand for all of them.
+struct Drawn {
+    uint32_t count;
+    float standsFor, larger;
+};
+Drawn drawnOf(const FluidDraw& d) {
+    if (d.look.fast && d.fluid.half > 0) return {d.fluid.half, 2.0F, std::cbrt(2.0F)};
+    return {d.fluid.count, 1.0F, 1.0F};
+}
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
@@ -43,7 +52,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
             glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
             splats.occluder.use();
             splats.occluder.set("radius", d.fluid.radius);
-            programs.drawParticles(splats.occluder, d.fluid);
+            programs.drawParticles(splats.occluder, d.fluid, d.fluid.count);
             glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
             glDepthMask(GL_FALSE);
         }
@@ -51,7 +60,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         glBlendEquation(GL_MIN);
         splats.depth.use();
         splats.depth.set("radius", d.fluid.radius);
-        programs.drawParticles(splats.depth, d.fluid);
+        programs.drawParticles(splats.depth, d.fluid, d.fluid.count);
     });
     return depth;
 }
@@ -141,13 +150,13 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         Program& p = ink ? programs.splats(d.fluid).thicknessInk : programs.splats(d.fluid).thickness;
         p.use();
         if (ink) p.set("ownAbsorption", vec4(d.look.absorption, d.look.scattering.y));
-        const uint32_t each = d.look.fast ? kFastShare : 1;
-        p.set("radius", d.fluid.radius * std::cbrt(static_cast<float>(each)));
-        p.set("standsFor", static_cast<float>(each));
+        const Drawn some = drawnOf(d);
+        p.set("radius", d.fluid.radius * some.larger);
+        p.set("standsFor", some.standsFor);
         p.set("spacing", d.fluid.spacing);
         p.set("scale", scale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
-        programs.drawParticles(p, d.fluid, each);
+        programs.drawParticles(p, d.fluid, some.count);
     });
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
@@ -166,9 +175,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    // One of each few stands for all of them: they lie in the order of their cells, and the blur hides that it is larger.
-    const uint32_t each = d.look.fast ? kFastShare : 1;
-    const float larger = std::cbrt(static_cast<float>(each));
+    const Drawn some = drawnOf(d);  // the blur hides that they are larger
     graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {drawn}, [=, &programs](PassContext& c) {
         c.drawTo({drawn}).clearColour(vec4(0.0F));
         useFrame(c, d);
@@ -176,13 +183,13 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         glBlendFunc(GL_ONE, GL_ONE);
         Program& p = programs.lightWater;
         p.use();
-        p.set("clipRadius", larger * clipRadius);
-        p.set("radius", larger * d.fluid.radius);
+        p.set("clipRadius", some.larger * clipRadius);
+        p.set("radius", some.larger * d.fluid.radius);
         p.set("volumeScale", volumeScale(d.fluid));
-        programs.drawParticles(p, d.fluid, each);
+        programs.drawParticles(p, d.fluid, some.count);
     });
     // The narrow blur hides the single particles: its reach is 1.5 spacings of those that are drawn.
-    const float texels = 1.5F * larger * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side);
+    const float texels = 1.5F * some.larger * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side);
     const int reach = std::clamp(static_cast<int>(texels), 2, 6);
     TextureHandle from = drawn;
     for (const bool first : {true, false}) {

@@ -1,10 +1,9 @@
 // Quads, one a row of buffers, drawn by FluidPrograms::drawQuads: four vertices a row that share it, as many rows an instance as kRows there.
 // An instance a quad was three times slower on llvmpipe, and leaves most of a wave idle on a GPU.
 uniform uint rows;
-uniform uint each;  // one of so many rows is drawn, and `rows` counts those
 const uint kRows = 4096u;
 uint wanted() { return uint(gl_InstanceID) * kRows + uint(gl_VertexID >> 2); }
-int row() { return int(min(wanted(), rows - 1u) * each); }
+int row() { return int(min(wanted(), rows - 1u)); }
 bool beyond() { return wanted() >= rows; }  // no such row: draw nothing
 vec2 corner() { return vec2(float(gl_VertexID & 1), float((gl_VertexID >> 1) & 1)); }
 const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);

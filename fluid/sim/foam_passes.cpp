@@ -97,6 +97,11 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
     const Buffer *position = &particles.positionNext, *velocity = &particles.velocityNext;
     device_->fill(lists_, 0);
     device_->run(move_, f, {&grid.cellStart(), position, velocity, &before_, &foam_, &velocity_, &lists_}, slots_);
+    const SolidPasses::Movers flecks{&before_, &foam_, &velocity_, &most_, 0, slots_};
+    if (solids.moving()) {
+        solids.keepOut(step, flecks, seconds);
+        device_->copy(foam_, before_, size_t{slots_} * sizeof(vec4));  // their way is done
+    }
     const uint32_t threads = grid.pairThreads();
     StepParams air = step;
     air.force = vec4(flat_, hat_, 0.0F, 0.0F);
@@ -109,7 +114,8 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
     crest_.run(*device_, particles, crest, {&grid.neighbors(), position, velocity, &airs_, &births_}, threads);
     device_->run(wanted_, f, {&particles.id, position, &births_, &lists_}, particles.count);
     device_->run(born_, f, {&particles.id, position, velocity, &births_, &lists_, &before_, &foam_, &velocity_}, particles.count);
-    solids.keepOut(step, {&before_, &foam_, &velocity_, &most_, 0, slots_});
+    // What is born comes from where its particle is now, and what has moved since the frame's start is no longer in its way.
+    solids.keepOut(step, flecks, 0);
     device_->readLater(lists_, FOAM_LISTS * sizeof(uint32_t), [told = std::weak_ptr(told_)](std::span<const std::byte> bytes) {
         const std::shared_ptr<Told> t = told.lock();
         if (!t) return;  // begun anew meanwhile

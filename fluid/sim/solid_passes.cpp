@@ -322,17 +322,17 @@ Status SolidPasses::deform(Moving& m, double share, double seconds) {
     return ok();
 }
 
-void SolidPasses::setMotion(Moving& m, const Pose& start, const Pose& end, float dt) {
+void SolidPasses::setMotion(MotionParams& m, const Pose& start, const Pose& end, float dt) {
     const std::array<vec4, 3> a = rows(start), b = rows(end);
-    m.motion.startX = a[0];
-    m.motion.startY = a[1];
-    m.motion.startZ = a[2];
-    m.motion.endX = b[0];
-    m.motion.endY = b[1];
-    m.motion.endZ = b[2];
-    m.motion.velocity = vec4((end.position - start.position) / dt, 0.0F);
-    m.motion.spin = vec4(turnBetween(start.rotation, end.rotation) / dt, 0.0F);
-    m.motion.origin = vec4(end.position, 0.0F);
+    m.startX = a[0];
+    m.startY = a[1];
+    m.startZ = a[2];
+    m.endX = b[0];
+    m.endY = b[1];
+    m.endZ = b[2];
+    m.velocity = vec4((end.position - start.position) / dt, 0.0F);
+    m.spin = vec4(turnBetween(start.rotation, end.rotation) / dt, 0.0F);
+    m.origin = vec4(end.position, 0.0F);
 }
 
 Status SolidPasses::advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to) {
@@ -368,7 +368,7 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
         const Pose start = poses_[k];
         poses_[k] = between(m.from, m.target, to);
         m.motion.field = fieldParams(*m.on.field, contact);
-        setMotion(m, start, poses_[k], step.dt);
+        setMotion(m.motion, start, poses_[k], step.dt);
         device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
     }
     for (Moving& m : deforming_) {
@@ -380,7 +380,7 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
             m.motion.carried = 1.0F;
             if (Status done = deform(m, static_cast<double>(m.updated + 1) / m.updates, frameSeconds_); !done) return done;
         }
-        setMotion(m, {}, {}, step.dt);
+        setMotion(m.motion, {}, {}, step.dt);
         device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
     }
     return ok();
@@ -422,25 +422,34 @@ void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Par
 void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
     collide(step,
             {&particles.position, &particles.positionNext, &particles.velocityNext, &grid.cellStart(), step.cellCount, particles.count},
-            !rigid_.empty() || !deforming_.empty());
+            moving(), std::nullopt);
 }
 
-void SolidPasses::keepOut(const StepParams& step, const Movers& movers) { collide(step, movers, true); }
+void SolidPasses::keepOut(const StepParams& step, const Movers& movers, double seconds) { collide(step, movers, true, seconds); }
 
-// `planes`: what is pushed may be beyond the box or a plane.
-void SolidPasses::collide(const StepParams& step, const Movers& m, bool planes) {
+void SolidPasses::collide(const StepParams& step, const Movers& m, bool planes, std::optional<double> seconds) {
+    const bool still = seconds && !(*seconds > 0);
     StepParams walls = step;
     walls.cellCount = m.index;
     for (Moving& solid : deforming_) {
         MotionParams motion = solid.motion;
         motion.field.countIndex = m.index;
+        if (still) motion.carried = 0.0F;
         device_->run(collideDeforming_, motion,
                      {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal, &solid.displacement},
                      m.slots);
     }
-    for (Moving& solid : rigid_) {
+    for (size_t k = 0; k < rigid_.size(); ++k) {
+        const Moving& solid = rigid_[k];
         MotionParams motion = solid.motion;
         motion.field.countIndex = m.index;
+        if (still) {
+            motion.startX = motion.endX;
+            motion.startY = motion.endY;
+            motion.startZ = motion.endZ;
+        } else if (seconds) {
+            setMotion(motion, solid.from, poses_[k], static_cast<float>(*seconds));
+        }
         device_->run(collideRigid_, motion, {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal},
                      m.slots);
     }

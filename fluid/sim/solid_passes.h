@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/compute/device.h"
@@ -66,8 +67,10 @@ class SolidPasses {
         const Buffer* counts;  // uint; [index]: how many there are, the first ones
         uint32_t index, slots;
     };
-    // The same, of these, and out of planes and the box.
-    void keepOut(const StepParams& step, const Movers& movers);
+    // The same, of these, and out of planes and the box. `seconds`: their way is the frame's so far, with the rigid solids' poses since
+    // beginFrame; bending ones have only the last substep's shape. 0: it is of no time, past solids where they are.
+    void keepOut(const StepParams& step, const Movers& movers, double seconds);
+    bool moving() const { return !rigid_.empty() || !deforming_.empty(); }  // some can
 
     const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now
     uint64_t voxelsRewritten() const { return voxelsRewritten_; }  // of the deforming ones, since the start
@@ -93,10 +96,11 @@ class SolidPasses {
     };
 
     Status addMoving(Moving moving);
-    void collide(const StepParams& step, const Movers& movers, bool planes);
+    // `planes`: what is pushed may be beyond the box or a plane. `seconds`: as keepOut; nothing: the way is the last substep's.
+    void collide(const StepParams& step, const Movers& movers, bool planes, std::optional<double> seconds);
     uint64_t voxelsHash() const;  // of what was baked and stays
     Status deform(Moving& moving, double share, double seconds);
-    void setMotion(Moving& moving, const Pose& start, const Pose& end, float dt);
+    static void setMotion(MotionParams& motion, const Pose& start, const Pose& end, float dt);
 
     Device* device_ = nullptr;
     std::vector<PlaneSolid> planeSolids_;

@@ -180,6 +180,77 @@ TEST(Foam, SolidsStopSpray) {
     }
 }
 
+// A box of 0.2 m sweeps through flecks at rest, far more than its own depth a frame and in many substeps: none is inside it, none comes out
+// behind, and those that it meets go as fast as it does.
+TEST(Foam, AFastPaddleSweepsFlecksAlong) {
+    auto device = makeTestCpu();
+    for (const float speed : {6.0F, 24.0F}) {
+        const vec3 half(0.05F, 0.2F, 0.2F);
+        const test::Mesh paddle = test::makeBox(-half, half);
+        const MeshView view = paddle.view();
+        const Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 48, .band = 0.04F, .padding = 0.04F});
+        ASSERT_TRUE(field);
+        FluidParams p = boxOf(0.1F, false);
+        p.box.max.x = 4.0F;
+        p.gravity = vec3(0.0F);
+        p.foam.trappedAir = p.foam.waveCrest = 0.0F;
+        p.pbf.minSubsteps = 8;
+        Pose pose{vec3(0.3F, 0.5F, 0.25F), quat(1, 0, 0, 0)};
+        auto world = make(*device, p, {.rigid = {{&*field, pose}}});
+        const auto step = [&] { world->step({.gravity = vec3(0.0F), .poses = std::span(&pose, 1)}, kFrame); };
+        step();
+        std::vector<Fleck> rest;
+        for (int k = 0; k < 300; ++k)  // in its way, from its very face on
+            rest.push_back({vec3(0.38F + 0.004F * static_cast<float>(k), 0.5F + 0.1F * std::sin(static_cast<float>(k)),
+                                 0.25F + 0.1F * std::cos(2.5F * static_cast<float>(k))),
+                            vec3(0.0F), 2.0F, 0});
+        put(*world, rest);
+        while (pose.position.x < 1.8F) {
+            pose.position.x += speed * static_cast<float>(kFrame);
+            step();
+            EXPECT_GT(world->lastSubsteps(), 4);
+            const std::vector<Fleck> all = flecks(*world);
+            ASSERT_EQ(all.size(), rest.size());
+            for (const Fleck& f : all) {
+                const vec3 own = pose.toOwn(f.position);
+                ASSERT_GT(own.x, half.x) << speed << " m/s: in it or behind it";
+                if (own.x < half.x + 0.01F) EXPECT_NEAR(f.velocity.x, speed, 0.1F * speed);
+            }
+        }
+    }
+}
+
+// A block of water flies after a wall that flees as fast. Foam of its edges is born where the wall has been a moment ago, and stays on the
+// water's side.
+TEST(Foam, BornBehindAWallItStaysThere) {
+    auto device = makeTestCpu();
+    const test::Mesh wall = test::makeSheet(vec3(0), vec3(1, 0, 0), 2.0F);
+    const MeshView view = wall.view();
+    const Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 100, .band = 0.05F, .padding = 0.05F});
+    ASSERT_TRUE(field);
+    const float speed = 5.0F;
+    FluidParams p = boxOf(0.1F, false);
+    p.box.min.x = -3.0F;
+    p.box.max = vec3(1.0F);
+    p.gravity = vec3(0.0F);
+    p.blocks = {{vec3(0.0F, 0.3F, 0.3F), vec3(0.3F, 0.7F, 0.7F), vec3(-speed, 0.0F, 0.0F)}};
+    p.foam.most = 20000;
+    p.foam.trappedAir = p.foam.waveCrest = 1000.0F;
+    Pose pose{vec3(-0.02F, 0.5F, 0.5F), quat(1, 0, 0, 0)};
+    auto world = make(*device, p, {.rigid = {{&*field, pose}}});
+    size_t near = 0;
+    for (int k = 0; k < 20; ++k) {
+        const float was = pose.position.x;
+        pose.position.x -= speed * static_cast<float>(kFrame);
+        world->step({.gravity = vec3(0.0F), .poses = std::span(&pose, 1)}, kFrame);
+        for (const Fleck& f : flecks(*world)) {
+            ASSERT_GT(f.position.x, pose.position.x) << k;
+            near += f.position.x < was ? 1 : 0;
+        }
+    }
+    EXPECT_GT(near, 100U) << "where the wall has been";
+}
+
 // What comes down where it is dry does not stay there for good.
 TEST(Foam, SprayOnADryShelfAges) {
     auto device = makeTestCpu();

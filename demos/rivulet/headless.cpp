@@ -151,6 +151,15 @@ int runHeadless(const RunOptions& options) {
     if (!session) return report(session.error());
     if (!options.resume.empty())
         if (Status resumed = resumeFrom(options.resume, **session); !resumed) return report(resumed.error());
+    int frames = options.frames.value_or(0);
+    if (!options.stills.empty() && !options.frames) {
+        frames = *options.stills.rbegin() + 1;
+    } else if (!options.frames) {
+        const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
+        Result<int> all = framesOf(left, options.scene, "duration");
+        if (!all) return report(all.error());
+        frames = *all;
+    }
     Painter painter;
     if (options.render) {
         const auto surroundings = surroundingsOf(options.scene);
@@ -163,9 +172,6 @@ int runHeadless(const RunOptions& options) {
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 
-    const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
-    int frames = options.frames.value_or(static_cast<int>(std::lround(left / frameSeconds(options.scene))));
-    if (!options.stills.empty() && !options.frames) frames = *options.stills.rbegin() + 1;
     Loop loop{options, graceful, **session,
               *to,     painter,  RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};
     if (Status done = loop.run(frames); !done) return report(done.error());

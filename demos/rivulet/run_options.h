@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/log.h"
@@ -30,6 +31,10 @@ struct RunOptions {
 // Each returns an ExitCode.
 int runHeadless(const RunOptions& options);
 int runWindow(const RunOptions& options);
+
+inline constexpr int kMostFrames = 60'000'000;
+// How many frames show `seconds`, simulated, of a scene. Error (badInput): more than kMostFrames; `place`: who asked for them.
+Result<int> framesOf(double seconds, const SceneFile& scene, std::string_view place);
 
 // A state from and to a file. Error: what is wrong with it, or why it cannot be written.
 Status resumeFrom(const std::string& path, Session& session);

@@ -18,7 +18,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr int kMostFrames = 60'000'000;
 constexpr int kMostEvery = 100'000;
 
 struct ExportRequest {
@@ -36,6 +35,8 @@ Status checkRequest(const ExportRequest& request) {
 
 int exportAs(const ExportRequest& request, SceneFile scene) {
     const Log log = stderrLog();
+    const Result<int> frames = framesOf(request.seconds.value_or(scene.duration), scene, request.seconds ? "--seconds" : "duration");
+    if (!frames) return report(frames.error());
     const MeshFormat& format = *meshFormats().find(request.surface);
     const std::filesystem::path folder = request.out;
     const std::string name = fileNameOf(scene.name);
@@ -48,14 +49,12 @@ int exportAs(const ExportRequest& request, SceneFile scene) {
 
     const Graceful graceful;
     const int every = request.every.value_or(1);
-    const auto frames =
-        static_cast<int>(std::lround(request.seconds.value_or((*session)->scene().duration) / frameSeconds((*session)->scene())));
     size_t files = 0, triangles = 0;
     int dry = 0;
     Progress progress((*session)->scene().name);
-    for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
+    for (int f = 0; f < *frames && !graceful.interrupted(); ++f) {
         (*session)->step(frameSeconds((*session)->scene()), true);
-        progress.show(static_cast<double>(f + 1) / frames, fmt::format("{:.2f} s", (*session)->world().time()));
+        progress.show(static_cast<double>(f + 1) / *frames, fmt::format("{:.2f} s", (*session)->world().time()));
         if (f % every != 0) continue;
         const HostParticles particles = readParticles((*session)->world());
         const Result<IsoSurface> surface = IsoSurface::create(particles.position, (*session)->world().params().spacing);

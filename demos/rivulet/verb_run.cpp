@@ -12,8 +12,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr int kMostFrames = 60'000'000;
-
 bool hasDisplay() {
     auto given = [](const char* variable) {
         const char* value = std::getenv(variable);
@@ -22,13 +20,13 @@ bool hasDisplay() {
     return given("DISPLAY") || given("WAYLAND_DISPLAY");
 }
 
-// The frame that shows the scene at a second written as `text`; `frame`: s.
-Result<int> frameAt(const std::string& text, double frame) {
+// The frame that shows the scene at a second written as `text`.
+Result<int> frameAt(const std::string& text, const SceneFile& scene) {
     double at = -1;
     const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), at);
-    if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0) || at / frame > kMostFrames)
+    if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0))
         return badInput(fmt::format("--still {}: give a time in seconds, 0 or more", text));
-    return static_cast<int>(std::lround(at / frame));
+    return framesOf(at, scene, fmt::format("--still {}", text));
 }
 
 }  // namespace
@@ -41,6 +39,14 @@ std::string fileNameOf(const std::string& sceneName) {
     }
     constexpr size_t kLongest = 100;
     return name.empty() ? "scene" : name.substr(0, kLongest);
+}
+
+Result<int> framesOf(double seconds, const SceneFile& scene, std::string_view place) {
+    const double frames = std::round(seconds / frameSeconds(scene));
+    if (frames <= kMostFrames) return static_cast<int>(frames);
+    return badInput(
+        fmt::format("{}: {:g} s at timeScale {:g} are {:g} frames, and there may be {}: ask for less, or for a larger timeScale", place,
+                    seconds, scene.timeScale, frames, kMostFrames));
 }
 
 Status resumeFrom(const std::string& path, Session& session) {
@@ -101,7 +107,7 @@ int runVerb(const Arguments& arguments) {
     Result<SceneFile> loaded = loadScene(scene, assignments, preset);
     if (!loaded) return report(loaded.error());
     for (const std::string& still : stills) {
-        Result<int> frame = frameAt(still, frameSeconds(*loaded));
+        Result<int> frame = frameAt(still, *loaded);
         if (!frame) return report(frame.error());
         options.stills.insert(*frame);
     }
@@ -113,7 +119,11 @@ int runVerb(const Arguments& arguments) {
         return report(badInput(fmt::format("a state holds no skins, and {} has some: leave --save and --resume out", loaded->name)));
     options.scene = std::move(*loaded);
     options.render = !noRender;
-    if (seconds) options.frames = static_cast<int>(std::min(std::lround(*seconds / frameSeconds(options.scene)), long{kMostFrames}));
+    if (seconds) {
+        Result<int> frames = framesOf(*seconds, options.scene, "--seconds");
+        if (!frames) return report(frames.error());
+        options.frames = *frames;
+    }
     options.log = stderrLog();
 
     if (!headless && !noRender && !hasDisplay()) {

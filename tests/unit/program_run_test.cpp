@@ -64,6 +64,20 @@ TEST(ProgramRun, SlowMotionTakesShorterStepsBetweenFrames) {
     EXPECT_EQ(readJson(scratch.path() / "out/stats.json")["frames"].asInt(), 7) << "the frame at a hundredth is the seventh";
 }
 
+// More frames than an int counts are refused, by whoever asks for them, before anything is written.
+TEST(ProgramRun, MoreFramesThanCanBeCountedAreRefused) {
+    Scratch scratch;
+    scratch.file("s.json", smallScene());
+    const std::vector<std::vector<std::string>> asked = {
+        {"--seconds", "3600", "--set", "timeScale=1e-4"}, {"--set", "duration=3600", "--set", "timeScale=1e-4"}, {"--still", "1e300"}};
+    for (const std::vector<std::string>& more : asked) {
+        std::vector<std::string> words = {"run", "s.json", "--headless", "--backend", "cpu"};
+        words.insert(words.end(), more.begin(), more.end());
+        expectRefusal(runProgram(words, in(scratch)), 2, "60000000");
+    }
+    EXPECT_EQ(scratch.contents(), (std::vector<std::string>{"s.json"}));
+}
+
 // Moments alone: each is the same picture as in a run that is drawn throughout, and there is no video.
 TEST(ProgramRun, StillsAreTheFramesOfTheWholeRun) {
     Scratch scratch;

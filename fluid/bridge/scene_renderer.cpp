@@ -333,6 +333,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     Result<FluidLook> look = fluidLookOf(settings);
     if (!look) return look.error();
     if (settings.look.quality == "auto") look->fast = hurries_;
+    if (Status s = fluid_.fits(fluid); !s) return s;
     if (Status s = prepare(view, scene); !s) return s;
 
     std::vector<DrawnMesh> meshes;

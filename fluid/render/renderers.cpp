@@ -1,5 +1,7 @@
 #include "fluid/render/renderers.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace rivulet {
@@ -104,7 +106,24 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     }
     p.quads.elements(p.quadIndices.name());
     p.none = gpu::VertexArray::create();
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    p.mostTexels = static_cast<uint32_t>(most);
     return p;
+}
+
+Status FluidPrograms::fits(const FluidView& fluid) const {
+    struct Rows {
+        uint32_t count, texelsEach;
+        const char *what, *fewer;
+    };
+    for (const Rows& rows : {Rows{fluid.count, 1, "particles", "a larger fluid.spacing or a smaller fluid.maxParticles"},
+                             Rows{fluid.foamCount, 1, "flecks of foam", "a smaller fluid.foam.most"},
+                             Rows{fluid.dropCount, 2, "drops in the air", "fewer drops on skins"}})
+        if (rows.count > mostTexels / rows.texelsEach)
+            return failed(fmt::format("{} {} are more than the {} that this GPU can draw: ask for {}, or run without pictures", rows.count,
+                                      rows.what, mostTexels / rows.texelsEach, rows.fewer));
+    return ok();
 }
 
 Status FluidPrograms::reload() {

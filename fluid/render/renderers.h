@@ -74,8 +74,11 @@ struct FluidPrograms {
     gpu::Buffer quadIndices;
     std::array<gpu::TextureName, 7> rowTextures;
     std::shared_ptr<MarchedTruth> marched;  // by the row `truth`, the last time
+    uint32_t mostTexels = 0;                // of a buffer that shaders read as a texture, as this GPU has it
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
+    // Error (failed): more rows than this GPU can read, and those beyond would lie anywhere.
+    Status fits(const FluidView& fluid) const;
     // A quad for each of `count` rows, whose vertex shader includes quads.glsl, with the program in use; rows[k] is its ROWS(k, ...).
     void drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows);
     // The same for one of `each` particles, whose vertex shader includes particle.glsl. They lie in the order of their cells: one that is

@@ -99,6 +99,28 @@ TEST_F(LookWater, zeroOneAndAMillionParticlesAreDrawn) {
     EXPECT_GT(meanAbsoluteError(dry, shot(bounded(many))), 5.0);
 }
 
+// A buffer's rows beyond what a GPU can read as a texture would be drawn anywhere: they are refused before anything is drawn.
+TEST_F(LookWater, moreParticlesThanTheGpuReadsAreRefused) {
+    Result<FluidPrograms> programs = FluidPrograms::create(ShaderFiles::developer());
+    ASSERT_TRUE(programs) << programs.error().message;
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    ASSERT_GE(most, 65536) << "what OpenGL 4.5 promises";
+    const auto n = static_cast<uint32_t>(most);
+    FluidView water;
+    water.count = water.foamCount = n;
+    water.dropCount = n / 2;
+    EXPECT_TRUE(programs->fits(water));
+    for (uint32_t FluidView::*count : {&FluidView::count, &FluidView::foamCount, &FluidView::dropCount}) {
+        FluidView more;
+        more.*count = (count == &FluidView::dropCount ? n / 2 : n) + 1;
+        const Status refused = programs->fits(more);
+        ASSERT_FALSE(refused);
+        EXPECT_NE(refused.error().message.find(std::to_string(more.*count)), std::string::npos) << refused.error().message;
+        EXPECT_FALSE(renderer().draw(frameViewOf(camera, settings.light, 8, 8, 0), more, scene, settings));
+    }
+}
+
 TEST_F(LookWater, everyViewShowsItsOwn) {
     camera.position = vec3(0.5F, 3.0F, 0.52F);
     camera.target = vec3(0.5F, 0.0F, 0.5F);

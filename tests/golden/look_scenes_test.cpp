@@ -132,9 +132,10 @@ TEST_F(LookScenes, aPaneIsBeforeTheWaterOrBehindIt) {
         const uint8_t* p = at(rgba, kWidth / 2 + 20, kHeight / 2 + 8);
         return std::array<int, 3>{p[0], p[1], p[2]};
     };
-    for (const char* name : {"screen_space", "truth"})
+    for (const auto& [name, quality] : {std::pair("screen_space", "fine"), std::pair("screen_space", "fast"), std::pair("truth", "fine")})
         for (const bool milk : {true, false}) {
             settings.look.renderer = name;
+            settings.look.quality = quality;
             settings.look.absorption = vec3(0.0F);
             settings.look.scattering = vec3(milk ? 3000.0F : 0.0F);
             scene = Scene();

@@ -220,5 +220,41 @@ TEST_F(LookWater, fastIsTheSamePictureButForDetail) {
     EXPECT_LT(meanAbsoluteError(fine, fast), 4.0);
 }
 
+// Half of an odd size is rounded up; the surface found there still lies over the water.
+TEST_F(LookWater, fastAtOddSizesIsStillTheSamePicture) {
+    const FluidView water = bounded(pool(0.3F));
+    for (const ivec2 size : {ivec2(641, 359), ivec2(33, 17), ivec2(1, 1)}) {
+        settings.look.quality = "fine";
+        const std::vector<uint8_t> fine = picture(camera, size.x, size.y, water), dry = picture(camera, size.x, size.y, bounded({}));
+        settings.look.quality = "fast";
+        const std::vector<uint8_t> fast = picture(camera, size.x, size.y, water);
+        ASSERT_EQ(fast.size(), fine.size());
+        EXPECT_LT(meanAbsoluteError(fine, fast), 4.0) << size.x;
+        if (size.x == 1) continue;  // what one pixel shows may be no water at all
+        EXPECT_LT(meanAbsoluteError(fine, fast), 0.3 * meanAbsoluteError(fine, dry)) << size.x;
+    }
+}
+
+// Flecks need no particle to be seen, and a slot without one shows nothing.
+TEST_F(LookWater, foamIsDrawnWithoutParticles) {
+    const std::vector<uint8_t> dry = shot({});
+    for (const char* name : {"screen_space", "points", "truth"}) {
+        settings.look.renderer = name;
+        for (const float life : {0.0F, 1.0F}) {
+            const std::vector<vec4> flecks(5, vec4(0.5F, 0.3F, 0.5F, life)), velocities(5, vec4(0.0F, 0.0F, 0.0F, 1.9F));
+            const gpu::Buffer places = std::move(*gpu::Buffer::from(flecks)), speeds = std::move(*gpu::Buffer::from(velocities));
+            FluidView foam;
+            foam.spacing = 0.1F;
+            foam.foam = {places.name(), speeds.name()};
+            foam.foamCount = 5;
+            const double changed = meanAbsoluteError(dry, shot(foam));
+            if (life > 0)
+                EXPECT_GT(changed, 0.001) << name;
+            else
+                EXPECT_EQ(changed, 0.0) << name;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace rivulet

@@ -318,5 +318,36 @@ TEST(Foam, TheSameRunMakesTheSame) {
     EXPECT_EQ(sorted(*a), sorted(*c));
 }
 
+// A state of more or fewer slots, or damaged in them, says so; the world goes on with all it had.
+TEST(Foam, AStateOfOtherSlotsIsRefusedAndNothingIsLost) {
+    auto device = makeTestCpu();
+    auto other = make(*device, boxOf(0.1F, true, 300)), world = make(*device, boxOf(0.1F, true));
+    for (int k = 0; k < 20; ++k) {
+        other->step({}, kFrame);
+        world->step({}, kFrame);
+    }
+    WorldState few, before;
+    other->save(few);
+    world->save(before);
+    const Status refused = world->restore(few);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("foam.most = 300"), std::string::npos) << refused.error().message;
+    for (const char* damaged : {"foam.slots", "foam.velocity", "foam.numbers"}) {
+        WorldState shorter;
+        for (const auto& [name, bytes] : before.sections()) {
+            WorldState::Bytes some = bytes;
+            if (name == damaged) some.resize(some.size() - sizeof(uint32_t));
+            shorter.putBytes(name, std::move(some));
+        }
+        const Status no = world->restore(shorter);
+        ASSERT_FALSE(no) << damaged;
+        EXPECT_NE(no.error().message.find(damaged), std::string::npos) << no.error().message;
+    }
+    WorldState after;
+    world->save(after);
+    EXPECT_EQ(before.sections(), after.sections());
+    EXPECT_GT(flecks(*world).size(), 10U);
+}
+
 }  // namespace
 }  // namespace rivulet

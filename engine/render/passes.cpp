@@ -445,6 +445,24 @@ void addGlass(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, s
     });
 }
 
+TextureHandle addGlassDepth(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
+                            std::vector<DrawnMesh> meshes) {
+    std::erase_if(meshes, [](const DrawnMesh& m) { return !m.material.clear; });
+    if (meshes.empty()) return {};
+    const TextureHandle depth = graph.texture("glass depth", sized(view, Format::depth32f));
+    graph.pass("glass depth", {{frame, Usage::uniform}}, {depth}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
+        c.drawTo({}, depth).clearDepth();
+        bindFrame(c, frame);
+        glEnable(GL_DEPTH_TEST);
+        programs.depth.use();
+        for (const DrawnMesh& m : drawn) {
+            programs.depth.set("toWorldMatrix", m.toWorld);
+            m.mesh->draw();
+        }
+    });
+    return depth;
+}
+
 void addBox(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const Bounds& box, TextureHandle colour, TextureHandle depth,
             TextureHandle fluidDepth) {
     std::vector<gpu::Read> reads = {{frame, Usage::uniform}, depth};

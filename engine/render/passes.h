@@ -89,6 +89,9 @@ enum class GlassSide { all, behind, before };
 void addGlass(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, std::vector<DrawnMesh> meshes,
               gpu::TextureHandle colour, gpu::TextureHandle depth, const LightMaps& light, GlassSide side,
               gpu::TextureHandle fluidDepth = {});
+// Window depth of the nearest face of what is clear, 1 where there is none; empty: nothing is.
+gpu::TextureHandle addGlassDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
+                                 std::vector<DrawnMesh> meshes);
 // The edges of a box, drawn into `colour`. With `fluidDepth` (m, r32f): only those in front of the water.
 void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour,
             gpu::TextureHandle depth, gpu::TextureHandle fluidDepth = {});

@@ -398,6 +398,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const float radius = 0.5F * glm::length(studio.shown.size());
     const gpu::TextureHandle occlusion = addOcclusion(graph, render_, frame, view, draw.depth, kOcclusionReach * radius);
     draw.colour = addOpaque(graph, render_, frame, view, meshes, draw.depth, occlusion, light, studio.showFloor);
+    if (fluid.foamCount > 0) draw.glassDepth = addGlassDepth(graph, render_, frame, view, meshes);
     draw.shadowSharp = light.sharp;
     draw.shadowSoft = light.soft;
     draw.waterLight = light.water;
@@ -411,15 +412,16 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
         second.colour = addCopy(graph, draw.colour);
         second.depth = addCopy(graph, draw.depth);
     }
-    for (FluidDraw* d : {&draw, &second})
-        d->behind = [&glass, depth = d->depth](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth) {
-            glass(colour, depth, fluidDepth, GlassSide::behind);
-        };
     // What shows how the surface is made is of the surface alone.
     const bool whole = look->view == WaterView::water;
+    for (FluidDraw* d : {&draw, &second})
+        d->behind = [&, d = *d](gpu::TextureHandle colour, gpu::TextureHandle fluidDepth) {
+            if (whole && d.glassDepth) addFoam(graph, fluid_, d, {colour, fluidDepth}, FoamSide::glazed);
+            glass(colour, d.depth, fluidDepth, GlassSide::behind);
+        };
     const auto addRest = [&](const FluidDraw& d, const FluidLayers& of) {
         if (!whole) return;
-        addFoam(graph, fluid_, d, of);
+        addFoam(graph, fluid_, d, of, of.fluidDepth && d.glassDepth ? FoamSide::rest : FoamSide::all);
         addDrops(graph, fluid_, d, of);
         glass(of.colour, d.depth, of.fluidDepth, GlassSide::before);
     };

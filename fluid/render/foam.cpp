@@ -3,7 +3,7 @@
 
 namespace rivulet {
 
-void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
+void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers, FoamSide side) {
     using gpu::PassContext;
     using gpu::Usage;
     if (d.fluid.foamCount == 0) return;
@@ -11,6 +11,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
     for (const unsigned name : d.fluid.foam)
         reads.emplace_back(graph.importBuffer("foam", name, d.fluid.foamCount * sizeof(vec4)), Usage::sampled);
     if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
+    if (side != FoamSide::all) reads.emplace_back(d.glassDepth);
     graph.pass("foam", reads, {layers.colour}, [=, &programs](PassContext& c) {
         c.drawTo({layers.colour});
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
@@ -25,6 +26,8 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
         if (layers.fluidDepth) {
             p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
             p.set("absorption", d.look.absorption);
+            p.set("side", static_cast<int>(side));
+            if (side != FoamSide::all) p.texture("glassDepth", 3, c.texture(d.glassDepth));
         }
         const QuadRows rows[] = {{d.fluid.foam[0]}, {d.fluid.foam[1]}};
         programs.drawQuads(p, d.fluid.foamCount, rows);

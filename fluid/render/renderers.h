@@ -102,6 +102,7 @@ struct FluidDraw {
     std::vector<gpu::BufferHandle> ellipsoids;               // likewise; empty: spheres
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
+    gpu::TextureHandle glassDepth;                           // window depth of the nearest clear face; empty: nothing is clear
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
     // Draws what is clear and lies behind the water into `colour`, before the water is; `fluidDepth` as FluidLayers has it.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
@@ -150,8 +151,10 @@ FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, cons
 // Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds, where anything has changed.
 FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
-// Spray, foam and bubbles, into layers.colour.
-void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
+// Spray, foam and bubbles, into layers.colour. `side`: glazed is what something clear stands before where there is no water; it is to be
+// drawn before the glass, and the rest after the water. All, where layers.fluidDepth is empty.
+enum class FoamSide { all, glazed, rest };
+void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers, FoamSide side);
 
 // The drops in the air, into layers.colour.
 void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);

@@ -5,6 +5,8 @@ uniform sampler2D sceneDepth;  // window depth
 uniform sampler2D waterDepth;  // m
 uniform float radius;          // m
 uniform vec3 absorption;       // 1/m
+uniform sampler2D glassDepth;  // window depth
+uniform int side;              // 0: all is drawn; 1: what is behind glass where no water is; 2: the rest
 #endif
 flat in vec4 white;
 flat in float depth;
@@ -16,8 +18,13 @@ void main() {
     if (d2 >= 1.0 || depth > depthOfWindow(texelFetch(sceneDepth, here, 0).r)) discard;
     colour = vec4(white.rgb, white.a * (1.0 - d2));
 #if defined(OVER_WATER)
+    float water = texelFetch(waterDepth, here, 0).r;
+    if (side > 0) {
+        bool glazed = water >= kFar && depth > depthOfWindow(texelFetch(glassDepth, here, 0).r);
+        if (glazed != (side == 1)) discard;
+    }
     // Foam that lies on the surface is at its depth, give or take the smoothing.
-    float under = max(depth - texelFetch(waterDepth, here, 0).r - 3.0 * radius, 0.0);
+    float under = max(depth - water - 3.0 * radius, 0.0);
     colour.rgb *= exp(-2.0 * absorption * under);
     colour.a *= exp(-under / (8.0 * radius));
 #endif

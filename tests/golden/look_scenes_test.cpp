@@ -155,6 +155,39 @@ TEST_F(LookScenes, aPaneIsBeforeTheWaterOrBehindIt) {
         }
 }
 
+// A white fleck behind a green pane is green, also where there is no water about it; one before it is white.
+TEST_F(LookScenes, foamBehindAPaneIsSeenThroughIt) {
+    TestParticles corner;  // some water, elsewhere
+    for (int k = 0; k < 8; ++k) corner.add(vec3(0.05F) + corner.spacing * vec3(k & 1, (k >> 1) & 1, k >> 2));
+    settings.light.intensity = 2.0F;
+    settings.background.horizon = settings.background.zenith = vec3(0.05F);
+    scene.add(pane({0.5F, 0.5F, 0.5F}, 0.4F, vec3(0.1F, 1.0F, 0.1F), 0.0F));
+    for (const char* name : {"screen_space", "truth"})
+        for (const char* quality : {"fine", "fast"}) {
+            settings.look.renderer = name;
+            settings.look.quality = quality;
+            FluidView water = upload(corner);
+            water.spacing = 0.3F;  // flecks of some pixels
+            const auto dry = picture(camera, kWidth, kHeight, water);
+            const auto added = [&](float z) {
+                const std::vector<vec4> flecks(12, vec4(0.5F, 0.5F, z, 1.0F)), velocities(12, vec4(0.0F, 0.0F, 0.0F, 2.99F));
+                const gpu::Buffer places = std::move(*gpu::Buffer::from(flecks)), speeds = std::move(*gpu::Buffer::from(velocities));
+                water.foam = {places.name(), speeds.name()};
+                water.foamCount = 12;
+                const auto rgba = picture(camera, kWidth, kHeight, water);
+                std::array<double, 3> more = {0, 0, 0};
+                for (int y = kHeight / 2 - 4; y < kHeight / 2 + 4; ++y)
+                    for (int x = kWidth / 2 - 4; x < kWidth / 2 + 4; ++x)
+                        for (size_t k = 0; k < 3; ++k) more[k] += at(rgba, x, y)[k] - at(dry, x, y)[k];
+                return more;
+            };
+            const auto behind = added(0.2F), before = added(0.8F);
+            EXPECT_GT(behind[1], 300.0) << name << ' ' << quality;
+            EXPECT_LT(behind[0], 0.6 * behind[1]) << name << ' ' << quality << ": no red comes through";
+            EXPECT_GT(before[0], 0.8 * before[1]) << name << ' ' << quality << ": it is white";
+        }
+}
+
 TEST_F(LookScenes, aMadeSkyIsBrightestAboutTheSunAndCloudsCoverIt) {
     const vec3 sun = glm::normalize(vec3(0.3F, 0.5F, -0.6F));
     const auto skyOf = [&](float clouds) { return makeSky({.sun = sun, .sunlight = vec3(3.0F), .clouds = clouds}); };

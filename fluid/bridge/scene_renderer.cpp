@@ -147,7 +147,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     if (particles.foam != nullptr) {
         out.foamCount = particles.foamSlots;
         for (auto [from, into, name] :
-             {std::tuple(particles.foam, &foam_[0], &out.foam[0]), std::tuple(particles.foamVelocity, &foam_[1], &out.foam[1])}) {
+             {std::tuple(particles.foamDrawn, &foam_[0], &out.foam[0]), std::tuple(particles.foamVelocity, &foam_[1], &out.foam[1])}) {
             if (world.device().backend() == Backend::gl) {
                 *name = static_cast<unsigned>(from->handle());
                 continue;

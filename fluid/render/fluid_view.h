@@ -24,7 +24,7 @@ struct FluidView {
     uint32_t half = 0;      // the first so many are every second particle, the same ones each frame; 0: they are in no such order
     float radius = 0.01F;   // m, of a drawn sphere
     float spacing = 0.02F;  // m
-    // Spray, foam and bubbles: GL buffer names, as ParticleView::foam and foamVelocity.
+    // Spray, foam and bubbles: GL buffer names, as ParticleView::foamDrawn and foamVelocity.
     std::array<unsigned, 2> foam = {};
     uint32_t foamCount = 0;
     // Drops in the air, of any size: GL buffer name, two vec4 a drop: xyz m, w radius, m; xyz m/s.

@@ -269,10 +269,14 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
                             p.frameBudget, w.stepLimit(w.time, frame.length).why));
         }
     }
-    if (p.fixedStep > 0)
+    if (p.fixedStep > 0) {
         w.drawn.draw(*w.device, w.particles, w.pace.share(), static_cast<float>(std::max(w.lastPiece, 1) + 1) * p.spacing);
-    else
+        if (w.foam)
+            if (Status back = w.foam->drawEarlier((1.0 - double{w.pace.share()}) * double{p.fixedStep}); !back) w.say(back.error().message);
+    } else {
         w.drawn.forget();
+        if (w.foam) w.foam->drawNewest();
+    }
 }
 
 // What a step knows beside its length.
@@ -509,6 +513,7 @@ ParticleView FluidWorld::particles() const {
             .drawn = &w.drawn.positions(w.particles),
             .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{},
             .foam = w.foam ? &w.foam->foam() : nullptr,
+            .foamDrawn = w.foam ? &w.foam->drawn() : nullptr,
             .foamVelocity = w.foam ? &w.foam->velocity() : nullptr,
             .foamSlots = w.foam ? w.foam->slots() : 0};
 }

@@ -38,6 +38,7 @@ struct ParticleView {
     // Spray, foam and bubbles, a vec4 each: xyz m, w what is left of its life, s (0: none is there); and xyz m/s, w size (0.5 to 1) + 1
     // spray, 2 foam, 3 bubble. Null unless fluid.foam.most asks for them.
     const Buffer* foam = nullptr;
+    const Buffer* foamDrawn = nullptr;  // vec4: as foam, at the time that `drawn` is of
     const Buffer* foamVelocity = nullptr;
     uint32_t foamSlots = 0;
 };

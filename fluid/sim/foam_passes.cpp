@@ -50,8 +50,8 @@ Result<FoamPasses> FoamPasses::create(Device& device, const FluidParams& params,
         if (!found) return found.error();
         *kernel = *found;
     }
-    for (auto [kernel, path] :
-         {std::pair(&f.move_, "fluid/foam_move"), std::pair(&f.wanted_, "fluid/foam_wanted"), std::pair(&f.born_, "fluid/foam_born")}) {
+    for (auto [kernel, path] : {std::pair(&f.move_, "fluid/foam_move"), std::pair(&f.wanted_, "fluid/foam_wanted"),
+                                std::pair(&f.born_, "fluid/foam_born"), std::pair(&f.back_, "fluid/foam_drawn")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;
@@ -74,6 +74,7 @@ void FoamPasses::reset() {
     device_->fill(foam_, 0);
     told_ = std::make_shared<Told>();
     frame_ = 0;
+    drawNewest();
 }
 
 void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborGrid& grid, const Particles& particles, SolidPasses& solids,
@@ -123,6 +124,20 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
         const uint32_t born = std::min(words[1], words[3]);
         t->alive = words[0] + born;
     });
+}
+
+Status FoamPasses::drawEarlier(double seconds) {
+    if (!drawn_) {
+        Result<Buffer> made = device_->allocate(size_t{slots_} * sizeof(vec4));
+        if (!made) return made.error();
+        drawn_ = std::move(*made);
+    }
+    FoamStep f{};
+    f.slots = slots_;
+    f.seconds = static_cast<float>(seconds);
+    device_->run(back_, f, {&foam_, &velocity_, &drawn_}, slots_);
+    earlier_ = true;
+    return ok();
 }
 
 void FoamPasses::save(WorldState& state) const {

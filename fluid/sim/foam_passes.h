@@ -23,6 +23,11 @@ class FoamPasses {
     void run(const FluidParams& fluid, const StepParams& step, NeighborGrid& grid, const Particles& particles, SolidPasses& solids,
              double seconds);
 
+    // Where pictures come between steps: foam is to be drawn where it was so many seconds before the newest state. Error (failed): out of
+    // memory.
+    Status drawEarlier(double seconds);
+    void drawNewest() { earlier_ = false; }
+
     // What is there, for a saved state. Error: as WorldState::take; other slots.
     struct Saved {
         std::vector<vec4> foam, velocity;
@@ -33,7 +38,8 @@ class FoamPasses {
     void restore(const Saved& saved);
 
     uint32_t slots() const { return slots_; }
-    const Buffer& foam() const { return foam_; }          // see shaders/fluid/foam_params.h
+    const Buffer& foam() const { return foam_; }  // see shaders/fluid/foam_params.h
+    const Buffer& drawn() const { return earlier_ ? drawn_ : foam_; }
     const Buffer& velocity() const { return velocity_; }  // as it says
     uint32_t alive() const { return told_->alive; }       // on a GPU some frames ago
 
@@ -45,8 +51,10 @@ class FoamPasses {
     uint32_t slots_ = 0, frame_ = 0;
     float hat_ = 0, flat_ = 0, fullness_ = 0;
     PairKernel air_, crest_;
-    Kernel move_, wanted_, born_;
+    Kernel move_, wanted_, born_, back_;
     Buffer airs_, births_, before_, foam_, velocity_, lists_, most_;
+    Buffer drawn_;  // made when it is first asked for
+    bool earlier_ = false;
     std::shared_ptr<Told> told_ = std::make_shared<Told>();
 };
 

@@ -318,6 +318,32 @@ TEST(Foam, TheSameRunMakesTheSame) {
     EXPECT_EQ(sorted(*a), sorted(*c));
 }
 
+// Four pictures a step: between steps a fleck that flies beside the water is drawn where the water is, in each of them.
+TEST(Foam, BetweenFixedStepsItIsDrawnBesideItsWater) {
+    auto device = makeTestCpu();
+    const float speed = 1.5F;
+    FluidParams p = boxOf(0.1F, false);
+    p.box.max.x = 4.0F;
+    p.gravity = vec3(0.0F);
+    p.foam.trappedAir = p.foam.waveCrest = 0.0F;
+    p.fixedStep = 0.02F;
+    const vec3 low(0.2F, 0.4F, 0.2F);
+    p.blocks = {{low, low + p.spacing, vec3(speed, 0.0F, 0.0F)}};  // one particle
+    auto world = make(*device, p);
+    ASSERT_EQ(world->particles().count, 1U);
+    put(*world, {{low + 0.5F * p.spacing + vec3(0.0F, 0.2F, 0.0F), vec3(speed, 0.0F, 0.0F), 2.0F, 0}});
+    vec3 last(0.0F);
+    for (int k = 0; k < 40; ++k) {
+        world->step({.gravity = vec3(0.0F)}, 0.005);
+        if (k < 8) continue;
+        const ParticleView view = world->particles();
+        const vec3 water(device->readAll<vec4>(*view.drawn, 1)[0]), fleck(device->readAll<vec4>(*view.foamDrawn, 1)[0]);
+        EXPECT_NEAR(fleck.x, water.x, 0.02F) << k;  // the air slows it by a per cent or so
+        if (k > 8) EXPECT_NEAR(fleck.x - last.x, 0.005F * speed, 0.0005F) << k;
+        last = fleck;
+    }
+}
+
 // A state of more or fewer slots, or damaged in them, says so; the world goes on with all it had.
 TEST(Foam, AStateOfOtherSlotsIsRefusedAndNothingIsLost) {
     auto device = makeTestCpu();

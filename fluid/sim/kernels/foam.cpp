@@ -22,6 +22,9 @@ namespace foam_wanted_unit {
 namespace foam_born_unit {
 #include "shaders/fluid/foam_born.kernel"
 }
+namespace foam_drawn_unit {
+#include "shaders/fluid/foam_drawn.kernel"
+}
 
 }  // namespace
 
@@ -32,6 +35,7 @@ std::span<const CpuKernelRow> foamRows() {
         {"fluid/foam_move", "", RIVULET_UNIT_ISA, foam_move_unit::foam_move, 64},
         {"fluid/foam_wanted", "", RIVULET_UNIT_ISA, foam_wanted_unit::foam_wanted, 4096},
         {"fluid/foam_born", "", RIVULET_UNIT_ISA, foam_born_unit::foam_born, 1024},
+        {"fluid/foam_drawn", "", RIVULET_UNIT_ISA, foam_drawn_unit::foam_drawn, 4096},
     };
     return rows;
 }

@@ -15,6 +15,14 @@ struct FrameView {
     vec3 lightDirWorld{0.4F, 0.8F, 0.45F};  // unit, towards the light
     vec3 lightColour{3.0F};                 // linear RGB radiance
     double time = 0;                        // s
+
+    // The same on half as many pixels each way, rounded up.
+    FrameView half() const {
+        FrameView coarse = *this;
+        coarse.width = (width + 1) / 2;
+        coarse.height = (height + 1) / 2;
+        return coarse;
+    }
 };
 
 }  // namespace rivulet

@@ -360,10 +360,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     std::copy(matteLight_.begin(), matteLight_.end(), params.matteLight);
     frame_.write(std::as_bytes(std::span(&params, 1)));
     if (look->fast) {
-        FrameView coarse = view;
-        coarse.width = (view.width + 1) / 2;
-        coarse.height = (view.height + 1) / 2;
-        const FrameParams half = packFrame(coarse, studio, solid, water);
+        const FrameParams half = packFrame(view.half(), studio, solid, water);
         coarse_.write(std::as_bytes(std::span(&half, 1)));
     }
     if (surroundings_) surroundings_.bind(16);  // beyond those that the graph empties before each pass

@@ -22,10 +22,7 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     const FrameParams frame = packFrame(view, {}, {}, {});
     Result<gpu::Buffer> block = gpu::Buffer::from(std::vector<FrameParams>{frame});
     if (!block) return block.error();
-    FrameView half = view;
-    half.width = (view.width + 1) / 2;
-    half.height = (view.height + 1) / 2;
-    Result<gpu::Buffer> coarse = gpu::Buffer::from(std::vector<FrameParams>{packFrame(half, {}, {}, {})});
+    Result<gpu::Buffer> coarse = gpu::Buffer::from(std::vector<FrameParams>{packFrame(view.half(), {}, {}, {})});
     if (!coarse) return coarse.error();
     Result<gpu::Buffer> position = gpu::Buffer::from(std::vector<vec4>(particles.begin(), particles.end()));
     if (!position) return position.error();

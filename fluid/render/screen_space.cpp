@@ -260,8 +260,7 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     FluidDraw s = d;
     if (half) {
         s.frame = d.coarse;
-        s.view.width = (d.view.width + 1) / 2;
-        s.view.height = (d.view.height + 1) / 2;
+        s.view = d.view.half();
     }
     const TextureHandle spheres = addSphereDepth(graph, programs, s, !half);
     const TextureHandle tiles = addTilesOf(graph, programs, d, spheres);

@@ -1,6 +1,7 @@
 // A face of a clear body: it mirrors, and lets the rest of the light through; blended by GL_ONE, GL_SRC1_COLOR.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
+#include "shaders/render/fresnel.glsl"
 #include "shaders/render/shadow.glsl"
 #include "shaders/material/surface.glsl"
 in vec3 posWorld;
@@ -16,13 +17,6 @@ layout(location = 0, index = 1) out vec4 passed;
 
 const float kIndex = 1.52;  // of soda-lime glass
 
-// Exact for unpolarised light (Fresnel 1823). `c` = cosine of the angle of incidence, from air.
-float fresnel(float c) {
-    float g = sqrt(kIndex * kIndex - 1.0 + c * c);
-    float s = (c - g) / (c + g), p = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
-    return 0.5 * s * s * (1.0 + p * p);
-}
-
 void main() {
     vec3 toEye = normalize(frame.cameraPos.xyz - posWorld);
     float depth = -(frame.view * vec4(posWorld, 1.0)).z;
@@ -34,12 +28,12 @@ void main() {
     vec3 n = normalize(normalWorld);
     if (!gl_FrontFacing) n = -n;
     float nv = clamp(dot(n, toEye), 0.02, 1.0);
-    float mirror = fresnel(nv) * (1.0 - metallic);
+    float mirror = fresnel(nv, kIndex) * (1.0 - metallic);
     vec3 wall = baseColour * (1.0 - opacity);
     passed = vec4(pow(max(wall, vec3(1.0e-4)), vec3(0.5 / max(nv, 0.12))) * (1.0 - mirror), 1.0);
     float lit = meshShadow(posWorld, n), rough = max(roughness, 0.03);
     vec3 h = normalize(toEye + frame.lightDir.xyz);
     float nl = max(dot(n, frame.lightDir.xyz), 0.0);
-    float sun = highlight(nl, nv, max(dot(n, h), 0.0), max(rough * rough, 0.002)) * nl * fresnel(max(dot(toEye, h), 0.02));
+    float sun = highlight(nl, nv, max(dot(n, h), 0.0), max(rough * rough, 0.002)) * nl * fresnel(max(dot(toEye, h), 0.02), kIndex);
     colour = vec4(environment(reflect(-toEye, n), rough) * mirror + frame.lightColour.rgb * (lit * min(sun, 8.0)), 1.0);
 }

@@ -1,6 +1,7 @@
 // The water's surface: what lies behind it, refracted and absorbed, and what it reflects.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
+#include "shaders/render/fresnel.glsl"
 #include "shaders/render/shadow.glsl"
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;   // window depth
@@ -49,13 +50,6 @@ vec3 layer(vec3 absorbed, vec3 thrown, out vec3 through) {
     vec3 rest = (k + s) * t + q;
     through = 2.0 * q * e / ((1.0 + e * e) * rest);
     return s * t / rest;
-}
-
-// Exact for unpolarised light (Fresnel 1823). `c` = cosine of the angle of incidence, from air into index n.
-float fresnel(float c, float n) {
-    float g = sqrt(n * n - 1.0 + c * c);
-    float s = (c - g) / (c + g), p = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
-    return 0.5 * s * s * (1.0 + p * p);
 }
 
 // What the mirror direction meets of the picture itself: rgb, and a = how surely. View space; steps grow with distance. `steps` 0: nothing.

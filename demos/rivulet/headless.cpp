@@ -12,6 +12,7 @@
 #include "engine/app/context_egl.h"
 #include "engine/core/json.h"
 #include "fluid/bridge/backend.h"
+#include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/explain.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
@@ -49,8 +50,9 @@ struct Outputs {
         if (options.render || options.stats.empty())
             if (Status made = makeFolder(options.out); !made) return made.error();
         if (Status writable = checkWritable(to.stats); !writable) return writable.error();
-        if (!options.save.empty())
-            if (Status writable = checkWritable(options.save); !writable) return writable.error();
+        for (const std::string& file : {options.save, options.trace})
+            if (!file.empty())
+                if (Status writable = checkWritable(file); !writable) return writable.error();
         if (!options.render || !options.stills.empty()) return to;
         Result<VideoWriter> video = VideoWriter::open(to.video, options.width, options.height, kFramesPerSecond);
         if (!video) return video.error();
@@ -63,14 +65,23 @@ struct Outputs {
 struct Painter {
     std::unique_ptr<SceneRenderer> renderer;
     FluidUpload upload;
+    Timeline* timeline = nullptr;
 
-    Result<std::vector<uint8_t>> paint(Session& session, int width, int height) {
+    // `uploaded` is called when nothing more is read of the world.
+    Result<std::vector<uint8_t>> paint(Session& session, int width, int height, const std::function<void()>& uploaded) {
         const SceneFile& scene = session.scene();
+        std::optional<TimedSpan> upload_(std::in_place, timeline, "main", "upload");
         Result<FluidView> fluid = upload.view(session.world(), scene.look, session.flows().airDrops());
         if (!fluid) return fluid.error();
         if (Status wet = session.flows().draw(); !wet) return wet.error();
         FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.world().time());
-        if (Status drawn = renderer->draw(view, *fluid, session.solids(), scene); !drawn) return drawn.error();
+        upload_.reset();
+        uploaded();
+        {
+            const TimedSpan span(timeline, "main", "draw");
+            if (Status drawn = renderer->draw(view, *fluid, session.solids(), scene); !drawn) return drawn.error();
+        }
+        const TimedSpan span(timeline, "main", "picture comes down");
         return renderer->pixels();
     }
 };
@@ -81,6 +92,7 @@ struct Loop {
     Session& session;
     Outputs& to;
     Painter& painter;
+    Cooperation& work;
     RunRecorder recorder;
     int pictures = 0;
 
@@ -96,21 +108,30 @@ struct Loop {
         return ok();
     }
 
+    void next() { work.start(frameSeconds(options.scene), true); }
+
     Status run(int frames) {
         const std::set<int> kept = options.stills.empty() ? pictureFrames(frames) : options.stills;
         Progress progress(options.scene.name);
+        double now = 0;  // s simulated, of what is drawn
         if (options.render)
             painter.renderer->onProgress([&](double share) {
-                progress.show(share, fmt::format("drawing {:.2f} s", session.world().time()));
+                progress.show(share, fmt::format("drawing {:.2f} s", now));
                 return !graceful.interrupted();
             });
         for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
             Clock::time_point start = Clock::now();
-            double simulateMs = session.step(frameSeconds(options.scene), true), renderMs = 0;
+            if (!work.started()) next();
+            recorder.stepped(work.finish(), session.world().device().takeTimes());
+            now = session.world().time();
+            const bool more = f + 1 < frames;
+            double renderMs = 0;
             std::vector<PassTime> drawn;
             if (options.render && (to.writer || kept.contains(f))) {
                 Clock::time_point before = Clock::now();
-                Result<std::vector<uint8_t>> pixels = painter.paint(session, options.width, options.height);
+                Result<std::vector<uint8_t>> pixels = painter.paint(session, options.width, options.height, [&] {
+                    if (more) next();
+                });
                 if (!pixels) return pixels.error();
                 renderMs = msSince(before);
                 drawn = painter.renderer->times();
@@ -126,13 +147,38 @@ struct Loop {
             }
             if (options.render && !to.writer && !kept.contains(f))  // a skin's maps show what has come since they were last drawn
                 if (Status wet = session.flows().draw(); !wet) return wet.error();
-            recorder.frame(simulateMs, renderMs, msSince(start), session.world().device().takeTimes(), drawn);
+            recorder.drawn(renderMs, msSince(start), drawn);
             progress.show(static_cast<double>(f + 1) / frames,
-                          fmt::format("{:.2f} s, {:.0f} ms a frame", session.world().time(), msSince(start)));
+                          fmt::format("{:.2f} s, {:.0f} ms a frame", now, msSince(start)));
         }
+        work.drop();
         return ok();
     }
 };
+
+struct PlanChoice {
+    std::string backend;  // as --backend
+    Plan plan = Plan::alone;
+};
+
+// What --cooperate says; auto tries them all.
+Result<PlanChoice> choosePlan(const RunOptions& options, const GlFacts& gl, Painter& painter) {
+    if (options.cooperate != "auto") return PlanChoice{options.backend, plans().find(options.cooperate)->plan};
+    if (!options.render) {
+        options.log.notice("--cooperate auto: nothing is drawn, so that there is nothing to share out");
+        return PlanChoice{options.backend, Plan::alone};
+    }
+    const auto draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
+        Result<std::vector<uint8_t>> pixels = painter.paint(session, options.width, options.height, uploaded);
+        if (!pixels) return pixels.error();
+        passes = painter.renderer->times();
+        return ok();
+    };
+    Result<std::vector<PlanTried>> tried = tryPlans(options.scene, gl, draw, options.log);
+    if (!tried) return tried.error();
+    options.log.notice(sentenceOf(*tried, options.backend));
+    return PlanChoice{tried->front().backend, tried->front().plan};
+}
 
 }  // namespace
 
@@ -146,7 +192,19 @@ int runHeadless(const RunOptions& options) {
         gl = made ? currentGlFacts() : noGl(made.error().message);
         if (made) context = std::move(*made);
     }
-    std::unique_ptr<Device> device = makeDevice(options.backend, gl, options.log);
+    Painter painter;
+    if (options.render) {
+        const auto surroundings = surroundingsOf(options.scene);
+        if (!surroundings) return report(surroundings.error());
+        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
+        if (!renderer) return report(renderer.error());
+        painter.renderer = std::move(*renderer);
+    }
+    const Result<PlanChoice> choice = choosePlan(options, gl, painter);
+    if (!choice) return report(choice.error());
+    Timeline timeline;
+    const bool traced = !options.trace.empty() || options.cooperate != "off";
+    std::unique_ptr<Device> device = makeDevice(choice->backend, gl, options.log);
     auto session = Session::create(options.scene, *device, options.log);
     if (!session) return report(session.error());
     if (!options.resume.empty())
@@ -160,24 +218,25 @@ int runHeadless(const RunOptions& options) {
         if (!all) return report(all.error());
         frames = *all;
     }
-    Painter painter;
-    if (options.render) {
-        const auto surroundings = surroundingsOf(options.scene);
-        if (!surroundings) return report(surroundings.error());
-        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
-        if (!renderer) return report(renderer.error());
-        painter.renderer = std::move(*renderer);
+    if (traced) {
+        painter.timeline = &timeline;
+        device->onSpan(timeline.lane(fmt::format("{}: kernels", backendName(device->backend()))));
+        if (painter.renderer) painter.renderer->onSpan(timeline.lane(kDrawingLane));
     }
     Graceful graceful;  // until here Ctrl-C leaves at once; from here files are closed first
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 
-    Loop loop{options, graceful, **session,
-              *to,     painter,  RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};
+    Cooperation work(**session, choice->plan, traced ? &timeline : nullptr, options.log);
+    Loop loop{options, graceful, **session, *to, painter, work,
+              RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};
     if (Status done = loop.run(frames); !done) return report(done.error());
     if (to->writer)
         if (Status closed = to->writer->close(); !closed) return report(closed.error());
     RunStats stats = loop.recorder.finish(options.scene.name);
+    stats.cooperation = work.stats();
+    if (!options.trace.empty())
+        if (Status written = writeFileAtomic(options.trace, timeline.chromeTrace()); !written) return report(written.error());
     if (Status written = writeFileAtomic(to->stats, writeRunStats(stats)); !written) return report(written.error());
 
     if (!options.save.empty())

@@ -16,6 +16,7 @@ namespace rivulet {
 struct RunOptions {
     SceneFile scene;
     std::string backend = "auto";  // auto | cpu | gl | cl
+    std::string cooperate = "off";  // a row of plans(), or auto
     bool render = true;
     bool explain = false;
     std::optional<int> frames;       // how many; nothing: the loop's own default
@@ -25,6 +26,7 @@ struct RunOptions {
     std::string stats;               // file; empty: out/stats.json, or none in the window
     std::set<int> stills;            // frames; empty: a video of all, and some pictures
     std::string save, resume;        // files of a state; empty: none
+    std::string trace;               // file of a timeline; empty: none
     Log log;
 };
 

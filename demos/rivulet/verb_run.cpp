@@ -6,6 +6,7 @@
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
+#include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/session.h"
 
 namespace rivulet {
@@ -88,6 +89,8 @@ int runVerb(const Arguments& arguments) {
     reader.option("--video", "FILE.mp4", "the video's file, instead of DIR/NAME.mp4", options.video);
     reader.option("--still", "S", "draw only the frame at this second, and no video; as often as you like", stills);
     reader.option("--stats", "FILE.json", "the figures' file, instead of DIR/stats.json", options.stats);
+    reader.option("--cooperate", "PLAN", "who simulates while who draws: off, thesis, behind or auto, which tries them", options.cooperate);
+    reader.option("--trace", "FILE.json", "who worked on what and when, for chrome://tracing or Perfetto", options.trace);
     reader.option("--save", "FILE", "the whole state at the run's end, for --resume", options.save);
     reader.option("--resume", "FILE", "go on from a state that --save wrote, of the same scene", options.resume);
     reader.flag("--explain", "at the end, say what was chosen, what was left out, and what the rest cost", options.explain);
@@ -97,6 +100,9 @@ int runVerb(const Arguments& arguments) {
 
     static const std::vector<std::string> backends = {"auto", "cpu", "gl", "cl"};
     if (Status known = checkWord("backend", options.backend, backends); !known) return report(known.error());
+    std::vector<std::string> cooperations = plans().names();
+    cooperations.emplace_back("auto");
+    if (Status known = checkWord("plan", options.cooperate, cooperations); !known) return report(known.error());
     Result<std::pair<int, int>> pixels = parseSize(size);
     if (!pixels) return report(pixels.error());
     std::tie(options.width, options.height) = *pixels;

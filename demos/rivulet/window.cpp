@@ -21,15 +21,22 @@ int runWindow(const RunOptions& options) {
     wish.height = options.height;
     Result<WindowGlfw> window = WindowGlfw::create(wish);
     if (!window) return report(window.error());
-    auto viewer = Viewer::create(options.scene, options.backend, options.log, window->handle());
+    auto viewer = Viewer::create(options.scene,
+                                 {.backend = options.backend,
+                                  .cooperate = options.cooperate,
+                                  .clipboard = window->handle(),
+                                  .width = options.width,
+                                  .height = options.height},
+                                 options.log);
     if (!viewer) return report(viewer.error());
     Viewer& v = **viewer;
     if (!options.resume.empty())
         if (Status resumed = resumeFrom(options.resume, v.session()); !resumed) return report(resumed.error());
     if (!options.save.empty())
         if (Status writable = checkWritable(options.save); !writable) return report(writable.error());
-    if (!options.stats.empty())
-        if (Status writable = checkWritable(options.stats); !writable) return report(writable.error());
+    for (const std::string& file : {options.stats, options.trace})
+        if (!file.empty())
+            if (Status writable = checkWritable(file); !writable) return report(writable.error());
     const bool recorded = options.explain || !options.stats.empty();
     if (recorded) v.record();
 
@@ -52,6 +59,8 @@ int runWindow(const RunOptions& options) {
             if (Status written = writeFileAtomic(options.stats, writeRunStats(stats)); !written) return report(written.error());
         if (options.explain) fmt::print("{}", explain(v.session(), stats));
     }
+    if (!options.trace.empty())
+        if (Status written = writeFileAtomic(options.trace, v.timeline().chromeTrace()); !written) return report(written.error());
     if (!options.save.empty())
         if (Status saved = saveTo(options.save, v.session()); !saved) return report(saved.error());
     return graceful.interrupted() ? kInterrupted : kDone;

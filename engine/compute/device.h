@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/core/result.h"
+#include "engine/core/timeline.h"
 
 namespace rivulet {
 
@@ -110,6 +111,8 @@ class Device {
     virtual void finish() = 0;
     virtual std::vector<PassTime> takeTimes() = 0;
     virtual size_t bytesAllocated() const = 0;
+    // From now on `sink` hears of each dispatch, a GPU's some frames late, when poll() or takeTimes() know when it was; empty: nobody does.
+    void onSpan(SpanSink sink) { span_ = std::move(sink); }
 
     template <class T>
     void writeAll(Buffer& to, std::span<const T> items) {
@@ -121,6 +124,9 @@ class Device {
         read(from, std::as_writable_bytes(std::span(items)));
         return items;
     }
+
+  protected:
+    SpanSink span_;
 };
 
 }  // namespace rivulet

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <deque>
+#include <optional>
 
 namespace rivulet {
 namespace {
@@ -200,6 +201,7 @@ class ClDevice final : public Device {
 
     cl_mem params(std::span<const std::byte> bytes);
     void harvest();
+    double hostTime(cl_ulong at);
     void dropUploads();
     bool succeeded(cl_int code, std::string_view what);
     static cl_mem memory(const Buffer& buffer) { return reinterpret_cast<cl_mem>(static_cast<uintptr_t>(buffer.handle())); }
@@ -221,6 +223,7 @@ class ClDevice final : public Device {
     size_t bytesAllocated_ = 0;
     uint32_t sinceFlush_ = 0;
     bool troubleTold_ = false;
+    std::optional<double> ahead_;  // s, the host's clock before the device's
 };
 
 ClDevice::ClDevice(const Candidate& chosen, Context context, Queue queue, const ShaderFiles& files, Log log)
@@ -460,9 +463,29 @@ void ClDevice::harvest() {
             if (time == times_.end()) time = times_.insert(times_.end(), PassTime{path, 0, 0});
             time->ms += end > start ? static_cast<double>(end - start) * 1.0e-6 : 0.0;
             ++time->calls;
+            if (span_) span_({path, hostTime(start), hostTime(end)});
         }
         timed_.pop_front();
     }
+}
+
+// s of hostSeconds(). OpenCL 1.2 cannot ask for the device's time: a small write that is waited for ends about now.
+double ClDevice::hostTime(cl_ulong at) {
+    if (!ahead_) {
+        ahead_ = 0;
+        cl_int code = CL_SUCCESS;
+        const Memory small(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, 16, nullptr, &code));
+        const uint32_t word = 0;
+        cl_event written = nullptr;
+        if (small && clEnqueueWriteBuffer(queue_.get(), small.get(), CL_TRUE, 0, sizeof word, &word, 0, nullptr, &written) == CL_SUCCESS) {
+            const double now = hostSeconds();
+            const Event event(written);
+            cl_ulong end = 0;
+            if (clGetEventProfilingInfo(written, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) == CL_SUCCESS)
+                ahead_ = now - 1.0e-9 * static_cast<double>(end);
+        }
+    }
+    return *ahead_ + 1.0e-9 * static_cast<double>(at);
 }
 
 std::vector<PassTime> ClDevice::takeTimes() {

@@ -187,7 +187,7 @@ void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void
 void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
     ASSERT(kernel.index < impl_->kernels.size(), "ask this device for the kernel before dispatching it");
     if (threads == 0) return;
-    auto start = std::chrono::steady_clock::now();
+    const double started = hostSeconds();
     const CpuKernelRow& row = impl_->kernels[kernel.index];
     impl_->bindings.clear();
     for (const Buffer* b : buffers) impl_->bindings.push_back(b != nullptr ? hostPointer<void>(*b) : nullptr);
@@ -198,7 +198,9 @@ void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::
     std::memcpy(block, params.data(), params.size());
     parallelFor(threads, row.grain,
                 [&](size_t begin, size_t end) { row.run(static_cast<uint32_t>(begin), static_cast<uint32_t>(end), block, bindings); });
-    addTime(row.path, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    const double done = hostSeconds();
+    addTime(row.path, 1000 * (done - started));
+    if (span_) span_({row.path, started, done});
 }
 
 void CpuDevice::addTime(std::string_view name, double ms) {

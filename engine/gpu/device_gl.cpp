@@ -330,12 +330,13 @@ void GlDevice::finish() {
 }
 
 void GlDevice::harvest() {
-    timer_.collect([&](uint64_t index, double ms) {
+    timer_.collect([&](uint64_t index, const gpu::Timer::Times& times) {
         const std::string& path = kernels_[index].path;
         auto time = std::find_if(times_.begin(), times_.end(), [&](const PassTime& t) { return t.name == path; });
         if (time == times_.end()) time = times_.insert(times_.end(), PassTime{path, 0, 0});
-        time->ms += ms;
+        time->ms += times.ms();
         ++time->calls;
+        if (span_) span_({path, times.begin, times.end});
     });
 }
 

@@ -115,6 +115,7 @@ struct TransientPool::Impl {
     Timer timer;
     std::deque<TimedFrame> timed;
     std::vector<PassTime> times;
+    SpanSink onSpan;
 
     template <class Items, class Key, class Make>
     static auto lend(Items& items, const Key& key, uint64_t frame, Make make) -> Result<typename Items::value_type::pointer> {
@@ -149,11 +150,13 @@ struct TransientPool::Impl {
     }
 
     void collectTimes() {
-        timer.collect([&](uint64_t tag, double ms) {
+        timer.collect([&](uint64_t tag, const Timer::Times& span) {
             for (TimedFrame& f : timed)
                 if (f.frame == tag >> 16U) {
-                    f.rows[tag & 0xFFFFU].ms += ms;
+                    PassTime& row = f.rows[tag & 0xFFFFU];
+                    row.ms += span.ms();
                     --f.awaited;
+                    if (onSpan) onSpan({row.name, span.begin, span.end});
                 }
         });
         while (!timed.empty() && (timed.front().awaited == 0 || timed.size() > kMaxTimedFrames)) {
@@ -177,6 +180,7 @@ TransientPool::TransientPool(TransientPool&&) noexcept = default;
 TransientPool& TransientPool::operator=(TransientPool&&) noexcept = default;
 TransientPool::~TransientPool() = default;
 const std::vector<PassTime>& TransientPool::times() const { return impl_->times; }
+void TransientPool::onSpan(SpanSink sink) { impl_->onSpan = std::move(sink); }
 size_t TransientPool::textures() const { return impl_->textures.size(); }
 size_t TransientPool::buffers() const { return impl_->buffers.size(); }
 size_t TransientPool::bytes() const {

@@ -73,6 +73,7 @@ class TransientPool {
     // GPU time a pass, of the latest frame whose times have arrived (2-3 frames late): in order of adding, passes of one name summed up;
     // calls = 0: left out. Empty before the first arrive.
     const std::vector<PassTime>& times() const;
+    void onSpan(SpanSink sink);  // hears of each pass when its time has arrived; empty: nobody does
     size_t textures() const;  // held, lent or free
     size_t buffers() const;
     size_t bytes() const;  // of both

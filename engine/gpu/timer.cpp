@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/core/assert.h"
+#include "engine/core/timeline.h"
 
 namespace rivulet::gpu {
 
@@ -18,6 +19,13 @@ QueryName Timer::query() {
 }
 
 void Timer::begin(uint64_t tag) {
+    // The two clocks drift.
+    if (const double now = hostSeconds(); told_ < 0 || now > told_ + 1) {
+        GLint64 gpu = 0;
+        glGetInteger64v(GL_TIMESTAMP, &gpu);
+        told_ = now;
+        ahead_ = now - 1.0e-9 * static_cast<double>(gpu);
+    }
     Span span{tag, {}, {}};
     if (pending_.size() + open_.size() < kMaxPending) {
         span.begin = query();
@@ -36,7 +44,7 @@ void Timer::end() {
     pending_.push_back(std::move(span));
 }
 
-void Timer::collect(const std::function<void(uint64_t tag, double ms)>& then) {
+void Timer::collect(const std::function<void(uint64_t tag, const Times& times)>& then) {
     while (!pending_.empty()) {
         Span& front = pending_.front();
         // The GPU writes timestamps in order: with the end there, so is the beginning.
@@ -50,7 +58,8 @@ void Timer::collect(const std::function<void(uint64_t tag, double ms)>& then) {
         free_.push_back(std::move(front.begin));
         free_.push_back(std::move(front.end));
         pending_.pop_front();
-        then(tag, to > from ? static_cast<double>(to - from) * 1.0e-6 : 0.0);
+        const double begin = ahead_ + 1.0e-9 * static_cast<double>(from);
+        then(tag, {begin, begin + (to > from ? 1.0e-9 * static_cast<double>(to - from) : 0.0)});
     }
 }
 

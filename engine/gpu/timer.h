@@ -17,8 +17,12 @@ class Timer {
     void begin(uint64_t tag);
     void end();
 
-    // Calls then(tag, milliseconds) for every finished span, in the order of their end(), until one whose result has not arrived.
-    void collect(const std::function<void(uint64_t tag, double ms)>& then);
+    struct Times {
+        double begin = 0, end = 0;  // s, of hostSeconds()
+        double ms() const { return 1000 * (end - begin); }
+    };
+    // Calls then(tag, times) for every finished span, in the order of their end(), until one whose result has not arrived.
+    void collect(const std::function<void(uint64_t tag, const Times& times)>& then);
     size_t pending() const { return pending_.size(); }
     static constexpr size_t kMaxPending = 4096;
 
@@ -32,6 +36,7 @@ class Timer {
     std::vector<Span> open_;
     std::deque<Span> pending_;
     std::vector<QueryName> free_;
+    double ahead_ = 0, told_ = -1;  // s: the host's clock before the GPU's, and when it was asked
 };
 
 }  // namespace rivulet::gpu

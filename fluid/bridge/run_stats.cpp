@@ -111,14 +111,16 @@ bool RunRecorder::inSolid(const vec4& p) const {
     return false;
 }
 
-void RunRecorder::frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
-                        std::span<const PassTime> renderPasses) {
-    simulate_.push_back(simulateMs);
+void RunRecorder::drawn(double renderMs, double frameMs, std::span<const PassTime> passes) {
     if (renderMs > 0) render_.push_back(renderMs);
     frame_.push_back(frameMs);
     wallMs_ += frameMs;
-    for (const PassTime& pass : simulatePasses) passes_[pass.name].push_back(pass.ms);
-    for (const PassTime& pass : renderPasses) passes_["render: " + pass.name].push_back(pass.ms);
+    for (const PassTime& pass : passes) passes_["render: " + pass.name].push_back(pass.ms);
+}
+
+void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
+    simulate_.push_back(simulateMs);
+    for (const PassTime& pass : passes) passes_[pass.name].push_back(pass.ms);
     substeps_ += static_cast<uint64_t>(world_->lastSubsteps());
     iterations_ += world_->stats().iterations * world_->lastSubsteps();
     if (!readBack_) return;
@@ -256,6 +258,9 @@ std::string writeRunStats(const RunStats& stats) {
     v["device"] = stats.device;
     v["backend"] = stats.backend;
     v["method"] = stats.method;
+    v["cooperation"]["plan"] = stats.cooperation.plan;
+    v["cooperation"]["aheadMs"] = number(stats.cooperation.aheadMs);
+    v["cooperation"]["overlapMs"] = number(stats.cooperation.overlapMs);
     v["particles"] = stats.particles;
     v["frames"] = Json::UInt64(stats.frames);
     v["seconds"] = number(stats.seconds);

@@ -38,8 +38,16 @@ std::optional<double> bulkFront(std::span<const vec4> positions, const BoxParams
 // Whether a point lies in a set voxel, from the bits alone. NaN and points outside the grid: no.
 bool inSetVoxel(const VoxelGrid& surface, const vec4& p);
 
+// How the CPU and the GPU shared the work.
+struct CooperationStats {
+    std::string plan = "off";  // a row of plans()
+    double aheadMs = 0;        // mean a frame, of what ran while another drew: finding cells, or stepping
+    double overlapMs = 0;      // mean a frame in which it and drawing both worked
+};
+
 struct RunStats {
     std::string scene, machine, device, backend, method;
+    CooperationStats cooperation;
     uint32_t particles = 0;  // there at the end, lost ones too
     uint64_t frames = 0;
     double seconds = 0, wallSeconds = 0;  // simulated; on the wall, of all the frames
@@ -75,9 +83,9 @@ class RunRecorder {
     // `readBack`: reads the particles after each frame, for compression and penetrations; costs time that is not counted as simulation.
     // `flows`: what is on the scene's skins; null: nothing.
     RunRecorder(FluidWorld& world, SolidFields fields, bool readBack, const SkinFlows* flows = nullptr);
-    // renderMs 0: nothing was drawn.
-    void frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
-               std::span<const PassTime> renderPasses);
+    // A frame is two calls: when it has been stepped, before anything steps it on; and when it has been drawn. renderMs 0: it was not.
+    void stepped(double simulateMs, std::span<const PassTime> passes);
+    void drawn(double renderMs, double frameMs, std::span<const PassTime> passes);
     // Reads the particles once more for what holds at the end.
     RunStats finish(std::string scene);
 

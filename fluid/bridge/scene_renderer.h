@@ -69,6 +69,7 @@ class SceneRenderer {
 
     // GPU time a pass, some frames late.
     const std::vector<PassTime>& times() const { return pool_.times(); }
+    void onSpan(SpanSink sink) { pool_.onSpan(std::move(sink)); }  // hears of each pass, as late
     // Whether look.quality auto is fast. It is fine until this says so.
     void hurry(bool yes) { hurries_ = yes; }
     // Reads the shaders again. Error: as create; the last good ones stay in use.

@@ -387,21 +387,29 @@ void Session::placeNodes() {
     }
 }
 
-double Session::step(double asked, bool wait, double deviceMs) {
-    auto start = std::chrono::steady_clock::now();
+void Session::work(double asked, bool wait, double deviceMs) {
+    const double start = hostSeconds();
     const double seconds = world_->taken(asked), before = world_->time();
     // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
-    const bool moving = !rigid_.empty() || !deforming_.empty() || !flows_.empty();
-    const int parts = moving && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
+    const int parts =
+        anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
     for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
     if (wait) world_->device().finish();
-    if (moving || contacts_) placeNodes();
-    double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    world_->device().poll();
+    worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = world_->time() - before, .costMs = deviceMs};
     // A GPU that nobody waits for works on after the call: what its passes took, some frames ago, says what a frame costs.
-    if (budget_) watchBudget(wait || world_->device().backend() == Backend::cpu ? ms : deviceMs, world_->time() - before);
-    return ms;
+    if (wait || world_->device().backend() == Backend::cpu) worked_.costMs = worked_.ms;
 }
+
+double Session::settle() {
+    const double start = hostSeconds();
+    if (anyMoves() || contacts_) placeNodes();
+    worked_.ms += 1000 * (hostSeconds() - start);
+    world_->device().poll();
+    if (budget_) watchBudget(worked_.costMs, worked_.seconds);
+    return worked_.ms;
+}
+
+bool Session::mayWorkAside() const { return world_->device().backend() == Backend::cpu && flows_.empty(); }
 
 void Session::watchBudget(double ms, double seconds) {
     std::string sentence;

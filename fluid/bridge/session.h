@@ -57,7 +57,15 @@ class Session {
 
     // One frame. The wall time in ms: with `wait`, until the device has done it; without, only what the call took.
     // `deviceMs`: as FluidInputs. A budget watches, and may pick other values: scene() has them then, and the log says so.
-    double step(double seconds, bool wait, double deviceMs = 0);
+    double step(double seconds, bool wait, double deviceMs = 0) {
+        work(seconds, wait, deviceMs);
+        return settle();
+    }
+    // The same in two parts: the first may run on another thread while this one draws what was uploaded before, of a session that
+    // mayWorkAside(): it changes nothing that drawing reads. Nothing else of the session may be called until it is done.
+    void work(double seconds, bool wait, double deviceMs = 0);
+    double settle();
+    bool mayWorkAside() const;  // on the cpu, without skins, whose maps are drawn from what is being stepped
     void reset();
 
     // The world and what the session knows of its solids. Error: as FluidWorld::restore; all is then as it was.
@@ -84,6 +92,7 @@ class Session {
     Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
     VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
+    bool anyMoves() const { return !rigid_.empty() || !deforming_.empty() || !flows_.empty(); }
     void advance(double seconds, double deviceMs);
     void placeNodes();
     void watchBudget(double ms, double seconds);
@@ -102,6 +111,9 @@ class Session {
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
     std::unique_ptr<FluidWorld> world_;
     SkinFlows flows_;
+    struct Worked {
+        double ms = 0, seconds = 0, costMs = 0;  // on the wall; simulated; what a budget counts
+    } worked_;
 };
 
 }  // namespace rivulet

@@ -38,30 +38,50 @@ void drawHelp() {
 
 }  // namespace
 
-Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard) {
-    Result<UiLayer> ui = UiLayer::create(clipboard);
+Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const ViewerOptions& options, const Log& log) {
+    Result<UiLayer> ui = UiLayer::create(options.clipboard);
     if (!ui) return ui.error();
     std::unique_ptr<Viewer> viewer(new Viewer(std::move(*ui)));
     Viewer& v = *viewer;
     // What is said to the person at the program is said in the panel too.
     v.log_.sink = [log, kept = v.notices_](LogLevel level, std::string_view text) {
+        const std::lock_guard<std::mutex> lock(kept->mutex);
         if (log.sink) log.sink(level, text);
         constexpr size_t kMost = 4;
         if (level < LogLevel::notice) return;
-        if (kept->size() == kMost) kept->erase(kept->begin());
-        kept->emplace_back(text);
+        if (kept->sentences.size() == kMost) kept->sentences.erase(kept->sentences.begin());
+        kept->sentences.emplace_back(text);
     };
     v.gl_ = currentGlFacts();
-    v.device_ = makeDevice(backend, v.gl_, v.log_);
-    auto session = Session::create(std::move(scene), *v.device_, v.log_);
-    if (!session) return session.error();
-    v.session_ = std::move(*session);
-    v.draft_ = v.session_->scene();
-    const auto surroundings = surroundingsOf(v.draft_);
+    const auto surroundings = surroundingsOf(scene);
     if (!surroundings) return surroundings.error();
     auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
     if (!renderer) return renderer.error();
     v.renderer_ = std::move(*renderer);
+    std::string backend = options.backend;
+    if (options.cooperate == "auto") {
+        const auto draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
+            if (Status drawn = v.drawWater(session, options.width, options.height, uploaded); !drawn) return drawn;
+            glFinish();
+            passes = v.renderer_->times();
+            return ok();
+        };
+        Result<std::vector<PlanTried>> tried = tryPlans(scene, v.gl_, draw, v.log_);
+        if (!tried) return tried.error();
+        v.log_.notice(sentenceOf(*tried, backend));
+        backend = tried->front().backend;
+        v.plan_ = tried->front().plan;
+    } else {
+        v.plan_ = plans().find(options.cooperate)->plan;
+    }
+    v.device_ = makeDevice(backend, v.gl_, v.log_);
+    v.device_->onSpan(v.timeline_.lane(fmt::format("{}: kernels", backendName(v.device_->backend()))));
+    v.renderer_->onSpan(v.timeline_.lane(kDrawingLane));
+    auto session = Session::create(std::move(scene), *v.device_, v.log_);
+    if (!session) return session.error();
+    v.session_ = std::move(*session);
+    v.begin();
+    v.draft_ = v.session_->scene();
     v.haste_.begin(v.gl_.software);
     v.renderer_->hurry(v.haste_.fast());
     return viewer;
@@ -69,6 +89,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::strin
 
 Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffer) {
     edited_ = false;
+    if (work_->plan() == Plan::behind && work_->started()) stepped(work_->finish(), seconds);
     ui_.begin(input, seconds);
     if (!ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
@@ -166,7 +187,10 @@ bool Viewer::drawPanels() {
         state.simulateMs = profiler_.mean("simulate");
         state.frameMs = profiler_.meanFrame();
         state.message = message_;
-        state.notices = *notices_;
+        {
+            const std::lock_guard<std::mutex> lock(notices_->mutex);
+            state.notices = notices_->sentences;
+        }
         FluidPanelActions actions = drawFluidPanel(session_->world(), state);
         if (actions.togglePause) paused_ = !paused_;
         if (actions.step) paused_ = stepOnce_ = true;
@@ -213,11 +237,16 @@ void Viewer::takeEdits(bool recreate) {
         if (session_->budget()) draft_.fluid = session_->scene().fluid;  // what a budget holds, an edit does not change
         return;
     }
-    notices_->clear();
+    {
+        const std::lock_guard<std::mutex> lock(notices_->mutex);
+        notices_->sentences.clear();
+    }
     Result<std::unique_ptr<Session>> fresh =
         sense ? Session::create(draft_, *device_, log_) : Result<std::unique_ptr<Session>>(sense.error());
     if (fresh) {
+        work_.reset();
         session_ = std::move(*fresh);
+        begin();
         draft_ = session_->scene();  // a budget may have picked
         repicked_ = 0;
         message_.clear();
@@ -245,7 +274,22 @@ void Viewer::step(double seconds) {
     }
     if ((paused_ || !due) && !stepOnce_) return;
     stepOnce_ = false;
-    double ms = session_->step(simulated * (fixed ? seconds : kStep), false, deviceMs_);
+    due_ = simulated * (fixed ? seconds : kStep);
+    if (work_->plan() == Plan::behind) return;  // while it is drawn
+    if (!work_->started() || fixed) {           // what was found ahead is of a step as long as the last
+        work_->drop();
+        work_->start(due_, false, deviceMs_);
+    }
+    stepped(work_->finish(), seconds);
+}
+
+void Viewer::begin() {
+    work_ = std::make_unique<Cooperation>(*session_, plan_, &timeline_, log_);
+    due_ = 0;
+}
+
+// `seconds`: on the wall, of the frame.
+void Viewer::stepped(double ms, double seconds) {
     ++steps_;
     if (const int repicked = session_->budget() ? session_->budget()->repicked() : 0; repicked != repicked_) {
         repicked_ = repicked;
@@ -255,29 +299,50 @@ void Viewer::step(double seconds) {
     deviceMs_ = 0;
     for (const PassTime& pass : passes) deviceMs_ += pass.ms;
     profiler_.add("simulate", passes);
-    if (recorder_) recorder_->frame(ms, 0, 1000 * seconds, passes, renderer_->times());
+    if (!recorder_) return;
+    recorder_->stepped(ms, passes);
+    recorder_->drawn(0, 1000 * seconds, renderer_->times());
 }
 
 void Viewer::record() { recorder_.emplace(session_->world(), session_->fields(), true, &session_->flows()); }
 
 RunStats Viewer::finishRecord() {
     ASSERT(recorder_, "record() comes first");
-    return recorder_->finish(session_->scene().name);
+    work_->drop();
+    RunStats stats = recorder_->finish(session_->scene().name);
+    stats.cooperation = work_->stats();
+    return stats;
+}
+
+// `uploaded` is called when nothing more is read of the world.
+Status Viewer::drawWater(Session& session, int width, int height, const std::function<void()>& uploaded) {
+    const SceneFile& scene = session.scene();
+    std::optional<TimedSpan> span(std::in_place, &timeline_, "main", "upload");
+    Result<FluidView> fluid = upload_.view(session.world(), scene.look, session.flows().airDrops());
+    if (!fluid) return fluid.error();
+    if (Status wet = session.flows().draw(); !wet) return wet;
+    Camera camera = cameraOf(scene.camera, session.bounds());
+    FrameView view = frameViewOf(camera, scene.light, width, height, session.world().time());
+    span.reset();
+    uploaded();
+    const TimedSpan drawing(&timeline_, "main", "draw");
+    return renderer_->draw(view, *fluid, session.solids(), scene);
 }
 
 Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     int width = input.framebuffer.x, height = input.framebuffer.y;
+    const auto stepOn = [this] {
+        const bool behind = work_->plan() == Plan::behind;
+        if (due_ > 0 && (behind || (work_->plan() == Plan::thesis && !paused_))) work_->start(due_, false, deviceMs_);
+        due_ = 0;
+    };
     if (width <= 0 || height <= 0) {
+        stepOn();
         ui_.draw();  // ends ImGui's frame; it draws nothing
         return ok();
     }
     const SceneFile& scene = session_->scene();
-    Result<FluidView> fluid = upload_.view(session_->world(), scene.look, session_->flows().airDrops());
-    if (!fluid) return fluid.error();
-    if (Status wet = session_->flows().draw(); !wet) return wet;
-    Camera camera = cameraOf(scene.camera, session_->bounds());
-    FrameView view = frameViewOf(camera, scene.light, width, height, session_->world().time());
-    if (Status drawn = renderer_->draw(view, *fluid, session_->solids(), scene); !drawn) return drawn;
+    if (Status drawn = drawWater(*session_, width, height, stepOn); !drawn) return drawn;
     renderer_->present(framebuffer, width, height);
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
@@ -286,7 +351,7 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     ui_.draw();
     uiTimer_.end();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    uiTimer_.collect([this](uint64_t, double ms) { uiMs_ = ms; });
+    uiTimer_.collect([this](uint64_t, const gpu::Timer::Times& times) { uiMs_ = times.ms(); });
     profiler_.add("render", renderer_->times());
     if (renderer_->times().empty()) return ok();  // none has come back yet
     const PassTime ui[] = {{.name = "ui", .ms = uiMs_, .calls = 1}};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "engine/gpu/timer.h"
 #include "engine/ui/profiler_panel.h"
 #include "fluid/bridge/backend.h"
+#include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/fluid_panel.h"
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/run_stats.h"
@@ -21,10 +23,17 @@
 
 namespace rivulet {
 
+struct ViewerOptions {
+    std::string backend = "auto";
+    std::string cooperate = "off";  // a row of plans(), or auto, which tries them at the start
+    void* clipboard = nullptr;      // as UiLayer
+    int width = 1280, height = 720;  // pixels, of what auto tries
+};
+
 class Viewer {
   public:
-    // Needs a current OpenGL 4.5 context until destroyed. `clipboard`: as UiLayer. Error: as Session and SceneRenderer.
-    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard = nullptr);
+    // Needs a current OpenGL 4.5 context until destroyed. Error: as Session and SceneRenderer.
+    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const ViewerOptions& options, const Log& log);
 
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
     // machine shows slow water, not fewer pictures. With fluid.fixedStep the water has all of the time, but fluid.longestFrame. A window of
@@ -40,6 +49,7 @@ class Viewer {
     // From now on keeps the record of the run; starts anew with every new session.
     void record();
     RunStats finishRecord();  // after record()
+    const Timeline& timeline() const { return timeline_; }
 
   private:
     void takeKeys(const InputEvents& input);
@@ -49,12 +59,24 @@ class Viewer {
     bool drawPanels();                     // whether a new session is wanted
     void takeEdits(bool recreate);
     void step(double seconds);
+    void stepped(double ms, double seconds);
+    void begin();  // a new session's cooperation
+    Status drawWater(Session& session, int width, int height, const std::function<void()>& uploaded);
     Status draw(const InputEvents& input, GLuint framebuffer);
 
-    std::shared_ptr<std::vector<std::string>> notices_ = std::make_shared<std::vector<std::string>>();
+    // Said to the person, from whichever thread.
+    struct Notices {
+        std::mutex mutex;
+        std::vector<std::string> sentences;
+    };
+    std::shared_ptr<Notices> notices_ = std::make_shared<Notices>();
     Log log_;
+    Timeline timeline_{size_t{1} << 16};
     std::unique_ptr<Device> device_;
     std::unique_ptr<Session> session_;
+    Plan plan_ = Plan::alone;
+    std::unique_ptr<Cooperation> work_;
+    double due_ = 0;  // s simulated, that are to be stepped while this frame is drawn
     std::unique_ptr<SceneRenderer> renderer_;
     FluidUpload upload_;
     UiLayer ui_;

@@ -418,6 +418,23 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
         });
 }
 
+std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
+    Impl& w = *impl_;
+    if (w.device->backend() == Backend::cpu || !w.sorted || w.traits.samples > 0 || glm::any(w.traits.periodic) || w.method->predicts())
+        return std::nullopt;
+    w.untouched = true;
+    return CellWork{w.step, &w.particles.positionNext, &w.particles.id};
+}
+
+void FluidWorld::Impl::touch() {
+    untouched = false;
+    if (grid) grid->give({});
+}
+
+void FluidWorld::giveCells(std::span<const uint32_t> cells) {
+    if (impl_->untouched) impl_->grid->give(cells);
+}
+
 void FluidWorld::reset() {
     if (Status back = impl_->solids.reset(); !back) impl_->say(back.error().message);
     impl_->bodies.reset();
@@ -448,6 +465,7 @@ std::vector<WorldParticle> FluidWorld::within(const Bounds& box, float faster, f
 void FluidWorld::take(std::span<const uint32_t> slots) {
     Impl& w = *impl_;
     ASSERT(w.exchange.any(), "say by Sources::poured that others hold water");
+    w.touch();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);
     w.takenOut += slots.size();

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "engine/compute/device.h"
 #include "engine/core/log.h"
@@ -68,6 +69,15 @@ class FluidWorld {
     void step(const FluidInputs& inputs, double seconds);
     // What step would simulate of a frame, s: what is beyond fluid.longestFrame is dropped, and said. For hosts that cut frames.
     double taken(double seconds);
+    // The next step's first work is to find each particle's cell. Who does that elsewhere while this device does something else (the
+    // thesis's cooperation, 2.3) runs the kernel fluid/cell_of with this, and gives what it found before the next step. Nothing: on the
+    // cpu, before the first step, with bodies, periodic axes, or a method that moves particles before it sorts them.
+    struct CellWork {
+        StepParams step;
+        const Buffer *position, *id;  // vec4, uint: as they lie until the next step; step.count of them
+    };
+    std::optional<CellWork> cellWork();
+    void giveCells(std::span<const uint32_t> cells);      // void where the world has been changed since cellWork()
     void reset();                                         // back to t = 0
     void setParams(const FluidParams&);                   // takes what can change between steps; `fixed` values wait for a new world
     void setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces

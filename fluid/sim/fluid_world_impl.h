@@ -69,6 +69,7 @@ struct FluidWorld::Impl {
     double time = 0, dropped = 0;
     double frameLength = 0;  // s, of the frame under way: what the substeps' shares are of
     uint64_t frame = 0;
+    bool untouched = false;  // since cellWork()
     int lastSubsteps = 0;
     double dtMin = 0, dtMax = 0;
     float fastestWall = 0;   // m/s, of moving solids, lately
@@ -92,6 +93,7 @@ struct FluidWorld::Impl {
     void fillStep();
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
     void say(const std::string& sentence);
+    void touch();  // particles are moved between steps
     void findForces();
     bool build(bool fromPositions, double from, double to);
     // `last`: of a piece of its frame.

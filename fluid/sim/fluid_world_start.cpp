@@ -217,6 +217,7 @@ void FluidWorld::Impl::writeStart() {
     takenOut = 0;
     if (foam) foam->reset();
     sorted = false;
+    touch();
     gatherColours();
     time = dropped = 0;
     frame = 0;

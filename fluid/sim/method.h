@@ -45,6 +45,8 @@ class Method {
     virtual void step(StepContext& context) = 0;
     // Called at a frame's end: makes w of positionNext the density ratio of the positions as they are, where step() left an earlier one.
     virtual void measure(StepContext&) {}
+    // Whether it moves particles before it sorts them.
+    virtual bool predicts() const { return false; }
     // The pressures of the last step, Pa, slot by slot in the order of the newest state; reads them back and waits. `step`: its params.
     virtual std::vector<float> pressures(Device& device, const Particles& particles, const StepParams& step) const = 0;
     // All that a step depends on beside particles, params and solids. The world saves it, puts it back, and fills it with 0 at t = 0.

@@ -47,6 +47,7 @@ class Pbf final : public Method {
 
     void forget() override { residual.forget(); }
 
+    bool predicts() const override { return true; }
     void step(StepContext& c) override {
         Particles& p = c.particles;
         c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/sim/kernels/cpu_grid.h"
@@ -52,7 +53,8 @@ struct NeighborGrid::Impl {
 
     // GPU
     Buffer cellCounts, rank, order, blockSum;
-    Kernel cellCount, scanReduce, scanBlocks, scanApply, cellScatter, cellSort, reorder;
+    bool given = false;  // cellOf is the next build's
+    Kernel cellCount, cellCountGiven, scanReduce, scanBlocks, scanApply, cellScatter, cellSort, reorder;
 
     bool onCpu() const { return device->backend() == Backend::cpu; }
     uint32_t coarseCells() const {
@@ -113,6 +115,7 @@ Status NeighborGrid::Impl::findKernels() {
     else {
         const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
         wanted = {{&cellCount, "fluid/cell_count", {}},
+                  {&cellCountGiven, "fluid/cell_count", {{"GIVEN", "1"}}},
                   {&scanReduce, "fluid/scan_reduce", scanSize},
                   {&scanBlocks, "fluid/scan_blocks", scanSize},
                   {&scanApply, "fluid/scan_apply", scanSize},
@@ -213,7 +216,7 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
 
 void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
     device->fill(cellCounts, 0);
-    device->run(cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank}, count);
+    device->run(std::exchange(given, false) ? cellCountGiven : cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank}, count);
     const uint32_t counts = totalCells() + 4;
     const ScanParams scan{counts, (counts + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
     device->run(scanReduce, scan, {&cellCounts, &blockSum}, scan.blocks * SCAN_THREADS);
@@ -277,6 +280,12 @@ NeighborGrid::NeighborGrid(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 NeighborGrid::NeighborGrid(NeighborGrid&&) noexcept = default;
 NeighborGrid& NeighborGrid::operator=(NeighborGrid&&) noexcept = default;
 NeighborGrid::~NeighborGrid() = default;
+
+void NeighborGrid::give(std::span<const uint32_t> cells) {
+    ASSERT(cells.empty() || (cells.size() == impl_->count && !impl_->onCpu()), "give a GPU's grid a cell a slot");
+    impl_->given = !cells.empty();
+    if (impl_->given) impl_->device->writeAll<uint32_t>(impl_->cellOf, cells);
+}
 
 void NeighborGrid::fill(StepParams& params) const {
     const Impl& g = *impl_;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "engine/compute/device.h"
 #include "engine/core/math.h"
@@ -38,6 +39,9 @@ class NeighborGrid {
     void fill(StepParams& params) const;  // the grid's part of it
     // For who moves particles before the next build: lists reach this times h.
     void setMargin(float margin);
+    // GPU: the cells of the particles as they lie, as fluid/cell_of finds them: the next build takes them instead of finding them itself.
+    // Whoever moves particles before then calls with none.
+    void give(std::span<const uint32_t> cells);
     // Sorts the newest state into position, velocity, id, and prepares neighbours. Error: out of memory for the lists.
     Status build(const StepParams& params, Particles& particles);
 

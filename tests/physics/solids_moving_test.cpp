@@ -424,7 +424,7 @@ TEST(ShippedScenes, RunWithNothingLost) {
         auto session = Session::create(*scene, *device, {});
         ASSERT_TRUE(session) << session.error().message;
         RunRecorder recorder((*session)->world(), (*session)->fields(), true);
-        for (int frame = 0; frame < 15; ++frame) recorder.frame((*session)->step(1.0 / kFramesPerSecond, true), 0, 0, {}, {});
+        for (int frame = 0; frame < 15; ++frame) recorder.stepped((*session)->step(1.0 / kFramesPerSecond, true), {});
         const RunStats stats = recorder.finish(name);
         EXPECT_GT(stats.particles, 500U) << name;
         EXPECT_EQ(stats.lost, 0U) << name;

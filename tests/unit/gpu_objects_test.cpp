@@ -212,7 +212,7 @@ TEST_F(GpuObjects, ATimerMeasuresWorkLaterAndInOrder) {
     EXPECT_EQ(timer.pending(), 2U);
     glFinish();
     std::vector<std::pair<uint64_t, double>> got;
-    timer.collect([&](uint64_t tag, double ms) { got.emplace_back(tag, ms); });
+    timer.collect([&](uint64_t tag, const gpu::Timer::Times& times) { got.emplace_back(tag, times.ms()); });
     ASSERT_EQ(got.size(), 2U);
     EXPECT_EQ(got[0].first, 2U);
     EXPECT_EQ(got[1].first, 1U);

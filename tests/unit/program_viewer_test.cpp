@@ -29,7 +29,7 @@ class Person : public testing::FramebufferFixture {
         scene.fluid.spacing = 0.05F;
         scene.look.renderer = "points";
         scene.fluid.blocks = {{.min = vec3(0.2F), .max = vec3(0.4F)}};
-        auto viewer = Viewer::create(scene, "cpu", {});
+        auto viewer = Viewer::create(scene, {.backend = "cpu"}, {});
         ASSERT_TRUE(viewer) << viewer.error().message;
         viewer_ = std::move(*viewer);
     }
@@ -192,7 +192,7 @@ TEST_F(Person, ADisplayOfTwiceThePixelsShowsTheSameInAllOfThem) {
     scene.fluid.spacing = 0.05F;
     scene.fluid.blocks = {{.min = vec3(0.2F), .max = vec3(0.6F)}};
     scene.look.quality = "fine";
-    auto viewer = Viewer::create(scene, "cpu", {});
+    auto viewer = Viewer::create(scene, {.backend = "cpu"}, {});
     ASSERT_TRUE(viewer) << viewer.error().message;
     viewer_ = std::move(*viewer);
     key(GLFW_KEY_SPACE);
@@ -261,7 +261,7 @@ TEST_F(Person, WhatMemoryDoesNotHoldLeavesTheOldSession) {
     scene.colliders[0].fitSize = 0.2F;
     scene.colliders[0].resolution = 16;
     viewer_.reset();
-    auto viewer = Viewer::create(scene, "cpu", {});
+    auto viewer = Viewer::create(scene, {.backend = "cpu"}, {});
     ASSERT_TRUE(viewer) << viewer.error().message;
     viewer_ = std::move(*viewer);
     for (int i = 0; i < 5; ++i) frame(1.0 / 60);

@@ -37,7 +37,7 @@ TEST(SceneFlow, NothingIsLostBetweenEyesAirAndGround) {
     RunRecorder recorder((*session)->world(), (*session)->fields(), true, &(*session)->flows());
     for (int k = 0; k < 180; ++k) {
         const double ms = (*session)->step(1.0 / 60, true);
-        recorder.frame(ms, 0, ms, {}, {});
+        recorder.stepped(ms, {});
         for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) EXPECT_TRUE(isFinite(d.position) && isFinite(d.velocity));
     }
     const RunStats stats = recorder.finish("crying");
@@ -152,7 +152,7 @@ TEST(SceneFlow, TheSameWaterIsInBothWorlds) {
     double most = 0;
     for (int k = 0; k < 90; ++k) {
         const double ms = (*session)->step(1.0 / 60, true);
-        recorder.frame(ms, 0, ms, {}, {});
+        recorder.stepped(ms, {});
         most = std::max(most, (*session)->flows().ledger().onSurface);
     }
     const RunStats stats = recorder.finish("shower");

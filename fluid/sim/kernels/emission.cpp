@@ -40,6 +40,10 @@ namespace forget_unit {
 namespace fullness_unit {
 #include "shaders/fluid/fullness.kernel"
 }
+#undef RIVULET_GRID_H
+namespace cell_of_unit {
+#include "shaders/fluid/cell_of.kernel"
+}
 namespace within_unit {
 #include "shaders/fluid/within.kernel"
 }
@@ -61,6 +65,7 @@ std::span<const CpuKernelRow> emissionRows() {
         {"fluid/drain", "", RIVULET_UNIT_ISA, drain_unit::drain, 1024},
         {"fluid/forget", "", RIVULET_UNIT_ISA, forget_unit::forget, 1024},
         {"fluid/fullness", "", RIVULET_UNIT_ISA, fullness_unit::fullness, 64},
+        {"fluid/cell_of", "", RIVULET_UNIT_ISA, cell_of_unit::cell_of, 1024},
         {"fluid/within", "", RIVULET_UNIT_ISA, within_unit::within, 1024},
         {"fluid/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},
         {"fluid/gather_absorption", "", RIVULET_UNIT_ISA, gather_unit::gather_absorption, 1024},

@@ -15,6 +15,7 @@
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/explain.h"
 #include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
 
@@ -135,6 +136,7 @@ struct Loop {
                 if (!pixels) return pixels.error();
                 renderMs = msSince(before);
                 drawn = painter.renderer->times();
+                recorder.transferred(painter.upload.facts());
                 if (to.writer)
                     if (Status added = to.writer->add(*pixels); !added) return added;
                 if (kept.contains(f)) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/gpu/buffer.h"
+#include "engine/gpu/fence.h"
 #include "engine/gpu/gl_error.h"
 #include "engine/gpu/program.h"
 #include "engine/gpu/timer.h"
@@ -25,32 +26,7 @@ constexpr GLbitfield kReaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE
                                 GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT |
                                 GL_COMMAND_BARRIER_BIT;
 
-class Fence {
-  public:
-    Fence() = default;
-    Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
-    Fence& operator=(Fence&& other) noexcept {
-        std::swap(sync_, other.sync_);
-        return *this;
-    }
-    ~Fence() {
-        if (sync_) glDeleteSync(sync_);
-    }
-    // Everything issued so far.
-    static Fence now() {
-        Fence fence;
-        fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-        return fence;
-    }
-    bool passed() const {
-        if (!sync_) return true;
-        const GLenum state = glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
-        return state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
-    }
-
-  private:
-    GLsync sync_ = nullptr;
-};
+using gpu::Fence;
 
 GLint64 limit(GLenum which) {
     GLint64 value = 0;

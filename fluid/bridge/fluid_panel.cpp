@@ -40,6 +40,8 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
 
     const FluidStats& stats = world.stats();
     fact("simulated by", state.backend);
+    fact("cooperation", state.plan);
+    fact("transfer", state.transfer);
     fact("drawn by", state.renderer);
     fact("time", fmt::format("{:.2f} s, {} substeps a frame", world.time(), world.lastSubsteps()));
     fact("particles",

@@ -11,6 +11,8 @@ namespace rivulet {
 struct FluidPanelState {
     bool paused = false;
     std::string backend;   // what simulates: "cpu: Intel(R) ..."
+    std::string transfer;  // how particles come to be drawn: "ring: 0.31 ms, 1.2 MB"
+    std::string plan;      // who simulates while who draws: "off: a frame is stepped, then drawn"
     std::string renderer;  // what draws: "llvmpipe (LLVM 15.0.6, 256 bits)"
     double simulateMs = 0, frameMs = 0;
     std::string message;  // an edit that was refused

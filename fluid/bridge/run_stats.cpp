@@ -118,6 +118,13 @@ void RunRecorder::drawn(double renderMs, double frameMs, std::span<const PassTim
     for (const PassTime& pass : passes) passes_["render: " + pass.name].push_back(pass.ms);
 }
 
+void RunRecorder::transferred(const TransferFacts& facts) {
+    transfer_.push_back(facts.ms);
+    transferStats_.way = facts.way;
+    transferStats_.bytes += static_cast<double>(facts.bytes);
+    transferStats_.waits = facts.waits;
+}
+
 void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
     simulate_.push_back(simulateMs);
     for (const PassTime& pass : passes) passes_[pass.name].push_back(pass.ms);
@@ -165,6 +172,9 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.simulateMs = spreadOf(simulate_);
     stats.renderMs = spreadOf(render_);
     stats.frameMs = spreadOf(frame_);
+    stats.transfer = transferStats_;
+    stats.transfer.ms = spreadOf(transfer_);
+    if (!transfer_.empty()) stats.transfer.bytes /= static_cast<double>(transfer_.size());
     for (const auto& [name, ms] : passes_) stats.passes[name] = spreadOf(ms);
 
     dvec3 sum(0.0);
@@ -265,6 +275,10 @@ std::string writeRunStats(const RunStats& stats) {
     v["frames"] = Json::UInt64(stats.frames);
     v["seconds"] = number(stats.seconds);
     v["wallSeconds"] = number(stats.wallSeconds);
+    v["transfer"]["way"] = stats.transfer.way;
+    v["transfer"]["ms"] = jsonOf(stats.transfer.ms);
+    v["transfer"]["bytes"] = number(stats.transfer.bytes);
+    v["transfer"]["waits"] = Json::UInt64(stats.transfer.waits);
     v["simulateMs"] = jsonOf(stats.simulateMs);
     v["renderMs"] = jsonOf(stats.renderMs);
     v["frameMs"] = jsonOf(stats.frameMs);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/compute/device.h"
+#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/session.h"
 #include "fluid/sim/fluid_world.h"
 
@@ -45,9 +46,18 @@ struct CooperationStats {
     double overlapMs = 0;      // mean a frame in which it and drawing both worked
 };
 
+// How particles came to be drawn.
+struct TransferStats {
+    std::string way = "none";  // as TransferFacts; "none": nothing was drawn
+    Spread ms;                 // a frame
+    double bytes = 0;          // a frame, mean, through the host
+    uint64_t waits = 0;        // frames in which it had to wait for the GPU
+};
+
 struct RunStats {
     std::string scene, machine, device, backend, method;
     CooperationStats cooperation;
+    TransferStats transfer;
     uint32_t particles = 0;  // there at the end, lost ones too
     uint64_t frames = 0;
     double seconds = 0, wallSeconds = 0;  // simulated; on the wall, of all the frames
@@ -86,6 +96,7 @@ class RunRecorder {
     // A frame is two calls: when it has been stepped, before anything steps it on; and when it has been drawn. renderMs 0: it was not.
     void stepped(double simulateMs, std::span<const PassTime> passes);
     void drawn(double renderMs, double frameMs, std::span<const PassTime> passes);
+    void transferred(const TransferFacts& facts);  // of a frame that is drawn
     // Reads the particles once more for what holds at the end.
     RunStats finish(std::string scene);
 
@@ -96,7 +107,8 @@ class RunRecorder {
     const SkinFlows* flows_;
     SolidFields fields_;
     bool readBack_;
-    std::vector<double> simulate_, render_, frame_;
+    std::vector<double> simulate_, render_, frame_, transfer_;
+    TransferStats transferStats_;
     std::map<std::string, std::vector<double>> passes_;
     double compressionSum_ = 0, maxCompression_ = 0, wallMs_ = 0;
     uint64_t compressionFrames_ = 0, substeps_ = 0;

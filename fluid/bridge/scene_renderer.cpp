@@ -28,16 +28,6 @@ Result<ColourBy> colourByName(const std::string& name) {
     return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density, id, dye, normal or surface", name));
 }
 
-Status uploadTo(gpu::Buffer& buffer, std::span<const std::byte> bytes) {
-    if (buffer.bytes() < bytes.size() || !buffer) {
-        Result<gpu::Buffer> made = gpu::Buffer::create(bytes.size());
-        if (!made) return made.error();
-        buffer = std::move(*made);
-    }
-    buffer.write(bytes);
-    return ok();
-}
-
 void copyTexels(const gpu::Texture& from, const gpu::Texture& to, int left) {
     glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, left, 0, 0, to.name(), GL_TEXTURE_2D, 0, left, 0, 0, from.width() - left,
                        from.height(), 1);
@@ -129,86 +119,6 @@ FrameView frameViewOf(const Camera& camera, const LightParams& light, int width,
     view.lightColour = light.colour * light.intensity;
     view.time = time;
     return view;
-}
-
-Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops) {
-    const ParticleView particles = world.particles();
-    FluidView out;
-    out.count = particles.count > 0 ? particles.slots : 0;
-    out.spacing = particles.spacing;
-    out.radius = look.radiusSpacings * particles.spacing;
-    out.bounds.add(world.params().box.min);
-    out.bounds.add(world.params().box.max);
-    out.dropCount = static_cast<uint32_t>(drops.size() / 2);
-    if (out.dropCount > 0) {
-        if (Status s = uploadTo(drops_, std::as_bytes(drops)); !s) return s.error();
-        out.drops = drops_.name();
-    }
-    if (particles.foam != nullptr) {
-        out.foamCount = particles.foamSlots;
-        for (auto [from, into, name] :
-             {std::tuple(particles.foamDrawn, &foam_[0], &out.foam[0]), std::tuple(particles.foamVelocity, &foam_[1], &out.foam[1])}) {
-            if (world.device().backend() == Backend::gl) {
-                *name = static_cast<unsigned>(from->handle());
-                continue;
-            }
-            vectors_.resize(out.foamCount);
-            world.device().read(*from, std::as_writable_bytes(std::span(vectors_)));
-            if (Status s = uploadTo(*into, std::as_bytes(std::span(vectors_))); !s) return s.error();
-            *name = into->name();
-        }
-    }
-    if (out.count == 0) return out;
-    // The points' shader reads normals where it else reads velocities. There are none before the first step.
-    const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
-    const Buffer& velocity = normals ? *particles.normal : *particles.velocity;
-    const bool ellipsoids = look.splats == "ellipsoids" && particles.ellipsoids[0] != nullptr;
-    Device& device = world.device();
-    if (device.backend() == Backend::gl) {
-        out.position = static_cast<unsigned>(particles.drawn->handle());
-        out.velocity = static_cast<unsigned>(velocity.handle());
-        out.id = static_cast<unsigned>(particles.id->handle());
-        if (particles.absorption != nullptr) out.absorption = static_cast<unsigned>(particles.absorption->handle());
-        for (size_t k = 0; ellipsoids && k < 3; ++k) out.ellipsoids[k] = static_cast<unsigned>(particles.ellipsoids[k]->handle());
-        return out;
-    }
-    ids_.resize(out.count);
-    device.read(*particles.id, std::as_writable_bytes(std::span(ids_)));
-    // Those of even number first: half of them by place would be another half whenever a particle changes its cell, and still water would
-    // flicker.
-    const bool hurried = look.quality != "fine";
-    if (hurried) {
-        order_.resize(out.count);
-        std::iota(order_.begin(), order_.end(), 0U);
-        const auto odd = std::stable_partition(order_.begin(), order_.end(), [this](uint32_t i) { return ids_[i] % 2 == 0; });
-        out.half = static_cast<uint32_t>(odd - order_.begin());
-    }
-    const auto upload = [&]<class T>(gpu::Buffer& to, std::vector<T>& read, std::vector<T>& sorted) {
-        if (hurried) {
-            sorted.resize(read.size());
-            std::transform(order_.begin(), order_.end(), sorted.begin(), [&read](uint32_t i) { return read[i]; });
-        }
-        return uploadTo(to, std::as_bytes(std::span(hurried ? sorted : read)));
-    };
-    vectors_.resize(out.count);
-    const std::pair<const Buffer*, gpu::Buffer*> all[] = {{particles.drawn, &position_},
-                                                          {&velocity, &velocity_},
-                                                          {particles.absorption, &absorption_},
-                                                          {ellipsoids ? particles.ellipsoids[0] : nullptr, &ellipsoids_[0]},
-                                                          {ellipsoids ? particles.ellipsoids[1] : nullptr, &ellipsoids_[1]},
-                                                          {ellipsoids ? particles.ellipsoids[2] : nullptr, &ellipsoids_[2]}};
-    for (const auto& [from, to] : all) {
-        if (from == nullptr) continue;
-        device.read(*from, std::as_writable_bytes(std::span(vectors_)));
-        if (Status s = upload(*to, vectors_, sortedVectors_); !s) return s.error();
-    }
-    if (Status s = upload(id_, ids_, sortedIds_); !s) return s.error();
-    out.position = position_.name();
-    out.velocity = velocity_.name();
-    out.id = id_.name();
-    if (particles.absorption != nullptr) out.absorption = absorption_.name();
-    for (size_t k = 0; ellipsoids && k < 3; ++k) out.ellipsoids[k] = ellipsoids_[k].name();
-    return out;
 }
 
 Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& from, const HdrImage* surroundings) {

@@ -33,21 +33,6 @@ Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene);
 // A window of 0 pixels gives a view of 1.
 FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time);
 
-// A world's particles as GL buffers: the Device's own if it is gl, else copies, uploaded by view().
-class FluidUpload {
-  public:
-    // Valid until the next view() and until the world's next step. Error (failed): out of GPU memory.
-    // `drops`: those in the air, as FluidView::drops has them.
-    Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {});
-
-  private:
-    gpu::Buffer position_, velocity_, id_, absorption_, drops_;
-    std::array<gpu::Buffer, 2> foam_;
-    std::array<gpu::Buffer, 3> ellipsoids_;
-    std::vector<vec4> vectors_, sortedVectors_;
-    std::vector<uint32_t> ids_, sortedIds_, order_;
-};
-
 class SceneRenderer {
   public:
     // `surroundings`: what lights the scene beside the key light, and is seen behind it; null: the studio.

@@ -184,6 +184,13 @@ bool Viewer::drawPanels() {
         state.paused = paused_;
         state.backend = fmt::format("{}: {}", backendName(device_->backend()), device.name);
         state.renderer = gl_.renderer;
+        const TransferFacts& transfer = upload_.facts();
+        state.transfer = transfer.bytes > 0 ? fmt::format("{}: {:.2f} ms, {:.1f} MB{}", transfer.way, transfer.ms,
+                                                          1.0e-6 * static_cast<double>(transfer.bytes),
+                                                          transfer.waits > 0 ? fmt::format(", waited {} times", transfer.waits) : "")
+                                            : transfer.way;
+        for (const PlanRow& row : plans().rows)
+            if (row.plan == work_->plan()) state.plan = fmt::format("{}: {}", row.name, row.doc);
         state.simulateMs = profiler_.mean("simulate");
         state.frameMs = profiler_.meanFrame();
         state.message = message_;
@@ -216,6 +223,8 @@ bool Viewer::drawPanels() {
     if (ImGui::Begin("times", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
         const float across = narrow - 2 * ImGui::GetStyle().WindowPadding.x;
         profiler_.draw(across);
+        ImGui::Spacing();
+        timelinePanel_.draw(timeline_, across);
         ImGui::Spacing();
         voxels_.draw(session_->fields(), session_->world().time(), std::min(across, ImGui::GetContentRegionAvail().x));
     }
@@ -343,6 +352,7 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     }
     const SceneFile& scene = session_->scene();
     if (Status drawn = drawWater(*session_, width, height, stepOn); !drawn) return drawn;
+    if (recorder_) recorder_->transferred(upload_.facts());
     renderer_->present(framebuffer, width, height);
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);

@@ -12,11 +12,13 @@
 #include "engine/app/ui_layer.h"
 #include "engine/gpu/timer.h"
 #include "engine/ui/profiler_panel.h"
+#include "engine/ui/timeline_panel.h"
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/fluid_panel.h"
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
 #include "fluid/bridge/voxel_panel.h"
@@ -81,6 +83,7 @@ class Viewer {
     FluidUpload upload_;
     UiLayer ui_;
     ProfilerPanel profiler_;
+    TimelinePanel timelinePanel_;
     VoxelPanel voxels_;
     gpu::Timer uiTimer_;
     Haste haste_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/render/made_sky.h"
+#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/session.h"
 #include "fluid/sim/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"

@@ -1,0 +1,42 @@
+// Fence: whether the GPU has done all that was issued before it.
+#pragma once
+
+#include <glad/gl.h>
+
+#include <utility>
+
+namespace rivulet::gpu {
+
+class Fence {
+  public:
+    Fence() = default;
+    Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)) {}
+    Fence& operator=(Fence&& other) noexcept {
+        std::swap(sync_, other.sync_);
+        return *this;
+    }
+    ~Fence() {
+        if (sync_) glDeleteSync(sync_);
+    }
+    // Everything issued so far.
+    static Fence now() {
+        Fence fence;
+        fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+        return fence;
+    }
+    bool passed() const { return reached(0); }
+    void wait() const {
+        while (!reached(1'000'000'000)) {
+        }
+    }
+
+  private:
+    // A context that was lost answers GL_WAIT_FAILED, and there is nothing to wait for.
+    bool reached(GLuint64 nanoseconds) const {
+        return !sync_ || glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, nanoseconds) != GL_TIMEOUT_EXPIRED;
+    }
+
+    GLsync sync_ = nullptr;
+};
+
+}  // namespace rivulet::gpu

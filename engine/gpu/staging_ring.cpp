@@ -1,0 +1,43 @@
+#include "engine/gpu/staging_ring.h"
+
+#include "engine/core/assert.h"
+
+namespace rivulet::gpu {
+
+namespace {
+constexpr size_t kAlignment = 64;  // a cache line, and what a copy may begin at
+}
+
+Status StagingRing::begin(size_t bytes) {
+    at_ = (at_ + 1) % kDeep;
+    Piece& piece = pieces_[at_];
+    if (!piece.read.passed()) {
+        ++waits_;
+        piece.read.wait();
+    }
+    used_ = taken_ = 0;
+    if (piece.memory.bytes() >= bytes && piece.memory) return ok();
+    Result<Buffer> made = Buffer::create(bytes + bytes / 4, BufferKind::mapped);
+    if (!made) return made.error();
+    piece.memory = std::move(*made);
+    return ok();
+}
+
+std::span<std::byte> StagingRing::take(size_t bytes) {
+    const std::span<std::byte> all = pieces_[at_].memory.mapped();
+    taken_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
+    ASSERT(taken_ + bytes <= all.size(), "begin() with as many bytes as are taken, and 64 for each piece taken");
+    used_ = taken_ + bytes;
+    return all.subspan(taken_, bytes);
+}
+
+void StagingRing::copyTo(Buffer& to) {
+    ASSERT(used_ - taken_ <= to.bytes(), "copy into a buffer that is large enough");
+    if (used_ > taken_)
+        glCopyNamedBufferSubData(pieces_[at_].memory.name(), to.name(), static_cast<GLintptr>(taken_), 0,
+                                 static_cast<GLsizeiptr>(used_ - taken_));
+}
+
+void StagingRing::end() { pieces_[at_].read = Fence::now(); }
+
+}  // namespace rivulet::gpu

@@ -1,0 +1,53 @@
+#include "engine/ui/timeline_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rivulet {
+
+namespace {
+
+constexpr double kShown = 0.1;   // s
+constexpr double kBehind = 0.1;  // s: a GPU's spans come some frames late
+
+ImU32 colourOf(const std::string& name) {
+    const auto hash = static_cast<float>(std::hash<std::string>()(name) % 1024) / 1024.0F;
+    return ImColor::HSV(hash, 0.5F, 0.9F);
+}
+
+}  // namespace
+
+void TimelinePanel::draw(const Timeline& timeline, float width) {
+    if (!held_) until_ = hostSeconds() - kBehind;
+    const std::vector<Timeline::Lane> lanes = timeline.lanes(until_ - kShown);
+    const float row = ImGui::GetTextLineHeight() + 4;
+    const ImVec2 low = ImGui::GetCursorScreenPos(), size(width, row * static_cast<float>(std::max<size_t>(lanes.size(), 1)));
+    ImGui::Dummy(size);
+    held_ = ImGui::IsItemHovered();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 high(low.x + size.x, low.y + size.y);
+    list->AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
+    list->PushClipRect(low, high, true);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const auto at = [&](double seconds) { return low.x + size.x * static_cast<float>(1 + (seconds - until_) / kShown); };
+    const PassSpan* pointed = nullptr;
+    for (size_t k = 0; k < lanes.size(); ++k) {
+        const float top = low.y + row * static_cast<float>(k);
+        for (const PassSpan& span : lanes[k].spans) {
+            if (span.begin > until_) continue;
+            const ImVec2 a(at(span.begin), top + 2), b(std::max(at(span.end), a.x + 0.5F), top + row - 2);
+            list->AddRectFilled(a, b, colourOf(span.name), 1);
+            if (held_ && mouse.x >= a.x && mouse.x <= b.x && mouse.y >= top && mouse.y < top + row) pointed = &span;
+        }
+        list->AddText(ImVec2(low.x + 5, top + 3), IM_COL32(0, 0, 0, 160), lanes[k].name.c_str());
+        list->AddText(ImVec2(low.x + 4, top + 2), IM_COL32(255, 255, 255, 220), lanes[k].name.c_str());
+    }
+    list->PopClipRect();
+    if (pointed != nullptr)
+        ImGui::SetTooltip("%s", fmt::format("{}: {:.2f} ms", pointed->name, 1000 * (pointed->end - pointed->begin)).c_str());
+}
+
+}  // namespace rivulet

@@ -152,9 +152,8 @@ void FluidParams::visit(ParamVisitor& v) {
                 "it, for comparison: method wcsph_thesis on gl or cl alone",
          .fixed = kFixed},
         grid, grids);
-    v.value({"workGroup", "",
-             "threads in a work group of the kernels that build the grid, sweep neighbours and collide, on gl and cl: 32 to 512", 32, 512,
-             kLog, kFixed},
+    v.value({"workGroup", "", "threads in a work group of the kernels that build the grid, sweep neighbours and collide, on gl and cl", 32,
+             512, kLog, kFixed},
             workGroup);
     v.value({"spacing", "m", "distance between particles at rest: halving it makes eight times as many", 1.0e-5, 1, kLog, kFixed}, spacing);
     v.value(

@@ -21,11 +21,11 @@ Status benchChapter4(const BenchContext& context) {
     request.runs = context.runs;
     request.goOn = [&context] { return !context.interrupted(); };
     request.report = [&context](const Chapter4Row& row) {
-        BenchRow line{.name = fmt::format("chapter 4, {}, {}, {}, {}", row.particles, row.grid,
-                                          row.walk.empty() ? "none" : row.walk, row.workGroup),
-                      .unit = "frames/s",
-                      .value = row.frames,
-                      .passes = row.passes};
+        BenchRow line{
+            .name = fmt::format("chapter 4, {}, {}, {}, {}", row.particles, row.grid, row.walk.empty() ? "none" : row.walk, row.workGroup),
+            .unit = "frames/s",
+            .value = row.frames,
+            .passes = row.passes};
         line.passes["all of the step"] = row.stepMs;
         line.passes["drawing"] = row.drawMs;
         context.report(line);

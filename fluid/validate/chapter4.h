@@ -25,6 +25,7 @@ struct Chapter4Row {
     int workGroup = 0;
     bool sizes = false;                         // it belongs to the comparison of work groups
     Spread frames = {};                         // a second, over the runs
+    std::vector<double> runMs = {};             // of a frame, run by run: runs of what takes turns are pairs
     double frameMs = 0;                         // medians
     double stepMs = 0, drawMs = 0;              // of that
     std::map<std::string, double> passes = {};  // ms a frame, the kernels of a step; means

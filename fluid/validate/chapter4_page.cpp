@@ -62,7 +62,23 @@ std::string perSecond(const Chapter4Row* row) {
     return row == nullptr ? "" : fmt::format("{:.3g} ({:.3g} to {:.3g})", row->frames.median, row->frames.min, row->frames.max);
 }
 
-double share(double with, double without) { return 100 * (with - without) / with; }
+// What collision takes of a frame, %, each run with the one beside it.
+Spread shareOfFrame(const Chapter4Row& with, const Chapter4Row& without) {
+    std::vector<double> shares;
+    for (size_t k = 0; k < std::min(with.runMs.size(), without.runMs.size()); ++k)
+        shares.push_back(100 * (with.runMs[k] - without.runMs[k]) / with.runMs[k]);
+    return spreadOf(shares);
+}
+
+// What its kernels take of all kernels of a step, %, by the device's own clock.
+double shareOfStep(const Chapter4Row& row) {
+    double all = 0, collision = 0;
+    for (const auto& [name, ms] : row.passes) {
+        all += ms;
+        if (name == "fluid/collide" || name == "fluid/walls") collision += ms;
+    }
+    return all > 0 ? 100 * collision / all : 0;
+}
 
 // Beside the thesis's two figures.
 std::string verdict(const Chapter4& chapter) {
@@ -74,24 +90,43 @@ std::string verdict(const Chapter4& chapter) {
             "ms "
             "of drawing; {:.3g} with the sorted grid and the exact walk |\n",
             kThesisParticles, kThesisFrames, with->frames.median, with->stepMs, with->drawMs, exact->frames.median);
-    std::vector<std::string> frames, steps;
+    std::vector<double> frames, steps;
     for (const int particles : counts(chapter)) {
         const Chapter4Row *on = find(chapter, particles, kWays[1]), *off = find(chapter, particles, kWays[0]);
         if (particles <= kThesisHalf || on == nullptr || off == nullptr) continue;
-        frames.push_back(fmt::format("{:.0f} %", share(on->frameMs, off->frameMs)));
-        steps.push_back(fmt::format("{:.0f} %", share(on->stepMs, off->stepMs)));
+        frames.push_back(shareOfFrame(*on, *off).median);
+        steps.push_back(shareOfStep(*on));
     }
-    const auto joined = [](const std::vector<std::string>& words) {
-        std::string all;
-        for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-        return all;
+    const auto range = [](const std::vector<double>& all) {
+        const auto [least, most] = std::minmax_element(all.begin(), all.end());
+        return all.size() > 1 ? fmt::format("{:.0f} to {:.0f} %", *least, *most) : fmt::format("{:.0f} %", *least);
     };
     if (!frames.empty())
         text += fmt::format(
-            "| above {} particles collision costs about half the frame | its walk costs {} of the frame, {} of the step, from {} particles "
-            "on |\n",
-            kThesisHalf, joined(frames), joined(steps), kThesisHalf);
+            "| above {} particles collision costs about half the frame | its lists and its walk, above as many: {} of the frame, "
+            "{} of the step |\n",
+            kThesisHalf, range(frames), range(steps));
     return text + '\n';
+}
+
+std::string sharesOf(const Chapter4& chapter) {
+    std::string text =
+        "\n## Collision's share\n\nOf the frame: a run with collision against the one without beside it, median, least and most; below 0 "
+        "where "
+        "the machine is less steady than collision is dear. Of the step: its kernels among all of the step's, by the device's clock.\n\n"
+        "| particles | lists, the thesis's walk: frame | step | lists, the exact walk: frame | step | sorted, the exact walk: frame | step "
+        "|\n| --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const int particles : counts(chapter)) {
+        text += fmt::format("| {} |", particles);
+        for (const auto& [with, without] : {std::pair(1, 0), std::pair(2, 0), std::pair(4, 3)}) {
+            const Chapter4Row *on = find(chapter, particles, kWays[with]), *off = find(chapter, particles, kWays[without]);
+            if (on == nullptr || off == nullptr) continue;
+            const Spread of = shareOfFrame(*on, *off);
+            text += fmt::format(" {:.0f} % ({:.0f} to {:.0f}) | {:.1f} % |", of.median, of.min, of.max, shareOfStep(*on));
+        }
+        text += '\n';
+    }
+    return text;
 }
 
 std::string groupsOf(const Chapter4& chapter) {
@@ -138,7 +173,7 @@ std::string pageOf(const Chapter4& chapter, const std::string& machine, const st
             if (const Chapter4Row* row = find(chapter, particles, way)) text += fmt::format(" {:.3g} |", row->stepMs);
         if (const Chapter4Row* row = find(chapter, particles, kWays[1])) text += fmt::format(" {:.3g} |\n", row->drawMs);
     }
-    return text + '\n' + groupsOf(chapter);
+    return text + sharesOf(chapter) + '\n' + groupsOf(chapter);
 }
 
 }  // namespace

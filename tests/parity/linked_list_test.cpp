@@ -8,6 +8,7 @@
 
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/session.h"
+#include "fluid/sim/ellipsoids.h"
 #include "fluid/sim/method.h"
 #include "shaders/fluid/linked_list.h"
 #include "shaders/fluid/stats_row.h"
@@ -268,6 +269,25 @@ TEST_P(LinkedList, AStepIsTheSortedGridsToOnePartInAHundredThousand) {
     EXPECT_EQ(sums[1][4], linked.step.count - 4.0);
     EXPECT_EQ(sums[1][5], 3.0) << "lost";
     EXPECT_EQ(sums[1][6], 1.0) << "of them NaN";
+}
+
+// What is found for drawing goes through the lists, too.
+TEST_P(LinkedList, EllipsoidsAreTheSortedGrids) {
+    std::array<std::vector<vec4>, 3> found[2];
+    for (const bool linked : {false, true}) {
+        Bench b(*gpu->device, linked);
+        ASSERT_TRUE(b.grid);
+        ASSERT_TRUE(b.grid->build(b.step, b.particles));
+        Ellipsoids ellipsoids;
+        const Status ready = ellipsoids.prepare(b.device, b.traits, b.step.count);
+        ASSERT_TRUE(ready) << ready.error().message;
+        ellipsoids.find(b.device, b.step, *b.grid, b.particles);
+        for (size_t k = 0; k < 3; ++k) found[linked][k] = b.byId<vec4>(*ellipsoids.buffers()[k]);
+    }
+    const Cloud cloud = strewn();
+    for (uint32_t i = 0; i < cloud.id.size(); ++i)
+        for (size_t k = 0; k < 3 && cloud.inside(i); ++k)
+            ASSERT_LT(glm::length(found[1][k][i] - found[0][k][i]), 1.0e-4F) << "of particle " << i << ", part " << k;
 }
 
 // On the sorted grid the order of all sums is known: with work groups of any size the same bits.

@@ -23,6 +23,7 @@ struct BenchRow {
 
 struct BenchContext {
     int runs = 5;                                 // at least
+    std::string out;                              // the folder for pages that a case writes; "" = none is to be written
     Log log;                                      // for notices: a backend that is absent
     std::function<void(const BenchRow&)> report;  // a row is printed as soon as it is known
     std::function<bool()> interrupted;            // ask between runs; then return
@@ -39,6 +40,7 @@ Status benchVoxels(const BenchContext& context);
 Status benchCollide(const BenchContext& context);
 Status benchMethods(const BenchContext& context);
 Status benchFlow(const BenchContext& context);
+Status benchChapter4(const BenchContext& context);
 
 // Calls `once` context.runs times (a first call, not counted, warms caches); the spread of what it returns.
 Spread repeat(const BenchContext& context, const std::function<double()>& once);

@@ -4,6 +4,7 @@
 #include "demos/rivulet/bench_cases.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "engine/app/capture.h"
 #include "engine/core/json.h"
 
 namespace rivulet {
@@ -57,7 +58,7 @@ std::string markdownOf(const Json::Value& all) {
 int benchVerb(const Arguments& arguments) {
     ArgumentReader reader("bench", "Measures speed and memory.");
     std::vector<std::string> names;
-    std::string jsonFile, markdownFile;
+    std::string jsonFile, markdownFile, out;
     std::optional<int> runs;
     std::string list;
     for (const BenchCase& row : benchCases().rows) list += fmt::format("\n  {:<16}{}", row.name, row.doc);
@@ -65,6 +66,7 @@ int benchVerb(const Arguments& arguments) {
     reader.positional("CASE", "which cases; all of them when none is named", names);
     reader.option("--json", "FILE.json", "also write the figures to a file", jsonFile);
     reader.option("--markdown", "FILE.md", "also write a page of them, as docs/performance.md is", markdownFile);
+    reader.option("--out", "DIR", "the folder for the page, table and picture of chapter4; none are written if not given", out);
     reader.option("--runs", "N", "measured runs of each", runs, 5, 1000);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
@@ -76,6 +78,8 @@ int benchVerb(const Arguments& arguments) {
         cases.push_back(benchCases().find(name));
     }
 
+    if (!out.empty())
+        if (Status made = makeFolder(out); !made) return report(made.error());
     Graceful graceful;
     Json::Value all(Json::objectValue);
     all["version"] = RIVULET_VERSION;
@@ -85,6 +89,7 @@ int benchVerb(const Arguments& arguments) {
     for (const BenchCase* benchCase : cases) {
         BenchContext context;
         context.runs = runs.value_or(5);
+        context.out = out;
         context.log = stderrLog();
         context.interrupted = [&graceful] { return graceful.interrupted(); };
         context.report = [&all, benchCase](const BenchRow& row) {

@@ -75,7 +75,11 @@ std::string explain(const Session& session, const RunStats& stats) {
         fmt::format("made, {} kernels{}\n", kernels.size(), session.budget() ? ", those of methods that the budget tried among them" : "");
     for (std::string k : kernels) {
         std::replace(k.begin(), k.end(), ';', ' ');
-        for (size_t at = 0; (at = k.find("=1", at)) != std::string::npos;) k.erase(at, 2);
+        for (size_t at = 0; (at = k.find("=1", at)) != std::string::npos;) {
+            const bool all = at + 2 == k.size() || k[at + 2] == ' ';  // LOCAL_SIZE=128 stays
+            if (all) k.erase(at, 2);
+            if (!all) at += 2;
+        }
         text += "  " + k + '\n';
     }
 

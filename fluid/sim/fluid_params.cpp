@@ -145,6 +145,16 @@ void FluidParams::visit(ParamVisitor& v) {
     v.choice(
         {.name = "kernel", .doc = "how neighbours are weighed; the cubic spline, for comparison, in method wcsph alone", .fixed = kFixed},
         kernel, kernels);
+    static const std::vector<std::string> grids = {"sorted", "linked_list"};
+    v.choice(
+        {.name = "grid",
+         .doc = "how neighbours are found. sorted: particles in the order of their cells; linked_list: a list a cell, as the thesis has "
+                "it, for comparison: method wcsph_thesis on gl or cl alone",
+         .fixed = kFixed},
+        grid, grids);
+    v.value({"workGroup", "", "threads in a work group of the kernels that build the grid, sweep neighbours and collide, on gl and cl", 32,
+             512, kLog, kFixed},
+            workGroup);
     v.value({"spacing", "m", "distance between particles at rest: halving it makes eight times as many", 1.0e-5, 1, kLog, kFixed}, spacing);
     v.value(
         {"supportSpacings", "", "reach of a particle (support radius), in spacings: more is smoother and slower", 1.5, 4, kLinear, kFixed},

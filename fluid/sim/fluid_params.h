@@ -89,6 +89,8 @@ struct FoamParams {
 struct FluidParams {
     std::string method = "pbf";       // a row of methods()
     std::string kernel = "wendland";  // wendland | cubic_spline
+    std::string grid = "sorted";      // sorted | linked_list
+    int workGroup = 64;               // threads, of a GPU
     float spacing = 0.02F;            // m
     float supportSpacings = 2.0F;     // h = this * spacing
     std::string liquid = {};          // a row of liquids(), which then says restDensity and viscosity; "" = as given

@@ -133,6 +133,10 @@ StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
 void FluidWorld::Impl::findForces() {
     for (ForceState& f : forcePasses) {
         f.on = f.row->on(params, method->doesViscosity());
+        if (f.on && traits.linked) {  // a slider: create() has refused what was on
+            say(linkedWithout(*f.row));
+            f.on = false;
+        }
         if (!f.on || f.pass) continue;
         Result<ForcePass> made = f.row->make(*device, {params, particles.count, traits, method->doesViscosity()});
         if (made)
@@ -420,7 +424,8 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
 
 std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
     Impl& w = *impl_;
-    if (w.device->backend() == Backend::cpu || !w.sorted || w.traits.samples > 0 || glm::any(w.traits.periodic) || w.method->predicts())
+    if (w.device->backend() == Backend::cpu || !w.sorted || w.traits.linked || w.traits.samples > 0 ||
+        glm::any(w.traits.periodic) || w.method->predicts())
         return std::nullopt;
     w.untouched = true;
     return CellWork{w.step, &w.particles.positionNext, &w.particles.id};
@@ -486,6 +491,8 @@ void FluidWorld::setParams(const FluidParams& params) {
     const FluidParams& old = impl_->params;
     next.method = old.method;
     next.kernel = old.kernel;
+    next.grid = old.grid;
+    next.workGroup = old.workGroup;
     next.spacing = old.spacing;
     next.supportSpacings = old.supportSpacings;
     next.box.min = old.box.min;
@@ -544,7 +551,13 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.params = params;
     w.asked = sources;
     if (Status s = takeLiquid(w.params); !s) return s.error();
-    Result<SolidPasses> passes = SolidPasses::create(device, solids, params.collision, !glm::all(params.box.periodic()));
+    if (device.backend() != Backend::cpu && params.workGroup != FluidParams{}.workGroup)
+        w.traits.workGroup = static_cast<uint32_t>(params.workGroup);
+    w.traits.linked = params.grid == "linked_list";
+    if (w.traits.linked)
+        if (Status can = w.mayLink(); !can) return can.error();
+    Result<SolidPasses> passes =
+        SolidPasses::create(device, solids, params.collision, !glm::all(params.box.periodic()), w.traits.threadDefines());
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
     Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, params, {.periodic = params.box.periodic()});

@@ -79,6 +79,8 @@ struct FluidWorld::Impl {
     int lastPiece = 0;  // substeps
 
     Status prepare();
+    Status mayLink() const;                                   // whether fluid.grid linked_list knows all that is asked for
+    static std::string linkedWithout(const ForceRow& force);  // a sentence
     Status checkPrecision() const;
     void fillStart();
     Status findSlots();

@@ -43,12 +43,15 @@ Status FluidWorld::Impl::prepare() {
     traits.walls = !glm::all(traits.periodic) || solids.any();
     traits.samples = bodies.sampleCount();
     traits.matter = traits.matter || bodies.any();
-    for (const Wanted& w :
-         {Wanted{&stats, "fluid/stats", traits.matter ? std::vector<Define>{{"MATTER", "1"}} : std::vector<Define>{}, true},
-          Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
-          Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
-          Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter},
-          Wanted{&gatherAbsorption, "fluid/gather_absorption", {}, coloured}}) {
+    for (const Wanted& w : {Wanted{&stats, "fluid/stats",
+                                   traits.matter   ? std::vector<Define>{{"MATTER", "1"}}
+                                   : traits.linked ? std::vector<Define>{{"LINKED_LIST", "1"}}
+                                                   : std::vector<Define>{},
+                                   true},
+                            Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
+                            Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
+                            Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter},
+                            Wanted{&gatherAbsorption, "fluid/gather_absorption", {}, coloured}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();
@@ -93,6 +96,28 @@ Status FluidWorld::Impl::prepare() {
     }
     if (count == 0) log.notice("the scene has no particles");
     writeStart();
+    return ok();
+}
+
+std::string FluidWorld::Impl::linkedWithout(const ForceRow& force) {
+    return fmt::format(
+        "fluid.grid linked_list knows no force '{}': turn it off in fluid.forces, let fluid.collision.walls slip, or choose fluid.grid "
+        "sorted",
+        force.name);
+}
+
+Status FluidWorld::Impl::mayLink() const {
+    if (device->backend() == Backend::cpu)
+        return badInput(
+            "fluid.grid linked_list is built by a GPU's atomics: simulate with --backend gl or cl, or choose fluid.grid sorted");
+    if (params.method != "wcsph_thesis")
+        return badInput(fmt::format("fluid.grid linked_list is for method wcsph_thesis, not {}: choose that method, or fluid.grid sorted",
+                                    params.method));
+    if (!asked.emitters.empty() || !asked.sinks.empty() || asked.poured > 0)
+        return badInput("fluid.grid linked_list knows no emitters, sinks and skins: take them away, or choose fluid.grid sorted");
+    if (params.foam.most > 0) return badInput("fluid.grid linked_list knows no foam: make fluid.foam.most 0, or choose fluid.grid sorted");
+    for (const ForceRow& force : forces().rows)
+        if (force.on(params, true)) return badInput(linkedWithout(force));
     return ok();
 }
 

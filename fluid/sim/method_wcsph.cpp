@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "engine/core/assert.h"
 #include "fluid/sim/smoothing.h"
 
 namespace rivulet {
@@ -13,7 +14,7 @@ constexpr double kPiD = 3.14159265358979323846;
 
 class Wcsph final : public Method {
   public:
-    explicit Wcsph(bool thesis) : thesis_(thesis) {}
+    Wcsph(bool thesis, bool moves) : thesis_(thesis), moves_(moves) {}
     PairKernel density, forces;
     Kernel integrate;
 
@@ -54,6 +55,13 @@ class Wcsph final : public Method {
         Particles& p = c.particles;
         const uint32_t threads = c.grid.pairThreads();
         const Buffer& neighbors = c.grid.neighbors();
+        if (moves_) {
+            density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure}, threads);
+            forces.run(c, c.params,
+                       {&neighbors, &p.position, &p.velocity, &p.pressure, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
+                       p.count);
+            return;
+        }
         if (thesis_) {
             density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure}, threads);
             forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.density}, threads);
@@ -73,25 +81,31 @@ class Wcsph final : public Method {
 
   private:
     bool thesis_;
+    bool moves_;  // the forces' sweep moves particles on at once [4.2]
 };
 
 Result<std::unique_ptr<Method>> make(Device& device, const MethodSetup& setup, bool thesis) {
     if (thesis && (setup.traits.matter || glm::any(setup.traits.periodic)))
         return badInput(
             "method wcsph_thesis knows one liquid, no floating bodies and no periodic axes: choose another method for this scene");
-    auto method = std::make_unique<Wcsph>(thesis);
+    const bool moves = setup.traits.linked;
+    ASSERT(!moves || thesis, "only wcsph_thesis moves particles on in its sweep of forces");
+    auto method = std::make_unique<Wcsph>(thesis, moves);
     std::vector<Define> defines = setup.traits.wallDefines();
     if (thesis) defines.push_back({"THESIS", "1"});
     if (!thesis && setup.params.kernel == "cubic_spline") defines.push_back({"CUBIC", "1"});
     Result<PairKernel> density = PairKernel::find(device, "fluid/wcsph_density", setup.traits, defines);
     if (!density) return density.error();
+    if (moves) defines.push_back({"MOVES", "1"});
     Result<PairKernel> forces = PairKernel::find(device, "fluid/wcsph_forces", setup.traits, defines);
     if (!forces) return forces.error();
-    Result<Kernel> integrate = device.kernel("fluid/integrate", setup.traits.wallDefines());
-    if (!integrate) return integrate.error();
     method->density = *density;
     method->forces = *forces;
-    method->integrate = *integrate;
+    if (!moves) {
+        Result<Kernel> integrate = device.kernel("fluid/integrate", setup.traits.wallDefines(setup.traits.threadDefines()));
+        if (!integrate) return integrate.error();
+        method->integrate = *integrate;
+    }
     return std::unique_ptr<Method>(std::move(method));
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/sim/kernels/cpu_grid.h"
+#include "shaders/fluid/linked_list.h"
 #include "shaders/fluid/scan_params.h"
 
 namespace rivulet {
@@ -54,7 +55,7 @@ struct NeighborGrid::Impl {
     // GPU
     Buffer cellCounts, rank, order, blockSum;
     bool given = false;  // cellOf is the next build's
-    Kernel cellCount, cellCountGiven, scanReduce, scanBlocks, scanApply, cellScatter, cellSort, reorder;
+    Kernel cellCount, cellCountGiven, scanReduce, scanBlocks, scanApply, cellScatter, cellSort, reorder, cellLink;
 
     bool onCpu() const { return device->backend() == Backend::cpu; }
     uint32_t coarseCells() const {
@@ -69,11 +70,17 @@ struct NeighborGrid::Impl {
     Status buildCpu(Particles& p);
     void buildGroups();
     void buildGpu(const StepParams& params, Particles& p);
+    void buildLinked(const StepParams& params, Particles& p);
 };
 
 Status NeighborGrid::Impl::allocate() {
     Allocator take{*device};
     const size_t sorted = totalCells();
+    if (traits.linked) {
+        cellStart = take((NEXT_OF(sorted, count)) * sizeof(uint32_t));
+        cellCounts = take(sorted * sizeof(uint32_t));
+        return take.status;
+    }
     cellStart = take((sorted + 4) * sizeof(uint32_t));
     cellOf = take(count * sizeof(uint32_t));
     if (onCpu()) {
@@ -112,16 +119,17 @@ Status NeighborGrid::Impl::findKernels() {
                   {&sortOffsets, "fluid/cpu_sort_offsets", {}},
                   {&sortScatter, "fluid/cpu_sort_scatter", {}},
                   {&neighborList, "fluid/cpu_neighbor_list", listDefines}};
+    else if (traits.linked)
+        wanted = {{&cellLink, "fluid/cell_link", traits.threadDefines()}};
     else {
+        const std::vector<Define> threads = traits.threadDefines();
         const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
-        wanted = {{&cellCount, "fluid/cell_count", {}},
-                  {&cellCountGiven, "fluid/cell_count", {{"GIVEN", "1"}}},
-                  {&scanReduce, "fluid/scan_reduce", scanSize},
-                  {&scanBlocks, "fluid/scan_blocks", scanSize},
-                  {&scanApply, "fluid/scan_apply", scanSize},
-                  {&cellScatter, "fluid/cell_scatter", {}},
-                  {&cellSort, "fluid/cell_sort", {}},
-                  {&reorder, "fluid/reorder", {}}};
+        std::vector<Define> given = threads;
+        given.push_back({"GIVEN", "1"});
+        wanted = {{&cellCount, "fluid/cell_count", threads},     {&cellCountGiven, "fluid/cell_count", given},
+                  {&scanReduce, "fluid/scan_reduce", scanSize},  {&scanBlocks, "fluid/scan_blocks", scanSize},
+                  {&scanApply, "fluid/scan_apply", scanSize},    {&cellScatter, "fluid/cell_scatter", threads},
+                  {&cellSort, "fluid/cell_sort", threads},       {&reorder, "fluid/reorder", threads}};
     }
     for (Wanted& w : wanted) {
         Result<Kernel> found = device->kernel(w.path, w.defines);
@@ -228,8 +236,24 @@ void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
     p.id.swap(p.idNext);
 }
 
-std::vector<Define> PairTraits::defines() const {
+// As in the thesis the state is in two copies that take turns; the lists are cleared as a whole, next ones with them.
+void NeighborGrid::Impl::buildLinked(const StepParams& params, Particles& p) {
+    p.position.swap(p.positionNext);
+    p.velocity.swap(p.velocityNext);
+    device->fill(cellStart, LIST_END);
+    device->fill(cellCounts, 0);
+    device->run(cellLink, params, {&p.position, &cellStart, &cellCounts}, count);
+}
+
+std::vector<Define> PairTraits::threadDefines() const {
     std::vector<Define> d;
+    if (linked) d.push_back({"LINKED_LIST", "1"});
+    if (workGroup > 0) d.push_back({"LOCAL_SIZE", std::to_string(workGroup)});
+    return d;
+}
+
+std::vector<Define> PairTraits::defines() const {
+    std::vector<Define> d = threadDefines();
     if (matter) d.push_back({"MATTER", "1"});
     if (glm::any(periodic)) d.push_back({"PERIODIC", "1"});
     return d;
@@ -242,6 +266,8 @@ std::vector<Define> PairTraits::wallDefines(std::vector<Define> extra) const {
 
 Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits) {
     ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");
+    ASSERT(!traits.linked || (device.backend() != Backend::cpu && traits.samples == 0 && !glm::any(traits.periodic)),
+           "linked lists are for a GPU, without samples and periodic axes");
     auto impl = std::make_unique<Impl>();
     impl->device = &device;
     impl->h = h;
@@ -282,7 +308,7 @@ NeighborGrid& NeighborGrid::operator=(NeighborGrid&&) noexcept = default;
 NeighborGrid::~NeighborGrid() = default;
 
 void NeighborGrid::give(std::span<const uint32_t> cells) {
-    ASSERT(cells.empty() || (cells.size() == impl_->count && !impl_->onCpu()), "give a GPU's grid a cell a slot");
+    ASSERT(cells.empty() || (cells.size() == impl_->count && impl_->cellCountGiven.index != UINT32_MAX), "give a GPU's sort a cell a slot");
     impl_->given = !cells.empty();
     if (impl_->given) impl_->device->writeAll<uint32_t>(impl_->cellOf, cells);
 }
@@ -303,13 +329,17 @@ void NeighborGrid::fill(StepParams& params) const {
 
 Status NeighborGrid::build(const StepParams& params, Particles& particles) {
     if (impl_->onCpu()) return impl_->buildCpu(particles);
-    impl_->buildGpu(params, particles);
+    if (impl_->traits.linked)
+        impl_->buildLinked(params, particles);
+    else
+        impl_->buildGpu(params, particles);
     return ok();
 }
 
 void NeighborGrid::setMargin(float margin) { impl_->margin = margin; }
 const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }
 const Buffer& NeighborGrid::cellStart() const { return impl_->cellStart; }
+const Buffer& NeighborGrid::cellCounts() const { return impl_->cellCounts; }
 uint32_t NeighborGrid::pairThreads() const { return impl_->onCpu() ? impl_->fluidGroups : impl_->count; }
 uint32_t NeighborGrid::sampleThreads() const { return impl_->onCpu() ? impl_->groupCount - impl_->fluidGroups : impl_->traits.samples; }
 

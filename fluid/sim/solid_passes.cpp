@@ -65,7 +65,8 @@ Status SolidPasses::Field::upload(Device& device) {
     return hold<uint32_t>(device, normal, field->normal, 2 * kMostSurfaces * sizeof(uint32_t));
 }
 
-Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls) {
+Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls,
+                                        std::span<const Define> threads) {
     SolidPasses s;
     s.device_ = &device;
     s.planeSolids_ = solids.planes;
@@ -111,7 +112,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
     s.thesis_ = collision.walk == "thesis";
     const bool thesis = s.thesis_, still = s.static_.field != nullptr;
     const auto collide = [&](const char* motion) {
-        std::vector<Define> d;
+        std::vector<Define> d(threads.begin(), threads.end());
         if (*motion != 0) d.push_back({motion, "1"});
         if (std::string_view(motion) == "DEFORMING") d.push_back({"MOVING", "1"});
         if (thesis) d.push_back({"THESIS", "1"});
@@ -122,7 +123,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
           Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
           Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
           Wanted{&s.frictionMoving_, "fluid/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
-          Wanted{&s.walls_, "fluid/walls", {}, s.walled_},
+          Wanted{&s.walls_, "fluid/walls", {threads.begin(), threads.end()}, s.walled_},
           Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.collide_, "fluid/collide", collide(""), still},
           Wanted{&s.collideRigid_, "fluid/collide", collide("MOVING"), !s.rigid_.empty()},

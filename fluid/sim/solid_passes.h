@@ -21,8 +21,9 @@ class SolidPasses {
   public:
     // Error (badInput): a plane without direction, too many surfaces, an unknown walk; (failed): out of memory. `device` and the solids'
     // fields must outlive it.
-    // `boxWalls`: the box has some; without them and without solids nothing is made for walls.
-    static Result<SolidPasses> create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls);
+    // `boxWalls`: the box has some; without them and without solids nothing is made for walls. `threads`: PairTraits::threadDefines().
+    static Result<SolidPasses> create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls,
+                                      std::span<const Define> threads = {});
 
     // Whether a particle may be born at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not nearer
     // than it would rest.

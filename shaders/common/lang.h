@@ -27,6 +27,7 @@ typedef float real; typedef float3 real3;
 #define ATOMIC_MIN(x, v) atomic_min(&(x), v)
 #define ATOMIC_MAX(x, v) atomic_max(&(x), v)
 #define ATOMIC_OR(x, v) atomic_or(&(x), v)
+#define ATOMIC_EXCHANGE(x, v) atomic_xchg(&(x), v)  /* of GPUs alone */
 #define ATOMIC_READ(x) atomic_add(&(x), 0u)
 #define PREFETCH(x)  /* of memory that is soon asked for: a CPU's threads are few, and each waits */
 #define FN static inline
@@ -60,6 +61,7 @@ typedef float real; typedef float3 real3;
 #define ATOMIC_MIN(x, v) atomicMin(x, v)
 #define ATOMIC_MAX(x, v) atomicMax(x, v)
 #define ATOMIC_OR(x, v) atomicOr(x, v)
+#define ATOMIC_EXCHANGE(x, v) atomicExchange(x, v)
 #define ATOMIC_READ(x) atomicAdd(x, 0u)
 #define PREFETCH(x)
 #define FN

@@ -1,9 +1,11 @@
 // The neighbours of a particle on a GPU: the nine rows of cells around its own, each row's three cells contiguous in memory; with MATTER the
-// same rows of body samples; with PERIODIC cell by cell, so that rows may wrap round. (On the CPU lang_lanes.h defines the same macros over a list
-// for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1, Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart.
+// same rows of body samples; with PERIODIC cell by cell, so that rows may wrap round; with LINKED_LIST the list of each of the 27 cells. (On the
+// CPU lang_lanes.h defines the same macros over a list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1, Neighbors,
+// NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart, or the lists.
 // `home`: where the particle was when the grid was built. j includes the particle itself.
+#include "shaders/fluid/linked_list.h"
 #if !defined(FOR_NEIGHBORS)
-#define SELF(i) uint i = THREAD_ID; if (i >= neighbors[PARAMS.cellCount]) return
+#define SELF(i) uint i = THREAD_ID; if (STANDS_BY(neighbors, PARAMS.cellCount, i)) return
 #define SELF_SAMPLE(i) uint i = neighbors[PARAMS.cellCount] + THREAD_ID; if (i >= neighbors[PARAMS.totalCells]) return  /* a thread a sample */
 #define END_NEIGHBORS }}}
 // In a step's first sweep: KEEP says which neighbours later sweeps need; a GPU keeps no list.
@@ -22,7 +24,13 @@
 #define HOME_CELL(home)                                                                                              \
       vec3 g_ = (home - PARAMS.gridOrigin.xyz) * PARAMS.gridScale.xyz;                                               \
       int cx_ = TO_INT(g_.x); int cy_ = TO_INT(g_.y); int cz_ = TO_INT(g_.z);
-#if defined(PERIODIC)
+#if defined(LINKED_LIST)
+#define FOR_NEIGHBORS(i, home, j)                                                                                    \
+    { HOME_CELL(home)                                                                                                \
+      for (int k_ = 0; k_ < 27; ++k_) {                                                                              \
+          int cell_ = ((cz_ + k_ / 9 - 1) * PARAMS.cellsY + cy_ + k_ / 3 % 3 - 1) * PARAMS.cellsX + cx_ + k_ % 3 - 1; \
+          for (uint j = neighbors[cell_]; j != LIST_END; j = neighbors[NEXT_OF(PARAMS.cellCount, j)]) {
+#elif defined(PERIODIC)
 // On a periodic axis cells 1 .. n - 2 wrap round; where there are two of them, the one below and the one above are the same.
 FN int wrapped_(int c, int n, float period) { return period > 0.0f ? (c < 1 ? n - 2 : c > n - 2 ? 1 : c) : c; }
 FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 3; }

@@ -1,0 +1,39 @@
+// The bench of the thesis's chapter 4: see fluid/validate/chapter4.h.
+#include <fmt/format.h>
+
+#include "demos/rivulet/bench_cases.h"
+#include "engine/app/context_egl.h"
+#include "fluid/bridge/backend.h"
+#include "fluid/validate/chapter4.h"
+
+namespace rivulet {
+
+Status benchChapter4(const BenchContext& context) {
+    Result<ContextEgl> egl = ContextEgl::create();
+    const GlFacts gl = egl ? currentGlFacts() : noGl(egl.error().message);
+    const std::unique_ptr<Device> device = makeDevice("gl", gl, context.log);
+    if (device->backend() != Backend::gl) {
+        context.log.notice("chapter4 draws what it measures, and that needs OpenGL: it is left out");
+        return ok();
+    }
+    Chapter4Request request;
+    request.device = device.get();
+    request.runs = context.runs;
+    request.goOn = [&context] { return !context.interrupted(); };
+    request.report = [&context](const Chapter4Row& row) {
+        BenchRow line{
+            .name = fmt::format("chapter 4, {}, {}, {}, {}", row.particles, row.grid, row.walk.empty() ? "none" : row.walk, row.workGroup),
+            .unit = "frames/s",
+            .value = row.frames,
+            .passes = row.passes};
+        line.passes["all of the step"] = row.stepMs;
+        line.passes["drawing"] = row.drawMs;
+        context.report(line);
+    };
+    const Result<Chapter4> chapter = runChapter4(request);
+    if (!chapter) return chapter.error();
+    if (chapter->stopped || context.out.empty()) return ok();
+    return writeChapter4(*chapter, context.out, machineName(), "rivulet bench chapter4 --out " + context.out);
+}
+
+}  // namespace rivulet

@@ -14,7 +14,8 @@ namespace rivulet {
 
 struct RunOptions {
     SceneFile scene;
-    std::string backend = "auto";  // auto | cpu | gl | cl
+    std::string backend;  // auto | cpu | gl | cl
+    std::string device;   // of cl, as ClOptions::device
     bool render = true;
     bool explain = false;
     std::optional<int> frames;       // how many; nothing: the loop's own default

@@ -16,6 +16,7 @@
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
+#include "fluid/bridge/takeover.h"
 
 namespace rivulet {
 
@@ -79,6 +80,7 @@ struct Loop {
     const RunOptions& options;
     const Graceful& graceful;
     Session& session;
+    std::unique_ptr<Device>& device;
     Outputs& to;
     Painter& painter;
     RunRecorder recorder;
@@ -107,6 +109,9 @@ struct Loop {
         for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
             Clock::time_point start = Clock::now();
             double simulateMs = session.step(frameSeconds(options.scene), true), renderMs = 0;
+            const Result<bool> moved = keepRunning(session, device, options.log);
+            if (!moved) return moved.error();
+            if (*moved) recorder.follow(session.world());
             std::vector<PassTime> drawn;
             if (options.render && (to.writer || kept.contains(f))) {
                 Clock::time_point before = Clock::now();
@@ -146,11 +151,13 @@ int runHeadless(const RunOptions& options) {
         gl = made ? currentGlFacts() : noGl(made.error().message);
         if (made) context = std::move(*made);
     }
-    std::unique_ptr<Device> device = makeDevice(options.backend, gl, options.log);
-    auto session = Session::create(options.scene, *device, options.log);
-    if (!session) return report(session.error());
+    std::unique_ptr<Device> device = makeDevice(options.backend, gl, options.log, options.device);
+    auto opened = openSession(options.scene, *device, options.log);
+    if (!opened) return report(opened.error());
+    if (opened->instead) device = std::move(opened->instead);
+    const std::unique_ptr<Session> session = std::move(opened->session);
     if (!options.resume.empty())
-        if (Status resumed = resumeFrom(options.resume, **session); !resumed) return report(resumed.error());
+        if (Status resumed = resumeFrom(options.resume, *session); !resumed) return report(resumed.error());
     Painter painter;
     if (options.render) {
         const auto surroundings = surroundingsOf(options.scene);
@@ -163,11 +170,10 @@ int runHeadless(const RunOptions& options) {
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 
-    const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
+    const double left = std::max(static_cast<double>(options.scene.duration) - session->world().time(), 0.0);  // resumed: less
     int frames = options.frames.value_or(static_cast<int>(std::lround(left / frameSeconds(options.scene))));
     if (!options.stills.empty() && !options.frames) frames = *options.stills.rbegin() + 1;
-    Loop loop{options, graceful, **session,
-              *to,     painter,  RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};
+    Loop loop{options, graceful, *session, device, *to, painter, RunRecorder(session->world(), session->fields(), true, &session->flows())};
     if (Status done = loop.run(frames); !done) return report(done.error());
     if (to->writer)
         if (Status closed = to->writer->close(); !closed) return report(closed.error());
@@ -175,14 +181,14 @@ int runHeadless(const RunOptions& options) {
     if (Status written = writeFileAtomic(to->stats, writeRunStats(stats)); !written) return report(written.error());
 
     if (!options.save.empty())
-        if (Status saved = saveTo(options.save, **session); !saved) return report(saved.error());
+        if (Status saved = saveTo(options.save, *session); !saved) return report(saved.error());
 
     std::string where = to->stats;
     if (options.render && stats.frames > 0)
         where =
             fmt::format("{}{} pictures {}_*.png and {}", to->writer ? to->video + ", " : "", loop.pictures, to->picturePrefix, to->stats);
     if (!options.save.empty()) where += fmt::format(" and {}", options.save);
-    if (options.explain) fmt::print("{}", explain(**session, stats));
+    if (options.explain) fmt::print("{}", explain(*session, stats));
     fmt::print("{}\n", where);
     return graceful.interrupted() ? kInterrupted : kDone;
 }

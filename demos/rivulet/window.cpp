@@ -21,7 +21,7 @@ int runWindow(const RunOptions& options) {
     wish.height = options.height;
     Result<WindowGlfw> window = WindowGlfw::create(wish);
     if (!window) return report(window.error());
-    auto viewer = Viewer::create(options.scene, options.backend, options.log, window->handle());
+    auto viewer = Viewer::create(options.scene, options.backend, options.log, window->handle(), options.device);
     if (!viewer) return report(viewer.error());
     Viewer& v = **viewer;
     if (!options.resume.empty())

@@ -75,6 +75,8 @@ class RunRecorder {
     // `readBack`: reads the particles after each frame, for compression and penetrations; costs time that is not counted as simulation.
     // `flows`: what is on the scene's skins; null: nothing.
     RunRecorder(FluidWorld& world, SolidFields fields, bool readBack, const SkinFlows* flows = nullptr);
+    // The same particles, from now on in another world: one that goes on for the first.
+    void follow(FluidWorld& world) { world_ = &world; }
     // renderMs 0: nothing was drawn.
     void frame(double simulateMs, double renderMs, double frameMs, std::span<const PassTime> simulatePasses,
                std::span<const PassTime> renderPasses);

@@ -60,6 +60,11 @@ class Session {
     double step(double seconds, bool wait, double deviceMs = 0);
     void reset();
 
+    // Goes on on another device, in the place of one that is full or lost: from what that one holds, or else from the last snapshot, which
+    // a session on cl takes of itself now and then. time() of the world says from when on. Error (failed): out of memory; the session
+    // is then of no more use.
+    Status moveTo(Device& device);
+
     // The world and what the session knows of its solids. Error: as FluidWorld::restore; all is then as it was.
     void save(WorldState& state);
     Status restore(WorldState& state);
@@ -76,7 +81,16 @@ class Session {
         std::vector<vec3> rest, shape;
     };
 
+    // What moveTo goes on from.
+    struct Snapshot {
+        WorldState world;
+        std::vector<double> turned;
+        std::shared_ptr<const SkinFlows::Snapshot> flows;
+    };
+
     Session() = default;
+    void takeSnapshot();
+    Status makeWorld(Device& device, const FluidParams& params, const Log& log);
     Status importColliders();
     Result<Sources> importEmitters() const;
     Status bake(const Log& log);
@@ -86,6 +100,7 @@ class Session {
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
     void advance(double seconds, double deviceMs);
     void placeNodes();
+    void startSolids();
     void watchBudget(double ms, double seconds);
 
     SceneFile scene_;
@@ -100,8 +115,13 @@ class Session {
     std::vector<Deforming> deforming_;
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
+    Solids given_;                            // what the world was made among
+    Sources sources_;                         // and with
     std::unique_ptr<FluidWorld> world_;
     SkinFlows flows_;
+    std::optional<Snapshot> kept_;  // nothing: the start
+    double steppedMs_ = 0;          // since it was taken
+    double snapshotMs_ = 0;         // what it took
 };
 
 }  // namespace rivulet

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "engine/ui/param_panel.h"
+#include "fluid/bridge/takeover.h"
 
 namespace rivulet {
 
@@ -38,7 +39,8 @@ void drawHelp() {
 
 }  // namespace
 
-Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard) {
+Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard,
+                                               const std::string& clDevice) {
     Result<UiLayer> ui = UiLayer::create(clipboard);
     if (!ui) return ui.error();
     std::unique_ptr<Viewer> viewer(new Viewer(std::move(*ui)));
@@ -52,10 +54,11 @@ Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::strin
         kept->emplace_back(text);
     };
     v.gl_ = currentGlFacts();
-    v.device_ = makeDevice(backend, v.gl_, v.log_);
-    auto session = Session::create(std::move(scene), *v.device_, v.log_);
-    if (!session) return session.error();
-    v.session_ = std::move(*session);
+    v.device_ = makeDevice(backend, v.gl_, v.log_, clDevice);
+    auto opened = openSession(scene, *v.device_, v.log_);
+    if (!opened) return opened.error();
+    if (opened->instead) v.device_ = std::move(opened->instead);
+    v.session_ = std::move(opened->session);
     v.draft_ = v.session_->scene();
     const auto surroundings = surroundingsOf(v.draft_);
     if (!surroundings) return surroundings.error();
@@ -78,7 +81,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
         touch(input);
     }
     if (edited_ || recreate) takeEdits(recreate);
-    step(seconds);
+    if (Status stepped = step(seconds); !stepped) return stepped;
     Status drawn = draw(input, framebuffer);
     profiler_.endFrame(1000 * seconds);
     return drawn;
@@ -214,11 +217,11 @@ void Viewer::takeEdits(bool recreate) {
         return;
     }
     notices_->clear();
-    Result<std::unique_ptr<Session>> fresh =
-        sense ? Session::create(draft_, *device_, log_) : Result<std::unique_ptr<Session>>(sense.error());
+    Result<OpenedSession> fresh = sense ? openSession(draft_, *device_, log_) : Result<OpenedSession>(sense.error());
     if (fresh) {
-        session_ = std::move(*fresh);
-        draft_ = session_->scene();  // a budget may have picked
+        session_ = std::move(fresh->session);
+        if (fresh->instead) device_ = std::move(fresh->instead);  // nothing is on the other any more
+        draft_ = session_->scene();                               // a budget may have picked
         repicked_ = 0;
         message_.clear();
         profiler_.clear();
@@ -231,7 +234,7 @@ void Viewer::takeEdits(bool recreate) {
     }
 }
 
-void Viewer::step(double seconds) {
+Status Viewer::step(double seconds) {
     constexpr double kStep = 1.0 / kFramesPerSecond;  // on the wall
     const double simulated = session_->scene().timeScale;
     waiting_ = std::min(waiting_ + std::max(seconds, 0.0), 2 * kStep);
@@ -243,10 +246,13 @@ void Viewer::step(double seconds) {
         due = seconds > 0;
         waiting_ = 0;
     }
-    if ((paused_ || !due) && !stepOnce_) return;
+    if ((paused_ || !due) && !stepOnce_) return ok();
     stepOnce_ = false;
     double ms = session_->step(simulated * (fixed ? seconds : kStep), false, deviceMs_);
     ++steps_;
+    const Result<bool> moved = keepRunning(*session_, device_, log_);
+    if (!moved) return moved.error();
+    if (*moved && recorder_) recorder_->follow(session_->world());
     if (const int repicked = session_->budget() ? session_->budget()->repicked() : 0; repicked != repicked_) {
         repicked_ = repicked;
         draft_.fluid = session_->scene().fluid;  // what the panel shows
@@ -256,6 +262,7 @@ void Viewer::step(double seconds) {
     for (const PassTime& pass : passes) deviceMs_ += pass.ms;
     profiler_.add("simulate", passes);
     if (recorder_) recorder_->frame(ms, 0, 1000 * seconds, passes, renderer_->times());
+    return ok();
 }
 
 void Viewer::record() { recorder_.emplace(session_->world(), session_->fields(), true, &session_->flows()); }

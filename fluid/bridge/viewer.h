@@ -23,8 +23,10 @@ namespace rivulet {
 
 class Viewer {
   public:
-    // Needs a current OpenGL 4.5 context until destroyed. `clipboard`: as UiLayer. Error: as Session and SceneRenderer.
-    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard = nullptr);
+    // Needs a current OpenGL 4.5 context until destroyed. `clipboard`: as UiLayer; `clDevice`: as makeDevice. Error: as Session and
+    // SceneRenderer.
+    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard = nullptr,
+                                                  const std::string& clDevice = {});
 
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
     // machine shows slow water, not fewer pictures. With fluid.fixedStep the water has all of the time, but fluid.longestFrame. A window of
@@ -48,7 +50,7 @@ class Viewer {
     bool drawPresets();                    // whether one was chosen
     bool drawPanels();                     // whether a new session is wanted
     void takeEdits(bool recreate);
-    void step(double seconds);
+    Status step(double seconds);
     Status draw(const InputEvents& input, GLuint framebuffer);
 
     std::shared_ptr<std::vector<std::string>> notices_ = std::make_shared<std::vector<std::string>>();

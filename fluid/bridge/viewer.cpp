@@ -39,7 +39,7 @@ void drawHelp() {
 
 }  // namespace
 
-Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard,
+Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const std::string& backend, const Log& log, void* clipboard,
                                                const std::string& clDevice) {
     Result<UiLayer> ui = UiLayer::create(clipboard);
     if (!ui) return ui.error();

@@ -25,8 +25,8 @@ class Viewer {
   public:
     // Needs a current OpenGL 4.5 context until destroyed. `clipboard`: as UiLayer; `clDevice`: as makeDevice. Error: as Session and
     // SceneRenderer.
-    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const std::string& backend, const Log& log, void* clipboard = nullptr,
-                                                  const std::string& clDevice = {});
+    static Result<std::unique_ptr<Viewer>> create(const SceneFile& scene, const std::string& backend, const Log& log,
+                                                  void* clipboard = nullptr, const std::string& clDevice = {});
 
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
     // machine shows slow water, not fewer pictures. With fluid.fixedStep the water has all of the time, but fluid.longestFrame. A window of

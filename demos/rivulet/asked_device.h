@@ -1,4 +1,4 @@
-// The device that --backend asks a verb without pictures for, with what must outlive it.
+// The device that --backend and --device ask a verb without pictures for, with what must outlive it.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct AskedDevice {
 };
 
 // As makeDevice: an absent one is a notice in `log`, and a cpu device.
-inline AskedDevice askedDevice(const std::string& backend, const Log& log) {
+inline AskedDevice askedDevice(const std::string& backend, const Log& log, const std::string& clDevice = {}) {
     AskedDevice asked;
     GlFacts gl = noGl("no OpenGL was asked for");
     if (backend == "gl" || backend == "auto") {
@@ -24,7 +24,7 @@ inline AskedDevice askedDevice(const std::string& backend, const Log& log) {
         gl = made ? currentGlFacts() : noGl(made.error().message);
         if (made) asked.context = std::move(*made);
     }
-    asked.device = makeDevice(backend, gl, log);
+    asked.device = makeDevice(backend, gl, log, clDevice);
     return asked;
 }
 

@@ -14,10 +14,11 @@
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/explain.h"
-#include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/fluid_upload.h"
+#include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
+#include "fluid/bridge/takeover.h"
 
 namespace rivulet {
 
@@ -91,6 +92,7 @@ struct Loop {
     const RunOptions& options;
     const Graceful& graceful;
     Session& session;
+    std::unique_ptr<Device>& device;
     Outputs& to;
     Painter& painter;
     Cooperation& work;
@@ -123,7 +125,14 @@ struct Loop {
         for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
             Clock::time_point start = Clock::now();
             if (!work.started()) next();
-            recorder.stepped(work.finish(), session.world().device().takeTimes());
+            const double simulateMs = work.finish();
+            const Result<bool> moved = keepRunning(session, device, options.log);
+            if (!moved) return moved.error();
+            if (*moved) {
+                recorder.follow(session.world());
+                if (work.timeline() != nullptr) traceKernels(*device, *work.timeline());
+            }
+            recorder.stepped(simulateMs, device->takeTimes());
             now = session.world().time();
             const bool more = f + 1 < frames;
             double renderMs = 0;
@@ -150,8 +159,7 @@ struct Loop {
             if (options.render && !to.writer && !kept.contains(f))  // a skin's maps show what has come since they were last drawn
                 if (Status wet = session.flows().draw(); !wet) return wet.error();
             recorder.drawn(renderMs, msSince(start), drawn);
-            progress.show(static_cast<double>(f + 1) / frames,
-                          fmt::format("{:.2f} s, {:.0f} ms a frame", now, msSince(start)));
+            progress.show(static_cast<double>(f + 1) / frames, fmt::format("{:.2f} s, {:.0f} ms a frame", now, msSince(start)));
         }
         work.drop();
         return ok();
@@ -206,32 +214,34 @@ int runHeadless(const RunOptions& options) {
     if (!choice) return report(choice.error());
     Timeline timeline;
     const bool traced = !options.trace.empty() || options.cooperate != "off";
-    std::unique_ptr<Device> device = makeDevice(choice->backend, gl, options.log);
-    auto session = Session::create(options.scene, *device, options.log);
-    if (!session) return report(session.error());
+    std::unique_ptr<Device> device = makeDevice(choice->backend, gl, options.log, options.device);
+    auto opened = openSession(options.scene, *device, options.log);
+    if (!opened) return report(opened.error());
+    if (opened->instead) device = std::move(opened->instead);
+    const std::unique_ptr<Session> session = std::move(opened->session);
     if (!options.resume.empty())
-        if (Status resumed = resumeFrom(options.resume, **session); !resumed) return report(resumed.error());
+        if (Status resumed = resumeFrom(options.resume, *session); !resumed) return report(resumed.error());
     int frames = options.frames.value_or(0);
     if (!options.stills.empty() && !options.frames) {
         frames = *options.stills.rbegin() + 1;
     } else if (!options.frames) {
-        const double left = std::max(static_cast<double>(options.scene.duration) - (*session)->world().time(), 0.0);  // resumed: less
+        const double left = std::max(static_cast<double>(options.scene.duration) - session->world().time(), 0.0);  // resumed: less
         Result<int> all = framesOf(left, options.scene, "duration");
         if (!all) return report(all.error());
         frames = *all;
     }
     if (traced) {
         painter.timeline = &timeline;
-        device->onSpan(timeline.lane(fmt::format("{}: kernels", backendName(device->backend()))));
+        traceKernels(*device, timeline);
         if (painter.renderer) painter.renderer->onSpan(timeline.lane(kDrawingLane));
     }
     Graceful graceful;  // until here Ctrl-C leaves at once; from here files are closed first
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 
-    Cooperation work(**session, choice->plan, traced ? &timeline : nullptr, options.log);
-    Loop loop{options, graceful, **session, *to, painter, work,
-              RunRecorder((*session)->world(), (*session)->fields(), true, &(*session)->flows())};
+    Cooperation work(*session, choice->plan, traced ? &timeline : nullptr, options.log);
+    Loop loop{options, graceful, *session, device,
+              *to,     painter,  work,     RunRecorder(session->world(), session->fields(), true, &session->flows())};
     if (Status done = loop.run(frames); !done) return report(done.error());
     if (to->writer)
         if (Status closed = to->writer->close(); !closed) return report(closed.error());
@@ -242,14 +252,14 @@ int runHeadless(const RunOptions& options) {
     if (Status written = writeFileAtomic(to->stats, writeRunStats(stats)); !written) return report(written.error());
 
     if (!options.save.empty())
-        if (Status saved = saveTo(options.save, **session); !saved) return report(saved.error());
+        if (Status saved = saveTo(options.save, *session); !saved) return report(saved.error());
 
     std::string where = to->stats;
     if (options.render && stats.frames > 0)
         where =
             fmt::format("{}{} pictures {}_*.png and {}", to->writer ? to->video + ", " : "", loop.pictures, to->picturePrefix, to->stats);
     if (!options.save.empty()) where += fmt::format(" and {}", options.save);
-    if (options.explain) fmt::print("{}", explain(**session, stats));
+    if (options.explain) fmt::print("{}", explain(*session, stats));
     fmt::print("{}\n", where);
     return graceful.interrupted() ? kInterrupted : kDone;
 }

@@ -15,7 +15,8 @@ namespace rivulet {
 
 struct RunOptions {
     SceneFile scene;
-    std::string backend = "auto";  // auto | cpu | gl | cl
+    std::string backend;            // auto | cpu | gl | cl
+    std::string device;             // of cl, as ClOptions::device
     std::string cooperate = "off";  // a row of plans(), or auto
     bool render = true;
     bool explain = false;

@@ -11,6 +11,7 @@
 #include "engine/app/capture.h"
 #include "engine/core/json.h"
 #include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/takeover.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
 
@@ -21,19 +22,19 @@ namespace {
 constexpr int kMostEvery = 100'000;
 
 struct ExportRequest {
-    std::string scene, surface, backend = "auto", out = "out", preset;
+    std::string scene, surface, backend, device, out = "out", preset;
     std::vector<std::string> assignments;
     std::optional<int> every, cells;
     std::optional<double> seconds;
 };
 
-Status checkRequest(const ExportRequest& request) {
+Status checkRequest(ExportRequest& request) {
     if (request.surface.empty()) return badInput(fmt::format("say what to write: --surface {}", fmt::join(meshFormats().names(), " or ")));
     if (Status known = checkWord("surface format", request.surface, meshFormats().names()); !known) return known;
-    return checkWord("backend", request.backend, backends().names());
+    return settleBackend(request.backend, "auto", request.device);
 }
 
-int exportAs(const ExportRequest& request, SceneFile scene) {
+int exportAs(const ExportRequest& request, const SceneFile& scene) {
     const Log log = stderrLog();
     const Result<int> frames = framesOf(request.seconds.value_or(scene.duration), scene, request.seconds ? "--seconds" : "duration");
     if (!frames) return report(frames.error());
@@ -43,21 +44,24 @@ int exportAs(const ExportRequest& request, SceneFile scene) {
     if (Status made = makeFolder(request.out); !made) return report(made.error());
     const std::string first = (folder / fmt::format("{}_0000.{}", name, format.name)).string();
     if (Status writable = checkWritable(first); !writable) return report(writable.error());
-    const AskedDevice asked = askedDevice(request.backend, log);
-    auto session = Session::create(std::move(scene), *asked.device, log);
-    if (!session) return report(session.error());
+    AskedDevice asked = askedDevice(request.backend, log, request.device);
+    auto opened = openSession(scene, *asked.device, log);
+    if (!opened) return report(opened.error());
+    if (opened->instead) asked.device = std::move(opened->instead);
+    const std::unique_ptr<Session> session = std::move(opened->session);
 
     const Graceful graceful;
     const int every = request.every.value_or(1);
     size_t files = 0, triangles = 0;
     int dry = 0;
-    Progress progress((*session)->scene().name);
+    Progress progress(session->scene().name);
     for (int f = 0; f < *frames && !graceful.interrupted(); ++f) {
-        (*session)->step(frameSeconds((*session)->scene()), true);
-        progress.show(static_cast<double>(f + 1) / *frames, fmt::format("{:.2f} s", (*session)->world().time()));
+        session->step(frameSeconds(session->scene()), true);
+        if (const Result<bool> moved = keepRunning(*session, asked.device, log); !moved) return report(moved.error());
+        progress.show(static_cast<double>(f + 1) / *frames, fmt::format("{:.2f} s", session->world().time()));
         if (f % every != 0) continue;
-        const HostParticles particles = readParticles((*session)->world());
-        const Result<IsoSurface> surface = IsoSurface::create(particles.position, (*session)->world().params().spacing);
+        const HostParticles particles = readParticles(session->world());
+        const Result<IsoSurface> surface = IsoSurface::create(particles.position, session->world().params().spacing);
         if (!surface) return report(surface.error());
         if (surface->count() == 0) {
             ++dry;
@@ -73,7 +77,7 @@ int exportAs(const ExportRequest& request, SceneFile scene) {
     if (graceful.interrupted()) return kInterrupted;
     if (files == 0)
         return report(failed(fmt::format("{} has no particles within {:.3g} s, so there is no surface to write: ask for more --seconds",
-                                         (*session)->scene().name, (*session)->world().time())));
+                                         session->scene().name, session->world().time())));
     if (dry > 0) log.notice(fmt::format("{} frames without particles were left out", dry));
     fmt::print("{} {} {}_*.{}, {} triangles on average\n", files, files == 1 ? "surface" : "surfaces", (folder / name).string(),
                format.name, triangles / files);
@@ -97,13 +101,14 @@ int exportVerb(const Arguments& arguments) {
                   kMaxCellsPerSpacing);
     reader.option("--out", "DIR", "folder that the meshes go to: NAME_0000.obj, by frame; default: out", request.out);
     reader.option("--backend", "NAME", "what simulates: auto, cpu, gl or cl", request.backend);
+    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
     reader.option("--preset", "NAME", "one of the scene's sets of values, before any --set", request.preset);
     reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", request.assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     if (Status sense = checkRequest(request); !sense) return report(sense.error());
     Result<SceneFile> scene = loadScene(request.scene, request.assignments, request.preset);
     if (!scene) return report(scene.error());
-    return exportAs(request, std::move(*scene));
+    return exportAs(request, *scene);
 }
 
 }  // namespace rivulet

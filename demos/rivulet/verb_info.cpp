@@ -15,7 +15,7 @@ int infoVerb(const Arguments& arguments) {
     Result<ContextEgl> context = ContextEgl::create();
     GlFacts gl = context ? currentGlFacts() : noGl(context.error().message);
     std::unique_ptr<Device> cpu = makeDevice("cpu", gl, {});
-    std::vector<std::string> cl = describeClDevices();
+    const std::vector<ClDeviceListing> cl = listClDevices();
 
     fmt::print("rivulet  {}\n", RIVULET_VERSION);
     fmt::print("machine  {}\n", machineName());
@@ -27,7 +27,7 @@ int infoVerb(const Arguments& arguments) {
         fmt::print("OpenGL   none: {}\n", gl.absent);
     }
     if (cl.empty()) fmt::print("OpenCL   none\n");
-    for (size_t i = 0; i < cl.size(); ++i) fmt::print("{}{}\n", i == 0 ? "OpenCL   " : "         ", cl[i]);
+    for (size_t i = 0; i < cl.size(); ++i) fmt::print("{}{} {}\n", i == 0 ? "OpenCL   " : "         ", i + 1, cl[i].sentence);
     BackendChoice choice = chooseBackend("auto", gl);
     fmt::print("auto     would simulate on {}, because {}\n", backendName(choice.backend), choice.why);
     return kDone;

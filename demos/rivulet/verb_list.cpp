@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "demos/rivulet/cli.h"
+#include "engine/compute/device_cl.h"
 #include "engine/core/json.h"
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/scene_file.h"
@@ -38,6 +39,12 @@ void liquidRows() {
     }
 }
 
+void devices() {
+    rows(backends());
+    const std::vector<ClDeviceListing> all = listClDevices();
+    for (size_t k = 0; k < all.size(); ++k) row(fmt::format("cl --device {}", k + 1), all[k].sentence);
+}
+
 struct ListRow {
     const char* name;
     const char* doc;
@@ -51,7 +58,7 @@ Table<ListRow> lists() {
         {"renderers", "look.renderer: how the water is drawn", [] { rows(renderers()); }},
         {"filters", "look.filter: how a surface is made of the particles' depth", [] { rows(filters()); }},
         {"voxels", "voxelize --mode: how a mesh becomes voxels", [] { rows(voxelModes()); }},
-        {"devices", "--backend: what can simulate", [] { rows(backends()); }},
+        {"devices", "--backend and --device: what can simulate", devices},
     };
     return {table};
 }

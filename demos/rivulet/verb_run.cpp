@@ -6,6 +6,7 @@
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
+#include "fluid/bridge/backend.h"
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/session.h"
 
@@ -78,6 +79,7 @@ int runVerb(const Arguments& arguments) {
     std::optional<double> seconds;
     reader.positional("SCENE.json", "the scene", scene, true);
     reader.option("--backend", "NAME", "what simulates: auto, cpu, gl or cl", options.backend);
+    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", options.device);
     reader.flag("--headless", "no window: write a video, pictures and figures", headless);
     reader.flag("--no-render", "no pictures at all: simulate and write figures", noRender);
     reader.option("--frames", "N", "how many frames, 60 a second that is shown", options.frames, 0, kMostFrames);
@@ -98,8 +100,7 @@ int runVerb(const Arguments& arguments) {
     reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
-    static const std::vector<std::string> backends = {"auto", "cpu", "gl", "cl"};
-    if (Status known = checkWord("backend", options.backend, backends); !known) return report(known.error());
+    if (Status sense = settleBackend(options.backend, "auto", options.device); !sense) return report(sense.error());
     std::vector<std::string> cooperations = plans().names();
     cooperations.emplace_back("auto");
     if (Status known = checkWord("plan", options.cooperate, cooperations); !known) return report(known.error());

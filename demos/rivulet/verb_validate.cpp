@@ -21,7 +21,7 @@ namespace {
 
 struct ValidateRequest {
     std::vector<std::string> names, assignments;
-    std::string method, backend = "cpu", json, pictures;
+    std::string method, backend, device, json, pictures;
     bool quick = false;
 };
 
@@ -63,7 +63,7 @@ void print(const PhysicsCase& row, const Outcome& o) {
     std::fflush(stdout);
 }
 
-Status checkRequest(const ValidateRequest& request) {
+Status checkRequest(ValidateRequest& request) {
     for (const std::string& name : request.names)
         if (Status known = checkWord("case", name, physicsCases().names()); !known) return known;
     if (!request.method.empty()) {
@@ -73,7 +73,7 @@ Status checkRequest(const ValidateRequest& request) {
                 if (std::find(any.begin(), any.end(), method) == any.end()) any.push_back(method);
         if (Status known = checkWord("method", request.method, any); !known) return known;
     }
-    if (Status known = checkWord("backend", request.backend, backends().names()); !known) return known;
+    if (Status sense = settleBackend(request.backend, "cpu", request.device); !sense) return sense;
     if (!request.json.empty())
         if (Status writable = checkWritable(request.json); !writable) return writable;
     if (!request.pictures.empty()) return makeFolder(request.pictures);
@@ -96,6 +96,7 @@ int validateVerb(const Arguments& arguments) {
     reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter, truth",
                   request.method);
     reader.option("--backend", "B", "cpu, gl or cl", request.backend);
+    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
     reader.option("--json", "FILE.json", "also write the figures to a file", request.json);
     reader.option("--pictures", "DIR", "draw each case, measured against reference, as SVG into this folder", request.pictures);
     reader.option("--set", "path=value", "change a parameter of the case's scene", request.assignments);
@@ -104,7 +105,7 @@ int validateVerb(const Arguments& arguments) {
 
     std::vector<std::string> names = request.names.empty() ? physicsCases().names() : request.names;
 
-    const AskedDevice asked = askedDevice(request.backend, stderrLog());
+    const AskedDevice asked = askedDevice(request.backend, stderrLog(), request.device);
     const std::unique_ptr<Device>& device = asked.device;
     const bool onCpu = device->backend() == Backend::cpu;
     const std::vector<CpuKernelRow> rows = cpuKernels();

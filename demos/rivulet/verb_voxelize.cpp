@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct VoxelizeRequest {
-    std::string mesh, out, mode = "solid", backend = "auto", stats, slices, picture;
+    std::string mesh, out, mode = "solid", backend, device, stats, slices, picture;
     std::optional<int> resolution;
     bool thesisOrder = false, labels = false, band = false;
 };
@@ -37,9 +37,8 @@ Status checkEnding(const char* option, const std::string& path, const char* endi
 
 // What makes no sense, and what could not be written later, is said before any work is done.
 Status checkRequest(VoxelizeRequest& request) {
-    static const std::vector<std::string> backendNames = backends().names();
     if (Status known = checkWord("mode", request.mode, voxelModes().names()); !known) return known;
-    if (Status known = checkWord("backend", request.backend, backendNames); !known) return known;
+    if (Status sense = settleBackend(request.backend, "auto", request.device); !sense) return sense;
     if (request.thesisOrder && request.mode != "depth")
         return badInput("--thesis-order is an order of mode depth's work; add --mode depth, or leave it out");
     if (request.out.empty()) request.out = fs::path(request.mesh).stem().string() + ".rvox";
@@ -163,7 +162,7 @@ int voxelizeAs(const VoxelizeRequest& request) {
     const Log log = stderrLog();
     Result<Mesh> mesh = importMesh(request.mesh);
     if (!mesh) return report(mesh.error());
-    const AskedDevice asked = askedDevice(request.backend, log);
+    const AskedDevice asked = askedDevice(request.backend, log, request.device);
     const std::unique_ptr<Device>& device = asked.device;
 
     // Until files are written Ctrl-C leaves at once: there is nothing to tidy up.
@@ -225,6 +224,7 @@ int voxelizeVerb(const Arguments& arguments) {
     reader.option("--out", "FILE.rvox", "what to write; default: the mesh's name with .rvox, in this folder", request.out);
     reader.option("--mode", "NAME", fmt::format("{}; default: solid", modes), request.mode);
     reader.option("--backend", "NAME", "what computes: auto, cpu, gl or cl; the voxels are the same", request.backend);
+    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
     reader.flag("--thesis-order", "mode depth: work in the thesis's order; the voxels are the same", request.thesisOrder);
     reader.flag("--labels", "also keep which voxel belongs to which material", request.labels);
     reader.flag("--band", "also keep exact distances and directions near the mesh", request.band);

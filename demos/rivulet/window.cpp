@@ -23,7 +23,9 @@ int runWindow(const RunOptions& options) {
     if (!window) return report(window.error());
     auto viewer = Viewer::create(options.scene,
                                  {.backend = options.backend,
-                                  .cooperate = options.cooperate,
+                                  .device = options.device,
+                                  .cooperate = options.device = options.device,
+                                  .cooperate,
                                   .clipboard = window->handle(),
                                   .width = options.width,
                                   .height = options.height},

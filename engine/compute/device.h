@@ -68,6 +68,16 @@ struct DeviceInfo {
     size_t maxBufferBytes = SIZE_MAX;
 };
 
+// Whether a device still does what it is told.
+struct DeviceHealth {
+    enum State {
+        works,
+        full,  // it had no memory for something; what it holds can still be read
+        lost,  // something that it was told was not done: what is read back from it means nothing
+    } state = works;
+    std::string why;  // half a sentence: "could not run fluid/reorder: CL_OUT_OF_RESOURCES"
+};
+
 // Time spent in all dispatches of one kernel since takeTimes() was last called. GPU figures come some frames late.
 struct PassTime {
     std::string name;
@@ -80,6 +90,8 @@ class Device {
     virtual ~Device() = default;
     virtual Backend backend() const = 0;
     virtual const DeviceInfo& info() const = 0;
+    // As of what has been heard so far, which may be some calls late. What has gone wrong stays so.
+    virtual DeviceHealth health() const { return {}; }
 
     // `path` as "fluid/wcsph_density" (shaders/fluid/wcsph_density.kernel). The same path and defines give the same Kernel.
     virtual Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) = 0;

@@ -1,6 +1,5 @@
 #include "engine/compute/device_cl.h"
 
-#include <CL/cl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,35 +7,10 @@
 #include <deque>
 #include <optional>
 
+#include "engine/compute/cl_devices.h"
+
 namespace rivulet {
 namespace {
-
-std::string errorName(cl_int code) {
-    switch (code) {
-        case CL_DEVICE_NOT_FOUND:
-            return "CL_DEVICE_NOT_FOUND";
-        case CL_DEVICE_NOT_AVAILABLE:
-            return "CL_DEVICE_NOT_AVAILABLE";
-        case CL_COMPILER_NOT_AVAILABLE:
-            return "CL_COMPILER_NOT_AVAILABLE";
-        case CL_MEM_OBJECT_ALLOCATION_FAILURE:
-            return "CL_MEM_OBJECT_ALLOCATION_FAILURE";
-        case CL_OUT_OF_RESOURCES:
-            return "CL_OUT_OF_RESOURCES";
-        case CL_OUT_OF_HOST_MEMORY:
-            return "CL_OUT_OF_HOST_MEMORY";
-        case CL_BUILD_PROGRAM_FAILURE:
-            return "CL_BUILD_PROGRAM_FAILURE";
-        case CL_INVALID_BUFFER_SIZE:
-            return "CL_INVALID_BUFFER_SIZE";
-        case CL_INVALID_KERNEL_ARGS:
-            return "CL_INVALID_KERNEL_ARGS";
-        case CL_INVALID_WORK_GROUP_SIZE:
-            return "CL_INVALID_WORK_GROUP_SIZE";
-        default:
-            return fmt::format("OpenCL error {}", code);
-    }
-}
 
 // Owns one OpenCL object.
 template <class T, cl_int (*kRelease)(T)>
@@ -74,73 +48,6 @@ cl_int stateOf(const Event& event) {
     return state;
 }
 
-template <class T>
-T deviceValue(cl_device_id device, cl_device_info what) {
-    T value{};
-    clGetDeviceInfo(device, what, sizeof value, &value, nullptr);
-    return value;
-}
-
-// What clGet*Info gives as text, without the blanks and line ends that some drivers put around it.
-template <class Get>
-std::string infoText(Get get) {
-    constexpr const char* kBlank = " \n\r\t";
-    size_t size = 0;
-    if (get(size_t{0}, nullptr, &size) != CL_SUCCESS || size == 0) return {};
-    std::string text(size, '\0');
-    if (get(size, text.data(), nullptr) != CL_SUCCESS) return {};
-    text.resize(std::strlen(text.c_str()));
-    const size_t first = text.find_first_not_of(kBlank);
-    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-std::string deviceText(cl_device_id device, cl_device_info what) {
-    return infoText([&](size_t size, void* to, size_t* needed) { return clGetDeviceInfo(device, what, size, to, needed); });
-}
-std::string platformText(cl_platform_id platform, cl_platform_info what) {
-    return infoText([&](size_t size, void* to, size_t* needed) { return clGetPlatformInfo(platform, what, size, to, needed); });
-}
-
-struct Candidate {
-    cl_platform_id platform;
-    cl_device_id device;
-    cl_device_type type;
-    bool usable;  // there now, with a compiler, OpenCL 1.2
-};
-
-// Every device, the best first: usable GPUs, other usable ones, the rest. `platforms` receives how many drivers were found.
-std::vector<Candidate> findDevices(size_t& platforms) {
-    // A driver file that names a missing library is skipped by the loader; with no other driver the call fails, which means none too.
-    cl_uint count = 0;
-    platforms = 0;
-    if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
-    std::vector<cl_platform_id> platformIds(count);
-    if (clGetPlatformIDs(count, platformIds.data(), nullptr) != CL_SUCCESS) return {};
-    platforms = count;
-    std::vector<Candidate> found;
-    for (const cl_platform_id platform : platformIds) {
-        cl_uint devices = 0;
-        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &devices) != CL_SUCCESS || devices == 0) continue;
-        std::vector<cl_device_id> ids(devices);
-        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, devices, ids.data(), nullptr) != CL_SUCCESS) continue;
-        for (const cl_device_id id : ids) {
-            const bool usable = deviceValue<cl_bool>(id, CL_DEVICE_AVAILABLE) && deviceValue<cl_bool>(id, CL_DEVICE_COMPILER_AVAILABLE) &&
-                                deviceValue<cl_bool>(id, CL_DEVICE_ENDIAN_LITTLE) &&
-                                !deviceText(id, CL_DEVICE_VERSION).starts_with("OpenCL 1.0") &&
-                                !deviceText(id, CL_DEVICE_VERSION).starts_with("OpenCL 1.1");
-            found.push_back({platform, id, deviceValue<cl_device_type>(id, CL_DEVICE_TYPE), usable});
-        }
-    }
-    const auto rank = [](const Candidate& c) { return !c.usable ? 2 : (c.type & CL_DEVICE_TYPE_GPU) ? 0 : 1; };
-    std::stable_sort(found.begin(), found.end(), [&](const Candidate& a, const Candidate& b) { return rank(a) < rank(b); });
-    return found;
-}
-
-const char* typeName(cl_device_type type) {
-    if (type & CL_DEVICE_TYPE_GPU) return "GPU";
-    if (type & CL_DEVICE_TYPE_CPU) return "CPU";
-    return "accelerator";
-}
-
 constexpr uint32_t kDefaultLocalSize = 64;
 constexpr size_t kParamSlots = 32;      // parameter blocks kept on the device
 constexpr uint32_t kFlushEvery = 16;    // dispatches handed to the driver at once
@@ -148,10 +55,11 @@ constexpr size_t kHarvestAbove = 1024;  // timed dispatches that may wait for ta
 
 class ClDevice final : public Device {
   public:
-    ClDevice(const Candidate& chosen, Context context, Queue queue, const ShaderFiles& files, Log log);
+    ClDevice(const ClCandidate& chosen, Context context, Queue queue, const ShaderFiles& files, Log log, const ClOptions& options);
     ~ClDevice() override;
     Backend backend() const override { return Backend::cl; }
     const DeviceInfo& info() const override { return info_; }
+    DeviceHealth health() const override { return health_; }
     Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
     std::vector<std::string> kernels() const override {
         std::vector<std::string> made;
@@ -199,11 +107,19 @@ class ClDevice final : public Device {
         std::function<void(std::span<const std::byte>)> then;
     };
 
+    Program build(const KernelSource& source, std::string_view file, Error& why);
+    Program cached(const std::string& key);
+    void keep(const std::string& key, const Program& program);
     cl_mem params(std::span<const std::byte> bytes);
     void harvest();
     double hostTime(cl_ulong at);
     void dropUploads();
     bool succeeded(cl_int code, std::string_view what);
+    // What the driver says to a command; nothing is asked of a device that a test has lost.
+    template <class Command>
+    cl_int enqueue(const Command& command) {
+        return dispatches_ < failAfter_ ? command() : CL_DEVICE_NOT_AVAILABLE;
+    }
     static cl_mem memory(const Buffer& buffer) { return reinterpret_cast<cl_mem>(static_cast<uintptr_t>(buffer.handle())); }
 
     ShaderFiles files_;
@@ -213,6 +129,10 @@ class ClDevice final : public Device {
     Queue queue_;
     DeviceInfo info_;
     std::string options_;
+    std::string made_;  // what, beside its source, a program is known by
+    ProgramCache cache_;
+    size_t memoryLimit_;
+    uint64_t failAfter_, dispatches_ = 0;
     size_t maxLocalSize_;
     std::vector<Entry> kernels_;
     std::deque<ParamSlot> params_;  // oldest first
@@ -222,20 +142,31 @@ class ClDevice final : public Device {
     std::vector<PassTime> times_;
     size_t bytesAllocated_ = 0;
     uint32_t sinceFlush_ = 0;
-    bool troubleTold_ = false;
+    DeviceHealth health_;
     std::optional<double> ahead_;  // s, the host's clock before the device's
 };
 
-ClDevice::ClDevice(const Candidate& chosen, Context context, Queue queue, const ShaderFiles& files, Log log)
-    : files_(files), log_(std::move(log)), device_(chosen.device), context_(std::move(context)), queue_(std::move(queue)) {
-    info_.name = deviceText(device_, CL_DEVICE_NAME);
-    info_.driver = fmt::format("{}, driver {}", platformText(chosen.platform, CL_PLATFORM_VERSION), deviceText(device_, CL_DRIVER_VERSION));
+ClDevice::ClDevice(const ClCandidate& chosen, Context context, Queue queue, const ShaderFiles& files, Log log, const ClOptions& options)
+    : files_(files),
+      log_(std::move(log)),
+      device_(chosen.device),
+      context_(std::move(context)),
+      queue_(std::move(queue)),
+      cache_(options.cache),
+      memoryLimit_(options.memoryLimit),
+      failAfter_(options.failAfter) {
+    const std::string version = clPlatformText(chosen.platform, CL_PLATFORM_VERSION), driver = clDeviceText(device_, CL_DRIVER_VERSION);
+    info_.name = chosen.name;
+    info_.driver = fmt::format("{}, driver {}", version, driver);
     info_.software = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
-    info_.maxBufferBytes = deviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
-    maxLocalSize_ = deviceValue<size_t>(device_, CL_DEVICE_MAX_WORK_GROUP_SIZE);
+    info_.maxBufferBytes = clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    maxLocalSize_ = clDeviceValue<size_t>(device_, CL_DEVICE_MAX_WORK_GROUP_SIZE);
     options_ = "-cl-std=CL1.2";  // no fast-math: the backends agree to rounding
-    if (deviceValue<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
+    if (clDeviceValue<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
         options_ += " -cl-fp32-correctly-rounded-divide-sqrt";
+    for (const std::string& part : {options_, info_.name, clDeviceText(device_, CL_DEVICE_VENDOR), clDeviceText(device_, CL_DEVICE_VERSION),
+                                    driver, chosen.platformName, version})
+        made_ += part + '\n';
 }
 
 ClDevice::~ClDevice() { clFinish(queue_.get()); }
@@ -243,9 +174,48 @@ ClDevice::~ClDevice() { clFinish(queue_.get()); }
 // Calls that have no Result say their trouble once: after the first, a broken queue would repeat it every frame.
 bool ClDevice::succeeded(cl_int code, std::string_view what) {
     if (code == CL_SUCCESS) return true;
-    if (!troubleTold_) log_.error(fmt::format("OpenCL on {} could not {}: {}; try --backend cpu", info_.name, what, errorName(code)));
-    troubleTold_ = true;
+    if (health_.state != DeviceHealth::lost) {
+        health_ = {DeviceHealth::lost, fmt::format("could not {}: {}", what, clErrorName(code))};
+        log_.error(fmt::format("OpenCL on {} {}; try --backend cpu", info_.name, health_.why));
+    }
     return false;
+}
+
+// A program of an earlier start, or one of this start's: null where there is none, or the driver will not have it.
+Program ClDevice::cached(const std::string& key) {
+    const std::optional<std::vector<std::byte>> kept = cache_.find(key);
+    if (!kept) return {};
+    const size_t size = kept->size();
+    const auto* bytes = reinterpret_cast<const unsigned char*>(kept->data());
+    cl_int status = CL_SUCCESS, code = CL_SUCCESS;
+    Program program(clCreateProgramWithBinary(context_.get(), 1, &device_, &size, &bytes, &status, &code));
+    if (!program || code != CL_SUCCESS || status != CL_SUCCESS) return {};
+    if (clBuildProgram(program.get(), 1, &device_, options_.c_str(), nullptr, nullptr) != CL_SUCCESS) return {};
+    return program;
+}
+
+void ClDevice::keep(const std::string& key, const Program& program) {
+    size_t size = 0;
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, sizeof size, &size, nullptr) != CL_SUCCESS || size == 0) return;
+    std::vector<std::byte> binary(size);
+    auto* bytes = reinterpret_cast<unsigned char*>(binary.data());
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, sizeof bytes, static_cast<void*>(&bytes), nullptr) == CL_SUCCESS)
+        cache_.keep(key, binary);
+}
+
+// Null: `why` says what the compiler has against it.
+Program ClDevice::build(const KernelSource& source, std::string_view file, Error& why) {
+    const char* text = source.text.c_str();
+    cl_int code = CL_SUCCESS;
+    Program program(clCreateProgramWithSource(context_.get(), 1, &text, nullptr, &code));
+    if (program) code = clBuildProgram(program.get(), 1, &device_, options_.c_str(), nullptr, nullptr);
+    if (code == CL_SUCCESS) return program;
+    const std::string log = !program ? std::string() : clText([&](size_t size, void* to, size_t* needed) {
+        return clGetProgramBuildInfo(program.get(), device_, CL_PROGRAM_BUILD_LOG, size, to, needed);
+    });
+    why = failed(
+        fmt::format("OpenCL on {} cannot compile {} ({}):\n{}", info_.name, file, clErrorName(code), shortLog(readableLog(log, source))));
+    return {};
 }
 
 Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> defines) {
@@ -267,20 +237,20 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
     const std::string file = fmt::format("shaders/{}.kernel", path);
     Result<KernelSource> source = files_.flatten(file, sorted, Dialect::openclC);
     if (!source) return source.error();
-    const char* text = source->text.c_str();
-    cl_int code = CL_SUCCESS;
-    Program program(clCreateProgramWithSource(context_.get(), 1, &text, nullptr, &code));
-    if (program) code = clBuildProgram(program.get(), 1, &device_, options_.c_str(), nullptr, nullptr);
-    if (code != CL_SUCCESS) {
-        const std::string log = !program ? std::string() : infoText([&](size_t size, void* to, size_t* needed) {
-            return clGetProgramBuildInfo(program.get(), device_, CL_PROGRAM_BUILD_LOG, size, to, needed);
-        });
-        return failed(
-            fmt::format("OpenCL on {} cannot compile {} ({}):\n{}", info_.name, file, errorName(code), readableLog(log, *source)));
-    }
+    const std::string programKey = made_ + source->text;
     const std::string name(path.substr(path.rfind('/') + 1));
-    ClKernel object(clCreateKernel(program.get(), name.c_str(), &code));
-    if (!object) return failed(fmt::format("{} holds no kernel named {} ({}): write KERNEL({}, ...)", file, name, errorName(code), name));
+    cl_int code = CL_SUCCESS;
+    Program program = cached(programKey);
+    ClKernel object(program ? clCreateKernel(program.get(), name.c_str(), &code) : nullptr);
+    if (!object) {
+        Error why;
+        program = build(*source, file, why);
+        if (!program) return why;
+        object = ClKernel(clCreateKernel(program.get(), name.c_str(), &code));
+        if (!object)
+            return failed(fmt::format("{} holds no kernel named {} ({}): write KERNEL({}, ...)", file, name, clErrorName(code), name));
+        keep(programKey, program);
+    }
     size_t allowed = 0;
     clGetKernelWorkGroupInfo(object.get(), device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof allowed, &allowed, nullptr);
     if (localSize > std::min(allowed, maxLocalSize_))
@@ -296,19 +266,30 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
 size_t paddedBytes(size_t bytes) { return std::max<size_t>((bytes + 15) / 16 * 16, 16); }
 
 Result<Buffer> ClDevice::allocate(size_t bytes) {
-    if (bytes > info_.maxBufferBytes)
+    if (bytes > info_.maxBufferBytes) {
+        if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("has no buffers of {} MiB", bytes >> 20U)};
         return failed(fmt::format("{} allows buffers of {} MiB, but {} MiB were asked for; use fewer particles or coarser voxels",
                                   info_.name, info_.maxBufferBytes >> 20U, bytes >> 20U));
+    }
     const size_t padded = paddedBytes(bytes);
-    cl_int code = CL_SUCCESS;
-    Memory memory(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, padded, nullptr, &code));
+    cl_int code = bytesAllocated_ + bytes > memoryLimit_ ? CL_MEM_OBJECT_ALLOCATION_FAILURE : CL_SUCCESS;
+    Memory memory(code != CL_SUCCESS ? nullptr : clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, padded, nullptr, &code));
     const cl_uint zero = 0;
     // Drivers that allocate late fail here, not above.
-    if (memory) code = clEnqueueFillBuffer(queue_.get(), memory.get(), &zero, sizeof zero, 0, padded, 0, nullptr, nullptr);
-    if (code != CL_SUCCESS)
+    if (memory)
+        code = enqueue([&] { return clEnqueueFillBuffer(queue_.get(), memory.get(), &zero, sizeof zero, 0, padded, 0, nullptr, nullptr); });
+    if (code != CL_SUCCESS) {
+        const bool full = code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES || code == CL_OUT_OF_HOST_MEMORY ||
+                          code == CL_INVALID_BUFFER_SIZE;
+        if (!full) {
+            succeeded(code, fmt::format("allocate {} MiB", bytes >> 20U));
+            return failed(fmt::format("OpenCL on {} {}; use --backend cpu", info_.name, health_.why));
+        }
+        if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("is out of memory: {}", clErrorName(code))};
         return failed(
             fmt::format("{} is out of memory: {} MiB were asked for while {} MiB are in use ({}); use fewer particles or coarser voxels",
-                        info_.name, bytes >> 20U, bytesAllocated_ >> 20U, errorName(code)));
+                        info_.name, bytes >> 20U, bytesAllocated_ >> 20U, clErrorName(code)));
+    }
     bytesAllocated_ += bytes;
     clRetainMemObject(memory.get());  // the Buffer's
     return Buffer(*this, reinterpret_cast<uintptr_t>(memory.get()), bytes);
@@ -329,10 +310,10 @@ void ClDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset
     dropUploads();
     Upload upload{Event(), std::vector<std::byte>(bytes.begin(), bytes.end())};
     cl_event written = nullptr;
-    if (!succeeded(
-            clEnqueueWriteBuffer(queue_.get(), memory(to), CL_FALSE, offset, bytes.size(), upload.bytes.data(), 0, nullptr, &written),
-            fmt::format("write {} bytes", bytes.size())))
-        return;
+    const cl_int code = enqueue([&] {
+        return clEnqueueWriteBuffer(queue_.get(), memory(to), CL_FALSE, offset, bytes.size(), upload.bytes.data(), 0, nullptr, &written);
+    });
+    if (!succeeded(code, fmt::format("write {} bytes", bytes.size()))) return;
     upload.written = Event(written);
     uploads_.push_back(std::move(upload));
 }
@@ -340,22 +321,26 @@ void ClDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset
 void ClDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offset) {
     ASSERT(offset + bytes.size() <= from.bytes(), "read inside the buffer");
     if (bytes.empty()) return;
-    succeeded(clEnqueueReadBuffer(queue_.get(), memory(from), CL_TRUE, offset, bytes.size(), bytes.data(), 0, nullptr, nullptr),
-              fmt::format("read {} bytes", bytes.size()));
+    const cl_int code = enqueue(
+        [&] { return clEnqueueReadBuffer(queue_.get(), memory(from), CL_TRUE, offset, bytes.size(), bytes.data(), 0, nullptr, nullptr); });
+    succeeded(code, fmt::format("read {} bytes", bytes.size()));
 }
 
 void ClDevice::fill(Buffer& to, uint32_t word) {
     if (to.bytes() == 0) return;
-    succeeded(clEnqueueFillBuffer(queue_.get(), memory(to), &word, sizeof word, 0, (to.bytes() + 3) / 4 * 4, 0, nullptr, nullptr),
-              fmt::format("fill {} bytes", to.bytes()));
+    const cl_int code = enqueue([&] {
+        return clEnqueueFillBuffer(queue_.get(), memory(to), &word, sizeof word, 0, (to.bytes() + 3) / 4 * 4, 0, nullptr, nullptr);
+    });
+    succeeded(code, fmt::format("fill {} bytes", to.bytes()));
 }
 
 void ClDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
     ASSERT(bytes <= from.bytes() && bytes <= to.bytes(), "copy inside both buffers");
     ASSERT(from.handle() != to.handle(), "copy from one buffer to another");
     if (bytes == 0) return;
-    succeeded(clEnqueueCopyBuffer(queue_.get(), memory(from), memory(to), 0, 0, bytes, 0, nullptr, nullptr),
-              fmt::format("copy {} bytes", bytes));
+    const cl_int code =
+        enqueue([&] { return clEnqueueCopyBuffer(queue_.get(), memory(from), memory(to), 0, 0, bytes, 0, nullptr, nullptr); });
+    succeeded(code, fmt::format("copy {} bytes", bytes));
 }
 
 void ClDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
@@ -363,9 +348,9 @@ void ClDevice::readLater(const Buffer& from, size_t bytes, std::function<void(st
     Awaited awaited{Event(), std::vector<std::byte>(bytes), std::move(then)};
     if (bytes > 0) {
         cl_event done = nullptr;
-        if (!succeeded(clEnqueueReadBuffer(queue_.get(), memory(from), CL_FALSE, 0, bytes, awaited.bytes.data(), 0, nullptr, &done),
-                       fmt::format("read {} bytes", bytes)))
-            return;
+        const cl_int code = enqueue(
+            [&] { return clEnqueueReadBuffer(queue_.get(), memory(from), CL_FALSE, 0, bytes, awaited.bytes.data(), 0, nullptr, &done); });
+        if (!succeeded(code, fmt::format("read {} bytes", bytes))) return;
         awaited.done = Event(done);
         clFlush(queue_.get());
         sinceFlush_ = 0;
@@ -399,16 +384,16 @@ cl_mem ClDevice::params(std::span<const std::byte> bytes) {
         params_.pop_front();
     }
     if (!slot.memory || slot.bytes.size() != bytes.size()) {
-        cl_int code = CL_SUCCESS;
-        slot.memory = Memory(clCreateBuffer(context_.get(), CL_MEM_READ_ONLY, paddedBytes(bytes.size()), nullptr, &code));
-        if (!succeeded(code, "allocate a parameter block")) return nullptr;
+        cl_int made = CL_SUCCESS;
+        slot.memory = Memory(clCreateBuffer(context_.get(), CL_MEM_READ_ONLY, paddedBytes(bytes.size()), nullptr, &made));
+        if (!succeeded(made, "allocate a parameter block")) return nullptr;
     }
     slot.bytes.assign(bytes.begin(), bytes.end());
     cl_event written = nullptr;
-    if (!succeeded(
-            clEnqueueWriteBuffer(queue_.get(), slot.memory.get(), CL_FALSE, 0, bytes.size(), slot.bytes.data(), 0, nullptr, &written),
-            "write a parameter block"))
-        return nullptr;
+    const cl_int code = enqueue([&] {
+        return clEnqueueWriteBuffer(queue_.get(), slot.memory.get(), CL_FALSE, 0, bytes.size(), slot.bytes.data(), 0, nullptr, &written);
+    });
+    if (!succeeded(code, "write a parameter block")) return nullptr;
     slot.written = Event(written);
     params_.push_back(std::move(slot));
     return params_.back().memory.get();
@@ -430,9 +415,10 @@ void ClDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     const size_t local = entry.localSize;
     const size_t global = (threads + local - 1) / local * local;
     cl_event done = nullptr;
-    if (!succeeded(clEnqueueNDRangeKernel(queue_.get(), entry.kernel.get(), 1, nullptr, &global, &local, 0, nullptr, &done),
-                   fmt::format("run {}", entry.path)))
-        return;
+    const cl_int code =
+        enqueue([&] { return clEnqueueNDRangeKernel(queue_.get(), entry.kernel.get(), 1, nullptr, &global, &local, 0, nullptr, &done); });
+    if (!succeeded(code, fmt::format("run {}", entry.path))) return;
+    ++dispatches_;
     timed_.push_back({Event(done), kernel.index});
     if (++sinceFlush_ >= kFlushEvery) {
         clFlush(queue_.get());
@@ -495,42 +481,36 @@ std::vector<PassTime> ClDevice::takeTimes() {
 
 }  // namespace
 
-Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log) {
+Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log, const ClOptions& options) {
     size_t platforms = 0;
-    const std::vector<Candidate> candidates = findDevices(platforms);
+    const std::vector<ClCandidate> all = findClDevices(platforms);
     if (platforms == 0)
         return failed(
             "this machine has no working OpenCL driver; install one (on Debian: apt-get install pocl-opencl-icd) or use --backend cpu");
-    std::string why = "it lists no device";
-    for (const Candidate& candidate : candidates) {
-        const std::string name = deviceText(candidate.device, CL_DEVICE_NAME);
+    if (all.empty()) return failed("OpenCL is installed but has no device to run on (it lists no device); use --backend cpu");
+    const auto candidates = namedClDevices(all, options.device);
+    if (!candidates) return candidates.error();
+    std::string why;
+    for (const ClCandidate& candidate : *candidates) {
         if (!candidate.usable) {
-            why = fmt::format("{} is not available, cannot compile, or is older than OpenCL 1.2", name);
+            why = fmt::format("{} is not available, cannot compile, or is older than OpenCL 1.2", candidate.name);
             continue;
         }
         cl_int code = CL_SUCCESS;
         const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(candidate.platform), 0};
         Context context(clCreateContext(properties, 1, &candidate.device, nullptr, nullptr, &code));
         Queue queue(context ? clCreateCommandQueue(context.get(), candidate.device, CL_QUEUE_PROFILING_ENABLE, &code) : nullptr);
-        if (queue)
-            return std::unique_ptr<Device>(
-                std::make_unique<ClDevice>(candidate, std::move(context), std::move(queue), files, std::move(log)));
-        why = fmt::format("{} cannot be opened: {}", name, errorName(code));
+        if (!queue) {
+            why = fmt::format("{} cannot be opened: {}", candidate.name, clErrorName(code));
+            continue;
+        }
+        if (!options.device.empty() && candidates->size() > 1)
+            log.notice(fmt::format("'{}' names {} OpenCL devices: {} ({}) is taken; 'rivulet list devices' has their numbers",
+                                   options.device, candidates->size(), candidate.name, candidate.platformName));
+        return std::unique_ptr<Device>(
+            std::make_unique<ClDevice>(candidate, std::move(context), std::move(queue), files, std::move(log), options));
     }
     return failed(fmt::format("OpenCL is installed but has no device to run on ({}); use --backend cpu", why));
-}
-
-std::vector<std::string> describeClDevices() {
-    size_t platforms = 0;
-    std::vector<std::string> sentences;
-    for (const Candidate& c : findDevices(platforms))
-        sentences.push_back(
-            fmt::format("{} ({}, {} compute units, {} MiB, buffers up to {} MiB; {}; driver {}){}", deviceText(c.device, CL_DEVICE_NAME),
-                        typeName(c.type), deviceValue<cl_uint>(c.device, CL_DEVICE_MAX_COMPUTE_UNITS),
-                        deviceValue<cl_ulong>(c.device, CL_DEVICE_GLOBAL_MEM_SIZE) >> 20U,
-                        deviceValue<cl_ulong>(c.device, CL_DEVICE_MAX_MEM_ALLOC_SIZE) >> 20U, platformText(c.platform, CL_PLATFORM_VERSION),
-                        deviceText(c.device, CL_DRIVER_VERSION), c.usable ? "" : ", which cannot run kernels here"));
-    return sentences;
 }
 
 }  // namespace rivulet

@@ -1,21 +1,41 @@
 // Device cl: kernels in OpenCL 1.2, on a GPU where there is one, else on whatever OpenCL offers (PoCL).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/compute/device.h"
 #include "engine/compute/kernel_source.h"
+#include "engine/compute/program_cache.h"
 #include "engine/core/log.h"
 
 namespace rivulet {
 
-// Kernels are read through `files`. Errors (Fault::failed): no OpenCL platform, no device that can compile kernels, no context.
-// `log` hears of trouble that comes later, where there is no Result to say it in: a dispatch that the driver refused.
-Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log = {});
+struct ClOptions {
+    // Which: its number in listClDevices(), from 1, or a part of its or its platform's name, letters of either case. "": the first.
+    std::string device = {};
+    std::string cache = programCacheFolder();  // where built programs are kept; "": nowhere
+    // What tests let go wrong: the device has no more memory than this; it is lost once it has run so many dispatches.
+    size_t memoryLimit = SIZE_MAX;
+    uint64_t failAfter = UINT64_MAX;
+};
 
-// A sentence for each OpenCL device of this machine, the one that makeClDevice takes first; empty where there is none.
-std::vector<std::string> describeClDevices();
+// Kernels are read through `files`. Errors: no OpenCL platform, no device that can compile kernels, no context (failed); none of the name
+// that was asked for (badInput). `log` hears which one is taken where several have that name, and of trouble that comes later, where there
+// is no Result to say it in: a dispatch that the driver refused. health() knows of it, too.
+Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log = {}, const ClOptions& options = {});
+
+struct ClDeviceListing {
+    std::string name, platform;
+    std::string sentence;  // these, and what it can
+};
+// The OpenCL devices of this machine, the one that makeClDevice takes first; empty where there is none.
+std::vector<ClDeviceListing> listClDevices();
+// Error (badInput): there are devices, and `wanted` (as ClOptions::device) is none of them.
+Status checkClDevice(std::string_view wanted);
 
 }  // namespace rivulet

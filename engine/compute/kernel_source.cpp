@@ -220,4 +220,33 @@ std::string readableLog(std::string_view log, const KernelSource& source) {
     return out;
 }
 
+std::string shortLog(std::string_view log) {
+    constexpr size_t kMostLines = 40, kWidest = 400;
+    const auto says = [](std::string_view line, std::string_view what) {
+        const size_t at = line.find(what);
+        return at != std::string_view::npos && (at == 0 || line[at - 1] == ' ' || line[at - 1] == ':');
+    };
+    std::vector<std::string_view> lines, wanted;
+    bool any = false, warned = false;  // an error; below a warning, up to the next error
+    for (size_t at = 0; at < log.size();) {
+        const size_t newline = std::min(log.find('\n', at), log.size());
+        const std::string_view line = log.substr(at, newline - at);
+        at = newline + 1;
+        lines.push_back(line);
+        const bool error = says(line, "error:") || says(line, "error ") || says(line, "ERROR:");
+        any = any || error;
+        warned = !error && (warned || says(line, "warning:") || says(line, "warning ") || says(line, "WARNING:"));
+        if (!warned) wanted.push_back(line);
+    }
+    if (!any) wanted = lines;
+    std::string out;
+    for (size_t k = 0; k < std::min(wanted.size(), kMostLines); ++k) {
+        if (k > 0) out += '\n';
+        out += wanted[k].substr(0, kWidest);
+        if (wanted[k].size() > kWidest) out += " ...";
+    }
+    if (wanted.size() > kMostLines) out += fmt::format("\n... and {} more lines", wanted.size() - kMostLines);
+    return out;
+}
+
 }  // namespace rivulet

@@ -43,4 +43,7 @@ class ShaderFiles {
 // Rewrites "3(12)" or "3:12" (file number, line) of a GLSL log into "shaders/fluid/sph.h:12".
 std::string readableLog(std::string_view log, const KernelSource& source);
 
+// A compiler's log without its warnings, where there are errors to say, and no longer than a screen; what is left out is counted.
+std::string shortLog(std::string_view log);
+
 }  // namespace rivulet

@@ -51,7 +51,8 @@ double overlapSeconds(const std::vector<PassSpan>& a, const std::vector<PassSpan
 // Adds what lasts as long as it.
 class TimedSpan {
   public:
-    TimedSpan(Timeline* to, std::string_view lane, std::string_view name) : to_(to), lane_(lane), span_{std::string(name), hostSeconds(), 0} {}
+    TimedSpan(Timeline* to, std::string_view lane, std::string_view name)
+        : to_(to), lane_(lane), span_{std::string(name), hostSeconds(), 0} {}
     ~TimedSpan() {
         if (to_ == nullptr) return;
         span_.end = hostSeconds();

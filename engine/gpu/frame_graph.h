@@ -74,7 +74,7 @@ class TransientPool {
     // calls = 0: left out. Empty before the first arrive.
     const std::vector<PassTime>& times() const;
     void onSpan(SpanSink sink);  // hears of each pass when its time has arrived; empty: nobody does
-    size_t textures() const;  // held, lent or free
+    size_t textures() const;     // held, lent or free
     size_t buffers() const;
     size_t bytes() const;  // of both
 

@@ -16,8 +16,8 @@ class StagingRing {
   public:
     static constexpr size_t kDeep = 3;
 
-    // The next piece, of at least so many bytes. Waits only where the GPU has not yet read what was written three frames ago: waits() counts
-    // it. Error (failed): out of memory.
+    // The next piece, of at least so many bytes. Waits only where the GPU has not yet read what was written three frames ago, and
+    // waits() counts that. Error (failed): out of memory.
     Status begin(size_t bytes);
     // So many bytes of the piece, for the host to write; between begin() and end().
     std::span<std::byte> take(size_t bytes);

@@ -1,7 +1,10 @@
 #include "fluid/bridge/backend.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glad/gl.h>
+
+#include <algorithm>
 
 #include "engine/app/context_egl.h"
 #include "engine/compute/device_cl.h"
@@ -50,22 +53,39 @@ BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl) {
     return {Backend::gl, fmt::format("the OpenGL renderer {} is a GPU", gl.renderer)};
 }
 
-std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log) {
-    auto cpu = [] {
-        std::vector<CpuKernelRow> rows = cpuKernels();
-        return makeCpuDevice(rows);
-    };
+Status settleBackend(std::string& backend, const char* otherwise, const std::string& device) {
+    if (backend.empty()) backend = device.empty() ? otherwise : "cl";
+    const std::vector<std::string> names = backends().names();
+    if (std::find(names.begin(), names.end(), backend) == names.end()) {
+        const std::string near = nearestName(backend, names);
+        return badInput(near.empty() ? fmt::format("unknown backend '{}'; there are: {}", backend, fmt::join(names, ", "))
+                                     : fmt::format("unknown backend '{}'; did you mean '{}'?", backend, near));
+    }
+    if (device.empty()) return ok();
+    if (backend == "auto") backend = "cl";
+    if (backend != "cl")
+        return badInput(fmt::format(
+            "--device chooses among OpenCL devices, and --backend {} is none: leave one of them out, or use --backend cl", backend));
+    return checkClDevice(device);
+}
+
+std::unique_ptr<Device> makeCpu() {
+    const std::vector<CpuKernelRow> rows = cpuKernels();
+    return makeCpuDevice(rows);
+}
+
+std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log, const std::string& clDevice) {
     BackendChoice choice = chooseBackend(wanted, gl);
     if (choice.backend == Backend::cpu) {
         if (wanted == "gl") log.notice(fmt::format("--backend gl: {}; the cpu simulates", choice.why));
-        return cpu();
+        return makeCpu();
     }
     ShaderFiles files = ShaderFiles::developer();
     if (choice.backend == Backend::gl) return makeGlDevice(files, log);
-    Result<std::unique_ptr<Device>> device = makeClDevice(files, log);
+    Result<std::unique_ptr<Device>> device = makeClDevice(files, log, {.device = clDevice});
     if (device) return std::move(*device);
     log.notice(fmt::format("--backend {}: {}; the cpu simulates", wanted, device.error().message));
-    return cpu();
+    return makeCpu();
 }
 
 }  // namespace rivulet

@@ -34,7 +34,13 @@ struct BackendChoice {
 // `wanted`: auto, cpu, gl or cl. gl only where `gl` is present; cl as asked, makeDevice finds out.
 BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl);
 
-// The device that was asked for. One that is absent: a notice in `log`, and a cpu device. Error: none at all, the cpu's cannot fail.
-std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log);
+// What --backend and --device ask for together; `backend` "" where it was not given, and is `otherwise` then. A device alone asks for cl.
+// Error (badInput): an unknown backend; a device of one that has none to choose among; an OpenCL device that is not there.
+Status settleBackend(std::string& backend, const char* otherwise, const std::string& device);
+
+// The device that was asked for, of cl that which `clDevice` names (ClOptions::device). One that is absent: a notice in `log`, and a cpu
+// device. Error: none at all, the cpu's cannot fail.
+std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log, const std::string& clDevice = {});
+std::unique_ptr<Device> makeCpu();  // on all cores
 
 }  // namespace rivulet

@@ -25,6 +25,10 @@ Table<PlanRow> plans() {
     return {rows};
 }
 
+void traceKernels(Device& device, Timeline& timeline) {
+    device.onSpan(timeline.lane(fmt::format("{}: kernels", backendName(device.backend()))));
+}
+
 // Finds cells on the CPU, of particles whose places come down from a GPU.
 struct Cooperation::Cells {
     std::unique_ptr<CpuDevice> cpu;
@@ -45,7 +49,8 @@ struct Cooperation::Cells {
     // The places, on their way down. Error: out of memory.
     Status fetch(Device& from, const FluidWorld::CellWork& work) {
         step = work.step;
-        for (auto [buffer, size] : {std::pair(&position, sizeof(vec4)), std::pair(&id, sizeof(uint32_t)), std::pair(&cell, sizeof(uint32_t))}) {
+        for (auto [buffer, size] :
+             {std::pair(&position, sizeof(vec4)), std::pair(&id, sizeof(uint32_t)), std::pair(&cell, sizeof(uint32_t))}) {
             if (buffer->bytes() >= step.count * size) continue;
             Result<Buffer> larger = cpu->allocate(step.count * size);
             if (!larger) return larger.error();
@@ -62,8 +67,9 @@ Cooperation::Cooperation(Session& session, Plan plan, Timeline* timeline, const 
     : session_(&session), plan_(plan), timeline_(timeline), log_(log), cells_(nullptr, [](Cells* c) { delete c; }) {
     const bool cpu = session.world().device().backend() == Backend::cpu;
     if (plan == Plan::behind && !session.mayWorkAside()) {
-        log.notice(cpu ? "--cooperate behind: a skin's maps are drawn from what is being stepped, so that a frame is stepped, then drawn"
-                       : "--cooperate behind is for the cpu, which steps while OpenGL draws; with another backend a frame is stepped, then drawn");
+        log.notice(
+            cpu ? "--cooperate behind: a skin's maps are drawn from what is being stepped, so that a frame is stepped, then drawn"
+                : "--cooperate behind is for the cpu, which steps while OpenGL draws; with another backend a frame is stepped, then drawn");
         plan_ = Plan::alone;
     }
     if (plan == Plan::thesis && cpu) {
@@ -100,9 +106,10 @@ void Cooperation::findCells() {
     const std::optional<FluidWorld::CellWork> work = world.cellWork();
     cells_->found = false;
     if (!work) {
-        if (!told_ && world.lastSubsteps() > 0)
+        if (!told_ && world.lastSubsteps() > 0 && world.device().backend() != Backend::cpu)
             log_.notice(
-                "--cooperate thesis: with bodies, periodic axes or a method that moves particles before it sorts them (pbf) no cell is known "
+                "--cooperate thesis: with bodies, periodic axes or a method that moves particles before it sorts them (pbf) no cell is "
+                "known "
                 "before the next step: the device finds them");
         told_ = told_ || world.lastSubsteps() > 0;
         return;
@@ -200,7 +207,10 @@ Result<std::vector<PlanTried>> tryPlans(const SceneFile& scene, const GlFacts& g
             for (int f = 0; f < 2 * frames; ++f) {
                 work.finish();
                 std::vector<PassTime> passes = device->takeTimes(), drawn;
-                if (Status done = draw(**session, [&] { work.start(frameSeconds(scene), false); }, drawn); !done) return done.error();
+                if (Status done = draw(
+                        **session, [&] { work.start(frameSeconds(scene), false); }, drawn);
+                    !done)
+                    return done.error();
                 const double now = hostSeconds();
                 if (f >= frames) {
                     ms.push_back(1000 * (now - last));

@@ -31,7 +31,8 @@ inline constexpr const char* kDrawingLane = "gl: drawing";
 
 class Cooperation {
   public:
-    // Lanes of `timeline`, null: none: "main", and "cpu: ahead" of what another thread does meanwhile. A plan that the session cannot follow becomes alone, and `log` says why.
+    // Lanes of `timeline`, null: none: "main", and "cpu: ahead" of what another thread does meanwhile. A plan that the session cannot
+    // follow becomes alone, and `log` says why.
     Cooperation(Session& session, Plan plan, Timeline* timeline, const Log& log);
     ~Cooperation();  // what is under way on another thread is done then
     Cooperation(const Cooperation&) = delete;
@@ -44,6 +45,7 @@ class Cooperation {
     double finish();
     void drop();  // as finish, but steps no further than has been stepped already
     bool started() const { return started_; }
+    Timeline* timeline() const { return timeline_; }
     CooperationStats stats() const;
     Plan plan() const { return plan_; }
 
@@ -63,11 +65,13 @@ class Cooperation {
     std::unique_ptr<Cells, void (*)(Cells*)> cells_;
 };
 
+void traceKernels(Device& device, Timeline& timeline);  // into a lane "cl: kernels"
+
 // A plan on a device, and what a frame took of it.
 struct PlanTried {
     std::string backend;  // as --backend
     Plan plan = Plan::alone;
-    double frameMs = 0;  // on the wall, median
+    double frameMs = 0;            // on the wall, median
     std::vector<PassTime> passes;  // ms a frame, of the simulation; drawing's as "render: ..."
 };
 std::string nameOf(const PlanTried& tried);  // "cpu", "gl, thesis", "cpu, behind"

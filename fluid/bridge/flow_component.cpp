@@ -495,13 +495,7 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
     toWorld_ = worldAt(then);
     time_ = then;
     around_ = {};
-    for (Deformed& d : deformed_) {
-        std::vector<float> weights(d.morphs, 0.0F);
-        for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
-            if (d.morphOf[e] >= 0)
-                weights[static_cast<size_t>(d.morphOf[e])] += params_.expressive * static_cast<float>(params_.expression[e].at(then));
-        d.deformer->run(weights, d.bones);
-    }
+    bend(then);
     seen_ = false;
     emit(time, seconds, air);
     SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld_};
@@ -514,6 +508,17 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
     for (const LeftDrop& d : flow_->takeLeft())
         air.push_back({dvec3(toWorld_ * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld_) * dvec3(d.velocity), d.picolitres});
     return ok();
+}
+
+// The expression that it has then.
+void FlowComponent::bend(double time) {
+    for (Deformed& d : deformed_) {
+        std::vector<float> weights(d.morphs, 0.0F);
+        for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
+            if (d.morphOf[e] >= 0)
+                weights[static_cast<size_t>(d.morphOf[e])] += params_.expressive * static_cast<float>(params_.expression[e].at(time));
+        d.deformer->run(weights, d.bones);
+    }
 }
 
 void FlowComponent::look() {

@@ -44,6 +44,11 @@ class FlowComponent {
     // Brings the layer up to date. Needs a current OpenGL context.
     Status draw();
 
+    // Where it was, to be taken up by one that was made of the same params, on whichever device.
+    struct Snapshot;
+    std::shared_ptr<const Snapshot> save() const;  // waits
+    Status restore(const Snapshot& snapshot);      // error (failed): out of memory
+
     uint64_t emitted() const { return emitted_; }  // picolitres, by sources; not what has landed
     const SurfaceFlow& flow() const { return *flow_; }
     double time() const { return time_; }  // s, of where it is
@@ -78,6 +83,7 @@ class FlowComponent {
     Status readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& place);
     std::vector<SkinBrim> brims(const FlowMesh& mesh);
     Status readRegions(const std::string& sceneFolder, const Mesh& skin);
+    void bend(double time);
     void emit(double time, double seconds, std::vector<AirDrop>& air);
     void emitOne(const FlowSourceParams& source, Source& state, uint32_t picolitres, std::vector<AirDrop>& air);
     SkinPoint somewhere(const FlowSourceParams& source, Source& state);

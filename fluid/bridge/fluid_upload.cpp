@@ -62,7 +62,8 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         wanted(particles.drawn, position_, out.position, true);
         wanted(normals ? particles.normal : particles.velocity, velocity_, out.velocity, true);
         wanted(particles.absorption, absorption_, out.absorption, true);
-        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) wanted(particles.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
+        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k)
+            wanted(particles.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
         if (same) out.id = static_cast<unsigned>(particles.id->handle());
     }
     if (!same && (out.count > 0 || out.foamCount > 0))

@@ -16,10 +16,10 @@ namespace rivulet {
 
 // How particles come to be drawn.
 struct TransferFacts {
-    const char* way = "";    // "same memory": the Device's own buffers (gl); "ring": through mapped memory
-    double ms = 0;           // on the wall, the last time, a wait for the simulation included
-    size_t bytes = 0;        // that went through the host
-    uint64_t waits = 0;      // so far: frames in which the ring was full
+    const char* way = "";  // "same memory": the Device's own buffers (gl); "ring": through mapped memory
+    double ms = 0;         // on the wall, the last time, a wait for the simulation included
+    size_t bytes = 0;      // that went through the host
+    uint64_t waits = 0;    // so far: frames in which the ring was full
 };
 
 class FluidUpload {

@@ -97,6 +97,8 @@ class RunRecorder {
     void stepped(double simulateMs, std::span<const PassTime> passes);
     void drawn(double renderMs, double frameMs, std::span<const PassTime> passes);
     void transferred(const TransferFacts& facts);  // of a frame that is drawn
+    // The same particles, from now on in another world: one that goes on for the first.
+    void follow(FluidWorld& world) { world_ = &world; }
     // Reads the particles once more for what holds at the end.
     RunStats finish(std::string scene);
 

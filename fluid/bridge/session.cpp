@@ -97,7 +97,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     s.log_ = log;
     s.scene_ = std::move(scene);
     if (Status imported = s.importColliders(); !imported) return imported.error();
-    Solids solids;
+    Solids& solids = s.given_;
     solids.surfaces = surfacesOf(s.scene_, s.surfaceOf_);
     if (Status baked = s.bake(log); !baked) return baked.error();
     if (!s.field_.empty()) solids.field = &s.field_;
@@ -110,18 +110,24 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     if (Status added = s.addBodies(solids); !added) return added.error();
     Result<Sources> sources = s.importEmitters();
     if (!sources) return sources.error();
+    s.sources_ = std::move(*sources);
     // A scene of skins alone has no water to miss.
     Log quiet = log;
     if (!s.scene_.flow.empty() && s.scene_.fluid.blocks.empty() && s.scene_.emitters.empty()) quiet.sink = {};
-    auto world = FluidWorld::create(device, simulated(s.scene_), solids, quiet, *sources);
-    if (!world) return Error{fmt::format("{}: {}", s.scene_.name, world.error().message), world.error().fault};
-    s.world_ = std::move(*world);
+    if (Status made = s.makeWorld(device, simulated(s.scene_), quiet); !made) return made.error();
     if (Status flows = s.flows_.create(s.scene_, device, s.solids_, log); !flows)
         return Error{fmt::format("{}: {}", s.scene_.name, flows.error().message), flows.error().fault};
     s.placeNodes();
     if (s.world_->particles().count == 0 && s.scene_.emitters.empty() && s.scene_.flow.empty())
         log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", s.scene_.name));
     return session;
+}
+
+Status Session::makeWorld(Device& device, const FluidParams& params, const Log& log) {
+    auto world = FluidWorld::create(device, params, given_, log, sources_);
+    if (!world) return Error{fmt::format("{}: {}", scene_.name, world.error().message), world.error().fault};
+    world_ = std::move(*world);
+    return ok();
 }
 
 Status Session::importColliders() {
@@ -391,8 +397,7 @@ void Session::work(double asked, bool wait, double deviceMs) {
     const double start = hostSeconds();
     const double seconds = world_->taken(asked), before = world_->time();
     // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
-    const int parts =
-        anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
+    const int parts = anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
     for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
     if (wait) world_->device().finish();
     worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = world_->time() - before, .costMs = deviceMs};
@@ -406,10 +411,59 @@ double Session::settle() {
     worked_.ms += 1000 * (hostSeconds() - start);
     world_->device().poll();
     if (budget_) watchBudget(worked_.costMs, worked_.seconds);
+    // Of what steps take, snapshots take a hundredth.
+    constexpr double kSnapshots = 0.01;
+    steppedMs_ += worked_.costMs;
+    if (world_->device().backend() == Backend::cl && steppedMs_ * kSnapshots >= snapshotMs_) takeSnapshot();
     return worked_.ms;
 }
 
 bool Session::mayWorkAside() const { return world_->device().backend() == Backend::cpu && flows_.empty(); }
+
+void Session::takeSnapshot() {
+    const Device& device = world_->device();
+    if (device.health().state == DeviceHealth::lost || !world_->savable()) return;
+    const auto start = std::chrono::steady_clock::now();
+    Snapshot now;
+    for (const Rigid& r : rigid_) now.turned.push_back(r.turned);
+    world_->save(now.world);
+    now.flows = flows_.save();
+    if (device.health().state == DeviceHealth::lost) return;  // what was read is nothing
+    kept_ = std::move(now);
+    steppedMs_ = 0;
+    snapshotMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+Status Session::moveTo(Device& device) {
+    takeSnapshot();
+    // What there is to say of the scene was said when it was opened.
+    const auto opening = std::make_shared<bool>(true);
+    const Log quiet{[log = log_, opening](LogLevel level, std::string_view text) {
+        if (!*opening && log.sink) log.sink(level, text);
+    }};
+    for (Deforming& d : deforming_)  // as they were when the world was made
+        if (const auto back = d.field->update(d.rest); !back) return back.error();
+    const FluidParams params = world_->params();  // of the scene's, an edit may be under way
+    if (Status made = makeWorld(device, params, quiet); !made) return made;
+    Sources sources{.sinks = scene_.sinks};
+    for (const EmitterParams& emitter : scene_.emitters) sources.emitters.push_back({emitter, {}});
+    world_->setSources(sources);
+    std::vector<uint8_t> unchanged;  // see needsNew
+    world_->setSurfaces(surfacesOf(scene_, unchanged));
+    if (Status moved = flows_.moveTo(device, scene_, solids_, quiet, kept_ ? kept_->flows.get() : nullptr); !moved) return moved;
+    *opening = false;
+    if (!kept_) {
+        world_->reset();
+        startSolids();
+        return ok();
+    }
+    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].turned = kept_->turned[k];
+    WorldState state = std::move(kept_->world);
+    kept_.reset();
+    if (Status done = world_->restore(state); !done) return done;
+    placeNodes();
+    return ok();
+}
 
 void Session::watchBudget(double ms, double seconds) {
     std::string sentence;
@@ -423,6 +477,12 @@ void Session::watchBudget(double ms, double seconds) {
 void Session::reset() {
     world_->reset();
     if (Status fresh = flows_.reset(scene_, world_->device(), solids_, log_); !fresh) log_.notice(fresh.error().message);
+    startSolids();
+    kept_.reset();
+    steppedMs_ = snapshotMs_ = 0;
+}
+
+void Session::startSolids() {
     for (Rigid& r : rigid_) r.turned = 0;
     if (contacts_) contacts_->moveTo(world_->poses(), 0);
     placeNodes();
@@ -447,6 +507,7 @@ Status Session::restore(WorldState& state) {
     if (Status done = world_->restore(state); !done) return done;
     for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].turned = (*turned)[k];
     placeNodes();
+    if (world_->device().backend() == Backend::cl) takeSnapshot();
     return ok();
 }
 

@@ -68,6 +68,11 @@ class Session {
     bool mayWorkAside() const;  // on the cpu, without skins, whose maps are drawn from what is being stepped
     void reset();
 
+    // Goes on on another device, in the place of one that is full or lost: from what that one holds, or else from the last snapshot, which
+    // a session on cl takes of itself now and then. time() of the world says from when on. Error (failed): out of memory; the session
+    // is then of no more use.
+    Status moveTo(Device& device);
+
     // The world and what the session knows of its solids. Error: as FluidWorld::restore; all is then as it was.
     void save(WorldState& state);
     Status restore(WorldState& state);
@@ -84,7 +89,16 @@ class Session {
         std::vector<vec3> rest, shape;
     };
 
+    // What moveTo goes on from.
+    struct Snapshot {
+        WorldState world;
+        std::vector<double> turned;
+        std::shared_ptr<const SkinFlows::Snapshot> flows;
+    };
+
     Session() = default;
+    void takeSnapshot();
+    Status makeWorld(Device& device, const FluidParams& params, const Log& log);
     Status importColliders();
     Result<Sources> importEmitters() const;
     Status bake(const Log& log);
@@ -95,6 +109,7 @@ class Session {
     bool anyMoves() const { return !rigid_.empty() || !deforming_.empty() || !flows_.empty(); }
     void advance(double seconds, double deviceMs);
     void placeNodes();
+    void startSolids();
     void watchBudget(double ms, double seconds);
 
     SceneFile scene_;
@@ -109,11 +124,16 @@ class Session {
     std::vector<Deforming> deforming_;
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
+    Solids given_;                            // what the world was made among
+    Sources sources_;                         // and with
     std::unique_ptr<FluidWorld> world_;
     SkinFlows flows_;
     struct Worked {
         double ms = 0, seconds = 0, costMs = 0;  // on the wall; simulated; what a budget counts
     } worked_;
+    std::optional<Snapshot> kept_;  // nothing: the start
+    double steppedMs_ = 0;          // since it was taken
+    double snapshotMs_ = 0;         // what it took
 };
 
 }  // namespace rivulet

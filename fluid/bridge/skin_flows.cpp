@@ -58,6 +58,48 @@ Status SkinFlows::reset(const SceneFile& scene, Device& device, Scene& nodes, co
     return create(scene, device, nodes, log);
 }
 
+struct SkinFlows::Snapshot {
+    std::vector<std::shared_ptr<const FlowComponent::Snapshot>> skins;
+    std::vector<FlowComponent::AirDrop> air;
+    uint64_t drained = 0, dripped = 0, poured = 0, taken = 0, particles = 0;
+    double time = 0;
+};
+
+std::shared_ptr<const SkinFlows::Snapshot> SkinFlows::save() const {
+    auto made = std::make_shared<Snapshot>();
+    for (const auto& skin : skins_) made->skins.push_back(skin->save());
+    made->air = air_;
+    made->drained = drained_;
+    made->dripped = dripped_;
+    made->poured = poured_;
+    made->taken = taken_;
+    made->particles = particles_;
+    made->time = time_;
+    return made;
+}
+
+Status SkinFlows::moveTo(Device& device, SceneFile scene, Scene& nodes, const Log& log, const Snapshot* from) {
+    // An edit may be under way: they stay what they were made as.
+    for (size_t k = 0; k < std::min(skins_.size(), scene.flow.size()); ++k) {
+        scene.flow[k] = skins_[k]->params();
+        scene.flow[k].liquid = skins_[k]->flow().params();
+    }
+    if (Status fresh = reset(scene, device, nodes, log); !fresh || from == nullptr) return fresh;
+    ASSERT(from->skins.size() == skins_.size(), "a snapshot of the same scene's skins");
+    for (size_t k = 0; k < skins_.size(); ++k) {
+        if (Status taken = skins_[k]->restore(*from->skins[k]); !taken) return taken;
+        skins_[k]->placeNode(nodes);
+    }
+    air_ = from->air;
+    drained_ = from->drained;
+    dripped_ = from->dripped;
+    poured_ = from->poured;
+    taken_ = from->taken;
+    particles_ = from->particles;
+    time_ = from->time;
+    return ok();
+}
+
 double SkinFlows::expectedPoured(const SceneFile& scene, double seconds) {
     if (scene.flow.empty() || (scene.fluid.blocks.empty() && scene.emitters.empty())) return 0;
     double volume = std::pow(double{scene.fluid.spacing}, 3);
@@ -235,6 +277,7 @@ SkinFlows::Ledger SkinFlows::ledger() const {
         surface += own.drops + own.film;
         evaporated += own.evaporated;
         refused += own.refused;
+        air += skin->flow().leaving();  // a GPU tells of it late: it is taken up with the next step
     }
     for (const FlowComponent::AirDrop& d : air_) air += d.picolitres;
     l.emitted = static_cast<double>(emitted) * kPicolitre;

@@ -40,6 +40,12 @@ class SkinFlows {
     // beside.
     static double expectedPoured(const SceneFile& scene, double seconds);
 
+    // Where they were, with what is in the air.
+    struct Snapshot;
+    std::shared_ptr<const Snapshot> save() const;  // waits
+    // All anew on another device, from there on; null: from the start. Error: as create.
+    Status moveTo(Device& device, SceneFile scene, Scene& nodes, const Log& log, const Snapshot* from);
+
     // The point of a skin that a ray through the world meets first, and a drop put there. false: it meets none.
     bool drip(const dvec3& from, const dvec3& way, uint32_t picolitres);
 

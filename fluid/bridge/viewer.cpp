@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "engine/ui/param_panel.h"
+#include "fluid/bridge/takeover.h"
 
 namespace rivulet {
 
@@ -38,7 +39,7 @@ void drawHelp() {
 
 }  // namespace
 
-Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const ViewerOptions& options, const Log& log) {
+Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const ViewerOptions& options, const Log& log) {
     Result<UiLayer> ui = UiLayer::create(options.clipboard);
     if (!ui) return ui.error();
     std::unique_ptr<Viewer> viewer(new Viewer(std::move(*ui)));
@@ -74,12 +75,13 @@ Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const ViewerOpti
     } else {
         v.plan_ = plans().find(options.cooperate)->plan;
     }
-    v.device_ = makeDevice(backend, v.gl_, v.log_);
-    v.device_->onSpan(v.timeline_.lane(fmt::format("{}: kernels", backendName(v.device_->backend()))));
+    v.device_ = makeDevice(backend, v.gl_, v.log_, options.device);
+    auto opened = openSession(scene, *v.device_, v.log_);
+    if (!opened) return opened.error();
+    if (opened->instead) v.device_ = std::move(opened->instead);
+    v.session_ = std::move(opened->session);
+    traceKernels(*v.device_, v.timeline_);
     v.renderer_->onSpan(v.timeline_.lane(kDrawingLane));
-    auto session = Session::create(std::move(scene), *v.device_, v.log_);
-    if (!session) return session.error();
-    v.session_ = std::move(*session);
     v.begin();
     v.draft_ = v.session_->scene();
     v.haste_.begin(v.gl_.software);
@@ -89,7 +91,8 @@ Result<std::unique_ptr<Viewer>> Viewer::create(SceneFile scene, const ViewerOpti
 
 Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffer) {
     edited_ = false;
-    if (work_->plan() == Plan::behind && work_->started()) stepped(work_->finish(), seconds);
+    if (work_->plan() == Plan::behind && work_->started())
+        if (Status done = stepped(work_->finish(), seconds); !done) return done;
     ui_.begin(input, seconds);
     if (!ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
@@ -99,7 +102,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
         touch(input);
     }
     if (edited_ || recreate) takeEdits(recreate);
-    step(seconds);
+    if (Status stepped = step(seconds); !stepped) return stepped;
     Status drawn = draw(input, framebuffer);
     profiler_.endFrame(1000 * seconds);
     return drawn;
@@ -250,11 +253,14 @@ void Viewer::takeEdits(bool recreate) {
         const std::lock_guard<std::mutex> lock(notices_->mutex);
         notices_->sentences.clear();
     }
-    Result<std::unique_ptr<Session>> fresh =
-        sense ? Session::create(draft_, *device_, log_) : Result<std::unique_ptr<Session>>(sense.error());
+    Result<OpenedSession> fresh = sense ? openSession(draft_, *device_, log_) : Result<OpenedSession>(sense.error());
     if (fresh) {
         work_.reset();
-        session_ = std::move(*fresh);
+        session_ = std::move(fresh->session);
+        if (fresh->instead) {  // nothing is on the other any more
+            device_ = std::move(fresh->instead);
+            traceKernels(*device_, timeline_);
+        }
         begin();
         draft_ = session_->scene();  // a budget may have picked
         repicked_ = 0;
@@ -269,7 +275,7 @@ void Viewer::takeEdits(bool recreate) {
     }
 }
 
-void Viewer::step(double seconds) {
+Status Viewer::step(double seconds) {
     constexpr double kStep = 1.0 / kFramesPerSecond;  // on the wall
     const double simulated = session_->scene().timeScale;
     waiting_ = std::min(waiting_ + std::max(seconds, 0.0), 2 * kStep);
@@ -281,15 +287,15 @@ void Viewer::step(double seconds) {
         due = seconds > 0;
         waiting_ = 0;
     }
-    if ((paused_ || !due) && !stepOnce_) return;
+    if ((paused_ || !due) && !stepOnce_) return ok();
     stepOnce_ = false;
     due_ = simulated * (fixed ? seconds : kStep);
-    if (work_->plan() == Plan::behind) return;  // while it is drawn
-    if (!work_->started() || fixed) {           // what was found ahead is of a step as long as the last
+    if (work_->plan() == Plan::behind) return ok();  // while it is drawn
+    if (!work_->started() || fixed) {                // what was found ahead is of a step as long as the last
         work_->drop();
         work_->start(due_, false, deviceMs_);
     }
-    stepped(work_->finish(), seconds);
+    return stepped(work_->finish(), seconds);
 }
 
 void Viewer::begin() {
@@ -298,8 +304,12 @@ void Viewer::begin() {
 }
 
 // `seconds`: on the wall, of the frame.
-void Viewer::stepped(double ms, double seconds) {
+Status Viewer::stepped(double ms, double seconds) {
     ++steps_;
+    const Result<bool> moved = keepRunning(*session_, device_, log_);
+    if (!moved) return moved.error();
+    if (*moved) traceKernels(*device_, timeline_);
+    if (*moved && recorder_) recorder_->follow(session_->world());
     if (const int repicked = session_->budget() ? session_->budget()->repicked() : 0; repicked != repicked_) {
         repicked_ = repicked;
         draft_.fluid = session_->scene().fluid;  // what the panel shows
@@ -308,9 +318,10 @@ void Viewer::stepped(double ms, double seconds) {
     deviceMs_ = 0;
     for (const PassTime& pass : passes) deviceMs_ += pass.ms;
     profiler_.add("simulate", passes);
-    if (!recorder_) return;
+    if (!recorder_) return ok();
     recorder_->stepped(ms, passes);
     recorder_->drawn(0, 1000 * seconds, renderer_->times());
+    return ok();
 }
 
 void Viewer::record() { recorder_.emplace(session_->world(), session_->fields(), true, &session_->flows()); }

@@ -16,9 +16,9 @@
 #include "fluid/bridge/backend.h"
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/fluid_panel.h"
+#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
 #include "fluid/bridge/voxel_panel.h"
@@ -27,15 +27,16 @@ namespace rivulet {
 
 struct ViewerOptions {
     std::string backend = "auto";
-    std::string cooperate = "off";  // a row of plans(), or auto, which tries them at the start
-    void* clipboard = nullptr;      // as UiLayer
+    std::string device;              // of cl, as makeDevice
+    std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
+    void* clipboard = nullptr;       // as UiLayer
     int width = 1280, height = 720;  // pixels, of what auto tries
 };
 
 class Viewer {
   public:
     // Needs a current OpenGL 4.5 context until destroyed. Error: as Session and SceneRenderer.
-    static Result<std::unique_ptr<Viewer>> create(SceneFile scene, const ViewerOptions& options, const Log& log);
+    static Result<std::unique_ptr<Viewer>> create(const SceneFile& scene, const ViewerOptions& options, const Log& log);
 
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
     // machine shows slow water, not fewer pictures. With fluid.fixedStep the water has all of the time, but fluid.longestFrame. A window of
@@ -60,8 +61,8 @@ class Viewer {
     bool drawPresets();                    // whether one was chosen
     bool drawPanels();                     // whether a new session is wanted
     void takeEdits(bool recreate);
-    void step(double seconds);
-    void stepped(double ms, double seconds);
+    Status step(double seconds);
+    Status stepped(double ms, double seconds);
     void begin();  // a new session's cooperation
     Status drawWater(Session& session, int width, int height, const std::function<void()>& uploaded);
     Status draw(const InputEvents& input, GLuint framebuffer);

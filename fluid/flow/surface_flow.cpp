@@ -336,6 +336,12 @@ std::vector<LeftDrop> SurfaceFlow::takeLeft() {
     return taken;
 }
 
+uint64_t SurfaceFlow::leaving() const {
+    uint64_t sum = 0;
+    for (const LeftDrop& d : impl_->told->gone) sum += d.picolitres;
+    return sum;
+}
+
 FlowView SurfaceFlow::view() const {
     const Impl& w = *impl_;
     // Three may run into a fourth at once: a quarter wider than the largest.

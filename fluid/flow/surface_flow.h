@@ -122,6 +122,7 @@ class SurfaceFlow {
     uint64_t refused() const;          // picolitres that found no slot, as far as is known; does not wait
     uint32_t room() const;             // drops that there are slots for, beside those that were added since the last step; waits
     std::vector<LeftDrop> takeLeft();  // since it was last asked, in the order of their ids each step
+    uint64_t leaving() const;          // picolitres that takeLeft() would give, as far as is known; does not wait
     FlowView view() const;
     // The film's thickness, m, of every cell of a triangle's lattice; waits.
     std::vector<float> film(uint32_t triangle) const;
@@ -131,6 +132,13 @@ class SurfaceFlow {
         uint64_t merges = 0;
     };
     Ledger ledger() const;  // waits
+
+    // All that the next step depends on, in host memory.
+    struct Snapshot;
+    std::shared_ptr<const Snapshot> save() const;  // waits
+    // Goes on from there, on whichever device; of a flow that was made of the same mesh, with the same params. Error (failed): no memory
+    // for the sort.
+    Status restore(const Snapshot& snapshot);
 
   private:
     struct Impl;

@@ -1,6 +1,7 @@
 // What a SurfaceFlow is made of. For fluid/flow/surface_flow*.cpp alone.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -32,7 +33,22 @@ inline double contactRadius(double degrees) {
 
 inline double meanAngle(const SurfaceFlowParams& p) { return 0.5 * double{p.advancing + p.receding}; }
 
-struct SurfaceFlow::Impl {
+// What changes from step to step on the host.
+struct FlowCourse {
+    uint32_t phase = 0;                // whose turn it is to dry
+    double sinceTurn[DRY_EVERY] = {};  // s
+    std::vector<FlowBirth> births;
+    uint64_t added = 0;     // picolitres
+    bool moved = true;      // the basis is to be made anew
+    bool stirring = false;  // the skin has a velocity
+    dmat4 pose{1.0};        // the skin's frame -> the world, as of the last step
+    bool posed = false;
+    uint64_t moves = 0;  // how often it was
+    uint32_t steps = 0;
+    uint32_t largestBirth = 0;  // picolitres
+};
+
+struct SurfaceFlow::Impl : FlowCourse {
     Device* device = nullptr;
     FlowMesh mesh;
     SurfaceFlowParams params;
@@ -46,11 +62,7 @@ struct SurfaceFlow::Impl {
     Buffer chain, spill;                                                                              // of brims
     Buffer film;                                                                                      // picolitres, of each cell
     Buffer birth, counter, left;
-    std::vector<uint32_t> firstCell;   // of each triangle's lattice, and the end
-    uint32_t phase = 0;                // whose turn it is to dry
-    double sinceTurn[DRY_EVERY] = {};  // s
-    std::vector<FlowBirth> births;
-    uint64_t added = 0;  // picolitres
+    std::vector<uint32_t> firstCell;  // of each triangle's lattice, and the end
     // What the device tells: shared with reads that are still on their way.
     struct Told {
         uint64_t refused = 0, left = 0, evaporated = 0;  // picolitres
@@ -60,16 +72,11 @@ struct SurfaceFlow::Impl {
         std::vector<LeftDrop> gone;
     };
     std::shared_ptr<Told> told = std::make_shared<Told>();
-    bool moved = true;      // the basis is to be made anew
-    bool stirring = false;  // the skin has a velocity
-    Bounds corners;         // m, of the skin at rest
+    Bounds corners;  // m, of the skin at rest
     uint32_t brims = 0, brimPlaces = 0;
     std::optional<ThesisTables> thesis;  // of thesis mode
-    dmat4 pose{1.0};                     // the skin's frame -> the world, as of the last step
-    bool posed = false;
-    uint64_t moves = 0;  // how often it was
-    uint32_t steps = 0;
-    uint32_t largestBirth = 0;  // picolitres
+    // What changes from step to step on the device, beside what is sorted.
+    auto remembered() { return std::array{&drop, &motion, &film, &painted, &point, &driven}; }
 
     uint32_t count() const { return drops.count; }
     Status prepare(Device& on, std::span<const SkinBrim> along);

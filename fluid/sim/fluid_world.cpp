@@ -424,8 +424,8 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
 
 std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
     Impl& w = *impl_;
-    if (w.device->backend() == Backend::cpu || !w.sorted || w.traits.linked || w.traits.samples > 0 ||
-        glm::any(w.traits.periodic) || w.method->predicts())
+    if (w.device->backend() == Backend::cpu || !w.sorted || w.traits.linked || w.traits.samples > 0 || glm::any(w.traits.periodic) ||
+        w.method->predicts())
         return std::nullopt;
     w.untouched = true;
     return CellWork{w.step, &w.particles.positionNext, &w.particles.id};

@@ -124,12 +124,12 @@ Status NeighborGrid::Impl::findKernels() {
     else {
         const std::vector<Define> threads = traits.threadDefines();
         const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
-        std::vector<Define> given = threads;
-        given.push_back({"GIVEN", "1"});
-        wanted = {{&cellCount, "fluid/cell_count", threads},     {&cellCountGiven, "fluid/cell_count", given},
-                  {&scanReduce, "fluid/scan_reduce", scanSize},  {&scanBlocks, "fluid/scan_blocks", scanSize},
-                  {&scanApply, "fluid/scan_apply", scanSize},    {&cellScatter, "fluid/cell_scatter", threads},
-                  {&cellSort, "fluid/cell_sort", threads},       {&reorder, "fluid/reorder", threads}};
+        std::vector<Define> givenDefines = threads;
+        givenDefines.push_back({"GIVEN", "1"});
+        wanted = {{&cellCount, "fluid/cell_count", threads},    {&cellCountGiven, "fluid/cell_count", givenDefines},
+                  {&scanReduce, "fluid/scan_reduce", scanSize}, {&scanBlocks, "fluid/scan_blocks", scanSize},
+                  {&scanApply, "fluid/scan_apply", scanSize},   {&cellScatter, "fluid/cell_scatter", threads},
+                  {&cellSort, "fluid/cell_sort", threads},      {&reorder, "fluid/reorder", threads}};
     }
     for (Wanted& w : wanted) {
         Result<Kernel> found = device->kernel(w.path, w.defines);
@@ -224,7 +224,8 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
 
 void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
     device->fill(cellCounts, 0);
-    device->run(std::exchange(given, false) ? cellCountGiven : cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank}, count);
+    device->run(std::exchange(given, false) ? cellCountGiven : cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank},
+                count);
     const uint32_t counts = totalCells() + 4;
     const ScanParams scan{counts, (counts + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
     device->run(scanReduce, scan, {&cellCounts, &blockSum}, scan.blocks * SCAN_THREADS);

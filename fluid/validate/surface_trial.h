@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/fluid_upload.h"
+#include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
 #include "fluid/bridge/surface_probe.h"

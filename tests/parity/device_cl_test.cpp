@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <numeric>
 
 namespace rivulet {
@@ -79,9 +80,9 @@ TEST_F(ClDeviceTest, saysWhatItIs) {
     EXPECT_FALSE(device_->info().name.empty());
     EXPECT_NE(device_->info().driver.find("OpenCL"), std::string::npos);
     EXPECT_GE(device_->info().maxBufferBytes, size_t{64} << 20U);
-    const std::vector<std::string> all = describeClDevices();
+    const std::vector<ClDeviceListing> all = listClDevices();
     ASSERT_FALSE(all.empty());
-    EXPECT_NE(all[0].find(device_->info().name), std::string::npos);
+    EXPECT_NE(all[0].sentence.find(device_->info().name), std::string::npos);
 }
 
 TEST_F(ClDeviceTest, memoryIsZeroAndHoldsWhatIsWritten) {
@@ -229,6 +230,124 @@ TEST_F(ClDeviceTest, compileErrorsNameTheFileAndLineTheyComeFrom) {
     EXPECT_FALSE(device_->kernel("test/none"));
 }
 
+// What another start has kept is run as it was built; what does not fit the text any more is not.
+TEST_F(ClDeviceTest, aKeptProgramDoesWhatItsSourceSays) {
+    const std::string cache = (root_ / "cache").string();
+    const auto scaled = [&](const char* offset) {
+        Result<std::unique_ptr<Device>> made = makeClDevice(ShaderFiles(root_.string()), {}, {.cache = cache});
+        EXPECT_TRUE(made);
+        const Define defines[] = {{"OFFSET", offset}};
+        Buffer in = std::move(*(*made)->allocate(12)), out = std::move(*(*made)->allocate(12));
+        const float values[] = {1, 2, 3};
+        (*made)->writeAll(in, std::span<const float>(values));
+        const auto kernel = (*made)->kernel("test/scale", defines);
+        EXPECT_TRUE(kernel) << (kernel ? "" : kernel.error().message);
+        (*made)->run(*kernel, FactorParams{3, 2, 0, 0}, {&in, &out}, 3);
+        return (*made)->readAll<float>(out, 3);
+    };
+    const auto files = [&] { return std::distance(fs::directory_iterator(cache), fs::directory_iterator()); };
+    for (int start = 0; start < 2; ++start) {
+        EXPECT_EQ(scaled("1"), (std::vector<float>{3, 5, 7}));
+        EXPECT_EQ(scaled("2"), (std::vector<float>{4, 6, 8}));
+        EXPECT_EQ(files(), 2) << "one for each set of defines, found by the second start";
+    }
+    std::string other = kScale;
+    other.replace(other.find("* PARAMS.factor"), 1, "-");
+    file("scale", other);
+    EXPECT_EQ(scaled("1"), (std::vector<float>{0, 1, 2}));
+    EXPECT_EQ(files(), 3);
+    // A file that is whole, and of this key, but no program: the driver will not have it, and it is replaced.
+    std::string key;
+    for (const auto& entry : fs::directory_iterator(cache)) {
+        std::ifstream stream(entry.path(), std::ios::binary);
+        const std::string text{std::istreambuf_iterator<char>(stream), {}};
+        uint64_t length = 0;
+        std::memcpy(&length, text.data() + 8, sizeof length);
+        const std::string one = text.substr(32, length);
+        if (one.find("in_[i] - PARAMS.factor") != std::string::npos) key = one;
+    }
+    ASSERT_FALSE(key.empty());
+    const std::string junk = "this is no program";
+    ProgramCache(cache).keep(key, std::as_bytes(std::span(junk)));
+    EXPECT_EQ(scaled("1"), (std::vector<float>{0, 1, 2}));
+    ASSERT_TRUE(ProgramCache(cache).find(key));
+    EXPECT_GT(ProgramCache(cache).find(key)->size(), junk.size());
+    // A mistake in the text is said by its file and line, whatever is kept.
+    file("scale", std::string(kScale) + "\n\nnonsense\n");
+    Result<std::unique_ptr<Device>> made = makeClDevice(ShaderFiles(root_.string()), {}, {.cache = cache});
+    const Define defines[] = {{"OFFSET", "1"}};
+    const auto wrong = (*made)->kernel("test/scale", defines);
+    ASSERT_FALSE(wrong);
+    EXPECT_NE(wrong.error().message.find("shaders/test/scale.kernel:16"), std::string::npos) << wrong.error().message;
+    EXPECT_EQ(files(), 3);
+}
+
+TEST_F(ClDeviceTest, aLogIsNoLongerThanAScreenAndHasNoWarnings) {
+    std::string text =
+        "#include \"shaders/common/lang.h\"\nSTRUCT(P) { vec4 a; };\n#undef ARGS\n#define ARGS(RO, RW) RW(1, Out, float, out_)\n"
+        "BUFFERS(P)\nKERNEL(many, P)\n{\n    int x = 1.5f == 1.5f ? \"text\" : 2;\n";
+    for (int k = 0; k < 15; ++k) text += "    out_[0] = missing" + std::to_string(k) + ";\n";
+    file("many", text + "}\n");
+    const auto kernel = device_->kernel("test/many");
+    ASSERT_FALSE(kernel);
+    const std::string& said = kernel.error().message;
+    EXPECT_NE(said.find("shaders/test/many.kernel:9"), std::string::npos) << said;
+    EXPECT_EQ(said.find("warning:"), std::string::npos) << said;
+    EXPECT_LE(std::count(said.begin(), said.end(), '\n'), 42) << said;
+}
+
+// No buffer: the device says so, and does all else. A dispatch refused: what is read back means nothing, and that stays so.
+TEST_F(ClDeviceTest, healthSaysWhatWasNotDone) {
+    EXPECT_EQ(device_->health().state, DeviceHealth::works);
+    Result<std::unique_ptr<Device>> small = makeClDevice(ShaderFiles(root_.string()), {}, {.memoryLimit = 100});
+    ASSERT_TRUE(small);
+    {
+        Buffer fits = std::move(*(*small)->allocate(64));
+        EXPECT_EQ((*small)->health().state, DeviceHealth::works);
+        EXPECT_FALSE((*small)->allocate(64));
+        EXPECT_EQ((*small)->health().state, DeviceHealth::full);
+        (*small)->fill(fits, 7);
+        EXPECT_EQ((*small)->readAll<uint32_t>(fits, 16), std::vector<uint32_t>(16, 7));
+        EXPECT_EQ((*small)->health().state, DeviceHealth::full);
+    }
+    std::vector<std::string> said;
+    Result<std::unique_ptr<Device>> doomed =
+        makeClDevice(ShaderFiles(root_.string()), {[&](LogLevel, std::string_view text) { said.emplace_back(text); }}, {.failAfter = 2});
+    ASSERT_TRUE(doomed);
+    {
+        const Define offset[] = {{"OFFSET", "0"}};
+        const Kernel scale = *(*doomed)->kernel("test/scale", offset);
+        Buffer in = std::move(*(*doomed)->allocate(12)), out = std::move(*(*doomed)->allocate(12));
+        for (int k = 0; k < 2; ++k) (*doomed)->run(scale, FactorParams{3, 2, 0, 0}, {&in, &out}, 3);
+        EXPECT_EQ((*doomed)->health().state, DeviceHealth::works);
+        for (int k = 0; k < 5; ++k) (*doomed)->run(scale, FactorParams{3, 2, 0, 0}, {&in, &out}, 3);
+        EXPECT_EQ((*doomed)->health().state, DeviceHealth::lost);
+        EXPECT_NE((*doomed)->health().why.find("test/scale"), std::string::npos) << (*doomed)->health().why;
+        (void)(*doomed)->readAll<float>(out, 3);
+        (*doomed)->finish();
+        (*doomed)->poll();
+        EXPECT_FALSE((*doomed)->allocate(12));
+        EXPECT_EQ((*doomed)->health().state, DeviceHealth::lost);
+        EXPECT_EQ(said.size(), 1U);
+    }
+    EXPECT_EQ((*doomed)->bytesAllocated(), 0U);
+}
+
+TEST_F(ClDeviceTest, aDeviceIsFoundByNumberOrByAPartOfAName) {
+    const ClDeviceListing first = listClDevices()[0];
+    for (const std::string& text : {std::string(), std::string("1"), first.name, first.platform}) {
+        EXPECT_TRUE(checkClDevice(text)) << text;
+        const auto made = makeClDevice(ShaderFiles::developer(), {}, {.device = text});
+        ASSERT_TRUE(made) << text;
+        EXPECT_EQ((*made)->info().name, first.name);
+    }
+    const auto none = makeClDevice(ShaderFiles::developer(), {}, {.device = "no such device"});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().fault, Fault::badInput);
+    EXPECT_NE(none.error().message.find("1 " + first.name), std::string::npos) << none.error().message;
+    EXPECT_FALSE(checkClDevice("no such device"));
+}
+
 TEST_F(ClDeviceTest, workGroupsLargerThanTheDeviceAllowsAreRefused) {
     const Define defines[] = {{"LOCAL_SIZE", "65536"}, {"OFFSET", "0"}};
     EXPECT_FALSE(device_->kernel("test/scale", defines));
@@ -257,7 +376,7 @@ TEST(ClDeviceDeathTest, withoutADriverThereIsAPlainSentence) {
                 setenv("OCL_ICD_VENDORS", (folder / name).c_str(), 1);
                 const auto made = makeClDevice(ShaderFiles::developer());
                 std::fprintf(stderr, "%s", made ? "a device" : made.error().message.c_str());
-                std::exit(!made && made.error().fault == Fault::failed && describeClDevices().empty() ? 0 : 1);
+                std::exit(!made && made.error().fault == Fault::failed && listClDevices().empty() ? 0 : 1);
             },
             testing::ExitedWithCode(0), "no working OpenCL driver.*--backend cpu")
             << name;

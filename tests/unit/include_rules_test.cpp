@@ -71,7 +71,7 @@ const std::map<std::string, Names>& libraries() {
         {"oneapi/", {"engine/compute", "fluid/voxel", "fluid/sim", "fluid/render", "fluid/io"}},
         {"json/", {"engine/core", "fluid/bridge"}},
         {"zstd", {"fluid/voxel"}},
-        {"xxh", {"fluid/voxel"}},
+        {"xxh", {"engine/compute", "fluid/voxel"}},
         {"stb", {"engine/scene", "engine/render", "engine/app", "fluid/flow"}},
         {"Eigen/", {"fluid/flow", "fluid/sim"}},
         {"bullet", {"fluid/bridge"}},

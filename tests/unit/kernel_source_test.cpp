@@ -188,6 +188,22 @@ TEST_F(KernelSourceTest, readableLogNamesTheFileALineComesFrom) {
         EXPECT_EQ(readableLog(plain, source), plain);
 }
 
+TEST(KernelSource, shortLogLeavesWarningsOutAndEnds) {
+    EXPECT_EQ(shortLog(""), "");
+    EXPECT_EQ(shortLog("a.kernel:1:2: warning: unused\n  int x;\n  ^\na.kernel:3:4: error: no\n  y\n  ^"),
+              "a.kernel:3:4: error: no\n  y\n  ^");
+    EXPECT_EQ(shortLog("a.kernel:1:2: error: no\n  y\na.kernel:3:4: warning: unused\n  int x;"), "a.kernel:1:2: error: no\n  y");
+    // Without an error all there is may be the reason.
+    EXPECT_EQ(shortLog("a.kernel:1:2: warning: odd\n  x"), "a.kernel:1:2: warning: odd\n  x");
+    EXPECT_EQ(shortLog("the linker: terror: out of registers"), "the linker: terror: out of registers");
+    std::string many;
+    for (int k = 0; k < 100; ++k) many += "a.kernel:" + std::to_string(k) + ": error: no\n";
+    const std::string cut = shortLog(many);
+    EXPECT_NE(cut.find("a.kernel:39: error: no\n... and 60 more lines"), std::string::npos) << cut;
+    EXPECT_EQ(cut.find("a.kernel:40:"), std::string::npos);
+    EXPECT_LT(shortLog("error: " + std::string(100000, 'x')).size(), 500U);
+}
+
 TEST(ShaderFilesTest, embeddedFilesAreTheOnesOnDisk) {
     std::set<std::string> embedded;
     for (const EmbeddedShader& row : embeddedShaders()) {

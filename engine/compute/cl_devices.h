@@ -1,0 +1,55 @@
+// The OpenCL devices of this machine, and what the driver says of them. For device_cl*.cpp alone: it shows OpenCL's own types.
+#pragma once
+
+#include <CL/cl.h>
+
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/log.h"
+#include "engine/core/result.h"
+
+namespace rivulet {
+
+// "CL_OUT_OF_RESOURCES"; where it has no name here: "OpenCL error -1001".
+std::string clErrorName(cl_int code);
+
+// What clGet*Info gives as text, without the blanks and line ends that some drivers put around it.
+template <class Get>
+std::string clText(Get get) {
+    constexpr const char* kBlank = " \n\r\t";
+    size_t size = 0;
+    if (get(size_t{0}, nullptr, &size) != CL_SUCCESS || size == 0) return {};
+    std::string text(size, '\0');
+    if (get(size, text.data(), nullptr) != CL_SUCCESS) return {};
+    text.resize(std::strlen(text.c_str()));
+    const size_t first = text.find_first_not_of(kBlank);
+    return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+std::string clDeviceText(cl_device_id device, cl_device_info what);
+std::string clPlatformText(cl_platform_id platform, cl_platform_info what);
+
+template <class T>
+T clDeviceValue(cl_device_id device, cl_device_info what) {
+    T value{};
+    clGetDeviceInfo(device, what, sizeof value, &value, nullptr);
+    return value;
+}
+
+struct ClCandidate {
+    cl_platform_id platform;
+    cl_device_id device;
+    cl_device_type type;
+    bool usable;  // there now, with a compiler, OpenCL 1.2
+    std::string name, platformName;
+};
+
+// Every device, the best first: usable GPUs, other usable ones, the rest. `platforms` receives how many drivers were found.
+std::vector<ClCandidate> findClDevices(size_t& platforms);
+
+// Those of `all` that `wanted` names, as chooseClDevice says. Error (badInput): none; it lists those that there are.
+Result<std::vector<ClCandidate>> namedClDevices(const std::vector<ClCandidate>& all, std::string_view wanted);
+
+}  // namespace rivulet

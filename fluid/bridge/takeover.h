@@ -1,0 +1,23 @@
+// Where an OpenCL device has no memory for a scene, or is lost while it runs, the cpu takes over.
+#pragma once
+
+#include <memory>
+
+#include "engine/compute/device.h"
+#include "engine/core/log.h"
+#include "fluid/bridge/session.h"
+
+namespace rivulet {
+
+struct OpenedSession {
+    std::unique_ptr<Device> instead;  // the cpu that the session is on, where `device` failed; else null
+    std::unique_ptr<Session> session;
+};
+// The scene on `device`, or on the cpu where that is of cl and cannot: the log says so. Error: as Session::create.
+Result<OpenedSession> openSession(const SceneFile& scene, Device& device, const Log& log);
+
+// To be asked after each step. Where `device`, which the session is on, has failed, it becomes the cpu, and the session goes on there: the
+// log says from which simulated time on. Whether that is so: session.world() is another then. Error (failed): out of memory.
+Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, const Log& log);
+
+}  // namespace rivulet

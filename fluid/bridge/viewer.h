@@ -27,7 +27,7 @@ namespace rivulet {
 
 struct ViewerOptions {
     std::string backend = "auto";
-    std::string device;              // of cl, as makeDevice
+    std::string device = {};         // of cl, as makeDevice
     std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
     void* clipboard = nullptr;       // as UiLayer
     int width = 1280, height = 720;  // pixels, of what auto tries

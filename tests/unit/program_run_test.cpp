@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "engine/core/json.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::testing {
@@ -49,6 +50,52 @@ TEST(ProgramRun, HeadlessLeavesVideoPicturesAndFigures) {
     Json::Value stats = readJson(scratch.path() / "out/stats.json");
     EXPECT_EQ(stats["frames"].asInt(), 12);
     EXPECT_GT(stats["renderMs"]["median"].asDouble(), 0);
+}
+
+// The cpu steps while OpenGL draws: the pictures are the same, the trace shows both at work at once, and figures say how it went.
+TEST(ProgramRun, SteppingBehindDrawingChangesNoPicture) {
+    Scratch scratch;
+    const std::string scene = scratch.file("small.json", smallScene());
+    const std::vector<std::string> common = {"run", scene, "--headless", "--backend", "cpu", "--size", "160x90", "--frames", "8"};
+    for (const char* plan : {"off", "behind"}) {
+        std::vector<std::string> words = common;
+        words.insert(words.end(), {"--cooperate", plan, "--out", plan, "--trace", std::string(plan) + ".json"});
+        const Outcome outcome = runProgram(words, in(scratch));
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        const Json::Value stats = readJson(scratch.path() / plan / "stats.json");
+        EXPECT_EQ(stats["cooperation"]["plan"], plan);
+        EXPECT_EQ(stats["transfer"]["way"], "ring");
+        EXPECT_GT(stats["transfer"]["bytes"].asDouble(), 0);
+    }
+    size_t compared = 0;
+    for (const auto& entry : fs::directory_iterator(scratch.path() / "off")) {
+        if (entry.path().extension() != ".png") continue;
+        EXPECT_EQ(*readFile(entry.path().string()), *readFile((scratch.path() / "behind" / entry.path().filename()).string()))
+            << entry.path();
+        ++compared;
+    }
+    EXPECT_EQ(compared, 6U);
+    EXPECT_GT(readJson(scratch.path() / "behind/stats.json")["cooperation"]["overlapMs"].asDouble(), 0);
+    std::set<std::string> lanes;
+    const Json::Value trace = readJson(scratch.path() / "behind.json");
+    for (const Json::Value& event : trace["traceEvents"])
+        if (event["ph"] == "M") lanes.insert(event["args"]["name"].asString());
+    EXPECT_EQ(lanes, (std::set<std::string>{"cpu: ahead", "cpu: kernels", "gl: drawing", "main"}));
+}
+
+TEST(ProgramRun, PlansThatMakeNoSenseAreSaid) {
+    Scratch scratch;
+    const std::string scene = scratch.file("small.json", smallScene());
+    const Outcome typo = runProgram({"run", scene, "--cooperate", "thesi"}, in(scratch));
+    EXPECT_EQ(typo.code, 2);
+    EXPECT_NE(typo.err.find("thesis"), std::string::npos) << typo.err;
+    const Outcome unwritable = runProgram({"run", scene, "--no-render", "--frames", "1", "--trace", "gone/trace.json"}, in(scratch));
+    EXPECT_EQ(unwritable.code, 1);
+    EXPECT_NE(unwritable.err.find("gone/trace.json"), std::string::npos) << unwritable.err;
+    const Outcome alone =
+        runProgram({"run", scene, "--no-render", "--frames", "1", "--backend", "cpu", "--cooperate", "thesis"}, in(scratch));
+    EXPECT_EQ(alone.code, 0);
+    EXPECT_NE(alone.err.find("GPU"), std::string::npos) << alone.err;
 }
 
 // Ten times slower than life: a frame is a tenth of the time, and moments are still told in simulated seconds.

@@ -1,0 +1,167 @@
+// Who simulates while who draws: whatever the plan, the water is the same, and a plan that overlaps does overlap.
+#include "fluid/bridge/cooperation.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/parity/devices.h"
+
+namespace rivulet {
+namespace {
+
+SceneFile dam(const char* method = "wcsph") {
+    SceneFile scene;
+    scene.name = "dam";
+    scene.fluid.method = method;
+    scene.fluid.spacing = 0.04F;
+    scene.fluid.box.max = vec3(1.0F, 1.2F, 1.0F);
+    scene.fluid.blocks = {{vec3(0.0F), vec3(0.5F, 0.8F, 0.5F), vec3(0.0F)}};
+    return scene;
+}
+
+struct Said {
+    std::vector<std::string> notices;
+    Log log() {
+        return {[this](LogLevel level, std::string_view text) {
+            if (level >= LogLevel::notice) notices.emplace_back(text);
+        }};
+    }
+};
+
+// The particles by id after so many frames, and between step and step what `meanwhile` does.
+std::vector<vec4> after(
+    int frames, const SceneFile& scene, Device& device, Plan plan, Timeline* timeline = nullptr,
+    const std::function<void(Session&)>& meanwhile = [](Session&) {}, const Log& log = {}) {
+    auto session = Session::create(scene, device, {});
+    EXPECT_TRUE(session);
+    Cooperation work(**session, plan, timeline, log);
+    for (int f = 0; f < frames; ++f) {
+        if (!work.started()) work.start(1.0 / 240, true);
+        work.finish();
+        if (f + 1 < frames) work.start(1.0 / 240, true);
+        meanwhile(**session);
+    }
+    work.drop();
+    const HostParticles all = readParticles((*session)->world());
+    std::vector<vec4> byId(all.position.size());
+    for (size_t i = 0; i < byId.size(); ++i) byId[all.id[i]] = all.position[i];
+    return byId;
+}
+
+class CooperationOn : public testing::TestWithParam<const char*> {};
+
+TEST_P(CooperationOn, CellsFoundOnTheCpuAreThoseThatTheDeviceFinds) {
+    const Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    for (const char* method : {"wcsph", "wcsph_thesis", "dfsph"}) {
+        SCOPED_TRACE(method);
+        const SceneFile scene = dam(method);
+        Timeline timeline;
+        const std::vector<vec4> alone = after(8, scene, *gpu->device, Plan::alone);
+        const std::vector<vec4> thesis = after(8, scene, *gpu->device, Plan::thesis, &timeline);
+        EXPECT_EQ(alone, thesis) << "to the bit";
+        size_t found = 0;
+        for (const Timeline::Lane& lane : timeline.lanes())
+            for (const PassSpan& span : lane.spans) found += span.name == "cell_of" ? 1 : 0;
+        EXPECT_EQ(found, 7U) << "before each step but the first";
+        bool given = false;
+        for (const std::string& kernel : gpu->device->kernels()) given |= kernel.find("cell_count;GIVEN=1") != kernel.npos;
+        EXPECT_TRUE(given);
+    }
+}
+
+// What was found of the particles as they lay is void when they have been moved.
+TEST_P(CooperationOn, CellsOfAWorldThatBeganAnewAreNotUsed) {
+    const Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    const SceneFile scene = dam();
+    int frame = 0;
+    const auto meanwhile = [&](Session& session) {
+        if (++frame == 6) session.world().reset();
+    };
+    const std::vector<vec4> anew = after(9, scene, *gpu->device, Plan::thesis, nullptr, meanwhile);
+    EXPECT_EQ(anew, after(3, scene, *gpu->device, Plan::alone));
+}
+
+TEST_P(CooperationOn, AMethodThatMovesBeforeItSortsIsToldSo) {
+    const Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    const SceneFile scene = dam("pbf");
+    Said said;
+    const std::vector<vec4> thesis = after(
+        6, scene, *gpu->device, Plan::thesis, nullptr, [](Session&) {}, said.log());
+    EXPECT_EQ(thesis, after(6, scene, *gpu->device, Plan::alone));
+    ASSERT_EQ(said.notices.size(), 1U);
+    EXPECT_NE(said.notices[0].find("pbf"), std::string::npos) << said.notices[0];
+}
+
+TEST_P(CooperationOn, SteppingAsideIsForTheCpu) {
+    const Result<TestGpu> gpu = makeTestGpu(GetParam());
+    if (!gpu) GTEST_SKIP() << gpu.error().message;
+    Said said;
+    auto session = Session::create(dam(), *gpu->device, {});
+    ASSERT_TRUE(session);
+    EXPECT_EQ(Cooperation(**session, Plan::behind, nullptr, said.log()).plan(), Plan::alone);
+    ASSERT_EQ(said.notices.size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, CooperationOn, testing::Values("cl", "gl"),
+                         [](const testing::TestParamInfo<const char*>& which) { return std::string(which.param); });
+
+TEST(CooperationOfTheCpu, StepsWhileAnotherWorks) {
+    const std::unique_ptr<Device> cpu = makeTestCpu();
+    const SceneFile scene = dam("pbf");
+    Timeline timeline;
+    const std::vector<vec4> alone = after(12, scene, *cpu, Plan::alone);
+    const std::vector<vec4> behind = after(12, scene, *cpu, Plan::behind, &timeline, [&](Session&) {
+        const TimedSpan span(&timeline, kDrawingLane, "a picture");
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    });
+    EXPECT_EQ(alone, behind) << "to the bit";
+    std::vector<PassSpan> steps, pictures;
+    for (const Timeline::Lane& lane : timeline.lanes()) {
+        if (lane.name == "cpu: ahead") steps = lane.spans;
+        if (lane.name == kDrawingLane) pictures = lane.spans;
+    }
+    ASSERT_EQ(steps.size(), 12U);
+    double worked = 0;
+    for (const PassSpan& step : std::span(steps).subspan(1)) worked += step.end - step.begin;  // the first has no picture to overlap
+    EXPECT_GT(overlapSeconds(steps, pictures), 0.1 * worked);
+}
+
+TEST(CooperationOfTheCpu, HasNoGpuToHelp) {
+    const std::unique_ptr<Device> cpu = makeTestCpu();
+    auto session = Session::create(dam(), *cpu, {});
+    ASSERT_TRUE(session);
+    Said said;
+    EXPECT_EQ(Cooperation(**session, Plan::thesis, nullptr, said.log()).plan(), Plan::alone);
+    ASSERT_EQ(said.notices.size(), 1U);
+}
+
+// Every plan on every device, the fastest first; what is not there is left out.
+TEST(CooperationOfTheCpu, AutoTriesThePlansThatThereAre) {
+    const auto draw = [](Session&, const std::function<void()>& uploaded, std::vector<PassTime>&) -> Status {
+        uploaded();
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        return ok();
+    };
+    const Result<std::vector<PlanTried>> tried = tryPlans(dam("pbf"), noGl("none here"), draw, {}, 3);
+    ASSERT_TRUE(tried);
+    ASSERT_GE(tried->size(), 2U);
+    size_t cpus = 0;
+    for (size_t k = 0; k < tried->size(); ++k) {
+        const PlanTried& t = (*tried)[k];
+        EXPECT_NE(t.backend, "gl");
+        cpus += t.backend == "cpu" ? 1 : 0;
+        EXPECT_GE(t.frameMs, 2);
+        EXPECT_FALSE(t.passes.empty()) << nameOf(t);
+        if (k > 0) EXPECT_GE(t.frameMs, (*tried)[k - 1].frameMs);
+    }
+    EXPECT_EQ(cpus, 2U) << "alone and behind";
+    EXPECT_NE(sentenceOf(*tried, "gl").find("--backend gl is left for it"), std::string::npos) << sentenceOf(*tried, "gl");
+}
+
+}  // namespace
+}  // namespace rivulet

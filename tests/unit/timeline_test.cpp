@@ -1,0 +1,75 @@
+// Who worked when: what is added is written, what overlaps is measured, and more than it may hold costs the oldest.
+#include "engine/core/timeline.h"
+
+#include <gtest/gtest.h>
+#include <json/json.h>
+
+#include <memory>
+#include <thread>
+
+namespace rivulet {
+namespace {
+
+Json::Value parsed(const std::string& text) {
+    Json::Value value;
+    std::string errors;
+    const std::unique_ptr<Json::CharReader> reader(Json::CharReaderBuilder().newCharReader());
+    EXPECT_TRUE(reader->parse(text.data(), text.data() + text.size(), &value, &errors)) << errors;
+    return value;
+}
+
+TEST(Timeline, ChromesTraceHasEachSpanInItsLane) {
+    Timeline timeline;
+    timeline.add("cpu", {"cells \"found\"", 10.0, 10.002});
+    timeline.add("gl", {"draw", 10.001, 10.004});
+    timeline.add("cpu", {"step", 10.005, 10.006});
+    const Json::Value events = parsed(timeline.chromeTrace())["traceEvents"];
+    ASSERT_EQ(events.size(), 5U) << "two names of lanes, three spans";
+    double first = 1, last = 0;
+    for (const Json::Value& e : events) {
+        if (e["ph"] == "M") continue;
+        EXPECT_EQ(e["ph"], "X");
+        EXPECT_EQ(e["tid"].asInt(), e["name"] == "draw" ? 2 : 1);
+        first = std::min(first, e["ts"].asDouble());
+        last = std::max(last, e["ts"].asDouble() + e["dur"].asDouble());
+    }
+    EXPECT_EQ(first, 0);
+    EXPECT_NEAR(last, 6000, 0.01) << "microseconds";
+}
+
+TEST(Timeline, AnEmptyOneIsAValidTrace) { EXPECT_TRUE(parsed(Timeline().chromeTrace())["traceEvents"].empty()); }
+
+TEST(Timeline, OverlapCountsWhatBothDoOnce) {
+    // a: 0-4 in pieces that touch and overlap, and 8-9; b: 1-2, 3-8.5.
+    const std::vector<PassSpan> a = {{"", 8, 9}, {"", 0, 2}, {"", 1, 3}, {"", 3, 4}}, b = {{"", 3, 8.5}, {"", 1, 2}};
+    EXPECT_DOUBLE_EQ(overlapSeconds(a, b), 1 + 1 + 0.5);
+    EXPECT_DOUBLE_EQ(overlapSeconds(b, a), overlapSeconds(a, b));
+    EXPECT_EQ(overlapSeconds(a, {}), 0);
+}
+
+TEST(Timeline, TheOldestAreForgotten) {
+    Timeline timeline(100);
+    for (int k = 0; k < 250; ++k) timeline.add("cpu", {"", double(k), k + 0.5});
+    const std::vector<PassSpan> kept = timeline.lanes().front().spans;
+    EXPECT_TRUE(timeline.forgot());
+    EXPECT_LE(kept.size(), 100U);
+    EXPECT_GE(kept.size(), 50U);
+    EXPECT_EQ(kept.back().begin, 249);
+    for (size_t k = 1; k < kept.size(); ++k) EXPECT_EQ(kept[k].begin, kept[k - 1].begin + 1);
+    EXPECT_EQ(timeline.lanes(248.2).front().spans.size(), 2U);
+}
+
+TEST(Timeline, TakesSpansFromManyThreads) {
+    Timeline timeline;
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&timeline, t] {
+            for (int k = 0; k < 1000; ++k) timeline.add(std::to_string(t), {"", double(k), k + 1.0});
+        });
+    for (std::thread& thread : threads) thread.join();
+    ASSERT_EQ(timeline.lanes().size(), 4U);
+    for (const Timeline::Lane& lane : timeline.lanes()) EXPECT_EQ(lane.spans.size(), 1000U);
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -178,6 +178,8 @@ Table<BenchCase> benchCases() {
         {"series", "the thesis's falling column, 16,384 i particles, i = 1 to 8, on every device", benchSeries},
         {"voxels", "a mesh of 70,000 triangles voxelised in every mode, and baked as a field", benchVoxels},
         {"collide", "the share of a step that collision with a mesh takes, 16,384 particles", benchCollide},
+        {"chapter2", "the thesis's chapter 2: the share of each step, one device against CPU and GPU together; with --out a page",
+         benchChapter2},
         {"chapter4",
          "frames a second as the thesis's chapter 4 has them, with its linked lists and the sorted grid, on gl; with --out a page",
          benchChapter4},

@@ -40,6 +40,7 @@ Status benchVoxels(const BenchContext& context);
 Status benchCollide(const BenchContext& context);
 Status benchMethods(const BenchContext& context);
 Status benchFlow(const BenchContext& context);
+Status benchChapter2(const BenchContext& context);
 Status benchChapter4(const BenchContext& context);
 
 // Calls `once` context.runs times (a first call, not counted, warms caches); the spread of what it returns.

@@ -66,7 +66,7 @@ int benchVerb(const Arguments& arguments) {
     reader.positional("CASE", "which cases; all of them when none is named", names);
     reader.option("--json", "FILE.json", "also write the figures to a file", jsonFile);
     reader.option("--markdown", "FILE.md", "also write a page of them, as docs/performance.md is", markdownFile);
-    reader.option("--out", "DIR", "the folder for the page, table and picture of chapter4; none are written if not given", out);
+    reader.option("--out", "DIR", "the folder for the pages of chapter2 and chapter4; none are written if not given", out);
     reader.option("--runs", "N", "measured runs of each", runs, 5, 1000);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 

@@ -49,6 +49,7 @@ class SceneRenderer {
     void present(GLuint framebuffer, int width, int height) const;
     // The last picture: RGBA8, sRGB, top row first, alpha 255. Waits for the GPU.
     std::vector<uint8_t> pixels() const;
+    void finish() const { glFinish(); }  // waits until it is drawn
     int width() const { return picture_.desc().width; }
     int height() const { return picture_.desc().height; }
 

@@ -63,7 +63,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     if (options.cooperate == "auto") {
         const auto draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
             if (Status drawn = v.drawWater(session, options.width, options.height, uploaded); !drawn) return drawn;
-            glFinish();
+            v.renderer_->finish();
             passes = v.renderer_->times();
             return ok();
         };

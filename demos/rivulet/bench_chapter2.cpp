@@ -1,0 +1,37 @@
+// The bench of the thesis's chapter 2: see fluid/validate/chapter2.h.
+#include <fmt/format.h>
+
+#include "demos/rivulet/bench_cases.h"
+#include "engine/app/context_egl.h"
+#include "fluid/validate/chapter2.h"
+
+namespace rivulet {
+
+Status benchChapter2(const BenchContext& context) {
+    Result<ContextEgl> egl = ContextEgl::create();
+    if (!egl) {
+        context.log.notice("chapter2 draws what it measures, and that needs OpenGL: it is left out");
+        return ok();
+    }
+    Chapter2Request request;
+    request.gl = currentGlFacts();
+    request.log = context.log;
+    request.runs = context.runs;
+    request.goOn = [&context] { return !context.interrupted(); };
+    request.report = [&context](const Chapter2Row& row) {
+        BenchRow line{.name = fmt::format("chapter 2, {}, {}", row.particles, nameOf(row.way)),
+                      .unit = "ms",
+                      .value = row.frameMs,
+                      .passes = row.passes};
+        line.passes["until it is stepped"] = row.stepMs;
+        line.passes["drawing"] = row.drawMs;
+        line.passes["overlap"] = row.overlapMs;
+        context.report(line);
+    };
+    const Result<Chapter2> chapter = runChapter2(request);
+    if (!chapter) return chapter.error();
+    if (chapter->stopped || context.out.empty()) return ok();
+    return writeChapter2(*chapter, context.out, machineName(), "rivulet bench chapter2 --out " + context.out);
+}
+
+}  // namespace rivulet

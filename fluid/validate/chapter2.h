@@ -1,0 +1,56 @@
+// Chapter 2 of the thesis, measured as it measured [2.4]: a cube of water falls; the share of each step (fig. 2.4), and one device against
+// the CPU and the GPU together (fig. 2.9).
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/core/log.h"
+#include "engine/core/result.h"
+#include "fluid/bridge/backend.h"
+#include "fluid/bridge/cooperation.h"
+#include "fluid/bridge/run_stats.h"
+
+namespace rivulet {
+
+constexpr int kChapter2Particles = 16384;  // times 1..8
+
+struct Chapter2Row {
+    int particles = 0;
+    PlanTried way = {};                         // the backend and the plan; frameMs: median
+    Spread frameMs = {};                        // over the runs
+    double stepMs = 0, drawMs = 0;              // on the wall of the main thread, medians; what waits for another thread included
+    double overlapMs = 0;                       // a frame: of drawing, and what another thread did meanwhile
+    std::map<std::string, double> passes = {};  // ms a frame, the device's kernels, means
+};
+
+struct Chapter2 {
+    std::vector<Chapter2Row> rows;
+    std::vector<std::string> devices;  // "gl: llvmpipe ..."
+    std::string drawnBy;
+    int width = 0, height = 0;  // pixels
+    std::string picked;         // by --cooperate auto, at the fewest particles
+    double pickedBehind = 0;    // a fraction: what a frame of it takes beyond the best plan's
+    bool stopped = false;
+};
+
+struct Chapter2Request {
+    GlFacts gl = {};  // of the context that is current
+    Log log = {};
+    int runs = 5;
+    int particles = kChapter2Particles;  // half a cube: 4, 32, 256, ...
+    std::vector<int> times = {1, 2, 3, 4, 5, 6, 7, 8};
+    std::function<void(const Chapter2Row&)> report = [](const Chapter2Row&) {};
+    std::function<bool()> goOn = [] { return true; };
+};
+// Every plan on every device that there is; those of one number of particles take turns. Error (failed): a shader does not compile, out of
+// memory.
+Result<Chapter2> runChapter2(const Chapter2Request& request);
+
+// FOLDER/chapter2.csv, chapter2.svg and chapter2.md, which reads them aloud beside the thesis's figures. Error (failed): a file cannot be
+// written; or gnuplot is missing: the table and the page are there all the same.
+Status writeChapter2(const Chapter2& chapter, const std::string& folder, const std::string& machine, const std::string& command);
+
+}  // namespace rivulet

@@ -1,0 +1,174 @@
+// What chapter 2's chart leaves behind: a table, a picture, and a page that reads them aloud.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/core/json.h"
+#include "fluid/validate/chapter2.h"
+#include "fluid/validate/physics_case.h"
+
+namespace rivulet {
+
+namespace {
+
+constexpr double kThesisStepMs = 36.08, kThesisDrawMs = 9.01;  // of 65,536 particles, on a Quadro FX 5800
+constexpr int kThesisAt = 65536, kThesisMany = 100000;
+constexpr double kThesisManyFrames = 10;  // a second, above that
+
+const Chapter2Row* find(const Chapter2& chapter, int particles, const std::string& name) {
+    const auto row = std::find_if(chapter.rows.begin(), chapter.rows.end(),
+                                  [&](const Chapter2Row& r) { return r.particles == particles && nameOf(r.way) == name; });
+    return row == chapter.rows.end() ? nullptr : &*row;
+}
+
+template <class Of>
+auto distinct(const Chapter2& chapter, Of of) {
+    std::vector<decltype(of(chapter.rows.front()))> all;
+    for (const Chapter2Row& r : chapter.rows)
+        if (std::find(all.begin(), all.end(), of(r)) == all.end()) all.push_back(of(r));
+    return all;
+}
+std::vector<int> counts(const Chapter2& chapter) {
+    return distinct(chapter, [](const Chapter2Row& r) { return r.particles; });
+}
+std::vector<std::string> ways(const Chapter2& chapter) {
+    return distinct(chapter, [](const Chapter2Row& r) { return nameOf(r.way); });
+}
+
+// The thesis's steps [fig. 2.1]; a GPU finds neighbours while it sweeps, so that what is left of step 2 is the sort.
+const char* stepOf(const std::string& pass) {
+    if (pass == "fluid/cell_count") return "1, cells";
+    for (const char* sort : {"scan_", "cell_", "reorder", "cpu_sort", "cpu_neighbor"})
+        if (pass.find(sort) != std::string::npos) return "2, neighbours";
+    if (pass.find("density") != std::string::npos) return "3, density";
+    if (pass.find("forces") != std::string::npos) return "4, forces";
+    return "5, integration";
+}
+constexpr const char* kSteps[] = {"1, cells", "2, neighbours", "3, density", "4, forces", "5, integration"};
+
+std::string csvOf(const Chapter2& chapter, const std::string& machine) {
+    std::string csv = fmt::format("# {}; {}x{} pixels by {}\nparticles,way,frameMs,least,most,stepMs,drawMs,overlapMs\n", machine,
+                                  chapter.width, chapter.height, chapter.drawnBy);
+    for (const Chapter2Row& r : chapter.rows)
+        csv += fmt::format("{},\"{}\",{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}\n", r.particles, nameOf(r.way), r.frameMs.median,
+                           r.frameMs.min, r.frameMs.max, r.stepMs, r.drawMs, r.overlapMs);
+    return csv;
+}
+
+Plot plotOf(const Chapter2& chapter) {
+    Plot plot{"A cube of water falls (the thesis's fig. 2.9)", "particles", "ms a frame", {}};
+    for (const std::string& way : ways(chapter)) {
+        Curve curve{way, true, {}};
+        for (const int particles : counts(chapter))
+            if (const Chapter2Row* row = find(chapter, particles, way)) curve.points.emplace_back(particles, row->frameMs.median);
+        plot.curves.push_back(std::move(curve));
+    }
+    plot.curves.push_back({"the thesis, Quadro FX 5800", false, {{kThesisAt, kThesisStepMs + kThesisDrawMs}}});
+    return plot;
+}
+
+// Beside the thesis's two figures.
+std::string verdict(const Chapter2& chapter) {
+    const auto fastest = [&](int particles) {
+        const Chapter2Row* best = nullptr;
+        for (const Chapter2Row& r : chapter.rows)
+            if (r.particles == particles && (best == nullptr || r.frameMs.median < best->frameMs.median)) best = &r;
+        return best;
+    };
+    std::string text = "| the thesis, on a Quadro FX 5800 | here |\n| --- | --- |\n";
+    if (const Chapter2Row* at = fastest(kThesisAt))
+        text += fmt::format(
+            "| {} particles: {} ms of simulation and {} ms of drawing | {:.3g} ms a frame ({}): {:.3g} ms until it is stepped, {:.3g} ms "
+            "of drawing |\n",
+            kThesisAt, kThesisStepMs, kThesisDrawMs, at->frameMs.median, nameOf(at->way), at->stepMs, at->drawMs);
+    const Chapter2Row* many = nullptr;
+    for (const int particles : counts(chapter))
+        if (particles > kThesisMany && many == nullptr) many = fastest(particles);
+    if (many != nullptr)
+        text += fmt::format("| above {} particles: above {} frames a second | {} particles: {:.3g} frames a second ({}) |\n", kThesisMany,
+                            kThesisManyFrames, many->particles, 1000 / many->frameMs.median, nameOf(many->way));
+    return text + '\n';
+}
+
+std::string sharesOf(const Chapter2& chapter) {
+    std::string text =
+        "\n## The share of each step (the thesis's fig. 2.4)\n\nOf the device's kernels, %, one device alone, by its own clock; drawing in "
+        "ms beside. "
+        "Neighbours are found by sorting into cells; a GPU walks the cells inside steps 3 and 4, the cpu keeps lists.\n\n| particles | "
+        "device |";
+    for (const char* step : kSteps) text += fmt::format(" {} |", step);
+    text += " kernels, ms | drawing, ms |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const Chapter2Row& r : chapter.rows) {
+        if (r.way.plan != Plan::alone) continue;
+        std::map<std::string, double> of;
+        double all = 0;
+        for (const auto& [pass, ms] : r.passes) {
+            of[stepOf(pass)] += ms;
+            all += ms;
+        }
+        text += fmt::format("| {} | {} |", r.particles, r.way.backend);
+        for (const char* step : kSteps) text += fmt::format(" {:.0f} |", all > 0 ? 100 * of[step] / all : 0.0);
+        text += fmt::format(" {:.3g} | {:.3g} |\n", all, r.drawMs);
+    }
+    return text;
+}
+
+std::string pageOf(const Chapter2& chapter, const std::string& machine, const std::string& command, bool picture) {
+    std::string text = fmt::format(
+        "# Chapter 2 of the thesis, measured as it measured\n\n"
+        "Written by `{}` on: {}, pictures by {}, from [chapter2.csv](chapter2.csv); devices: {}. A column of water falls; a frame is one "
+        "step of method "
+        "wcsph_thesis and one picture of {}x{} pixels. `thesis`: the CPU finds the next step's cells while the GPU draws (2.3); `behind`: "
+        "the cpu steps "
+        "on while OpenGL draws the frame before. All of one number of particles take turns; median, least and most of the runs.\n\n",
+        command, machine, chapter.drawnBy, fmt::join(chapter.devices, "; "), chapter.width, chapter.height);
+    text += verdict(chapter);
+    text += fmt::format("`--cooperate auto` picks {} at {} particles, {:.1f} % beyond the best plan's frame.\n\n", chapter.picked,
+                        chapter.rows.front().particles, 100 * chapter.pickedBehind);
+    if (picture) text += "![ms a frame against particles](chapter2.svg)\n\n";
+    text += "## One device, and both (the thesis's fig. 2.9)\n\nms a frame.\n\n| particles |";
+    const std::vector<std::string> names = ways(chapter);
+    for (const std::string& way : names) text += fmt::format(" {} |", way);
+    text += "\n| --- |";
+    for (size_t k = 0; k < names.size(); ++k) text += " --- |";
+    text += '\n';
+    for (const int particles : counts(chapter)) {
+        text += fmt::format("| {} |", particles);
+        for (const std::string& way : names) {
+            const Chapter2Row* row = find(chapter, particles, way);
+            text += row == nullptr ? " |"
+                                   : fmt::format(" {:.3g} ({:.3g} to {:.3g}) |", row->frameMs.median, row->frameMs.min, row->frameMs.max);
+        }
+        text += '\n';
+    }
+    text += "\nms a frame in which drawing and what another thread does both work:\n\n| particles |";
+    for (const std::string& way : names)
+        if (way.find(',') != way.npos) text += fmt::format(" {} |", way);
+    text += "\n| --- |";
+    for (const std::string& way : names)
+        if (way.find(',') != way.npos) text += " --- |";
+    text += '\n';
+    for (const int particles : counts(chapter)) {
+        text += fmt::format("| {} |", particles);
+        for (const std::string& way : names)
+            if (const Chapter2Row* row = find(chapter, particles, way); row != nullptr && row->way.plan != Plan::alone)
+                text += fmt::format(" {:.3g} |", row->overlapMs);
+        text += '\n';
+    }
+    return text + sharesOf(chapter);
+}
+
+}  // namespace
+
+Status writeChapter2(const Chapter2& chapter, const std::string& folder, const std::string& machine, const std::string& command) {
+    const std::filesystem::path to(folder);
+    if (Status wrote = writeFileAtomic((to / "chapter2.csv").string(), csvOf(chapter, machine)); !wrote) return wrote;
+    const Status drawn = drawPlot(plotOf(chapter), (to / "chapter2.svg").string());
+    const std::string page = pageOf(chapter, machine, command, static_cast<bool>(drawn));
+    if (Status wrote = writeFileAtomic((to / "chapter2.md").string(), page); !wrote) return wrote;
+    return drawn;
+}
+
+}  // namespace rivulet

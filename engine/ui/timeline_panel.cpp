@@ -10,8 +10,8 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kShown = 0.1;   // s
-constexpr double kBehind = 0.1;  // s: a GPU's spans come some frames late
+constexpr double kShown = 2, kLate = 4;       // frames
+constexpr double kLeast = 0.005, kMost = 10;  // s, of a frame
 
 ImU32 colourOf(const std::string& name) {
     const auto hash = static_cast<float>(std::hash<std::string>()(name) % 1024) / 1024.0F;
@@ -20,9 +20,13 @@ ImU32 colourOf(const std::string& name) {
 
 }  // namespace
 
-void TimelinePanel::draw(const Timeline& timeline, float width) {
-    if (!held_) until_ = hostSeconds() - kBehind;
-    const std::vector<Timeline::Lane> lanes = timeline.lanes(until_ - kShown);
+void TimelinePanel::draw(const Timeline& timeline, double frame, float width) {
+    if (!held_) {
+        frame = std::clamp(frame, kLeast, kMost);
+        until_ = hostSeconds() - kLate * frame;
+        shown_ = kShown * frame;
+    }
+    const std::vector<Timeline::Lane> lanes = timeline.lanes(until_ - shown_);
     const float row = ImGui::GetTextLineHeight() + 4;
     const ImVec2 low = ImGui::GetCursorScreenPos(), size(width, row * static_cast<float>(std::max<size_t>(lanes.size(), 1)));
     ImGui::Dummy(size);
@@ -32,7 +36,7 @@ void TimelinePanel::draw(const Timeline& timeline, float width) {
     list->AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
     list->PushClipRect(low, high, true);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const auto at = [&](double seconds) { return low.x + size.x * static_cast<float>(1 + (seconds - until_) / kShown); };
+    const auto at = [&](double seconds) { return low.x + size.x * static_cast<float>(1 + (seconds - until_) / shown_); };
     const PassSpan* pointed = nullptr;
     for (size_t k = 0; k < lanes.size(); ++k) {
         const float top = low.y + row * static_cast<float>(k);

@@ -7,11 +7,13 @@ namespace rivulet {
 
 class TimelinePanel {
   public:
-    void draw(const Timeline& timeline, float width);  // pixels; inside an ImGui window
+    // Two frames of `frame` s each, as long ago as a GPU's spans come late. `width`: pixels; inside an ImGui window.
+    void draw(const Timeline& timeline, double frame, float width);
 
   private:
     bool held_ = false;  // by the mouse over it, so that it can be read
     double until_ = 0;   // s, the right edge
+    double shown_ = 0;   // s across
 };
 
 }  // namespace rivulet

@@ -225,9 +225,9 @@ bool Viewer::drawPanels() {
     ImGui::SetNextWindowSizeConstraints(ImVec2(narrow, 0), ImVec2(narrow, tall));
     if (ImGui::Begin("times", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
         const float across = narrow - 2 * ImGui::GetStyle().WindowPadding.x;
-        profiler_.draw(across);
+        timelinePanel_.draw(timeline_, 1.0e-3 * profiler_.meanFrame(), across);
         ImGui::Spacing();
-        timelinePanel_.draw(timeline_, across);
+        profiler_.draw(across);
         ImGui::Spacing();
         voxels_.draw(session_->fields(), session_->world().time(), std::min(across, ImGui::GetContentRegionAvail().x));
     }

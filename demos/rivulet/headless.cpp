@@ -72,12 +72,12 @@ struct Painter {
     // `uploaded` is called when nothing more is read of the world.
     Result<std::vector<uint8_t>> paint(Session& session, int width, int height, const std::function<void()>& uploaded) {
         const SceneFile& scene = session.scene();
-        std::optional<TimedSpan> upload_(std::in_place, timeline, "main", "upload");
+        std::optional<TimedSpan> bringing(std::in_place, timeline, "main", "upload");
         Result<FluidView> fluid = upload.view(session.world(), scene.look, session.flows().airDrops());
         if (!fluid) return fluid.error();
         if (Status wet = session.flows().draw(); !wet) return wet.error();
         FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.world().time());
-        upload_.reset();
+        bringing.reset();
         uploaded();
         {
             const TimedSpan span(timeline, "main", "draw");

@@ -184,7 +184,7 @@ Result<PlanChoice> choosePlan(const RunOptions& options, const GlFacts& gl, Pain
         passes = painter.renderer->times();
         return ok();
     };
-    Result<std::vector<PlanTried>> tried = tryPlans(options.scene, gl, draw, options.log);
+    Result<std::vector<PlanTried>> tried = tryPlans(options.scene, gl, draw, options.log, 6, options.device);
     if (!tried) return tried.error();
     options.log.notice(sentenceOf(*tried, options.backend));
     return PlanChoice{tried->front().backend, tried->front().plan};
@@ -202,6 +202,7 @@ int runHeadless(const RunOptions& options) {
         gl = made ? currentGlFacts() : noGl(made.error().message);
         if (made) context = std::move(*made);
     }
+    Timeline timeline;  // whoever tells it of spans is gone before it
     Painter painter;
     if (options.render) {
         const auto surroundings = surroundingsOf(options.scene);
@@ -212,7 +213,6 @@ int runHeadless(const RunOptions& options) {
     }
     const Result<PlanChoice> choice = choosePlan(options, gl, painter);
     if (!choice) return report(choice.error());
-    Timeline timeline;
     const bool traced = !options.trace.empty() || options.cooperate != "off";
     std::unique_ptr<Device> device = makeDevice(choice->backend, gl, options.log, options.device);
     auto opened = openSession(options.scene, *device, options.log);

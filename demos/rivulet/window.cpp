@@ -54,6 +54,7 @@ int runWindow(const RunOptions& options) {
         if (input.framebuffer.x <= 0 || input.framebuffer.y <= 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing paces it
     }
+    v.settle();
     if (recorded) {
         const RunStats stats = v.finishRecord();
         if (!options.stats.empty())

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/bridge/run_stats.h"
@@ -147,6 +148,7 @@ double Cooperation::finish() {
     if (plan_ == Plan::behind) return session_->settle();
     if (plan_ == Plan::thesis && cells_->found) {
         cells_->found = false;
+        helped_ = true;
         const TimedSpan span(timeline_, "main", "cells go up");
         const double before = hostSeconds();
         session_->world().giveCells(std::span(hostPointer<const uint32_t>(cells_->cell), cells_->step.count));
@@ -187,17 +189,23 @@ std::string nameOf(const PlanTried& tried) {
     return tried.plan == Plan::alone ? tried.backend : fmt::format("{}, {}", tried.backend, plan);
 }
 
-Result<std::vector<PlanTried>> tryPlans(const SceneFile& scene, const GlFacts& gl, const DrawFrame& draw, const Log& log, int frames) {
+Result<std::vector<PlanTried>> tryPlans(const SceneFile& scene, const GlFacts& gl, const DrawFrame& draw, const Log& log, int frames,
+                                        const std::string& clDevice) {
     std::vector<PlanTried> all;
+    std::optional<Error> why;  // the first device cannot
     for (const char* backend : {"cpu", "gl", "cl"}) {
-        const std::unique_ptr<Device> device = makeDevice(backend, gl, {});
+        const std::unique_ptr<Device> device = makeDevice(backend, gl, {}, clDevice);
         if (std::string_view(backend) != backendName(device->backend())) continue;  // there is none
         for (const PlanRow& row : plans().rows) {
             if ((row.plan == Plan::behind) != (row.plan == Plan::behind && device->backend() == Backend::cpu)) continue;
             if (row.plan == Plan::thesis && device->backend() == Backend::cpu) continue;
             Result<std::unique_ptr<Session>> session = Session::create(scene, *device, {});
-            if (!session) return session.error();
-            Cooperation work(**session, row.plan, nullptr, log);
+            if (!session) {
+                log.notice(fmt::format("--cooperate auto leaves {} out: {}", backend, session.error().message));
+                if (!why) why = session.error();
+                break;
+            }
+            Cooperation work(**session, row.plan, nullptr, {});
             if (work.plan() != row.plan) continue;
             PlanTried tried{backend, row.plan, 0, {}};
             std::vector<double> ms;
@@ -226,11 +234,17 @@ Result<std::vector<PlanTried>> tryPlans(const SceneFile& scene, const GlFacts& g
                 last = now;
             }
             work.finish();
+            if (const DeviceHealth health = device->health(); health.state != DeviceHealth::works) {
+                log.notice(fmt::format("--cooperate auto leaves {} out: it {}", backend, health.why));
+                break;
+            }
+            if (row.plan == Plan::thesis && !work.helped()) continue;
             tried.frameMs = spreadOf(std::move(ms)).median;
             for (auto& [name, sum] : sums) tried.passes.push_back(std::move(sum));
             all.push_back(std::move(tried));
         }
     }
+    if (all.empty()) return why.value_or(failed("no device could try the scene"));
     std::stable_sort(all.begin(), all.end(), [](const PlanTried& a, const PlanTried& b) { return a.frameMs < b.frameMs; });
     return all;
 }

@@ -45,6 +45,7 @@ class Cooperation {
     double finish();
     void drop();  // as finish, but steps no further than has been stepped already
     bool started() const { return started_; }
+    bool helped() const { return helped_; }  // of thesis: whether cells could be found ahead
     Timeline* timeline() const { return timeline_; }
     CooperationStats stats() const;
     Plan plan() const { return plan_; }
@@ -57,7 +58,7 @@ class Cooperation {
     Plan plan_;
     Timeline* timeline_;
     Log log_;
-    bool started_ = false, wait_ = false, told_ = false;
+    bool started_ = false, wait_ = false, told_ = false, helped_ = false;
     int frames_ = 0;
     double seconds_ = 0, deviceMs_ = 0, aheadMs_ = 0;
     std::future<void> ahead_;  // what runs meanwhile
@@ -79,9 +80,11 @@ std::string nameOf(const PlanTried& tried);  // "cpu", "gl, thesis", "cpu, behin
 // Draws the session as it is, its view uploaded; calls `uploaded` between the two. The time that it takes is the frame's.
 using DrawFrame = std::function<Status(Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes)>;
 
+// `clDevice`: as makeDevice. A device that cannot open the scene, or fails, and a plan that could do nothing are left out.
 // Tries every plan on every device that there is, each from the scene's start, for `frames` frames after as many that are not counted;
 // the fastest first. Error: the scene cannot be opened, or drawn.
-Result<std::vector<PlanTried>> tryPlans(const SceneFile& scene, const GlFacts& gl, const DrawFrame& draw, const Log& log, int frames = 6);
+Result<std::vector<PlanTried>> tryPlans(const SceneFile& scene, const GlFacts& gl, const DrawFrame& draw, const Log& log, int frames = 6,
+                                        const std::string& clDevice = {});
 // The choice, in words; `named`: the backend that was asked for, which it may leave.
 std::string sentenceOf(std::span<const PlanTried> tried, std::string_view named);
 

@@ -78,6 +78,10 @@ Status FluidUpload::bringOver(Device& device, std::span<const Array> arrays, con
     size_t bytes = 64 + out.count * sizeof(uint32_t);
     for (const Array& a : arrays) bytes += 64 + bytesOf(a);
     if (Status s = ring_.begin(bytes); !s) return s;
+    const struct End {
+        gpu::StagingRing& ring;
+        ~End() { ring.end(); }  // whatever fails, copies may be under way
+    } end{ring_};
     facts_.bytes = bytes;
     ids_.resize(out.count);
     if (out.count > 0) device.read(ids, std::as_writable_bytes(std::span(ids_)));
@@ -109,7 +113,6 @@ Status FluidUpload::bringOver(Device& device, std::span<const Array> arrays, con
         ring_.copyTo(id_);
         out.id = id_.name();
     }
-    ring_.end();
     return ok();
 }
 

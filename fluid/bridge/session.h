@@ -72,6 +72,7 @@ class Session {
     // a session on cl takes of itself now and then. time() of the world says from when on. Error (failed): out of memory; the session
     // is then of no more use.
     Status moveTo(Device& device);
+    void hold(std::unique_ptr<Device> device) { held_ = std::move(device); }  // as long as itself: of a move that failed half way
 
     // The world and what the session knows of its solids. Error: as FluidWorld::restore; all is then as it was.
     void save(WorldState& state);
@@ -124,8 +125,9 @@ class Session {
     std::vector<Deforming> deforming_;
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
-    Solids given_;                            // what the world was made among
-    Sources sources_;                         // and with
+    std::unique_ptr<Device> held_;
+    Solids given_;     // what the world was made among
+    Sources sources_;  // and with
     std::unique_ptr<FluidWorld> world_;
     SkinFlows flows_;
     struct Worked {

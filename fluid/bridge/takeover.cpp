@@ -29,9 +29,11 @@ Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, cons
     if (health.state == DeviceHealth::works) return false;
     const double reached = session.world().time();
     std::unique_ptr<Device> cpu = makeCpu();
-    if (Status moved = session.moveTo(*cpu); !moved)
+    if (Status moved = session.moveTo(*cpu); !moved) {
+        session.hold(std::move(cpu));
         return Error{fmt::format("OpenCL on {} {}, and the cpu cannot go on: {}", device->info().name, health.why, moved.error().message),
                      moved.error().fault};
+    }
     const double from = session.world().time();
     const std::string back = reached - from > 1.0e-9 ? fmt::format(", {:.3g} s back", reached - from) : std::string();
     log.notice(fmt::format("OpenCL on {} {}: the cpu goes on from {:.3f} s{}", device->info().name, health.why, from, back));

@@ -67,7 +67,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
             passes = v.renderer_->times();
             return ok();
         };
-        Result<std::vector<PlanTried>> tried = tryPlans(scene, v.gl_, draw, v.log_);
+        Result<std::vector<PlanTried>> tried = tryPlans(scene, v.gl_, draw, v.log_, 6, options.device);
         if (!tried) return tried.error();
         v.log_.notice(sentenceOf(*tried, backend));
         backend = tried->front().backend;

@@ -51,7 +51,8 @@ class Viewer {
 
     // From now on keeps the record of the run; starts anew with every new session.
     void record();
-    RunStats finishRecord();  // after record()
+    RunStats finishRecord();          // after record()
+    void settle() { work_->drop(); }  // what is under way on another thread is done then: before session() is read between frames
     const Timeline& timeline() const { return timeline_; }
 
   private:

@@ -53,23 +53,23 @@ struct Contender {
     Status run(SceneRenderer& renderer, const Chapter2& chapter) {
         const SceneFile& scene = session->scene();
         Device& device = session->world().device();
-        renderer.onSpan(timeline->lane(kDrawingLane));
         double whole = 0, stepping = 0, drawing = 0;
         for (int k = 0; k <= kFrames; ++k) {
-            if (k == 1) device.takeTimes();
             const double start = hostSeconds();
             if (!work->started()) work->start(frameSeconds(scene), true);
             work->finish();
+            for (const PassTime& t : device.takeTimes())
+                if (k > 0) row.passes[t.name] += t.ms;
             const double stepped = hostSeconds();
             Result<FluidView> fluid = upload.view(session->world(), scene.look);
             if (!fluid) return fluid.error();
             const FrameView view = frameViewOf(cameraOf(scene.camera, session->bounds()), scene.light, chapter.width, chapter.height, 0);
-            if (k < kFrames)
-                work->start(frameSeconds(scene), true);
-            else
-                for (const PassTime& t : device.takeTimes()) row.passes[t.name] += t.ms;
-            if (Status drawn = renderer.draw(view, *fluid, session->solids(), scene); !drawn) return drawn;
-            renderer.finish();
+            work->start(frameSeconds(scene), true);  // in the last one, too: all that are counted are drawn beside a step, or none
+            {
+                const TimedSpan span(timeline.get(), kDrawingLane, "drawn");
+                if (Status drawn = renderer.draw(view, *fluid, session->solids(), scene); !drawn) return drawn;
+                renderer.finish();
+            }
             if (k == 0) continue;
             const double done = hostSeconds();
             whole += done - start;
@@ -77,6 +77,9 @@ struct Contender {
             drawing += done - stepped;
         }
         work->drop();
+        device.takeTimes();
+        if (const DeviceHealth health = device.health(); health.state != DeviceHealth::works)
+            return failed(fmt::format("{} {}: nothing it took can be believed", device.info().name, health.why));
         frames += kFrames;
         frame.push_back(1000 * whole / kFrames);
         step.push_back(1000 * stepping / kFrames);
@@ -128,7 +131,6 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
                 Contender& c = all[(turn + static_cast<size_t>(run)) % all.size()];  // nobody always comes first
                 if (Status done = c.run(**renderer, chapter); !done) return done.error();
             }
-        (*renderer)->onSpan({});
         for (Contender& c : all) {
             c.sumUp();
             request.report(c.row);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/app/context_egl.h"
-#include "fluid/bridge/backend.h"
+#include "fluid/render/backend.h"
 
 namespace rivulet {
 

@@ -42,6 +42,8 @@ Status benchMethods(const BenchContext& context);
 Status benchFlow(const BenchContext& context);
 Status benchChapter2(const BenchContext& context);
 Status benchChapter4(const BenchContext& context);
+Status benchHost(const BenchContext& context);
+Status benchUi(const BenchContext& context);
 
 // Calls `once` context.runs times (a first call, not counted, warms caches); the spread of what it returns.
 Spread repeat(const BenchContext& context, const std::function<double()>& once);

@@ -21,11 +21,11 @@ Status benchChapter2(const BenchContext& context) {
     request.report = [&context](const Chapter2Row& row) {
         BenchRow line{.name = fmt::format("chapter 2, {}, {}", row.particles, nameOf(row.way)),
                       .unit = "ms",
-                      .value = row.frameMs,
-                      .passes = row.passes};
-        line.passes["until it is stepped"] = row.stepMs;
-        line.passes["drawing"] = row.drawMs;
-        line.passes["overlap"] = row.overlapMs;
+                      .value = row.way.frameMs,
+                      .passes = row.way.passes};
+        line.passes["until it is stepped"] = row.way.stepMs;
+        line.passes["drawing"] = row.way.drawMs;
+        line.passes["overlap"] = row.way.overlapMs;
         context.report(line);
     };
     const Result<Chapter2> chapter = runChapter2(request);

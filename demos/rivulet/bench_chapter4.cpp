@@ -3,7 +3,7 @@
 
 #include "demos/rivulet/bench_cases.h"
 #include "engine/app/context_egl.h"
-#include "fluid/bridge/backend.h"
+#include "fluid/render/backend.h"
 #include "fluid/validate/chapter4.h"
 
 namespace rivulet {

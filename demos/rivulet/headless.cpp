@@ -11,14 +11,15 @@
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
 #include "engine/core/json.h"
-#include "fluid/bridge/backend.h"
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/explain.h"
-#include "fluid/bridge/fluid_upload.h"
+#include "fluid/bridge/plan_trial.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
 #include "fluid/bridge/takeover.h"
+#include "fluid/render/backend.h"
+#include "fluid/render/fluid_upload.h"
 
 namespace rivulet {
 
@@ -51,7 +52,8 @@ struct Outputs {
         to.video = options.video.empty() ? to.picturePrefix + ".mp4" : options.video;
         if (options.render || options.stats.empty())
             if (Status made = makeFolder(options.out); !made) return made.error();
-        if (Status writable = checkWritable(to.stats); !writable) return writable.error();
+        if (options.replay.empty())
+            if (Status writable = checkWritable(to.stats); !writable) return writable.error();
         for (const std::string& file : {options.save, options.trace})
             if (!file.empty())
                 if (Status writable = checkWritable(file); !writable) return writable.error();
@@ -73,10 +75,10 @@ struct Painter {
     Result<std::vector<uint8_t>> paint(Session& session, int width, int height, const std::function<void()>& uploaded) {
         const SceneFile& scene = session.scene();
         std::optional<TimedSpan> bringing(std::in_place, timeline, "main", "upload");
-        Result<FluidView> fluid = upload.view(session.world(), scene.look, session.flows().airDrops());
+        Result<FluidView> fluid = viewOf(upload, session);
         if (!fluid) return fluid.error();
         if (Status wet = session.flows().draw(); !wet) return wet.error();
-        FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.world().time());
+        FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.time());
         bringing.reset();
         uploaded();
         {
@@ -96,7 +98,8 @@ struct Loop {
     Outputs& to;
     Painter& painter;
     Cooperation& work;
-    RunRecorder recorder;
+    std::optional<RunRecorder> recorder;       // nothing: a replay has no figures
+    std::optional<RecordingWriter> recording;  // of --record
     int pictures = 0;
 
     // Beside a picture of frame `f` the height field of each skin in thesis mode.
@@ -111,8 +114,6 @@ struct Loop {
         return ok();
     }
 
-    void next() { work.start(frameSeconds(options.scene), true); }
-
     Status run(int frames) {
         const std::set<int> kept = options.stills.empty() ? pictureFrames(frames) : options.stills;
         Progress progress(options.scene.name);
@@ -122,30 +123,35 @@ struct Loop {
                 progress.show(share, fmt::format("drawing {:.2f} s", now));
                 return !graceful.interrupted();
             });
-        for (int f = 0; f < frames && !graceful.interrupted(); ++f) {
+        // What has been stepped behind a picture is drawn, too: what is saved is what was seen last.
+        const auto goesOn = [&] { return !graceful.interrupted() || (work.started() && work.plan() == Plan::behind); };
+        for (int f = 0; f < frames && goesOn(); ++f) {
+            const bool shown = options.render && (to.writer || kept.contains(f));
+            if (session.replaying() != nullptr && !shown) continue;
+            if (session.replaying() != nullptr) session.seek(static_cast<size_t>(f));
             Clock::time_point start = Clock::now();
-            if (!work.started()) next();
-            const double simulateMs = work.finish();
+            const double simulateMs = work.started() ? work.finish() : work.step(frameSeconds(options.scene), true);
             const Result<bool> moved = keepRunning(session, device, options.log);
             if (!moved) return moved.error();
             if (*moved) {
-                recorder.follow(session.world());
+                if (recorder) recorder->follow(session.world());
                 if (work.timeline() != nullptr) traceKernels(*device, *work.timeline());
             }
-            recorder.stepped(simulateMs, device->takeTimes());
-            now = session.world().time();
-            const bool more = f + 1 < frames;
+            if (recorder) recorder->stepped(simulateMs, device->takeTimes());
+            if (recording)
+                if (Status added = recording->add(frameOf(session)); !added) return added;
+            now = session.time();
             double renderMs = 0;
             std::vector<PassTime> drawn;
-            if (options.render && (to.writer || kept.contains(f))) {
+            if (shown) {
                 Clock::time_point before = Clock::now();
                 Result<std::vector<uint8_t>> pixels = painter.paint(session, options.width, options.height, [&] {
-                    if (more) next();
+                    if (f + 1 < frames && !graceful.interrupted()) work.start(frameSeconds(options.scene), true);
                 });
                 if (!pixels) return pixels.error();
                 renderMs = msSince(before);
                 drawn = painter.renderer->times();
-                recorder.transferred(painter.upload.facts());
+                if (recorder) recorder->transferred(painter.upload.facts());
                 if (to.writer)
                     if (Status added = to.writer->add(*pixels); !added) return added;
                 if (kept.contains(f)) {
@@ -156,9 +162,9 @@ struct Loop {
                     ++pictures;
                 }
             }
-            if (options.render && !to.writer && !kept.contains(f))  // a skin's maps show what has come since they were last drawn
+            if (options.render && !shown)  // a skin's maps show what has come since they were last drawn
                 if (Status wet = session.flows().draw(); !wet) return wet.error();
-            recorder.drawn(renderMs, msSince(start), drawn);
+            if (recorder) recorder->drawn(renderMs, msSince(start), drawn);
             progress.show(static_cast<double>(f + 1) / frames, fmt::format("{:.2f} s, {:.0f} ms a frame", now, msSince(start)));
         }
         work.drop();
@@ -169,25 +175,35 @@ struct Loop {
 struct PlanChoice {
     std::string backend;  // as --backend
     Plan plan = Plan::alone;
+    std::vector<CooperationStats::Tried> tried = {};
 };
 
 // What --cooperate says; auto tries them all.
 Result<PlanChoice> choosePlan(const RunOptions& options, const GlFacts& gl, Painter& painter) {
-    if (options.cooperate != "auto") return PlanChoice{options.backend, plans().find(options.cooperate)->plan};
-    if (!options.render) {
-        options.log.notice("--cooperate auto: nothing is drawn, so that there is nothing to share out");
-        return PlanChoice{options.backend, Plan::alone};
+    if (!options.render && options.cooperate != "off") {
+        options.log.notice(
+            fmt::format("--cooperate {}: nothing is drawn, so that CPU and GPU have nothing to share out", options.cooperate));
+        return PlanChoice{.backend = options.backend};
     }
-    const auto draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
+    if (options.cooperate != "auto") return PlanChoice{.backend = options.backend, .plan = plans().find(options.cooperate)->plan};
+    const DrawFrame draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
         Result<std::vector<uint8_t>> pixels = painter.paint(session, options.width, options.height, uploaded);
         if (!pixels) return pixels.error();
         passes = painter.renderer->times();
         return ok();
     };
-    Result<std::vector<PlanTried>> tried = tryPlans(options.scene, gl, draw, options.log, 6, options.device);
+    Result<std::vector<PlanTried>> tried = [&] {
+        Progress progress("trying plans");
+        return tryPlans({.scene = options.scene,
+                         .gl = gl,
+                         .draw = draw,
+                         .log = options.log,
+                         .clDevice = options.device,
+                         .progress = [&](double share, const std::string& plan) { progress.show(share, plan); }});
+    }();
     if (!tried) return tried.error();
     options.log.notice(sentenceOf(*tried, options.backend));
-    return PlanChoice{tried->front().backend, tried->front().plan};
+    return PlanChoice{tried->front().backend, tried->front().plan, statsOf(*tried)};
 }
 
 }  // namespace
@@ -215,12 +231,14 @@ int runHeadless(const RunOptions& options) {
     if (!choice) return report(choice.error());
     const bool traced = !options.trace.empty() || options.cooperate != "off";
     std::unique_ptr<Device> device = makeDevice(choice->backend, gl, options.log, options.device);
-    auto opened = openSession(options.scene, *device, options.log);
+    auto opened = openSession(options.scene, *device, options.log, choice->backend);
     if (!opened) return report(opened.error());
     if (opened->instead) device = std::move(opened->instead);
     const std::unique_ptr<Session> session = std::move(opened->session);
     if (!options.resume.empty())
         if (Status resumed = resumeFrom(options.resume, *session); !resumed) return report(resumed.error());
+    if (Status replays = replayOf(options, *session); !replays) return report(replays.error());
+    const Replay* replay = session->replaying();
     int frames = options.frames.value_or(0);
     if (!options.stills.empty() && !options.frames) {
         frames = *options.stills.rbegin() + 1;
@@ -230,7 +248,16 @@ int runHeadless(const RunOptions& options) {
         if (!all) return report(all.error());
         frames = *all;
     }
+    if (replay != nullptr) {
+        const int recorded = static_cast<int>(replay->frames());
+        if (options.stills.empty() && !options.frames) frames = recorded;
+        if (!options.stills.empty() && *options.stills.rbegin() >= recorded)
+            return report(badInput(fmt::format("--still: {} ends with frame {}, at {:.3g} s: ask for an earlier time", options.replay,
+                                               recorded - 1, recorded * frameSeconds(options.scene))));
+        frames = std::min(frames, recorded);
+    }
     if (traced) {
+        timeline.restart();  // times of what auto tried may be on their way
         painter.timeline = &timeline;
         traceKernels(*device, timeline);
         if (painter.renderer) painter.renderer->onSpan(timeline.lane(kDrawingLane));
@@ -239,26 +266,41 @@ int runHeadless(const RunOptions& options) {
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 
+    Result<std::optional<RecordingWriter>> recording = recordingOf(options, *session);
+    if (!recording) return report(recording.error());
+
     Cooperation work(*session, choice->plan, traced ? &timeline : nullptr, options.log);
-    Loop loop{options, graceful, *session, device,
-              *to,     painter,  work,     RunRecorder(session->world(), session->fields(), true, &session->flows())};
+    Loop loop{options, graceful, *session, device, *to, painter, work, {}, std::move(*recording)};
+    if (replay == nullptr) loop.recorder.emplace(session->world(), session->fields(), true, &session->flows());
     if (Status done = loop.run(frames); !done) return report(done.error());
+    if (painter.renderer) painter.renderer->finish();
+    device->finish();
+    (void)device->takeTimes();  // the last frames' spans
+    if (loop.recording)
+        if (Status closed = loop.recording->close(); !closed) return report(closed.error());
     if (to->writer)
         if (Status closed = to->writer->close(); !closed) return report(closed.error());
-    RunStats stats = loop.recorder.finish(options.scene.name);
-    stats.cooperation = work.stats();
     if (!options.trace.empty())
-        if (Status written = writeFileAtomic(options.trace, timeline.chromeTrace()); !written) return report(written.error());
+        if (Status written = writeTrace(options.trace, timeline, options.log); !written) return report(written.error());
+    const std::string shown = fmt::format("{}{} pictures {}_*.png", to->writer ? to->video + ", " : "", loop.pictures, to->picturePrefix);
+    if (!loop.recorder) {
+        fmt::print("{}\n", shown);
+        return graceful.interrupted() ? kInterrupted : kDone;
+    }
+    RunStats stats = loop.recorder->finish(options.scene.name);
+    stats.cooperation = work.stats();
+    stats.cooperation.tried = choice->tried;
     if (Status written = writeFileAtomic(to->stats, writeRunStats(stats)); !written) return report(written.error());
 
     if (!options.save.empty())
         if (Status saved = saveTo(options.save, *session); !saved) return report(saved.error());
 
     std::string where = to->stats;
-    if (options.render && stats.frames > 0)
-        where =
-            fmt::format("{}{} pictures {}_*.png and {}", to->writer ? to->video + ", " : "", loop.pictures, to->picturePrefix, to->stats);
+    if (options.render && stats.frames > 0) where = fmt::format("{} and {}", shown, to->stats);
     if (!options.save.empty()) where += fmt::format(" and {}", options.save);
+    if (loop.recording)
+        where += fmt::format(" and {}, {} frames, {:.1f} MB", options.record, loop.recording->frames(),
+                             1.0e-6 * static_cast<double>(loop.recording->bytes()));
     if (options.explain) fmt::print("{}", explain(*session, stats));
     fmt::print("{}\n", where);
     return graceful.interrupted() ? kInterrupted : kDone;

@@ -27,6 +27,7 @@ struct RunOptions {
     std::string stats;               // file; empty: out/stats.json, or none in the window
     std::set<int> stills;            // frames; empty: a video of all, and some pictures
     std::string save, resume;        // files of a state; empty: none
+    std::string record, replay;      // files of a recording; empty: none
     std::string trace;               // file of a timeline; empty: none
     Log log;
 };
@@ -42,6 +43,11 @@ Result<int> framesOf(double seconds, const SceneFile& scene, std::string_view pl
 // A state from and to a file. Error: what is wrong with it, or why it cannot be written.
 Status resumeFrom(const std::string& path, Session& session);
 Status saveTo(const std::string& path, Session& session);
+
+// Shows the recording of options.replay, if that names one, instead of simulating. Error: as Replay::open and Session::replay.
+Status replayOf(const RunOptions& options, Session& session);
+// The file of options.record, if that names one. Error (failed): not writable.
+Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, const Session& session);
 
 // The scene's name as a file's: letters, digits, '-' and '_' stay, all else becomes '_'.
 std::string fileNameOf(const std::string& sceneName);

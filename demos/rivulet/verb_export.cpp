@@ -12,6 +12,7 @@
 #include "engine/core/json.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/takeover.h"
+#include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
 
@@ -22,84 +23,175 @@ namespace {
 constexpr int kMostEvery = 100'000;
 
 struct ExportRequest {
-    std::string scene, surface, backend, device, out = "out", preset;
+    std::string scene, format, surface, up = "y", backend, device, out = "out", preset;
     std::vector<std::string> assignments;
     std::optional<int> every, cells;
     std::optional<double> seconds;
 };
 
 Status checkRequest(ExportRequest& request) {
-    if (request.surface.empty()) return badInput(fmt::format("say what to write: --surface {}", fmt::join(meshFormats().names(), " or ")));
-    if (Status known = checkWord("surface format", request.surface, meshFormats().names()); !known) return known;
+    if (request.surface.empty() && request.format.empty())
+        return badInput(fmt::format("say what to write: particles with --format {}, the water's surface with --surface {}, or both",
+                                    fmt::join(particleFormats().names(), ", "), fmt::join(meshFormats().names(), " or ")));
+    if (!request.format.empty())
+        if (Status known = checkWord("particle format", request.format, particleFormats().names()); !known) return known;
+    if (!request.surface.empty())
+        if (Status known = checkWord("surface format", request.surface, meshFormats().names()); !known) return known;
+    const std::vector<std::string> axes = {"y", "z"};
+    if (Status known = checkWord("axis", request.up, axes); !known) return known;
     return settleBackend(request.backend, "auto", request.device);
 }
+
+// What becomes of a frame.
+class Writer {
+  public:
+    Writer(const ExportRequest& request, const std::string& scene)
+        : particles_(particleFormats().find(request.format)),
+          surfaces_(meshFormats().find(request.surface)),
+          cells_(request.cells.value_or(2)),
+          name_(fileNameOf(scene)),
+          folder_(request.out) {
+        frame_.up = request.up == "z" ? UpAxis::z : UpAxis::y;
+    }
+
+    // Makes the folder, and says what cannot be written before the work, not after.
+    Status open() const {
+        if (Status made = makeFolder(folder_.string()); !made) return made;
+        if (particles_ != nullptr)
+            if (Status writable = checkWritable(inFolder(particleFile(0))); !writable) return writable;
+        return surfaces_ != nullptr ? checkWritable(inFolder(surfaceFile(0))) : ok();
+    }
+
+    Status add(int f, const FluidWorld& world) {
+        const HostParticles host = readParticles(world, particles_ != nullptr);
+        frame_.origin = world.origin();
+        if (particles_ != nullptr)
+            if (Status written = addParticles(f, host, world); !written) return written;
+        return surfaces_ != nullptr ? addSurface(f, host, world.params().spacing) : ok();
+    }
+
+    // The list of what was written. Of a run that was cut short, too.
+    Status close() const {
+        if (particles_ == nullptr || particles_->name != std::string_view("vtk") || files_.empty()) return ok();
+        return writeFileAtomic(inFolder(collection()), writeVtkCollection(files_));
+    }
+
+    bool nothingThere() const { return files_.empty() && meshes_ == 0; }
+    size_t dry() const { return dry_; }
+    void tell() const {
+        const std::string at = (folder_ / name_).string();
+        if (!files_.empty()) {
+            const std::string list = particles_->name == std::string_view("vtk") ? fmt::format(" and {}", inFolder(collection())) : "";
+            fmt::print("{} {} {}_particles_*.{}{}, {} particles on average\n", files_.size(), files_.size() == 1 ? "file" : "files", at,
+                       particles_->ending, list, counted_ / files_.size());
+        }
+        if (meshes_ > 0)
+            fmt::print("{} {} {}_*.{}, {} triangles on average\n", meshes_, meshes_ == 1 ? "surface" : "surfaces", at, surfaces_->name,
+                       triangles_ / meshes_);
+    }
+
+  private:
+    std::string particleFile(int f) const { return fmt::format("{}_particles_{:04}.{}", name_, f, particles_->ending); }
+    std::string surfaceFile(int f) const { return fmt::format("{}_{:04}.{}", name_, f, surfaces_->name); }
+    std::string collection() const { return name_ + "_particles.pvd"; }
+    std::string inFolder(const std::string& file) const { return (folder_ / file).string(); }
+
+    Status addParticles(int f, const HostParticles& host, const FluidWorld& world) {
+        const ExportParticles of{.position = host.position,
+                                 .velocity = host.velocity,
+                                 .id = host.id,
+                                 .mass = host.mass,
+                                 .pressure = host.pressure,
+                                 .volume = std::pow(double{world.params().spacing}, 3),
+                                 .time = world.time()};
+        if (Status written = writeFileAtomic(inFolder(particleFile(f)), particles_->write(of, frame_)); !written) return written;
+        files_.push_back({of.time, particleFile(f)});
+        counted_ += of.position.size();
+        return ok();
+    }
+
+    Status addSurface(int f, const HostParticles& host, float spacing) {
+        const Result<IsoSurface> surface = IsoSurface::create(host.position, spacing);
+        if (!surface) return surface.error();
+        if (surface->count() == 0) {
+            ++dry_;
+            return ok();
+        }
+        const Result<SurfaceMesh> mesh = marchingCubes(*surface, cells_);
+        if (!mesh) return mesh.error();
+        if (Status written = writeFileAtomic(inFolder(surfaceFile(f)), surfaces_->write(mesh->view(), frame_)); !written) return written;
+        ++meshes_;
+        triangles_ += mesh->view().triangleCount();
+        return ok();
+    }
+
+    const ParticleFormat* particles_;  // null: none
+    const MeshFormat* surfaces_;       // null: none
+    int cells_;
+    std::string name_;
+    std::filesystem::path folder_;
+    ExportFrame frame_;
+    std::vector<TimedFile> files_;  // of particles
+    size_t counted_ = 0, meshes_ = 0, triangles_ = 0, dry_ = 0;
+};
 
 int exportAs(const ExportRequest& request, const SceneFile& scene) {
     const Log log = stderrLog();
     const Result<int> frames = framesOf(request.seconds.value_or(scene.duration), scene, request.seconds ? "--seconds" : "duration");
     if (!frames) return report(frames.error());
-    const MeshFormat& format = *meshFormats().find(request.surface);
-    const std::filesystem::path folder = request.out;
-    const std::string name = fileNameOf(scene.name);
-    if (Status made = makeFolder(request.out); !made) return report(made.error());
-    const std::string first = (folder / fmt::format("{}_0000.{}", name, format.name)).string();
-    if (Status writable = checkWritable(first); !writable) return report(writable.error());
+    Writer writer(request, scene.name);
+    if (Status writable = writer.open(); !writable) return report(writable.error());
     AskedDevice asked = askedDevice(request.backend, log, request.device);
-    auto opened = openSession(scene, *asked.device, log);
+    auto opened = openSession(scene, *asked.device, log, request.backend);
     if (!opened) return report(opened.error());
     if (opened->instead) asked.device = std::move(opened->instead);
     const std::unique_ptr<Session> session = std::move(opened->session);
 
     const Graceful graceful;
     const int every = request.every.value_or(1);
-    size_t files = 0, triangles = 0;
-    int dry = 0;
     Progress progress(session->scene().name);
     for (int f = 0; f < *frames && !graceful.interrupted(); ++f) {
         session->step(frameSeconds(session->scene()), true);
         if (const Result<bool> moved = keepRunning(*session, asked.device, log); !moved) return report(moved.error());
         progress.show(static_cast<double>(f + 1) / *frames, fmt::format("{:.2f} s", session->world().time()));
         if (f % every != 0) continue;
-        const HostParticles particles = readParticles(session->world());
-        const Result<IsoSurface> surface = IsoSurface::create(particles.position, session->world().params().spacing);
-        if (!surface) return report(surface.error());
-        if (surface->count() == 0) {
-            ++dry;
-            continue;
-        }
-        const Result<SurfaceMesh> mesh = marchingCubes(*surface, request.cells.value_or(2));
-        if (!mesh) return report(mesh.error());
-        const std::string path = (folder / fmt::format("{}_{:04}.{}", name, f, format.name)).string();
-        if (Status written = writeFileAtomic(path, format.write(mesh->view())); !written) return report(written.error());
-        ++files;
-        triangles += mesh->view().triangleCount();
+        if (Status written = writer.add(f, session->world()); !written) return report(written.error());
     }
+    if (Status closed = writer.close(); !closed) return report(closed.error());
     if (graceful.interrupted()) return kInterrupted;
-    if (files == 0)
-        return report(failed(fmt::format("{} has no particles within {:.3g} s, so there is no surface to write: ask for more --seconds",
+    if (writer.nothingThere())
+        return report(failed(fmt::format("{} has no particles within {:.3g} s, so there is nothing to write: ask for more --seconds",
                                          session->scene().name, session->world().time())));
-    if (dry > 0) log.notice(fmt::format("{} frames without particles were left out", dry));
-    fmt::print("{} {} {}_*.{}, {} triangles on average\n", files, files == 1 ? "surface" : "surfaces", (folder / name).string(),
-               format.name, triangles / files);
+    if (writer.dry() > 0) log.notice(fmt::format("{} frames without particles were left out", writer.dry()));
+    writer.tell();
     return kDone;
 }
 
 }  // namespace
 
 int exportVerb(const Arguments& arguments) {
-    ArgumentReader reader("export", "Runs a scene without pictures, and writes its water's surface as meshes: metres, +Y up.");
+    ArgumentReader reader("export",
+                          "Runs a scene without pictures, and writes its particles, its water's surface as meshes, or both, in metres.");
     ExportRequest request;
-    std::string formats;
+    std::string formats = "Particles:";
+    for (const ParticleFormat& row : particleFormats().rows) formats += fmt::format("\n  {:<10}{}", row.name, row.doc);
+    formats += "\nSurfaces:";
     for (const MeshFormat& row : meshFormats().rows) formats += fmt::format("\n  {:<10}{}", row.name, row.doc);
-    reader.footer("Surfaces:" + formats);
+    reader.footer(formats +
+                  "\nWhich way is up: +Y, or +Z with --up z. Blender has +Z up: its PLY importer takes coordinates as they are, so ask for "
+                  "--up z;\nits OBJ importer turns +Y up to +Z up itself, so leave --up y. ParaView shows coordinates as they are, in a "
+                  "first view with +Y up.\nPLY and OBJ have no units: one is a metre. Places are of the world: with fluid.origin that is "
+                  "added, and they are doubles.");
     reader.positional("SCENE.json", "the scene", request.scene, true);
-    reader.option("--surface", "FORMAT", fmt::format("{}", fmt::join(meshFormats().names(), " or ")), request.surface);
-    reader.option("--every", "N", "a mesh every so many frames, 60 a second that is shown; default: 1", request.every, 1, kMostEvery);
+    reader.option("--format", "FORMAT", fmt::format("particles: {}", fmt::join(particleFormats().names(), ", ")), request.format);
+    reader.option("--surface", "FORMAT", fmt::format("the surface: {}", fmt::join(meshFormats().names(), " or ")), request.surface);
+    reader.option("--up", "AXIS", "y, as simulated, or z: (x, y, z) becomes (x, -z, y); default: y", request.up);
+    reader.option("--every", "N", "a file every so many frames, 60 a second that is shown; default: 1", request.every, 1, kMostEvery);
     reader.option("--seconds", "S", "how long, simulated; default: the scene's duration", request.seconds, 0,
                   static_cast<double>(kMostFrames) / kFramesPerSecond);
     reader.option("--cells", "N", "cells along a particle spacing: how fine the mesh is; default: 2", request.cells, 1,
                   kMaxCellsPerSpacing);
-    reader.option("--out", "DIR", "folder that the meshes go to: NAME_0000.obj, by frame; default: out", request.out);
+    reader.option("--out", "DIR", "folder that files go to, by frame: NAME_particles_0000.vtp, NAME_0000.obj; default: out", request.out);
     reader.option("--backend", "NAME", "what simulates: auto, cpu, gl or cl", request.backend);
     reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
     reader.option("--preset", "NAME", "one of the scene's sets of values, before any --set", request.preset);

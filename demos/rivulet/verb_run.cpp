@@ -6,9 +6,9 @@
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
-#include "fluid/bridge/backend.h"
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/session.h"
+#include "fluid/render/backend.h"
 
 namespace rivulet {
 
@@ -29,6 +29,17 @@ Result<int> frameAt(const std::string& text, const SceneFile& scene) {
     if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0))
         return badInput(fmt::format("--still {}: give a time in seconds, 0 or more", text));
     return framesOf(at, scene, fmt::format("--still {}", text));
+}
+
+// A replay has no water of its own: what asks for figures or for a state of it makes no sense.
+Status checkReplay(const RunOptions& options, bool noRender) {
+    for (const auto& [name, given] : {std::pair("--record", !options.record.empty()), std::pair("--save", !options.save.empty()),
+                                      std::pair("--resume", !options.resume.empty()), std::pair("--stats", !options.stats.empty()),
+                                      std::pair("--explain", options.explain), std::pair("--no-render", noRender),
+                                      std::pair("--cooperate", options.cooperate != "off")})
+        if (given)
+            return badInput(fmt::format("--replay shows a run that has been simulated before, so {} makes no sense: leave it out", name));
+    return ok();
 }
 
 }  // namespace
@@ -62,9 +73,28 @@ Status resumeFrom(const std::string& path, Session& session) {
 Status saveTo(const std::string& path, Session& session) {
     WorldState state;
     session.save(state);
+    const Device& device = session.world().device();
+    if (const DeviceHealth health = device.health(); health.state == DeviceHealth::lost)
+        return failed(fmt::format("{} {}: what it holds means nothing, and {} is not written", device.info().name, health.why, path));
     Result<size_t> written = writeState(path, state);
     if (!written) return written.error();
     return ok();
+}
+
+Status replayOf(const RunOptions& options, Session& session) {
+    if (options.replay.empty()) return ok();
+    Result<Replay> replay = Replay::open(options.replay, session.scene(), options.log);
+    if (!replay) return replay.error();
+    if (Status done = session.replay(std::move(*replay)); !done)
+        return Error{fmt::format("{}: {}", options.replay, done.error().message), done.error().fault};
+    return ok();
+}
+
+Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, const Session& session) {
+    if (options.record.empty()) return std::optional<RecordingWriter>();
+    Result<RecordingWriter> file = RecordingWriter::open(options.record, aboutOf(session.scene()));
+    if (!file) return file.error();
+    return std::optional(std::move(*file));
 }
 
 int runVerb(const Arguments& arguments) {
@@ -95,6 +125,8 @@ int runVerb(const Arguments& arguments) {
     reader.option("--trace", "FILE.json", "who worked on what and when, for chrome://tracing or Perfetto", options.trace);
     reader.option("--save", "FILE", "the whole state at the run's end, for --resume", options.save);
     reader.option("--resume", "FILE", "go on from a state that --save wrote, of the same scene", options.resume);
+    reader.option("--record", "FILE.rrec", "what each frame shows, bit for bit, for --replay; not with skins", options.record);
+    reader.option("--replay", "FILE.rrec", "show what --record wrote of the same scene, without simulating", options.replay);
     reader.flag("--explain", "at the end, say what was chosen, what was left out, and what the rest cost", options.explain);
     reader.option("--preset", "NAME", "one of the scene's sets of values, before any --set", preset);
     reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", assignments);
@@ -124,7 +156,16 @@ int runVerb(const Arguments& arguments) {
                      "spacing that you want"));
     if (!loaded->flow.empty() && (!options.save.empty() || !options.resume.empty()))
         return report(badInput(fmt::format("a state holds no skins, and {} has some: leave --save and --resume out", loaded->name)));
+    if (!loaded->flow.empty() && (!options.record.empty() || !options.replay.empty()))
+        return report(badInput(fmt::format("a recording holds no skins, and {} has some: leave --record and --replay out", loaded->name)));
+    if (!options.replay.empty())
+        if (Status sense = checkReplay(options, noRender); !sense) return report(sense.error());
     options.scene = std::move(*loaded);
+    if (!options.replay.empty()) {
+        options.scene.budget.frameMs = 0;  // nothing is simulated that could be too slow
+        options.backend = "cpu";
+        options.scene.fluid.grid = "sorted";  // nothing looks for neighbours; the cpu has no other
+    }
     options.render = !noRender;
     if (seconds) {
         Result<int> frames = framesOf(*seconds, options.scene, "--seconds");

@@ -10,7 +10,8 @@
 #include "engine/app/capture.h"
 #include "engine/core/json.h"
 #include "engine/scene/import_assimp.h"
-#include "fluid/bridge/backend.h"
+#include "fluid/bridge/takeover.h"
+#include "fluid/render/backend.h"
 #include "fluid/voxel/distance_band.h"
 #include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/voxel_field.h"
@@ -179,6 +180,7 @@ int voxelizeAs(const VoxelizeRequest& request) {
     Result<VoxelModel> model = voxelizeMesh(*device, {&view, 1}, options);
     bar.reset();
     if (!model) return report(model.error());
+    if (Status sound = stillWorks(*device); !sound) return report(sound.error());
     for (const std::string& sentence : {model->defects.sentence(), lostFeatures({&view, 1}, model->bits)})
         if (!sentence.empty()) log.warning(sentence);
 

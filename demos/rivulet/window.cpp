@@ -27,7 +27,8 @@ int runWindow(const RunOptions& options) {
                                   .cooperate = options.cooperate,
                                   .clipboard = window->handle(),
                                   .width = options.width,
-                                  .height = options.height},
+                                  .height = options.height,
+                                  .share = [&window] { return window->shared(); }},
                                  options.log);
     if (!viewer) return report(viewer.error());
     Viewer& v = **viewer;
@@ -38,10 +39,16 @@ int runWindow(const RunOptions& options) {
     for (const std::string& file : {options.stats, options.trace})
         if (!file.empty())
             if (Status writable = checkWritable(file); !writable) return report(writable.error());
+    if (Status replays = replayOf(options, v.session()); !replays) return report(replays.error());
+    Result<std::optional<RecordingWriter>> recording = recordingOf(options, v.session());
+    if (!recording) return report(recording.error());
+    if (*recording) v.onStepped([&](const Session& session) { return (*recording)->add(frameOf(session)); });
     const bool recorded = options.explain || !options.stats.empty();
     if (recorded) v.record();
+    if (options.frames) v.stepAtMost(static_cast<uint64_t>(*options.frames));
 
     Graceful graceful;
+    std::string shown = options.scene.name;
     auto last = std::chrono::steady_clock::now();
     while (!graceful.interrupted() && (!options.frames || v.steps() < static_cast<uint64_t>(*options.frames))) {
         InputEvents input = window->poll();
@@ -51,10 +58,16 @@ int runWindow(const RunOptions& options) {
         last = now;
         if (Status drawn = v.frame(input, seconds, 0); !drawn) return report(drawn.error());
         window->swap();
+        if (v.scene().name != shown) {
+            shown = v.scene().name;
+            window->setTitle(shown + " - rivulet");
+        }
         if (input.framebuffer.x <= 0 || input.framebuffer.y <= 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing paces it
     }
-    v.settle();
+    if (Status settled = v.settle(); !settled) return report(settled.error());
+    if (*recording)
+        if (Status closed = (*recording)->close(); !closed) return report(closed.error());
     if (recorded) {
         const RunStats stats = v.finishRecord();
         if (!options.stats.empty())
@@ -62,7 +75,7 @@ int runWindow(const RunOptions& options) {
         if (options.explain) fmt::print("{}", explain(v.session(), stats));
     }
     if (!options.trace.empty())
-        if (Status written = writeFileAtomic(options.trace, v.timeline().chromeTrace()); !written) return report(written.error());
+        if (Status written = writeTrace(options.trace, v.wholeTimeline(), options.log); !written) return report(written.error());
     if (!options.save.empty())
         if (Status saved = saveTo(options.save, v.session()); !saved) return report(saved.error());
     return graceful.interrupted() ? kInterrupted : kDone;

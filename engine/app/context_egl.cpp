@@ -4,26 +4,21 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <fmt/format.h>
-#include <glad/gl.h>
+#include <rivulet_glad/gl.h>
 
+#include <mutex>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "engine/core/words.h"
 #include "engine/gpu/device_gl.h"
 
 namespace rivulet {
 namespace {
 
-// Extension strings are words between blanks.
-bool hasWord(const char* words, std::string_view word) {
-    const std::string_view text = words ? words : "";
-    for (size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-        const size_t end = at + word.size();
-        if ((at == 0 || text[at - 1] == ' ') && (end == text.size() || text[end] == ' ')) return true;
-    }
-    return false;
-}
+// `list` is null where EGL has none.
+bool offers(const char* list, std::string_view extension) { return hasWord(list ? list : "", extension); }
 
 template <class Function>
 Function entryPoint(const char* name) {
@@ -43,18 +38,18 @@ std::vector<Candidate> findDisplays(bool hardwareOnly) {
     const auto add = [&](EGLDisplay display, const char* platform) {
         if (display != EGL_NO_DISPLAY) found.push_back({display, platform});
     };
-    if (getDisplay && !hardwareOnly && hasWord(extensions, "EGL_MESA_platform_surfaceless"))
+    if (getDisplay && !hardwareOnly && offers(extensions, "EGL_MESA_platform_surfaceless"))
         add(getDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), "surfaceless");
     const auto queryDevices = entryPoint<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
     const auto queryDevice = entryPoint<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
     EGLint count = 0;
-    if (getDisplay && queryDevices && queryDevice && hasWord(extensions, "EGL_EXT_platform_device") &&
+    if (getDisplay && queryDevices && queryDevice && offers(extensions, "EGL_EXT_platform_device") &&
         queryDevices(0, nullptr, &count) == EGL_TRUE && count > 0) {
         std::vector<EGLDeviceEXT> devices(static_cast<size_t>(count));
         queryDevices(count, devices.data(), &count);
         devices.resize(static_cast<size_t>(count));
         for (EGLDeviceEXT device : devices)
-            if (!hardwareOnly || !hasWord(queryDevice(device, EGL_EXTENSIONS), "EGL_MESA_device_software"))
+            if (!hardwareOnly || !offers(queryDevice(device, EGL_EXTENSIONS), "EGL_MESA_device_software"))
                 add(getDisplay(EGL_PLATFORM_DEVICE_EXT, device, nullptr), "device");
     }
     if (!hardwareOnly) add(eglGetDisplay(EGL_DEFAULT_DISPLAY), "default");
@@ -66,6 +61,8 @@ std::vector<Candidate> findDisplays(bool hardwareOnly) {
 struct ContextEgl::Impl {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
+    EGLConfig config = EGL_NO_CONFIG_KHR;
+    Options options;
     const char* platform = "";
     std::string renderer, version;
 
@@ -79,6 +76,20 @@ struct ContextEgl::Impl {
         eglDestroyContext(display, context);
     }
 
+    EGLContext make(EGLContext shares) const {
+        const EGLint attributes[] = {
+            EGL_CONTEXT_MAJOR_VERSION,
+            4,
+            EGL_CONTEXT_MINOR_VERSION,
+            5,
+            EGL_CONTEXT_OPENGL_PROFILE_MASK,
+            options.compatibility ? EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT : EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+            EGL_CONTEXT_OPENGL_DEBUG,
+            options.debug ? EGL_TRUE : EGL_FALSE,
+            EGL_NONE};
+        return eglCreateContext(display, config, shares, attributes);
+    }
+
     // nullptr where this display offers no OpenGL 4.5 core context without a surface; `why` then says what is missing.
     static std::unique_ptr<Impl> open(const Candidate& candidate, const Options& options, std::string& why) {
         EGLint major = 0, minor = 0;
@@ -87,34 +98,27 @@ struct ContextEgl::Impl {
             return nullptr;
         }
         const char* extensions = eglQueryString(candidate.display, EGL_EXTENSIONS);
-        if (!hasWord(extensions, "EGL_KHR_surfaceless_context") || eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) {
+        if (!offers(extensions, "EGL_KHR_surfaceless_context") || eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) {
             why = fmt::format("EGL's {} display has no OpenGL without a surface", candidate.platform);
             return nullptr;
         }
         EGLConfig config = EGL_NO_CONFIG_KHR;
         EGLint configs = 0;
         const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-        if (!hasWord(extensions, "EGL_KHR_no_config_context") &&
+        if (!offers(extensions, "EGL_KHR_no_config_context") &&
             (eglChooseConfig(candidate.display, wanted, &config, 1, &configs) != EGL_TRUE || configs == 0)) {
             why = fmt::format("EGL's {} display has no configuration for OpenGL", candidate.platform);
             return nullptr;
         }
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                     4,
-                                     EGL_CONTEXT_MINOR_VERSION,
-                                     5,
-                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                     EGL_CONTEXT_OPENGL_DEBUG,
-                                     options.debug ? EGL_TRUE : EGL_FALSE,
-                                     EGL_NONE};
         auto impl = std::make_unique<Impl>();
         impl->display = candidate.display;
         impl->platform = candidate.platform;
-        impl->context = eglCreateContext(candidate.display, config, EGL_NO_CONTEXT, attributes);
+        impl->config = config;
+        impl->options = options;
+        impl->context = impl->make(EGL_NO_CONTEXT);
         if (impl->context == EGL_NO_CONTEXT ||
             eglMakeCurrent(candidate.display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl->context) != EGL_TRUE ||
-            gladLoadGL(eglGetProcAddress) == 0) {
+            rivuletLoadGL(eglGetProcAddress) == 0) {
             why = fmt::format("EGL's {} display offers no OpenGL 4.5 core context (EGL error {:#x})", candidate.platform, eglGetError());
             return nullptr;
         }
@@ -162,8 +166,34 @@ Status ContextEgl::makeCurrent() {
     if (eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context) != EGL_TRUE)
         return failed(
             fmt::format("the OpenGL context cannot be used here (EGL error {:#x}); is it current on another thread?", eglGetError()));
-    gladLoadGL(eglGetProcAddress);
+    rivuletLoadGL(eglGetProcAddress);
     return ok();
+}
+
+Result<SharedGl> ContextEgl::shared() const {
+    struct Second {
+        EGLDisplay display;
+        EGLContext context;
+        std::mutex used;
+        ~Second() { eglDestroyContext(display, context); }
+    };
+    const EGLContext context = impl_->make(impl_->context);
+    if (context == EGL_NO_CONTEXT) return failed(fmt::format("the driver makes no second OpenGL context (EGL error {:#x})", eglGetError()));
+    const std::shared_ptr<Second> second(new Second{impl_->display, context, {}});
+    SharedGl shared;
+    shared.enter = [s = second.get()] {
+        s->used.lock();
+        if (eglBindAPI(EGL_OPENGL_API) == EGL_TRUE && eglMakeCurrent(s->display, EGL_NO_SURFACE, EGL_NO_SURFACE, s->context) == EGL_TRUE)
+            return true;
+        s->used.unlock();
+        return false;
+    };
+    shared.leave = [s = second.get()] {
+        eglMakeCurrent(s->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        s->used.unlock();
+    };
+    shared.context = second;
+    return shared;
 }
 
 bool ContextEgl::software() const { return isSoftwareRenderer(impl_->renderer); }

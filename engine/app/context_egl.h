@@ -1,9 +1,10 @@
-// ContextEgl: an OpenGL 4.5 core context without a window or a display.
+// ContextEgl: an OpenGL 4.5 context without a window or a display.
 #pragma once
 
 #include <memory>
 #include <string>
 
+#include "engine/app/shared_gl.h"
 #include "engine/core/result.h"
 
 namespace rivulet {
@@ -13,7 +14,8 @@ namespace rivulet {
 class ContextEgl {
   public:
     struct Options {
-        bool debug = false;  // drivers say more, and are slower
+        bool debug = false;          // drivers say more, and are slower
+        bool compatibility = false;  // with OpenGL's old functions, as hosts may have it
     };
     // Error (failed): no EGL, no OpenGL 4.5; says what was found. Loads the GL functions (glad).
     static Result<ContextEgl> create(const Options& options);
@@ -23,6 +25,7 @@ class ContextEgl {
     ~ContextEgl();
 
     Status makeCurrent();                 // on the calling thread. Error (failed): it is current on another
+    Result<SharedGl> shared() const;      // current nowhere yet. Error (failed): the driver makes no second context
     bool software() const;                // llvmpipe, softpipe, swrast: GL runs on the CPU
     const std::string& renderer() const;  // GL_RENDERER
     const std::string& version() const;   // GL_VERSION

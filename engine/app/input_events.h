@@ -21,18 +21,19 @@ inline constexpr int kLeftShift = 340, kLeftControl = 341, kLeftAlt = 342, kRigh
 }  // namespace key
 
 struct InputEvents {
-    vec2 mouse{0.0F};                  // window coordinates, from the top left corner
-    vec2 mouseDelta{0.0F};             // since the last frame
-    bool buttonDown[3] = {};           // by MouseButton: held now
-    bool buttonPressed[3] = {};        // went down since the last frame
-    bool buttonReleased[3] = {};       // went up
-    vec2 wheel{0.0F};                  // steps; y > 0 is away from the person
-    std::vector<int> keysPressed;      // went down since the last frame; repeats are not in it
-    std::vector<int> keysDown;         // held now
-    std::string text;                  // UTF-8 typed
-    ivec2 size{0};                     // window coordinates; 0 when minimised
-    ivec2 framebuffer{0};              // pixels; 0 when minimised
-    bool closed = false;               // the person asked to close the window
+    vec2 mouse{0.0F};              // window coordinates, from the top left corner
+    vec2 mouseDelta{0.0F};         // since the last frame
+    bool buttonDown[3] = {};       // by MouseButton: held now
+    bool buttonPressed[3] = {};    // went down since the last frame
+    bool buttonReleased[3] = {};   // went up
+    vec2 wheel{0.0F};              // steps; y > 0 is away from the person
+    std::vector<int> keysPressed;  // went down since the last frame; repeats are not in it
+    std::vector<int> keysDown;     // held now
+    std::string text;              // UTF-8 typed
+    ivec2 size{0};                 // window coordinates; 0 when minimised
+    ivec2 framebuffer{0};          // pixels; 0 when minimised
+    float scale = 1.0F;            // how many window coordinates are as wide as a pixel of an ordinary screen, for panels and their text
+    bool closed = false;           // the person asked to close the window
     std::vector<std::string> dropped;  // paths of files
 
     bool down(MouseButton b) const { return buttonDown[static_cast<int>(b)]; }

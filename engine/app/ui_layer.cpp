@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/ui/style.h"
 
@@ -14,6 +15,7 @@ namespace rivulet {
 struct UiLayer::Impl {
     ImGuiContext* context = nullptr;
     bool drawing = false;  // the backend was set up
+    float pixels = 1;      // a coordinate, that the font was made for
 
     ~Impl() {
         if (context == nullptr) return;
@@ -84,13 +86,23 @@ Result<UiLayer> UiLayer::create(void* clipboard) {
 void UiLayer::begin(const InputEvents& input, double seconds) {
     ImGui::SetCurrentContext(impl_->context);
     ImGuiIO& io = ImGui::GetIO();
-    io.DisplaySize = ImVec2(static_cast<float>(std::max(input.size.x, 0)), static_cast<float>(std::max(input.size.y, 0)));
-    if (input.size.x > 0 && input.size.y > 0)
+    // ImGui's coordinates are those of an ordinary screen, so that no panel needs to know of another.
+    const float scale = std::clamp(input.scale, 0.25F, 8.0F);
+    io.DisplaySize = ImVec2(static_cast<float>(std::max(input.size.x, 0)) / scale, static_cast<float>(std::max(input.size.y, 0)) / scale);
+    if (input.size.x > 0 && input.size.y > 0) {
         io.DisplayFramebufferScale =
             ImVec2(static_cast<float>(input.framebuffer.x) / io.DisplaySize.x, static_cast<float>(input.framebuffer.y) / io.DisplaySize.y);
+        const float pixels = std::clamp(std::round(4 * io.DisplayFramebufferScale.y) / 4, 0.5F, 8.0F);
+        if (input.framebuffer.y > 0 && pixels != impl_->pixels) {
+            impl_->pixels = pixels;
+            loadUiFont(pixels);
+            ImGui_ImplOpenGL3_DestroyFontsTexture();
+            ImGui_ImplOpenGL3_CreateFontsTexture();
+        }
+    }
     io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 0.25));
 
-    io.MousePos = ImVec2(input.mouse.x, input.mouse.y);
+    io.MousePos = ImVec2(input.mouse.x / scale, input.mouse.y / scale);
     constexpr MouseButton kButtons[] = {MouseButton::left, MouseButton::right, MouseButton::middle};
     for (int i = 0; i < 3; ++i)
         io.MouseDown[i] = input.down(kButtons[i]) || input.pressed(kButtons[i]);  // a click within a frame counts too

@@ -3,11 +3,12 @@
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <fmt/format.h>
-#include <glad/gl.h>
+#include <rivulet_glad/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 #include "engine/gpu/device_gl.h"
@@ -106,7 +107,7 @@ Result<WindowGlfw> WindowGlfw::create(const Options& options) {
         return failed(
             fmt::format("no window with OpenGL 4.5 can be opened ({}); run with --headless, or install a newer driver", glfwTrouble()));
     glfwMakeContextCurrent(impl->window);
-    if (gladLoadGL(glfwGetProcAddress) == 0)
+    if (rivuletLoadGL(glfwGetProcAddress) == 0)
         return failed("the window's OpenGL driver lacks functions of 4.5; run with --headless, or install a newer driver");
     glfwSwapInterval(options.vsync ? 1 : 0);
     impl->renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
@@ -133,6 +134,10 @@ InputEvents WindowGlfw::poll() {
     impl_->hasMouse = true;
     glfwGetWindowSize(impl_->window, &gathered.size.x, &gathered.size.y);
     glfwGetFramebufferSize(impl_->window, &gathered.framebuffer.x, &gathered.framebuffer.y);
+    float across = 1, up = 1;
+    glfwGetWindowContentScale(impl_->window, &across, &up);
+    const float pixels = gathered.size.x > 0 ? static_cast<float>(gathered.framebuffer.x) / static_cast<float>(gathered.size.x) : 1.0F;
+    gathered.scale = std::max(across / std::max(pixels, 0.1F), 0.5F);  // macOS has it in the pixels already, X11 and Windows do not
     // X11 keeps the size of a minimised window; Windows says 0.
     if (glfwGetWindowAttrib(impl_->window, GLFW_ICONIFIED) == GLFW_TRUE) gathered.size = gathered.framebuffer = ivec2(0);
     gathered.closed = glfwWindowShouldClose(impl_->window) == GLFW_TRUE;
@@ -145,6 +150,32 @@ InputEvents WindowGlfw::poll() {
     gathered.text.clear();
     gathered.dropped.clear();
     return taken;
+}
+
+Result<SharedGl> WindowGlfw::shared() const {
+    struct Second {
+        GLFWwindow* window;
+        std::mutex used;
+        ~Second() { glfwDestroyWindow(window); }
+    };
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);  // the others are those of the first
+    GLFWwindow* window = glfwCreateWindow(1, 1, "", nullptr, impl_->window);
+    if (window == nullptr) return failed(fmt::format("the driver makes no second OpenGL context ({})", glfwTrouble()));
+    const std::shared_ptr<Second> second(new Second{window, {}});
+    SharedGl shared;
+    shared.enter = [s = second.get()] {
+        s->used.lock();
+        glfwMakeContextCurrent(s->window);
+        if (glfwGetCurrentContext() == s->window) return true;
+        s->used.unlock();
+        return false;
+    };
+    shared.leave = [s = second.get()] {
+        glfwMakeContextCurrent(nullptr);
+        s->used.unlock();
+    };
+    shared.context = second;
+    return shared;
 }
 
 void WindowGlfw::swap() { glfwSwapBuffers(impl_->window); }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/app/input_events.h"
+#include "engine/app/shared_gl.h"
 #include "engine/core/result.h"
 
 struct GLFWwindow;
@@ -30,7 +31,8 @@ class WindowGlfw {
 
     // Waits for nothing; what happened since the last call.
     InputEvents poll();
-    void swap();  // shows what was drawn into framebuffer 0
+    Result<SharedGl> shared() const;  // to be made, and to go, on the main thread. Error (failed): the driver makes no second context
+    void swap();                      // shows what was drawn into framebuffer 0
     void setTitle(const std::string& title);
     void resize(int width, int height);  // window coordinates
     GLFWwindow* handle() const;

@@ -1,5 +1,6 @@
 #include "engine/compute/cl_devices.h"
 
+#include <CL/cl_gl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -54,6 +55,14 @@ std::string clErrorName(cl_int code) {
             return "CL_INVALID_KERNEL_ARGS";
         case CL_INVALID_WORK_GROUP_SIZE:
             return "CL_INVALID_WORK_GROUP_SIZE";
+        case CL_INVALID_PROPERTY:
+            return "CL_INVALID_PROPERTY";
+        case CL_INVALID_OPERATION:
+            return "CL_INVALID_OPERATION";
+        case CL_INVALID_GL_OBJECT:
+            return "CL_INVALID_GL_OBJECT";
+        case CL_INVALID_GL_SHAREGROUP_REFERENCE_KHR:
+            return "CL_INVALID_GL_SHAREGROUP_REFERENCE_KHR";
         default:
             return fmt::format("OpenCL error {}", code);
     }

@@ -1,4 +1,4 @@
-// The OpenCL devices of this machine, and what the driver says of them. For device_cl*.cpp alone: it shows OpenCL's own types.
+// The OpenCL devices of this machine, and what the driver says of them. For device_cl*.cpp and cl_*.cpp alone: it shows OpenCL's own types.
 #pragma once
 
 #include <CL/cl.h>
@@ -49,7 +49,7 @@ struct ClCandidate {
 // Every device, the best first: usable GPUs, other usable ones, the rest. `platforms` receives how many drivers were found.
 std::vector<ClCandidate> findClDevices(size_t& platforms);
 
-// Those of `all` that `wanted` names, as chooseClDevice says. Error (badInput): none; it lists those that there are.
+// Those of `all` that `wanted` names, as makeClDevice says. Error (badInput): none; it lists those that there are.
 Result<std::vector<ClCandidate>> namedClDevices(const std::vector<ClCandidate>& all, std::string_view wanted);
 
 }  // namespace rivulet

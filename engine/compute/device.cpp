@@ -1,5 +1,7 @@
 #include "engine/compute/device.h"
 
+#include <fmt/format.h>
+
 namespace rivulet {
 
 const char* backendName(Backend backend) {
@@ -12,6 +14,12 @@ const char* backendName(Backend backend) {
             return "cl";
     }
     ASSERT(false, "hand a Backend that exists");
+}
+
+Status Device::room(size_t bytes) const {
+    if (bytesAllocated() + bytes <= mostBytes_) return ok();
+    return failed(fmt::format("{} MiB were asked for while {} of {} MiB that are allowed are in use; allow more, or use fewer particles",
+                              bytes >> 20U, bytesAllocated() >> 20U, mostBytes_ >> 20U));
 }
 
 Buffer::~Buffer() {

@@ -78,6 +78,13 @@ struct DeviceHealth {
     std::string why;  // half a sentence: "could not run fluid/reorder: CL_OUT_OF_RESOURCES"
 };
 
+// How what a Device holds comes into OpenGL's own buffers without passing through the host.
+class GlSharing;
+struct GlShare {
+    std::shared_ptr<const GlSharing> by;  // null: it does not
+    std::string whyNot;                   // half a sentence: "Portable Computing Language offers no cl_khr_gl_sharing"
+};
+
 // Time spent in all dispatches of one kernel since takeTimes() was last called. GPU figures come some frames late.
 struct PassTime {
     std::string name;
@@ -91,7 +98,12 @@ class Device {
     virtual Backend backend() const = 0;
     virtual const DeviceInfo& info() const = 0;
     // As of what has been heard so far, which may be some calls late. What has gone wrong stays so.
-    virtual DeviceHealth health() const { return {}; }
+    DeviceHealth health() const { return health_; }
+    // For who tried something that was too large, and has let go of it: a device that was full works again. One that is lost stays lost.
+    void forgiveFull() {
+        if (health_.state == DeviceHealth::full) health_ = {};
+    }
+    virtual GlShare glShare() const { return {nullptr, "only OpenCL shares memory with OpenGL"}; }
 
     // `path` as "fluid/wcsph_density" (shaders/fluid/wcsph_density.kernel). The same path and defines give the same Kernel.
     virtual Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) = 0;
@@ -123,6 +135,8 @@ class Device {
     virtual void finish() = 0;
     virtual std::vector<PassTime> takeTimes() = 0;
     virtual size_t bytesAllocated() const = 0;
+    // Of what is allocated from now on: beyond so many bytes in all, allocate() fails.
+    void limitMemory(size_t bytes) { mostBytes_ = bytes; }
     // From now on `sink` hears of each dispatch, a GPU's some frames late, when poll() or takeTimes() know when it was; empty: nobody does.
     void onSpan(SpanSink sink) { span_ = std::move(sink); }
 
@@ -138,7 +152,10 @@ class Device {
     }
 
   protected:
+    Status room(size_t bytes) const;  // error (failed): the limit
     SpanSink span_;
+    size_t mostBytes_ = SIZE_MAX;
+    DeviceHealth health_;
 };
 
 }  // namespace rivulet

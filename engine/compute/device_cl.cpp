@@ -8,58 +8,37 @@
 #include <optional>
 
 #include "engine/compute/cl_devices.h"
+#include "engine/compute/cl_owned.h"
+#include "engine/compute/cl_sharing.h"
 
 namespace rivulet {
 namespace {
 
-// Owns one OpenCL object.
-template <class T, cl_int (*kRelease)(T)>
-class Owned {
-  public:
-    Owned() = default;
-    explicit Owned(T object) : object_(object) {}
-    Owned(Owned&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
-    Owned& operator=(Owned&& other) noexcept {
-        std::swap(object_, other.object_);
-        return *this;
-    }
-    Owned(const Owned&) = delete;
-    Owned& operator=(const Owned&) = delete;
-    ~Owned() {
-        if (object_) kRelease(object_);
-    }
-    T get() const { return object_; }
-    explicit operator bool() const { return object_ != nullptr; }
-
-  private:
-    T object_ = nullptr;
-};
-using Context = Owned<cl_context, clReleaseContext>;
-using Queue = Owned<cl_command_queue, clReleaseCommandQueue>;
-using Program = Owned<cl_program, clReleaseProgram>;
-using ClKernel = Owned<cl_kernel, clReleaseKernel>;
-using Event = Owned<cl_event, clReleaseEvent>;
-using Memory = Owned<cl_mem, clReleaseMemObject>;
-
-// An event's state: > 0 under way, CL_COMPLETE (0) done, < 0 failed.
-cl_int stateOf(const Event& event) {
-    cl_int state = CL_COMPLETE;
-    if (event) clGetEventInfo(event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, nullptr);
-    return state;
-}
+using cl::Context;
+using cl::Event;
+using cl::Memory;
+using cl::Program;
+using cl::Queue;
+using cl::stateOf;
 
 constexpr uint32_t kDefaultLocalSize = 64;
 constexpr size_t kParamSlots = 32;      // parameter blocks kept on the device
 constexpr uint32_t kFlushEvery = 16;    // dispatches handed to the driver at once
 constexpr size_t kHarvestAbove = 1024;  // timed dispatches that may wait for takeTimes()
 
+struct Opened {
+    Context context;
+    Queue queue;  // null: the device cannot be opened
+    GlShare share;
+};
+
 class ClDevice final : public Device {
   public:
-    ClDevice(const ClCandidate& chosen, Context context, Queue queue, const ShaderFiles& files, Log log, const ClOptions& options);
+    ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& files, Log log, const ClOptions& options);
     ~ClDevice() override;
     Backend backend() const override { return Backend::cl; }
     const DeviceInfo& info() const override { return info_; }
-    DeviceHealth health() const override { return health_; }
+    GlShare glShare() const override { return share_; }
     Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
     std::vector<std::string> kernels() const override {
         std::vector<std::string> made;
@@ -84,7 +63,7 @@ class ClDevice final : public Device {
         std::string key;  // path and defines
         std::string path;
         Program program;
-        ClKernel kernel;
+        cl::Kernel kernel;
         uint32_t localSize;
         cl_uint args;
     };
@@ -127,12 +106,13 @@ class ClDevice final : public Device {
     cl_device_id device_;
     Context context_;
     Queue queue_;
+    GlShare share_;
     DeviceInfo info_;
     std::string options_;
     std::string made_;  // what, beside its source, a program is known by
-    ProgramCache cache_;
+    DiskCache cache_;
     size_t memoryLimit_;
-    uint64_t failAfter_, dispatches_ = 0;
+    uint64_t failAfter_, eventFailsAfter_, dispatches_ = 0;
     size_t maxLocalSize_;
     std::vector<Entry> kernels_;
     std::deque<ParamSlot> params_;  // oldest first
@@ -142,19 +122,22 @@ class ClDevice final : public Device {
     std::vector<PassTime> times_;
     size_t bytesAllocated_ = 0;
     uint32_t sinceFlush_ = 0;
-    DeviceHealth health_;
-    std::optional<double> ahead_;  // s, the host's clock before the device's
+    Queue clock_;                   // of its own, so that asking for the time waits for no kernel
+    Memory tick_;                   // what is written to ask
+    double ahead_ = 0, told_ = -1;  // s: the host's clock before the device's, and when it was asked
 };
 
-ClDevice::ClDevice(const ClCandidate& chosen, Context context, Queue queue, const ShaderFiles& files, Log log, const ClOptions& options)
+ClDevice::ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& files, Log log, const ClOptions& options)
     : files_(files),
       log_(std::move(log)),
       device_(chosen.device),
-      context_(std::move(context)),
-      queue_(std::move(queue)),
+      context_(std::move(opened.context)),
+      queue_(std::move(opened.queue)),
+      share_(std::move(opened.share)),
       cache_(options.cache),
       memoryLimit_(options.memoryLimit),
-      failAfter_(options.failAfter) {
+      failAfter_(options.failAfter),
+      eventFailsAfter_(options.eventFailsAfter) {
     const std::string version = clPlatformText(chosen.platform, CL_PLATFORM_VERSION), driver = clDeviceText(device_, CL_DRIVER_VERSION);
     info_.name = chosen.name;
     info_.driver = fmt::format("{}, driver {}", version, driver);
@@ -241,12 +224,12 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
     const std::string name(path.substr(path.rfind('/') + 1));
     cl_int code = CL_SUCCESS;
     Program program = cached(programKey);
-    ClKernel object(program ? clCreateKernel(program.get(), name.c_str(), &code) : nullptr);
+    cl::Kernel object(program ? clCreateKernel(program.get(), name.c_str(), &code) : nullptr);
     if (!object) {
         Error why;
         program = build(*source, file, why);
         if (!program) return why;
-        object = ClKernel(clCreateKernel(program.get(), name.c_str(), &code));
+        object = cl::Kernel(clCreateKernel(program.get(), name.c_str(), &code));
         if (!object)
             return failed(fmt::format("{} holds no kernel named {} ({}): write KERNEL({}, ...)", file, name, clErrorName(code), name));
         keep(programKey, program);
@@ -266,6 +249,7 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
 size_t paddedBytes(size_t bytes) { return std::max<size_t>((bytes + 15) / 16 * 16, 16); }
 
 Result<Buffer> ClDevice::allocate(size_t bytes) {
+    if (Status allowed = room(bytes); !allowed) return allowed.error();
     if (bytes > info_.maxBufferBytes) {
         if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("has no buffers of {} MiB", bytes >> 20U)};
         return failed(fmt::format("{} allows buffers of {} MiB, but {} MiB were asked for; use fewer particles or coarser voxels",
@@ -418,8 +402,12 @@ void ClDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     const cl_int code =
         enqueue([&] { return clEnqueueNDRangeKernel(queue_.get(), entry.kernel.get(), 1, nullptr, &global, &local, 0, nullptr, &done); });
     if (!succeeded(code, fmt::format("run {}", entry.path))) return;
-    ++dispatches_;
     timed_.push_back({Event(done), kernel.index});
+    if (dispatches_++ == eventFailsAfter_) {
+        cl_int made = CL_SUCCESS;
+        timed_.back().done = Event(clCreateUserEvent(context_.get(), &made));
+        clSetUserEventStatus(timed_.back().done.get(), CL_OUT_OF_RESOURCES);
+    }
     if (++sinceFlush_ >= kFlushEvery) {
         clFlush(queue_.get());
         sinceFlush_ = 0;
@@ -457,13 +445,16 @@ void ClDevice::harvest() {
 
 // s of hostSeconds(). OpenCL 1.2 cannot ask for the device's time: a small write that is waited for ends about now.
 double ClDevice::hostTime(cl_ulong at) {
-    if (!ahead_) {
-        ahead_ = 0;
+    // The two clocks drift.
+    if (const double before = hostSeconds(); told_ < 0 || before > told_ + 1) {
+        told_ = before;
         cl_int code = CL_SUCCESS;
-        const Memory small(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, 16, nullptr, &code));
+        if (!clock_) clock_ = Queue(clCreateCommandQueue(context_.get(), device_, CL_QUEUE_PROFILING_ENABLE, &code));
+        if (!tick_) tick_ = Memory(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, paddedBytes(sizeof(uint32_t)), nullptr, &code));
         const uint32_t word = 0;
         cl_event written = nullptr;
-        if (small && clEnqueueWriteBuffer(queue_.get(), small.get(), CL_TRUE, 0, sizeof word, &word, 0, nullptr, &written) == CL_SUCCESS) {
+        if (clock_ && tick_ &&
+            clEnqueueWriteBuffer(clock_.get(), tick_.get(), CL_TRUE, 0, sizeof word, &word, 0, nullptr, &written) == CL_SUCCESS) {
             const double now = hostSeconds();
             const Event event(written);
             cl_ulong end = 0;
@@ -471,12 +462,40 @@ double ClDevice::hostTime(cl_ulong at) {
                 ahead_ = now - 1.0e-9 * static_cast<double>(end);
         }
     }
-    return *ahead_ + 1.0e-9 * static_cast<double>(at);
+    return ahead_ + 1.0e-9 * static_cast<double>(at);
 }
 
 std::vector<PassTime> ClDevice::takeTimes() {
     harvest();
     return std::exchange(times_, {});
+}
+
+Queue queueOf(const Context& context, cl_device_id device, cl_int& code) {
+    return Queue(context ? clCreateCommandQueue(context.get(), device, CL_QUEUE_PROFILING_ENABLE, &code) : nullptr);
+}
+
+// In a context that shares with OpenGL where that is proven to work, else in a plain one.
+Opened open(const ClCandidate& candidate, const ClOptions& options, cl_int& code) {
+    const ClGlCalls calls = options.glCalls != nullptr ? *options.glCalls : driversGlCalls();
+    Opened opened;
+    Result<Context> shared = makeSharedContext(candidate, options.gl, calls);
+    if (shared) {
+        opened.queue = queueOf(*shared, candidate.device, code);
+        auto proven = opened.queue ? proveSharing(shared->get(), opened.queue.get(), options.gl, calls)
+                                   : failed(fmt::format("{} has no queue that shares with OpenGL: {}", candidate.name, clErrorName(code)));
+        if (proven) {
+            opened.context = std::move(*shared);
+            opened.share.by = std::move(*proven);
+            return opened;
+        }
+        opened.share.whyNot = proven.error().message;
+    } else {
+        opened.share.whyNot = shared.error().message;
+    }
+    const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(candidate.platform), 0};
+    opened.context = Context(clCreateContext(properties, 1, &candidate.device, nullptr, nullptr, &code));
+    opened.queue = queueOf(opened.context, candidate.device, code);
+    return opened;
 }
 
 }  // namespace
@@ -497,18 +516,15 @@ Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log, 
             continue;
         }
         cl_int code = CL_SUCCESS;
-        const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(candidate.platform), 0};
-        Context context(clCreateContext(properties, 1, &candidate.device, nullptr, nullptr, &code));
-        Queue queue(context ? clCreateCommandQueue(context.get(), candidate.device, CL_QUEUE_PROFILING_ENABLE, &code) : nullptr);
-        if (!queue) {
+        Opened opened = open(candidate, options, code);
+        if (!opened.queue) {
             why = fmt::format("{} cannot be opened: {}", candidate.name, clErrorName(code));
             continue;
         }
         if (!options.device.empty() && candidates->size() > 1)
             log.notice(fmt::format("'{}' names {} OpenCL devices: {} ({}) is taken; 'rivulet list devices' has their numbers",
                                    options.device, candidates->size(), candidate.name, candidate.platformName));
-        return std::unique_ptr<Device>(
-            std::make_unique<ClDevice>(candidate, std::move(context), std::move(queue), files, std::move(log), options));
+        return std::unique_ptr<Device>(std::make_unique<ClDevice>(candidate, std::move(opened), files, std::move(log), options));
     }
     return failed(fmt::format("OpenCL is installed but has no device to run on ({}); use --backend cpu", why));
 }

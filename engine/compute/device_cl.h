@@ -9,19 +9,25 @@
 #include <vector>
 
 #include "engine/compute/device.h"
+#include "engine/compute/disk_cache.h"
+#include "engine/compute/gl_sharing.h"
 #include "engine/compute/kernel_source.h"
-#include "engine/compute/program_cache.h"
 #include "engine/core/log.h"
 
 namespace rivulet {
 
+struct ClGlCalls;  // cl_sharing.h
+
 struct ClOptions {
     // Which: its number in listClDevices(), from 1, or a part of its or its platform's name, letters of either case. "": the first.
     std::string device = {};
-    std::string cache = programCacheFolder();  // where built programs are kept; "": nowhere
-    // What tests let go wrong: the device has no more memory than this; it is lost once it has run so many dispatches.
+    std::string cache = cacheFolder("cl");  // where built programs are kept; "": nowhere
+    GlContext gl = {};                      // whose buffers glShare() may copy into: outlives the device. None is current: nobody's
+    // What tests let go wrong: the device has no more memory than this; it is lost once it has run so many dispatches; the dispatch after
+    // so many is taken, and its event fails.
     size_t memoryLimit = SIZE_MAX;
-    uint64_t failAfter = UINT64_MAX;
+    uint64_t failAfter = UINT64_MAX, eventFailsAfter = UINT64_MAX;
+    const ClGlCalls* glCalls = nullptr;  // and what is taken for the driver's; null: the driver's
 };
 
 // Kernels are read through `files`. Errors: no OpenCL platform, no device that can compile kernels, no context (failed); none of the name

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <optional>
 
 namespace rivulet {
 
@@ -83,8 +84,8 @@ constexpr size_t kMostParams = 1024;  // bytes
 
 struct CpuDevice::Impl {
     std::vector<CpuKernelRow> rows;
-    std::vector<CpuKernelRow> kernels;  // those asked for; Kernel::index counts here
-    tbb::task_arena arena;
+    std::vector<CpuKernelRow> kernels;     // those asked for; Kernel::index counts here
+    std::optional<tbb::task_arena> arena;  // of so many threads as were asked for; nothing: the caller's
     std::vector<PassTime> times;
     std::vector<void*> bindings;
 
@@ -101,13 +102,13 @@ std::unique_ptr<CpuDevice> makeCpuDevice(std::span<const CpuKernelRow> rows, con
 
 CpuDevice::CpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& options) : impl_(std::make_unique<Impl>()), isa_(options.isa) {
     impl_->rows.assign(rows.begin(), rows.end());
-    impl_->arena.initialize(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+    if (options.threads > 0) impl_->arena.emplace(options.threads);  // oneTBB keeps some kB of each that ever was
     info_.name = fmt::format("{}, {} thread{}, {}", processorName(), threads(), threads() == 1 ? "" : "s", isaName(isa_));
 }
 
 CpuDevice::~CpuDevice() = default;
 
-int CpuDevice::threads() const { return impl_->arena.max_concurrency(); }
+int CpuDevice::threads() const { return impl_->arena ? impl_->arena->max_concurrency() : tbb::this_task_arena::max_concurrency(); }
 
 Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> defines) {
     std::string wanted = joinDefines(defines);
@@ -132,6 +133,7 @@ std::vector<std::string> CpuDevice::kernels() const {
 }
 
 Result<Buffer> CpuDevice::allocate(size_t bytes) {
+    if (Status allowed = room(bytes); !allowed) return allowed.error();
     size_t padded = (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment;
     void* memory = std::aligned_alloc(kAlignment, padded);
     if (memory == nullptr)
@@ -177,11 +179,15 @@ void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void
         body(0, count);
         return;
     }
-    impl_->arena.execute([&] {
+    const auto work = [&] {
         tbb::parallel_for(
             tbb::blocked_range<size_t>(0, count, grain), [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); },
             tbb::simple_partitioner());
-    });
+    };
+    if (impl_->arena)
+        impl_->arena->execute(work);
+    else
+        work();
 }
 
 void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {

@@ -182,6 +182,8 @@ ShaderFiles ShaderFiles::developer() {
 }
 
 Result<std::string> ShaderFiles::load(std::string_view path) const {
+    for (size_t k = added_.size(); k-- > 0;)
+        if (added_[k].first == path) return added_[k].second;
     if (!root_.empty()) {
         const std::filesystem::path onDisk = std::filesystem::path(root_) / path;
         std::error_code ignored;

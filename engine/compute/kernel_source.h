@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/compute/device.h"
@@ -28,6 +29,9 @@ class ShaderFiles {
     explicit ShaderFiles(std::string root = {});
     static ShaderFiles
     developer();  // RIVULET_SHADERS from the environment, else the source tree the build came from if it is still there, else embedded
+    // A file that is nowhere else, or stands for another, e.g. a host's own kernel ("shaders/mine/gust.kernel", its KERNEL named gust). For
+    // devices made after.
+    void add(std::string path, std::string text) { added_.emplace_back(std::move(path), std::move(text)); }
     // A define that every text flattened from now on has, before its own.
     void define(Define define) { always_.push_back(std::move(define)); }
     Result<std::string> load(std::string_view path) const;
@@ -37,6 +41,7 @@ class ShaderFiles {
 
   private:
     std::string root_;
+    std::vector<std::pair<std::string, std::string>> added_;  // path, text; the last of a path counts
     std::vector<Define> always_;
 };
 

@@ -28,11 +28,13 @@ double hostSeconds() { return std::chrono::duration<double>(std::chrono::steady_
 
 void Timeline::add(std::string_view lane, PassSpan span) {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (span.begin < begun_) return;
     if (count_ >= most_) {
-        forgot_ = true;
         count_ = 0;
         for (Lane& l : lanes_) {
-            l.spans.erase(l.spans.begin(), l.spans.begin() + static_cast<std::ptrdiff_t>((l.spans.size() + 1) / 2));
+            const auto kept = l.spans.begin() + static_cast<std::ptrdiff_t>((l.spans.size() + 1) / 2);
+            for (auto s = l.spans.begin(); s != kept; ++s) since_ = std::max(since_, s->end);
+            l.spans.erase(l.spans.begin(), kept);
             count_ += l.spans.size();
         }
     }
@@ -57,9 +59,17 @@ std::vector<Timeline::Lane> Timeline::lanes(double from) const {
     return some;
 }
 
-bool Timeline::forgot() const {
+double Timeline::remembersSince() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return forgot_;
+    return since_;
+}
+
+void Timeline::restart() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    lanes_.clear();
+    count_ = 0;
+    since_ = 0;
+    begun_ = hostSeconds();
 }
 
 std::string Timeline::chromeTrace() const {

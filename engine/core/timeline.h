@@ -33,7 +33,9 @@ class Timeline {
         std::vector<PassSpan> spans;  // as they came
     };
     std::vector<Lane> lanes(double from = 0) const;  // what ended after `from`, s
-    bool forgot() const;                             // whether there was more
+    // s of hostSeconds(): all that ended later is there still. 0: nothing has been forgotten.
+    double remembersSince() const;
+    void restart();  // as new; of what began before now it hears no more, as it does some frames late of a GPU
 
     // One JSON object of complete events ("X", microseconds since the first span's begin), a thread a lane. Ends in a newline.
     std::string chromeTrace() const;
@@ -42,7 +44,8 @@ class Timeline {
     mutable std::mutex mutex_;
     std::vector<Lane> lanes_;
     size_t most_, count_ = 0;
-    bool forgot_ = false;
+    double since_ = 0;  // s, as remembersSince()
+    double begun_ = 0;  // s, when it was last started
 };
 
 // Seconds in which both work. Spans of a lane may overlap and come in any order.

@@ -1,6 +1,6 @@
 #include "engine/gpu/debug.h"
 
-#include <glad/gl.h>
+#include <rivulet_glad/gl.h>
 
 #include <string_view>
 

@@ -64,6 +64,10 @@ class GlDevice final : public Device {
     void finish() override;
     std::vector<PassTime> takeTimes() override;
     size_t bytesAllocated() const override { return bytesAllocated_; }
+    void contextChanged() {
+        timer_.contextChanged();
+        times_.clear();
+    }
 
   private:
     struct Entry {
@@ -167,6 +171,7 @@ Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> d
 }
 
 Result<Buffer> GlDevice::allocate(size_t bytes) {
+    if (Status allowed = room(bytes); !allowed) return allowed.error();
     if (bytes > info_.maxBufferBytes)
         return failed(fmt::format(
             "a buffer of {} bytes ({:.1f} MiB) was asked for, but {} allows {} bytes ({:.1f} MiB); use fewer particles or coarser voxels",
@@ -324,6 +329,11 @@ std::vector<PassTime> GlDevice::takeTimes() {
 }  // namespace
 
 std::unique_ptr<Device> makeGlDevice(const ShaderFiles& files, Log log) { return std::make_unique<GlDevice>(files, std::move(log)); }
+
+void contextChanged(Device& gl) {
+    ASSERT(gl.backend() == Backend::gl, "ask backend() first");
+    static_cast<GlDevice&>(gl).contextChanged();
+}
 
 bool isSoftwareRenderer(std::string_view renderer) {
     for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "Software Rasterizer"})

@@ -16,6 +16,10 @@ namespace rivulet {
 // A Buffer's handle() is a GL buffer name: it may be drawn from (attributes, elements, SSBO, uniform, indirect) without further barriers.
 std::unique_ptr<Device> makeGlDevice(const ShaderFiles& files, Log log = {});
 
+// `gl` was used with another context so far, with which the one that is current now shares its objects: what is not shared is made anew,
+// and figures that have not come yet never will.
+void contextChanged(Device& gl);
+
 // True for a GL_RENDERER that runs on the CPU: Mesa's llvmpipe, softpipe, swrast.
 bool isSoftwareRenderer(std::string_view renderer);
 

@@ -1,7 +1,7 @@
 // Fence: whether the GPU has done all that was issued before it.
 #pragma once
 
-#include <glad/gl.h>
+#include <rivulet_glad/gl.h>
 
 #include <utility>
 

@@ -131,11 +131,29 @@ struct TransientPool::Impl {
         items.push_back(std::make_unique<Element>(Element{key, std::move(*made), frame, true}));
         return items.back().get();
     }
+    size_t most = SIZE_MAX;  // bytes
+    size_t held() const {
+        size_t sum = 0;
+        for (const auto& item : textures) sum += item->key.bytes();
+        for (const auto& item : buffers) sum += item->key;
+        return sum;
+    }
+    Status room(size_t bytes) const {
+        if (held() + bytes <= most) return ok();
+        return failed(fmt::format("{} MiB are allowed for pictures, and {} are in use; allow more, or draw fewer pixels", most >> 20U,
+                                  held() >> 20U));
+    }
     Result<TextureItem*> lendTexture(const TextureDesc& desc) {
-        return lend(textures, desc, frame, [&] { return Texture::create(desc); });
+        return lend(textures, desc, frame, [&]() -> Result<Texture> {
+            if (Status fits = room(desc.bytes()); !fits) return fits.error();
+            return Texture::create(desc);
+        });
     }
     Result<BufferItem*> lendBuffer(size_t bytes) {
-        return lend(buffers, bytes, frame, [&] { return Buffer::create(bytes); });
+        return lend(buffers, bytes, frame, [&]() -> Result<Buffer> {
+            if (Status fits = room(bytes); !fits) return fits.error();
+            return Buffer::create(bytes);
+        });
     }
 
     void beginFrame() {
@@ -180,15 +198,12 @@ TransientPool::TransientPool(TransientPool&&) noexcept = default;
 TransientPool& TransientPool::operator=(TransientPool&&) noexcept = default;
 TransientPool::~TransientPool() = default;
 const std::vector<PassTime>& TransientPool::times() const { return impl_->times; }
+void TransientPool::collect() { impl_->collectTimes(); }
 void TransientPool::onSpan(SpanSink sink) { impl_->onSpan = std::move(sink); }
 size_t TransientPool::textures() const { return impl_->textures.size(); }
 size_t TransientPool::buffers() const { return impl_->buffers.size(); }
-size_t TransientPool::bytes() const {
-    size_t sum = 0;
-    for (const auto& item : impl_->textures) sum += item->key.bytes();
-    for (const auto& item : impl_->buffers) sum += item->key;
-    return sum;
-}
+size_t TransientPool::bytes() const { return impl_->held(); }
+void TransientPool::limit(size_t bytes) { impl_->most = bytes; }
 
 struct FrameGraph::Impl {
     struct Resource {
@@ -397,6 +412,11 @@ Status FrameGraph::execute() {
     const Status lent = impl_->lendTransients();
     if (!lent) return lent.error();
 
+    // A host may have as many groups open as there can be: a pop without a push would take one of its own.
+    GLint groups = 0, mostGroups = 0;
+    glGetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &groups);
+    glGetIntegerv(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &mostGroups);
+    const bool named = groups < mostGroups;
     pool.timed.push_back({pool.frame, 0, {}});
     const StateScope state;
     Impl::Hazards hazards;
@@ -404,7 +424,7 @@ Status FrameGraph::execute() {
         Impl::Pass& pass = impl_->passes[p];
         const size_t row = pool.timeRow(pass.name, pass.needed);
         if (!pass.needed) continue;
-        glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(pass.name.size()), pass.name.c_str());
+        if (named) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(pass.name.size()), pass.name.c_str());
         pool.timer.begin(pool.frame << 16U | row);
         pass.barriers = impl_->placeBarriers(pass, hazards);
         {
@@ -415,7 +435,7 @@ Status FrameGraph::execute() {
         impl_->noteAccesses(pass, hazards);
         pool.timer.end();
         ++pool.timed.back().awaited;
-        glPopDebugGroup();
+        if (named) glPopDebugGroup();
     }
     // Whatever comes next, here or in the host, finds what shaders wrote.
     if (std::any_of(hazards.begin(), hazards.end(), [](const auto& h) { return h.second.written; })) glMemoryBarrier(GL_ALL_BARRIER_BITS);
@@ -438,6 +458,48 @@ std::vector<FrameGraph::Ran> FrameGraph::ran() const {
     std::vector<Ran> rows;
     for (const Impl::Pass& pass : impl_->passes) rows.push_back({pass.name, !pass.needed, pass.barriers});
     return rows;
+}
+
+const char* usageName(Usage usage) {
+    constexpr const char* kNames[] = {"sampled", "image", "target", "storage", "uniform", "attribute", "index", "indirect", "copy"};
+    static_assert(std::size(kNames) == static_cast<size_t>(Usage::copy) + 1, "a name for every Usage, in order");
+    return kNames[static_cast<size_t>(usage)];
+}
+
+FrameGraphDescription FrameGraph::describe() const {
+    ASSERT(impl_->executed, "describe a FrameGraph after execute()");
+    FrameGraphDescription d;
+    d.heldBytes = impl_->pool.held();
+    std::map<std::pair<bool, GLuint>, size_t> memories;
+    for (const Impl::Resource& r : impl_->resources) {
+        FrameGraphDescription::Resource& row = d.resources.emplace_back();
+        row.name = r.name;
+        row.isTexture = r.isTexture;
+        row.imported = r.imported;
+        row.output = r.output;
+        row.first = r.first;
+        row.last = r.last;
+        row.bytes = r.isTexture ? r.desc.bytes() : r.bytes;
+        if (r.isTexture) {
+            row.format = formatInfo(r.desc.format).name;
+            row.width = r.desc.width;
+            row.height = r.desc.height;
+            row.layers = r.desc.shape == TextureShape::cube ? 6 : r.desc.layers;
+        }
+        if (r.imported || r.lent == nullptr) continue;
+        const auto [place, fresh] = memories.try_emplace({r.isTexture, r.glName()}, memories.size());
+        row.memory = place->second;
+        if (fresh) d.lentBytes += r.isTexture ? row.bytes : roundedBytes(r.bytes);
+    }
+    d.memories = memories.size();
+    const auto uses = [](const auto& declared) {
+        std::vector<FrameGraphDescription::Use> list;
+        list.reserve(declared.size());
+        for (const auto& use : declared) list.push_back({use.index, use.usage});
+        return list;
+    };
+    for (const Impl::Pass& pass : impl_->passes) d.passes.push_back({pass.name, !pass.needed, uses(pass.reads), uses(pass.writes)});
+    return d;
 }
 
 // Of the pass's declarations: whether `test` holds for any.

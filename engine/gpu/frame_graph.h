@@ -22,6 +22,7 @@
 
 #include "engine/compute/device.h"
 #include "engine/gpu/buffer.h"
+#include "engine/gpu/frame_graph_description.h"
 #include "engine/gpu/framebuffer.h"
 #include "engine/gpu/texture.h"
 
@@ -74,9 +75,11 @@ class TransientPool {
     // calls = 0: left out. Empty before the first arrive.
     const std::vector<PassTime>& times() const;
     void onSpan(SpanSink sink);  // hears of each pass when its time has arrived; empty: nobody does
+    void collect();              // takes the times that have arrived: after glFinish() those of all frames
     size_t textures() const;     // held, lent or free
     size_t buffers() const;
-    size_t bytes() const;  // of both
+    size_t bytes() const;      // of both
+    void limit(size_t bytes);  // execute() fails rather than hold more
 
   private:
     friend class FrameGraph;
@@ -141,7 +144,8 @@ class FrameGraph {
         bool culled;
         GLbitfield barriers;  // of glMemoryBarrier before the pass; 0: none
     };
-    std::vector<Ran> ran() const;  // what execute() did, pass by pass, for those who explain or test
+    std::vector<Ran> ran() const;            // what execute() did, pass by pass, for those who explain or test
+    FrameGraphDescription describe() const;  // the same with all that was used, for those who show it
 
   private:
     friend class PassContext;

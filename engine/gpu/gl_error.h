@@ -1,7 +1,7 @@
 // What glGetError says, for the calls whose failure is no mistake of ours: allocations. Everything else is the debug callback's.
 #pragma once
 
-#include <glad/gl.h>
+#include <rivulet_glad/gl.h>
 
 namespace rivulet::gpu {
 

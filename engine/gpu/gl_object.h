@@ -3,7 +3,7 @@
 // Everything in engine/gpu needs a current OpenGL 4.5 context, when it is made, used and destroyed (sharing contexts count as one).
 #pragma once
 
-#include <glad/gl.h>
+#include <rivulet_glad/gl.h>
 
 #include <utility>
 

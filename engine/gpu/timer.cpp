@@ -44,6 +44,19 @@ void Timer::end() {
     pending_.push_back(std::move(span));
 }
 
+void Timer::contextChanged() {
+    ASSERT(open_.empty(), "call end() first");
+    // Their names may be others' in the new context: they go with the old one.
+    for (QueryName& name : free_) name.letGo();
+    for (Span& span : pending_) {
+        span.begin.letGo();
+        span.end.letGo();
+    }
+    free_.clear();
+    pending_.clear();
+    told_ = -1;
+}
+
 void Timer::collect(const std::function<void(uint64_t tag, const Times& times)>& then) {
     while (!pending_.empty()) {
         Span& front = pending_.front();

@@ -24,6 +24,8 @@ class Timer {
     // Calls then(tag, times) for every finished span, in the order of their end(), until one whose result has not arrived.
     void collect(const std::function<void(uint64_t tag, const Times& times)>& then);
     size_t pending() const { return pending_.size(); }
+    // Another context is current from now on: queries are not shared. What is pending is never heard of; none may be open.
+    void contextChanged();
     static constexpr size_t kMaxPending = 4096;
 
   private:

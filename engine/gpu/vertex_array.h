@@ -22,6 +22,7 @@ class VertexArray {
     GLuint name() const { return name_.name(); }
     explicit operator bool() const { return static_cast<bool>(name_); }
     void bind() const { glBindVertexArray(name()); }
+    void letGo() { name_.letGo(); }  // it was made in another context, with which it goes
 
   private:
     VertexArrayName name_;

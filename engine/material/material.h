@@ -36,6 +36,7 @@ struct Material {
     float roughness = 0.6F;
     float metallic = 0.0F;
 
+    vec3 emission{0.0F};                             // linear radiance, of a lamp
     float opacity = 1.0F;                            // where blended: of what is matte; gloss stays
     float grain = 0.0F;                              // of stone or sand: how rough and how mottled, 0..1
     float grainSize = 0.1F;                          // m, of its largest spots
@@ -47,6 +48,8 @@ struct Material {
     std::shared_ptr<const Image> colour;             // sRGB, times baseColour; alpha, times opacity
     std::shared_ptr<const Image> metallicRoughness;  // blue, times metallic; green, times roughness
     std::shared_ptr<const Image> normals;            // of the tangent plane: x along u, y along v
+    std::shared_ptr<const Image> occlusion;          // red: share of the surroundings that its hollows see
+    std::shared_ptr<const Image> glow;               // sRGB, times emission
     std::shared_ptr<const SkinLook> skin;            // null: no skin
     std::shared_ptr<const EyeLook> eye;              // null: no eye
 

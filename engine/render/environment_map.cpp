@@ -1,8 +1,13 @@
 #include "engine/render/environment_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 
 namespace rivulet {
 namespace {
@@ -84,18 +89,82 @@ std::array<vec4, 9> matteLight(const HdrImage& from) {
     return out;
 }
 
-Result<gpu::Texture> makeEnvironmentMap(const HdrImage& from) {
-    int width = kNarrowest;
-    while (2 * width <= std::min(from.width, kWidest)) width *= 2;
-    Result<gpu::Texture> map = gpu::Texture::create({.width = width, .height = width / 2, .format = gpu::Format::rgba16f, .mips = 0});
+Environment prefiltered(const HdrImage& from) {
+    Environment made;
+    made.width = kNarrowest;
+    while (2 * made.width <= std::min(from.width, kWidest)) made.width *= 2;
+    Picture level = shrunk({from.width, from.height, from.texels}, made.width, made.width / 2);
+    made.mips.push_back(level.texels);
+    for (int width = made.width / 2; width > 0; width /= 2) {
+        level = shrunk(blurred(level), width, std::max(width / 2, 1));
+        made.mips.push_back(level.texels);
+    }
+    made.matte = matteLight(from);
+    return made;
+}
+
+namespace {
+
+// Another one for each change of what is made of the same picture.
+constexpr std::string_view kMaker = "surroundings 1";
+
+// Everything that makes one picture differ from another.
+std::string keyOf(const HdrImage& image) {
+    return fmt::format("{}, {} x {}, {}", kMaker, image.width, image.height, hashOf(std::as_bytes(std::span(image.texels))));
+}
+
+// Width, mips and matte light, one after the other.
+std::vector<std::byte> bytesOf(const Environment& made) {
+    std::vector<std::byte> bytes;
+    const auto add = [&bytes](auto items) {
+        const auto more = std::as_bytes(items);
+        bytes.insert(bytes.end(), more.begin(), more.end());
+    };
+    add(std::span(&made.width, 1));
+    for (const std::vector<vec3>& mip : made.mips) add(std::span(mip));
+    add(std::span(made.matte));
+    return bytes;
+}
+
+std::optional<Environment> environmentOf(std::span<const std::byte> bytes) {
+    Environment made;
+    const auto take = [&bytes](auto items) {
+        const auto into = std::as_writable_bytes(items);
+        if (bytes.size() < into.size()) return false;
+        std::copy_n(bytes.begin(), into.size(), into.begin());
+        bytes = bytes.subspan(into.size());
+        return true;
+    };
+    if (!take(std::span(&made.width, 1)) || made.width < kNarrowest || made.width > kWidest) return std::nullopt;
+    for (int width = made.width; width > 0; width /= 2) {
+        made.mips.emplace_back(static_cast<size_t>(width) * static_cast<size_t>(std::max(width / 2, 1)));
+        if (!take(std::span(made.mips.back()))) return std::nullopt;
+    }
+    if (!take(std::span(made.matte)) || !bytes.empty()) return std::nullopt;
+    return made;
+}
+
+}  // namespace
+
+Environment cachedEnvironment(const HdrImage& from, const DiskCache& cache) {
+    const std::string key = keyOf(from);
+    if (const auto kept = cache.find(key))
+        if (std::optional<Environment> made = environmentOf(*kept)) return std::move(*made);
+    Environment made = prefiltered(from);
+    cache.keep(key, bytesOf(made));
+    return made;
+}
+
+Result<gpu::Texture> makeEnvironmentMap(const Environment& from) {
+    Result<gpu::Texture> map =
+        gpu::Texture::create({.width = from.width, .height = from.width / 2, .format = gpu::Format::rgba16f, .mips = 0});
     if (!map) return map;
     map->setSampling({.wrap = gpu::Wrap::repeat});
-    Picture level = shrunk({from.width, from.height, from.texels}, width, width / 2);
-    for (int mip = 0; mip < map->desc().mips; ++mip) {
-        if (mip > 0) level = shrunk(blurred(level), map->width(mip), map->height(mip));
+    for (size_t mip = 0; mip < from.mips.size(); ++mip) {
         std::vector<vec4> texels;
-        for (const vec3& t : level.texels) texels.emplace_back(t, 1.0F);
-        map->upload(std::as_bytes(std::span(texels)), mip);
+        texels.reserve(from.mips[mip].size());
+        for (const vec3& t : from.mips[mip]) texels.emplace_back(t, 1.0F);
+        map->upload(std::as_bytes(std::span(texels)), static_cast<int>(mip));
     }
     return map;
 }

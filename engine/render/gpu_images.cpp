@@ -58,6 +58,8 @@ Result<MaterialTextures> GpuImages::texturesOf(const Material& material) {
     } all[] = {{&out.colour, material.colour, ImageUse::colour, white_, vec4(1)},
                {&out.metallicRoughness, material.metallicRoughness, ImageUse::data, white_, vec4(1)},
                {&out.normals, material.normals, ImageUse::data, flat_, vec4(0.5F, 0.5F, 1, 1)},
+               {&out.occlusion, material.occlusion, ImageUse::data, white_, vec4(1)},
+               {&out.glow, material.glow, ImageUse::colour, white_, vec4(1)},
                {&out.relief, skin != nullptr ? skin->relief : nothing, ImageUse::heights, level_, vec4(0)},
                {&out.regions, skin != nullptr ? skin->regions : nothing, ImageUse::data, none_, vec4(0)}};
     for (const auto& a : all) {
@@ -76,7 +78,8 @@ void GpuImages::forgetBut(const std::set<const Image*>& used) {
 }
 
 std::set<const Image*> imagesOf(const Material& material) {
-    std::set<const Image*> all = {material.colour.get(), material.metallicRoughness.get(), material.normals.get()};
+    std::set<const Image*> all = {material.colour.get(), material.metallicRoughness.get(), material.normals.get(), material.occlusion.get(),
+                                  material.glow.get()};
     if (material.skin) all.insert({material.skin->relief.get(), material.skin->regions.get()});
     all.erase(nullptr);
     return all;

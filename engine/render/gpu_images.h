@@ -15,6 +15,7 @@ enum class ImageUse { colour, data, heights };  // sRGB; as stored; as slopes, s
 // What a material's shader reads; none is null.
 struct MaterialTextures {
     const gpu::Texture *colour = nullptr, *metallicRoughness = nullptr, *normals = nullptr;
+    const gpu::Texture *occlusion = nullptr, *glow = nullptr;
     const gpu::Texture *relief = nullptr, *regions = nullptr, *pores = nullptr, *diffusion = nullptr;
 };
 

@@ -11,17 +11,16 @@
 #include "engine/gpu/program.h"
 #include "engine/material/layer.h"
 #include "engine/material/material.h"
-#include "engine/render/frame_view.h"
+#include "engine/render/frame_params.h"
 #include "engine/render/gpu_images.h"
 #include "engine/render/gpu_mesh.h"
-#include "shaders/render/frame.h"
 
 namespace rivulet {
 
 // The programs of all passes; a failed reload keeps the last good ones.
 struct RenderPrograms {
-    gpu::Program shadow, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh, glass, box,
-        boxOverWater, tonemap, antialias;
+    gpu::Program shadow, shadowHoles, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh,
+        glass, box, boxOverWater, tonemap, antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
     Status reload();
 
@@ -30,7 +29,7 @@ struct RenderPrograms {
     Result<gpu::Program*> part(const Material& material, bool layered, bool water);
 
   private:
-    std::array<gpu::Program*, 16> all();
+    std::array<gpu::Program*, 17> all();
     ShaderFiles files_;
     std::map<unsigned, gpu::Program> parts_;
 };
@@ -47,19 +46,6 @@ struct DrawnMesh {
 
 // Whether a material needs more than its three numbers.
 bool isPart(const Material& material);
-
-// What the studio looks like; colours linear.
-struct Studio {
-    vec3 horizon{0.80F, 0.84F, 0.88F};
-    vec3 zenith{0.30F, 0.42F, 0.58F};
-    vec3 floor{0.42F, 0.40F, 0.38F};
-    float floorHeight = 0.0F;  // m
-    bool showFloor = true;
-    Bounds shown;  // m; what the picture is about: the floor fades around it
-};
-
-// The uniform block of a frame. `meshes`, `water`: the world bounds that the light's maps must cover (m); empty: no map.
-FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds& meshes, const Bounds& water);
 
 // What the light's way to a surface is looked up in. Without meshes or without water, any texture stands in: FrameParams::shadow says so.
 struct LightMaps {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/core/result.h"
+#include "engine/scene/mesh.h"
 
 namespace rivulet {
 
@@ -20,5 +21,8 @@ Result<const aiScene*> readMeshFile(Assimp::Importer& importer, const std::strin
 
 // Does what `steps` (aiProcess flags) say. Error: no triangles are left.
 Result<const aiScene*> prepareMeshFile(Assimp::Importer& importer, const std::string& path, unsigned steps);
+
+// What importMesh makes of a file that was read. Error: as prepareMeshFile.
+Result<Mesh> meshFrom(Assimp::Importer& importer, const std::string& path);
 
 }  // namespace rivulet

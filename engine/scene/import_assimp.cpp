@@ -29,9 +29,7 @@ void append(const aiMesh& part, bool withUvs, Mesh& mesh) {
 
 }  // namespace
 
-Result<Mesh> importMesh(const std::string& path) try {
-    Assimp::Importer importer;
-    if (Result<const aiScene*> raw = readMeshFile(importer, path); !raw) return raw.error();
+Result<Mesh> meshFrom(Assimp::Importer& importer, const std::string& path) {
     Result<const aiScene*> scene = prepareMeshFile(importer, path,
                                                    aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices |
                                                        aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
@@ -44,6 +42,12 @@ Result<Mesh> importMesh(const std::string& path) try {
     for (unsigned m = 0; m < (*scene)->mNumMeshes; ++m) append(*(*scene)->mMeshes[m], withUvs, mesh);
     if (mesh.indices.empty()) return meshFileError(path, "has no triangles");
     return mesh;
+}
+
+Result<Mesh> importMesh(const std::string& path) try {
+    Assimp::Importer importer;
+    if (Result<const aiScene*> raw = readMeshFile(importer, path); !raw) return raw.error();
+    return meshFrom(importer, path);
 } catch (const std::exception& e) {  // assimp reports most errors by text, but out of memory and the like by throwing
     return meshFileError(path, fmt::format("cannot be read: {}", e.what()));
 }

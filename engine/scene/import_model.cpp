@@ -6,21 +6,18 @@
 #include <assimp/postprocess.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
 
 #include "engine/scene/assimp_file.h"
+#include "engine/scene/import_motion.h"
 #include "engine/scene/load_image.h"
 
 namespace rivulet {
 namespace {
-
-mat4 matrixOf(const aiMatrix4x4& m) {  // assimp's rows are glm's columns
-    return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
-}
-vec3 vectorOf(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 // A file's textures, each decoded once.
 class Textures {
@@ -58,6 +55,11 @@ Result<Material> materialOf(const aiMaterial& from, Textures& textures) {
     to.baseColour = vec3(base.r, base.g, base.b);
     (void)from.Get(AI_MATKEY_METALLIC_FACTOR, to.metallic);
     (void)from.Get(AI_MATKEY_ROUGHNESS_FACTOR, to.roughness);
+    aiColor3D emission(0, 0, 0);
+    if (from.Get(AI_MATKEY_COLOR_EMISSIVE, emission) == aiReturn_SUCCESS) {
+        to.emission = vec3(emission.r, emission.g, emission.b);
+        if (!isFinite(to.emission)) to.emission = vec3(0.0F);
+    }
     aiString mode;
     if (from.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS) {
         to.blended = mode == aiString("BLEND");
@@ -76,7 +78,9 @@ Result<Material> materialOf(const aiMaterial& from, Textures& textures) {
                   {aiTextureType_DIFFUSE, &to.colour},
                   {aiTextureType_METALNESS, &to.metallicRoughness},
                   {aiTextureType_UNKNOWN, &to.metallicRoughness},  // where assimp 5.2 puts glTF's
-                  {aiTextureType_NORMALS, &to.normals}};
+                  {aiTextureType_NORMALS, &to.normals},
+                  {aiTextureType_LIGHTMAP, &to.occlusion},  // where it puts glTF's
+                  {aiTextureType_EMISSIVE, &to.glow}};
     for (const auto& w : wanted) {
         if (*w.into) continue;
         Result<std::shared_ptr<const Image>> image = textures.of(from, w.type);
@@ -154,14 +158,29 @@ bool moves(const aiScene& scene) {
     return false;
 }
 
-}  // namespace
+bool isGltf(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending == ".gltf" || ending == ".glb";
+}
 
-Result<Model> importModel(const std::string& path) try {
-    Assimp::Importer importer;
-    Result<const aiScene*> raw = readMeshFile(importer, path);
-    if (!raw) return raw.error();
+// Whether the file itself has that material: assimp adds one for what has none, to a glTF file's as the last.
+bool isFiles(const aiScene& scene, unsigned material, bool gltf) {
+    if (gltf) return material + 1 < scene.mNumMaterials;
+    const aiString name = scene.mMaterials[material]->GetName();
+    return name.length > 0 && name != aiString(AI_DEFAULT_MATERIAL_NAME);
+}
+
+bool anyDressed(const aiScene& scene, bool gltf) {
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        if (isFiles(scene, scene.mMeshes[m]->mMaterialIndex, gltf)) return true;
+    return false;
+}
+
+Result<Model> modelFrom(Assimp::Importer& importer, const std::string& path) {
+    const bool gltf = isGltf(path);
     unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals;
-    if (!moves(**raw)) steps |= aiProcess_JoinIdenticalVertices;
+    if (!moves(*importer.GetScene())) steps |= aiProcess_JoinIdenticalVertices;
     Result<const aiScene*> scene = prepareMeshFile(importer, path, steps);
     if (!scene) return scene.error();
 
@@ -192,14 +211,45 @@ Result<Model> importModel(const std::string& path) try {
         if (part.mesh.indices.empty()) continue;
         part.material = materials[from.mMaterialIndex];
         part.materialName = (*scene)->mMaterials[from.mMaterialIndex]->GetName().C_Str();
+        part.dressed = isFiles(**scene, from.mMaterialIndex, gltf);
         part.node = node;
         part.morphs = morphsOf(from);
         if (Status held = gripsOf(from, nodeOf, part); !held) return meshFileError(path, held.error().message);
         model.parts.push_back(std::move(part));
     }
     if (model.parts.empty()) return meshFileError(path, "has no triangles");
+    importMotion(**scene, nodeOf, gltf, model);
     return model;
+}
+
+}  // namespace
+
+Result<Model> importModel(const std::string& path) try {
+    Assimp::Importer importer;
+    Result<const aiScene*> raw = readMeshFile(importer, path);
+    if (!raw) return raw.error();
+    return modelFrom(importer, path);
 } catch (const std::exception& e) {  // assimp reports most errors by text, but out of memory and the like by throwing
+    return meshFileError(path, fmt::format("cannot be read: {}", e.what()));
+}
+
+Result<Model> importWhole(const std::string& path) try {
+    Assimp::Importer importer;
+    Result<const aiScene*> raw = readMeshFile(importer, path);
+    if (!raw) return raw.error();
+    const aiScene& scene = **raw;
+    if (anyDressed(scene, isGltf(path)) || moves(scene) || scene.mNumAnimations > 0 || scene.mNumCameras > 0 || scene.mNumLights > 0)
+        return modelFrom(importer, path);
+    Result<Mesh> mesh = meshFrom(importer, path);
+    if (!mesh) return mesh.error();
+    Model model;
+    model.nodes.push_back({mesh->name, mat4(1.0F), -1});
+    ModelPart part;
+    part.name = mesh->name;
+    part.mesh = std::move(*mesh);
+    model.parts.push_back(std::move(part));
+    return model;
+} catch (const std::exception& e) {  // as importModel
     return meshFileError(path, fmt::format("cannot be read: {}", e.what()));
 }
 

@@ -1,4 +1,5 @@
-// Reads a model file through assimp: glTF with its materials, textures, morph targets and bones, or a plain mesh as a model of one part.
+// Reads a model file through assimp: glTF or FBX with its materials, textures, morph targets, bones, clips, cameras and lights, or a plain
+// mesh as a model of one part.
 #pragma once
 
 #include <string>
@@ -13,5 +14,9 @@ namespace rivulet {
 // in the file or beside it.
 // Error: as importMesh; a texture that is missing or damaged, by name; indices of bones out of range.
 Result<Model> importModel(const std::string& path);
+
+// The same, but a file that says no more than where its triangles are (no materials, movement, cameras or lights) is one part on one node,
+// as importMesh has it.
+Result<Model> importWhole(const std::string& path);
 
 }  // namespace rivulet

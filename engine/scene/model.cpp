@@ -6,10 +6,16 @@
 namespace rivulet {
 
 std::vector<mat4> Model::worldMatrices() const {
+    std::vector<mat4> locals;
+    for (const ModelNode& node : nodes) locals.push_back(node.local);
+    return worldMatrices(locals);
+}
+
+std::vector<mat4> Model::worldMatrices(const std::vector<mat4>& locals) const {
     std::vector<mat4> world;
     world.reserve(nodes.size());
-    for (const ModelNode& node : nodes)
-        world.push_back(node.parent < 0 ? node.local : world[static_cast<size_t>(node.parent)] * node.local);
+    for (size_t k = 0; k < nodes.size(); ++k)
+        world.push_back(nodes[k].parent < 0 ? locals[k] : world[static_cast<size_t>(nodes[k].parent)] * locals[k]);
     return world;
 }
 

@@ -7,6 +7,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <sstream>
+
+#include "engine/core/param_list.h"
+#include "engine/core/param_path.h"
+#include "engine/core/param_value.h"
 
 namespace rivulet {
 
@@ -19,6 +24,43 @@ bool isOpen(const ParamInfo& info) { return info.min < -kOpenRange || info.max >
 
 float srgbFromLinear(float c) { return c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1.0F / 2.4F) - 0.055F; }
 float linearFromSrgb(float c) { return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F); }
+
+const ImVec4 kChanged(0.42F, 0.78F, 0.94F, 1);  // the colour of what is no longer as it was
+
+std::string lowered(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+std::vector<std::string> wordsOf(const std::string& text) {
+    std::vector<std::string> words;
+    std::istringstream stream(lowered(text));
+    for (std::string word; stream >> word;) words.push_back(word);
+    return words;
+}
+
+// What valueText made of a string.
+std::string unquoted(const std::string& json) {
+    std::string text;
+    for (size_t k = 1; k + 1 < json.size(); ++k) {
+        if (json[k] == '\\' && json[k + 1] == 'u') {  // of what is below a blank, none else
+            text += static_cast<char>(std::stoi(json.substr(k + 2, 4), nullptr, 16));
+            k += 5;
+            continue;
+        }
+        const bool line = json[k] == '\\' && json[k + 1] == 'n';
+        if (json[k] == '\\') ++k;
+        text += line ? '\n' : json[k];
+    }
+    return text;
+}
+
+// As much of it as so many pixels hold.
+std::string shortened(std::string text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    while (!text.empty() && ImGui::CalcTextSize((text + "..").c_str()).x > width) text.pop_back();
+    return text + "..";
+}
 
 // Digits enough to tell the range's steps apart.
 const char* formatFor(const ParamInfo& info, float v) {
@@ -39,34 +81,143 @@ std::string readableName(std::string_view name) {
     return text;
 }
 
-ParamPanel::ParamPanel() = default;
+void ParamMemory::open(const VisitFn& params, const VisitFn& defaults) {
+    const auto textsOf = [](const VisitFn& visit) {
+        std::map<std::string, std::string> texts;
+        for (ParamEntry& entry : listParams(visit))
+            if (entry.kind == ParamEntry::Kind::value) texts[entry.path] = std::move(entry.text);
+        return texts;
+    };
+    opened_ = textsOf(params);
+    defaults_ = textsOf(defaults);
+    changed_.clear();
+}
 
-void ParamPanel::label(const ParamInfo& info) {
+void ParamMemory::compare(const VisitFn& params) {
+    changed_.clear();
+    for (const ParamEntry& entry : listParams(params)) {
+        const auto was = opened_.find(entry.path);
+        if (entry.kind == ParamEntry::Kind::value && was != opened_.end() && was->second != entry.text) changed_.insert(*was);
+    }
+}
+
+const std::string* ParamMemory::byDefault(const std::string& path) const {
+    std::string any;  // an item's default is the same in every item: "colliders[2].mesh" is "colliders[].mesh"
+    for (size_t k = 0; k < path.size(); ++k) {
+        any += path[k];
+        if (path[k] == '[') k = path.find(']', k) - 1;
+    }
+    auto found = defaults_.find(path);
+    if (found == defaults_.end()) found = defaults_.find(any);
+    return found == defaults_.end() ? nullptr : &found->second;
+}
+
+void ParamPanel::search(const VisitFn& params) {
+    std::string& wanted = memory_.wanted;
+    const float clear =
+        wanted.empty() ? 0 : ImGui::CalcTextSize("clear").x + 2 * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - clear);
+    ImGui::InputTextWithHint("##wanted", "search: a name, a unit, a word", &wanted);
+    if (clear > 0) {
+        ImGui::SameLine();
+        if (ImGui::Button("clear")) wanted.clear();
+    }
+    if (!memory_.changed().empty()) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextColored(kChanged, "%zu changed", memory_.changed().size());
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("their names are of this colour; right click on one resets it");
+        ImGui::SameLine();
+        if (ImGui::SmallButton("reset all")) resetAll(params);
+    }
+    if (wanted.empty()) return;
+    const std::vector<std::string> words = wordsOf(wanted);
+    for (const ParamEntry& entry : listParams(params)) {
+        if (entry.path.find("[]") != std::string::npos) continue;  // of an item that is not there
+        const std::string text = lowered(fmt::format("{} {} {} {}", entry.path, readableName(entry.path), entry.unit, entry.doc));
+        if (!std::all_of(words.begin(), words.end(), [&](const std::string& word) { return text.find(word) != std::string::npos; }))
+            continue;
+        // With all that it lies in.
+        for (size_t end = entry.path.size(); end != std::string::npos && end > 0; end = entry.path.find_last_of(".[", end - 1))
+            found_.insert(entry.path.substr(0, end));
+        if (entry.kind != ParamEntry::Kind::value) whole_.push_back(entry.path);
+    }
+    if (found_.empty()) ImGui::TextDisabled("no parameter is called so");
+}
+
+// The list's length is not a value: items that were added stay.
+void ParamPanel::resetAll(const VisitFn& params) {
+    for (const auto& [path, text] : memory_.changed()) {
+        std::string was = text;
+        if (was.starts_with('"')) was = unquoted(was);
+        if (setParam(fmt::format("{}={}", path, was), params)) changed_ = recreate_ = true;
+    }
+}
+
+bool ParamPanel::shown(const char* name) const {
+    if (memory_.wanted.empty()) return true;
+    const std::string path = pathOf(paths_.empty() ? "" : paths_.back(), name);
+    return found_.contains(path) || isWhole(path);
+}
+
+// Whether it lies in a group or list that was itself found.
+bool ParamPanel::isWhole(const std::string& path) const {
+    return std::any_of(whole_.begin(), whole_.end(), [&](const std::string& group) {
+        return path.starts_with(group) && (path.size() == group.size() || path[group.size()] == '.' || path[group.size()] == '[');
+    });
+}
+
+void ParamPanel::label(const ParamInfo& info, std::string& text) {
+    const std::string path = pathOf(paths_.empty() ? "" : paths_.back(), info.name);
+    const auto was = memory_.changed().find(path);
+    const bool changed = was != memory_.changed().end();
     ImGui::PushID(info.name);
     float left = ImGui::GetCursorPosX();
+    // Widgets stand in one column whatever the nesting; the unit, dimmed, at its right.
+    float column = std::max(left + 20, ImGui::GetWindowWidth() * 0.42F);
+    const std::string name = readableName(info.name), cut = shortened(name, column - left - 6);
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(readableName(info.name).c_str());
-    if (ImGui::IsItemHovered() && info.doc[0] != '\0') {
-        std::string text = info.doc;
-        if (info.unit[0] != '\0') text += fmt::format("\nunit: {}", info.unit);
-        if (!isOpen(info) && info.max < kOpenRange) text += fmt::format("\nrange: {:g} to {:g}", info.min, info.max);
-        if (info.fixed) text += "\nthe water starts anew when this changes";
+    if (changed) ImGui::PushStyleColor(ImGuiCol_Text, kChanged);
+    ImGui::TextUnformatted(cut.c_str());
+    if (changed) ImGui::PopStyleColor();
+    if (ImGui::BeginPopupContextItem("menu")) {
+        const std::string* byDefault = memory_.byDefault(path);
+        ImGui::TextDisabled("%s", path.c_str());
+        if (ImGui::MenuItem("as opened", changed ? excerpt(was->second).c_str() : "", false, changed)) text = was->second;
+        if (byDefault != nullptr && ImGui::MenuItem("default", excerpt(*byDefault).c_str())) text = *byDefault;
+        if (ImGui::MenuItem("copy its name")) ImGui::SetClipboardText(path.c_str());
+        ImGui::EndPopup();
+    } else if (ImGui::IsItemHovered() && info.doc[0] != '\0') {
+        std::string about = cut == name ? info.doc : fmt::format("{}: {}", name, info.doc);
+        if (info.unit[0] != '\0') about += fmt::format("\nunit: {}", info.unit);
+        if (!isOpen(info) && info.max < kOpenRange) about += fmt::format("\nrange: {:g} to {:g}", info.min, info.max);
+        if (info.fixed) about += "\nthe water starts anew when this changes";
+        if (changed) about += fmt::format("\nopened as {}; right click to reset", excerpt(was->second));
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
-        ImGui::TextUnformatted(text.c_str());
+        ImGui::TextUnformatted(about.c_str());
         ImGui::PopTextWrapPos();
         ImGui::EndTooltip();
     }
-    // Widgets stand in one column whatever the nesting; the unit, dimmed, at its right.
-    float column = std::max(left + 20, ImGui::GetWindowWidth() * 0.42F);
     ImGui::SameLine(column);
     float unit = info.unit[0] != '\0' || info.max < kOpenRange ? ImGui::CalcTextSize("m^2/s^2").x + 8 : 0;  // text fields have none
     ImGui::SetNextItemWidth(std::max(40.0F, ImGui::GetContentRegionAvail().x - unit));
 }
 
-void ParamPanel::settle(const ParamInfo& info, bool edited) {
+// `widget` draws it and says whether it was edited; `take` reads a value from JSON.
+template <class Widget, class Take>
+void ParamPanel::edit(const ParamInfo& info, const Widget& widget, const Take& take) {
+    if (hidden() || !shown(info.name)) return;
+    std::string text;
+    label(info, text);
+    bool edited = widget();
+    bool ended = info.fixed && ImGui::IsItemDeactivatedAfterEdit();
+    if (!text.empty()) {
+        take(text.starts_with('"') ? unquoted(text) : text);
+        edited = true;
+        ended = info.fixed;
+    }
     changed_ = changed_ || edited;
-    if (info.fixed && ImGui::IsItemDeactivatedAfterEdit()) recreate_ = true;
+    recreate_ = recreate_ || ended;
     if (info.unit[0] != '\0') {
         ImGui::SameLine(0, 6);
         ImGui::TextDisabled("%s", info.unit);
@@ -97,67 +248,59 @@ bool ParamPanel::floats(const ParamInfo& info, float* v, int count) {
 }
 
 void ParamPanel::value(const ParamInfo& info, float& v) {
-    if (hidden()) return;
-    label(info);
-    settle(info, floats(info, &v, 1));
+    edit(
+        info, [&] { return floats(info, &v, 1); }, [&](const std::string& text) { assignValue(info, text, v); });
 }
 
 void ParamPanel::value(const ParamInfo& info, vec3& v) {
-    if (hidden()) return;
-    label(info);
-    settle(info, floats(info, &v.x, 3));
+    edit(
+        info, [&] { return floats(info, &v.x, 3); }, [&](const std::string& text) { assignValue(info, text, v); });
 }
 
 void ParamPanel::value(const ParamInfo& info, int& v) {
-    if (hidden()) return;
-    label(info);
-    constexpr double kWidest = 1e9;
-    int low = static_cast<int>(std::max(info.min, -kWidest)), high = static_cast<int>(std::min(info.max, kWidest));
-    bool edited = false;
-    if (high - static_cast<double>(low) <= 2000) {
-        edited = ImGui::SliderInt("##v", &v, low, high, "%d",
-                                  ImGuiSliderFlags_AlwaysClamp | (info.logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
-    } else {
-        edited = ImGui::DragInt("##v", &v, std::max(1.0F, 0.005F * static_cast<float>(std::abs(v))), low, high, "%d",
-                                ImGuiSliderFlags_AlwaysClamp);
-    }
-    settle(info, edited);
+    const auto widget = [&] {
+        constexpr double kWidest = 1e9;
+        int low = static_cast<int>(std::max(info.min, -kWidest)), high = static_cast<int>(std::min(info.max, kWidest));
+        if (high - static_cast<double>(low) <= 2000)
+            return ImGui::SliderInt("##v", &v, low, high, "%d",
+                                    ImGuiSliderFlags_AlwaysClamp | (info.logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+        return ImGui::DragInt("##v", &v, std::max(1.0F, 0.005F * static_cast<float>(std::abs(v))), low, high, "%d",
+                              ImGuiSliderFlags_AlwaysClamp);
+    };
+    edit(info, widget, [&](const std::string& text) { assignValue(info, text, v); });
 }
 
 void ParamPanel::value(const ParamInfo& info, bool& v) {
-    if (hidden()) return;
-    label(info);
-    settle(info, ImGui::Checkbox("##v", &v));
+    edit(
+        info, [&] { return ImGui::Checkbox("##v", &v); }, [&](const std::string& text) { assignValue(info, text, v); });
 }
 
 void ParamPanel::value(const ParamInfo& info, std::string& v) {
-    if (hidden()) return;
-    label(info);
-    settle(info, ImGui::InputText("##v", &v));
+    edit(
+        info, [&] { return ImGui::InputText("##v", &v); }, [&](const std::string& text) { assignValue(info, text, v); });
 }
 
 void ParamPanel::colour(const ParamInfo& info, vec3& v) {
-    if (hidden()) return;
-    label(info);
-    // Colours are linear in the struct and sRGB on the screen, or the swatch would not look like the colour.
-    bool bright = info.max > 1;
-    float shown[3];
-    for (int i = 0; i < 3; ++i) shown[i] = bright ? v[i] : srgbFromLinear(v[i]);
-    ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float | (bright ? ImGuiColorEditFlags_HDR : 0);
-    bool edited = ImGui::ColorEdit3("##v", shown, flags);
-    if (edited)
+    const auto widget = [&] {
+        // Colours are linear in the struct and sRGB on the screen, or the swatch would not look like the colour.
+        bool bright = info.max > 1;
+        float shown[3];
+        for (int i = 0; i < 3; ++i) shown[i] = bright ? v[i] : srgbFromLinear(v[i]);
+        ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float | (bright ? ImGuiColorEditFlags_HDR : 0);
+        if (!ImGui::ColorEdit3("##v", shown, flags)) return false;
         for (int i = 0; i < 3; ++i) {
             float c = bright ? shown[i] : linearFromSrgb(shown[i]);
             if (std::isfinite(c)) v[i] = std::clamp(c, static_cast<float>(info.min), static_cast<float>(info.max));
         }
-    settle(info, edited);
+        return true;
+    };
+    edit(info, widget, [&](const std::string& text) { assignValue(info, text, v); });
 }
 
 void ParamPanel::choice(const ParamInfo& info, std::string& v, std::span<const std::string> names) {
-    if (hidden()) return;
-    label(info);
-    bool edited = false;
-    if (ImGui::BeginCombo("##v", v.c_str())) {
+    const auto widget = [&] {
+        bool edited = false;
+        if (!ImGui::BeginCombo("##v", v.c_str())) return false;
         for (const std::string& name : names) {
             if (ImGui::Selectable(name.c_str(), name == v) && name != v) {
                 v = name;
@@ -166,26 +309,37 @@ void ParamPanel::choice(const ParamInfo& info, std::string& v, std::span<const s
             if (name == v) ImGui::SetItemDefaultFocus();
         }
         ImGui::EndCombo();
+        recreate_ = recreate_ || (edited && info.fixed);
+        return edited;
+    };
+    edit(info, widget, [&](const std::string& text) { assignChoice(text, v, names); });
+}
+
+// What is searched for is unfolded, whatever is folded else.
+bool ParamPanel::unfolded(const std::string& title) {
+    if (!memory_.wanted.empty()) {
+        ImGui::TextDisabled("%s", title.substr(0, title.find("###")).c_str());
+        if (depth_ > 0) ImGui::TreePush(title.c_str());
+        return true;
     }
-    if (edited && info.fixed) recreate_ = true;
-    settle(info, edited);
+    return depth_ == 0 ? ImGui::CollapsingHeader(title.c_str()) : ImGui::TreeNodeEx(title.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
 }
 
 bool ParamPanel::beginGroup(const ParamInfo& info) {
-    if (hidden()) return false;
-    std::string title = readableName(info.name);
+    if (hidden() || !shown(info.name)) return false;
     ImGui::PushID(info.name);
-    bool open = depth_ == 0 ? ImGui::CollapsingHeader(title.c_str()) : ImGui::TreeNodeEx(title.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
-    if (!open) {
+    if (!unfolded(readableName(info.name))) {
         ImGui::PopID();
         return false;
     }
     if (depth_ == 0) ImGui::Indent(6);
     ++depth_;
+    paths_.push_back(pathOf(paths_.empty() ? "" : paths_.back(), info.name));
     return true;
 }
 
 void ParamPanel::endGroup() {
+    paths_.pop_back();
     --depth_;
     if (depth_ == 0)
         ImGui::Unindent(6);
@@ -198,10 +352,10 @@ void ParamPanel::endGroup() {
 size_t ParamPanel::beginList(const ParamInfo& info, size_t current) {
     size_t wanted = current;
     bool open = false;
-    if (!hidden()) {
+    lists_.push_back(pathOf(paths_.empty() ? "" : paths_.back(), info.name));
+    if (!hidden() && shown(info.name)) {
         ImGui::PushID(info.name);
-        std::string title = fmt::format("{} ({})###list", readableName(info.name), current);
-        open = depth_ == 0 ? ImGui::CollapsingHeader(title.c_str()) : ImGui::TreeNodeEx(title.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
+        open = unfolded(fmt::format("{} ({})###list", readableName(info.name), current));
         if (open) {
             if (depth_ == 0) ImGui::Indent(6);
             constexpr size_t kMost = 64;
@@ -221,7 +375,8 @@ size_t ParamPanel::beginList(const ParamInfo& info, size_t current) {
 
 void ParamPanel::beginItem(size_t index) {
     bool open = false;
-    if (!hidden()) {
+    paths_.push_back(pathOf(lists_.back(), index));
+    if (!hidden() && (memory_.wanted.empty() || found_.contains(paths_.back()) || isWhole(paths_.back()))) {
         ImGui::PushID(static_cast<int>(index));
         open = ImGui::TreeNodeEx("item", ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_DefaultOpen, "%d", static_cast<int>(index));
         if (!open) ImGui::PopID();
@@ -232,6 +387,7 @@ void ParamPanel::beginItem(size_t index) {
 }
 
 void ParamPanel::endItem() {
+    paths_.pop_back();
     bool open = open_.back();
     open_.pop_back();
     if (!open) {
@@ -244,6 +400,7 @@ void ParamPanel::endItem() {
 }
 
 void ParamPanel::endList() {
+    lists_.pop_back();
     bool open = open_.back();
     open_.pop_back();
     if (!open) {

@@ -1,21 +1,43 @@
 // A widget for every Param: a slider, drag field, check box, combo, colour editor or text field with name, unit and doc from its visit().
 //
-//     ParamPanel panel;
-//     scene.visit(panel);                       // inside an ImGui window
-//     if (panel.recreate()) ...                 // a value that needs a new world was let go of
+//     ParamPanel panel(memory);
+//     panel.search([&](ParamVisitor& v) { scene.visit(v); });  // inside an ImGui window; the field that looks for names
+//     scene.visit(panel);
+//     if (panel.recreate()) ...                                // a value that needs a new world was let go of
 //     else if (panel.changed()) world.setParams(scene.fluid);
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "engine/core/json.h"
 #include "engine/core/params.h"
 
 namespace rivulet {
 
+// What a panel of Params keeps from frame to frame: what is searched for, and what each value was when the Params were opened.
+class ParamMemory {
+  public:
+    // These are what a reset goes back to; `defaults`: a visit over what is made by default.
+    void open(const VisitFn& params, const VisitFn& defaults);
+    // After an edit: what is no longer as it was.
+    void compare(const VisitFn& params);
+    const std::map<std::string, std::string>& changed() const { return changed_; }  // path: its value as opened, in JSON
+    const std::string* byDefault(const std::string& path) const;                    // in JSON; null: there is none of that name
+
+    std::string wanted;  // words, any of them in any case; all must be in a Param's path, name or doc. "": all are shown
+
+  private:
+    std::map<std::string, std::string> opened_, defaults_, changed_;
+};
+
 class ParamPanel final : public ParamVisitor {
   public:
-    ParamPanel();
+    explicit ParamPanel(ParamMemory& memory) : memory_(memory) {}
+    // The field to search in, and how many values are no longer as they were, with a button that resets them. Before the visit.
+    void search(const VisitFn& params);
     bool changed() const { return changed_; }    // some value is another one now
     bool recreate() const { return recreate_; }  // a `fixed` value's edit ended, or a list's length changed
 
@@ -37,10 +59,20 @@ class ParamPanel final : public ParamVisitor {
 
   private:
     bool hidden() const { return closed_ > 0; }  // inside a list or item that is folded
-    void label(const ParamInfo& info);
-    void settle(const ParamInfo& info, bool edited);  // after the widget
+    bool shown(const char* name) const;          // of a value, group or list, while something is searched for
+    bool isWhole(const std::string& path) const;
+    void resetAll(const VisitFn& params);
+    void label(const ParamInfo& info, std::string& text);  // `text`: in JSON, a value that its menu chose; else as it was
+    template <class Widget, class Take>
+    void edit(const ParamInfo& info, const Widget& widget, const Take& take);
+    bool unfolded(const std::string& title);
     bool floats(const ParamInfo& info, float* v, int count);
 
+    ParamMemory& memory_;
+    std::set<std::string> found_;     // paths of what is searched for, with the groups and lists on the way
+    std::vector<std::string> whole_;  // groups and lists that were themselves found
+    std::vector<std::string> paths_;  // of the groups and items on the way, the innermost last
+    std::vector<std::string> lists_;  // of the lists on the way
     bool changed_ = false, recreate_ = false;
     int depth_ = 0;   // groups and items open
     int closed_ = 0;  // of the enclosing lists and items, folded

@@ -63,7 +63,7 @@ double ProfilerPanel::mean(std::string_view side) const {
 
 double ProfilerPanel::meanFrame() const { return meanOf(frame_); }
 
-void ProfilerPanel::draw(float width) {
+void ProfilerPanel::draw(float width) const {
     drawGraph(width);
     drawTable();
 }
@@ -73,6 +73,7 @@ void ProfilerPanel::drawGraph(float across) const {
     ImVec2 size(across, 110);
     ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + size.x, low.y + size.y);
     ImGui::Dummy(size);
+    const bool hovered = ImGui::IsItemHovered();
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
 
@@ -86,27 +87,54 @@ void ProfilerPanel::drawGraph(float across) const {
 
     list->PushClipRect(low, high, true);
     float width = size.x / kFrames;
+    std::vector<ImVec2> whole;  // the frames' own line
+    whole.reserve(kFrames);
     auto height = [&](float ms) { return high.y - size.y * ms / top; };
     for (int k = 1; k < kFrames; ++k) {
         size_t from = static_cast<size_t>((at_ + k) % kFrames);
         float x = low.x + width * static_cast<float>(k - 1), stack = 0;
+        constexpr float kSeen = 0.8F;  // px: what is less goes with the next, for most passes are short and each is a rectangle
+        float drawn = 0;
         for (size_t i = 0; i < lines_.size(); ++i) {
-            float ms = lines_[i].ms[from];
-            if (ms > 0) list->AddRectFilled(ImVec2(x, height(stack + ms)), ImVec2(x + width + 0.5F, height(stack)), hueOf(i));
-            stack += ms;
+            stack += lines_[i].ms[from];
+            if ((stack - drawn) * size.y < kSeen * top) continue;
+            list->AddRectFilled(ImVec2(x, height(stack)), ImVec2(x + width + 0.5F, height(drawn)), hueOf(i));
+            drawn = stack;
         }
-        if (k > 1) {
-            size_t before = static_cast<size_t>((at_ + k - 1) % kFrames);
-            list->AddLine(ImVec2(x - 0.5F * width, height(frame_[before])), ImVec2(x + 0.5F * width, height(frame_[from])),
-                          IM_COL32(235, 240, 245, 160));
-        }
+        whole.emplace_back(x + 0.5F * width, height(frame_[from]));
     }
-    for (float ms : {1000.0F / 60, 1000.0F / 30})
-        if (ms < top) {
-            list->AddLine(ImVec2(low.x, height(ms)), ImVec2(high.x, height(ms)), IM_COL32(255, 255, 255, 40));
-            list->AddText(ImVec2(low.x + 4, height(ms) + 1), IM_COL32(255, 255, 255, 110), fmt::format("{:.1f} ms", ms).c_str());
-        }
+    list->AddPolyline(whole.data(), static_cast<int>(whole.size()), IM_COL32(235, 240, 245, 160), 0, 1);
+    float below = low.y;  // no text is written over another
+    for (float ms : {0.999F * top, 1000.0F / 30, 1000.0F / 60}) {
+        if (ms >= top || height(ms) < below) continue;
+        const std::string text = fmt::format("{:.3g} ms", ms);
+        const ImVec2 at(low.x + 4, height(ms) + 1), box = ImGui::CalcTextSize(text.c_str());
+        list->AddLine(ImVec2(low.x, height(ms)), ImVec2(high.x, height(ms)), IM_COL32(255, 255, 255, 60));
+        if (at.y + box.y > high.y) continue;
+        list->AddRectFilled(ImVec2(at.x - 2, at.y), ImVec2(at.x + box.x + 2, at.y + box.y), IM_COL32(20, 26, 32, 170), 3);
+        list->AddText(at, IM_COL32(255, 255, 255, 200), text.c_str());
+        below = at.y + box.y;
+    }
     list->PopClipRect();
+    if (hovered) tell((ImGui::GetIO().MousePos.x - low.x) / width);
+}
+
+// The frame under the mouse, with what took longest in it.
+void ProfilerPanel::tell(float column) const {
+    const auto k = static_cast<size_t>(std::clamp(static_cast<int>(column) + 1, 1, kFrames - 1));
+    const size_t at = (static_cast<size_t>(at_) + k) % kFrames;
+    std::vector<size_t> order;
+    for (size_t i = 0; i < lines_.size(); ++i)
+        if (lines_[i].ms[at] > 0) order.push_back(i);
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return lines_[a].ms[at] > lines_[b].ms[at]; });
+    constexpr size_t kMost = 8;
+    ImGui::BeginTooltip();
+    ImGui::Text("a frame of %.2f ms", static_cast<double>(frame_[at]));
+    for (size_t i = 0; i < std::min(order.size(), kMost); ++i) {
+        const Line& l = lines_[order[i]];
+        ImGui::TextColored(ImColor(hueOf(order[i])), "%7.2f  %s", static_cast<double>(l.ms[at]), l.name.c_str() + (l.name.rfind('/') + 1));
+    }
+    ImGui::EndTooltip();
 }
 
 void ProfilerPanel::drawTable() const {

@@ -15,7 +15,7 @@ class ProfilerPanel {
     // One frame's passes of one side, "simulate" or "render". Call for each side, then endFrame().
     void add(std::string_view side, std::span<const PassTime> passes);
     void endFrame(double frameMs);
-    void draw(float width);  // pixels; inside an ImGui window
+    void draw(float width) const;  // pixels; inside an ImGui window
     void clear();
 
     // ms, of the last kMeanFrames frames: a side's passes; the whole frame on the wall.
@@ -32,6 +32,7 @@ class ProfilerPanel {
     Line& line(std::string_view side, std::string_view name);
     void drawGraph(float across) const;
     void drawTable() const;
+    void tell(float column) const;
 
     std::vector<Line> lines_;  // one a pass, in order of first sight
     std::vector<float> frame_ = std::vector<float>(kFrames, 0.0F);

@@ -6,13 +6,23 @@
 
 namespace rivulet {
 
-void applyUiStyle() {
+void loadUiFont(float pixels) {
     ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->Clear();
     constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // package fonts-dejavu-core
     std::error_code ignored;
-    if (std::filesystem::is_regular_file(kFont, ignored)) io.Fonts->AddFontFromFileTTF(kFont, 14);
-    if (io.Fonts->Fonts.empty()) io.Fonts->AddFontDefault();
+    if (std::filesystem::is_regular_file(kFont, ignored)) {
+        io.Fonts->AddFontFromFileTTF(kFont, 14 * pixels);
+        io.FontGlobalScale = 1 / pixels;
+    }
+    if (io.Fonts->Fonts.empty()) {  // ImGui's own has one size
+        io.Fonts->AddFontDefault();
+        io.FontGlobalScale = 1;
+    }
+}
 
+void applyUiStyle() {
+    loadUiFont(1);
     ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
     style.WindowRounding = 6;
@@ -44,6 +54,9 @@ void applyUiStyle() {
     set({ImGuiCol_HeaderHovered, ImGuiCol_ButtonHovered}, 0.17F, 0.33F, 0.42F, 1);
     set({ImGuiCol_HeaderActive, ImGuiCol_ButtonActive}, 0.18F, 0.42F, 0.54F, 1);
     set({ImGuiCol_Button}, 0.15F, 0.26F, 0.33F, 1);
+    set({ImGuiCol_Tab, ImGuiCol_TabUnfocused}, 0.11F, 0.16F, 0.20F, 1);
+    set({ImGuiCol_TabHovered}, 0.17F, 0.33F, 0.42F, 1);
+    set({ImGuiCol_TabActive, ImGuiCol_TabUnfocusedActive}, 0.16F, 0.36F, 0.46F, 1);
     set({ImGuiCol_SliderGrab, ImGuiCol_CheckMark}, 0.27F, 0.66F, 0.84F, 1);
     set({ImGuiCol_SliderGrabActive}, 0.42F, 0.78F, 0.94F, 1);
     set({ImGuiCol_ScrollbarBg}, 0, 0, 0, 0);

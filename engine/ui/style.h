@@ -6,4 +6,7 @@ namespace rivulet {
 // On the current ImGui context, before its first frame.
 void applyUiStyle();
 
+// Makes the font anew, for so many pixels a coordinate of ImGui's. Before ImGui::NewFrame.
+void loadUiFont(float pixels);
+
 }  // namespace rivulet

@@ -43,7 +43,8 @@ void TimelinePanel::draw(const Timeline& timeline, double frame, float width) {
         for (const PassSpan& span : lanes[k].spans) {
             if (span.begin > until_) continue;
             const ImVec2 a(at(span.begin), top + 2), b(std::max(at(span.end), a.x + 0.5F), top + row - 2);
-            list->AddRectFilled(a, b, colourOf(span.name), 1);
+            constexpr float kRounded = 4;  // px: below, corners are not seen
+            list->AddRectFilled(a, b, colourOf(span.name), b.x - a.x > kRounded ? 1 : 0);
             if (held_ && mouse.x >= a.x && mouse.x <= b.x && mouse.y >= top && mouse.y < top + row) pointed = &span;
         }
         list->AddText(ImVec2(low.x + 5, top + 3), IM_COL32(0, 0, 0, 160), lanes[k].name.c_str());

@@ -14,6 +14,7 @@ namespace {
 constexpr double kCalibration = 300;  // ms, of all methods together
 constexpr double kCloser = 100;       // ms, of what they lead to, each time
 constexpr int kCloserTimes = 2;
+constexpr int kSmallerTimes = 10;   // half the particles each time, where the device has no memory for them
 constexpr double kAtMost = 20000;   // particles of a whole box of water: a sweep costs each the same
 constexpr double kSomeWater = 200;  // particles, below which a frame says nothing of what one costs
 constexpr double kUsual = 60;       // ns: where nothing could be measured
@@ -55,7 +56,56 @@ SceneFile trialOf(const SceneFile& scene, double spacing) {
     return trial;
 }
 
-// Each method that the chart can pick, as it comes. Those that refuse the scene are left out; the last one's sentence, where all do.
+// A trial that runs. One that the device has no memory for is no fault of the device's, which goes on with the next; `small`: that it was
+// so.
+struct Tried {
+    Result<std::unique_ptr<Session>> session;
+    std::optional<Cost> cost;
+    bool small = false;
+};
+Tried tryOut(const SceneFile& trial, Device& device, double budgetMs) {
+    const bool roomy = device.health().state != DeviceHealth::full;
+    Tried tried{Session::create(trial, device, Log{}), {}, false};
+    if (tried.session && (*tried.session)->world().particles().count > 0) tried.cost = costOf(**tried.session, budgetMs);
+    tried.small = roomy && device.health().state == DeviceHealth::full;
+    if (!tried.small) return tried;
+    if (tried.session) tried.session = failed(fmt::format("{} {}", device.info().name, device.health().why));
+    tried.cost.reset();
+    device.forgiveFull();
+    return tried;
+}
+
+// Each of these methods, as it comes, at so coarse a spacing (m). Those that refuse the scene are left out, and so are those that the
+// device has no memory for: whether there were such. `refused`: the last one's sentence.
+bool tryMethods(const SceneFile& scene, Device& device, std::span<const ChartSetting* const> plain, double coarse, Calibration& c,
+                std::optional<Error>& refused) {
+    bool small = false;
+    for (const ChartSetting* setting : plain) {
+        Tried tried{failed(""), {}, false};
+        double spacing = coarse;
+        for (;; spacing = std::max(0.5 * spacing, c.size.finest)) {  // too coarse for the scene, or for a drop in it
+            SceneFile trial = trialOf(scene, spacing);
+            applySetting(*setting, trial);
+            tried = tryOut(trial, device, kCalibration / static_cast<double>(plain.size()));
+            if (tried.small || spacing <= c.size.finest || (tried.session && (*tried.session)->world().particles().count > 0)) break;
+        }
+        small = small || tried.small;
+        if (!tried.session) {
+            refused = tried.session.error();
+            continue;
+        }
+        const FluidWorld& world = (*tried.session)->world();
+        if (world.particles().count == 0) continue;
+        c.size.spacing = spacing;
+        c.size.particlesAt = world.particles().count;
+        c.size.fastest = double{world.fastestFall()};
+        c.costs.push_back({setting->method, tried.cost ? tried.cost->ns : kUsual});
+        c.measured = c.measured && tried.cost.has_value();
+    }
+    return small;
+}
+
+// Each method that the chart can pick; the last one's sentence, where all refuse the scene.
 Result<Calibration> calibrate(const SceneFile& scene, Device& device, std::span<const ChartRow> chart) {
     Calibration c;
     c.size.finest = scene.budget.finest > 0 ? double{scene.budget.finest} : double{scene.fluid.spacing};
@@ -65,29 +115,12 @@ Result<Calibration> calibrate(const SceneFile& scene, Device& device, std::span<
         if (*s.assignments == '\0' && std::any_of(chart.begin(), chart.end(), [&](const ChartRow& row) { return row.setting == s.name; }))
             plain.push_back(&s);
     const dvec3 box(scene.fluid.box.max - scene.fluid.box.min);
-    const double coarse = std::max(c.size.finest, std::cbrt(box.x * box.y * box.z / kAtMost));
+    double coarse = std::max(c.size.finest, std::cbrt(box.x * box.y * box.z / kAtMost));
     std::optional<Error> refused;
-    for (const ChartSetting* setting : plain) {
-        Result<std::unique_ptr<Session>> session = failed("");
-        double spacing = coarse;
-        for (;; spacing = std::max(0.5 * spacing, c.size.finest)) {  // too coarse for the scene, or for a drop in it
-            SceneFile trial = trialOf(scene, spacing);
-            applySetting(*setting, trial);
-            session = Session::create(trial, device, Log{});
-            if (spacing <= c.size.finest || (session && (*session)->world().particles().count > 0)) break;
-        }
-        if (!session) {
-            refused = session.error();
-            continue;
-        }
-        const FluidWorld& world = (*session)->world();
-        if (world.particles().count == 0) continue;
-        c.size.spacing = spacing;
-        c.size.particlesAt = world.particles().count;
-        c.size.fastest = double{world.fastestFall()};
-        const std::optional<Cost> cost = costOf(**session, kCalibration / static_cast<double>(plain.size()));
-        c.costs.push_back({setting->method, cost ? cost->ns : kUsual});
-        c.measured = c.measured && cost.has_value();
+    bool small = tryMethods(scene, device, plain, coarse, c, refused);
+    for (int k = 0; k < kSmallerTimes && small && c.costs.empty(); ++k) {
+        coarse *= std::cbrt(2.0);
+        small = tryMethods(scene, device, plain, coarse, c, refused);
     }
     if (c.costs.empty() && refused) return *refused;
     return c;
@@ -97,16 +130,23 @@ Result<Calibration> calibrate(const SceneFile& scene, Device& device, std::span<
 // liquid that is thick, short steps) makes each sweep dearer.
 Status comeCloser(const SceneFile& scene, Device& device, std::span<const ChartRow> chart, Calibration& c,
                   std::optional<BudgetPick>& pick) {
-    for (int k = 0; k < kCloserTimes; ++k) {
+    int smaller = 0;
+    for (int k = 0; k < kCloserTimes;) {
         SceneFile trial = trialOf(scene, pick->spacing);
         applySetting(*pick->setting, trial);
-        Result<std::unique_ptr<Session>> session = Session::create(trial, device, Log{});
-        if (!session) return session.error();
-        if (const double count = (*session)->world().particles().count; count > 0) {
+        const Tried tried = tryOut(trial, device, kCloser);
+        if (tried.small && smaller < kSmallerTimes) {
+            c.size.finest = std::cbrt(2.0) * pick->spacing;
+            pick = pickSetting(chart, c.costs, c.size, scene.budget);
+            ++smaller;
+            continue;
+        }
+        if (!tried.session) return tried.session.error();
+        if (const double count = (*tried.session)->world().particles().count; count > 0) {
             c.size.particlesAt = count;
             c.size.spacing = pick->spacing;
         }
-        if (const std::optional<Cost> cost = costOf(**session, kCloser)) {
+        if (const std::optional<Cost>& cost = tried.cost) {
             const auto own =
                 std::find_if(c.costs.begin(), c.costs.end(), [&](const SweepCost& s) { return s.method == trial.fluid.method; });
             own->ns = cost->ns;
@@ -114,6 +154,7 @@ Status comeCloser(const SceneFile& scene, Device& device, std::span<const ChartR
             own->ns *= std::max(cost->frameMs / expected, 1.0);
         }
         pick = pickSetting(chart, c.costs, c.size, scene.budget);
+        ++k;
     }
     return ok();
 }

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
 #include <optional>
+#include <vector>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/bridge/run_stats.h"
+#include "engine/core/json.h"
 #include "fluid/sim/cpu_kernels.h"
 
 namespace rivulet {
@@ -28,6 +27,13 @@ Table<PlanRow> plans() {
 
 void traceKernels(Device& device, Timeline& timeline) {
     device.onSpan(timeline.lane(fmt::format("{}: kernels", backendName(device.backend()))));
+}
+
+Status writeTrace(const std::string& path, const Timeline& timeline, const Log& log) {
+    if (const double since = timeline.remembersSince(); since > 0)
+        log.notice(fmt::format("{}: the run was longer than a trace holds: the last {:.3g} s are in it, what came before is missing", path,
+                               hostSeconds() - since));
+    return writeFileAtomic(path, timeline.chromeTrace());
 }
 
 // Finds cells on the CPU, of particles whose places come down from a GPU.
@@ -77,6 +83,12 @@ Cooperation::Cooperation(Session& session, Plan plan, Timeline* timeline, const 
         log.notice("--cooperate thesis is for a GPU that simulates while the cpu helps: here the cpu simulates, alone");
         plan_ = Plan::alone;
     }
+    if (plan_ == Plan::thesis && !session.world().knowsCells()) {
+        log.notice(
+            "--cooperate thesis: with bodies, periodic axes, linked lists or a method that moves particles before it sorts them (pbf) no "
+            "cell is known before the next step: the device finds them, alone");
+        plan_ = Plan::alone;
+    }
     if (plan_ != Plan::thesis) return;
     Result<Cells*> made = Cells::create();
     if (made) {
@@ -87,13 +99,21 @@ Cooperation::Cooperation(Session& session, Plan plan, Timeline* timeline, const 
     plan_ = Plan::alone;
 }
 
-void Cooperation::start(double seconds, bool wait, double deviceMs) {
+void Cooperation::begin(double seconds, bool wait, double deviceMs) {
     ASSERT(!started_, "finish() a step before the next");
-    started_ = true;
+    startedAt_ = hostSeconds();
     seconds_ = seconds;
     wait_ = wait;
     deviceMs_ = deviceMs;
     aheadMs_ = 0;
+    if (plan_ != Plan::thesis || session_->world().knowsCells()) return;
+    log_.notice("--cooperate thesis is for a GPU that simulates while the cpu helps: from here on the cpu simulates, alone");
+    plan_ = Plan::alone;
+}
+
+void Cooperation::start(double seconds, bool wait, double deviceMs) {
+    begin(seconds, wait, deviceMs);
+    started_ = true;
     if (plan_ == Plan::behind)
         ahead_ = std::async(std::launch::async, [this] {
             const TimedSpan span(timeline_, kAheadLane, "step");
@@ -106,15 +126,7 @@ void Cooperation::findCells() {
     FluidWorld& world = session_->world();
     const std::optional<FluidWorld::CellWork> work = world.cellWork();
     cells_->found = false;
-    if (!work) {
-        if (!told_ && world.lastSubsteps() > 0 && world.device().backend() != Backend::cpu)
-            log_.notice(
-                "--cooperate thesis: with bodies, periodic axes or a method that moves particles before it sorts them (pbf) no cell is "
-                "known "
-                "before the next step: the device finds them");
-        told_ = told_ || world.lastSubsteps() > 0;
-        return;
-    }
+    if (!work) return;
     const double before = hostSeconds();
     {
         const TimedSpan span(timeline_, "main", "places come down");
@@ -143,9 +155,11 @@ void Cooperation::drop() {
 double Cooperation::finish() {
     if (!started_) return 0;
     started_ = false;
-    ++frames_;
     wait();
-    if (plan_ == Plan::behind) return session_->settle();
+    if (plan_ == Plan::behind) {
+        count();
+        return session_->settle();
+    }
     if (plan_ == Plan::thesis && cells_->found) {
         cells_->found = false;
         helped_ = true;
@@ -154,99 +168,45 @@ double Cooperation::finish() {
         session_->world().giveCells(std::span(hostPointer<const uint32_t>(cells_->cell), cells_->step.count));
         aheadMs_ += 1000 * (hostSeconds() - before);
     }
+    return advance();
+}
+
+double Cooperation::step(double seconds, bool wait, double deviceMs) {
+    begin(seconds, wait, deviceMs);
+    return advance();
+}
+
+double Cooperation::advance() {
+    count();
     const TimedSpan span(timeline_, "main", "step");
     return aheadMs_ + session_->step(seconds_, wait_, deviceMs_);
+}
+
+void Cooperation::count() {
+    if (timeline_ == nullptr) return;
+    const double since = timeline_->remembersSince();
+    while (!frames_.empty() && frames_.front() < since) frames_.pop_front();
+    frames_.push_back(startedAt_);
 }
 
 CooperationStats Cooperation::stats() const {
     CooperationStats s;
     for (const PlanRow& row : plans().rows)
         if (row.plan == plan_) s.plan = row.name;
-    if (timeline_ == nullptr || frames_ == 0 || plan_ == Plan::alone) return s;
+    if (timeline_ == nullptr || plan_ == Plan::alone) return s;
+    const double since = timeline_->remembersSince();
+    const auto first = std::find_if(frames_.begin(), frames_.end(), [&](double began) { return began >= since; });
+    if (first == frames_.end()) return s;
+    const auto frames = static_cast<double>(frames_.end() - first);
     std::vector<PassSpan> ahead, drawing;
     for (Timeline::Lane& lane : timeline_->lanes()) {
+        std::erase_if(lane.spans, [&](const PassSpan& span) { return span.begin < *first; });
         if (lane.name == kAheadLane) ahead = std::move(lane.spans);
         if (lane.name == kDrawingLane) drawing = std::move(lane.spans);
     }
-    for (const PassSpan& span : ahead) s.aheadMs += 1000 * (span.end - span.begin) / frames_;
-    s.overlapMs = 1000 * overlapSeconds(ahead, drawing) / frames_;
+    for (const PassSpan& span : ahead) s.aheadMs += 1000 * (span.end - span.begin) / frames;
+    s.overlapMs = 1000 * overlapSeconds(ahead, drawing) / frames;
     return s;
-}
-
-std::string sentenceOf(std::span<const PlanTried> tried, std::string_view named) {
-    std::string others;
-    for (const PlanTried& t : tried.subspan(1)) others += fmt::format("{}{} {:.1f}", others.empty() ? "" : ", ", nameOf(t), t.frameMs);
-    const PlanTried& best = tried.front();
-    return fmt::format("--cooperate auto: {}, {:.1f} ms a frame{}{}", nameOf(best), best.frameMs,
-                       others.empty() ? "" : fmt::format(" ({})", others),
-                       named != "auto" && named != best.backend ? fmt::format("; --backend {} is left for it", named) : "");
-}
-
-std::string nameOf(const PlanTried& tried) {
-    const char* plan = "";
-    for (const PlanRow& row : plans().rows)
-        if (row.plan == tried.plan) plan = row.name;
-    return tried.plan == Plan::alone ? tried.backend : fmt::format("{}, {}", tried.backend, plan);
-}
-
-Result<std::vector<PlanTried>> tryPlans(const SceneFile& scene, const GlFacts& gl, const DrawFrame& draw, const Log& log, int frames,
-                                        const std::string& clDevice) {
-    std::vector<PlanTried> all;
-    std::optional<Error> why;  // the first device cannot
-    for (const char* backend : {"cpu", "gl", "cl"}) {
-        const std::unique_ptr<Device> device = makeDevice(backend, gl, {}, clDevice);
-        if (std::string_view(backend) != backendName(device->backend())) continue;  // there is none
-        for (const PlanRow& row : plans().rows) {
-            if ((row.plan == Plan::behind) != (row.plan == Plan::behind && device->backend() == Backend::cpu)) continue;
-            if (row.plan == Plan::thesis && device->backend() == Backend::cpu) continue;
-            Result<std::unique_ptr<Session>> session = Session::create(scene, *device, {});
-            if (!session) {
-                log.notice(fmt::format("--cooperate auto leaves {} out: {}", backend, session.error().message));
-                if (!why) why = session.error();
-                break;
-            }
-            Cooperation work(**session, row.plan, nullptr, {});
-            if (work.plan() != row.plan) continue;
-            PlanTried tried{backend, row.plan, 0, {}};
-            std::vector<double> ms;
-            std::map<std::string, PassTime> sums;
-            work.start(frameSeconds(scene), false);
-            double last = hostSeconds();
-            for (int f = 0; f < 2 * frames; ++f) {
-                work.finish();
-                std::vector<PassTime> passes = device->takeTimes(), drawn;
-                if (Status done = draw(
-                        **session, [&] { work.start(frameSeconds(scene), false); }, drawn);
-                    !done)
-                    return done.error();
-                const double now = hostSeconds();
-                if (f >= frames) {
-                    ms.push_back(1000 * (now - last));
-                    for (PassTime& p : drawn) p.name = "render: " + p.name;
-                    for (const std::vector<PassTime>* list : {&passes, &drawn})
-                        for (const PassTime& p : *list) {
-                            PassTime& sum = sums[p.name];
-                            sum.name = p.name;
-                            sum.ms += p.ms / frames;
-                            sum.calls += p.calls;
-                        }
-                }
-                last = now;
-            }
-            work.finish();
-            if (const DeviceHealth health = device->health(); health.state != DeviceHealth::works) {
-                log.notice(fmt::format("--cooperate auto leaves {} out: it {}", backend, health.why));
-                break;
-            }
-            if (row.plan == Plan::thesis && !work.helped()) continue;
-            tried.frameMs = spreadOf(std::move(ms)).median;
-            for (auto& [name, sum] : sums) tried.passes.push_back(std::move(sum));
-            all.push_back(std::move(tried));
-        }
-    }
-    if (all.empty()) return why.value_or(failed("no device could try the scene"));
-    std::stable_sort(all.begin(), all.end(), [](const PlanTried& a, const PlanTried& b) { return a.frameMs < b.frameMs; });
-    return all;
 }
 
 }  // namespace rivulet

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace rivulet {
 
 namespace {
@@ -23,6 +25,17 @@ void sentence(const ImVec4& colour, const std::string& text) {
     ImGui::PopStyleColor();
 }
 
+void simulationFacts(const FluidWorld& world) {
+    const FluidStats& stats = world.stats();
+    fact("time", fmt::format("{:.2f} s, {} substeps a frame", world.time(), world.lastSubsteps()));
+    fact("particles",
+         stats.lost > 0 ? fmt::format("{}, {} of them lost", stats.particles, stats.lost) : fmt::format("{}", stats.particles));
+    fact("compression", fmt::format("{:.2f} % mean, {:.1f} % most", 100 * stats.avgCompression, 100 * stats.maxCompression));
+    if (stats.iterations > 0)
+        fact("pressure", stats.residual ? fmt::format("{:.1f} iterations a substep, {:.3f} % left", stats.iterations, 100 * *stats.residual)
+                                        : fmt::format("{:.1f} iterations a substep", stats.iterations));
+}
+
 }  // namespace
 
 FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState& state) {
@@ -36,26 +49,30 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     actions.reset = ImGui::Button("reset", button);
     ImGui::SameLine();
     actions.help = ImGui::Button("keys", button);
+    actions.scenes = ImGui::Button("scenes", button);
+    ImGui::SameLine();
+    actions.save = ImGui::Button("save", button);
+    ImGui::SameLine();
+    actions.picture = ImGui::Button("picture", button);
+    ImGui::SameLine();
+    actions.video = ImGui::Button(state.filming ? "stop###video" : "video###video", button);
     ImGui::Spacing();
 
-    const FluidStats& stats = world.stats();
-    fact("simulated by", state.backend);
-    fact("cooperation", state.plan);
+    const bool replays = !state.replay.empty();
+    if (replays) fact("replaying", state.replay);
+    if (!replays) fact("simulated by", state.backend);
+    if (!replays) fact("cooperation", state.plan);
     fact("transfer", state.transfer);
     fact("drawn by", state.renderer);
-    fact("time", fmt::format("{:.2f} s, {} substeps a frame", world.time(), world.lastSubsteps()));
-    fact("particles",
-         stats.lost > 0 ? fmt::format("{}, {} of them lost", stats.particles, stats.lost) : fmt::format("{}", stats.particles));
-    fact("compression", fmt::format("{:.2f} % mean, {:.1f} % most", 100 * stats.avgCompression, 100 * stats.maxCompression));
-    if (stats.iterations > 0)
-        fact("pressure", stats.residual ? fmt::format("{:.1f} iterations a substep, {:.3f} % left", stats.iterations, 100 * *stats.residual)
-                                        : fmt::format("{:.1f} iterations a substep", stats.iterations));
-    fact("frame", fmt::format("{:.1f} ms, of it simulation {:.1f} ms", state.frameMs, state.simulateMs));
+    if (!replays) simulationFacts(world);
+    fact("frame", fmt::format("{:.1f} ms", state.frameMs) + (replays ? "" : fmt::format(", of it simulation {:.1f} ms", state.simulateMs)));
 
     const ImVec4 red(0.98F, 0.55F, 0.45F, 1), amber(0.95F, 0.78F, 0.45F, 1);
     if (!state.message.empty()) sentence(red, state.message);
-    for (const std::string& text : stats.limited) sentence(amber, text);
-    for (const std::string& text : state.notices) sentence(amber, text);
+    for (const std::string& text : world.stats().limited) sentence(amber, text);
+    const std::vector<std::string>& limited = world.stats().limited;
+    for (const std::string& text : state.notices)
+        if (std::find(limited.begin(), limited.end(), text) == limited.end()) sentence(amber, text);
     return actions;
 }
 

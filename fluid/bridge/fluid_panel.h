@@ -9,18 +9,19 @@
 namespace rivulet {
 
 struct FluidPanelState {
-    bool paused = false;
+    bool paused = false, filming = false;
     std::string backend;   // what simulates: "cpu: Intel(R) ..."
-    std::string transfer;  // how particles come to be drawn: "ring: 0.31 ms, 1.2 MB"
+    std::string transfer;  // how particles come to be drawn: as sentenceOf(TransferFacts)
     std::string plan;      // who simulates while who draws: "off: a frame is stepped, then drawn"
     std::string renderer;  // what draws: "llvmpipe (LLVM 15.0.6, 256 bits)"
     double simulateMs = 0, frameMs = 0;
     std::string message;  // an edit that was refused
     std::span<const std::string> notices;
+    std::string replay;  // which recorded frame is shown; empty: it simulates
 };
 
 struct FluidPanelActions {
-    bool togglePause = false, step = false, reset = false, help = false;
+    bool togglePause = false, step = false, reset = false, help = false, scenes = false, save = false, picture = false, video = false;
 };
 
 // Inside an ImGui window.

@@ -23,33 +23,6 @@ Spread spreadOf(std::vector<double> values) {
     return spread;
 }
 
-HostParticles readParticles(const FluidWorld& world) {
-    ParticleView view = world.particles();
-    HostParticles host;
-    if (view.count == 0) return host;
-    Device& device = world.device();
-    host.position = device.readAll<vec4>(*view.position, view.slots);
-    host.velocity = device.readAll<vec4>(*view.velocity, view.slots);
-    host.id = device.readAll<uint32_t>(*view.id, view.slots);
-    // Free slots and samples on bodies are no particles.
-    size_t kept = 0;
-    for (size_t i = 0; i < host.id.size(); ++i) {
-        if (host.position[i].w < 0) continue;
-        host.position[kept] = host.position[i];
-        host.velocity[kept] = host.velocity[i];
-        host.id[kept++] = host.id[i];
-    }
-    host.position.resize(kept);
-    host.velocity.resize(kept);
-    host.id.resize(kept);
-    host.mass.assign(kept, view.mass);
-    if (view.matterOf != nullptr) {
-        const std::vector<vec4> matter = device.readAll<vec4>(*view.matterOf, view.slots);
-        for (size_t i = 0; i < kept; ++i) host.mass[i] = view.mass / matter[host.id[i]].y;
-    }
-    return host;
-}
-
 std::optional<double> bulkFront(std::span<const vec4> positions, const BoxParams& box, float spacing) {
     // The floor in squares of half a spacing: a particle covers the two by two nearest to it, a slab is four squares wide.
     double square = 0.5 * static_cast<double>(spacing);
@@ -121,6 +94,7 @@ void RunRecorder::drawn(double renderMs, double frameMs, std::span<const PassTim
 void RunRecorder::transferred(const TransferFacts& facts) {
     transfer_.push_back(facts.ms);
     transferStats_.way = facts.way;
+    transferStats_.why = facts.why;
     transferStats_.bytes += static_cast<double>(facts.bytes);
     transferStats_.waits = facts.waits;
 }
@@ -148,6 +122,30 @@ void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
         compressionSum_ += sum / static_cast<double>(counted);
         ++compressionFrames_;
     }
+}
+
+RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, const SkinFlows::Ledger* skins) {
+    RunStats::Ledger l;
+    l.emitted = late.emitted;
+    l.drained = late.drained;
+    l.inWorld = inWorld;
+    // The world counts in particles, skins in picolitres: each in its own unit, so that rounding is no error.
+    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.taken) / one)) * one;
+    if (skins != nullptr) {
+        l.debt = late.debt;
+        l.inWorld += l.debt;
+        // What went from skins to the world, less what of it was born, is its debt; what it gave is what they took, but for rounding.
+        constexpr double kPicolitre = 1.0e-15;  // m^3
+        const double handed = std::abs(skins->poured - late.poured - late.debt) + std::abs(late.taken - skins->taken);
+        missing += skins->error + (handed < kPicolitre ? 0 : handed);
+        l.emitted += skins->emitted - late.poured;
+        l.onSurface = skins->onSurface;
+        l.inAir = skins->inAir;
+        l.evaporated = skins->evaporated;
+        l.drained += skins->drained;
+    }
+    l.error = l.emitted > 0 ? missing / l.emitted : 0;
+    return l;
 }
 
 RunStats RunRecorder::finish(std::string scene) {
@@ -201,27 +199,9 @@ RunStats RunRecorder::finish(std::string scene) {
         const vec3 x(p);
         within += isFinite(x) && glm::clamp(x, params.box.min - slack, params.box.max + slack) == x ? 1 : 0;
     }
-    RunStats::Ledger& l = stats.ledger;
-    l.emitted = late.emitted;
-    l.drained = late.drained;
-    l.inWorld = static_cast<double>(within) * volumeOfOne;
-    // The world counts in particles, skins in picolitres: each in its own unit, so that rounding is no error.
-    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.taken) / volumeOfOne)) * volumeOfOne;
-    if (flows_ != nullptr && !flows_->empty()) {
-        const SkinFlows::Ledger skins = flows_->ledger();
-        l.debt = late.debt;
-        l.inWorld += l.debt;
-        // What went from skins to the world, less what of it was born, is its debt; what it gave is what they took, but for rounding.
-        constexpr double kPicolitre = 1.0e-15;  // m^3
-        const double handed = std::abs(skins.poured - late.poured - late.debt) + std::abs(late.taken - skins.taken);
-        missing += skins.error + (handed < kPicolitre ? 0 : handed);
-        l.emitted += skins.emitted - late.poured;
-        l.onSurface = skins.onSurface;
-        l.inAir = skins.inAir;
-        l.evaporated = skins.evaporated;
-        l.drained += skins.drained;
-    }
-    l.error = l.emitted > 0 ? missing / l.emitted : 0;
+    const bool skins = flows_ != nullptr && !flows_->empty();
+    const SkinFlows::Ledger onSkins = skins ? flows_->ledger() : SkinFlows::Ledger{};
+    stats.ledger = ledgerOf(late, static_cast<double>(within) * volumeOfOne, volumeOfOne, skins ? &onSkins : nullptr);
     stats.lost = late.lost;
     stats.nan = late.nan;
     stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));
@@ -271,11 +251,19 @@ std::string writeRunStats(const RunStats& stats) {
     v["cooperation"]["plan"] = stats.cooperation.plan;
     v["cooperation"]["aheadMs"] = number(stats.cooperation.aheadMs);
     v["cooperation"]["overlapMs"] = number(stats.cooperation.overlapMs);
+    for (const CooperationStats::Tried& tried : stats.cooperation.tried) {
+        Json::Value row(Json::objectValue);
+        row["plan"] = tried.plan;
+        row["frameMs"] = number(tried.frameMs);
+        for (const auto& [name, ms] : tried.passes) row["passes"][name] = number(ms);
+        v["cooperation"]["tried"].append(std::move(row));
+    }
     v["particles"] = stats.particles;
     v["frames"] = Json::UInt64(stats.frames);
     v["seconds"] = number(stats.seconds);
     v["wallSeconds"] = number(stats.wallSeconds);
     v["transfer"]["way"] = stats.transfer.way;
+    v["transfer"]["why"] = stats.transfer.why;
     v["transfer"]["ms"] = jsonOf(stats.transfer.ms);
     v["transfer"]["bytes"] = number(stats.transfer.bytes);
     v["transfer"]["waits"] = Json::UInt64(stats.transfer.waits);

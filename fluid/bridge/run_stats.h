@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "engine/compute/device.h"
-#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/session.h"
+#include "fluid/render/fluid_upload.h"
 #include "fluid/sim/fluid_world.h"
+#include "fluid/sim/host_particles.h"
 
 namespace rivulet {
 
@@ -22,14 +23,6 @@ struct Spread {
     size_t count = 0;
 };
 Spread spreadOf(std::vector<double> values);
-
-// Particles read back from a Device.
-struct HostParticles {
-    std::vector<vec4> position, velocity;  // as in ParticleView, without free slots
-    std::vector<uint32_t> id;
-    std::vector<float> mass;  // kg
-};
-HostParticles readParticles(const FluidWorld& world);
 
 // The bulk front along +x, m: where the covered share of the floor, in slabs of 2 spacings, last crosses 25 %, interpolated between the
 // slabs' centres. A particle less than 2 spacings above the floor covers a square of one spacing. Nothing where no slab is covered that
@@ -44,11 +37,18 @@ struct CooperationStats {
     std::string plan = "off";  // a row of plans()
     double aheadMs = 0;        // mean a frame, of what ran while another drew: finding cells, or stepping
     double overlapMs = 0;      // mean a frame in which it and drawing both worked
+    struct Tried {
+        std::string plan;  // "gl, thesis"
+        double frameMs = 0;
+        std::map<std::string, double> passes;  // ms a frame
+    };
+    std::vector<Tried> tried = {};  // by --cooperate auto, the fastest first
 };
 
 // How particles came to be drawn.
 struct TransferStats {
     std::string way = "none";  // as TransferFacts; "none": nothing was drawn
+    std::string why;           // of the ring: half a sentence, why nothing is shared
     Spread ms;                 // a frame
     double bytes = 0;          // a frame, mean, through the host
     uint64_t waits = 0;        // frames in which it had to wait for the GPU
@@ -85,6 +85,9 @@ struct RunStats {
         double emitted = 0, onSurface = 0, inAir = 0, inWorld = 0, debt = 0, evaporated = 0, drained = 0, error = 0;
     } ledger;
 };
+// What came and what became of it. `late`: of the world; `inWorld`: m^3, of its particles that are there, of `one` m^3 each; `skins`: null
+// where there are none.
+RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, const SkinFlows::Ledger* skins);
 std::string writeRunStats(const RunStats& stats);  // one JSON object, ends in a newline
 
 // Gathers a run frame by frame.

@@ -10,7 +10,6 @@
 
 #include "engine/core/json.h"
 #include "engine/core/table.h"
-#include "fluid/render/filters.h"
 #include "fluid/sim/solids.h"
 
 namespace rivulet {
@@ -65,6 +64,14 @@ std::string contradiction(const SceneFile& scene) {
             return fmt::format("colliders[{}] is a plane, which stands still: make it a mesh, or take its motion and wave away", i);
         if (motion.moves() && wave.amplitude > 0)
             return fmt::format("colliders[{}] has both a motion and a wave: it can have one of them", i);
+        if (collider.animation.speed > 0) {
+            if (collider.shape == "plane") return fmt::format("colliders[{}] is a plane, which has no animation: make it a mesh", i);
+            if (motion.moves() || wave.amplitude > 0)
+                return fmt::format("colliders[{}] has an animation and a {}: it can have one of them", i,
+                                   motion.moves() ? "motion" : "wave");
+        }
+        if (!collider.solid && (collider.shape == "plane" || wave.amplitude > 0))
+            return fmt::format("colliders[{}] {}, which must be solid", i, collider.shape == "plane" ? "is a plane" : "has a wave");
         if (motion.spin != 0 && glm::length(motion.axis) < 1.0e-6F)
             return fmt::format("colliders[{}].motion.axis is {}, must have a length", i, shown(motion.axis));
         for (size_t k = 1; k < motion.keys.size(); ++k)
@@ -154,6 +161,14 @@ void ColliderWave::visit(ParamVisitor& v) {
     v.value({"direction", "", "the way it lifts, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, direction);
 }
 
+void ColliderAnimation::visit(ParamVisitor& v) {
+    v.value({.name = "clip", .doc = "an animation of the mesh file, by name; none = its first", .fixed = kFixed}, clip);
+    v.value({"speed", "", "how fast it plays: 1 = as in the file; 0 = it does not, the mesh stands as its file has it", 0, 100, kLinear,
+             kFixed},
+            speed);
+    v.value({.name = "loops", .doc = "whether it begins again at its end, or stays there", .fixed = kFixed}, loops);
+}
+
 void ColliderParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"mesh", "plane"};
     v.choice({.name = "shape", .doc = "a mesh from a file, or a plane with fluid on the side of its normal", .fixed = kFixed}, shape,
@@ -174,7 +189,13 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.value({"restitution", "", "share of the speed into it that comes back; -1 = as fluid.collision says", -1, 1}, restitution);
     v.group({.name = "motion", .doc = "how a mesh moves as a whole"}, motion);
     v.group({.name = "wave", .doc = "a wave that bends a mesh"}, wave);
-    v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
+    v.group({.name = "animation", .doc = "how a mesh moves that has animations in its file, instead of a motion or a wave"}, animation);
+    v.value({.name = "solid", .doc = "whether water and bodies meet it; off: a mesh is only drawn", .fixed = kFixed}, solid);
+    static const std::vector<std::string> looks = {"file", "scene"};
+    v.choice({.name = "materials",
+              .doc = "of a mesh: file = those of its file, where it has some; scene = colour, roughness and so on for all of it"},
+             materials, looks);
+    v.colour({"colour", "", "linear red, green, blue, where the file has no material, or materials is scene", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
     v.value({"metallic", "", "0 = stone or paint, 1 = metal", 0, 1}, metallic);
     v.value(
@@ -222,12 +243,20 @@ void BodyParams::visit(ParamVisitor& v) {
 }
 
 void CameraParams::visit(ParamVisitor& v) {
+    v.value({.name = "from",
+             .doc = "a camera of a collider's file, by name, instead of position, target and fieldOfView; up stays up",
+             .fixed = kFixed},
+            from);
     v.value({"position", "m", "where the eye is", -kFar, kFar}, position);
     v.value({"target", "m", "the point looked at", -kFar, kFar}, target);
     v.value({"fieldOfView", "deg", "vertical angle of view", 5, 120}, fieldOfView);
 }
 
 void LightParams::visit(ParamVisitor& v) {
+    v.value({.name = "from",
+             .doc = "a directional light of a collider's file, by name: its direction and tint, the intensity stays",
+             .fixed = kFixed},
+            from);
     v.value({"direction", "", "towards the light, of any length", -1.0e6, 1.0e6}, direction);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"intensity", "", "factor on the colour", 0, 100}, intensity);
@@ -251,49 +280,6 @@ void BackgroundParams::visit(ParamVisitor& v) {
              .fixed = kFixed},
             surroundings);
     v.value({"surroundingsLevel", "", "factor on its light", 0, 1000, kLinear, kFixed}, surroundingsLevel);
-}
-
-void FluidLookParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> renderers = {"points", "screen_space", "truth"};
-    static const std::vector<std::string> colourings = {"speed", "density", "id", "dye", "normal", "surface"};
-    v.choice({.name = "renderer",
-              .doc = "particles as points, a water surface found on the screen, or their iso-surface at full precision, seconds a frame"},
-             renderer, renderers);
-    v.choice({.name = "colourBy",
-              .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"},
-             colourBy, colourings);
-    static const std::vector<std::string> splatKinds = {"spheres", "ellipsoids"}, qualities = {"auto", "fast", "fine"};
-    static const std::vector<std::string> viewNames = waterViews().names();
-    v.choice(
-        {.name = "splats",
-         .doc = "what a particle of the surface is drawn as; ellipsoids lie along the surface, and cost a sweep over neighbours a frame"},
-        splats, splatKinds);
-    v.choice({.name = "view", .doc = "the water, or what its surface is made from"}, view, viewNames);
-    v.value({.name = "split", .doc = "the renderer of the picture's right half, to compare; none = the whole picture is look.renderer's"},
-            split);
-    v.choice(
-        {.name = "quality",
-         .doc = "fast: spheres, the surface at half the resolution, coarser light in the water, no reflection of the picture in itself; "
-                "auto: in a window as its frames allow, else fine"},
-        quality, qualities);
-    v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
-    static const std::vector<std::string> filterNames = filters().names();
-    v.choice({.name = "filter", .doc = "how a surface is made of the particles' depth; rivulet list filters says what each is"}, filter,
-             filterNames);
-    v.value({"smoothing", "m", "reach of the surface's smoothing, two standard deviations; 0 = 1.8 spacings", 0, 10}, smoothing);
-    v.value({"smoothingRange", "m", "how far apart depths of one surface may be; 0 = 4.2 spacings", 0, 100}, smoothingRange);
-    v.value({"absorption", "1/m",
-             "how fast red, green and blue fade in the fluid (Beer-Lambert); -1 = as the row of fluid.liquid says, or 4.5, 1.1, 0.5 where "
-             "none is named",
-             -1, 1.0e5},
-            absorption);
-    v.value({"scattering", "1/m",
-             "how much of red, green and blue is thrown to all sides on its way (reduced); -1 = as the row of fluid.liquid says, or 0.05, "
-             "0.3, 0.27 where none is named",
-             -1, 1.0e5},
-            scattering);
-    v.value({"refractiveIndex", "", "of the fluid; 0 = as the row of fluid.liquid says, or 1.333 where none is named", 0, 3},
-            refractiveIndex);
 }
 
 void BudgetParams::visit(ParamVisitor& v) {
@@ -403,6 +389,53 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
         if (Status set = setParam(assignment, visit); !set) return badInput("--set " + assignment + ": " + set.error().message);
     if (Status sense = checkScene(scene); !sense) return badInput(*file + ": " + sense.error().message);
     return scene;
+}
+
+namespace {
+
+// Files that a scene names, seen from another folder.
+class FileMover final : public ParamVisitor {
+  public:
+    FileMover(std::string from, std::string to) : from_(std::move(from)), to_(std::move(to)) {}
+    void value(const ParamInfo&, float&) override {}
+    void value(const ParamInfo&, int&) override {}
+    void value(const ParamInfo&, bool&) override {}
+    void value(const ParamInfo&, vec3&) override {}
+    void colour(const ParamInfo&, vec3&) override {}
+    void choice(const ParamInfo&, std::string&, std::span<const std::string>) override {}
+    void value(const ParamInfo&, std::string& v) override {
+        const fs::path named(v);
+        if (!named.is_relative() || named.extension().empty()) return;
+        const Result<std::string> before = findAsset(v, from_), then = findAsset(v, to_);
+        std::error_code error;
+        if (!before || (then && fs::equivalent(*before, *then, error))) return;
+        v = fs::absolute(*before).lexically_normal().string();
+    }
+
+  protected:
+    bool beginGroup(const ParamInfo&) override { return true; }
+    void endGroup() override {}
+    size_t beginList(const ParamInfo&, size_t current) override { return current; }
+    void beginItem(size_t) override {}
+    void endItem() override {}
+    void endList() override {}
+
+  private:
+    std::string from_, to_;
+};
+
+}  // namespace
+
+Status saveScene(SceneFile& scene, const std::string& path) {
+    const std::string folder = fs::path(path).parent_path().string();
+    SceneFile moved = scene, none;
+    FileMover mover(scene.folder, folder);
+    moved.visit(mover);
+    moved.folder = folder;
+    const VisitFn defaults = visiting(none);
+    if (Status written = writeFileAtomic(path, writeJson(visiting(moved), &defaults)); !written) return written;
+    scene = std::move(moved);
+    return ok();
 }
 
 Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder) {

@@ -9,6 +9,7 @@
 #include "engine/core/params.h"
 #include "engine/core/result.h"
 #include "fluid/bridge/flow_params.h"
+#include "fluid/render/look_params.h"
 #include "fluid/sim/emitter.h"
 #include "fluid/sim/fluid_params.h"
 
@@ -43,6 +44,14 @@ struct ColliderWave {
     void visit(ParamVisitor& v);
 };
 
+// A clip of a mesh file that plays. What it bends, water meets as it is at the time.
+struct ColliderAnimation {
+    std::string clip;   // "" = the file's first
+    float speed = 0;    // 0 = it stands as in its file
+    bool loops = true;  // or it stays as it ends
+    void visit(ParamVisitor& v);
+};
+
 // A solid. "mesh": a file, scaled, turned, moved. "plane": water on the side the normal points to; it stands still.
 struct ColliderParams {
     std::string shape = "mesh";  // mesh | plane
@@ -57,6 +66,9 @@ struct ColliderParams {
     float restitution = -1;         // 0..1; -1 = as fluid.collision says
     ColliderMotion motion;
     ColliderWave wave;
+    ColliderAnimation animation;
+    bool solid = true;                 // or only drawn
+    std::string materials = "file";    // file | scene: what follows
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
     float metallic = 0.0F;
@@ -102,6 +114,7 @@ struct BodyParams {
 };
 
 struct CameraParams {
+    std::string from;                 // a camera of a collider's file; "" = as the rest says
     vec3 position{1.6F, 1.1F, 2.2F};  // m
     vec3 target{0.5F, 0.35F, 0.5F};   // m
     float fieldOfView = 40.0F;        // deg, vertical
@@ -109,6 +122,7 @@ struct CameraParams {
 };
 
 struct LightParams {
+    std::string from;                   // a directional light of a collider's file; "" = as the rest says
     vec3 direction{0.72F, 0.8F, 0.1F};  // towards the light
     vec3 colour{1.0F, 0.96F, 0.9F};     // linear
     float intensity = 3.6F;
@@ -126,24 +140,6 @@ struct BackgroundParams {
     float clouds = 0.5F;             // share of such a sky that they cover
     std::string surroundings;        // an equirectangular picture (.hdr) instead of the studio; "" = none
     float surroundingsLevel = 1.0F;  // factor on it
-    void visit(ParamVisitor& v);
-};
-
-// How the fluid is drawn.
-struct FluidLookParams {
-    std::string renderer = "screen_space";  // a row of renderers(): points | screen_space | truth
-    std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
-    std::string splats = "ellipsoids";      // what a particle is drawn as: spheres | ellipsoids
-    std::string view = "water";             // a row of waterViews()
-    std::string split;                      // a row of renderers(), for the picture's right half; "" = none
-    std::string quality = "auto";           // auto | fast | fine
-    float radiusSpacings = 0.6F;            // drawn radius = this * spacing
-    std::string filter = "narrow_range";    // a row of filters(): how the surface is found
-    float smoothing = 0.0F;                 // m, reach of the smoothing, two deviations; 0 = from the spacing
-    float smoothingRange = 0.0F;            // m, how far apart depths of one surface may be; 0 = from the spacing
-    vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = as the liquid's
-    vec3 scattering{-1.0F};                 // 1/m, reduced, per channel; -1 = as the liquid's
-    float refractiveIndex = 0.0F;           // 0 = as the liquid's
     void visit(ParamVisitor& v);
 };
 
@@ -180,6 +176,10 @@ struct SceneFile {
 // setParam say.
 // `preset`: one of the scene's, set before the assignments; "" = none.
 Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments, const std::string& preset = "");
+
+// Writes what differs from the defaults, so that loadScene gives the same scene: what it found beside the old file and would not beside
+// the new one is named by its whole path, in `scene`, too. Error (failed): not writable, disk full; what was there stays.
+Status saveScene(SceneFile& scene, const std::string& path);
 
 // Sets what one of its presets says. Error (badInput): no such preset, and which there are; a value that setParam refuses: all is as it
 // was then.

@@ -10,23 +10,11 @@
 #include "engine/scene/light.h"
 #include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
-#include "fluid/render/filters.h"
-#include "fluid/sim/liquids.h"
 
 namespace rivulet {
 namespace {
 
 constexpr float kOcclusionReach = 0.16F;  // of the shown scene's radius
-
-Result<ColourBy> colourByName(const std::string& name) {
-    if (name == "speed") return ColourBy::speed;
-    if (name == "density") return ColourBy::density;
-    if (name == "id") return ColourBy::id;
-    if (name == "dye") return ColourBy::dye;
-    if (name == "normal") return ColourBy::normal;
-    if (name == "surface") return ColourBy::surface;
-    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density, id, dye, normal or surface", name));
-}
 
 void copyTexels(const gpu::Texture& from, const gpu::Texture& to, int left) {
     glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, left, 0, 0, to.name(), GL_TEXTURE_2D, 0, left, 0, 0, from.width() - left,
@@ -63,29 +51,6 @@ Camera cameraOf(const CameraParams& params, const Bounds& bounds) {
     camera.fieldOfView = params.fieldOfView;
     camera.setPlanes(bounds);
     return camera;
-}
-
-Result<FluidLook> fluidLookOf(const SceneFile& scene) {
-    Result<ColourBy> colourBy = colourByName(scene.look.colourBy);
-    if (!colourBy) return colourBy.error();
-    const FilterRow* filter = filters().find(scene.look.filter);
-    if (filter == nullptr) return badInput(fmt::format("look.filter '{}' is not known", scene.look.filter));
-    FluidLook look{.colourBy = *colourBy, .filter = filter, .smoothing = scene.look.smoothing, .smoothingRange = scene.look.smoothingRange};
-    const ViewRow* view = waterViews().find(scene.look.view);
-    if (view == nullptr) return badInput(fmt::format("look.view '{}' is not known", scene.look.view));
-    look.view = view->view;
-    look.fast = scene.look.quality == "fast";
-    const LiquidRow* liquid = liquids().find(scene.fluid.liquid);
-    const bool own = glm::all(glm::greaterThanEqual(scene.look.absorption, vec3(0.0F)));
-    if (own) look.absorption = scene.look.absorption;
-    if (!own && liquid != nullptr) look.absorption = liquid->absorption;
-    if (scene.look.refractiveIndex > 0 || liquid != nullptr)
-        look.refractiveIndex = scene.look.refractiveIndex > 0 ? scene.look.refractiveIndex : liquid->refractiveIndex;
-    if (glm::all(glm::greaterThanEqual(scene.look.scattering, vec3(0.0F))))
-        look.scattering = scene.look.scattering;
-    else if (liquid != nullptr)
-        look.scattering = liquid->scattering;
-    return look;
 }
 
 Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene) {
@@ -125,10 +90,11 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
     std::unique_ptr<SceneRenderer> r(new SceneRenderer());
     ShaderFiles files = from;
     if (surroundings != nullptr) {
-        Result<gpu::Texture> map = makeEnvironmentMap(*surroundings);
+        const Environment made = cachedEnvironment(*surroundings, DiskCache(cacheFolder("surroundings")));
+        Result<gpu::Texture> map = makeEnvironmentMap(made);
         if (!map) return map.error();
         r->surroundings_ = std::move(*map);
-        r->matteLight_ = matteLight(*surroundings);
+        r->matteLight_ = made.matte;
         files.define({"ENVIRONMENT_MAP", "1"});
     }
     Result<RenderPrograms> render = RenderPrograms::create(files);
@@ -240,7 +206,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (row == nullptr) return badInput(fmt::format("look.renderer '{}' is not known", settings.look.renderer));
     const RendererRow* other = settings.look.split.empty() ? nullptr : renderers().find(settings.look.split);
     if (other == nullptr && !settings.look.split.empty()) return badInput(fmt::format("look.split '{}' is not known", settings.look.split));
-    Result<FluidLook> look = fluidLookOf(settings);
+    Result<FluidLook> look = fluidLookOf(settings.look, settings.fluid.liquid);
     if (!look) return look.error();
     if (settings.look.quality == "auto") look->fast = hurries_;
     if (Status s = fluid_.fits(fluid); !s) return s;
@@ -345,11 +311,19 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const gpu::TextureHandle picture = graph.importTexture("picture", picture_);
     addTonemap(graph, render_, frame, view, layers.colour, picture);
     graph.output(picture);
-    return graph.execute();
+    description_.reset();
+    if (Status drawn = graph.execute(); !drawn) return drawn;
+    if (describes_) description_ = graph.describe();
+    return ok();
 }
 
 void SceneRenderer::present(GLuint framebuffer, int width, int height) const {
     if (picture_) gpu::Framebuffer(picture_, nullptr).blitTo(framebuffer, width, height);
+}
+
+void SceneRenderer::finish() {
+    glFinish();
+    pool_.collect();
 }
 
 std::vector<uint8_t> SceneRenderer::pixels() const {

@@ -26,8 +26,6 @@ namespace rivulet {
 
 // The scene file's camera, with planes that hold `bounds` (m, world).
 Camera cameraOf(const CameraParams& params, const Bounds& bounds);
-// How the scene's fluid looks: what it leaves to the liquid, as the liquid's row says. Error (badInput): an unknown colouring.
-Result<FluidLook> fluidLookOf(const SceneFile& scene);
 // What surrounds the scene, or nothing where the studio does. Error (badInput): the picture is missing or damaged.
 Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene);
 // A window of 0 pixels gives a view of 1.
@@ -49,15 +47,20 @@ class SceneRenderer {
     void present(GLuint framebuffer, int width, int height) const;
     // The last picture: RGBA8, sRGB, top row first, alpha 255. Waits for the GPU.
     std::vector<uint8_t> pixels() const;
-    void finish() const { glFinish(); }  // waits until it is drawn
+    void finish();  // waits until it is drawn: times() are the last picture's then, and onSpan() has heard of all
     int width() const { return picture_.desc().width; }
     int height() const { return picture_.desc().height; }
 
     // GPU time a pass, some frames late.
     const std::vector<PassTime>& times() const { return pool_.times(); }
     void onSpan(SpanSink sink) { pool_.onSpan(std::move(sink)); }  // hears of each pass, as late
+    // What the last picture's graph was. Nothing, unless describe(true) was said before the picture was drawn.
+    const std::optional<gpu::FrameGraphDescription>& description() const { return description_; }
+    void describe(bool yes) { describes_ = yes; }
     // Whether look.quality auto is fast. It is fine until this says so.
     void hurry(bool yes) { hurries_ = yes; }
+    // It was made in another context, with which the one that is current now shares its objects, and has drawn nothing yet.
+    void contextChanged() { fluid_.contextChanged(); }
     // Reads the shaders again. Error: as create; the last good ones stay in use.
     Status reload();
 
@@ -90,7 +93,8 @@ class SceneRenderer {
     std::function<bool(double)> progress_ = [](double) { return true; };
     gpu::Texture surroundings_;  // empty: the studio
     std::array<vec4, 9> matteLight_{};
-    bool hurries_ = false;
+    bool hurries_ = false, describes_ = false;
+    std::optional<gpu::FrameGraphDescription> description_;
 };
 
 }  // namespace rivulet

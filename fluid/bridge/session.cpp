@@ -11,6 +11,7 @@
 #include "engine/scene/transform.h"
 #include "fluid/bridge/collider_motion.h"
 #include "fluid/bridge/scene_bodies.h"
+#include "fluid/sim/cpu_kernels.h"
 #include "fluid/voxel/voxel_cache.h"
 
 namespace rivulet {
@@ -75,22 +76,22 @@ Error about(const Error& error, size_t collider, const ColliderParams& params) {
     return {fmt::format("colliders[{}] ({}): {}", collider, params.mesh, error.message), error.fault};
 }
 
-void dress(Node& node, const ColliderParams& collider) {
-    node.material.baseColour = collider.colour;
-    node.material.roughness = collider.roughness;
-    node.material.metallic = collider.metallic;
-    node.material.opacity = collider.opacity;
-    node.material.grain = collider.grain;
-    node.material.grainSize = collider.grainSize;
-    node.material.clear = node.material.blended = collider.opacity < 1;
-    node.visible = collider.visible;
+// What a file's materials hide is said once: a colour that changes nothing would be a riddle.
+bool saysMaterial(const ColliderParams& c) {
+    const ColliderParams none;
+    return c.colour != none.colour || c.roughness != none.roughness || c.metallic != none.metallic || c.opacity != none.opacity ||
+           c.grain != none.grain;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, const Log& log) {
+Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device, const Log& log, const OpeningSteps& steps) {
     std::unique_ptr<Session> session(new Session());
     Session& s = *session;
+    s.steps_ = steps;
+    const auto isMesh = [](const ColliderParams& c) { return c.shape == "mesh"; };
+    const auto meshes = std::count_if(scene.colliders.begin(), scene.colliders.end(), isMesh);
+    s.stepsInAll_ = static_cast<int>(2 * meshes) + (scene.bodies.empty() ? 0 : 1) + 1 + static_cast<int>(scene.flow.size());
     Result<std::optional<Budget>> budget = openBudget(scene, device, log);
     if (!budget) return budget.error();
     s.budget_ = std::move(*budget);
@@ -105,8 +106,10 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
         const ColliderParams& collider = s.scene_.colliders[i];
         if (collider.shape == "plane") solids.planes.push_back({collider.position, collider.normal, s.surfaceOf_[i]});
     }
-    for (const Rigid& r : s.rigid_) solids.rigid.push_back({r.field.get(), colliderPose(s.scene_.colliders[r.collider], 0, 0)});
+    for (const Rigid& r : s.rigid_) solids.rigid.push_back({r.field.get(), s.poseOf(r.model, 0, 0)});
     for (const Deforming& d : s.deforming_) solids.deforming.push_back(d.field.get());
+    if (!s.scene_.bodies.empty())
+        if (Status on = s.next("bodies"); !on) return on.error();
     if (Status added = s.addBodies(solids); !added) return added.error();
     Result<Sources> sources = s.importEmitters();
     if (!sources) return sources.error();
@@ -114,13 +117,22 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     // A scene of skins alone has no water to miss.
     Log quiet = log;
     if (!s.scene_.flow.empty() && s.scene_.fluid.blocks.empty() && s.scene_.emitters.empty()) quiet.sink = {};
+    if (Status on = s.next("the water"); !on) return on.error();
     if (Status made = s.makeWorld(device, simulated(s.scene_), quiet); !made) return made.error();
+    if (!s.scene_.flow.empty())
+        if (Status on = s.next("skins"); !on) return on.error();
     if (Status flows = s.flows_.create(s.scene_, device, s.solids_, log); !flows)
         return Error{fmt::format("{}: {}", s.scene_.name, flows.error().message), flows.error().fault};
     s.placeNodes();
     if (s.world_->particles().count == 0 && s.scene_.emitters.empty() && s.scene_.flow.empty())
         log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", s.scene_.name));
+    s.steps_ = {};
     return session;
+}
+
+Status Session::next(const std::string& what) {
+    if (!steps_ || steps_(what, static_cast<double>(step_++) / stepsInAll_)) return ok();
+    return failed(fmt::format("opening {} was given up", scene_.name));
 }
 
 Status Session::makeWorld(Device& device, const FluidParams& params, const Log& log) {
@@ -134,23 +146,18 @@ Status Session::importColliders() {
     for (size_t i = 0; i < scene_.colliders.size(); ++i) {
         const ColliderParams& collider = scene_.colliders[i];
         if (collider.shape != "mesh") continue;
-        Result<std::string> path = findAsset(collider.mesh, scene_.folder);
-        if (!path) return path.error();
-        Result<Mesh> mesh = importMesh(*path);
-        if (!mesh) return mesh.error();
-        mat4 place = collider.fitSize > 0 ? Transform::fitted(mesh->bounds(), collider.fitSize, collider.position, collider.rotation)
-                                          : Transform{collider.position, collider.rotation, collider.scale}.matrix();
-        // What moves has a frame of its own, whose origin it turns about.
-        if (collider.motion.moves()) place = glm::translate(mat4(1.0F), -collider.position) * place;
-        meshes_.push_back(transformed(*mesh, place));
+        if (Status on = next("reading " + collider.mesh); !on) return on;
+        if (!bender_) bender_ = makeCpuDevice(cpuKernels());
+        Result<ColliderModel> model = ColliderModel::create(collider, scene_.folder, *bender_, solids_);
+        if (!model) return about(model.error(), i, collider);
+        if (model->dressed() && collider.materials == "file" && saysMaterial(collider))
+            log_.notice(
+                fmt::format("colliders[{}] ({}) is drawn with its file's materials: materials scene would take its colour from here", i,
+                            collider.mesh));
+        models_.push_back(std::move(*model));
         colliderOf_.push_back(i);
-        Node node;
-        node.name = collider.mesh;
-        node.mesh = std::make_shared<const Mesh>(meshes_.back());
-        dress(node, collider);
-        solids_.add(std::move(node));
     }
-    return ok();
+    return takeViews(models_, scene_);
 }
 
 Result<Sources> Session::importEmitters() const {
@@ -177,8 +184,7 @@ Status Session::addBodies(Solids& solids) {
     if (scene_.bodies.empty()) return ok();
     if (!deforming_.empty())
         return badInput(
-            fmt::format("colliders[{}] has a wave, and bodies would pass through what bends: give it a motion instead, or leave the bodies "
-                        "out",
+            fmt::format("colliders[{}] bends, and bodies would pass through it: give it a motion instead, or leave the bodies out",
                         deforming_[0].collider));
     Result<std::vector<SceneBody>> made = sceneBodies(scene_);
     if (!made) return made.error();
@@ -209,13 +215,13 @@ Status Session::addBodies(Solids& solids) {
     }
     std::vector<MeshView> still, moving;
     std::vector<Pose> poses;
-    for (size_t m = 0; m < meshes_.size(); ++m) {
+    for (size_t m = 0; m < models_.size(); ++m) {
         const ColliderParams& collider = scene_.colliders[colliderOf_[m]];
-        if (!collider.motion.moves()) still.push_back(meshes_[m].view());
+        if (collider.solid && !collider.motion.moves() && !models_[m].plays()) still.push_back(models_[m].mesh().view());
     }
     for (const Rigid& r : rigid_) {
-        moving.push_back(meshes_[r.node].view());
-        poses.push_back(colliderPose(scene_.colliders[r.collider], 0, 0));
+        moving.push_back(models_[r.model].mesh().view());
+        poses.push_back(poseOf(r.model, 0, 0));
     }
     contacts_ = std::make_unique<BulletSolids>(
         BulletSolids::Scene{.box = scene_.fluid.box, .planes = solids.planes, .still = still, .moving = moving, .poses = poses},
@@ -272,23 +278,28 @@ Status Session::bake(const Log& log) {
     std::vector<MeshView> still;
     std::vector<uint8_t> stillSurfaces;
     size_t one = 0;  // of those that stand still
-    for (size_t m = 0; m < meshes_.size(); ++m) {
+    for (size_t m = 0; m < models_.size(); ++m) {
         const size_t c = colliderOf_[m];
         const ColliderParams& collider = scene_.colliders[c];
+        if (Status on = next("voxels of " + collider.mesh); !on) return on;
         const uint8_t surface = surfaceOf_[c];
-        const Bounds bounds = meshes_[m].bounds();
-        const MeshView view = meshes_[m].view();
-        if (collider.motion.moves()) {
+        const ColliderModel& model = models_[m];
+        const Bounds bounds = model.mesh().bounds();
+        const MeshView view = model.mesh().view();
+        const bool whole = collider.motion.moves() || model.rigid();
+        if (!collider.solid) {
+            if (whole) shown_.push_back(m);
+        } else if (whole) {
             Result<VoxelField> field = bakeMeshes(std::span(&view, 1), std::span(&surface, 1), voxelEdge(collider, bounds, log), log);
             if (!field) return about(field.error(), c, collider);
             rigid_.push_back({c, m, std::make_unique<VoxelField>(std::move(*field)), 0.0});
-        } else if (collider.wave.amplitude > 0) {
-            const Bounds reach = waveReach(collider.wave, bounds);
+        } else if (collider.wave.amplitude > 0 || model.plays()) {
+            const Bounds reach = model.plays() ? model.reach() : waveReach(collider.wave, bounds);
             VoxelFieldOptions options = fieldOptions(reach, voxelEdge(collider, reach, log));
             options.surfaces = std::span(&surface, 1);
             Result<DeformingField> field = DeformingField::create(std::span(&view, 1), reach, options);
             if (!field) return about(field.error(), c, collider);
-            deforming_.push_back({c, m, std::make_unique<DeformingField>(std::move(*field)), meshes_[m].positions, {}});
+            deforming_.push_back({c, m, std::make_unique<DeformingField>(std::move(*field)), model.mesh().positions, {}});
         } else {
             if (longest(bounds) > 0) edge = std::min(edge, voxelEdge(collider, bounds, log));
             still.push_back(view);
@@ -342,12 +353,8 @@ void Session::apply(const SceneFile& scene) {
     flows_.apply(scene_);
     std::vector<uint8_t> unchanged;  // see needsNew
     world_->setSurfaces(surfacesOf(scene_, unchanged));
-    for (size_t m = 0; m < meshes_.size() && m < solids_.nodes().size(); ++m) {
-        if (colliderOf_[m] >= scene_.colliders.size()) continue;
-        const ColliderParams& collider = scene_.colliders[colliderOf_[m]];
-        Node& node = solids_.nodes()[m];
-        dress(node, collider);
-    }
+    for (size_t m = 0; m < models_.size(); ++m)
+        if (colliderOf_[m] < scene_.colliders.size()) models_[m].dress(scene_.colliders[colliderOf_[m]], solids_);
     for (size_t k = 0; k < bodyNodes_.size() && k < scene_.bodies.size(); ++k) {
         Node& node = solids_.nodes()[bodyNodes_[k]];
         node.material.baseColour = scene_.bodies[k].colour;
@@ -364,12 +371,14 @@ void Session::advance(double seconds, double deviceMs) {
     const double before = world_->time(), ahead = world_->pending() + seconds, then = before + ahead;
     std::vector<Pose> poses;
     for (const Rigid& r : rigid_) {
-        const ColliderParams& collider = scene_.colliders[r.collider];
-        poses.push_back(colliderPose(collider, then, r.turned + double{collider.motion.spin} * ahead));
+        poses.push_back(poseOf(r.model, then, r.turned + double{scene_.colliders[r.collider].motion.spin} * ahead));
     }
     std::vector<std::span<const vec3>> shapes;
     for (Deforming& d : deforming_) {
-        waveShape(scene_.colliders[d.collider].wave, d.rest, then, d.shape);
+        if (models_[d.model].plays())
+            models_[d.model].shape(then, d.shape);
+        else
+            waveShape(scene_.colliders[d.collider].wave, d.rest, then, d.shape);
         shapes.emplace_back(d.shape);
     }
     if (contacts_) contacts_->moveTo(poses, seconds);
@@ -381,20 +390,42 @@ void Session::advance(double seconds, double deviceMs) {
     for (Rigid& r : rigid_) r.turned = std::fmod(r.turned + double{scene_.colliders[r.collider].motion.spin} * gone, 360.0);
 }
 
+Pose Session::poseOf(size_t model, double time, double turned) const {
+    return models_[model].rigid() ? models_[model].pose(time) : colliderPose(scene_.colliders[colliderOf_[model]], time, turned);
+}
+
+// A mesh that a wave bends is a new one in each picture.
+void Session::bendNode(const Deforming& deforming, std::span<const vec3> positions) {
+    if (models_[deforming.model].plays()) return;  // its nodes bend themselves
+    Mesh mesh = models_[deforming.model].mesh();
+    mesh.positions.assign(positions.begin(), positions.end());
+    recomputeNormals(mesh);
+    nodeOf(deforming.model).mesh = std::make_shared<const Mesh>(std::move(mesh));
+}
+
+// What only the time moves.
+void Session::placeModels() {
+    for (const size_t m : shown_)
+        nodeOf(m).local = matrixOf(poseOf(m, time(), time() * double{scene_.colliders[colliderOf_[m]].motion.spin}));
+    for (ColliderModel& model : models_)
+        if (model.plays() && !model.rigid()) model.place(time(), solids_);
+}
+
 void Session::placeNodes() {
     const std::vector<Pose> poses = world_->drawnPoses();
-    for (size_t k = 0; k < rigid_.size(); ++k) solids_.nodes()[rigid_[k].node].local = matrixOf(poses[k]);
+    for (size_t k = 0; k < rigid_.size(); ++k) nodeOf(rigid_[k].model).local = matrixOf(poses[k]);
     for (size_t k = 0; k < bodyNodes_.size(); ++k) solids_.nodes()[bodyNodes_[k]].local = matrixOf(world_->bodies()[k].pose);
-    for (const Deforming& d : deforming_) {
-        Mesh mesh = meshes_[d.node];
-        mesh.positions.assign(d.field->positions().begin(), d.field->positions().end());
-        recomputeNormals(mesh);
-        solids_.nodes()[d.node].mesh = std::make_shared<const Mesh>(std::move(mesh));
-    }
+    for (const Deforming& d : deforming_) bendNode(d, d.field->positions());
+    placeModels();
 }
 
 void Session::work(double asked, bool wait, double deviceMs) {
     const double start = hostSeconds();
+    if (replay_) {
+        replayed_ = replay_->next();
+        worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = 0, .costMs = 0};
+        return;
+    }
     const double seconds = world_->taken(asked), before = world_->time();
     // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
     const int parts = anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
@@ -407,6 +438,10 @@ void Session::work(double asked, bool wait, double deviceMs) {
 
 double Session::settle() {
     const double start = hostSeconds();
+    if (replay_) {
+        placeRecorded();
+        return worked_.ms + 1000 * (hostSeconds() - start);
+    }
     if (anyMoves() || contacts_) placeNodes();
     worked_.ms += 1000 * (hostSeconds() - start);
     world_->device().poll();
@@ -418,7 +453,17 @@ double Session::settle() {
     return worked_.ms;
 }
 
-bool Session::mayWorkAside() const { return world_->device().backend() == Backend::cpu && flows_.empty(); }
+bool Session::anyMoves() const {
+    const auto plays = [](const ColliderModel& model) { return model.plays(); };
+    return !rigid_.empty() || !deforming_.empty() || !shown_.empty() || !flows_.empty() ||
+           std::any_of(models_.begin(), models_.end(), plays);
+}
+
+bool Session::mayWorkAside() const {
+    const auto bends = [this](const Deforming& d) { return models_[d.model].plays(); };  // what is drawn is what water meets
+    return !replay_ && world_->device().backend() == Backend::cpu && flows_.empty() &&
+           std::none_of(deforming_.begin(), deforming_.end(), bends);
+}
 
 void Session::takeSnapshot() {
     const Device& device = world_->device();
@@ -443,7 +488,8 @@ Status Session::moveTo(Device& device) {
     }};
     for (Deforming& d : deforming_)  // as they were when the world was made
         if (const auto back = d.field->update(d.rest); !back) return back.error();
-    const FluidParams params = world_->params();  // of the scene's, an edit may be under way
+    FluidParams params = world_->params();  // of the scene's, an edit may be under way
+    if (device.backend() == Backend::cpu) params.grid = scene_.fluid.grid = "sorted";
     if (Status made = makeWorld(device, params, quiet); !made) return made;
     Sources sources{.sinks = scene_.sinks};
     for (const EmitterParams& emitter : scene_.emitters) sources.emitters.push_back({emitter, {}});
@@ -460,6 +506,8 @@ Status Session::moveTo(Device& device) {
     for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].turned = kept_->turned[k];
     WorldState state = std::move(kept_->world);
     kept_.reset();
+    (void)state.takeText("world.params");
+    state.putText("world.params", fixedValues([&params](ParamVisitor& v) { params.visit(v); }));  // another grid holds the same particles
     if (Status done = world_->restore(state); !done) return done;
     placeNodes();
     return ok();
@@ -475,6 +523,12 @@ void Session::watchBudget(double ms, double seconds) {
 }
 
 void Session::reset() {
+    if (replay_) {
+        replay_->seek(0);
+        replayed_ = replay_->next();
+        placeRecorded();
+        return;
+    }
     world_->reset();
     if (Status fresh = flows_.reset(scene_, world_->device(), solids_, log_); !fresh) log_.notice(fresh.error().message);
     startSolids();
@@ -486,6 +540,44 @@ void Session::startSolids() {
     for (Rigid& r : rigid_) r.turned = 0;
     if (contacts_) contacts_->moveTo(world_->poses(), 0);
     placeNodes();
+}
+
+Status Session::replay(Replay replay) {
+    size_t corners = 0;
+    for (const Deforming& d : deforming_) corners += d.rest.size();
+    const RecordedFrame& frame = replay.shown();
+    if (frame.places.size() != rigid_.size() + bodyNodes_.size() || frame.corners.size() != corners)
+        return badInput(
+            fmt::format("the recording has {} solids that move and {} corners that bend, this scene {} and {}: replay it with the "
+                        "scene and the meshes that it is of",
+                        frame.places.size(), frame.corners.size(), rigid_.size() + bodyNodes_.size(), corners));
+    replay_ = std::move(replay);
+    placeRecorded();
+    return ok();
+}
+
+void Session::placesInto(RecordedFrame& frame) const {
+    for (const Rigid& r : rigid_) frame.places.push_back(nodeOf(r.model).local);
+    for (const size_t node : bodyNodes_) frame.places.push_back(solids_.nodes()[node].local);
+    for (const Deforming& d : deforming_)
+        frame.corners.insert(frame.corners.end(), d.field->positions().begin(), d.field->positions().end());
+}
+
+// A frame of other solids than the first has is no frame of this recording: nothing moves then.
+void Session::placeRecorded() {
+    const RecordedFrame& frame = replay_->shown();
+    size_t corner = 0;
+    for (const Deforming& d : deforming_) corner += d.rest.size();
+    if (frame.places.size() != rigid_.size() + bodyNodes_.size() || frame.corners.size() != corner) return;
+    auto place = frame.places.begin();
+    for (const Rigid& r : rigid_) nodeOf(r.model).local = *place++;
+    for (const size_t node : bodyNodes_) solids_.nodes()[node].local = *place++;
+    auto next = frame.corners.begin();
+    for (const Deforming& d : deforming_) {
+        bendNode(d, std::span(next, d.rest.size()));
+        next += static_cast<std::ptrdiff_t>(d.rest.size());
+    }
+    placeModels();
 }
 
 void Session::save(WorldState& state) {

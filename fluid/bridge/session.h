@@ -2,6 +2,7 @@
 // The window, headless runs, benches and tests share it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -9,6 +10,8 @@
 #include "engine/core/log.h"
 #include "engine/scene/scene.h"
 #include "fluid/bridge/budget.h"
+#include "fluid/bridge/collider_model.h"
+#include "fluid/bridge/replay.h"
 #include "fluid/bridge/scene_file.h"
 #include "fluid/bridge/skin_flows.h"
 #include "fluid/bridge/solids_bullet.h"
@@ -33,11 +36,14 @@ struct SolidFields {
     }
 };
 
+// Told what is done next ("voxels of rocks.obj") and which share of all is done, 0..1. false: it is given up.
+using OpeningSteps = std::function<bool(const std::string& next, double share)>;
+
 class Session {
   public:
     // `device` must outlive the session. A scene's budget is opened first: scene() is then what it picked. Error (badInput): a mesh is
-    // missing, unreadable or not finite; values that make no sense together. Error (failed): out of memory.
-    static Result<std::unique_ptr<Session>> create(SceneFile scene, Device& device, const Log& log);
+    // missing, unreadable or not finite; values that make no sense together. Error (failed): out of memory; `steps` gave up.
+    static Result<std::unique_ptr<Session>> create(SceneFile scene, Device& device, const Log& log, const OpeningSteps& steps = {});
 
     const SceneFile& scene() const { return scene_; }
     FluidWorld& world() { return *world_; }
@@ -65,14 +71,23 @@ class Session {
     // mayWorkAside(): it changes nothing that drawing reads. Nothing else of the session may be called until it is done.
     void work(double seconds, bool wait, double deviceMs = 0);
     double settle();
-    bool mayWorkAside() const;  // on the cpu, without skins, whose maps are drawn from what is being stepped
+    bool mayWorkAside() const;  // on the cpu, without skins and bending models, which are drawn from what is being stepped
     void reset();
 
     // Goes on on another device, in the place of one that is full or lost: from what that one holds, or else from the last snapshot, which
     // a session on cl takes of itself now and then. time() of the world says from when on. Error (failed): out of memory; the session
-    // is then of no more use.
+    // is then of no more use. On the cpu fluid.grid linked_list, which it does not know, becomes sorted.
     Status moveTo(Device& device);
     void hold(std::unique_ptr<Device> device) { held_ = std::move(device); }  // as long as itself: of a move that failed half way
+
+    // From now on a step shows the recording's next frame instead of simulating; seek() says which, reset() begins anew. The world stays
+    // as it is. Error (badInput): the solids that move are others.
+    Status replay(Replay replay);
+    const Replay* replaying() const { return replay_ ? &*replay_ : nullptr; }         // null: it simulates
+    const Status& replayed() const { return replayed_; }                              // Error: the last step's frame is damaged
+    void seek(size_t frame) { replay_->seek(frame); }                                 // while replaying
+    double time() const { return replay_ ? replay_->shown().time : world_->time(); }  // s simulated, of what is shown
+    void placesInto(RecordedFrame& frame) const;                                      // where the solids that move are
 
     // The world and what the session knows of its solids. Error: as FluidWorld::restore; all is then as it was.
     void save(WorldState& state);
@@ -80,12 +95,12 @@ class Session {
 
   private:
     struct Rigid {
-        size_t collider = 0, node = 0;
+        size_t collider = 0, model = 0;
         std::unique_ptr<VoxelField> field;
         double turned = 0;  // deg
     };
     struct Deforming {
-        size_t collider = 0, node = 0;
+        size_t collider = 0, model = 0;
         std::unique_ptr<DeformingField> field;
         std::vector<vec3> rest, shape;
     };
@@ -99,6 +114,7 @@ class Session {
 
     Session() = default;
     void takeSnapshot();
+    Status next(const std::string& what);
     Status makeWorld(Device& device, const FluidParams& params, const Log& log);
     Status importColliders();
     Result<Sources> importEmitters() const;
@@ -107,21 +123,31 @@ class Session {
     Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
     VoxelFieldOptions fieldOptions(const Bounds& bounds, float edge) const;
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
-    bool anyMoves() const { return !rigid_.empty() || !deforming_.empty() || !flows_.empty(); }
+    bool anyMoves() const;
     void advance(double seconds, double deviceMs);
+    Pose poseOf(size_t model, double time, double turned) const;
+    Node& nodeOf(size_t model) { return solids_.nodes()[models_[model].node()]; }
+    const Node& nodeOf(size_t model) const { return solids_.nodes()[models_[model].node()]; }
+    void bendNode(const Deforming& deforming, std::span<const vec3> positions);
+    void placeModels();
     void placeNodes();
     void startSolids();
+    void placeRecorded();
     void watchBudget(double ms, double seconds);
 
     SceneFile scene_;
     Log log_;
+    OpeningSteps steps_;             // while it is made
+    int step_ = 0, stepsInAll_ = 1;  // of those
     std::optional<Budget> budget_;
+    std::unique_ptr<Device> bender_;  // a cpu, of models with bones and morphs, whichever device the world is on
     Scene solids_;
-    std::vector<Mesh> meshes_;        // of the mesh colliders, in the order of the scene: in the world, or in a moving one's own frame
-    std::vector<size_t> colliderOf_;  // of each mesh
-    std::vector<uint8_t> surfaceOf_;  // of each collider
+    std::vector<ColliderModel> models_;  // of the mesh colliders, in the order of the scene
+    std::vector<size_t> colliderOf_;     // of each model
+    std::vector<uint8_t> surfaceOf_;     // of each collider
     VoxelField field_;
     std::vector<Rigid> rigid_;
+    std::vector<size_t> shown_;  // models that move as a whole, but are only drawn
     std::vector<Deforming> deforming_;
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
@@ -130,6 +156,8 @@ class Session {
     Sources sources_;  // and with
     std::unique_ptr<FluidWorld> world_;
     SkinFlows flows_;
+    std::optional<Replay> replay_;
+    Status replayed_ = ok();
     struct Worked {
         double ms = 0, seconds = 0, costMs = 0;  // on the wall; simulated; what a budget counts
     } worked_;

@@ -204,14 +204,14 @@ void SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) 
         }
         ways.push_back(way);
     }
-    std::vector<float> full;
-    if (!places.empty()) full = world.fullness(places);
+    std::vector<FluidSample> full;
+    if (!places.empty()) full = world.sample(places);
     size_t kept = 0;
     for (size_t i = 0; i < air_.size(); ++i) {
         FlowComponent::AirDrop& d = air_[i];
         const Way& way = ways[i];
         size_t wet = 0;
-        while (wet < way.count && !(full[way.begin + wet] > kWet)) ++wet;
+        while (wet < way.count && !(full[way.begin + wet].density > kWet)) ++wet;
         const bool landed = way.first.skin != nullptr;
         if (wet < way.count && !(landed && double{way.first.where.share} * static_cast<double>(way.count) < static_cast<double>(wet + 1))) {
             world.pour(places[way.begin + wet], vec3(d.velocity), d.picolitres * kPicolitre);
@@ -268,28 +268,48 @@ bool SkinFlows::drip(const dvec3& from, const dvec3& way, uint32_t picolitres) {
     return true;
 }
 
-SkinFlows::Ledger SkinFlows::ledger() const {
+SkinFlows::Counted SkinFlows::counted() const {
+    Counted c{.emitted = dripped_, .taken = taken_, .drained = drained_, .poured = poured_};
+    for (const auto& skin : skins_) c.emitted += skin->emitted();  // with what lay in its brims at the start
+    for (const FlowComponent::AirDrop& d : air_) c.air += d.picolitres;
+    return c;
+}
+
+void SkinFlows::Counted::add(const SurfaceFlow::Ledger& own) {
+    surface += own.drops + own.film;
+    evaporated += own.evaporated;
+    refused += own.refused;
+    air += own.left - own.handed;  // a GPU tells of it late: it is taken up with the next step
+}
+
+SkinFlows::Ledger SkinFlows::Counted::ledger() const {
     Ledger l;
-    uint64_t emitted = dripped_, surface = 0, evaporated = 0, air = 0, refused = 0;
-    for (const auto& skin : skins_) {
-        const SurfaceFlow::Ledger own = skin->flow().ledger();
-        emitted += skin->emitted();  // with what lay in its brims at the start
-        surface += own.drops + own.film;
-        evaporated += own.evaporated;
-        refused += own.refused;
-        air += skin->flow().leaving();  // a GPU tells of it late: it is taken up with the next step
-    }
-    for (const FlowComponent::AirDrop& d : air_) air += d.picolitres;
     l.emitted = static_cast<double>(emitted) * kPicolitre;
-    l.taken = static_cast<double>(taken_) * kPicolitre;
-    l.poured = static_cast<double>(poured_) * kPicolitre;
+    l.taken = static_cast<double>(taken) * kPicolitre;
+    l.poured = static_cast<double>(poured) * kPicolitre;
     l.onSurface = static_cast<double>(surface) * kPicolitre;
     l.inAir = static_cast<double>(air) * kPicolitre;
     l.evaporated = static_cast<double>(evaporated) * kPicolitre;
-    l.drained = static_cast<double>(drained_ + refused) * kPicolitre;  // where there was no slot nothing was let out
-    const uint64_t there = surface + air + evaporated + drained_ + refused + poured_, came = emitted + taken_;
+    l.drained = static_cast<double>(drained + refused) * kPicolitre;  // where there was no slot nothing was let out
+    const uint64_t there = surface + air + evaporated + drained + refused + poured, came = emitted + taken;
     l.error = static_cast<double>(std::max(there, came) - std::min(there, came)) * kPicolitre;
     return l;
+}
+
+SkinFlows::Ledger SkinFlows::ledger() const {
+    Counted c = counted();
+    for (const auto& skin : skins_) c.add(skin->flow().ledger());
+    return c.ledger();
+}
+
+void SkinFlows::ledgerLater(const std::function<void(const Ledger&)>& then) const {
+    const auto c = std::make_shared<Counted>(counted());
+    const auto awaited = std::make_shared<size_t>(skins_.size());
+    for (const auto& skin : skins_)
+        skin->flow().ledgerLater([c, awaited, then](const SurfaceFlow::Ledger& own) {
+            c->add(own);
+            if (--*awaited == 0) then(c->ledger());
+        });
 }
 
 }  // namespace rivulet

@@ -2,6 +2,7 @@
 // world's water is poured into it; a particle of the world that comes down on a skin becomes drops. One mass: a ledger in picolitres.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -34,6 +35,8 @@ class SkinFlows {
         double error = 0;  // what is missing
     };
     Ledger ledger() const;
+    // The same without waiting: as SurfaceFlow::ledgerLater. Not of no skins.
+    void ledgerLater(const std::function<void(const Ledger&)>& then) const;
     size_t inAir() const { return air_.size(); }
     std::vector<vec4> airDrops() const;  // as FluidView::drops
     // What skins and the world will hand to each other in `seconds`, for Sources::poured, m^3. 0: the scene has no skins, or no water
@@ -54,6 +57,13 @@ class SkinFlows {
         FlowComponent* skin = nullptr;
         SkinSearch::Hit where;
     };
+    // Picolitres, in all.
+    struct Counted {
+        uint64_t emitted = 0, taken = 0, surface = 0, air = 0, evaporated = 0, drained = 0, refused = 0, poured = 0;
+        void add(const SurfaceFlow::Ledger& own);
+        Ledger ledger() const;
+    };
+    Counted counted() const;  // all but what SurfaceFlow::Ledger says
     First firstOn(const dvec3& from, const dvec3& to, double then) const;
     bool hasRoom(const FlowComponent* skin, uint32_t count = 1);
     void takeLanding(const SceneFile& scene, FluidWorld& world, double seconds);

@@ -4,27 +4,46 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 
-#include "engine/ui/param_panel.h"
+#include "engine/core/thread_clock.h"
+#include "fluid/bridge/plan_trial.h"
 #include "fluid/bridge/takeover.h"
+#include "fluid/sim/world_state.h"
 
 namespace rivulet {
 
 namespace {
+
+VisitFn visiting(SceneFile& scene) {
+    return [&scene](ParamVisitor& v) { scene.visit(v); };
+}
 
 void drawHelp() {
     ImVec2 display = ImGui::GetIO().DisplaySize;
     constexpr struct {
         const char* key;
         const char* does;
-    } kKeys[] = {{"left drag", "turn the view"},   {"right or middle drag", "move the view"},
-                 {"wheel", "nearer, farther"},     {"space", "pause, go on"},
-                 {"period", "one step"},           {"R", "start again"},
-                 {"Tab", "show, hide the panels"}, {"H", "show, hide this"},
-                 {"click", "a drop, on a skin"}};
+    } kKeys[] = {{"left drag", "turn the view"},
+                 {"right or middle drag", "move the view"},
+                 {"wheel", "nearer, farther"},
+                 {"click", "a drop, on a skin"},
+                 {"space", "pause, go on"},
+                 {"period", "one step"},
+                 {"R", "start again"},
+                 {"O", "open another scene"},
+                 {"control S", "save the scene"},
+                 {"drop a file", "a mesh, a scene, a sky"},
+                 {"F9", "a video, till F9 again"},
+                 {"F12", "a picture, without panels"},
+                 {"Tab", "show, hide the panels"},
+                 {"control plus, minus", "larger, smaller panels; 0: as before"},
+                 {"H", "show, hide this"}};
     ImGui::SetNextWindowPos(ImVec2(display.x / 2, display.y / 2), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     ImGui::Begin("keys", nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
@@ -54,6 +73,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
         kept->sentences.emplace_back(text);
     };
     v.gl_ = currentGlFacts();
+    v.share_ = options.share;
     const auto surroundings = surroundingsOf(scene);
     if (!surroundings) return surroundings.error();
     auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
@@ -61,29 +81,36 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     v.renderer_ = std::move(*renderer);
     std::string backend = options.backend;
     if (options.cooperate == "auto") {
-        const auto draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
+        const DrawFrame draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
             if (Status drawn = v.drawWater(session, options.width, options.height, uploaded); !drawn) return drawn;
             v.renderer_->finish();
             passes = v.renderer_->times();
             return ok();
         };
-        Result<std::vector<PlanTried>> tried = tryPlans(scene, v.gl_, draw, v.log_, 6, options.device);
+        v.log_.notice("--cooperate auto tries every plan on every device first: some seconds");
+        Result<std::vector<PlanTried>> tried =
+            tryPlans({.scene = scene, .gl = v.gl_, .draw = draw, .log = v.log_, .clDevice = options.device});
         if (!tried) return tried.error();
         v.log_.notice(sentenceOf(*tried, backend));
         backend = tried->front().backend;
         v.plan_ = tried->front().plan;
+        v.tried_ = statsOf(*tried);
     } else {
         v.plan_ = plans().find(options.cooperate)->plan;
     }
     v.device_ = makeDevice(backend, v.gl_, v.log_, options.device);
-    auto opened = openSession(scene, *v.device_, v.log_);
+    auto opened = openSession(scene, *v.device_, v.log_, backend);
     if (!opened) return opened.error();
     if (opened->instead) v.device_ = std::move(opened->instead);
     v.session_ = std::move(opened->session);
+    v.asked_ = backend;
+    v.timeline_.restart();  // times of what auto tried may be on their way
     traceKernels(*v.device_, v.timeline_);
     v.renderer_->onSpan(v.timeline_.lane(kDrawingLane));
     v.begin();
     v.draft_ = v.session_->scene();
+    SceneFile none;
+    v.params_.open(visiting(v.draft_), visiting(none));
     v.haste_.begin(v.gl_.software);
     v.renderer_->hurry(v.haste_.fast());
     return viewer;
@@ -93,15 +120,29 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     edited_ = false;
     if (work_->plan() == Plan::behind && work_->started())
         if (Status done = stepped(work_->finish(), seconds); !done) return done;
-    ui_.begin(input, seconds);
+    std::erase_if(givenUp_, [](const std::unique_ptr<SceneOpening>& each) { return each->ready(); });
+    if (opening_ && opening_->work->ready()) finishOpening();
+    const double began = threadSeconds();
+    InputEvents scaled = input;
+    scaled.scale *= zoom_;
+    ui_.begin(scaled, seconds);
     if (!ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
+    if (!showPanels_) watch_.hide(*renderer_);
     if (showHelp_) drawHelp();
+    if (opening_) drawOpening();
+    if (saving_) drawSaving();
+    if (browser_.shown()) chooseScene();
+    panelCost_.made = 1000 * (threadSeconds() - began);
+    takeDropped(input);
     if (!ui_.wantsMouse()) {
         moveCamera(input);
         touch(input);
     }
-    if (edited_ || recreate) takeEdits(recreate);
+    if (edited_ || recreate) {
+        takeEdits(recreate);
+        params_.compare(visiting(draft_));
+    }
     if (Status stepped = step(seconds); !stepped) return stepped;
     Status drawn = draw(input, framebuffer);
     profiler_.endFrame(1000 * seconds);
@@ -114,6 +155,18 @@ void Viewer::takeKeys(const InputEvents& input) {
     if (input.pressed(GLFW_KEY_R)) session_->reset();
     if (input.pressed(GLFW_KEY_TAB)) showPanels_ = !showPanels_;
     if (input.pressed(GLFW_KEY_H)) showHelp_ = !showHelp_;
+    const bool control = input.down(key::kLeftControl) || input.down(key::kRightControl);
+    if (control && input.pressed('S')) saving_ = true;
+    constexpr float kZoom = 1.25F;
+    if (control && input.pressed('=')) zoom_ = std::min(zoom_ * kZoom, 4.0F);
+    if (control && input.pressed('-')) zoom_ = std::max(zoom_ / kZoom, 0.5F);
+    if (control && input.pressed('0')) zoom_ = 1;
+    if (input.pressed('O')) browser_.show(!browser_.shown());
+    const auto say = [this](const Status& done) {
+        if (!done) message_ = done.error().message;
+    };
+    if (input.pressed(key::kF1 + 8)) say(toggleVideo());
+    if (input.pressed(key::kF1 + 11)) say(takePicture());
 }
 
 void Viewer::moveCamera(const InputEvents& input) {
@@ -174,7 +227,7 @@ bool Viewer::drawPresets() {
 }
 
 bool Viewer::drawPanels() {
-    if (!ImGui::IsAnyItemActive()) settled_ = session_->scene();
+    if (!ImGui::IsAnyItemActive() && !(opening_ && !opening_->other)) settled_ = session_->scene();
     ImVec2 display = ImGui::GetIO().DisplaySize;
     constexpr float kMargin = 10;
     float width = std::clamp(display.x * 0.26F, 320.0F, 420.0F), tall = std::max(display.y - 2 * kMargin, 80.0F);
@@ -185,18 +238,16 @@ bool Viewer::drawPanels() {
         const DeviceInfo& device = device_->info();
         FluidPanelState state;
         state.paused = paused_;
+        state.filming = video_.has_value();
         state.backend = fmt::format("{}: {}", backendName(device_->backend()), device.name);
         state.renderer = gl_.renderer;
-        const TransferFacts& transfer = upload_.facts();
-        state.transfer = transfer.bytes > 0 ? fmt::format("{}: {:.2f} ms, {:.1f} MB{}", transfer.way, transfer.ms,
-                                                          1.0e-6 * static_cast<double>(transfer.bytes),
-                                                          transfer.waits > 0 ? fmt::format(", waited {} times", transfer.waits) : "")
-                                            : transfer.way;
+        state.transfer = sentenceOf(upload_.facts());
         for (const PlanRow& row : plans().rows)
             if (row.plan == work_->plan()) state.plan = fmt::format("{}: {}", row.name, row.doc);
         state.simulateMs = profiler_.mean("simulate");
         state.frameMs = profiler_.meanFrame();
         state.message = message_;
+        if (session_->replaying() != nullptr) state.replay = session_->replaying()->sentence();
         {
             const std::lock_guard<std::mutex> lock(notices_->mutex);
             state.notices = notices_->sentences;
@@ -206,13 +257,18 @@ bool Viewer::drawPanels() {
         if (actions.step) paused_ = stepOnce_ = true;
         if (actions.reset) session_->reset();
         if (actions.help) showHelp_ = !showHelp_;
+        if (actions.scenes) browser_.show(!browser_.shown());
+        if (actions.save) saving_ = true;
+        const Status taken = actions.picture ? takePicture() : actions.video ? toggleVideo() : ok();
+        if (!taken) message_ = taken.error().message;
         ImGui::Spacing();
         if (!draft_.presets.empty()) {
             edited_ = drawPresets() || edited_;
             ImGui::Spacing();
         }
+        ParamPanel panel(params_);
+        panel.search(visiting(draft_));
         ImGui::BeginChild("parameters");
-        ParamPanel panel;
         draft_.visit(panel);
         ImGui::EndChild();
         edited_ = edited_ || panel.changed();
@@ -220,18 +276,8 @@ bool Viewer::drawPanels() {
     }
     ImGui::End();
 
-    ImGui::SetNextWindowPos(ImVec2(display.x - kMargin, kMargin), ImGuiCond_Once, ImVec2(1, 0));
-    float narrow = std::min(width, 320.0F);
-    ImGui::SetNextWindowSizeConstraints(ImVec2(narrow, 0), ImVec2(narrow, tall));
-    if (ImGui::Begin("times", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
-        const float across = narrow - 2 * ImGui::GetStyle().WindowPadding.x;
-        timelinePanel_.draw(timeline_, 1.0e-3 * profiler_.meanFrame(), across);
-        ImGui::Spacing();
-        profiler_.draw(across);
-        ImGui::Spacing();
-        voxels_.draw(session_->fields(), session_->world().time(), std::min(across, ImGui::GetContentRegionAvail().x));
-    }
-    ImGui::End();
+    const float room = display.x - width - 3 * kMargin;
+    if (watch_.draw(*session_, *renderer_, timeline_, profiler_, draft_, kMargin, room)) recreate = edited_ = true;
     return recreate;
 }
 
@@ -242,37 +288,269 @@ void Viewer::takeEdits(bool recreate) {
         message_ = sense.error().message;  // a drag may pass through it: the draft stays as it is
         return;
     }
-    recreate = recreate || session_->needsNew(draft_);
+    recreate = recreate || (!(opening_ && !opening_->other) && session_->needsNew(draft_));
+    if (recreate && session_->replaying() != nullptr) {
+        message_ = "replaying: this was settled when the run was recorded; run the scene without --replay to change it";
+        session_->apply(settled_);
+        draft_ = session_->scene();
+        return;
+    }
     if (!recreate) {
         message_.clear();
         session_->apply(draft_);
         if (session_->budget()) draft_.fluid = session_->scene().fluid;  // what a budget holds, an edit does not change
         return;
     }
+    if (sense)
+        startOpening(draft_, false);
+    else
+        refuse(sense.error(), false, settled_);
+}
+
+void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
+    message_ = error.message;
+    if (other) return;
+    SceneFile back = before;  // a drag has gone through it
+    back.camera = draft_.camera;
+    session_->apply(back);
+    draft_ = session_->scene();
+}
+
+void Viewer::startOpening(SceneFile scene, bool other) {
     {
         const std::lock_guard<std::mutex> lock(notices_->mutex);
         notices_->sentences.clear();
     }
-    Result<OpenedSession> fresh = sense ? openSession(draft_, *device_, log_) : Result<OpenedSession>(sense.error());
-    if (fresh) {
-        work_.reset();
-        session_ = std::move(fresh->session);
-        if (fresh->instead) {  // nothing is on the other any more
-            device_ = std::move(fresh->instead);
-            traceKernels(*device_, timeline_);
-        }
-        begin();
-        draft_ = session_->scene();  // a budget may have picked
-        repicked_ = 0;
-        message_.clear();
-        profiler_.clear();
-        voxels_.clear();
-        if (recorder_) record();
-    } else {
-        message_ = fresh.error().message;
-        session_->apply(settled_);  // a drag has gone through it
-        draft_ = session_->scene();
+    message_.clear();
+    const SceneFile before = opening_ && !opening_->other ? opening_->before : settled_;
+    if (opening_) {
+        opening_->work->giveUp();
+        givenUp_.push_back(std::move(opening_->work));
+        opening_.reset();
     }
+    const Backend backend = device_->backend();
+    if (share_ && !elsewhere_ && backend != Backend::cl) {
+        if (Result<SharedGl> made = share_())
+            elsewhere_ = std::move(*made);
+        else
+            log_.notice(made.error().message + ": the window waits while a scene is opened");
+        share_ = {};
+    }
+    const std::string asked = other ? asked_ : "cpu";
+    if (elsewhere_ && backend != Backend::cl) {
+        const bool renderer = needsOtherRenderer(session_->scene(), scene);
+        opening_ = std::make_unique<Opening>();
+        opening_->other = other;
+        opening_->before = before;
+        opening_->work = std::make_unique<SceneOpening>(SceneOpening::Request{.scene = std::move(scene),
+                                                                              .device = makeDevice(backendName(backend), gl_, log_),
+                                                                              .backend = asked,
+                                                                              .renderer = renderer,
+                                                                              .gl = elsewhere_,
+                                                                              .log = log_});
+        constexpr double kAtOnce = 0.05;  // s: nobody sees that the window waited
+        if (opening_->work->ready(kAtOnce)) finishOpening();
+        return;
+    }
+    OpenedScene opened;
+    if (needsOtherRenderer(session_->scene(), scene)) {
+        const auto surroundings = surroundingsOf(scene);
+        if (!surroundings) return refuse(surroundings.error(), other, before);
+        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
+        if (!renderer) return refuse(renderer.error(), other, before);
+        opened.renderer = std::move(*renderer);
+    }
+    Result<OpenedSession> fresh = openSession(scene, *device_, log_, asked);
+    if (!fresh) return refuse(fresh.error(), other, before);
+    opened.session = std::move(fresh->session);
+    opened.device = std::move(fresh->instead);
+    adopt(std::move(opened), other);
+}
+
+void Viewer::finishOpening() {
+    Opening done = std::move(*opening_);
+    opening_.reset();
+    Result<OpenedScene> opened = done.work->take();
+    if (!opened) return refuse(opened.error(), done.other, done.before);
+    const SceneFile wanted = draft_;
+    adopt(std::move(*opened), done.other);
+    if (done.other) return;
+    // Meanwhile the camera may have moved, or a slider.
+    SceneFile made = done.work->scene(), now = wanted;
+    const bool same = fixedValues(visiting(made)) == fixedValues(visiting(now)) && !session_->needsNew(wanted);
+    if (same) session_->apply(wanted);
+    draft_ = same ? session_->scene() : wanted;
+    if (!same) startOpening(wanted, false);
+}
+
+void Viewer::giveUpOpening() {
+    Opening left = std::move(*opening_);
+    opening_.reset();
+    left.work->giveUp();
+    if (!left.other) refuse({}, false, left.before);
+    givenUp_.push_back(std::move(left.work));
+}
+
+// What it replaces goes only now.
+void Viewer::adopt(OpenedScene opened, bool other) {
+    work_.reset();
+    session_ = std::move(opened.session);
+    if (opened.device) {  // nothing is on the other any more
+        device_ = std::move(opened.device);
+        traceKernels(*device_, timeline_);
+    }
+    if (opened.renderer) {
+        renderer_ = std::move(opened.renderer);
+        renderer_->onSpan(timeline_.lane(kDrawingLane));
+        renderer_->hurry(haste_.fast());
+    }
+    begin();
+    draft_ = settled_ = session_->scene();  // a budget may have picked
+    if (other) {
+        SceneFile none;
+        params_.open(visiting(draft_), visiting(none));
+    }
+    repicked_ = 0;
+    message_.clear();
+    profiler_.clear();
+    watch_.clear();
+    if (recorder_) record();
+}
+
+// Over the picture, low in its middle.
+void Viewer::drawOpening() {
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const SceneOpening::Step step = opening_->work->step();
+    ImGui::SetNextWindowPos(ImVec2(display.x / 2, 0.86F * display.y), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    ImGui::Begin(
+        "opening", nullptr,
+        ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::Text("%s: %s", opening_->work->scene().name.c_str(), step.what.c_str());
+    ImGui::ProgressBar(static_cast<float>(step.share), ImVec2(ImGui::GetFontSize() * 20, 0));
+    ImGui::SameLine();
+    const bool cancel = ImGui::Button("cancel");
+    ImGui::End();
+    if (cancel) giveUpOpening();
+}
+
+// A scene is opened, a picture of light surrounds this one, and any other file is a mesh that stands in the middle of the box.
+void Viewer::takeDropped(const InputEvents& input) {
+    if (input.dropped.empty()) return;
+    if (session_->replaying() != nullptr) {
+        message_ = "replaying: what was recorded is shown; run the scene without --replay to change it";
+        return;
+    }
+    bool edited = false;
+    for (const std::string& path : input.dropped) {
+        std::string kind = std::filesystem::path(path).extension().string();
+        for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (kind == ".json") {
+            Result<SceneFile> scene = loadScene(path, {});
+            if (scene) return open(std::move(*scene));
+            message_ = scene.error().message;
+            return;
+        }
+        edited = true;
+        if (kind == ".hdr") {
+            draft_.background.surroundings = path;
+            continue;
+        }
+        const BoxParams& box = draft_.fluid.box;
+        const vec3 size = box.max - box.min;
+        ColliderParams& collider = draft_.colliders.emplace_back();
+        collider.mesh = path;
+        collider.fitSize = 0.5F * std::min({size.x, size.y, size.z});
+        collider.position = vec3(0.5F * (box.min.x + box.max.x), box.min.y + 0.5F * collider.fitSize, 0.5F * (box.min.z + box.max.z));
+    }
+    if (!edited) return;
+    takeEdits(true);
+    params_.compare(visiting(draft_));
+}
+
+void Viewer::drawSaving() {
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    if (savePath_.empty()) savePath_ = draft_.name + ".json";
+    ImGui::SetNextWindowPos(ImVec2(display.x / 2, display.y / 2), ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
+    ImGui::Begin("save the scene", &saving_, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 28);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText("##path", &savePath_, ImGuiInputTextFlags_EnterReturnsTrue);
+    std::error_code error;
+    const bool there = std::filesystem::exists(savePath_, error);
+    const bool pressed = ImGui::Button(there ? "write over it###write" : "save###write");
+    ImGui::SameLine();
+    if (ImGui::Button("cancel")) saving_ = false;
+    if (there) {
+        ImGui::SameLine();
+        ImGui::TextDisabled("a file of this name is there");
+    }
+    ImGui::End();
+    // Enter alone does not write over a file.
+    if (!(pressed || (entered && !there)) || savePath_.empty()) return;
+    SceneFile scene = draft_;
+    if (Status saved = saveScene(scene, savePath_); !saved) {
+        message_ = saved.error().message;
+        return;
+    }
+    saving_ = false;
+    log_.notice(fmt::format("the scene is in {}", std::filesystem::absolute(savePath_, error).string()));
+}
+
+void Viewer::chooseScene() {
+    const std::optional<std::string> path = browser_.draw();
+    if (!path) return;
+    Result<SceneFile> scene = loadScene(*path, {});
+    if (scene)
+        open(std::move(*scene));
+    else
+        message_ = scene.error().message;
+}
+
+Status Viewer::toggleVideo() {
+    if (video_) {
+        VideoWriter done = std::move(*video_);
+        video_.reset();
+        return done.close();
+    }
+    videoSize_ = {renderer_->width(), renderer_->height()};
+    if (videoSize_.x <= 0) return ok();
+    Result<std::string> path = freePath("mp4");
+    if (!path) return path.error();
+    Result<VideoWriter> video = VideoWriter::open(*path, videoSize_.x, videoSize_.y, kFramesPerSecond);
+    if (!video) return video.error();
+    video_ = std::move(*video);
+    stepShown_ = false;
+    log_.notice("a video goes into " + *path);
+    return ok();
+}
+
+// As fast as the water: a picture a step, however long that took.
+Status Viewer::film() {
+    if (!video_ || !std::exchange(stepShown_, false)) return ok();
+    if (ivec2(renderer_->width(), renderer_->height()) == videoSize_) return video_->add(renderer_->pixels());
+    log_.notice("the window has another size: the video ends here");
+    return toggleVideo();
+}
+
+// Beside where the program runs, with the scene's name and the first number that is free. Error (failed): it cannot be written there.
+Result<std::string> Viewer::freePath(const char* kind) const {
+    std::error_code error;
+    std::string path;
+    for (int k = 1; path.empty() || std::filesystem::exists(path, error); ++k) path = fmt::format("{}_{:04}.{}", draft_.name, k, kind);
+    if (Status writable = checkWritable(path); !writable) return writable.error();
+    return path;
+}
+
+Status Viewer::takePicture() {
+    if (renderer_->width() <= 0) return ok();
+    if (written_.valid())
+        if (Status last = written_.get(); !last) return last;
+    const Result<std::string> path = freePath("png");
+    if (!path) return path.error();
+    written_ = std::async(std::launch::async, [path = *path, pixels = renderer_->pixels(), width = renderer_->width(),
+                                               height = renderer_->height()] { return writePng(path, pixels, width, height); });
+    log_.notice("a picture is in " + *path);
+    return ok();
 }
 
 Status Viewer::step(double seconds) {
@@ -282,7 +560,7 @@ Status Viewer::step(double seconds) {
     bool due = waiting_ >= kStep;
     if (due) waiting_ -= kStep;
     // With fixed steps the world keeps what is left over of frames, and shows what is between: it is told of each frame as it comes.
-    const bool fixed = session_->scene().fluid.fixedStep > 0 && !stepOnce_;
+    const bool fixed = session_->scene().fluid.fixedStep > 0 && !stepOnce_ && session_->replaying() == nullptr;
     if (fixed) {
         due = seconds > 0;
         waiting_ = 0;
@@ -293,7 +571,7 @@ Status Viewer::step(double seconds) {
     if (work_->plan() == Plan::behind) return ok();  // while it is drawn
     if (!work_->started() || fixed) {                // what was found ahead is of a step as long as the last
         work_->drop();
-        work_->start(due_, false, deviceMs_);
+        return stepped(work_->step(due_, false, deviceMs_), seconds);
     }
     return stepped(work_->finish(), seconds);
 }
@@ -306,10 +584,16 @@ void Viewer::begin() {
 // `seconds`: on the wall, of the frame.
 Status Viewer::stepped(double ms, double seconds) {
     ++steps_;
+    stepShown_ = true;
     const Result<bool> moved = keepRunning(*session_, device_, log_);
     if (!moved) return moved.error();
-    if (*moved) traceKernels(*device_, timeline_);
-    if (*moved && recorder_) recorder_->follow(session_->world());
+    if (*moved) {
+        traceKernels(*device_, timeline_);
+        draft_.fluid.grid = session_->scene().fluid.grid;  // the cpu may not know it
+        if (recorder_) recorder_->follow(session_->world());
+    }
+    if (told_)
+        if (Status heard = told_(*session_); !heard) return heard;
     if (const int repicked = session_->budget() ? session_->budget()->repicked() : 0; repicked != repicked_) {
         repicked_ = repicked;
         draft_.fluid = session_->scene().fluid;  // what the panel shows
@@ -318,19 +602,35 @@ Status Viewer::stepped(double ms, double seconds) {
     deviceMs_ = 0;
     for (const PassTime& pass : passes) deviceMs_ += pass.ms;
     profiler_.add("simulate", passes);
+    watch_.stepped(*session_, std::max(ms, deviceMs_));
     if (!recorder_) return ok();
     recorder_->stepped(ms, passes);
     recorder_->drawn(0, 1000 * seconds, renderer_->times());
     return ok();
 }
 
+Status Viewer::settle() {
+    if (work_->plan() == Plan::behind && work_->started()) return stepped(work_->finish(), 0);
+    work_->drop();
+    return ok();
+}
+
 void Viewer::record() { recorder_.emplace(session_->world(), session_->fields(), true, &session_->flows()); }
+
+const Timeline& Viewer::wholeTimeline() {
+    renderer_->finish();
+    device_->finish();
+    (void)device_->takeTimes();
+    return timeline_;
+}
 
 RunStats Viewer::finishRecord() {
     ASSERT(recorder_, "record() comes first");
     work_->drop();
+    (void)wholeTimeline();
     RunStats stats = recorder_->finish(session_->scene().name);
     stats.cooperation = work_->stats();
+    stats.cooperation.tried = tried_;
     return stats;
 }
 
@@ -338,38 +638,48 @@ RunStats Viewer::finishRecord() {
 Status Viewer::drawWater(Session& session, int width, int height, const std::function<void()>& uploaded) {
     const SceneFile& scene = session.scene();
     std::optional<TimedSpan> span(std::in_place, &timeline_, "main", "upload");
-    Result<FluidView> fluid = upload_.view(session.world(), scene.look, session.flows().airDrops());
+    Result<FluidView> fluid = viewOf(upload_, session);
     if (!fluid) return fluid.error();
     if (Status wet = session.flows().draw(); !wet) return wet;
     Camera camera = cameraOf(scene.camera, session.bounds());
-    FrameView view = frameViewOf(camera, scene.light, width, height, session.world().time());
+    FrameView view = frameViewOf(camera, scene.light, width, height, session.time());
     span.reset();
     uploaded();
     const TimedSpan drawing(&timeline_, "main", "draw");
     return renderer_->draw(view, *fluid, session.solids(), scene);
 }
 
+void Viewer::drawUi() {
+    const double began = threadSeconds();
+    ui_.draw();
+    panelCost_.told = 1000 * (threadSeconds() - began);
+}
+
 Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     int width = input.framebuffer.x, height = input.framebuffer.y;
     const auto stepOn = [this] {
-        const bool behind = work_->plan() == Plan::behind;
+        const bool behind = work_->plan() == Plan::behind && steps_ < mostSteps_;
         if (due_ > 0 && (behind || (work_->plan() == Plan::thesis && !paused_))) work_->start(due_, false, deviceMs_);
         due_ = 0;
     };
     if (width <= 0 || height <= 0) {
         stepOn();
-        ui_.draw();  // ends ImGui's frame; it draws nothing
+        drawUi();  // ends ImGui's frame; it draws nothing
         return ok();
     }
     const SceneFile& scene = session_->scene();
     if (Status drawn = drawWater(*session_, width, height, stepOn); !drawn) return drawn;
     if (recorder_) recorder_->transferred(upload_.facts());
+    if (Status filmed = film(); !filmed) {
+        video_.reset();
+        message_ = filmed.error().message;
+    }
     renderer_->present(framebuffer, width, height);
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, width, height);
     uiTimer_.begin(0);
-    ui_.draw();
+    drawUi();
     uiTimer_.end();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     uiTimer_.collect([this](uint64_t, const gpu::Timer::Times& times) { uiMs_ = times.ms(); });

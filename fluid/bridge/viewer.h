@@ -2,26 +2,31 @@
 // draws into a framebuffer, so that a test can drive it as a person would.
 #pragma once
 
+#include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/app/capture.h"
 #include "engine/app/input_events.h"
 #include "engine/app/ui_layer.h"
 #include "engine/gpu/timer.h"
+#include "engine/ui/param_panel.h"
 #include "engine/ui/profiler_panel.h"
-#include "engine/ui/timeline_panel.h"
-#include "fluid/bridge/backend.h"
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/fluid_panel.h"
-#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/scene_browser.h"
+#include "fluid/bridge/scene_opening.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
-#include "fluid/bridge/voxel_panel.h"
+#include "fluid/bridge/watch_window.h"
+#include "fluid/render/backend.h"
+#include "fluid/render/fluid_upload.h"
 
 namespace rivulet {
 
@@ -31,6 +36,8 @@ struct ViewerOptions {
     std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
     void* clipboard = nullptr;       // as UiLayer
     int width = 1280, height = 720;  // pixels, of what auto tries
+    // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
+    std::function<Result<SharedGl>()> share = {};
 };
 
 class Viewer {
@@ -45,15 +52,31 @@ class Viewer {
 
     bool paused() const { return paused_; }
     uint64_t steps() const { return steps_; }
+    void stepAtMost(uint64_t steps) { mostSteps_ = steps; }  // a plan that steps ahead of the picture begins none beyond
     const SceneFile& scene() const { return session_->scene(); }
     Session& session() { return *session_; }
+    WatchWindow& watch() { return watch_; }
+    const SceneRenderer& renderer() const { return *renderer_; }
+    // ms on the CPU for the last frame's panels: making them, and telling OpenGL of them.
+    struct PanelCost {
+        double made = 0, told = 0;
+    };
+    const PanelCost& panelCost() const { return panelCost_; }
     const std::string& message() const { return message_; }  // what the last edit was refused for; "" = nothing
+
+    // Shows another scene, this one until that is ready; a mistake in it is a message.
+    void open(SceneFile scene) { startOpening(std::move(scene), true); }
+    const SceneOpening* opening() const { return opening_ ? opening_->work.get() : nullptr; }  // null: nothing is being opened
 
     // From now on keeps the record of the run; starts anew with every new session.
     void record();
-    RunStats finishRecord();          // after record()
-    void settle() { work_->drop(); }  // what is under way on another thread is done then: before session() is read between frames
+    // Told after each step, before anything steps on. Its Error ends frame().
+    void onStepped(std::function<Status(const Session&)> told) { told_ = std::move(told); }
+    RunStats finishRecord();  // after record()
+    // What is under way on another thread is done then, and counted: before session() is read between frames. Error: as frame().
+    Status settle();
     const Timeline& timeline() const { return timeline_; }
+    const Timeline& wholeTimeline();  // the same, after settle(): waits for the GPU, the times of its last frames are there then
 
   private:
     void takeKeys(const InputEvents& input);
@@ -62,10 +85,24 @@ class Viewer {
     bool drawPresets();                    // whether one was chosen
     bool drawPanels();                     // whether a new session is wanted
     void takeEdits(bool recreate);
+    void startOpening(SceneFile scene, bool other);  // `other`: it is not the one that is shown, edited
+    void finishOpening();                            // when it is ready
+    void giveUpOpening();
+    void adopt(OpenedScene opened, bool other);
+    void refuse(const Error& error, bool other, const SceneFile& before);
+    void drawOpening();
+    void takeDropped(const InputEvents& input);
+    void drawSaving();
+    void chooseScene();
+    Result<std::string> freePath(const char* kind) const;
+    Status toggleVideo();
+    Status film();         // the picture that was drawn
+    Status takePicture();  // into a file of its own beside where the program runs
     Status step(double seconds);
     Status stepped(double ms, double seconds);
     void begin();  // a new session's cooperation
     Status drawWater(Session& session, int width, int height, const std::function<void()>& uploaded);
+    void drawUi();
     Status draw(const InputEvents& input, GLuint framebuffer);
 
     // Said to the person, from whichever thread.
@@ -73,34 +110,55 @@ class Viewer {
         std::mutex mutex;
         std::vector<std::string> sentences;
     };
+    struct Opening {
+        std::unique_ptr<SceneOpening> work;
+        bool other = false;
+        SceneFile before;  // what an edit that fails goes back to
+    };
     std::shared_ptr<Notices> notices_ = std::make_shared<Notices>();
     Log log_;
     Timeline timeline_{size_t{1} << 16};
     std::unique_ptr<Device> device_;
     std::unique_ptr<Session> session_;
     Plan plan_ = Plan::alone;
+    std::vector<CooperationStats::Tried> tried_;  // by --cooperate auto
     std::unique_ptr<Cooperation> work_;
     double due_ = 0;  // s simulated, that are to be stepped while this frame is drawn
     std::unique_ptr<SceneRenderer> renderer_;
     FluidUpload upload_;
     UiLayer ui_;
     ProfilerPanel profiler_;
-    TimelinePanel timelinePanel_;
-    VoxelPanel voxels_;
+    WatchWindow watch_;
     gpu::Timer uiTimer_;
     Haste haste_;
     GlFacts gl_;
     SceneFile draft_;    // what the panel edits; becomes the session's when it makes sense
     SceneFile settled_;  // as it was before the edit that is under way
+    ParamMemory params_;
     std::string message_;
     bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
     vec2 pressedAt_{0.0F};  // where the left button went down; window coordinates
     double waiting_ = 0;    // s on the wall that the water has not been stepped for
     double uiMs_ = 0;
+    PanelCost panelCost_;
     double deviceMs_ = 0;  // of the passes last heard of
     std::optional<RunRecorder> recorder_;
-    uint64_t steps_ = 0;
-    int repicked_ = 0;  // by the session's budget
+    uint64_t steps_ = 0, mostSteps_ = UINT64_MAX;
+    std::function<Status(const Session&)> told_;
+    SceneBrowser browser_;
+    std::optional<VideoWriter> video_;
+    ivec2 videoSize_{0};
+    bool stepShown_ = false;  // a step was made that no video has yet
+    std::string savePath_;    // where the scene is to go; asked for while saving_
+    bool saving_ = false;
+    float zoom_ = 1;               // of the panels, as the person likes it
+    std::future<Status> written_;  // the picture taken last
+    int repicked_ = 0;             // by the session's budget
+    std::string asked_;            // as --backend
+    std::function<Result<SharedGl>()> share_;
+    SharedGl elsewhere_;  // of the thread that opens scenes
+    std::unique_ptr<Opening> opening_;
+    std::vector<std::unique_ptr<SceneOpening>> givenUp_;  // and not done yet
 
     explicit Viewer(UiLayer ui) : ui_(std::move(ui)) {}
 };

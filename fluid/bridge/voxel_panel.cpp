@@ -69,8 +69,6 @@ void VoxelPanel::clear() {
 }
 
 void VoxelPanel::draw(const SolidFields& fields, double time, float width) {
-    open_ = ImGui::CollapsingHeader("voxels");
-    if (!open_) return;
     const VoxelField* field = choose(fields, width);
     if (field == nullptr) {
         ImGui::TextDisabled("the scene has no mesh");

@@ -10,7 +10,7 @@
 
 namespace rivulet {
 
-// Folded it costs nothing; the regions of a field are found when it is first looked at, and a slice is drawn when it changes; of a
+// Not drawn it costs nothing; the regions of a field are found when it is first looked at, and a slice is drawn when it changes; of a
 // mesh that bends, both again a few times a second.
 class VoxelPanel {
   public:
@@ -18,7 +18,6 @@ class VoxelPanel {
     // OpenGL context.
     void draw(const SolidFields& fields, double time, float width);
     void clear();  // the fields are others from now on
-    bool open() const { return open_; }
 
   private:
     enum class Shown { materials, distance };
@@ -30,7 +29,6 @@ class VoxelPanel {
     void drawSliceImage(const VoxelField& field, float width);
     void drawMaterials(float width) const;
 
-    bool open_ = false;
     int axis_ = 2;
     int at_[3] = {-1, -1, -1};           // voxels; -1: the middle
     int chosen_ = 0;                     // among the fields: what stands still, what moves, what bends

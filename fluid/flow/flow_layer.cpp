@@ -1,6 +1,6 @@
 #include "fluid/flow/flow_layer.h"
 
-#include <glad/gl.h>
+#include <rivulet_glad/gl.h>
 
 #include <algorithm>
 #include <glm/gtc/packing.hpp>

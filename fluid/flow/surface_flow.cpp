@@ -382,13 +382,44 @@ SurfaceFlow::Ledger SurfaceFlow::ledger() const {
     Impl& w = *impl_;
     w.device->finish();
     w.device->poll();
-    Ledger l{
-        .added = w.added, .left = w.told->left, .evaporated = w.told->evaporated, .refused = w.told->refused, .merges = w.told->merges};
+    Ledger l{.added = w.added,
+             .left = w.told->left,
+             .evaporated = w.told->evaporated,
+             .refused = w.told->refused,
+             .merges = w.told->merges,
+             .handed = w.told->left - leaving()};
     const auto state = w.device->readAll<uint32_t>(w.drop, size_t{w.count()} * DROP_UINTS);
     for (size_t k = 0; k < w.count(); ++k) l.drops += state[k * DROP_UINTS + DROP_VOLUME];
     for (const FlowBirth& b : w.births) l.drops += b.volume;  // with the next step
     for (const uint32_t v : w.device->readAll<uint32_t>(w.film, w.firstCell.back())) l.film += v;
     return l;
+}
+
+// What was counted up to the last step has been told by when the drops and films of that step are: all comes in the order it was asked for.
+void SurfaceFlow::ledgerLater(std::function<void(const Ledger&)> then) const {
+    Impl& w = *impl_;
+    const auto l = std::make_shared<Ledger>();
+    l->added = w.added;
+    l->handed = w.told->left - leaving();
+    for (const FlowBirth& b : w.births) l->drops += b.volume;  // with the next step
+    const auto words = [](std::span<const std::byte> bytes) {
+        return std::span(reinterpret_cast<const uint32_t*>(bytes.data()), bytes.size() / sizeof(uint32_t));
+    };
+    w.device->readLater(w.drop, size_t{w.count()} * DROP_UINTS * sizeof(uint32_t), [l, words](std::span<const std::byte> bytes) {
+        const std::span<const uint32_t> state = words(bytes);
+        for (size_t k = 0; k < state.size(); k += DROP_UINTS) l->drops += state[k + DROP_VOLUME];
+    });
+    w.device->readLater(w.film, size_t{w.firstCell.back()} * sizeof(uint32_t),
+                        [l, words, from = std::weak_ptr(w.told), then = std::move(then)](std::span<const std::byte> bytes) {
+                            const std::shared_ptr<const Impl::Told> told = from.lock();
+                            if (!told) return;  // the flow is no more
+                            for (const uint32_t v : words(bytes)) l->film += v;
+                            l->left = told->left;
+                            l->evaporated = told->evaporated;
+                            l->refused = told->refused;
+                            l->merges = told->merges;
+                            then(*l);
+                        });
 }
 
 }  // namespace rivulet

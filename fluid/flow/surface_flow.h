@@ -130,8 +130,12 @@ class SurfaceFlow {
     struct Ledger {
         uint64_t added = 0, drops = 0, film = 0, left = 0, evaporated = 0, refused = 0;
         uint64_t merges = 0;
+        uint64_t handed = 0;  // of left, by takeLeft(), when it was asked
     };
     Ledger ledger() const;  // waits
+    // The same without waiting: `then` hears of it once, on the cpu before this returns, on a GPU with a later step; it may outlive the
+    // flow.
+    void ledgerLater(std::function<void(const Ledger&)> then) const;
 
     // All that the next step depends on, in host memory.
     struct Snapshot;

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <iterator>
+
+#include "fluid/io/file_bytes.h"
 
 namespace rivulet {
 
@@ -15,22 +16,25 @@ constexpr MeshFormat kRows[] = {
 };
 constexpr Table<MeshFormat> kFormats{kRows};
 
-void putWord(std::string& out, uint32_t word) {
-    for (unsigned shift = 0; shift < 32; shift += 8) out += static_cast<char>(word >> shift & 0xFFU);
-}
-void putVector(std::string& out, const vec3& v) {
-    for (int k = 0; k < 3; ++k) putWord(out, std::bit_cast<uint32_t>(v[k]));
-}
-
 }  // namespace
 
 const Table<MeshFormat>& meshFormats() { return kFormats; }
 
-std::string writeObj(const MeshView& mesh) {
-    std::string out = "# metres, +Y up\n";
+std::string writeObj(const MeshView& mesh, const ExportFrame& frame) {
+    std::string out = fmt::format("# metres, +{} up\n", frame.upLetter());
     auto end = std::back_inserter(out);
-    for (const vec3& p : mesh.positions) fmt::format_to(end, "v {} {} {}\n", p.x, p.y, p.z);
-    for (const vec3& n : mesh.normals) fmt::format_to(end, "vn {} {} {}\n", n.x, n.y, n.z);
+    for (const vec3& own : mesh.positions) {
+        const vec3 p = frame.turned(own);
+        const dvec3 far = frame.place(own);
+        if (frame.doubles())
+            fmt::format_to(end, "v {} {} {}\n", far.x, far.y, far.z);
+        else
+            fmt::format_to(end, "v {} {} {}\n", p.x, p.y, p.z);
+    }
+    for (const vec3& own : mesh.normals) {
+        const vec3 n = frame.turned(own);
+        fmt::format_to(end, "vn {} {} {}\n", n.x, n.y, n.z);
+    }
     for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
         const uint32_t a = mesh.indices[k] + 1, b = mesh.indices[k + 1] + 1, c = mesh.indices[k + 2] + 1;
         if (mesh.normals.empty())
@@ -41,17 +45,18 @@ std::string writeObj(const MeshView& mesh) {
     return out;
 }
 
-std::string writePly(const MeshView& mesh) {
-    std::string out = "ply\nformat binary_little_endian 1.0\ncomment metres, +Y up\n";
-    out += fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", mesh.positions.size());
+std::string writePly(const MeshView& mesh, const ExportFrame& frame) {
+    const char* type = frame.doubles() ? "double" : "float";
+    std::string out = fmt::format("ply\nformat binary_little_endian 1.0\ncomment metres, +{} up\n", frame.upLetter());
+    out += fmt::format("element vertex {}\nproperty {} x\nproperty {} y\nproperty {} z\n", mesh.positions.size(), type, type, type);
     if (!mesh.normals.empty()) out += "property float nx\nproperty float ny\nproperty float nz\n";
     out += fmt::format("element face {}\nproperty list uchar uint vertex_indices\nend_header\n", mesh.triangleCount());
     const size_t start = out.size();
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
-        putVector(out, mesh.positions[i]);
+        putPlace(out, mesh.positions[i], frame);
         // Assimp takes a line's end that the data begin with for the header's (its issue 5341): one bit of the first number is in the way.
         if (i == 0 && (out[start] == '\n' || out[start] == '\r')) out[start] = '\v';
-        if (!mesh.normals.empty()) putVector(out, mesh.normals[i]);
+        if (!mesh.normals.empty()) putVector(out, frame.turned(mesh.normals[i]));
     }
     for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
         out += '\3';

@@ -6,18 +6,19 @@
 #include "engine/core/mesh_view.h"
 #include "engine/core/result.h"
 #include "engine/core/table.h"
+#include "fluid/io/export_frame.h"
 
 namespace rivulet {
 
 struct MeshFormat {
     const char* name;  // and the file's ending
     const char* doc;
-    std::string (*write)(const MeshView& mesh);  // the file's bytes
+    std::string (*write)(const MeshView& mesh, const ExportFrame& frame);  // the file's bytes
 };
 const Table<MeshFormat>& meshFormats();
 
-// Metres, +Y up; with normals if the mesh has them. Numbers read back exactly, but for the last bits of a ply's first, see there.
-std::string writeObj(const MeshView& mesh);
-std::string writePly(const MeshView& mesh);  // binary, little-endian
+// Metres; with normals if the mesh has them. Numbers read back exactly, but for the last bits of a ply's first, see there.
+std::string writeObj(const MeshView& mesh, const ExportFrame& frame = {});
+std::string writePly(const MeshView& mesh, const ExportFrame& frame = {});  // binary, little-endian
 
 }  // namespace rivulet

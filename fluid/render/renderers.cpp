@@ -98,18 +98,24 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     Result<gpu::Buffer> indices = gpu::Buffer::from(corners);
     if (!indices) return indices.error();
     p.quadIndices = std::move(*indices);
-    p.quads = gpu::VertexArray::create();
     for (gpu::TextureName& texture : p.rowTextures) {
         GLuint name = 0;
         glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
         texture = gpu::TextureName(name);
     }
-    p.quads.elements(p.quadIndices.name());
-    p.none = gpu::VertexArray::create();
+    p.contextChanged();
     GLint most = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
     p.mostTexels = static_cast<uint32_t>(most);
     return p;
+}
+
+void FluidPrograms::contextChanged() {
+    quads.letGo();
+    none.letGo();
+    quads = gpu::VertexArray::create();
+    quads.elements(quadIndices.name());
+    none = gpu::VertexArray::create();
 }
 
 Status FluidPrograms::fits(const FluidView& fluid) const {

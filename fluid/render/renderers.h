@@ -13,35 +13,10 @@
 #include "engine/gpu/program.h"
 #include "engine/gpu/vertex_array.h"
 #include "engine/render/frame_view.h"
+#include "fluid/render/fluid_look.h"
 #include "fluid/render/fluid_view.h"
 
 namespace rivulet {
-
-struct FilterRow;  // fluid/render/filters.h
-
-enum class ColourBy { speed, density, id, dye, normal, surface };
-
-// What of the water is shown: the water, or what it is made from.
-enum class WaterView { water, normals, depth, spheres, thickness };
-struct ViewRow {
-    const char* name;
-    const char* doc;
-    WaterView view;
-};
-const Table<ViewRow>& waterViews();
-
-struct FluidLook {
-    ColourBy colourBy = ColourBy::speed;   // points
-    float fullSpeed = 3.0F;                // m/s: the end of the colour map
-    const FilterRow* filter = nullptr;     // of the surface's depth; null: the first row of filters()
-    float smoothing = 0.0F;                // m, reach of the smoothing, two deviations; 0 = from the spacing
-    float smoothingRange = 0.0F;           // m, how far apart depths of one surface may be; 0 = from the spacing
-    vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
-    vec3 scattering{0.05F, 0.30F, 0.27F};  // 1/m, reduced, per channel
-    float refractiveIndex = 1.333F;        // > 1
-    WaterView view = WaterView::water;     // screen_space
-    bool fast = false;                     // half the resolution for the surface, no reflection of the picture in itself
-};
 
 // A filter's passes: each, and the one that ends it.
 struct FilterPrograms {
@@ -77,6 +52,8 @@ struct FluidPrograms {
     uint32_t mostTexels = 0;                // of a buffer that shaders read as a texture, as this GPU has it
     static Result<FluidPrograms> create(const ShaderFiles& files);
     Status reload();
+    // They were made in another context, with which the one that is current now shares its objects.
+    void contextChanged();
     // Error (failed): more rows than this GPU can read, and those beyond would lie anywhere.
     Status fits(const FluidView& fluid) const;
     // A quad for each of `count` rows, whose vertex shader includes quads.glsl, with the program in use; rows[k] is its ROWS(k, ...).

@@ -24,6 +24,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_generic::solverRows());
     add(kernels_generic::emissionRows());
     add(kernels_generic::bodyRows());
+    add(kernels_generic::queryRows());
     add(kernels_generic::forceRows());
     add(kernels_generic::foamRows());
     add(kernels_generic::flowRows());
@@ -37,6 +38,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx2::solverRows());
     add(kernels_avx2::emissionRows());
     add(kernels_avx2::bodyRows());
+    add(kernels_avx2::queryRows());
     add(kernels_avx2::forceRows());
     add(kernels_avx2::foamRows());
     add(kernels_avx2::flowRows());
@@ -50,6 +52,7 @@ std::vector<CpuKernelRow> cpuKernels() {
     add(kernels_avx512::solverRows());
     add(kernels_avx512::emissionRows());
     add(kernels_avx512::bodyRows());
+    add(kernels_avx512::queryRows());
     add(kernels_avx512::forceRows());
     add(kernels_avx512::foamRows());
     add(kernels_avx512::flowRows());

@@ -1,9 +1,6 @@
 #include "fluid/sim/exchange_passes.h"
 
 #include <algorithm>
-#include <numbers>
-
-#include "fluid/sim/smoothing.h"
 
 namespace rivulet {
 
@@ -13,14 +10,11 @@ constexpr uint32_t kMostFound = 16384;
 
 }  // namespace
 
-Result<ExchangePasses> ExchangePasses::create(Device& device, const FluidParams& params) {
+Result<ExchangePasses> ExchangePasses::create(Device& device) {
     ExchangePasses e;
     e.device_ = &device;
-    // Wendland's kernel at distance 0, on a lattice that is at rest density 1.
-    const double support = double{params.supportSpacings};
-    e.weight_ = static_cast<float>(21.0 / (2.0 * std::numbers::pi * support * support * support) / wendlandLatticeSum(support));
-    for (auto [kernel, path] : {std::pair(&e.fullness_, "fluid/fullness"), std::pair(&e.within_, "fluid/within"),
-                                std::pair(&e.take_, "fluid/take"), std::pair(&e.forget_, "fluid/forget")}) {
+    for (auto [kernel, path] :
+         {std::pair(&e.within_, "fluid/within"), std::pair(&e.take_, "fluid/take"), std::pair(&e.forget_, "fluid/forget")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;
@@ -32,29 +26,6 @@ Result<ExchangePasses> ExchangePasses::create(Device& device, const FluidParams&
         *buffer = std::move(*made);
     }
     return e;
-}
-
-Result<std::vector<float>> ExchangePasses::fullness(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
-                                                    std::span<const vec3> places) {
-    if (places.empty()) return std::vector<float>();
-    if (places_.bytes() < places.size() * sizeof(vec4)) {
-        const size_t room = 2 * places.size();
-        Result<Buffer> more = device_->allocate(room * sizeof(vec4)), answers = device_->allocate(room * sizeof(float));
-        if (!more) return more.error();
-        if (!answers) return answers.error();
-        places_ = std::move(*more);
-        answers_ = std::move(*answers);
-    }
-    std::vector<vec4> asked;
-    asked.reserve(places.size());
-    for (const vec3& p : places) asked.emplace_back(p, 0.0F);
-    device_->writeAll<vec4>(places_, asked);
-    ExchangeParams block{};
-    block.step = step;
-    block.count = static_cast<uint32_t>(places.size());
-    block.weight = weight_;
-    device_->run(fullness_, block, {&grid.cellStart(), &particles.positionNext, &places_, &answers_}, block.count);
-    return device_->readAll<float>(answers_, places.size());
 }
 
 std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const Particles& particles, const Bounds& box, float faster,

@@ -68,7 +68,10 @@ float FluidWorld::Impl::fastestPossible() const {
     const float skin = std::sqrt((params.forces.tension + params.forces.adhesion) / (params.restDensity * params.spacing));
     const float wind = params.forces.airDrag > 0 ? glm::length(params.forces.wind) : 0.0F;
     const float thrown = time == 0 ? static_cast<float>(bodies.fastest()) : 0.0F;  // later it may be what has gone wrong
-    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), thrown, wind, skin}) + fastestFall());
+    float hosts = 0;
+    for (const HostForce& f : hostForces)
+        if (f.fastest != nullptr) hosts = std::max(hosts, f.fastest(f.self));
+    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), thrown, wind, skin, hosts}) + fastestFall());
     return std::max(most, 2.0F * method->soundSpeed(params, fastestFall()));
 }
 
@@ -132,13 +135,13 @@ StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
 // Passes of what is on from now; one that cannot be made stays off, and is said.
 void FluidWorld::Impl::findForces() {
     for (ForceState& f : forcePasses) {
-        f.on = f.row->on(params, method->doesViscosity());
+        f.on = f.wanted(params, method->doesViscosity());
         if (f.on && traits.linked) {  // a slider: create() has refused what was on
-            say(linkedWithout(*f.row));
+            say(linkedWithout(f.name));
             f.on = false;
         }
         if (!f.on || f.pass) continue;
-        Result<ForcePass> made = f.row->make(*device, {params, particles.count, traits, method->doesViscosity()});
+        Result<ForcePass> made = f.make(*device, {params, particles.count, traits, method->doesViscosity()});
         if (made)
             f.pass = std::move(*made);
         else
@@ -217,6 +220,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     if (!(seconds > 0)) return;
     const double now = taken(seconds);
     ++w.frame;
+    w.sortedToAsk = false;
     if (w.particles.count == 0) {
         w.time += now;
         return;
@@ -255,6 +259,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.lastSubsteps = substeps;
     w.time += stepped;
     w.gatherColours();
+    if (stepped > 0) w.volumes.count(w.step, w.particles, w.time);
     if (p.ellipsoids && substeps > 0) {
         if (Status ready = w.ellipsoids.prepare(*w.device, w.traits, w.particles.count); !ready) w.say(ready.error().message);
         w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
@@ -422,17 +427,21 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
         });
 }
 
+bool FluidWorld::knowsCells() const {
+    const Impl& w = *impl_;
+    return w.device->backend() != Backend::cpu && !w.traits.linked && w.traits.samples == 0 && !glm::any(w.traits.periodic) &&
+           !w.method->predicts();
+}
+
 std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
     Impl& w = *impl_;
-    if (w.device->backend() == Backend::cpu || !w.sorted || w.traits.linked || w.traits.samples > 0 || glm::any(w.traits.periodic) ||
-        w.method->predicts())
-        return std::nullopt;
+    if (!w.sorted || !knowsCells()) return std::nullopt;
     w.untouched = true;
     return CellWork{w.step, &w.particles.positionNext, &w.particles.id};
 }
 
 void FluidWorld::Impl::touch() {
-    untouched = false;
+    untouched = sortedToAsk = false;
     if (grid) grid->give({});
 }
 
@@ -450,16 +459,6 @@ void FluidWorld::reset() {
 void FluidWorld::pour(const vec3& place, const vec3& velocity, double volume) {
     impl_->sources.pour(place, velocity, volume);
     impl_->figures->debt = impl_->sources.debt() * std::pow(double{impl_->params.spacing}, 3);
-}
-
-std::vector<float> FluidWorld::fullness(std::span<const vec3> places) {
-    Impl& w = *impl_;
-    ASSERT(w.exchange.any(), "say by Sources::poured that others hold water");
-    if (!w.sorted) return std::vector<float>(places.size(), 0.0F);
-    Result<std::vector<float>> full = w.exchange.fullness(w.step, *w.grid, w.particles, places);
-    if (full) return std::move(*full);
-    w.say(full.error().message);
-    return std::vector<float>(places.size(), 0.0F);
 }
 
 std::vector<WorldParticle> FluidWorld::within(const Bounds& box, float faster, float looser) {
@@ -544,12 +543,14 @@ ParticleView FluidWorld::particles() const {
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
-                                                       const Sources& sources) {
+                                                       const Sources& sources, std::span<const HostForce> forces) {
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
     w.asked = sources;
+    w.hostForces.assign(forces.begin(), forces.end());
+    if (Status s = w.listForces(); !s) return s.error();
     if (Status s = takeLiquid(w.params); !s) return s.error();
     if (device.backend() != Backend::cpu && params.workGroup != FluidParams{}.workGroup)
         w.traits.workGroup = static_cast<uint32_t>(params.workGroup);

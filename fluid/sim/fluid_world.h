@@ -10,8 +10,11 @@
 #include "engine/core/result.h"
 #include "fluid/sim/emitter.h"
 #include "fluid/sim/fluid_params.h"
+#include "fluid/sim/force.h"
 #include "fluid/sim/solids.h"
 #include "fluid/sim/stats.h"
+#include "fluid/sim/volumes.h"
+#include "fluid/sim/water_query.h"
 #include "fluid/sim/world_particle.h"
 #include "fluid/sim/world_state.h"
 
@@ -56,9 +59,9 @@ struct FluidInputs {
 
 class FluidWorld {
   public:
-    // Error: a value that makes no sense together with another, out of memory. `device` must outlive the world.
+    // Error: a value that makes no sense together with another, out of memory. `device` must outlive the world, `forces` are the host's.
     static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
-                                                      const Sources& sources = {});
+                                                      const Sources& sources = {}, std::span<const HostForce> forces = {});
     ~FluidWorld();
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;
@@ -70,29 +73,47 @@ class FluidWorld {
     // What step would simulate of a frame, s: what is beyond fluid.longestFrame is dropped, and said. For hosts that cut frames.
     double taken(double seconds);
     // The next step's first work is to find each particle's cell. Who does that elsewhere while this device does something else (the
-    // thesis's cooperation, 2.3) runs the kernel fluid/cell_of with this, and gives what it found before the next step. Nothing: on the
-    // cpu, before the first step, with bodies, periodic axes, or a method that moves particles before it sorts them.
+    // thesis's cooperation, 2.3) runs the kernel fluid/cell_of with this, and gives what it found before the next step. Nothing: before
+    // the first step, and where no step's cells are known before it: on the cpu, with bodies, periodic axes, linked lists, or a method
+    // that moves particles before it sorts them.
     struct CellWork {
         StepParams step;
         const Buffer *position, *id;  // vec4, uint: as they lie until the next step; step.count of them
     };
+    bool knowsCells() const;  // whether there is such work at all
     std::optional<CellWork> cellWork();
     void giveCells(std::span<const uint32_t> cells);      // void where the world has been changed since cellWork()
     void reset();                                         // back to t = 0
     void setParams(const FluidParams&);                   // takes what can change between steps; `fixed` values wait for a new world
     void setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces
+    void visitForces(ParamVisitor& v);                    // the Params of the host's own forces, a group each
     void setSources(const Sources& sources);              // as many emitters and sinks as there are; shapes and meshes stay as they were
 
     // Water that others hold too, as skins do: Sources::poured says there are such, else these must not be called. Places m, velocities
     // m/s. pour: `volume` m^3 has come down there. It is a debt, and whenever that is as much as a particle, one is born above the place.
     // Volume is what is kept: poured water is of the world's own liquid.
     void pour(const vec3& place, const vec3& velocity, double volume);
-    // The density ratio that particles make at each place after the last step: 0 in the air, about 1 in the midst of water. Waits.
-    std::vector<float> fullness(std::span<const vec3> places);
     // The particles in a box now that are faster (m/s) or of a lower density ratio than that, 16,384 at most; and those of them that go to
     // others, spacing^3 m^3 each. Wait.
     std::vector<WorldParticle> within(const Bounds& box, float faster = 0, float looser = 1.0e9F);
     void take(std::span<const uint32_t> slots);
+
+    // What the water is at places, and where rays meet it (water_query.h), as of now: at t = 0, and after each step. What a step's end gave
+    // birth to is known from the next on. Nothing of the world changes. They wait; where memory does not do, all is air.
+    std::vector<FluidSample> sample(std::span<const vec3> places);
+    std::vector<FluidHit> cast(std::span<const FluidRay> rays);
+    // y (m) of the highest surface over (or under) each x, z, looking down from above the box; NaN where there is no water.
+    std::vector<float> heights(std::span<const vec2> places);
+    // As sample(), without waiting: `then` hears of it once, 2 to 3 frames later on a GPU (within Device::poll(), which step() calls), on
+    // the cpu before this returns; it may outlive the world.
+    void sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then);
+
+    // Volumes to watch (volumes.h), 32 at most, whose counts each step brings up to date; late on a GPU. They are saved and restored, and
+    // reset() empties them. Errors as VolumePasses::set.
+    Status setVolumes(std::span<const Volume> volumes);
+    std::vector<VolumeCount> volumes() const;
+    // What has entered and left each since the last call, where something has.
+    std::vector<VolumeCount> takeVolumeEvents();
 
     const FluidParams& params() const;
     ParticleView particles() const;

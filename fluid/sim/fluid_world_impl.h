@@ -20,6 +20,8 @@
 #include "fluid/sim/particles.h"
 #include "fluid/sim/solid_passes.h"
 #include "fluid/sim/source_passes.h"
+#include "fluid/sim/volumes.h"
+#include "fluid/sim/water_query.h"
 
 namespace rivulet {
 
@@ -42,6 +44,9 @@ struct FluidWorld::Impl {
     SourcePasses sources;
     ExchangePasses exchange;  // where others hold water, too
     uint64_t takenOut = 0;    // particles, by them
+    VolumePasses volumes;
+    WaterQuery query;          // made when it is first asked
+    bool sortedToAsk = false;  // as `sorted`, of position and velocity where a step has not been yet
     std::optional<FoamPasses> foam;
     bool sorted = false;    // the grid is of the particles as they lie
     uint32_t slots = 0;     // of particles: those of the blocks and room for more
@@ -52,10 +57,13 @@ struct FluidWorld::Impl {
     Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
     PairTraits traits;
     struct ForceState {
-        const ForceRow* row;
-        ForcePass pass;  // made when it is first on
+        std::string name;
+        std::function<bool(const FluidParams& params, bool doesViscosity)> wanted;
+        std::function<Result<ForcePass>(Device& device, const MethodSetup& setup)> make;
+        ForcePass pass = {};  // made when it is first on
         bool on = false;
     };
+    std::vector<HostForce> hostForces;
     std::vector<ForceState> forcePasses;
     SolveFigures solve;
     double iterations = 0;  // of this frame's substeps, all of them
@@ -79,8 +87,8 @@ struct FluidWorld::Impl {
     int lastPiece = 0;  // substeps
 
     Status prepare();
-    Status mayLink() const;                                   // whether fluid.grid linked_list knows all that is asked for
-    static std::string linkedWithout(const ForceRow& force);  // a sentence
+    Status mayLink() const;                                    // whether fluid.grid linked_list knows all that is asked for
+    static std::string linkedWithout(std::string_view force);  // a sentence
     Status checkPrecision() const;
     void fillStart();
     Status findSlots();
@@ -96,6 +104,10 @@ struct FluidWorld::Impl {
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
     void say(const std::string& sentence);
     void touch();  // particles are moved between steps
+    template <class Answer, class Ask>
+    std::vector<Answer> ask(size_t count, const Ask& how);
+    Status prepareToAsk(StepParams& params);
+    Status listForces();
     void findForces();
     bool build(bool fromPositions, double from, double to);
     // `last`: of a piece of its frame.

@@ -62,7 +62,6 @@ Status FluidWorld::Impl::prepare() {
     if (!made) return made.error();
     method = std::move(*made);
     if (Status s = checkPrecision(); !s) return s;
-    for (const ForceRow& force : forces().rows) forcePasses.push_back({&force, nullptr});
 
     Result<NeighborGrid> newGrid = NeighborGrid::create(*device, Bounds{params.box.min, params.box.max}, h, count, traits);
     if (!newGrid) return newGrid.error();
@@ -85,7 +84,7 @@ Status FluidWorld::Impl::prepare() {
     if (!passes) return passes.error();
     sources = std::move(*passes);
     if (asked.poured > 0) {
-        Result<ExchangePasses> handed = ExchangePasses::create(*device, params);
+        Result<ExchangePasses> handed = ExchangePasses::create(*device);
         if (!handed) return handed.error();
         exchange = std::move(*handed);
     }
@@ -99,11 +98,26 @@ Status FluidWorld::Impl::prepare() {
     return ok();
 }
 
-std::string FluidWorld::Impl::linkedWithout(const ForceRow& force) {
+// The host's own first: of the others the last wants to know where all lead.
+Status FluidWorld::Impl::listForces() {
+    for (const HostForce& f : hostForces) {
+        if (f.make == nullptr) return badInput(fmt::format("the host's force '{}' has no function make: give it one", f.name));
+        for (const ForceState& other : forcePasses)
+            if (other.name == f.name) return badInput(fmt::format("the host has two forces '{}': give each a name of its own", f.name));
+        if (forces().find(f.name) != nullptr)
+            return badInput(fmt::format("there is a force '{}' already: give the host's another name", f.name));
+        forcePasses.push_back({f.name, [f](const FluidParams& p, bool) { return f.on == nullptr || f.on(f.self, p); },
+                               [f](Device& d, const MethodSetup& setup) { return f.make(f.self, d, setup); }});
+    }
+    for (const ForceRow& force : forces().rows) forcePasses.push_back({force.name, force.on, force.make});
+    return ok();
+}
+
+std::string FluidWorld::Impl::linkedWithout(std::string_view force) {
     return fmt::format(
         "fluid.grid linked_list knows no force '{}': turn it off in fluid.forces, let fluid.collision.walls slip, or choose fluid.grid "
         "sorted",
-        force.name);
+        force);
 }
 
 Status FluidWorld::Impl::mayLink() const {
@@ -116,8 +130,8 @@ Status FluidWorld::Impl::mayLink() const {
     if (!asked.emitters.empty() || !asked.sinks.empty() || asked.poured > 0)
         return badInput("fluid.grid linked_list knows no emitters, sinks and skins: take them away, or choose fluid.grid sorted");
     if (params.foam.most > 0) return badInput("fluid.grid linked_list knows no foam: make fluid.foam.most 0, or choose fluid.grid sorted");
-    for (const ForceRow& force : forces().rows)
-        if (force.on(params, true)) return badInput(linkedWithout(force));
+    for (const ForceState& force : forcePasses)
+        if (force.wanted(params, true)) return badInput(linkedWithout(force.name));
     return ok();
 }
 
@@ -241,6 +255,7 @@ void FluidWorld::Impl::writeStart() {
     sources.reset();
     takenOut = 0;
     if (foam) foam->reset();
+    volumes.reset();
     sorted = false;
     touch();
     gatherColours();

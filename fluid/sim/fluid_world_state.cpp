@@ -41,6 +41,7 @@ void FluidWorld::save(WorldState& state) {
     w.sources.save(state);
     if (w.foam) w.foam->save(state);
     if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.takenOut, 1));
+    w.volumes.save(state);
     w.bodies.save(state);
 }
 
@@ -84,6 +85,8 @@ Status FluidWorld::restore(WorldState& state) {
         if (!foamed) return foamed.error();
         foam = std::move(*foamed);
     }
+    Result<VolumePasses::Saved> volumes = VolumePasses::take(state, w.slots);
+    if (!volumes) return volumes.error();
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
     if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
@@ -125,6 +128,7 @@ Status FluidWorld::restore(WorldState& state) {
         f.limited.push_back(limited->substr(at, end - at));
         at = end + 1;
     }
+    if (Status watched = w.volumes.restore(*w.device, *volumes, w.slots, volume); !watched) return watched;
     return w.solids.restore(*places);
 }
 

@@ -22,6 +22,23 @@ struct ForceRow {
 };
 Table<ForceRow> forces();
 
+// A force of the host's own, handed to FluidWorld::create: it runs beside the rows of forces(), before viscosity. Its kernel is a text like
+// any other (shaders/common/lang.h): a GPU's device is made with ShaderFiles to which it was added, the cpu's with a CpuKernelRow of the
+// same text compiled as C++ (docs in README.md). Params of its own are the host's: no saved state has them.
+struct HostForce {
+    const char* name = "";  // unlike all others'
+    const char* doc = "";
+    void* self = nullptr;  // handed to all of these; outlives the world
+    // Whether it is on now; none: always. Asked before every frame.
+    bool (*on)(void* self, const FluidParams& params) = nullptr;
+    // As ForceRow::make. Pass: it adds to particles.acceleration from position and velocity, sorted; StepParams::force is free for it.
+    Result<ForcePass> (*make)(void* self, Device& device, const MethodSetup& setup) = nullptr;
+    // m/s, the fastest that it drives water; none: no faster than a fall. Beyond ten times what all give speeds are limited, and that is
+    // said.
+    float (*fastest)(void* self) = nullptr;
+    void (*visit)(void* self, ParamVisitor& v) = nullptr;  // its Params; none: it has none
+};
+
 // The longest step (s) with which explicit viscosity is stable: 0.125 hs^2 / nu (Morris et al. 1997).
 double explicitViscousLimit(const FluidParams& params);
 // The viscosity (m^2/s) whose explicit limit a step must keep; 0 where it is solved for implicitly, or left out. `doesViscosity`: see

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fluid/bridge/fluid_upload.h"
 #include "fluid/bridge/scene_renderer.h"
+#include "fluid/render/fluid_upload.h"
 
 namespace rivulet {
 
@@ -32,70 +32,6 @@ Result<SceneFile> sceneOf(int particles, int times) {
     return scene;
 }
 
-// One of what takes turns.
-struct Contender {
-    Chapter2Row row;
-    std::unique_ptr<Session> session;
-    std::unique_ptr<Timeline> timeline;
-    std::unique_ptr<Cooperation> work;
-    FluidUpload upload;
-    std::vector<double> frame, step, draw;  // ms a frame, of each run
-    int frames = 0;
-
-    static Result<Contender> create(const SceneFile& scene, const Chapter2Row& row, Device& device, const Log& log) {
-        auto session = Session::create(scene, device, {});
-        if (!session) return session.error();
-        Contender c{row, std::move(*session), std::make_unique<Timeline>(), nullptr, {}, {}, {}, {}, 0};
-        c.row.particles = static_cast<int>(c.session->world().stats().particles);
-        c.work = std::make_unique<Cooperation>(*c.session, row.way.plan, c.timeline.get(), log);
-        return c;
-    }
-    Status run(SceneRenderer& renderer, const Chapter2& chapter) {
-        const SceneFile& scene = session->scene();
-        Device& device = session->world().device();
-        double whole = 0, stepping = 0, drawing = 0;
-        for (int k = 0; k <= kFrames; ++k) {
-            const double start = hostSeconds();
-            if (!work->started()) work->start(frameSeconds(scene), true);
-            work->finish();
-            for (const PassTime& t : device.takeTimes())
-                if (k > 0) row.passes[t.name] += t.ms;
-            const double stepped = hostSeconds();
-            Result<FluidView> fluid = upload.view(session->world(), scene.look);
-            if (!fluid) return fluid.error();
-            const FrameView view = frameViewOf(cameraOf(scene.camera, session->bounds()), scene.light, chapter.width, chapter.height, 0);
-            work->start(frameSeconds(scene), true);  // in the last one, too: all that are counted are drawn beside a step, or none
-            {
-                const TimedSpan span(timeline.get(), kDrawingLane, "drawn");
-                if (Status drawn = renderer.draw(view, *fluid, session->solids(), scene); !drawn) return drawn;
-                renderer.finish();
-            }
-            if (k == 0) continue;
-            const double done = hostSeconds();
-            whole += done - start;
-            stepping += stepped - start;
-            drawing += done - stepped;
-        }
-        work->drop();
-        device.takeTimes();
-        if (const DeviceHealth health = device.health(); health.state != DeviceHealth::works)
-            return failed(fmt::format("{} {}: nothing it took can be believed", device.info().name, health.why));
-        frames += kFrames;
-        frame.push_back(1000 * whole / kFrames);
-        step.push_back(1000 * stepping / kFrames);
-        draw.push_back(1000 * drawing / kFrames);
-        return ok();
-    }
-    void sumUp() {
-        row.frameMs = spreadOf(frame);
-        row.way.frameMs = row.frameMs.median;
-        row.stepMs = spreadOf(step).median;
-        row.drawMs = spreadOf(draw).median;
-        row.overlapMs = work->stats().overlapMs;
-        for (auto& [name, ms] : row.passes) ms /= frames;
-    }
-};
-
 }  // namespace
 
 Result<Chapter2> runChapter2(const Chapter2Request& request) {
@@ -113,14 +49,25 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
         chapter.devices.push_back(fmt::format("{}: {}", backend, device->info().name));
         devices.push_back(std::move(device));
     }
+    FluidUpload upload;
+    const DrawFrame draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
+        const SceneFile& scene = session.scene();
+        Result<FluidView> fluid = upload.view(session.world(), scene.look);
+        if (!fluid) return fluid.error();
+        const FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, chapter.width, chapter.height, 0);
+        uploaded();
+        if (Status drawn = (*renderer)->draw(view, *fluid, session.solids(), scene); !drawn) return drawn;
+        (*renderer)->finish();
+        passes = (*renderer)->times();
+        return ok();
+    };
     for (const int times : request.times) {
         Result<SceneFile> scene = sceneOf(request.particles, times);
         if (!scene) return scene.error();
-        std::vector<Contender> all;
+        std::vector<PlanTrial> all;
         for (const std::unique_ptr<Device>& device : devices)
             for (const Plan plan : {Plan::alone, device->backend() == Backend::cpu ? Plan::behind : Plan::thesis}) {
-                const Chapter2Row row{.particles = 0, .way = {.backend = backendName(device->backend()), .plan = plan, .passes = {}}};
-                Result<Contender> made = Contender::create(*scene, row, *device, request.log);
+                Result<PlanTrial> made = PlanTrial::create(*scene, *device, plan, request.log);
                 if (!made) return made.error();
                 all.push_back(std::move(*made));
             }
@@ -128,37 +75,27 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
             for (size_t turn = 0; turn < all.size(); ++turn) {
                 chapter.stopped = chapter.stopped || !request.goOn();
                 if (chapter.stopped) return chapter;
-                Contender& c = all[(turn + static_cast<size_t>(run)) % all.size()];  // nobody always comes first
-                if (Status done = c.run(**renderer, chapter); !done) return done.error();
+                PlanTrial& trial = all[(turn + static_cast<size_t>(run)) % all.size()];  // nobody always comes first
+                if (Status done = trial.run(draw, kFrames); !done) return done.error();
             }
-        for (Contender& c : all) {
-            c.sumUp();
-            request.report(c.row);
-            chapter.rows.push_back(std::move(c.row));
+        const size_t first = chapter.rows.size();
+        for (const PlanTrial& trial : all) {
+            chapter.rows.push_back({static_cast<int>(trial.session().world().stats().particles), trial.told()});
+            request.report(chapter.rows.back());
         }
-        if (!chapter.picked.empty()) continue;
-        // What auto would pick of these, by its own short look.
-        FluidUpload upload;
-        const auto draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
-            Result<FluidView> fluid = upload.view(session.world(), session.scene().look);
-            if (!fluid) return fluid.error();
-            const FrameView view =
-                frameViewOf(cameraOf(session.scene().camera, session.bounds()), session.scene().light, chapter.width, chapter.height, 0);
-            uploaded();
-            if (Status drawn = (*renderer)->draw(view, *fluid, session.solids(), session.scene()); !drawn) return drawn;
-            (*renderer)->finish();
-            passes = (*renderer)->times();
-            return ok();
-        };
-        const Result<std::vector<PlanTried>> tried = tryPlans(*scene, request.gl, draw, {});
+        all.clear();
+        // What auto picks of these, by its own short look.
+        const Result<std::vector<PlanTried>> tried = tryPlans({*scene, request.gl, draw});
         if (!tried) return tried.error();
-        chapter.picked = nameOf(tried->front());
-        double best = 1.0e30, own = 1.0e30;
-        for (const Chapter2Row& r : chapter.rows) {
-            best = std::min(best, r.frameMs.median);
-            if (nameOf(r.way) == chapter.picked) own = r.frameMs.median;
+        Chapter2::Picked picked{chapter.rows.back().particles, nameOf(tried->front()), 0};
+        const PlanTried* best = nullptr;
+        const PlanTried* own = nullptr;
+        for (const Chapter2Row& r : std::span(chapter.rows).subspan(first)) {
+            if (best == nullptr || r.way.frameMs.median < best->frameMs.median) best = &r.way;
+            if (nameOf(r.way) == picked.name) own = &r.way;
         }
-        chapter.pickedBehind = own / best - 1;
+        picked.behind = beyond(*own, *best);
+        chapter.picked.push_back(std::move(picked));
     }
     return chapter;
 }

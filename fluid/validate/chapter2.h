@@ -3,15 +3,13 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "engine/core/log.h"
 #include "engine/core/result.h"
-#include "fluid/bridge/backend.h"
-#include "fluid/bridge/cooperation.h"
-#include "fluid/bridge/run_stats.h"
+#include "fluid/bridge/plan_trial.h"
+#include "fluid/render/backend.h"
 
 namespace rivulet {
 
@@ -19,11 +17,7 @@ constexpr int kChapter2Particles = 16384;  // times 1..8
 
 struct Chapter2Row {
     int particles = 0;
-    PlanTried way = {};                         // the backend and the plan; frameMs: median
-    Spread frameMs = {};                        // over the runs
-    double stepMs = 0, drawMs = 0;              // on the wall of the main thread, medians; what waits for another thread included
-    double overlapMs = 0;                       // a frame: of drawing, and what another thread did meanwhile
-    std::map<std::string, double> passes = {};  // ms a frame, the device's kernels, means
+    PlanTried way = {};  // over the runs
 };
 
 struct Chapter2 {
@@ -31,8 +25,12 @@ struct Chapter2 {
     std::vector<std::string> devices;  // "gl: llvmpipe ..."
     std::string drawnBy;
     int width = 0, height = 0;  // pixels
-    std::string picked;         // by --cooperate auto, at the fewest particles
-    double pickedBehind = 0;    // a fraction: what a frame of it takes beyond the best plan's
+    struct Picked {
+        int particles = 0;
+        std::string name;   // what --cooperate auto takes there
+        double behind = 0;  // a fraction: what a frame of it takes beyond the best plan's, median of the runs, in each the two of that run
+    };
+    std::vector<Picked> picked;
     bool stopped = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fluid/bridge/takeover.h"
 #include "fluid/validate/surface.h"
 #include "fluid/validate/trial.h"
 
@@ -93,9 +94,11 @@ std::vector<std::string> methodsOf(const PhysicsCase& row) {
 }
 
 Result<Outcome> runCase(const PhysicsCase& row, const CaseSettings& settings, Device* cpu) {
-    if (ownMethods(row)) return row.run(settings);
-    Result<Outcome> outcome = cpu == nullptr ? row.run(settings) : compareWithCpu(row, settings, *cpu);
-    if (outcome || outcome.error().fault != Fault::badInput || settings.method == "dfsph") return outcome;
+    const bool compared = cpu != nullptr && !ownMethods(row);
+    Result<Outcome> outcome = compared ? compareWithCpu(row, settings, *cpu) : row.run(settings);
+    if (outcome)
+        if (Status sound = stillWorks(*settings.device); !sound) return sound.error();
+    if (outcome || ownMethods(row) || outcome.error().fault != Fault::badInput || settings.method == "dfsph") return outcome;
     // What the method refuses, dfsph takes; what is wrong with the scene or the assignments, nobody does.
     CaseSettings other = settings;
     other.method = "dfsph";

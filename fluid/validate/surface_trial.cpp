@@ -71,7 +71,7 @@ bool SurfaceTrial::goOn(double share) {
 }
 
 Result<SurfaceMap> SurfaceTrial::drawn(const SplatSet& splats, const FrameView& view, const SceneFile& scene) {
-    const Result<FluidLook> look = fluidLookOf(scene);
+    const Result<FluidLook> look = fluidLookOf(scene.look, scene.fluid.liquid);
     if (!look) return look.error();
     const float radius = scene.look.radiusSpacings * splats.spacing;
     Result<std::vector<float>> depth =

@@ -32,7 +32,8 @@ class Trial {
     Status setVelocities(const std::function<dvec3(const dvec3&)>& at);
     // Leaves out the particles of other places.
     Status keep(const std::function<bool(const dvec3&)>& where);
-    // Frames of `frame` s until the scene's duration, or until then (s), `each` after every one. false: it was stopped.
+    // Frames of `frame` s until the scene's duration, or until then (s), `each` after every one. false: it was stopped, or its device has
+    // failed.
     bool run(double frame, const std::function<void()>& each, double until = 3600);
     HostParticles particles() const { return readParticles(session_->world()); }
 

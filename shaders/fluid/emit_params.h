@@ -21,7 +21,7 @@ STRUCT(Candidate) {
     vec4  matter;       // as Particles::matterOf
     vec4  absorption;   // as ParticleView::absorption
 };
-STRUCT(SinkVolume) {
+STRUCT(SinkVolume) {  // of a sink, or of a volume that a host watches
     vec4  low;          // xyz m: a box's low corner, or a sphere's centre; w 0 a box, 1 a sphere
     vec4  high;         // xyz m: a box's high corner; x m: a sphere's radius
 };

@@ -8,14 +8,10 @@ STRUCT(ExchangeParams) {
     StepParams step;
     vec4  low;          // xyz m: the box that is asked about
     vec4  high;
-    uint  count;        // of places asked about, or of slots taken
+    uint  count;        // of slots taken
     uint  most;         // how many particles fit into the answer
-    float weight;       // a particle's share of the density ratio at distance 0
     float faster;       // m/s: only what is, or
     float looser;       // has less than this density ratio
-    uint  unused1;
-    uint  unused2;
-    uint  unused3;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(ExchangeParams) % 16 == 0);

@@ -1,4 +1,4 @@
-// A model's part: textures on the plain surface function, on SKIN, on an EYE; BLENDED over what is behind; a LAYER of liquid on top.
+// A model's part: textures on the plain surface function (with GLOW: its own light and hollows), on SKIN, on an EYE; BLENDED over what is behind; a LAYER of liquid on top.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"
@@ -19,6 +19,11 @@ uniform sampler2D occlusion;
 uniform sampler2D colourMap;
 uniform sampler2D roughnessMap;  // green; metallic: blue
 uniform sampler2D normalMap;
+#if defined(GLOW)
+uniform sampler2D occlusionMap;  // red
+uniform sampler2D glowMap;
+uniform vec3 emission;
+#endif
 uniform sampler2D diffusionMap;  // see makeDiffusionTable
 layout(location = 0) out vec4 colour;
 #if defined(SKIN)
@@ -116,6 +121,9 @@ void main() {
 #if defined(LAYER)
     facing = normalize(facing - q.slope * (layerLook.x - 1.0));  // a prism over a mirror turns it, as seen from outside
 #endif
+#if defined(GLOW)
+    open *= texture(occlusionMap, uv).r;
+#endif
     vec4 rm = texture(roughnessMap, uv);
     float rough = roughness * rm.g, metal = metallic * rm.b;
     f0 = mix(vec3(0.04), albedo.rgb, metal);
@@ -125,6 +133,9 @@ void main() {
     reach *= q.light;
 #endif
     matte = body * (0.3183099 * reach * lit * falling + ambient(facing) * open);
+#if defined(GLOW)
+    matte += emission * texture(glowMap, uv).rgb;
+#endif
     shine = gloss(facing, toEye, f0, max(rough, 0.05), 0.0, falling * lit, open);
 #endif
 

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numeric>
+#include <thread>
 
 namespace rivulet {
 namespace {
@@ -268,10 +270,10 @@ TEST_F(ClDeviceTest, aKeptProgramDoesWhatItsSourceSays) {
     }
     ASSERT_FALSE(key.empty());
     const std::string junk = "this is no program";
-    ProgramCache(cache).keep(key, std::as_bytes(std::span(junk)));
+    DiskCache(cache).keep(key, std::as_bytes(std::span(junk)));
     EXPECT_EQ(scaled("1"), (std::vector<float>{0, 1, 2}));
-    ASSERT_TRUE(ProgramCache(cache).find(key));
-    EXPECT_GT(ProgramCache(cache).find(key)->size(), junk.size());
+    ASSERT_TRUE(DiskCache(cache).find(key));
+    EXPECT_GT(DiskCache(cache).find(key)->size(), junk.size());
     // A mistake in the text is said by its file and line, whatever is kept.
     file("scale", std::string(kScale) + "\n\nnonsense\n");
     Result<std::unique_ptr<Device>> made = makeClDevice(ShaderFiles(root_.string()), {}, {.cache = cache});
@@ -331,6 +333,58 @@ TEST_F(ClDeviceTest, healthSaysWhatWasNotDone) {
         EXPECT_EQ(said.size(), 1U);
     }
     EXPECT_EQ((*doomed)->bytesAllocated(), 0U);
+}
+
+// A dispatch that was taken and fails as it runs is heard of late, through its event: once, with the kernel's name.
+TEST_F(ClDeviceTest, anEventThatFailsIsALostDevice) {
+    std::vector<std::string> said;
+    Result<std::unique_ptr<Device>> doomed = makeClDevice(
+        ShaderFiles(root_.string()), {[&](LogLevel, std::string_view text) { said.emplace_back(text); }}, {.eventFailsAfter = 2});
+    ASSERT_TRUE(doomed);
+    const Define offset[] = {{"OFFSET", "0"}};
+    const Kernel scale = *(*doomed)->kernel("test/scale", offset);
+    std::vector<PassSpan> spans;
+    (*doomed)->onSpan([&](const PassSpan& span) { spans.push_back(span); });
+    {
+        Buffer in = std::move(*(*doomed)->allocate(12)), out = std::move(*(*doomed)->allocate(12));
+        for (int k = 0; k < 2; ++k) (*doomed)->run(scale, FactorParams{3, 2, 0, 0}, {&in, &out}, 3);
+        (*doomed)->finish();
+        EXPECT_EQ((*doomed)->health().state, DeviceHealth::works);
+        for (int k = 0; k < 3; ++k) (*doomed)->run(scale, FactorParams{3, 2, 0, 0}, {&in, &out}, 3);
+        EXPECT_EQ((*doomed)->health().state, DeviceHealth::works) << "nobody has heard of it";
+        (*doomed)->finish();
+        EXPECT_EQ((*doomed)->health().state, DeviceHealth::lost);
+        EXPECT_EQ((*doomed)->health().why, "could not run test/scale: CL_OUT_OF_RESOURCES");
+        (*doomed)->forgiveFull();
+        EXPECT_EQ((*doomed)->health().state, DeviceHealth::lost) << "only what was too large can be let go of";
+        (*doomed)->poll();
+        EXPECT_EQ(said.size(), 1U);
+        ASSERT_EQ((*doomed)->takeTimes().size(), 1U);
+        EXPECT_EQ(spans.size(), 4U) << "what failed took no time";
+    }
+}
+
+// A dispatch is where the host was when it was dispatched and done, a second later, too: the clocks are set anew.
+TEST_F(ClDeviceTest, spansAreOnTheHostsClock) {
+    Buffer in = floats(std::vector<float>(1000, 1.0F)), out = std::move(*device_->allocate(4000));
+    std::vector<PassSpan> spans;
+    device_->onSpan([&](const PassSpan& span) { spans.push_back(span); });
+    const Kernel scale = scaleBy("0");
+    double last = hostSeconds();
+    for (int k = 0; k < 5; ++k) {
+        const double before = hostSeconds();
+        device_->run(scale, FactorParams{1000, 2, 0, 0}, {&in, &out}, 1000);
+        device_->finish();
+        const double after = hostSeconds();
+        ASSERT_EQ(spans.size(), static_cast<size_t>(k) + 1);
+        constexpr double kClock = 0.005;  // s, between a write's end and the host that waits for it
+        EXPECT_GT(spans.back().begin, before - kClock);
+        EXPECT_LT(spans.back().end, after + kClock);
+        EXPECT_GE(spans.back().end, spans.back().begin);
+        EXPECT_GT(spans.back().begin, last - kClock) << "in order";
+        last = spans.back().end;
+        std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    }
 }
 
 TEST_F(ClDeviceTest, aDeviceIsFoundByNumberOrByAPartOfAName) {

@@ -1,4 +1,4 @@
-// Water that others hold beside the world, on cl and gl: as full a place, as many taken, as many born of what is poured.
+// Water that others hold beside the world, on cl and gl: as many taken, as many born of what is poured.
 #include <gtest/gtest.h>
 
 #include "fluid/sim/fluid_world.h"
@@ -15,7 +15,6 @@ TEST_P(ExchangeParity, TheSameOnAGpu) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();
-    std::vector<float> full[2];
     std::vector<vec3> left[2];
     FluidStats stats[2];
     Device* devices[] = {cpu.get(), gpu->device.get()};
@@ -30,8 +29,6 @@ TEST_P(ExchangeParity, TheSameOnAGpu) {
         ASSERT_TRUE(made) << made.error().message;
         FluidWorld& world = **made;
         for (int k = 0; k < 2; ++k) world.step({}, 1.0 / 60);
-        const std::vector<vec3> places = {vec3(0.25F, 0.1F, 0.25F), vec3(0.25F, 0.2F, 0.25F), vec3(0.25F, 0.26F, 0.25F)};
-        full[d] = world.fullness(places);
         std::vector<uint32_t> slots;
         for (const WorldParticle& particle : world.within({vec3(0.1F, 0.05F, 0.1F), vec3(0.3F, 0.5F, 0.3F)}))
             slots.push_back(particle.slot);
@@ -43,7 +40,6 @@ TEST_P(ExchangeParity, TheSameOnAGpu) {
         left[d] = positions(world);
         stats[d] = world.stats();
     }
-    for (size_t k = 0; k < full[0].size(); ++k) EXPECT_NEAR(full[0][k], full[1][k], 2e-3) << k;
     EXPECT_EQ(left[0].size(), left[1].size());
     EXPECT_GT(stats[0].taken, 0.0);
     EXPECT_EQ(stats[0].taken, stats[1].taken);

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/run_stats.h"
+#include "fluid/validate/physics_case.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {
@@ -245,6 +248,201 @@ TEST_F(Takeover, LostBeforeAnythingWasKept) {
     EXPECT_NEAR(water.centre.y, 0.5, 1.0e-3);
     EXPECT_EQ(water.kinetic, 0.0);
     EXPECT_EQ(said_.of("from 0.000 s"), 1U);
+}
+
+// The thesis's lists are a GPU's: the cpu goes on sorted, from where each particle was.
+SceneFile linked() {
+    SceneFile scene = dam("wcsph_thesis");
+    scene.fluid.grid = "linked_list";
+    return scene;
+}
+
+TEST_F(Takeover, LinkedListsGoOnSorted) {
+    SceneFile sorted = linked();
+    sorted.fluid.grid = "sorted";
+    const Water calm = undisturbed(sorted, 200);
+    {
+        std::unique_ptr<Device> device = clWith({.failAfter = 801});
+        auto opened = openSession(linked(), *device, said_.log(), "cl");
+        ASSERT_TRUE(opened) << opened.error().message;
+        ASSERT_FALSE(opened->instead);
+        Session& session = *opened->session;
+        int moves = 0;
+        for (int guard = 0; session.world().time() < 200 * kFrame - 1.0e-9; ++guard) {
+            ASSERT_LT(guard, 1000);
+            session.step(kFrame, true);
+            const Result<bool> moved = keepRunning(session, device, said_.log());
+            ASSERT_TRUE(moved) << moved.error().message;
+            moves += *moved ? 1 : 0;
+        }
+        EXPECT_EQ(moves, 1);
+        EXPECT_EQ(session.scene().fluid.grid, "sorted");
+        EXPECT_EQ(session.world().params().grid, "sorted");
+        EXPECT_EQ(said_.notices.size(), 1U);
+        EXPECT_EQ(said_.of("fluid.grid is sorted"), 1U);
+        expectAlike(waterOf(session.world()), calm);
+        session.reset();
+        session.step(kFrame, true);
+        EXPECT_EQ(session.world().stats().nan, 0U);
+    }
+    // A device that is full still has them: to the bit.
+    const std::unique_ptr<Device> cpu = makeTestCpu();
+    std::unique_ptr<Device> device = clWith({});
+    auto opened = openSession(linked(), *device, said_.log(), "cl");
+    ASSERT_TRUE(opened);
+    Session& session = *opened->session;
+    for (int k = 0; k < 20; ++k) session.step(kFrame, true);
+    const std::vector<vec4> x = byId(session.world(), *session.world().particles().position),
+                            v = byId(session.world(), *session.world().particles().velocity);
+    const Status moved = session.moveTo(*cpu);
+    ASSERT_TRUE(moved) << moved.error().message;
+    EXPECT_EQ(byId(session.world(), *session.world().particles().position), x);
+    EXPECT_EQ(byId(session.world(), *session.world().particles().velocity), v);
+}
+
+TEST_F(Takeover, LinkedListsWithoutMemoryAreSorted) {
+    const std::unique_ptr<Device> small = clWith({.memoryLimit = size_t{100} << 10U});
+    auto opened = openSession(linked(), *small, said_.log(), "cl");
+    ASSERT_TRUE(opened) << opened.error().message;
+    ASSERT_TRUE(opened->instead);
+    EXPECT_EQ(opened->session->scene().fluid.grid, "sorted");
+    EXPECT_EQ(said_.notices.size(), 1U);
+    EXPECT_EQ(said_.of("fluid.grid is sorted"), 1U);
+}
+
+// What a scene's cpu stands in for: another backend that is not there. Where the cpu was asked for, lists make no sense.
+TEST(TakeoverOfNothing, AnAbsentGpuLeavesLinkedListsSorted) {
+    const std::unique_ptr<Device> cpu = makeTestCpu();
+    for (const char* asked : {"gl", "cl", "auto"}) {
+        Said said;
+        auto opened = openSession(linked(), *cpu, said.log(), asked);
+        ASSERT_TRUE(opened) << opened.error().message;
+        EXPECT_FALSE(opened->instead);
+        EXPECT_EQ(opened->session->scene().fluid.grid, "sorted");
+        EXPECT_EQ(said.notices.size(), 1U);
+        EXPECT_EQ(said.of("fluid.grid is sorted"), 1U);
+    }
+    Said said;
+    auto refused = openSession(linked(), *cpu, said.log(), "cpu");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().fault, Fault::badInput);
+    EXPECT_TRUE(said.notices.empty());
+}
+
+// A budget tries settings, and one of them may be too large for the device: it is left out, and the device goes on with another.
+TEST_F(Takeover, ABudgetsTrialThatIsTooLargeIsNoFaultOfTheDevice) {
+    const auto needs = [&](const char* method, float spacing) {
+        SceneFile scene = dam(method);
+        scene.fluid.spacing = spacing;
+        const std::unique_ptr<Device> roomy = clWith({});
+        auto session = Session::create(scene, *roomy, {});
+        EXPECT_TRUE(session);
+        for (int k = 0; k < 3; ++k) (*session)->step(1.0 / 60, true);
+        return roomy->bytesAllocated();
+    };
+    SceneFile scene = dam("dfsph");
+    scene.fluid.spacing = 0.05F;
+    scene.budget.frameMs = 1.0e6F;  // whatever the machine: memory alone decides
+    scene.budget.maxDensityError = 0.05F;
+    // pbf, which smooths what it has, takes more of a particle than dfsph.
+    const size_t pbf = needs("pbf", scene.fluid.spacing), dfsph = needs("dfsph", scene.fluid.spacing);
+    ASSERT_GT(static_cast<double>(pbf), 1.02 * static_cast<double>(dfsph));
+    std::unique_ptr<Device> device = clWith({.memoryLimit = (pbf + dfsph) / 2});
+    auto opened = openSession(scene, *device, said_.log());
+    ASSERT_TRUE(opened) << opened.error().message;
+    EXPECT_FALSE(opened->instead) << "the cpu is not needed";
+    EXPECT_EQ(device->health().state, DeviceHealth::works) << device->health().why;
+    EXPECT_EQ(opened->session->world().params().method, "dfsph");
+    EXPECT_EQ(said_.of("the cpu"), 0U);
+    for (int k = 0; k < 3; ++k) {
+        opened->session->step(1.0 / 60, true);
+        EXPECT_FALSE(*keepRunning(*opened->session, device, said_.log()));
+    }
+    // As many particles as there is memory for.
+    opened->session.reset();
+    SceneFile fine = scene;
+    fine.fluid.spacing = 0.5F * scene.fluid.spacing;
+    opened = openSession(fine, *device, said_.log());
+    ASSERT_TRUE(opened) << opened.error().message;
+    EXPECT_FALSE(opened->instead) << said_.notices.back();
+    EXPECT_EQ(device->health().state, DeviceHealth::works) << device->health().why;
+    EXPECT_GT(opened->session->scene().fluid.spacing, fine.fluid.spacing);
+    EXPECT_GT(opened->session->world().particles().count, 1000U);
+}
+
+// What a failed device has found is no figure.
+TEST_F(Takeover, ACaseOnADeviceThatFailsIsAnError) {
+    const std::unique_ptr<Device> cpu = makeTestCpu();
+    CaseSettings settings;
+    settings.quick = true;
+    settings.assignments = {"fluid.spacing=0.07", "duration=0.1"};
+    for (const bool compared : {true, false}) {
+        const std::unique_ptr<Device> lost = clWith({.failAfter = 300}), works = clWith({});
+        settings.device = lost.get();
+        const Result<Outcome> none = runCase(*physicsCases().find("momentum"), settings, compared ? cpu.get() : nullptr);
+        ASSERT_FALSE(none);
+        EXPECT_EQ(none.error().fault, Fault::failed);
+        EXPECT_NE(none.error().message.find("means nothing"), std::string::npos) << none.error().message;
+        settings.device = works.get();
+        const Result<Outcome> some = runCase(*physicsCases().find("momentum"), settings, compared ? cpu.get() : nullptr);
+        ASSERT_TRUE(some) << some.error().message;
+        EXPECT_FALSE(some->findings.empty());
+    }
+}
+
+// A headless run as a whole: stepped, drawn and recorded frame by frame, the CPU finding cells meanwhile, on a device that fails midway.
+TEST_F(Takeover, ARunGoesToItsEndWhateverFails) {
+    const SceneFile scene = dam("wcsph");
+    const Water calm = undisturbed(scene, 120);
+    for (const ClOptions& fault : {ClOptions{.failAfter = 901}, ClOptions{.eventFailsAfter = 901}}) {
+        SCOPED_TRACE(fault.failAfter);
+        Said said;
+        Timeline timeline;
+        std::unique_ptr<Device> device = clWith(fault);
+        auto opened = openSession(scene, *device, said.log(), "cl");
+        ASSERT_TRUE(opened);
+        ASSERT_FALSE(opened->instead);
+        Session& session = *opened->session;
+        traceKernels(*device, timeline);
+        Cooperation work(session, Plan::thesis, &timeline, said.log());
+        RunRecorder recorder(session.world(), session.fields(), true);
+        int frames = 0, moves = 0;
+        bool helped = false;
+        for (; session.world().time() < 120 * kFrame - 1.0e-9; ++frames) {
+            ASSERT_LT(frames, 1000);
+            const double ms = work.started() ? work.finish() : work.step(kFrame, true);
+            const Result<bool> moved = keepRunning(session, device, said.log());
+            ASSERT_TRUE(moved) << moved.error().message;
+            if (*moved) {
+                ++moves;
+                recorder.follow(session.world());
+                traceKernels(*device, timeline);
+            }
+            recorder.stepped(ms, device->takeTimes());
+            if (session.world().time() < 119 * kFrame - 1.0e-9) work.start(kFrame, true);
+            recorder.drawn(0, ms, {});
+            helped = helped || work.helped();
+        }
+        work.drop();
+        EXPECT_EQ(moves, 1);
+        EXPECT_TRUE(helped);
+        EXPECT_EQ(said.of("the cpu goes on"), 1U);
+        EXPECT_EQ(said.of("--cooperate thesis"), 1U);
+        EXPECT_EQ(said.notices.size(), 2U);
+        const RunStats stats = recorder.finish("dam");
+        EXPECT_EQ(stats.backend, "cpu");
+        EXPECT_EQ(stats.frames, static_cast<uint64_t>(frames));
+        EXPECT_NEAR(stats.seconds, 120 * kFrame, 1.0e-9);
+        EXPECT_EQ(stats.particles, 8192U);
+        EXPECT_EQ(stats.lost, 0U);
+        EXPECT_EQ(stats.nan, 0U);
+        EXPECT_EQ(work.stats().plan, "off");
+        expectAlike(waterOf(session.world()), calm);
+        std::set<std::string> lanes;
+        for (const Timeline::Lane& lane : timeline.lanes()) lanes.insert(lane.name);
+        EXPECT_TRUE(lanes.contains("cl: kernels"));
+        EXPECT_TRUE(lanes.contains("cpu: kernels"));
+    }
 }
 
 // All that a scene can have beside water: what was thrown, what turns and bends, what comes in and goes out.

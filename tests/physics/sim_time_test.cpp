@@ -161,6 +161,39 @@ TEST(Drawn, UniformMotionIsDrawnExactly) {
     }
 }
 
+// A host that draws 144 times a second a world of 100 steps a second: what falls is drawn on Galileo's parabola, one step late, and goes on
+// at every frame by what it falls in one.
+TEST(Drawn, WhatFallsIsDrawnOnAParabola) {
+    auto device = cpu();
+    FluidParams p;
+    p.method = "dfsph";
+    p.spacing = 0.05F;
+    p.fixedStep = 0.01F;
+    p.box.max = vec3(1.0F, 3.0F, 1.0F);
+    p.blocks = {{vec3(0.4F, 2.5F, 0.4F), vec3(0.6F, 2.7F, 0.6F), vec3(0.0F)}};
+    auto world = make(*device, p);
+    const auto height = [&] {
+        double sum = 0;
+        const std::vector<vec4> drawn = byId(*world, *world->particles().drawn);
+        for (const vec4& x : drawn) sum += double{x.y} / static_cast<double>(drawn.size());
+        return sum;
+    };
+    const double g = 9.81, late = double{p.fixedStep}, frame = 1.0 / 144, top = height();
+    double before = top;
+    for (int k = 1; k <= 80; ++k) {
+        world->step({.gravity = p.gravity}, frame);
+        const double t = k * frame - late, now = height();
+        if (world->time() > 0) {
+            // Symplectic Euler is g t dt / 2 ahead; a chord is g dt^2 / 8 under its arc.
+            const double dt = world->stats().dtMax;
+            EXPECT_NEAR(now, top - 0.5 * g * t * t, 0.5 * g * t * dt + 0.125 * g * late * late + 1e-4) << k;
+            if (t > late + frame) EXPECT_NEAR(before - now, g * (t - 0.5 * frame) * frame, g * late * frame + 1e-5) << k;
+        }
+        before = now;
+    }
+    EXPECT_LT(before, top - 1.3) << "half a second";
+}
+
 // Between two states otherwise: on the straight way of each particle, at the share of the step that has gone by.
 TEST(Drawn, LiesBetweenTheLastTwoStates) {
     auto device = cpu();

@@ -20,12 +20,12 @@ Chapter2Row row(int particles, const char* backend, Plan plan, double stepMs, do
     r.particles = particles;
     r.way.backend = backend;
     r.way.plan = plan;
-    r.frameMs = spreadOf({0.9 * ms, ms, 1.2 * ms});
-    r.stepMs = stepMs;
-    r.drawMs = drawMs;
-    r.overlapMs = overlapMs;
-    r.passes = {{"fluid/cell_count", 1},    {"fluid/scan_apply", 1},    {"fluid/reorder", 2},
-                {"fluid/wcsph_density", 4}, {"fluid/wcsph_forces", 10}, {"fluid/walls", 2}};
+    r.way.frameMs = spreadOf({0.9 * ms, ms, 1.2 * ms});
+    r.way.stepMs = stepMs;
+    r.way.drawMs = drawMs;
+    r.way.overlapMs = overlapMs;
+    r.way.passes = {{"fluid/cell_count", 1},    {"fluid/scan_apply", 1},    {"fluid/reorder", 2},
+                    {"fluid/wcsph_density", 4}, {"fluid/wcsph_forces", 10}, {"fluid/walls", 2}};
     return r;
 }
 
@@ -35,8 +35,7 @@ TEST(Chapter2, ThePageReadsTheTableAloudBesideTheThesis) {
     chapter.width = 640;
     chapter.height = 480;
     chapter.devices = {"cpu: one", "gl: another"};
-    chapter.picked = "gl, thesis";
-    chapter.pickedBehind = 0.031;
+    chapter.picked = {{16384, "gl, thesis", 0.031}, {65536, "gl, thesis", 0}, {131072, "gl", 0.2}};
     for (const int particles : {16384, 65536, 131072}) {
         const double most = particles / 16384.0;
         chapter.rows.push_back(row(particles, "cpu", Plan::alone, 10 * most, 4));
@@ -52,12 +51,20 @@ TEST(Chapter2, ThePageReadsTheTableAloudBesideTheThesis) {
     EXPECT_EQ(std::count(csv->begin(), csv->end(), '\n'), 2 + 9);
     EXPECT_NE(csv->find("16384,\"gl, thesis\",9,8.1,10.8,5,4,1.5\n"), std::string::npos) << *csv;
     for (const char* said :
-         {"36.08 ms of simulation and 9.01 ms of drawing | 24 ms a frame (gl, thesis): 20 ms until it is stepped, 4 ms of drawing",
-          "above 10 frames a second | 131072 particles: 22.7 frames a second (gl, thesis)",
-          "picks gl, thesis at 16384 particles, 3.1 % beyond", "| 16384 | 14 (12.6 to 16.8) | 10 (9 to 12) | 9 (8.1 to 10.8) |",
+         {"36.08 ms of simulation and 9.01 ms of drawing | gl: 24 ms of simulation and 4 ms of drawing; the fastest frame 24 ms (gl, "
+          "thesis)",
+          "above 10 frames a second | 131072 particles: 22.7 frames a second (gl, thesis)", "| 16384 | gl, thesis | 3.1 % |",
+          "The aim is 5 %: 2 of 3 hold it.", "| 16384 | 14 (12.6 to 16.8) | 10 (9 to 12) | 9 (8.1 to 10.8) |",
           "| 65536 | gl | 5 | 15 | 20 | 50 | 10 | 20 | 4 |"})
         EXPECT_NE(page->find(said), std::string::npos) << said << "\n" << *page;
     EXPECT_EQ(page->find("(chapter2.svg)") != std::string::npos, static_cast<bool>(written));
+}
+
+// Runs that are slow for both say nothing of either: 10 % beyond, in the middle.
+TEST(Chapter2, PlansAreComparedRunByRun) {
+    const PlanTried other{.backend = "cpu", .turns = {10, 20, 40, 10, 10}}, own{.backend = "gl", .turns = {11, 22, 44, 9, 15}};
+    EXPECT_NEAR(beyond(own, other), 0.1, 1.0e-12);
+    EXPECT_EQ(beyond(other, other), 0);
 }
 
 TEST(Chapter2, AShortRunMeasuresEveryPlanThatThereIs) {
@@ -74,13 +81,16 @@ TEST(Chapter2, AShortRunMeasuresEveryPlanThatThereIs) {
     ASSERT_TRUE(chapter) << chapter.error().message;
     for (const char* way : {"cpu", "cpu, behind", "gl", "gl, thesis"}) EXPECT_TRUE(ways.contains(way)) << way;
     EXPECT_EQ(chapter->rows.size(), 2 * ways.size());
-    EXPECT_TRUE(ways.contains(chapter->picked)) << chapter->picked;
-    EXPECT_GE(chapter->pickedBehind, 0);
+    ASSERT_EQ(chapter->picked.size(), 2U);
+    for (const Chapter2::Picked& p : chapter->picked) {
+        EXPECT_TRUE(ways.contains(p.name)) << p.name;
+        EXPECT_GT(p.behind, -0.5);
+    }
     for (const Chapter2Row& r : chapter->rows) {
         EXPECT_TRUE(r.particles == 256 || r.particles == 512) << r.particles;
-        EXPECT_NEAR(r.stepMs + r.drawMs, r.frameMs.median, 1.0e-6);
-        EXPECT_EQ(r.passes.contains("fluid/wcsph_forces"), true);
-        if (r.way.plan == Plan::alone) EXPECT_EQ(r.overlapMs, 0);
+        EXPECT_NEAR(r.way.stepMs + r.way.drawMs, r.way.frameMs.median, 1.0e-6);
+        EXPECT_EQ(r.way.passes.contains("fluid/wcsph_forces"), true);
+        if (r.way.plan == Plan::alone) EXPECT_EQ(r.way.overlapMs, 0);
     }
     request.goOn = [] { return false; };
     const Result<Chapter2> none = runChapter2(request);

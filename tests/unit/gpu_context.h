@@ -1,8 +1,8 @@
 // What every test with OpenGL needs: a headless context, and that the driver has no errors to report.
 #pragma once
 
-#include <glad/gl.h>
 #include <gtest/gtest.h>
+#include <rivulet_glad/gl.h>
 #include <unistd.h>
 
 #include <filesystem>

@@ -74,6 +74,59 @@ TEST_F(GpuFrameGraph, TexturesThatNeverMeetShareMemory) {
     EXPECT_EQ(pool_->bytes(), 2U * 4 * 4 * 4);
 }
 
+// What is shown of a graph is what it did: who was left out, who used what, from when to when, and what shared memory with what.
+TEST_F(GpuFrameGraph, DescribesWhatItDid) {
+    const Texture outside = std::move(*Texture::create(square(8)));
+    FrameGraph graph(*pool_);
+    const TextureHandle from = graph.importTexture("outside", outside);
+    const TextureHandle a = addClear(graph, "a", 1);
+    const TextureHandle b = graph.texture("b", square(4)), c = graph.texture("c", square(4)), unseen = graph.texture("unseen", square(4));
+    std::vector<GLuint> names(3);
+    graph.pass("B", {a, from}, {b}, [&](PassContext& x) {
+        names[0] = x.texture(a).name();
+        names[1] = x.texture(b).name();
+    });
+    graph.pass("unseen", {b}, {unseen}, [](PassContext&) { FAIL() << "nobody needs it"; });
+    graph.pass("C", {{b, Usage::image}}, {c}, [&](PassContext& x) { names[2] = x.texture(c).name(); });
+    const BufferHandle buffer = graph.buffer("numbers", 1000);
+    graph.pass("D", {c}, {buffer}, [](PassContext&) {});
+    graph.output(buffer);
+    ASSERT_TRUE(graph.execute());
+
+    const FrameGraphDescription d = graph.describe();
+    const std::vector<FrameGraph::Ran> ran = graph.ran();
+    ASSERT_EQ(d.passes.size(), ran.size());
+    for (size_t p = 0; p < ran.size(); ++p) {
+        EXPECT_EQ(d.passes[p].name, ran[p].name);
+        EXPECT_EQ(d.passes[p].culled, ran[p].culled);
+    }
+    const auto of = [&](const char* name) {
+        return *std::find_if(d.resources.begin(), d.resources.end(), [&](const auto& r) { return r.name == name; });
+    };
+    EXPECT_EQ(of("a").first, 0U);
+    EXPECT_EQ(of("a").last, 1U);
+    EXPECT_EQ(of("b").first, 1U);
+    EXPECT_EQ(of("b").last, 3U) << "who was left out kept nothing alive";
+    EXPECT_EQ(of("unseen").first, SIZE_MAX);
+    EXPECT_EQ(of("unseen").memory, SIZE_MAX);
+    EXPECT_EQ(of("a").memory == of("b").memory, names[0] == names[1]);
+    EXPECT_EQ(of("a").memory == of("c").memory, names[0] == names[2]);
+    EXPECT_EQ(of("a").memory, of("c").memory) << "they are never alive together";
+    EXPECT_TRUE(of("outside").imported);
+    EXPECT_EQ(of("outside").memory, SIZE_MAX);
+    EXPECT_EQ(of("outside").format, "r32f");
+    EXPECT_EQ(of("outside").bytes, 8U * 8 * 4);
+    EXPECT_EQ(of("numbers").bytes, 1000U);
+    EXPECT_TRUE(of("numbers").output);
+    EXPECT_EQ(d.memories, pool_->textures() + pool_->buffers());
+    EXPECT_EQ(d.lentBytes, pool_->bytes());
+    EXPECT_EQ(d.heldBytes, pool_->bytes());
+    ASSERT_EQ(d.passes[3].reads.size(), 1U);
+    EXPECT_EQ(d.resources[d.passes[3].reads[0].resource].name, "b");
+    EXPECT_STREQ(usageName(d.passes[3].reads[0].usage), "image");
+    EXPECT_STREQ(usageName(d.passes[4].writes[0].usage), "storage");
+}
+
 TEST_F(GpuFrameGraph, TexturesOfAnotherDescriptionOrAliveTogetherDoNot) {
     FrameGraph graph(*pool_);
     const TextureHandle a = addClear(graph, "a", 1), b = addClear(graph, "b", 2), larger = addClear(graph, "larger", 3, 8);

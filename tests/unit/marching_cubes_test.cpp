@@ -109,7 +109,7 @@ TEST(MarchingCubes, AssimpReadsTheMeshBack) {
     const SurfaceMesh mesh = meshOf(ballOf(5, 0.1), 2);
     for (const MeshFormat& format : meshFormats().rows) {
         const std::string path = scratch.file(std::string("ball.") + format.name);
-        ASSERT_TRUE(writeFileAtomic(path, format.write(mesh.view())));
+        ASSERT_TRUE(writeFileAtomic(path, format.write(mesh.view(), {})));
         Result<Mesh> back = importMesh(path);
         ASSERT_TRUE(back) << back.error().message;
         EXPECT_EQ(back->view().triangleCount(), mesh.view().triangleCount());

@@ -84,6 +84,24 @@ TEST_F(ProgramOpenCl, OfSeveralThatFitTheFirstIsTakenAndSaid) {
     }
 }
 
+// PoCL shares no memory with OpenGL: the ring carries the frame, figures say why, and nobody is bothered with it. What is not drawn is not
+// brought over.
+TEST_F(ProgramOpenCl, WhereNothingIsSharedTheRingCarriesTheFrameAndFiguresSayWhy) {
+    if (runProgram({"list", "devices"}).out.find("Portable") == std::string::npos) GTEST_SKIP() << "this machine has no PoCL";
+    const Outcome drawn = runProgram(
+        {"run", scene_, "--headless", "--device", "Portable", "--size", "64x48", "--frames", "2", "--out", scratch_.file("out")});
+    EXPECT_EQ(drawn.code, 0) << drawn.err;
+    EXPECT_EQ(drawn.err, "");
+    for (const char* said :
+         {R"("backend": "cl")", R"("way": "ring")", R"("why": "Portable Computing Language offers no cl_khr_gl_sharing")"})
+        EXPECT_NE(statsOf(scratch_).find(said), std::string::npos) << said << " in " << statsOf(scratch_);
+    const Outcome undrawn = runProgram(simulate(scene_, scratch_, {"--device", "Portable"}));
+    EXPECT_EQ(undrawn.code, 0) << undrawn.err;
+    EXPECT_EQ(undrawn.err, "");
+    for (const char* said : {R"("backend": "cl")", R"("way": "none")", R"("why": "")"})
+        EXPECT_NE(statsOf(scratch_).find(said), std::string::npos) << said << " in " << statsOf(scratch_);
+}
+
 TEST_F(ProgramOpenCl, TheSecondStartFindsTheProgramsOfTheFirst) {
     RunOptions own;
     own.environment["XDG_CACHE_HOME"] = scratch_.file("cache");

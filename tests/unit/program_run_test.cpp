@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -65,6 +66,7 @@ TEST(ProgramRun, SteppingBehindDrawingChangesNoPicture) {
         const Json::Value stats = readJson(scratch.path() / plan / "stats.json");
         EXPECT_EQ(stats["cooperation"]["plan"], plan);
         EXPECT_EQ(stats["transfer"]["way"], "ring");
+        EXPECT_NE(stats["transfer"]["why"], "");
         EXPECT_GT(stats["transfer"]["bytes"].asDouble(), 0);
     }
     size_t compared = 0;
@@ -78,9 +80,52 @@ TEST(ProgramRun, SteppingBehindDrawingChangesNoPicture) {
     EXPECT_GT(readJson(scratch.path() / "behind/stats.json")["cooperation"]["overlapMs"].asDouble(), 0);
     std::set<std::string> lanes;
     const Json::Value trace = readJson(scratch.path() / "behind.json");
-    for (const Json::Value& event : trace["traceEvents"])
-        if (event["ph"] == "M") lanes.insert(event["args"]["name"].asString());
+    std::map<std::string, int> passes;  // how often each was drawn
+    int drawing = 0;
+    for (const Json::Value& event : trace["traceEvents"]) {
+        if (event["ph"] == "M") {
+            lanes.insert(event["args"]["name"].asString());
+            if (event["args"]["name"] == "gl: drawing") drawing = event["tid"].asInt();
+        } else if (event["tid"].asInt() == drawing) {
+            ++passes[event["name"].asString()];
+        }
+    }
+    EXPECT_EQ(passes["tonemap"], 8) << "the last frames', too";
     EXPECT_EQ(lanes, (std::set<std::string>{"cpu: ahead", "cpu: kernels", "gl: drawing", "main"}));
+}
+
+// With the cpu a frame ahead of the pictures, too: at the run's end, and where Ctrl-C ends it.
+TEST(ProgramRun, WhatIsSavedIsWhatWasDrawnLast) {
+    Scratch scratch;
+    const std::string scene = scratch.file("small.json", smallScene());
+    const auto run = [&](const char* plan, const std::string& out, const std::vector<std::string>& more, const RunOptions& options) {
+        std::vector<std::string> words = {"run",   scene, "--headless", "--backend",     "cpu",         "--size", "160x90",
+                                          "--out", out,   "--save",     out + ".rstate", "--cooperate", plan};
+        words.insert(words.end(), more.begin(), more.end());
+        return runProgram(words, options);
+    };
+    const auto saved = [&](const std::string& out) { return *readFile((scratch.path() / (out + ".rstate")).string()); };
+    for (const char* plan : {"off", "behind"}) EXPECT_EQ(run(plan, plan, {"--frames", "7"}, in(scratch)).code, 0);
+    EXPECT_EQ(saved("behind"), saved("off"));
+    // On from there, and the whole way.
+    const Outcome resumed = run("behind", "resumed", {"--resume", "behind.rstate", "--frames", "5"}, in(scratch));
+    EXPECT_EQ(resumed.code, 0) << resumed.err;
+    EXPECT_EQ(run("off", "whole", {"--frames", "12"}, in(scratch)).code, 0);
+    EXPECT_EQ(saved("resumed"), saved("whole"));
+
+    RunOptions options = in(scratch);
+    bool sent = false;
+    options.whileRunning = [&](pid_t) {
+        if (sent || !fs::exists(scratch.path() / "stopped/small_0000.png")) return 0;
+        sent = true;
+        return SIGINT;
+    };
+    EXPECT_EQ(run("behind", "stopped", {"--seconds", "600"}, options).code, 130);
+    const Json::Value stats = readJson(scratch.path() / "stopped/stats.json");
+    const std::string frames = std::to_string(stats["frames"].asInt());
+    EXPECT_EQ(probe(scratch.path() / "stopped/small.mp4"), "160,90," + frames + "\n");
+    EXPECT_EQ(run("off", "again", {"--frames", frames}, in(scratch)).code, 0);
+    EXPECT_EQ(saved("stopped"), saved("again"));
 }
 
 TEST(ProgramRun, PlansThatMakeNoSenseAreSaid) {
@@ -96,6 +141,11 @@ TEST(ProgramRun, PlansThatMakeNoSenseAreSaid) {
         runProgram({"run", scene, "--no-render", "--frames", "1", "--backend", "cpu", "--cooperate", "thesis"}, in(scratch));
     EXPECT_EQ(alone.code, 0);
     EXPECT_NE(alone.err.find("GPU"), std::string::npos) << alone.err;
+    const Outcome undrawn =
+        runProgram({"run", scene, "--no-render", "--frames", "3", "--backend", "cl", "--cooperate", "thesis"}, in(scratch));
+    EXPECT_EQ(undrawn.code, 0);
+    EXPECT_NE(undrawn.err.find("nothing is drawn"), std::string::npos) << undrawn.err;
+    EXPECT_EQ(readJson(scratch.path() / "out/stats.json")["cooperation"]["plan"], "off");
 }
 
 // Ten times slower than life: a frame is a tenth of the time, and moments are still told in simulated seconds.

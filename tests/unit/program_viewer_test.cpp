@@ -5,6 +5,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include <cctype>
+#include <cstdlib>
 #include <optional>
 
 #include "engine/core/json.h"
@@ -91,6 +93,37 @@ class Person : public testing::FramebufferFixture {
         for (const char* group : {"fluid", "look", "camera", "light", "background"}) unfold({group});
         unfold({"fluid", "box"});
         unfold({"fluid", "collision"});
+    }
+    // Moves the mouse over the widget of these names ("#2": a number) in the windows whose names hold `window`: looks for it row by row,
+    // as a person does.
+    bool hover(std::string_view window, std::initializer_list<const char*> names) {
+        for (ImGuiWindow* each : ImGui::GetCurrentContext()->Windows) {
+            if (!each->WasActive || std::string_view(each->Name).find(window) == std::string_view::npos) continue;
+            ImGuiID id = each->ID;
+            for (const char* name : names) {
+                const int number = name[0] == '#' && std::isdigit(name[1]) != 0 ? std::atoi(name + 1) : -1;
+                id = number >= 0 ? ImHashData(&number, sizeof number, id) : ImHashStr(name, 0, id);
+            }
+            const ImRect inside = each->InnerRect;
+            for (const float share : {0.12F, 0.35F, 0.6F, 0.92F})
+                for (float y = inside.Min.y + 4; y < inside.Max.y; y += 7) {
+                    moveTo({inside.Min.x + share * inside.GetWidth(), y});
+                    frame();
+                    if (ImGui::GetCurrentContext()->HoveredIdPreviousFrame == id) return true;
+                }
+        }
+        return false;
+    }
+    void click(MouseButton button = MouseButton::left) {
+        press(button, true);
+        press(button, false);
+        frame();
+    }
+    void type(const char* text) {
+        for (; *text != '\0'; ++text) {
+            input_.text = *text;
+            frame();
+        }
     }
     const CameraParams& camera() const { return viewer_->scene().camera; }
     float distance() const { return glm::length(camera().position - camera().target); }
@@ -215,6 +248,41 @@ TEST_F(Person, ADisplayOfTwiceThePixelsShowsTheSameInAllOfThem) {
 
 // Every row of the panel is pressed and dragged: no crash, what changed is a scene that could be read from a file, and where a value is
 // one that needs a new world there is one.
+// On a screen of twice as many dots an inch, or where the person wants them larger, panels are twice as large, and so is what is clicked.
+TEST_F(Person, PanelsGrowWithTheScreenAndAsWanted) {
+    frame();
+    frame();
+    const auto panel = [] {
+        for (ImGuiWindow* each : ImGui::GetCurrentContext()->Windows)
+            if (std::string_view(each->Name).find("###scene") != std::string_view::npos && each->ParentWindow == nullptr)
+                return each->Rect();
+        return ImRect();
+    };
+    const ImRect before = panel();
+    ASSERT_TRUE(hover("###scene", {"step"}));
+    const vec2 button = input_.mouse;
+    const uint64_t steps = viewer_->steps();
+    input_.size = 2 * kWindow;
+    input_.scale = 2;
+    frame();
+    frame();
+    EXPECT_EQ(panel().Min.x, before.Min.x);
+    EXPECT_EQ(panel().Max.y, before.Max.y);
+    moveTo(2.0F * button);
+    frame();
+    click();
+    EXPECT_EQ(viewer_->steps(), steps + 1);
+    input_.size = kWindow;
+    input_.scale = 1;
+    input_.keysDown = {key::kLeftControl};
+    for (int k = 0; k < 3; ++k) key('=');  // 1.25 each
+    input_.keysDown.clear();
+    moveTo(button * std::pow(1.25F, 3.0F));
+    frame();
+    click();
+    EXPECT_EQ(viewer_->steps(), steps + 2);
+}
+
 TEST_F(Person, EverySliderMayBeDragged) {
     key(GLFW_KEY_SPACE);
     input_.framebuffer = ivec2(0);  // the panel alone
@@ -244,6 +312,63 @@ TEST_F(Person, EverySliderMayBeDragged) {
     EXPECT_TRUE(recreated) << "the spacing's slider makes a new world when it is let go of";
     key(GLFW_KEY_PERIOD);
     EXPECT_TRUE(std::isfinite(viewer_->session().world().stats().kinetic));
+}
+
+TEST_F(Person, ParametersAreFoundByWordsAndResetToWhatTheyWere) {
+    key(GLFW_KEY_SPACE);
+    input_.framebuffer = ivec2(0);  // the panel alone
+    frame();
+    frame();
+    const float was = viewer_->scene().fluid.viscosity;
+    static constexpr std::initializer_list<const char*> kSlider = {"fluid", "viscosity", "##v", "#0", ""};
+    EXPECT_FALSE(hover("parameters", kSlider)) << "it is folded away";
+    ASSERT_TRUE(hover("###scene", {"##wanted"}));
+    click();
+    type("Kinematic VISC");
+    ASSERT_TRUE(hover("parameters", kSlider)) << "found by two words of its doc";
+    EXPECT_FALSE(hover("parameters", {"fluid", "spacing", "##v", "#0", ""})) << "it has nothing to do with that";
+    const auto slide = [&] {
+        ASSERT_TRUE(hover("parameters", kSlider));
+        press(MouseButton::left, true);
+        moveTo(input_.mouse + vec2(40, 0));
+        press(MouseButton::left, false);
+        EXPECT_NE(viewer_->scene().fluid.viscosity, was);
+    };
+    slide();
+    ASSERT_TRUE(hover("###scene", {"reset all"}));
+    click();
+    EXPECT_EQ(viewer_->scene().fluid.viscosity, was);
+    EXPECT_FALSE(hover("###scene", {"reset all"})) << "nothing is changed any more";
+    slide();
+    ASSERT_TRUE(hover("parameters", kSlider));
+    moveTo({40, input_.mouse.y});  // over its name
+    click(MouseButton::right);
+    ASSERT_TRUE(hover("##Popup", {"as opened"}));
+    click();
+    EXPECT_EQ(viewer_->scene().fluid.viscosity, was);
+    ASSERT_TRUE(hover("###scene", {"clear"}));
+    click();
+    EXPECT_TRUE(hover("parameters", {"fluid", "fluid"})) << "all groups are there again";
+}
+
+// What differs is told by paths, whatever a text holds.
+TEST(ParamMemory, KnowsWhatIsNoLongerAsItWas) {
+    SceneFile scene;
+    scene.name = "small";
+    const auto visit = [&scene](ParamVisitor& v) { scene.visit(v); };
+    SceneFile none;
+    ParamMemory memory;
+    memory.open(visit, [&none](ParamVisitor& v) { none.visit(v); });
+    memory.compare(visit);
+    EXPECT_TRUE(memory.changed().empty());
+    scene.fluid.viscosity *= 3;
+    scene.name = "a \"quoted\" name\nof two lines";
+    memory.compare(visit);
+    ASSERT_EQ(memory.changed().size(), 2U);
+    EXPECT_EQ(memory.changed().at("name"), "\"small\"");
+    ASSERT_NE(memory.byDefault("colliders[3].motion.keys[12].time"), nullptr);
+    EXPECT_EQ(*memory.byDefault("colliders[3].motion.keys[12].time"), "0");
+    EXPECT_EQ(memory.byDefault("colliders[3].motion.keys[12].tim"), nullptr);
 }
 
 // An edit that asks for more memory than voxels may take is refused, and all stays as it was: the session, its water, the values.
@@ -322,6 +447,27 @@ TEST_F(Person, ThePanelsLieOverThePicture) {
 TEST(ParamPanelNames, AreReadable) {
     EXPECT_EQ(readableName("artificialViscosity"), "artificial viscosity");
     EXPECT_EQ(readableName("cfl"), "cfl");
+}
+
+// What auto tried is no part of the run; the last frames, whose times come late, are.
+TEST_F(Person, ATraceIsOfTheRunFromItsFirstFrameToItsLast) {
+    const SceneFile scene = viewer_->scene();
+    viewer_.reset();
+    auto viewer = Viewer::create(scene, {.backend = "cpu", .cooperate = "auto", .width = 64, .height = 64}, {});
+    ASSERT_TRUE(viewer) << viewer.error().message;
+    viewer_ = std::move(*viewer);
+    const double begun = hostSeconds();
+    constexpr size_t kFrames = 5;
+    for (size_t k = 0; k < kFrames; ++k) frame(1.0 / 60);
+    ASSERT_TRUE(viewer_->settle());
+    size_t drawn = 0;
+    for (const Timeline::Lane& lane : viewer_->wholeTimeline().lanes())
+        for (const PassSpan& span : lane.spans) {
+            constexpr double kClock = 0.002;  // s, of the GPU's clock
+            EXPECT_GT(span.begin, begun - kClock) << lane.name << " " << span.name;
+            drawn += lane.name == kDrawingLane && span.name == "tonemap" ? 1 : 0;
+        }
+    EXPECT_EQ(drawn, kFrames);
 }
 
 }  // namespace

@@ -51,12 +51,43 @@ TEST(Timeline, TheOldestAreForgotten) {
     Timeline timeline(100);
     for (int k = 0; k < 250; ++k) timeline.add("cpu", {"", double(k), k + 0.5});
     const std::vector<PassSpan> kept = timeline.lanes().front().spans;
-    EXPECT_TRUE(timeline.forgot());
+    // What ended later is all there; nothing of what is there ended before.
+    const double since = timeline.remembersSince();
+    EXPECT_EQ(since, kept.front().begin - 0.5);
     EXPECT_LE(kept.size(), 100U);
     EXPECT_GE(kept.size(), 50U);
     EXPECT_EQ(kept.back().begin, 249);
     for (size_t k = 1; k < kept.size(); ++k) EXPECT_EQ(kept[k].begin, kept[k - 1].begin + 1);
     EXPECT_EQ(timeline.lanes(248.2).front().spans.size(), 2U);
+}
+
+TEST(Timeline, SaysFromWhenOnNothingIsForgotten) {
+    Timeline timeline(100);
+    EXPECT_EQ(timeline.remembersSince(), 0);
+    // Two lanes, of which one hears late and in no order.
+    for (int k = 0; k < 100; ++k) timeline.add(k % 2 == 0 ? "cpu" : "gpu", {"", double(k ^ 3), (k ^ 3) + 0.5});
+    EXPECT_EQ(timeline.remembersSince(), 0);
+    timeline.add("cpu", {"", 100, 100.5});
+    const double since = timeline.remembersSince();
+    EXPECT_GT(since, 0);
+    std::vector<bool> there(101);
+    for (const Timeline::Lane& lane : timeline.lanes(since))
+        for (const PassSpan& span : lane.spans) there[static_cast<size_t>(span.begin)] = true;
+    for (size_t k = 0; k <= 100; ++k)
+        if (static_cast<double>(k) + 0.5 > since) EXPECT_TRUE(there[k]) << k;
+}
+
+TEST(Timeline, StartedAnewItHearsNothingOfWhatBeganBefore) {
+    Timeline timeline(10);
+    for (int k = 0; k < 20; ++k) timeline.add("cpu", {"", double(k), k + 0.5});
+    const double early = hostSeconds();
+    timeline.restart();
+    EXPECT_EQ(timeline.remembersSince(), 0);
+    timeline.add("gpu", {"a late one", early, hostSeconds()});
+    EXPECT_TRUE(timeline.lanes().empty());
+    timeline.add("gpu", {"its own", hostSeconds(), hostSeconds()});
+    ASSERT_EQ(timeline.lanes().size(), 1U);
+    EXPECT_EQ(timeline.lanes()[0].spans[0].name, "its own");
 }
 
 TEST(Timeline, TakesSpansFromManyThreads) {

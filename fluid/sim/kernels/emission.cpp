@@ -29,16 +29,12 @@ namespace emit_absorption {
 #include "shaders/fluid/emit.kernel"
 }
 #undef ABSORPTION
+#undef RIVULET_IN_VOLUME_H
 namespace drain_unit {
 #include "shaders/fluid/drain.kernel"
 }
 namespace forget_unit {
 #include "shaders/fluid/forget.kernel"
-}
-#undef RIVULET_GRID_H
-#undef RIVULET_AROUND_H
-namespace fullness_unit {
-#include "shaders/fluid/fullness.kernel"
 }
 #undef RIVULET_GRID_H
 namespace cell_of_unit {
@@ -64,7 +60,6 @@ std::span<const CpuKernelRow> emissionRows() {
         {"fluid/emit", "ABSORPTION=1;MATTER=1", RIVULET_UNIT_ISA, emit_matter_absorption::emit, 64},
         {"fluid/drain", "", RIVULET_UNIT_ISA, drain_unit::drain, 1024},
         {"fluid/forget", "", RIVULET_UNIT_ISA, forget_unit::forget, 1024},
-        {"fluid/fullness", "", RIVULET_UNIT_ISA, fullness_unit::fullness, 64},
         {"fluid/cell_of", "", RIVULET_UNIT_ISA, cell_of_unit::cell_of, 1024},
         {"fluid/within", "", RIVULET_UNIT_ISA, within_unit::within, 1024},
         {"fluid/take", "", RIVULET_UNIT_ISA, take_unit::take, 1024},

@@ -14,6 +14,7 @@
     std::span<const CpuKernelRow> solverRows();   \
     std::span<const CpuKernelRow> emissionRows(); \
     std::span<const CpuKernelRow> bodyRows();     \
+    std::span<const CpuKernelRow> queryRows();    \
     std::span<const CpuKernelRow> forceRows();    \
     std::span<const CpuKernelRow> foamRows();     \
     std::span<const CpuKernelRow> flowRows();     \

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# run.sh BUILD: installs BUILD into a prefix of its own, builds a host against it and runs it; then runs the installed program where there is
-# no source tree for it to find: its shaders must be inside it and its assets beside it.
+# run.sh BUILD: installs BUILD into a prefix of its own, builds a host against it, by find_package and by pkg-config, and runs both; then
+# runs the installed program where there is no source tree for it to find: its shaders must be inside it and its assets beside it. Last,
+# every header that is installed is read alone, by a compiler that takes warnings for errors.
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 work="$(mktemp -d)"
@@ -10,9 +11,26 @@ cmake -S "$here" -B "$work/host" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" -DC
 cmake --build "$work/host" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 "$work/host/installed_host"
 
-cd "$work"
-unset DISPLAY WAYLAND_DISPLAY
-export RIVULET_SHADERS="$work/no_such_folder"
-"$work/prefix/bin/rivulet" list scenes | grep -q "$work/prefix" || { echo "the installed program does not find its own scenes"; exit 1; }
-"$work/prefix/bin/rivulet" run "$work/prefix/share/rivulet/assets/scenes/sheet_on_sphere.json" --headless --frames 1 --size 64x48
-[ -s "$work/out/sheet_on_sphere.mp4" ]
+export PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig:$work/prefix/lib64/pkgconfig:$work/prefix/lib/$(c++ -dumpmachine)/pkgconfig"
+read -ra flags <<<"$(pkg-config --cflags --libs rivulet-fluid)"
+c++ -std=c++20 -O1 "$here/main.cpp" "${flags[@]}" -o "$work/by_pkg_config"
+"$work/by_pkg_config"
+
+(
+    cd "$work"
+    unset DISPLAY WAYLAND_DISPLAY
+    export RIVULET_SHADERS="$work/no_such_folder"
+    "$work/prefix/bin/rivulet" list scenes | grep -q "$work/prefix" || { echo "the installed program does not find its own scenes"; exit 1; }
+    "$work/prefix/bin/rivulet" run "$work/prefix/share/rivulet/assets/scenes/sheet_on_sphere.json" --headless --frames 1 --size 64x48
+    [ -s "$work/out/sheet_on_sphere.mp4" ]
+)
+
+# Headers for C++; those under shaders/ are for kernels, which say first what they are compiled as.
+cd "$work/prefix/include"
+find engine fluid -name '*.h' | sort >"$work/headers"
+export alone="c++ -x c++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -DCL_TARGET_OPENCL_VERSION=120 $(pkg-config --cflags rivulet-fluid) -fsyntax-only -"
+xargs -P 2 -I {} sh -c 'printf "#include \"%s\"\n" {} | $alone || { echo "{} does not compile alone"; exit 1; }' <"$work/headers"
+echo "$(wc -l <"$work/headers") headers compile alone"
+
+# What the guide for hosts shows.
+python3 "$here/../guide.py" "$work/prefix" "$here/../../.."

@@ -1,0 +1,91 @@
+// What water costs a host's frame: its state kept and put back, the particles brought over, and all of it drawn into its framebuffer.
+#include <rivulet_glad/gl.h>
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+
+#include "demos/rivulet/bench_cases.h"
+#include "engine/app/context_egl.h"
+#include "engine/core/timeline.h"
+#include "engine/gpu/framebuffer.h"
+#include "engine/gpu/host_state.h"
+#include "fluid/render/backend.h"
+#include "fluid/render/fluid_upload.h"
+#include "fluid/render/water_renderer.h"
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet {
+
+Status benchHost(const BenchContext& context) {
+    Result<ContextEgl> egl = ContextEgl::create();
+    if (!egl) {
+        context.log.notice("host draws what it measures, and that needs OpenGL: it is left out");
+        return ok();
+    }
+    constexpr int kWidth = 640, kHeight = 360, kScopes = 100;
+    Result<gpu::Texture> colour = gpu::Texture::create({.width = kWidth, .height = kHeight});
+    if (!colour) return colour.error();
+    Result<gpu::Texture> depth = gpu::Texture::create({.width = kWidth, .height = kHeight, .format = gpu::Format::depth32f});
+    if (!depth) return depth.error();
+    const gpu::Framebuffer host(*colour, &*depth);
+    const std::unique_ptr<Device> cpu = makeCpu();
+    FluidParams params;
+    params.spacing = 0.03125F;
+    params.ellipsoids = true;
+    params.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
+    auto world = FluidWorld::create(*cpu, params, {}, context.log);
+    if (!world) return world.error();
+    for (int k = 0; k < 15; ++k) (*world)->step({}, 1.0 / 60);
+    auto water = WaterRenderer::create({});
+    if (!water) return water.error();
+    FluidUpload upload;
+    FrameView view;
+    view.cameraPosWorld = vec3(0.5F, 0.9F, 2.6F);
+    view.view = glm::lookAt(view.cameraPosWorld, vec3(0.5F, 0.3F, 0.5F), vec3(0, 1, 0));
+    view.projection = glm::perspective(0.8F, static_cast<float>(kWidth) / kHeight, 0.1F, 20.0F);
+    view.nearPlane = 0.1F;
+    view.farPlane = 20.0F;
+
+    const Spread kept = repeat(context, [&] {
+        const double start = hostSeconds();
+        for (int k = 0; k < kScopes; ++k) const gpu::HostState keep;
+        glFinish();
+        return 1000 * (hostSeconds() - start) / kScopes;
+    });
+    context.report({.name = "host: OpenGL's state kept and put back", .unit = "ms", .value = kept, .passes = {}});
+    for (const bool fast : {false, true}) {
+        FluidLookParams look;
+        look.quality = fast ? "fast" : "fine";
+        const Result<FluidLook> looks = fluidLookOf(look, {});
+        if (!looks) return looks.error();
+        Status wrong = ok();
+        double uploaded = 0;
+        const Spread drawn = repeat(context, [&] {
+            host.clearColour(vec4(0.3F, 0.4F, 0.5F, 1.0F));
+            host.clearDepth();
+            glFinish();
+            const double start = hostSeconds();
+            Result<FluidView> fluid = [&] {
+                const gpu::HostState keep;
+                return upload.view(**world, look);
+            }();
+            if (!fluid) wrong = fluid.error();
+            glFinish();
+            uploaded = 1000 * (hostSeconds() - start);
+            if (fluid)
+                if (Status done = (*water)->draw(view, *fluid, *looks, {.framebuffer = host.name(), .width = kWidth, .height = kHeight});
+                    !done)
+                    wrong = done;
+            glFinish();
+            return 1000 * (hostSeconds() - start);
+        });
+        if (!wrong) return wrong;
+        context.report({.name = fast ? "host: 8,192 particles drawn, 640x360, fast" : "host: 8,192 particles drawn, 640x360, fine",
+                        .unit = "ms",
+                        .value = drawn,
+                        .passes = {{"brought over", uploaded}}});
+    }
+    return ok();
+}
+
+}  // namespace rivulet

@@ -1,0 +1,95 @@
+// What the window costs the CPU where nothing is to be simulated: a frame of an empty scene, and its panels, each tab open in turn.
+#include <fmt/format.h>
+#include <rivulet_glad/gl.h>
+
+#include "demos/rivulet/bench_cases.h"
+#include "engine/app/context_egl.h"
+#include "engine/core/thread_clock.h"
+#include "engine/gpu/framebuffer.h"
+#include "fluid/bridge/viewer.h"
+
+namespace rivulet {
+
+Status benchUi(const BenchContext& context) {
+    Result<ContextEgl> egl = ContextEgl::create();
+    if (!egl) {
+        context.log.notice("ui is drawn with OpenGL: it is left out");
+        return ok();
+    }
+    // Few pixels, for the sake of software that draws them; the panels are laid out as in a window of 1280 x 720.
+    constexpr int kWidth = 64, kHeight = 36, kFrames = 60, kFilled = 620;
+    Result<gpu::Texture> colour = gpu::Texture::create({.width = kWidth, .height = kHeight});
+    if (!colour) return colour.error();
+    const gpu::Framebuffer target(*colour, nullptr);
+    InputEvents input;
+    input.size = ivec2(1280, 720);
+    input.mouse = vec2(-100);
+
+    for (const bool water : {false, true}) {
+        SceneFile scene;
+        scene.fluid.spacing = 0.05F;
+        if (water) scene.fluid.blocks = {{.min = vec3(0.0F), .max = vec3(0.4F)}};
+        Result<std::unique_ptr<Viewer>> opened = Viewer::create(scene, {.backend = "cpu"}, {});
+        if (!opened) return opened.error();
+        Viewer& viewer = **opened;
+        Status wrong = ok();
+        double made = 0, told = 0;
+        const auto frame = [&](double seconds) {
+            glFinish();  // a software GPU works on the same cores
+            const double start = threadSeconds();
+            if (Status drawn = viewer.frame(input, seconds, target.name()); !drawn) wrong = drawn;
+            input.keysPressed.clear();
+            made += viewer.panelCost().made;
+            told += viewer.panelCost().told;
+            return 1000 * (threadSeconds() - start);
+        };
+        const auto whole = [&](double seconds) {
+            double sum = 0;
+            for (int k = 0; k < kFrames; ++k) sum += frame(seconds);
+            return sum / kFrames;
+        };
+        constexpr double kStep = 1.0 / 60;
+        const char* of = water ? "512 particles" : "empty scene";
+        if (!water) {
+            constexpr int kTab = 258;  // GLFW_KEY_TAB: hides the panels
+            input.keysPressed = {kTab};
+            frame(0);
+            context.report({.name = "ui: a frame, empty scene, not drawn, no panels",
+                            .unit = "ms",
+                            .value = repeat(context, [&] { return whole(kStep); }),
+                            .passes = {}});
+            input.framebuffer = ivec2(kWidth, kHeight);
+            context.report({.name = "ui: a frame, empty scene, drawn, no panels",
+                            .unit = "ms",
+                            .value = repeat(context, [&] { return whole(kStep); }),
+                            .passes = {}});
+            input.keysPressed = {kTab};
+            frame(0);
+        }
+        input.framebuffer = ivec2(0);
+        for (int k = 0; water && k < kFilled; ++k) frame(kStep);  // graphs have all of their samples
+        input.framebuffer = ivec2(kWidth, kHeight);
+        constexpr std::pair<WatchWindow::Tab, const char*> kTabs[] = {{WatchWindow::Tab::times, "times"},
+                                                                      {WatchWindow::Tab::graphs, "graphs"},
+                                                                      {WatchWindow::Tab::chart, "chart"},
+                                                                      {WatchWindow::Tab::frameGraph, "frame graph"},
+                                                                      {WatchWindow::Tab::voxels, "voxels"}};
+        for (const auto& [tab, name] : kTabs) {
+            viewer.watch().show(tab);
+            for (int k = 0; k < 8; ++k) frame(0);
+            const Spread spread = repeat(context, [&] {
+                made = told = 0;
+                whole(kStep);
+                return (made + told) / kFrames;
+            });
+            context.report({.name = fmt::format("ui: panels, {} open, {}", name, of),
+                            .unit = "ms",
+                            .value = spread,
+                            .passes = {{"made", made / kFrames}, {"told OpenGL", told / kFrames}}});
+        }
+        if (!wrong) return wrong;
+    }
+    return ok();
+}
+
+}  // namespace rivulet

@@ -1,0 +1,112 @@
+#include "engine/compute/disk_cache.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "engine/core/json.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The file: this, the key, the thing. The whole key, so that two with one name are told apart.
+struct Header {
+    std::array<char, 8> magic;
+    uint64_t keyBytes, thingBytes;
+    uint64_t checksum;  // XXH3 of what follows
+};
+constexpr std::array<char, 8> kMagic = {'R', 'V', 'L', 'T', 'K', 'P', '0', '1'};
+constexpr const char* kEnding = ".kept";
+
+// Deletes what was used longest ago until the rest fits, and what a program that crashed has left half-written.
+void trim(const fs::path& folder) {
+    struct Entry {
+        fs::path path;
+        fs::file_time_type used;
+        size_t bytes;
+    };
+    std::vector<Entry> entries;
+    std::error_code ignored;
+    const auto longAgo = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    size_t total = 0;
+    for (fs::directory_iterator at(folder, ignored), end; at != end; at.increment(ignored)) {
+        std::error_code gone;  // by another program
+        Entry entry{at->path(), at->last_write_time(gone), 0};
+        if (!gone) entry.bytes = static_cast<size_t>(at->file_size(gone));
+        if (gone) continue;
+        if (entry.path.extension() == ".tmp" && entry.used < longAgo) fs::remove(entry.path, gone);
+        if (entry.path.extension() != kEnding) continue;
+        total += entry.bytes;
+        entries.push_back(entry);
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+    size_t files = entries.size();
+    for (const Entry& entry : entries) {
+        if (files <= DiskCache::kMostFiles && total <= DiskCache::kMostBytes) return;
+        fs::remove(entry.path, ignored);
+        total -= entry.bytes;
+        --files;
+    }
+}
+
+}  // namespace
+
+std::string cacheFolder(std::string_view name) {
+    for (const auto& [variable, below] : {std::pair("XDG_CACHE_HOME", "rivulet"), std::pair("HOME", ".cache/rivulet")}) {
+        const char* root = std::getenv(variable);
+        if (root != nullptr && root[0] == '/') return (fs::path(root) / below / name).string();
+    }
+    return {};
+}
+
+std::string hashOf(std::span<const std::byte> bytes) {
+    const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::string DiskCache::pathOf(std::string_view key) const {
+    return (fs::path(folder_) / (hashOf(std::as_bytes(std::span(key))) + kEnding)).string();
+}
+
+std::optional<std::vector<std::byte>> DiskCache::find(std::string_view key) const {
+    if (folder_.empty()) return std::nullopt;
+    const fs::path path = pathOf(key);
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+    const Result<std::string> file = readFile(path.string(), kMostBytes);
+    Header header{};
+    if (!file || file->size() < sizeof header) return std::nullopt;
+    std::memcpy(&header, file->data(), sizeof header);
+    const std::string_view rest = std::string_view(*file).substr(sizeof header);
+    if (header.magic != kMagic || header.keyBytes != key.size() || rest.size() < key.size() ||
+        header.thingBytes != rest.size() - key.size() || header.checksum != XXH3_64bits(rest.data(), rest.size()) ||
+        rest.substr(0, key.size()) != key)
+        return std::nullopt;
+    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trim() keeps it longer
+    const auto thing = std::as_bytes(std::span(rest.substr(key.size())));
+    return std::vector<std::byte>(thing.begin(), thing.end());
+}
+
+void DiskCache::keep(std::string_view key, std::span<const std::byte> thing) const {
+    if (folder_.empty() || thing.empty() || sizeof(Header) + key.size() + thing.size() > kMostBytes) return;
+    std::string file(sizeof(Header), '\0');
+    file += key;
+    file.append(reinterpret_cast<const char*>(thing.data()), thing.size());
+    const Header header{kMagic, key.size(), thing.size(), XXH3_64bits(file.data() + sizeof(Header), file.size() - sizeof(Header))};
+    std::memcpy(file.data(), &header, sizeof header);
+    std::error_code ignored;
+    fs::create_directories(folder_, ignored);
+    if (writeFileAtomic(pathOf(key), file)) trim(folder_);
+}
+
+}  // namespace rivulet

@@ -1,0 +1,55 @@
+#include "engine/gpu/current_context.h"
+
+#include <dlfcn.h>
+
+#include "engine/gpu/buffer.h"
+
+namespace rivulet::gpu {
+namespace {
+
+using Current = void* (*)();
+
+// What `name` of a library gives that is in the process already: only such a one can have made a context. Else null.
+void* ask(const char* library, const char* name) {
+    void* loaded = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
+    if (!loaded) return nullptr;
+    const auto current = reinterpret_cast<Current>(dlsym(loaded, name));
+    void* answer = current ? current() : nullptr;
+    dlclose(loaded);
+    return answer;
+}
+
+unsigned createBuffer(size_t bytes) {
+    Result<Buffer> made = Buffer::create(bytes);
+    return made ? made->letGo() : 0;
+}
+
+void writeBuffer(unsigned buffer, std::span<const std::byte> bytes) {
+    glNamedBufferSubData(buffer, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void readBuffer(unsigned buffer, std::span<std::byte> bytes) {
+    glGetNamedBufferSubData(buffer, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void finish() { glFinish(); }
+
+}  // namespace
+
+GlContext currentContext() {
+    GlContext gl{.create = createBuffer, .write = writeBuffer, .read = readBuffer, .destroy = deleteBuffer, .finish = finish};
+    gl.context = ask("libEGL.so.1", "eglGetCurrentContext");
+    if (gl.context) {
+        gl.display = ask("libEGL.so.1", "eglGetCurrentDisplay");
+        return gl;
+    }
+    gl.egl = false;  // libGL has it all where GLX has no library of its own
+    for (const char* library : {"libGLX.so.0", "libGL.so.1"}) {
+        gl.context = ask(library, "glXGetCurrentContext");
+        gl.display = gl.context ? ask(library, "glXGetCurrentDisplay") : nullptr;
+        if (gl.context) break;
+    }
+    return gl;
+}
+
+}  // namespace rivulet::gpu

@@ -1,0 +1,37 @@
+#include "engine/gpu/load.h"
+
+#include <fmt/format.h>
+#include <rivulet_glad/gl.h>
+
+#include <mutex>
+
+namespace rivulet::gpu {
+
+Status load(FindFunction find) {
+    if (find == nullptr) return badInput("no function was given that finds OpenGL's functions: glfwGetProcAddress, say");
+    using GetString = const GLubyte*(GLAD_API_PTR*)(GLenum);
+    const auto getString = reinterpret_cast<GetString>(find("glGetString"));
+    const auto* version = getString != nullptr ? reinterpret_cast<const char*>(getString(GL_VERSION)) : nullptr;
+    if (getString == nullptr)
+        return badInput(
+            "the function that finds OpenGL's functions does not find glGetString: give that of the library that made the context");
+    if (version == nullptr) return failed("no OpenGL context is current on this thread: make one current first");
+    // Threads may come with a context each. What one already calls is not written anew for the next.
+    static std::mutex one;
+    static FindFunction loaded = nullptr;
+    const std::scoped_lock lock(one);
+    int got = 0;
+    if (loaded == find) {
+        GLint major = 0, minor = 0;
+        glGetIntegerv(GL_MAJOR_VERSION, &major);
+        glGetIntegerv(GL_MINOR_VERSION, &minor);
+        got = GLAD_MAKE_VERSION(major, minor);
+    } else {
+        got = rivuletLoadGL(find);
+        if (got >= GLAD_MAKE_VERSION(4, 5)) loaded = find;
+    }
+    if (got < GLAD_MAKE_VERSION(4, 5)) return failed(fmt::format("OpenGL 4.5 is needed, and this context is of OpenGL {}", version));
+    return ok();
+}
+
+}  // namespace rivulet::gpu

@@ -1,0 +1,69 @@
+#include "engine/render/frame_params.h"
+
+#include <algorithm>
+
+#include "engine/scene/light.h"
+
+namespace rivulet {
+namespace {
+
+// Three softboxes, turned with the key light.
+void placeSoftboxes(FrameParams& f) {
+    const vec3 key(f.lightDir), colour(f.lightColour);
+    const float flatLength = glm::length(vec2(key.x, key.z));
+    const vec3 ahead = flatLength > 1e-3F ? vec3(key.x, 0.0F, key.z) / flatLength : vec3(1, 0, 0), side(-ahead.z, 0.0F, ahead.x);
+    const vec3 tint = colour / std::max({colour.x, colour.y, colour.z, 1e-4F});
+    const struct {
+        vec3 towards;
+        vec2 halfSize;
+        vec3 radiance;
+    } boxes[3] = {{key, {0.30F, 0.22F}, 3.0F * colour},                                                     // around the key light
+                  {side * 0.9F - ahead * 0.35F + vec3(0, 0.45F, 0), {0.14F, 0.50F}, 3.0F * tint},           // a strip at one side
+                  {side * -0.5F - ahead * 0.9F + vec3(0, 0.55F, 0), {0.70F, 0.07F}, {2.6F, 2.85F, 3.0F}}};  // a wide one opposite the key
+    for (size_t k = 0; k < 3; ++k) {
+        const vec3 towards = glm::normalize(boxes[k].towards);
+        f.boxTowards[k] = vec4(towards, boxes[k].halfSize.x);
+        f.boxSide[k] = vec4(glm::normalize(glm::cross(vec3(0.0F, 1.0F, 0.001F), towards)), boxes[k].halfSize.y);
+        f.boxRadiance[k] = vec4(boxes[k].radiance, 0.0F);
+    }
+}
+
+}  // namespace
+
+FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds& meshes, const Bounds& water) {
+    FrameParams f{};
+    const mat4& p = view.projection;
+    const auto width = static_cast<float>(view.width), height = static_cast<float>(view.height);
+    f.view = view.view;
+    f.projection = p;
+    f.viewProjection = p * view.view;
+    f.inverseView = glm::inverse(view.view);
+    const Light light{view.lightDirWorld, view.lightColour};
+    if (!meshes.empty()) {
+        f.shadowProjection = light.projection(meshes);
+        f.shadow.x = 1.0F;
+        f.shadow.z = glm::length(meshes.size());
+    }
+    if (!water.empty()) {
+        f.waterProjection = light.projection(water);
+        f.shadow.y = 1.0F;
+        f.shadow.w = glm::length(water.size());
+    }
+    f.cameraPos = vec4(view.cameraPosWorld, static_cast<float>(view.time));
+    f.viewport = vec4(width, height, 1.0F / width, 1.0F / height);
+    f.ray = vec4(2.0F / (width * p[0][0]), 2.0F / (height * p[1][1]), (p[2][0] - 1.0F) / p[0][0], (p[2][1] - 1.0F) / p[1][1]);
+    f.planes = vec4(view.nearPlane, view.farPlane, p[2][2], p[3][2]);
+    f.lightDir = vec4(glm::normalize(view.lightDirWorld), 0.0F);
+    f.lightColour = vec4(view.lightColour, 0.0F);
+    placeSoftboxes(f);
+    f.horizon = vec4(studio.horizon, 0.0F);
+    f.zenith = vec4(studio.zenith, 0.0F);
+    f.floorColour = vec4(studio.floor, studio.floorHeight);
+    const Bounds& shown = studio.shown;
+    const float radius = shown.empty() ? 1.0F : 0.5F * glm::length(shown.size());
+    const vec3 centre = shown.empty() ? vec3(0.0F) : shown.centre();
+    f.floorFade = vec4(centre.x, centre.z, radius, studio.showFloor ? 1.0F : 0.0F);
+    return f;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,114 @@
+// rivulet.h: contexts, and what all handles share.
+#include <fmt/format.h>
+
+#include "engine/gpu/load.h"
+#include "fluid/capi/handles.h"
+
+namespace rivulet::capi {
+
+Pose poseOf(const rivulet_pose& pose) {
+    const float* r = pose.rotation;
+    const bool none = r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0;
+    return {vectorOf(pose.position), none ? quat(1, 0, 0, 0) : quat(r[3], r[0], r[1], r[2])};
+}
+
+rivulet_pose poseOf(const Pose& pose) {
+    const vec3& p = pose.position;
+    const quat& q = pose.rotation;
+    return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}};
+}
+
+Result<HostMesh> meshOf(const rivulet_mesh& mesh, const std::string& name) {
+    if (mesh.positions == nullptr || mesh.indices == nullptr || mesh.vertices == 0 || mesh.indices_count == 0)
+        return badInput(fmt::format("{} has no triangles: give positions and indices", name));
+    if (mesh.indices_count % 3 != 0) return badInput(fmt::format("{} has {} indices: three make a triangle", name, mesh.indices_count));
+    HostMesh out;
+    for (size_t k = 0; k < mesh.vertices; ++k) out.positions.push_back(vectorOf(mesh.positions + 3 * k));
+    out.indices.assign(mesh.indices, mesh.indices + mesh.indices_count);
+    for (const uint32_t i : out.indices)
+        if (i >= mesh.vertices) return badInput(fmt::format("{} has an index {} and {} vertices", name, i, mesh.vertices));
+    for (size_t k = 0; mesh.uvs != nullptr && k < mesh.vertices; ++k) out.uvs.emplace_back(mesh.uvs[2 * k], mesh.uvs[2 * k + 1]);
+    return out;
+}
+
+namespace {
+
+Status createContext(const rivulet_context_options& o, rivulet_context& c) {
+    if (o.log != nullptr)
+        c.log.sink = [log = o.log, user = o.log_user](LogLevel level, std::string_view text) {
+            log(user, static_cast<rivulet_level>(level), std::string(text).c_str());
+        };
+    c.gl = noGl("no function was given that finds OpenGL's functions");
+    if (o.find != nullptr) {
+        if (Status loaded = gpu::load(o.find); !loaded) return loaded;
+        c.gl = currentGlFacts();
+        c.current = gpu::currentContext().context;
+    }
+    std::string backend = o.backend == nullptr ? "" : o.backend;
+    const std::string device = o.device == nullptr ? "" : o.device;
+    if (Status settled = settleBackend(backend, "auto", device); !settled) return settled;
+    const Keep keep(c, Needs::drawing);
+    c.device = makeDevice(backend, c.gl, c.log, device);
+    if (o.memory_limit > 0) c.device->limitMemory(o.memory_limit);
+    c.name = fmt::format("{}: {}", backendName(c.device->backend()), c.device->info().name);
+    if (!c.gl.present()) return ok();
+    WaterRendererOptions look;
+    if (o.memory_limit > 0) look.memoryLimit = o.memory_limit;
+    if (given(o.sky_horizon)) look.sky.horizon = vectorOf(o.sky_horizon);
+    if (given(o.sky_zenith)) look.sky.zenith = vectorOf(o.sky_zenith);
+    look.sky.sun = glm::normalize(given(o.sky_sun) ? vectorOf(o.sky_sun) : look.sky.sun);
+    look.sky.sunlight = vec3(1.0F);
+    look.sky.clouds = o.clouds;
+    auto water = WaterRenderer::create(look);
+    if (!water) return water.error();
+    c.water = std::move(*water);
+    return ok();
+}
+
+}  // namespace
+}  // namespace rivulet::capi
+
+using namespace rivulet;
+using namespace rivulet::capi;
+
+const char* rivulet_version(void) { return RIVULET_VERSION; }
+
+rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why) {
+    return guarded(why, [&]() -> Status {
+        if (context == nullptr) return badInput("context is NULL: give a place for the handle");
+        *context = nullptr;
+        const Result<rivulet_context_options> o = taken(options, "rivulet_context_options", "options");
+        if (!o) return o.error();
+        auto made = std::make_unique<rivulet_context>();
+        if (Status done = createContext(*o, *made); !done) {
+            rivulet_context_destroy(made.release());
+            return done;
+        }
+        *context = made.release();
+        return ok();
+    });
+}
+
+void rivulet_context_destroy(rivulet_context* context) {
+    if (context == nullptr) return;
+    if (context->children > 0) {
+        context->log.error(fmt::format("a context was to be destroyed before {} worlds and skins of it: destroy those first; it stays",
+                                       context->children));
+        return;
+    }
+    if (Status can = ready(*context, Needs::drawing); !can)
+        return context->log.error(fmt::format("a context was to be destroyed, and stays: {}", can.error().message));
+    {
+        const Keep keep(*context, Needs::drawing);
+        context->water.reset();
+        context->device.reset();
+    }
+    delete context;
+}
+
+const char* rivulet_context_device(const rivulet_context* context) { return context == nullptr ? "" : context->name.c_str(); }
+
+size_t rivulet_context_memory(const rivulet_context* context) {
+    if (context == nullptr) return 0;
+    return context->device->bytesAllocated() + (context->water ? context->water->bytes() : 0);
+}

@@ -1,0 +1,78 @@
+// rivulet.h: drawing.
+#include "fluid/capi/handles.h"
+#include "fluid/render/host_picture.h"
+#include "fluid/render/renderers.h"
+
+using namespace rivulet;
+using namespace rivulet::capi;
+
+namespace {
+
+Status drawable(const rivulet_context& context) {
+    if (context.water) return ok();
+    return badInput("the context has no OpenGL: give rivulet_context_options.find");
+}
+
+}  // namespace
+
+rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view, const rivulet_target* target, rivulet_error* why) {
+    return guarded(why, [&]() -> Status {
+        if (world == nullptr) return badInput("world is NULL");
+        if (Status there = drawable(*world->context); !there) return there;
+        if (Status can = ready(*world->context, Needs::drawing); !can) return can;
+        const Result<rivulet_view> viewing = taken(view, "rivulet_view", "view");
+        if (!viewing) return viewing.error();
+        const Result<rivulet_target> drawing = taken(target, "rivulet_target", "target");
+        if (!drawing) return drawing.error();
+        const rivulet_view& v = *viewing;
+        const rivulet_target& t = *drawing;
+        if (t.colours < RIVULET_AUTOMATIC || t.colours > RIVULET_SRGB)
+            return badInput(fmt::format("target.colours is {}: RIVULET_AUTOMATIC, RIVULET_LINEAR or RIVULET_SRGB", t.colours));
+        if (v.view == nullptr || v.projection == nullptr) return badInput("view.view or view.projection is NULL: 16 floats each");
+        Result<FluidLook> look = fluidLookOf(world->params.look, world->params.fluid.liquid);
+        if (!look) return look.error();
+        const RendererRow* row = renderers().find(world->params.look.renderer);
+        FrameView frame;
+        frame.view = matrixOf(v.view);
+        frame.projection = matrixOf(v.projection);
+        frame.cameraPosWorld = vec3(glm::inverse(frame.view)[3]);
+        frame.nearPlane = v.near_plane;
+        frame.farPlane = v.far_plane;
+        frame.width = t.width;
+        frame.height = t.height;
+        if (given(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);
+        frame.lightDirWorld = glm::normalize(frame.lightDirWorld);
+        frame.lightColour = given(v.light_colour) ? vectorOf(v.light_colour) : vec3(1.0F);
+        const HostTarget to{.framebuffer = t.framebuffer,
+                            .x = t.x,
+                            .y = t.y,
+                            .width = t.width,
+                            .height = t.height,
+                            .colours = static_cast<HostTarget::Colours>(t.colours)};
+        if (Status can = HostPicture::nothingUnderWay(); !can) return can;
+        const auto uploaded = [&] {
+            const Keep keep(*world->context, Needs::drawing);
+            return world->upload.view(*world->world, world->params.look);
+        };
+        Result<FluidView> fluid = uploaded();
+        if (!fluid) return fluid.error();
+        return world->context->water->draw(frame, *fluid, *look, to, row);
+    });
+}
+
+rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buffers, rivulet_error* why) {
+    return with(world, why, Needs::drawing, [&]() -> Status {
+        if (Status there = drawable(*world->context); !there) return there;
+        FluidLookParams plain = world->params.look;
+        plain.quality = "fine";  // all of them, in one order
+        Result<FluidView> fluid = world->upload.view(*world->world, plain);
+        if (!fluid) return fluid.error();
+        const rivulet_buffers full{.size = 0,
+                                   .position = fluid->position,
+                                   .velocity = fluid->velocity,
+                                   .id = fluid->id,
+                                   .count = fluid->count,
+                                   .radius = fluid->radius};
+        return handOver(full, buffers, "rivulet_buffers", "buffers");
+    });
+}

@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""reference.py ROOT: writes docs/api.md from the headers that a host includes: what each says of itself, and what it declares. The headers are
+the reference; this is them in one page. With --check: exit 1 where the page is another."""
+import pathlib
+import re
+import sys
+
+HEADERS = [
+    "engine/core/result.h", "engine/core/log.h", "engine/compute/device.h", "engine/gpu/load.h", "engine/gpu/host_state.h",
+    "engine/render/frame_view.h", "engine/core/mesh_view.h", "fluid/voxel/voxel_field.h", "fluid/sim/solids.h", "fluid/sim/bodies.h",
+    "fluid/sim/emitter.h", "fluid/sim/stats.h", "fluid/sim/fluid_world.h", "fluid/sim/water_query.h", "fluid/sim/buoyancy.h",
+    "fluid/sim/volumes.h", "fluid/sim/world_state.h", "fluid/render/backend.h", "fluid/render/fluid_view.h", "fluid/render/fluid_upload.h",
+    "fluid/render/look_params.h", "fluid/render/host_target.h", "fluid/render/water_renderer.h", "fluid/flow/flow_mesh.h",
+    "fluid/flow/surface_flow.h", "fluid/flow/flow_maps.h", "fluid/flow/flow_layer.h", "fluid/io/export.h", "fluid/io/recording.h",
+    "fluid/capi/rivulet.h",
+]
+
+
+def without_private(text):
+    """Classes without what is private in them."""
+    out, hidden, depth = [], None, 0
+    for line in text.splitlines():
+        if hidden is None and re.match(r"\s*private:$", line):
+            hidden, depth = len(line) - len(line.lstrip()), 0
+        if hidden is None:
+            out.append(line)
+        elif re.match(r"\s*};", line) and len(line) - len(line.lstrip()) < max(hidden, 1):
+            hidden = None
+            while out and not out[-1].strip():
+                out.pop()
+            out.append(line)
+    return "\n".join(out)
+
+
+def page(root):
+    text = "# The API\n\nWritten by `fluid/capi/reference.py` from the headers that a host includes; how they go together is in [embedding.md](embedding.md).\n"
+    for name in HEADERS:
+        path = root / name
+        if not path.exists():
+            sys.exit(f"{name} does not exist: mend the list in fluid/capi/reference.py")
+        source = path.read_text()
+        if name.endswith("rivulet.h"):
+            head, body = source.split("*/", 1)
+            said = "\n".join(re.sub(r"^ ?\*? ?", "", line) for line in head.replace("/*", "", 1).splitlines()).strip()
+            body = body.split('extern "C" {\n#endif', 1)[1].split("#ifdef __cplusplus", 1)[0]
+        else:
+            lines = source.splitlines()
+            n = next(k for k, line in enumerate(lines) if not line.startswith("//"))
+            said = "\n".join(re.sub(r"^// ?", "", line) for line in lines[:n])
+            body = "\n".join(lines[n:])
+            body = re.sub(r"^#.*\n", "", body, flags=re.M)
+            body = re.sub(r"^namespace [\w:]+ \{\n|^\}  // namespace [\w:]+\n?", "", body, flags=re.M)
+            body = without_private(body)
+        said = re.sub(r"((?:^ {4}.*\n?)+)", lambda m: "\n" + m.group(1) + "\n", said, flags=re.M)
+        body = re.sub(r"\n{3,}", "\n\n", body).strip()
+        language = "c" if name.endswith("rivulet.h") else "cpp"
+        text += f"\n## {name}\n\n{said.strip()}\n\n```{language}\n{body}\n```\n"
+    return text
+
+
+root = pathlib.Path(sys.argv[1])
+written = page(root)
+target = root / "docs/api.md"
+if "--check" in sys.argv:
+    if not target.exists() or target.read_text() != written:
+        sys.exit("docs/api.md is not what the headers say: python3 fluid/capi/reference.py .")
+else:
+    target.write_text(written)

@@ -1,0 +1,150 @@
+// rivulet.h: what a game asks of the water, and files of it.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "engine/core/json.h"
+#include "fluid/capi/handles.h"
+#include "fluid/io/export.h"
+#include "fluid/io/marching_cubes.h"
+#include "fluid/io/mesh_file.h"
+#include "fluid/sim/host_particles.h"
+
+using namespace rivulet;
+using namespace rivulet::capi;
+
+namespace {
+
+std::vector<vec3> placesOf(const float* places, size_t count) {
+    std::vector<vec3> all;
+    for (size_t k = 0; k < count; ++k) all.push_back(vectorOf(places + 3 * k));
+    return all;
+}
+
+rivulet_volume_count countOf(const VolumeCount& c) { return {c.id, c.entered, c.left, c.inside, c.time, c.volumeInside()}; }
+
+Status tell(const std::vector<VolumeCount>& all, rivulet_volume_count* to, size_t capacity, size_t* count) {
+    if (count == nullptr) return badInput("count is NULL: it is told how many there are");
+    *count = all.size();
+    for (size_t k = 0; to != nullptr && k < std::min(all.size(), capacity); ++k) to[k] = countOf(all[k]);
+    return ok();
+}
+
+// The row whose ending the path has.
+template <class Rows>
+const auto* rowOf(const Rows& rows, const std::string& path) {
+    for (const auto& row : rows)
+        if (path.ends_with("." + std::string(row.ending))) return &row;
+    return static_cast<decltype(&*rows.begin())>(nullptr);
+}
+
+}  // namespace
+
+rivulet_status rivulet_world_sample(rivulet_world* world, const float* places, size_t count, rivulet_sample* samples, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (count > 0 && (places == nullptr || samples == nullptr)) return badInput("places or samples is NULL, and count is not 0");
+        const std::vector<FluidSample> all = world->world->sample(placesOf(places, count));
+        for (size_t k = 0; k < all.size(); ++k) {
+            samples[k].density = all[k].density;
+            put(all[k].velocity, samples[k].velocity);
+            put(all[k].gradient, samples[k].gradient);
+        }
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_cast(rivulet_world* world, const rivulet_ray* rays, size_t count, rivulet_hit* hits, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (count > 0 && (rays == nullptr || hits == nullptr)) return badInput("rays or hits is NULL, and count is not 0");
+        std::vector<FluidRay> asked;
+        for (size_t k = 0; k < count; ++k)
+            asked.push_back({vectorOf(rays[k].origin), vectorOf(rays[k].direction),
+                             rays[k].reach > 0 ? rays[k].reach : std::numeric_limits<float>::infinity()});
+        const std::vector<FluidHit> all = world->world->cast(asked);
+        for (size_t k = 0; k < all.size(); ++k) {
+            hits[k].hit = all[k].hit ? 1 : 0;
+            hits[k].inside = all[k].inside ? 1 : 0;
+            hits[k].distance = all[k].distance;
+            put(all[k].place, hits[k].place);
+            put(all[k].normal, hits[k].normal);
+            put(all[k].velocity, hits[k].velocity);
+        }
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_heights(rivulet_world* world, const float* places, size_t count, float* heights, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (count > 0 && (places == nullptr || heights == nullptr)) return badInput("places or heights is NULL, and count is not 0");
+        std::vector<vec2> asked;
+        for (size_t k = 0; k < count; ++k) asked.emplace_back(places[2 * k], places[2 * k + 1]);
+        const std::vector<float> all = world->world->heights(asked);
+        std::copy(all.begin(), all.end(), heights);
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_volume* volumes, size_t count, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (count > 0 && volumes == nullptr) return badInput("volumes is NULL, and count is not 0");
+        std::vector<Volume> all;
+        for (size_t k = 0; k < count; ++k) {
+            const rivulet_volume& v = volumes[k];
+            if (v.shape != RIVULET_BOX && v.shape != RIVULET_SPHERE)
+                return badInput(fmt::format("volumes[{}].shape is {}: RIVULET_BOX or RIVULET_SPHERE", k, static_cast<int>(v.shape)));
+            all.push_back({.id = v.id,
+                           .shape = v.shape == RIVULET_BOX ? Volume::box : Volume::sphere,
+                           .position = vectorOf(v.position),
+                           .size = vectorOf(v.size),
+                           .radius = v.radius});
+        }
+        return world->world->setVolumes(all);
+    });
+}
+
+rivulet_status rivulet_world_volumes(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
+                                     rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status { return tell(world->world->volumes(), counts, capacity, count); });
+}
+
+rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
+                                           rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        if (counts == nullptr || capacity < VolumePasses::kMost)
+            return badInput(fmt::format("counts must have room for {}: what is taken is not told again", VolumePasses::kMost));
+        return tell(world->world->takeVolumeEvents(), counts, capacity, count);
+    });
+}
+
+rivulet_status rivulet_world_export(rivulet_world* world, const char* path, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (path == nullptr) return badInput("path is NULL");
+        const ParticleFormat* format = rowOf(particleFormats().rows, path);
+        if (format == nullptr) return badInput(fmt::format("{}: particles are written as .ply, .vtp or .csv", path));
+        const HostParticles host = readParticles(*world->world);
+        const ExportParticles of{.position = host.position,
+                                 .velocity = host.velocity,
+                                 .id = host.id,
+                                 .mass = host.mass,
+                                 .volume = std::pow(static_cast<double>(world->params.fluid.spacing), 3),
+                                 .time = world->world->time()};
+        return writeFileAtomic(path, format->write(of, {.origin = world->world->origin()}));
+    });
+}
+
+rivulet_status rivulet_world_export_surface(rivulet_world* world, const char* path, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (path == nullptr) return badInput("path is NULL");
+        const MeshFormat* format = nullptr;
+        for (const MeshFormat& row : meshFormats().rows)
+            if (std::string_view(path).ends_with("." + std::string(row.name))) format = &row;
+        if (format == nullptr) return badInput(fmt::format("{}: a surface is written as .obj or .ply", path));
+        const HostParticles host = readParticles(*world->world);
+        Result<IsoSurface> surface = IsoSurface::create(host.position, world->params.fluid.spacing);
+        if (!surface) return surface.error();
+        Result<SurfaceMesh> mesh = marchingCubes(*surface);
+        if (!mesh) return mesh.error();
+        return writeFileAtomic(path, format->write(mesh->view(), {.origin = world->world->origin()}));
+    });
+}

@@ -1,0 +1,122 @@
+// rivulet.h: skins.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/core/json.h"
+#include "fluid/capi/handles.h"
+
+using namespace rivulet;
+using namespace rivulet::capi;
+
+namespace {
+
+Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivulet_skin& s) {
+    s.context = &context;
+    if (o.mesh == nullptr) return badInput("mesh is NULL: a skin is a mesh with uvs");
+    const Result<rivulet_mesh> given = taken(o.mesh, "rivulet_mesh", "mesh");
+    if (!given) return given.error();
+    Result<HostMesh> mesh = meshOf(*given, "mesh");
+    if (!mesh) return mesh.error();
+    if (mesh->uvs.empty()) return badInput("mesh.uvs is NULL: its map lies over them");
+    SurfaceFlowParams params;
+    if (o.json != nullptr)
+        if (Status read = readJson(o.json, "json", [&](ParamVisitor& v) { params.visit(v); }); !read) return read;
+    Result<FlowMesh> cleaned = makeFlowMesh(mesh->view());
+    if (!cleaned) return cleaned.error();
+    if (const std::string found = cleaned->report.sentence(); !found.empty()) context.log.notice("mesh: " + found);
+    const std::vector<vec2> uvs = cornerUvs(*cleaned, mesh->view());
+    Result<SurfaceFlow> flow = SurfaceFlow::create(*context.device, std::move(*cleaned), params);
+    if (!flow) return flow.error();
+    s.flow.emplace(std::move(*flow));
+    s.vertices = mesh->positions.size();
+    const int size = o.map_size == 0 ? 1024 : o.map_size;
+    Result<FlowMaps> maps = FlowMaps::create(*s.flow, uvs, size);
+    if (!maps) return maps.error();
+    s.maps.emplace(std::move(*maps));
+    if (!context.gl.present()) return ok();
+    Result<FlowLayer> layer = FlowLayer::create(size);
+    if (!layer) return layer.error();
+    s.layer.emplace(std::move(*layer));
+    return ok();
+}
+
+}  // namespace
+
+rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin, rivulet_error* why) {
+    return guarded(why, [&]() -> Status {
+        if (skin == nullptr) return badInput("skin is NULL: give a place for the handle");
+        *skin = nullptr;
+        if (context == nullptr) return badInput("context is NULL: rivulet_context_create comes first");
+        const Result<rivulet_skin_options> o = taken(options, "rivulet_skin_options", "options");
+        if (!o) return o.error();
+        if (Status can = ready(*context, Needs::drawing); !can) return can;
+        const Keep keep(*context, Needs::drawing);
+        auto made = std::make_unique<rivulet_skin>();
+        if (Status done = createSkin(*context, *o, *made); !done) return done;
+        ++context->children;
+        *skin = made.release();
+        return ok();
+    });
+}
+
+void rivulet_skin_destroy(rivulet_skin* skin) { destroy(skin); }
+
+rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why) {
+    return with(skin, why, Needs::memory, [&]() -> Status {
+        if (place == nullptr) return badInput("place is NULL");
+        const vec3 at = vectorOf(place);
+        if (!isFinite(at)) return badInput("place is not finite");
+        constexpr double kMost = 4000;  // microlitres: what 32 bits hold of picolitres
+        if (!(microlitres > 0) || microlitres > kMost)
+            return badInput(fmt::format("a drop of {} microlitres: give more than 0 and at most {}", microlitres, kMost));
+        skin->flow->add(nearestPoint(skin->flow->mesh(), at), static_cast<uint32_t>(std::lround(1.0e6 * microlitres)));
+        return ok();
+    });
+}
+
+rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why) {
+    return with(skin, why, Needs::device, [&]() -> Status {
+        const Result<rivulet_skin_inputs> taking = taken(inputs, "rivulet_skin_inputs", "inputs");
+        if (!taking) return taking.error();
+        const rivulet_skin_inputs& in = *taking;
+        if (!std::isfinite(seconds)) return badInput("seconds is not finite");
+        SurfaceFlowInputs to;
+        if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
+        if (in.wind != nullptr) to.wind = vectorOf(in.wind);
+        if (in.to_world != nullptr) to.toWorld = dmat4(matrixOf(in.to_world));
+        if (in.positions != nullptr) {
+            skin->positions.clear();
+            for (size_t k = 0; k < skin->vertices; ++k) skin->positions.push_back(vectorOf(in.positions + 3 * k));
+            to.positions = skin->positions;
+        }
+        if (!isFinite(to.gravity) || !isFinite(to.wind)) return badInput("inputs.gravity or inputs.wind is not finite");
+        return seconds > 0 ? skin->flow->step(to, seconds) : ok();
+    });
+}
+
+rivulet_status rivulet_skin_texture(rivulet_skin* skin, uint32_t* texture, rivulet_error* why) {
+    return with(skin, why, Needs::drawing, [&]() -> Status {
+        if (texture == nullptr) return badInput("texture is NULL");
+        if (!skin->layer) return badInput("the context has no OpenGL: give rivulet_context_options.find");
+        skin->maps->draw(*skin->flow);
+        skin->layer->update(*skin->maps);
+        *texture = skin->layer->texture().name();
+        return ok();
+    });
+}
+
+rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivulet_skin_stats* stats, rivulet_error* why) {
+    return with(skin, why, Needs::device, [&]() -> Status {
+        const SurfaceFlow::Ledger l = skin->flow->ledger();
+        constexpr double kPicolitre = 1.0e-15;  // m^3
+        rivulet_skin_stats full{};
+        full.drops = skin->flow->drops().size();
+        full.added = kPicolitre * static_cast<double>(l.added);
+        full.on_skin = kPicolitre * static_cast<double>(l.drops + l.film);
+        full.left = kPicolitre * static_cast<double>(l.left);
+        full.evaporated = kPicolitre * static_cast<double>(l.evaporated);
+        full.refused = kPicolitre * static_cast<double>(l.refused);
+        return handOver(full, stats, "rivulet_skin_stats", "stats");
+    });
+}

@@ -1,0 +1,330 @@
+// rivulet.h: worlds.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/core/json.h"
+#include "fluid/capi/handles.h"
+#include "fluid/sim/host_particles.h"
+#include "fluid/sim/world_state.h"
+
+namespace rivulet::capi {
+
+void WorldParams::visit(ParamVisitor& v) {
+    v.group({.name = "fluid", .doc = "the water"}, fluid);
+    v.list({.name = "emitters", .doc = "where water comes in"}, emitters);
+    v.list({.name = "sinks", .doc = "where it goes"}, sinks);
+    v.group({.name = "look", .doc = "how it looks"}, look);
+}
+
+namespace {
+
+VisitFn visiting(WorldParams& params) {
+    return [&params](ParamVisitor& v) { params.visit(v); };
+}
+
+Result<Sources> sourcesOf(const WorldParams& params) {
+    Sources sources;
+    sources.sinks = params.sinks;
+    for (size_t k = 0; k < params.emitters.size(); ++k) {
+        if (params.emitters[k].shape == "mesh")
+            return badInput(fmt::format("emitters[{}].shape is mesh: a host's emitter is a nozzle or a box", k));
+        if (const std::string wrong = contradiction(params.emitters[k]); !wrong.empty())
+            return badInput(fmt::format("emitters[{}].{}", k, wrong));
+        sources.emitters.push_back({params.emitters[k], {}});
+    }
+    return sources;
+}
+
+FluidParams simulated(const rivulet_world& w) {
+    FluidParams fluid = w.params.fluid;
+    fluid.ellipsoids =
+        fluid.ellipsoids || (w.context->gl.present() && w.params.look.splats == "ellipsoids" && w.params.look.quality != "fast");
+    return fluid;
+}
+
+Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, std::span<const uint8_t> surfaces, int resolution,
+                                            float spacing) {
+    Bounds bounds;
+    std::vector<MeshView> views;
+    for (const HostMesh& mesh : meshes) {
+        views.push_back(mesh.view());
+        for (const vec3& p : mesh.positions) bounds.add(p);
+    }
+    const vec3 size = bounds.size();
+    const float side = std::max({size.x, size.y, size.z});
+    VoxelFieldOptions options;
+    options.resolution = resolution > 0 ? resolution : std::clamp(static_cast<int>(std::ceil(4 * side / spacing)), 2, 512);
+    options.band = options.padding = 2 * spacing;  // who comes near finds the field before it touches
+    options.surfaces = surfaces;
+    Result<VoxelField> field = bakeVoxelField(views, options);
+    if (!field) return field.error();
+    return std::make_unique<VoxelField>(std::move(*field));
+}
+
+Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids) {
+    std::vector<HostMesh> still;
+    std::vector<uint8_t> stillSurfaces;
+    int finest = 0;
+    const float spacing = w.params.fluid.spacing;
+    if (o.walls_count > 0 && o.walls == nullptr) return badInput("walls is NULL, and walls_count is not 0");
+    const auto* at = reinterpret_cast<const std::byte*>(o.walls);
+    for (size_t k = 0; k < o.walls_count; ++k) {
+        const Result<rivulet_mesh> taking = taken(reinterpret_cast<const rivulet_mesh*>(at), "rivulet_mesh", fmt::format("walls[{}]", k));
+        if (!taking) return taking.error();
+        const rivulet_mesh& wall = *taking;
+        at += wall.size;
+        Result<HostMesh> mesh = meshOf(wall, fmt::format("walls[{}]", k));
+        if (!mesh) return mesh.error();
+        const Surface surface{wall.friction, wall.restitution};
+        const auto same = std::find_if(solids.surfaces.begin(), solids.surfaces.end(), [&](const Surface& s) {
+            return s.friction == surface.friction && s.restitution == surface.restitution;
+        });
+        const auto number = static_cast<size_t>(same - solids.surfaces.begin());
+        if (same == solids.surfaces.end()) solids.surfaces.push_back(surface);
+        if (number >= kMostSurfaces)
+            return badInput(
+                fmt::format("walls have more than {} different pairs of friction and restitution: give some the same", kMostSurfaces));
+        const auto surfaceNumber = static_cast<uint8_t>(number);
+        if (wall.moves == 0) {
+            still.push_back(std::move(*mesh));
+            stillSurfaces.push_back(surfaceNumber);
+            finest = std::max(finest, wall.resolution);
+            continue;
+        }
+        auto field = fieldOf(std::span(&*mesh, 1), std::span(&surfaceNumber, 1), wall.resolution, spacing);
+        if (!field) return Error{fmt::format("walls[{}]: {}", k, field.error().message), field.error().fault};
+        solids.rigid.push_back({field->get(), {}});
+        w.poses.emplace_back();
+        w.fields.push_back(std::move(*field));
+    }
+    if (still.empty()) return ok();
+    auto field = fieldOf(still, stillSurfaces, finest, spacing);
+    if (!field) return Error{"walls: " + field.error().message, field.error().fault};
+    solids.field = field->get();
+    w.fields.push_back(std::move(*field));
+    return ok();
+}
+
+rivulet_body_state stateOf(const BodyState& s) {
+    return {poseOf(s.pose), {s.velocity.x, s.velocity.y, s.velocity.z}, {s.spin.x, s.spin.y, s.spin.z}};
+}
+
+void toStates(std::span<const BodyState> from, std::vector<rivulet_body_state>& to) {
+    to.clear();
+    for (const BodyState& s : from) to.push_back(stateOf(s));
+}
+
+void advance(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
+    auto& c = *static_cast<BodyCallbacks*>(self);
+    c.loads.clear();
+    for (const BodyLoad& l : loads) c.loads.push_back({{l.force.x, l.force.y, l.force.z}, {l.torque.x, l.torque.y, l.torque.z}});
+    toStates(states, c.states);
+    const float g[3] = {gravity.x, gravity.y, gravity.z};
+    c.host.advance(c.host.user, c.loads.data(), g, seconds, c.states.data(), states.size());
+    for (size_t k = 0; k < states.size(); ++k)
+        states[k] = {poseOf(c.states[k].pose), vectorOf(c.states[k].velocity), vectorOf(c.states[k].spin)};
+}
+
+void reset(void* self, std::span<const BodyState> states) {
+    auto& c = *static_cast<BodyCallbacks*>(self);
+    toStates(states, c.states);
+    c.host.reset(c.host.user, c.states.data(), states.size());
+}
+
+Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solids) {
+    if (o.bodies_count == 0) return ok();
+    if (o.bodies == nullptr) return badInput("bodies is NULL, and bodies_count is not 0");
+    const auto* at = reinterpret_cast<const std::byte*>(o.bodies);
+    for (size_t k = 0; k < o.bodies_count; ++k) {
+        const Result<rivulet_body> taking = taken(reinterpret_cast<const rivulet_body*>(at), "rivulet_body", fmt::format("bodies[{}]", k));
+        if (!taking) return taking.error();
+        const rivulet_body& given = *taking;
+        at += given.size;
+        if (given.samples == nullptr || given.samples_count == 0)
+            return badInput(fmt::format("bodies[{}] has no samples: places under its surface, about a spacing apart", k));
+        Body body;
+        for (size_t i = 0; i < given.samples_count; ++i) body.shape.samples.push_back(vectorOf(given.samples + 3 * i));
+        body.shape.mass = given.mass;
+        body.shape.inertia = vectorOf(given.inertia);
+        body.shape.volume = given.volume;
+        body.state.pose = poseOf(given.pose);
+        solids.bodies.push_back(std::move(body));
+    }
+    const Result<rivulet_body_host> hosting = taken(o.body_host, "rivulet_body_host", "body_host");
+    if (!hosting) return hosting.error();
+    const rivulet_body_host& host = *hosting;
+    if ((host.advance == nullptr) != (host.reset == nullptr))
+        return badInput("body_host has one of advance and reset: give both or neither");
+    if (host.advance == nullptr) {
+        w.free = std::make_unique<FreeBodies>(solids.bodies);
+        solids.bodyHost = w.free->host();
+        return ok();
+    }
+    w.callbacks = std::make_unique<BodyCallbacks>();
+    w.callbacks->host = host;
+    solids.bodyHost.self = w.callbacks.get();
+    solids.bodyHost.advance = advance;
+    solids.bodyHost.reset = reset;
+    return ok();
+}
+
+Status createWorld(rivulet_context& context, const rivulet_world_options& o, rivulet_world& w) {
+    w.context = &context;
+    if (o.json != nullptr)
+        if (Status read = readJson(o.json, "json", visiting(w.params)); !read) return read;
+    Solids solids;
+    if (Status added = addWalls(o, w, solids); !added) return added;
+    if (Status added = addBodies(o, w, solids); !added) return added;
+    Result<Sources> sources = sourcesOf(w.params);
+    if (!sources) return sources.error();
+    auto made = FluidWorld::create(*context.device, simulated(w), solids, context.log, *sources);
+    if (!made) return made.error();
+    w.world = std::move(*made);
+    return ok();
+}
+
+}  // namespace
+}  // namespace rivulet::capi
+
+using namespace rivulet;
+using namespace rivulet::capi;
+
+rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_world_options* options, rivulet_world** world,
+                                    rivulet_error* why) {
+    return guarded(why, [&]() -> Status {
+        if (world == nullptr) return badInput("world is NULL: give a place for the handle");
+        *world = nullptr;
+        if (context == nullptr) return badInput("context is NULL: rivulet_context_create comes first");
+        const Result<rivulet_world_options> o = taken(options, "rivulet_world_options", "options");
+        if (!o) return o.error();
+        if (Status can = ready(*context, Needs::drawing); !can) return can;
+        const Keep keep(*context, Needs::drawing);
+        auto made = std::make_unique<rivulet_world>();
+        if (Status done = createWorld(*context, *o, *made); !done) return done;
+        ++context->children;
+        *world = made.release();
+        return ok();
+    });
+}
+
+void rivulet_world_destroy(rivulet_world* world) { destroy(world); }
+
+rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        const Result<rivulet_inputs> taking = taken(inputs, "rivulet_inputs", "inputs");
+        if (!taking) return taking.error();
+        const rivulet_inputs& in = *taking;
+        if (!std::isfinite(seconds)) return badInput("seconds is not finite");
+        if (in.poses != nullptr && in.poses_count != world->poses.size())
+            return badInput(fmt::format("{} poses were given, and {} walls move", in.poses_count, world->poses.size()));
+        FluidInputs to;
+        to.gravity = in.gravity != nullptr ? vectorOf(in.gravity) : world->params.fluid.gravity;
+        if (!isFinite(to.gravity)) return badInput("inputs.gravity is not finite");
+        std::vector<Pose> poses;
+        for (size_t k = 0; in.poses != nullptr && k < in.poses_count; ++k) {
+            poses.push_back(poseOf(in.poses[k]));
+            if (!isFinite(poses[k].position) || !(std::abs(glm::length(poses[k].rotation) - 1) < 0.01F))
+                return badInput(fmt::format("inputs.poses[{}] is not finite, or its rotation has no unit length", k));
+            poses[k].rotation = glm::normalize(poses[k].rotation);  // a host's own turns wear off
+        }
+        if (in.poses != nullptr) world->poses = std::move(poses);
+        to.poses = world->poses;
+        world->world->step(to, seconds);
+        if (const DeviceHealth health = world->context->device->health(); health.state == DeviceHealth::lost)
+            return failed(fmt::format("{} {}; make a context of another backend", world->context->name, health.why));
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        world->world->reset();
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (assignment == nullptr) return badInput("assignment is NULL: \"fluid.viscosity=0.01\", say");
+        WorldParams changed = world->params;
+        if (Status set = setParam(assignment, visiting(changed)); !set) return set;
+        if (Status same = sameFixedValues(fixedValues(visiting(world->params)), fixedValues(visiting(changed))); !same)
+            return badInput(fmt::format("{}: that is fixed while a world lives; make a new one", assignment));
+        if (changed.emitters.size() != world->params.emitters.size() || changed.sinks.size() != world->params.sinks.size())
+            return badInput(fmt::format("{}: emitters and sinks are as many as the world was made with", assignment));
+        Result<Sources> sources = sourcesOf(changed);
+        if (!sources) return sources.error();
+        world->params = std::move(changed);
+        world->world->setParams(simulated(*world));
+        world->world->setSources(*sources);
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        const FluidStats& s = world->world->stats();
+        rivulet_stats full{};
+        full.time = world->world->time();
+        full.dropped = world->world->dropped();
+        full.particles = s.particles;
+        full.lost = s.lost;
+        full.average_compression = s.avgCompression;
+        full.kinetic = s.kinetic;
+        full.potential = s.potential;
+        full.maximum_speed = s.maxSpeed;
+        std::copy(std::begin(s.centreOfMass), std::end(s.centreOfMass), full.centre_of_mass);
+        full.substeps = world->world->lastSubsteps();
+        return handOver(full, stats, "rivulet_stats", "stats");
+    });
+}
+
+rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (particles == nullptr) return badInput("particles is NULL");
+        const Result<rivulet_particles> taking = taken(particles, "rivulet_particles", "particles");
+        if (!taking) return taking.error();
+        const rivulet_particles& to = *taking;
+        const HostParticles all = readParticles(*world->world);
+        for (size_t n = 0; n < std::min(all.position.size(), to.capacity); ++n) {
+            if (to.positions != nullptr) put(vec3(all.position[n]), to.positions + 3 * n);
+            if (to.velocities != nullptr) put(vec3(all.velocity[n]), to.velocities + 3 * n);
+            if (to.densities != nullptr) to.densities[n] = all.position[n].w;
+            if (to.ids != nullptr) to.ids[n] = all.id[n];
+        }
+        rivulet_particles told = to;
+        told.count = all.position.size();
+        return handOver(told, particles, "rivulet_particles", "particles");
+    });
+}
+
+rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        const std::vector<BodyState>& bodies = world->world->bodies();
+        if (states == nullptr) return badInput("states is NULL");
+        if (count != bodies.size()) return badInput(fmt::format("count is {}, and there are {} bodies", count, bodies.size()));
+        for (size_t k = 0; k < count; ++k) states[k] = stateOf(bodies[k]);
+        return ok();
+    });
+}
+
+rivulet_status rivulet_world_save(rivulet_world* world, const char* path, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (path == nullptr) return badInput("path is NULL");
+        if (Status savable = world->world->savable(); !savable) return savable;
+        WorldState state;
+        world->world->save(state);
+        Result<size_t> written = writeState(path, state);
+        return written ? ok() : Status(written.error());
+    });
+}
+
+rivulet_status rivulet_world_restore(rivulet_world* world, const char* path, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (path == nullptr) return badInput("path is NULL");
+        Result<WorldState> state = readState(path);
+        if (!state) return state.error();
+        return world->world->restore(*state);
+    });
+}

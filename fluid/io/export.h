@@ -1,0 +1,48 @@
+// Particles to files: PLY, VTK, CSV. Of plain spans, so that a host can write what it has read of its FluidWorld.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/core/table.h"
+#include "fluid/io/export_frame.h"
+
+namespace rivulet {
+
+// The particles of a moment, all spans as long as `position`.
+struct ExportParticles {
+    std::span<const vec4> position;  // xyz m, w density / rest density, as ParticleView::position without its free slots
+    std::span<const vec4> velocity;  // xyz m/s
+    std::span<const uint32_t> id;    // stays with a particle from file to file; their order does not
+    std::span<const float> mass;     // kg
+    std::optional<std::span<const float>> pressure = {};  // Pa; nothing: left out
+    double volume = 0;                                    // m^3, of a particle at rest density: spacing^3
+    double time = 0;                                      // s, simulated
+    double density(size_t i) const {                      // kg/m^3
+        return volume > 0 ? static_cast<double>(position[i].w) * static_cast<double>(mass[i]) / volume : 0;
+    }
+};
+
+struct ParticleFormat {
+    const char* name;
+    const char* doc;
+    const char* ending;                                                         // of the file
+    std::string (*write)(const ExportParticles& of, const ExportFrame& frame);  // the file's bytes
+};
+const Table<ParticleFormat>& particleFormats();
+
+// Numbers read back exactly: floats, and where the frame has an origin the places are doubles.
+std::string writeParticlesPly(const ExportParticles& of, const ExportFrame& frame = {});  // binary, little-endian; vertices without faces
+std::string writeParticlesVtp(const ExportParticles& of, const ExportFrame& frame = {});  // VTK's XML PolyData, its numbers in base64
+std::string writeParticlesCsv(const ExportParticles& of, const ExportFrame& frame = {});  // a head with units, then a line a particle
+
+// A .pvd file: which .vtp shows which time, so that ParaView plays them at the right pace.
+struct TimedFile {
+    double time = 0;   // s
+    std::string file;  // relative to the .pvd; of plain letters
+};
+std::string writeVtkCollection(std::span<const TimedFile> files);
+
+}  // namespace rivulet

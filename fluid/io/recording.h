@@ -1,0 +1,84 @@
+// A recorded run as a file (.rrec): what each frame shows, so that it can be shown again without simulating, and from any frame on.
+//
+// Numbers are those that were drawn, bit for bit: nothing is rounded. The file, in the byte order of the machine that wrote it: a header
+// with a text, then for each frame 48 bytes of head and one zstd frame (packed_array.h) of its arrays, each sorted into planes of bytes;
+// at the end an index. A run that was killed leaves no index: it is found again frame by frame, and a frame that was cut off is left out.
+// XXH3 checks the header with the text, each head, each frame's bytes, the index.
+#pragma once
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/math.h"
+#include "engine/core/result.h"
+
+namespace rivulet {
+
+struct RecordedFrame {
+    double time = 0;                              // s, simulated
+    float spacing = 0;                            // m, of the particles
+    bool halves = false;                          // whether they may be drawn those of even id first, as FluidView::half
+    Bounds box;                                   // m, that the water is in
+    std::vector<vec4> position, velocity;         // as ParticleView::drawn and velocity, without free slots; in the order that was drawn
+    std::vector<uint32_t> id;                     // stays with a particle from frame to frame
+    std::vector<vec4> normal, absorption;         // as ParticleView; empty: none
+    std::array<std::vector<vec4>, 3> ellipsoids;  // as ParticleView; empty: none
+    std::vector<vec4> foam, foamVelocity;         // as ParticleView::foamDrawn and foamVelocity
+    std::vector<mat4> places;                     // of solids that move, own frame -> world
+    std::vector<vec3> corners;                    // m, of solids that bend, one after the other
+};
+
+class RecordingWriter {
+  public:
+    // Begins the file, in the place of one that is there. `about`: what it is of, given back as it is. Error (failed): not writable.
+    static Result<RecordingWriter> open(const std::string& path, const std::string& about);
+    // Each is in the file when this returns. Error (failed): disk full, out of memory; what was added before stays valid.
+    Status add(const RecordedFrame& frame);
+    // Writes the index. Error as add.
+    Status close();
+
+    size_t frames() const { return offsets_.size(); }
+    uint64_t bytes() const { return at_; }
+
+  private:
+    using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+    RecordingWriter(File file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
+    Status put(const std::string& bytes, const std::string& what);
+
+    File file_;
+    std::string path_;
+    uint64_t at_ = 0;
+    std::vector<uint64_t> offsets_;
+};
+
+class RecordingReader {
+  public:
+    // Error (badInput: what is wrong with the file and where; failed: it cannot be read, out of memory): whatever its bytes are.
+    static Result<RecordingReader> open(const std::string& path);
+
+    const std::string& about() const { return about_; }
+    size_t frames() const { return offsets_.size(); }  // at least 1
+    // A sentence where the file has no end: a run was killed, or a copy was cut off; "" else.
+    const std::string& cut() const { return cut_; }
+    // Frame k < frames(). A frame of more than `memoryLimit` bytes is refused. Error: as open.
+    Result<RecordedFrame> read(size_t k, size_t memoryLimit = size_t{16} << 30U);
+
+  private:
+    using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+    RecordingReader(File file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
+    Error damaged(const std::string& what) const;
+    Status readHeader();
+    bool readIndex();
+    Status scan();
+    bool take(uint64_t at, void* to, size_t bytes);
+
+    File file_;
+    std::string path_, about_, cut_;
+    uint64_t size_ = 0, first_ = 0;  // bytes: of the file; where the first frame is
+    std::vector<uint64_t> offsets_;
+};
+
+}  // namespace rivulet

@@ -1,0 +1,221 @@
+#include "fluid/render/fluid_upload.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "engine/core/timeline.h"
+
+namespace rivulet {
+
+namespace {
+
+Status makeRoom(gpu::Buffer& buffer, size_t bytes) {
+    if (buffer && buffer.bytes() >= bytes) return ok();
+    Result<gpu::Buffer> made = gpu::Buffer::create(bytes);
+    if (!made) return made.error();
+    buffer = std::move(*made);
+    return ok();
+}
+
+constexpr const char* kSameMemory = "same memory";
+constexpr const char* kShared = "shared with OpenCL";
+constexpr const char* kRing = "ring";
+
+template <class T>
+std::span<T> as(std::span<std::byte> bytes) {
+    return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
+
+}  // namespace
+
+std::string sentenceOf(const TransferFacts& facts) {
+    std::string text = facts.way;
+    if (facts.way != std::string_view(kSameMemory) && !text.empty()) text += fmt::format(": {:.2f} ms", facts.ms);
+    if (facts.bytes > 0) text += fmt::format(", {:.1f} MB", 1.0e-6 * static_cast<double>(facts.bytes));
+    if (facts.waits > 0) text += fmt::format(", waited {} times", facts.waits);
+    if (!facts.why.empty()) text += fmt::format(" ({})", facts.why);
+    return text;
+}
+
+Status FluidUpload::Target::makeRoom(size_t bytes) {
+    if (memory && memory.bytes() >= bytes) return ok();
+    seen.reset();
+    return rivulet::makeRoom(memory, bytes);
+}
+
+void FluidUpload::dropTargets() {
+    for (Target* to : {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
+        to->drop();
+}
+
+// Another Device's: what the one before has wrapped means nothing to it.
+void FluidUpload::follow(std::shared_ptr<const GlSharing> sharing) {
+    if (sharing_) dropTargets();
+    sharing_ = std::move(sharing);
+    refused_.clear();
+}
+
+Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops) {
+    const double start = hostSeconds();
+    const ParticleView particles = world.particles();
+    Device& device = world.device();
+    const bool same = device.backend() == Backend::gl;
+    GlShare offered = same ? GlShare{} : device.glShare();
+    if (offered.by != sharing_) follow(std::move(offered.by));
+    facts_ = {.way = same ? kSameMemory : kRing, .why = std::move(offered.whyNot), .ms = 0, .bytes = 0, .waits = ring_.waits()};
+    FluidView out;
+    out.count = particles.count > 0 ? particles.slots : 0;
+    out.spacing = particles.spacing;
+    out.radius = look.radiusSpacings * particles.spacing;
+    out.bounds.add(world.params().box.min);
+    out.bounds.add(world.params().box.max);
+    out.dropCount = static_cast<uint32_t>(drops.size() / 2);
+    if (out.dropCount > 0) {
+        if (Status s = makeRoom(drops_, drops.size_bytes()); !s) return s.error();
+        drops_.writeAll(drops);
+        out.drops = drops_.name();
+    }
+    out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
+    // The points' shader reads normals where it else reads velocities. There are none before the first step.
+    const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
+    std::vector<Array> arrays;
+    const auto wanted = [&](const Buffer* from, Target& to, unsigned& name, bool ofParticles) {
+        if (from == nullptr) return;
+        if (same)
+            name = static_cast<unsigned>(from->handle());
+        else
+            arrays.push_back({from, {}, &to, &name, sizeof(vec4) * (ofParticles ? out.count : out.foamCount), ofParticles});
+    };
+    if (out.foamCount > 0) {
+        wanted(particles.foamDrawn, foam_[0], out.foam[0], false);
+        wanted(particles.foamVelocity, foam_[1], out.foam[1], false);
+    }
+    if (out.count > 0) {
+        wanted(particles.drawn, position_, out.position, true);
+        wanted(normals ? particles.normal : particles.velocity, velocity_, out.velocity, true);
+        wanted(particles.absorption, absorption_, out.absorption, true);
+        for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k)
+            wanted(particles.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
+        if (same) out.id = static_cast<unsigned>(particles.id->handle());
+    }
+    if (sharing_ && refused_.empty() && !arrays.empty()) {
+        std::vector<Array> all = arrays;
+        if (out.count > 0) all.push_back({particles.id, {}, &id_, &out.id, sizeof(uint32_t) * out.count, true});
+        if (Status s = share(all); !s) return s.error();
+    }
+    if (sharing_ && refused_.empty()) {
+        facts_.way = kShared;
+    } else if (!arrays.empty()) {
+        if (sharing_) facts_.why = refused_;
+        ids_.resize(out.count);
+        if (out.count > 0) device.read(*particles.id, std::as_writable_bytes(std::span(ids_)));
+        if (Status s = bringOver(&device, arrays, look.quality != "fine", out); !s) return s.error();
+    }
+    facts_.ms = 1000 * (hostSeconds() - start);
+    facts_.waits = ring_.waits();
+    return out;
+}
+
+// All arrays in one copy, in the Device's order. Error (failed): out of GPU memory. What OpenCL cannot do, refused_ says.
+Status FluidUpload::share(std::span<const Array> arrays) {
+    std::vector<GlSharing::Copy> copies;
+    Status done = ok();
+    for (const Array& a : arrays) {
+        if (Status room = a.to->makeRoom(a.bytes); !room) return room;
+        if (!a.to->seen) {
+            Result<GlSharing::Wrapped> seen = sharing_->wrap(a.to->memory.name());
+            if (!seen) {
+                done = seen.error();
+                break;
+            }
+            a.to->seen = std::move(*seen);
+        }
+        copies.push_back({a.from, &a.to->seen, a.bytes});
+        *a.name = a.to->memory.name();
+    }
+    if (done) done = sharing_->copy(copies);
+    if (done) return ok();
+    refused_ = done.error().message;
+    dropTargets();  // OpenCL may still hold them
+    return ok();
+}
+
+Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookParams& look) {
+    const double start = hostSeconds();
+    facts_ = {.way = "recording", .why = {}, .ms = 0, .bytes = 0, .waits = ring_.waits()};
+    FluidView out;
+    out.count = static_cast<uint32_t>(frame.position.size());
+    out.spacing = frame.spacing;
+    out.radius = look.radiusSpacings * frame.spacing;
+    out.bounds = frame.box;
+    out.foamCount = static_cast<uint32_t>(frame.foam.size());
+    const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && !frame.normal.empty();
+    std::vector<Array> arrays;
+    const auto wanted = [&](const std::vector<vec4>& from, Target& to, unsigned& name, bool ofParticles) {
+        if (!from.empty()) arrays.push_back({nullptr, std::as_bytes(std::span(from)), &to, &name, from.size() * sizeof(vec4), ofParticles});
+    };
+    wanted(frame.foam, foam_[0], out.foam[0], false);
+    wanted(frame.foamVelocity, foam_[1], out.foam[1], false);
+    wanted(frame.position, position_, out.position, true);
+    wanted(normals ? frame.normal : frame.velocity, velocity_, out.velocity, true);
+    wanted(frame.absorption, absorption_, out.absorption, true);
+    for (size_t k = 0; look.splats == "ellipsoids" && k < 3; ++k) wanted(frame.ellipsoids[k], ellipsoids_[k], out.ellipsoids[k], true);
+    ids_ = frame.id;
+    if (!arrays.empty())
+        if (Status s = bringOver(nullptr, arrays, frame.halves && look.quality != "fine", out); !s) return s.error();
+    facts_.ms = 1000 * (hostSeconds() - start);
+    facts_.waits = ring_.waits();
+    return out;
+}
+
+// Of ids_ and `arrays`; `device`: whose buffers they are, null where they are the host's.
+Status FluidUpload::bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out) {
+    size_t bytes = 64 + out.count * sizeof(uint32_t);
+    for (const Array& a : arrays) bytes += 64 + a.bytes;
+    if (Status s = ring_.begin(bytes); !s) return s;
+    const struct End {
+        gpu::StagingRing& ring;
+        ~End() { ring.end(); }  // whatever fails, copies may be under way
+    } end{ring_};
+    facts_.bytes = bytes;
+    const auto read = [&](const Array& a, std::span<std::byte> into) {
+        if (a.from != nullptr)
+            device->read(*a.from, into);
+        else
+            std::memcpy(into.data(), a.host.data(), into.size());
+    };
+    // Those of even number first: half of them by place would be another half whenever a particle changes its cell, and still water would
+    // flicker.
+    order_.resize(out.count);
+    std::iota(order_.begin(), order_.end(), 0U);
+    if (hurried) {
+        const auto odd = std::stable_partition(order_.begin(), order_.end(), [this](uint32_t i) { return ids_[i] % 2 == 0; });
+        out.half = static_cast<uint32_t>(odd - order_.begin());
+    }
+    for (const Array& a : arrays) {
+        const std::span<std::byte> into = ring_.take(a.bytes);
+        if (hurried && a.ofParticles) {
+            vectors_.resize(out.count);
+            read(a, std::as_writable_bytes(std::span(vectors_)));
+            std::transform(order_.begin(), order_.end(), as<vec4>(into).begin(), [this](uint32_t i) { return vectors_[i]; });
+        } else {
+            read(a, into);
+        }
+        if (Status room = a.to->makeRoom(into.size()); !room) return room;
+        ring_.copyTo(a.to->memory);
+        *a.name = a.to->memory.name();
+    }
+    if (out.count > 0) {
+        const std::span<uint32_t> into = as<uint32_t>(ring_.take(out.count * sizeof(uint32_t)));
+        std::transform(order_.begin(), order_.end(), into.begin(), [this](uint32_t i) { return ids_[i]; });
+        if (Status room = id_.makeRoom(into.size_bytes()); !room) return room;
+        ring_.copyTo(id_.memory);
+        out.id = id_.memory.name();
+    }
+    return ok();
+}
+
+}  // namespace rivulet

@@ -1,0 +1,79 @@
+// FluidUpload: a world's particles as GL buffers, whichever Device simulates them.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/compute/gl_sharing.h"
+#include "engine/gpu/staging_ring.h"
+#include "fluid/io/recording.h"
+#include "fluid/render/fluid_view.h"
+#include "fluid/render/look_params.h"
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet {
+
+// How particles come to be drawn.
+struct TransferFacts {
+    // "same memory": the Device's own buffers (gl); "shared with OpenCL": copied by the GPU (cl); "ring": through mapped memory.
+    const char* way = "";
+    std::string why;     // of the ring: half a sentence, why nothing is shared
+    double ms = 0;       // on the wall, the last time, a wait for the simulation included
+    size_t bytes = 0;    // that went through the host
+    uint64_t waits = 0;  // so far: frames in which the ring was full
+};
+std::string sentenceOf(const TransferFacts& facts);  // "ring: 0.31 ms, 1.2 MB (the cpu simulates)"
+
+class FluidUpload {
+  public:
+    // Valid until the next view() and until the world's next step. Error (failed): out of GPU memory.
+    // `drops`: those in the air, as FluidView::drops has them.
+    Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {});
+    // The same of a frame that was recorded, whatever simulated it.
+    Result<FluidView> view(const RecordedFrame& frame, const FluidLookParams& look);
+    const TransferFacts& facts() const { return facts_; }  // of the last view()
+
+  private:
+    // An OpenGL buffer, and how OpenCL sees it: let go first, also when both are destroyed.
+    struct Target {
+        gpu::Buffer memory;
+        GlSharing::Wrapped seen;
+
+        Target() = default;
+        Target(Target&&) = default;
+        Target& operator=(Target&&) = delete;
+        Status makeRoom(size_t bytes);
+        void drop() {
+            seen.reset();
+            memory = {};
+        }
+    };
+    struct Array {
+        const Buffer* from;  // null: `host`
+        std::span<const std::byte> host;
+        Target* to;
+        unsigned* name;
+        size_t bytes;
+        bool ofParticles;  // sorted where the picture is hurried
+    };
+    void follow(std::shared_ptr<const GlSharing> sharing);
+    void dropTargets();
+    Status share(std::span<const Array> arrays);
+    Status bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out);
+
+    gpu::StagingRing ring_;
+    gpu::Buffer drops_;
+    Target position_, velocity_, id_, absorption_;
+    std::array<Target, 2> foam_;
+    std::array<Target, 3> ellipsoids_;
+    std::shared_ptr<const GlSharing> sharing_;  // what the Targets were last seen by
+    std::string refused_;                       // why it is no longer used, half a sentence
+    std::vector<vec4> vectors_;
+    std::vector<uint32_t> ids_, order_;  // ids_: of what is brought over
+    TransferFacts facts_;
+};
+
+}  // namespace rivulet

@@ -1,0 +1,277 @@
+#include "fluid/render/host_picture.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "engine/gpu/gl_error.h"
+
+namespace rivulet {
+namespace {
+
+GLint asked(GLuint framebuffer, GLenum attachment, GLenum what) {
+    GLint value = 0;
+    glGetNamedFramebufferAttachmentParameteriv(framebuffer, attachment, what, &value);
+    return value;
+}
+
+// What a copy of its depth may be, the likeliest first: only what is of one format is copied. Empty: it has none.
+std::vector<GLenum> depthFormats(GLuint framebuffer) {
+    const GLenum depth = framebuffer == 0 ? GL_DEPTH : GL_DEPTH_ATTACHMENT;
+    const GLenum stencil = framebuffer == 0 ? GL_STENCIL : GL_STENCIL_ATTACHMENT;
+    const GLint kind = asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE);
+    if (kind == GL_NONE) return {};
+    GLint format = 0;
+    if (kind == GL_RENDERBUFFER)
+        glGetNamedRenderbufferParameteriv(static_cast<GLuint>(asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME)),
+                                          GL_RENDERBUFFER_INTERNAL_FORMAT, &format);
+    if (kind == GL_TEXTURE)
+        glGetTextureLevelParameteriv(static_cast<GLuint>(asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME)),
+                                     asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL), GL_TEXTURE_INTERNAL_FORMAT,
+                                     &format);
+    std::vector<GLenum> all;
+    if (format != 0 && format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) all.push_back(static_cast<GLenum>(format));
+    const GLint bits = asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE);
+    if (bits == 0 && all.empty()) return {};  // a window without
+    const bool floats = asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) == GL_FLOAT;
+    const bool both = asked(framebuffer, stencil, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) != GL_NONE &&
+                      asked(framebuffer, stencil, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE) > 0;
+    const GLenum alone = floats       ? GL_DEPTH_COMPONENT32F
+                         : bits == 16 ? GL_DEPTH_COMPONENT16
+                         : bits == 24 ? GL_DEPTH_COMPONENT24
+                                      : GL_DEPTH_COMPONENT32;
+    const GLenum together = floats ? GL_DEPTH32F_STENCIL8 : GL_DEPTH24_STENCIL8;
+    for (const GLenum one : {both ? together : alone, both ? alone : together}) all.push_back(one);
+    return all;
+}
+
+bool isPerspective(const mat4& p) {
+    return p[0][0] != 0 && p[1][1] != 0 && p[0][1] == 0 && p[0][2] == 0 && p[0][3] == 0 && p[1][0] == 0 && p[1][2] == 0 && p[1][3] == 0 &&
+           p[2][3] == -1 && p[3][3] == 0 && p[3][0] == 0 && p[3][1] == 0;
+}
+
+bool isFinite(const mat4& m) {
+    for (int column = 0; column < 4; ++column)
+        if (!rivulet::isFinite(vec3(m[column])) || !std::isfinite(m[column].w)) return false;
+    return true;
+}
+
+// Turned and moved, and neither scaled nor mirrored to less than it was.
+bool isRigid(const mat4& m) {
+    constexpr float kOff = 1.0e-3F;
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b <= a; ++b)
+            if (!(std::abs(glm::dot(vec3(m[a]), vec3(m[b])) - (a == b ? 1.0F : 0.0F)) < kOff)) return false;
+    return m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1;
+}
+
+Status usable(const FrameView& v) {
+    if (!isFinite(v.view) || !isFinite(v.projection)) return badInput("FrameView::view or projection has a value that is no number");
+    if (!isRigid(v.view))
+        return badInput("FrameView::view is not a turn and a move alone: glm::lookAt makes one, scales belong to the scene");
+    if (!isPerspective(v.projection))
+        return badInput("FrameView::projection is no perspective: water is drawn with glm::perspective, glFrustum and the like");
+    if (!(v.nearPlane > 0) || !(v.farPlane > v.nearPlane) || !std::isfinite(v.farPlane))
+        return badInput("FrameView::nearPlane and farPlane must be positive and finite, the second beyond the first (m)");
+    if (!rivulet::isFinite(v.lightDirWorld) || v.lightDirWorld == vec3(0.0F) || !rivulet::isFinite(v.lightColour))
+        return badInput("FrameView::lightDirWorld or lightColour is not finite, or the direction is 0");
+    return ok();
+}
+
+// What water can be drawn into. `depth`: as found.
+Status usable(const HostTarget& t) {
+    if (t.width <= 0 || t.height <= 0)
+        return badInput(fmt::format("the target is {} x {} pixels; skip the frame while a window is closed", t.width, t.height));
+    constexpr int kFurthest = 1 << 20;  // pixels: no framebuffer is as large
+    if (t.x < -kFurthest || t.y < -kFurthest || t.x > kFurthest || t.y > kFurthest || t.width > kFurthest || t.height > kFurthest)
+        return badInput(fmt::format("the target's {} x {} pixels at {}, {} are in no framebuffer", t.width, t.height, t.x, t.y));
+    if (t.framebuffer != 0 && glIsFramebuffer(t.framebuffer) == GL_FALSE)
+        return badInput(fmt::format("{} is no framebuffer of the context that is current", t.framebuffer));
+    const GLenum status = glCheckNamedFramebufferStatus(t.framebuffer, GL_DRAW_FRAMEBUFFER);
+    if (status == GL_FRAMEBUFFER_UNDEFINED) return badInput("the context that is current has no window to draw into: name a framebuffer");
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        return badInput(fmt::format("framebuffer {} is not complete (glCheckNamedFramebufferStatus gives {:#x})", t.framebuffer, status));
+    return ok();
+}
+
+}  // namespace
+
+HostDepth HostDepth::current() {
+    GLint origin = 0, mode = 0;
+    glGetIntegerv(GL_CLIP_ORIGIN, &origin);
+    glGetIntegerv(GL_CLIP_DEPTH_MODE, &mode);
+    GLfloat range[2] = {0, 1};
+    glGetFloatv(GL_DEPTH_RANGE, range);
+    return {.zeroToOne = mode == GL_ZERO_TO_ONE, .upperLeft = origin == GL_UPPER_LEFT, .near = range[0], .far = range[1]};
+}
+
+Status HostPicture::nothingUnderWay() {
+    GLboolean active = GL_FALSE, paused = GL_FALSE;
+    glGetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
+    glGetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
+    if (active == GL_TRUE && paused == GL_FALSE) return badInput("transform feedback is under way: pause or end it before water is drawn");
+    for (const GLenum counts : {GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, GL_PRIMITIVES_GENERATED,
+                                GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN}) {
+        GLint query = 0;
+        glGetQueryiv(counts, GL_CURRENT_QUERY, &query);
+        if (query != 0) return badInput("a query counts samples or primitives: end it before water is drawn, or ours would be among them");
+    }
+    return ok();
+}
+
+Result<HostPicture> HostPicture::create(const ShaderFiles& files) {
+    HostPicture p;
+    const std::string full = "shaders/render/fullscreen.vert", folder = "shaders/screen_space/";
+    std::pair<gpu::Program*, Result<gpu::Program>> made[] = {
+        {&p.in_, gpu::Program::create(files, {full, folder + "host_in.frag"})},
+        {&p.out_, gpu::Program::create(files, {full, folder + "host_out.frag"})},
+        {&p.outOpaque_, gpu::Program::create(files, {full, folder + "host_out.frag"}, {{"OPAQUE", "1"}})},
+    };
+    for (auto& [program, result] : made) {
+        if (!result) return result.error();
+        *program = std::move(*result);
+    }
+    p.none_ = gpu::VertexArray::create();
+    return p;
+}
+
+Status HostPicture::fit(int width, int height) {
+    if (colour_ && colour_.width() == width && colour_.height() == height) return ok();
+    const std::pair<gpu::Texture*, gpu::Format> wanted[] = {
+        {&raw_, gpu::Format::rgba16f}, {&colour_, gpu::Format::rgba16f}, {&depth_, gpu::Format::depth32f}};
+    colour_ = {};  // if one fails, all are made anew
+    for (const auto& [texture, format] : wanted) {
+        Result<gpu::Texture> made = gpu::Texture::create({.width = width, .height = height, .format = format});
+        if (!made) return made.error();
+        *texture = std::move(*made);
+    }
+    raw_.setSampling({.min = gpu::Filter::nearest, .mag = gpu::Filter::nearest});
+    rawFormat_ = 0;
+    return ok();
+}
+
+Status HostPicture::takeDepth(const HostTarget& t) {
+    const std::vector<GLenum> formats = depthFormats(t.framebuffer);
+    depthThere_ = !formats.empty();
+    for (const GLenum format : formats) {
+        if (rawFormat_ != format) {
+            GLuint name = 0;
+            glCreateTextures(GL_TEXTURE_2D, 1, &name);
+            rawDepth_ = gpu::TextureName(name);
+            gpu::forgetGlErrors();
+            glTextureStorage2D(name, 1, format, raw_.width(), raw_.height());
+            if (gpu::takeGlError() != GL_NO_ERROR) continue;
+            glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+            glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+            const bool both = format == GL_DEPTH24_STENCIL8 || format == GL_DEPTH32F_STENCIL8;
+            glCreateFramebuffers(1, &name);
+            rawFramebuffer_ = gpu::FramebufferName(name);
+            glNamedFramebufferTexture(name, both ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, rawDepth_.name(), 0);
+            glNamedFramebufferDrawBuffer(name, GL_NONE);
+            rawFormat_ = format;
+        }
+        gpu::forgetGlErrors();
+        glBlitNamedFramebuffer(t.framebuffer, rawFramebuffer_.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
+                               GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+        if (gpu::takeGlError() == GL_NO_ERROR) return ok();
+        rawFormat_ = 0;
+    }
+    if (depthThere_)
+        return failed(
+            fmt::format("the depth of framebuffer {} is of a format that cannot be copied; use 24 bits or 32-bit floats", t.framebuffer));
+    return ok();
+}
+
+Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const FrameView& host) {
+    if (Status can = usable(t); !can) return can;
+    if (Status can = usable(host); !can) return can;
+    if (depth.upperLeft) return badInput("glClipControl is set to GL_UPPER_LEFT; set GL_LOWER_LEFT, GL_ZERO_TO_ONE may stay");
+    if (Status fitting = fit(t.width, t.height); !fitting) return fitting;
+    target_ = t;
+    hostDepth_ = depth;
+    hostPlanes_ = vec2(host.projection[2][2], host.projection[3][2]);
+    view_ = host;
+    view_.width = t.width;
+    view_.height = t.height;
+    const float n = host.nearPlane, f = host.farPlane;
+    view_.projection[2][2] = -(f + n) / (f - n);
+    view_.projection[3][2] = -2 * f * n / (f - n);
+
+    // Colour: what its first draw buffer holds.
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, t.framebuffer);
+    GLint draws = GL_NONE, reads = GL_NONE;
+    glGetIntegerv(GL_DRAW_BUFFER0, &draws);
+    if (draws == GL_NONE)
+        return badInput(fmt::format("framebuffer {} draws into no colour: its first draw buffer is GL_NONE", t.framebuffer));
+    const auto attachment = static_cast<GLenum>(draws == GL_BACK ? GL_BACK_LEFT : draws == GL_FRONT ? GL_FRONT_LEFT : draws);
+    if (asked(t.framebuffer, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_NONE)
+        return badInput(fmt::format("framebuffer {} has no colour where it draws first", t.framebuffer));
+    const GLint kind = asked(t.framebuffer, attachment, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE);
+    if (kind == GL_INT || kind == GL_UNSIGNED_INT)
+        return badInput(
+            fmt::format("framebuffer {} holds whole numbers, no colours: water is drawn into normalised or float formats", t.framebuffer));
+    linear_ = t.colours == HostTarget::linear || (t.colours == HostTarget::automatic && kind == GL_FLOAT);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, t.framebuffer);
+    glGetIntegerv(GL_READ_BUFFER, &reads);
+    if (reads != draws) glNamedFramebufferReadBuffer(t.framebuffer, static_cast<GLenum>(draws));
+    gpu::Framebuffer raw(raw_, nullptr);
+    glBlitNamedFramebuffer(t.framebuffer, raw.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height, GL_COLOR_BUFFER_BIT,
+                           GL_NEAREST);
+    if (reads != draws) glNamedFramebufferReadBuffer(t.framebuffer, static_cast<GLenum>(reads));
+    if (Status taken = takeDepth(t); !taken) return taken;
+
+    const gpu::Framebuffer into(colour_, &depth_);
+    into.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    in_.use();
+    in_.texture("hostColour", 0, raw_);
+    in_.set("hostDepth", 1);
+    glBindTextureUnit(1, depthThere_ ? rawDepth_.name() : raw_.name());
+    in_.set("depthThere", depthThere_ ? 1 : 0);
+    in_.set("isLinear", linear_ ? 1 : 0);
+    in_.set("hostPlanes", vec4(hostPlanes_, hostDepth_.near, hostDepth_.far));
+    in_.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
+    in_.set("planes", vec2(view_.projection[2][2], view_.projection[3][2]));
+    none_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_DEPTH_TEST);
+    return ok();
+}
+
+size_t HostPicture::bytes() const {
+    if (!colour_) return 0;
+    return raw_.desc().bytes() + colour_.desc().bytes() + 2 * depth_.desc().bytes();
+}
+
+void HostPicture::give(const gpu::Texture& picture, const gpu::Texture* fluidDepth) {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target_.framebuffer);
+    glViewport(target_.x, target_.y, target_.width, target_.height);
+    GLint buffers = 0;
+    glGetIntegerv(GL_MAX_DRAW_BUFFERS, &buffers);
+    for (GLint k = 1; k < buffers; ++k) glColorMaski(static_cast<GLuint>(k), GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    gpu::Program& p = fluidDepth != nullptr ? out_ : outOpaque_;
+    p.use();
+    p.texture("picture", 0, picture);
+    p.texture("scene", 1, colour_);
+    p.texture("hostColour", 2, raw_);
+    p.texture("depths", 3, fluidDepth != nullptr ? *fluidDepth : depth_);
+    p.set("hostDepth", 4);
+    glBindTextureUnit(4, depthThere_ ? rawDepth_.name() : raw_.name());
+    p.set("isLinear", linear_ ? 1 : 0);
+    p.set("hostPlanes", vec4(hostPlanes_, hostDepth_.near, hostDepth_.far));
+    p.set("zeroToOne", hostDepth_.zeroToOne ? 1 : 0);
+    p.set("origin", ivec2(target_.x, target_.y));
+    if (fluidDepth == nullptr) p.set("planes", vec2(view_.projection[2][2], view_.projection[3][2]));
+    none_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_DEPTH_TEST);
+}
+
+}  // namespace rivulet

@@ -1,0 +1,147 @@
+#include "fluid/render/water_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "engine/gpu/host_state.h"
+#include "engine/render/environment_map.h"
+#include "engine/render/frame_params.h"
+#include "fluid/render/host_picture.h"
+#include "fluid/render/renderers.h"
+
+namespace rivulet {
+
+struct WaterRenderer::Impl {
+    FluidPrograms fluid;
+    HostPicture picture;
+    gpu::TransientPool pool;
+    gpu::Buffer frame, coarse;
+    gpu::Texture nothing, surroundings;
+    std::array<vec4, 9> matte{};
+
+    Status create(const WaterRendererOptions& options);
+    Status draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row);
+};
+
+Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
+    ShaderFiles files = ShaderFiles::developer();
+    files.define({"ENVIRONMENT_MAP", "1"});
+    std::optional<HdrImage> made;
+    if (options.surroundings == nullptr) made = makeSky(options.sky);
+    const HdrImage& around = made ? *made : *options.surroundings;
+    const Environment filtered = cachedEnvironment(around, DiskCache(cacheFolder("surroundings")));
+    Result<gpu::Texture> map = makeEnvironmentMap(filtered);
+    if (!map) return map.error();
+    surroundings = std::move(*map);
+    matte = filtered.matte;
+    Result<FluidPrograms> programs = FluidPrograms::create(files);
+    if (!programs) return programs.error();
+    fluid = std::move(*programs);
+    Result<HostPicture> host = HostPicture::create(files);
+    if (!host) return host.error();
+    picture = std::move(*host);
+    for (gpu::Buffer* buffer : {&frame, &coarse}) {
+        Result<gpu::Buffer> block = gpu::Buffer::create(sizeof(FrameParams));
+        if (!block) return block.error();
+        *buffer = std::move(*block);
+    }
+    Result<gpu::Texture> texel = gpu::Texture::create({.width = 1, .height = 1, .format = gpu::Format::rgba8});
+    if (!texel) return texel.error();
+    nothing = std::move(*texel);
+    nothing.clear(vec4(0.0F));
+    pool.limit(options.memoryLimit);
+    return ok();
+}
+
+Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row) {
+    const FrameView& view = picture.view();
+    Studio studio;
+    studio.showFloor = false;
+    const Bounds water = fluidView.count > 0 ? fluidView.bounds : Bounds();
+    const auto packed = [&](const FrameView& of) {
+        FrameParams params = packFrame(of, studio, {}, water);
+        std::copy(matte.begin(), matte.end(), params.matteLight);
+        return params;
+    };
+    const FrameParams params = packed(view);
+    frame.write(std::as_bytes(std::span(&params, 1)));
+    if (look.fast) {
+        const FrameParams half = packed(view.half());
+        coarse.write(std::as_bytes(std::span(&half, 1)));
+    }
+    surroundings.bind(16);  // beyond those that the graph empties before each pass
+
+    gpu::FrameGraph graph(pool);
+    const gpu::TextureHandle none = graph.importTexture("nothing", nothing);
+    FluidDraw d;
+    d.view = view;
+    d.fluid = fluidView;
+    d.look = look;
+    if (look.fast) d.fluid.ellipsoids = {};
+    d.frame = graph.importBuffer("frame", frame.name(), frame.bytes());
+    if (look.fast) d.coarse = graph.importBuffer("coarse frame", coarse.name(), coarse.bytes());
+    const auto rows = [&](const char* name, unsigned buffer, size_t bytes) {
+        return graph.importBuffer(name, buffer, fluidView.count * bytes);
+    };
+    if (fluidView.count > 0) {
+        d.position = rows("positions", fluidView.position, sizeof(vec4));
+        d.velocity = rows("velocities", fluidView.velocity, sizeof(vec4));
+        d.id = rows("ids", fluidView.id, sizeof(uint32_t));
+        if (fluidView.absorption != 0) d.absorption = rows("absorptions", fluidView.absorption, sizeof(vec4));
+        if (d.fluid.ellipsoids[0] != 0)
+            for (const unsigned name : d.fluid.ellipsoids) d.ellipsoids.push_back(rows("ellipsoids", name, sizeof(vec4)));
+    }
+    d.colour = graph.importTexture("scene", picture.colour());
+    d.depth = graph.importTexture("scene depth", picture.depth());
+    d.shadowSharp = d.shadowSoft = d.waterLight = none;
+    if (!water.empty()) d.waterLight = addWaterLight(graph, fluid, d, params.waterProjection);
+    if (row.opaque) {  // it draws into the picture itself, and the host's is needed to tell where
+        const gpu::TextureHandle own = graph.texture("picture", picture.colour().desc());
+        graph.pass("copy scene", {{d.colour, gpu::Usage::copy}}, {{own, gpu::Usage::copy}}, [from = d.colour, own](gpu::PassContext& c) {
+            const gpu::Texture &a = c.texture(from), &b = c.texture(own);
+            glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);
+        });
+        d.colour = own;
+    }
+    const FluidLayers layers = row.add(graph, fluid, d);
+    if (look.view == WaterView::water) {
+        addFoam(graph, fluid, d, layers, FoamSide::all);
+        addDrops(graph, fluid, d, layers);
+    }
+    graph.output(layers.colour);
+    if (layers.fluidDepth) graph.output(layers.fluidDepth);
+    if (Status ran = graph.execute(); !ran) return ran;
+    picture.give(graph.result(layers.colour), layers.fluidDepth ? &graph.result(layers.fluidDepth) : nullptr);
+    return ok();
+}
+
+WaterRenderer::WaterRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+WaterRenderer::~WaterRenderer() = default;
+
+Result<std::unique_ptr<WaterRenderer>> WaterRenderer::create(const WaterRendererOptions& options) {
+    const gpu::HostState keep;
+    auto impl = std::make_unique<Impl>();
+    if (Status made = impl->create(options); !made) return made.error();
+    return std::unique_ptr<WaterRenderer>(new WaterRenderer(std::move(impl)));
+}
+
+Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
+                           const RendererRow* row) {
+    if (Status fits = impl_->fluid.fits(fluid); !fits) return fits;
+    if (fluid.count == 0 && fluid.foamCount == 0 && fluid.dropCount == 0) return ok();
+    if (Status can = HostPicture::nothingUnderWay(); !can) return can;
+    const HostDepth depth = HostDepth::current();
+    const gpu::HostState keep;
+    if (Status taken = impl_->picture.take(target, depth, view); !taken) return taken;
+    return impl_->draw(fluid, look, row != nullptr ? *row : *renderers().find("screen_space"));
+}
+
+const std::vector<PassTime>& WaterRenderer::times() const { return impl_->pool.times(); }
+
+size_t WaterRenderer::bytes() const { return impl_->pool.bytes() + impl_->picture.bytes(); }
+
+}  // namespace rivulet

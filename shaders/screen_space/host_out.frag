@@ -1,0 +1,25 @@
+// Our picture into a host's, where it is another than before.
+#include "shaders/screen_space/host.glsl"
+uniform sampler2D picture;
+uniform sampler2D scene;       // as it was
+uniform sampler2D hostColour;  // the same, as the host has it
+uniform sampler2D hostDepth;
+uniform sampler2D depths;      // m, of water; OPAQUE: window depth by our projection
+#if defined(OPAQUE)
+uniform vec2 planes;           // [2][2], [3][2] of it
+#endif
+uniform ivec2 origin;          // pixels, of the target's viewport
+layout(location = 0) out vec4 colour;
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy) - origin;
+    vec4 c = texelFetch(picture, p, 0);
+    if (all(equal(c.rgb, texelFetch(scene, p, 0).rgb))) discard;
+    colour = vec4(isLinear ? c.rgb : toSrgb(clamp(c.rgb, 0.0, 1.0)), texelFetch(hostColour, p, 0).a);
+    float depth = texelFetch(depths, p, 0).r;
+#if defined(OPAQUE)
+    depth = depth < 1.0 ? planes.y / (2.0 * depth - 1.0 + planes.x) : 1.0e6;
+#endif
+    // Spray and drops before what is no water leave the depth as it is.
+    gl_FragDepth = depth < 0.9e6 ? hostOfDepth(depth) : texelFetch(hostDepth, p, 0).r;
+}

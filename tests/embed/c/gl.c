@@ -1,0 +1,157 @@
+/* rivulet.h in a host's OpenGL: water is drawn into its picture, particles and a skin's map are given as its names. Exit 77: no OpenGL. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "check.h"
+#include "host.h"
+
+static rivulet_error why;
+
+enum { WIDTH = 96, HEIGHT = 72 };
+static unsigned char dry[4 * WIDTH * HEIGHT], wet[4 * WIDTH * HEIGHT];
+
+int main(void) {
+    rivulet_context* context = NULL;
+    rivulet_context_options options = {.size = sizeof options, .find = eglGetProcAddress};
+    if (eglGetProcAddress("glGetString") != NULL) {
+        CHECK(rivulet_context_create(&options, &context, &why) == RIVULET_FAILED && strstr(why.message, "current") != NULL);
+    }
+    if (!make_current()) return 77;
+    options.backend = "cpu"; /* and drawn with OpenGL */
+    DONE(rivulet_context_create(&options, &context, &why));
+    if (context == NULL) return 1;
+    const GLuint framebuffer = make_target(WIDTH, HEIGHT);
+    glClearColor(0.5F, 0.25F, 0.25F, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, dry);
+
+    rivulet_world* world = NULL;
+    const rivulet_world_options o = {.size = sizeof o, .json = "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"max\": [1, 0.4, 1]}]}}"};
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    /* From (0.5, 0.3, 4) along -z; 45 degrees high. */
+    const float cot = 2.41421356F, near_plane = 0.1F, far_plane = 20;
+    const float view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -0.5F, -0.3F, -4, 1};
+    const float projection[16] = {cot * HEIGHT / WIDTH,
+                                  0,
+                                  0,
+                                  0,
+                                  0,
+                                  cot,
+                                  0,
+                                  0,
+                                  0,
+                                  0,
+                                  -(far_plane + near_plane) / (far_plane - near_plane),
+                                  -1,
+                                  0,
+                                  0,
+                                  -2 * far_plane * near_plane / (far_plane - near_plane),
+                                  0};
+    const rivulet_view from = {
+        .size = sizeof from, .view = view, .projection = projection, .near_plane = near_plane, .far_plane = far_plane};
+    const rivulet_target to = {.size = sizeof to, .framebuffer = framebuffer, .width = WIDTH, .height = HEIGHT};
+    for (int k = 0; k < 3; ++k) {
+        DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+        DONE(rivulet_world_draw(world, &from, &to, &why));
+    }
+    GLint bound = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    CHECK((GLuint)bound == framebuffer);
+    glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, wet);
+    /* The block's front, 3 m away, is 0.4 m high: from 0.3 m below the middle to 0.1 m above it. */
+    const double metre = 0.5 * HEIGHT * (double)cot / 3, left = 0.5 * WIDTH - 0.5 * metre, right = 0.5 * WIDTH + 0.5 * metre;
+    const double bottom = 0.5 * HEIGHT - 0.3 * metre, top = 0.5 * HEIGHT + 0.1 * metre;
+    int inside = 0, changed = 0;
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int x = 0; x < WIDTH; ++x) {
+            const int differs = memcmp(dry + 4 * (y * WIDTH + x), wet + 4 * (y * WIDTH + x), 4) != 0;
+            if (x < left - 2 || x > right + 2 || y < bottom - 2 || y > top + 2) CHECK(!differs);
+            if (x > left + 2 && x < right - 2 && y > bottom + 2 && y < top - 2) {
+                ++inside;
+                changed += differs;
+            }
+        }
+    printf("%d of %d changed\n", changed, inside);
+    CHECK(inside > 150 && changed > 0.98 * inside);
+
+    rivulet_buffers buffers = {.size = sizeof buffers};
+    DONE(rivulet_world_buffers(world, &buffers, &why));
+    CHECK(glIsBuffer(buffers.position) && glIsBuffer(buffers.velocity) && glIsBuffer(buffers.id));
+    CHECK(buffers.count >= 3200 && buffers.radius > 0.02F && buffers.radius < 0.05F);
+    float* drawn = malloc(16 * (size_t)buffers.count);
+    glGetNamedBufferSubData(buffers.position, 0, 16 * (GLsizeiptr)buffers.count, drawn);
+    rivulet_stats stats = {.size = sizeof stats};
+    DONE(rivulet_world_stats(world, &stats, &why));
+    double middle = 0;
+    uint32_t there = 0;
+    for (uint32_t k = 0; k < buffers.count; ++k) {
+        if (drawn[4 * k + 3] < 0) continue;
+        ++there;
+        middle += (double)drawn[4 * k + 1];
+    }
+    free(drawn);
+    CHECK(there == stats.particles && fabs(middle / there - stats.centre_of_mass[1]) < 1e-4);
+    REFUSED(rivulet_world_buffers(world, NULL, &why), "buffers is NULL");
+
+    rivulet_view wrong = from;
+    wrong.projection = NULL;
+    REFUSED(rivulet_world_draw(world, &wrong, &to, &why), "projection is NULL");
+    wrong = from;
+    wrong.far_plane = INFINITY;
+    REFUSED(rivulet_world_draw(world, &wrong, &to, &why), "farPlane");
+    rivulet_target nothing = to;
+    nothing.height = 0;
+    REFUSED(rivulet_world_draw(world, &from, &nothing, &why), "x 0");
+
+    const float at[12] = {0, 0, 0, 0.1F, 0, 0, 0.1F, 0.1F, 0, 0, 0.1F, 0}, uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
+    const rivulet_mesh plate = {.size = sizeof plate, .positions = at, .vertices = 4, .indices = triangles, .indices_count = 6, .uvs = uvs};
+    const rivulet_skin_options skin_options = {.size = sizeof skin_options, .mesh = &plate, .map_size = 256};
+    rivulet_skin* skin = NULL;
+    DONE(rivulet_skin_create(context, &skin_options, &skin, &why));
+    DONE(rivulet_skin_add(skin, (const float[3]){0.05F, 0.05F, 0}, 10, &why));
+    DONE(rivulet_skin_step(skin, NULL, 1.0 / 60, &why));
+    uint32_t map = 0;
+    DONE(rivulet_skin_texture(skin, &map, &why));
+    CHECK(glIsTexture(map));
+    static float texels[4 * 256 * 256];
+    glGetTextureImage(map, 0, GL_RGBA, GL_FLOAT, sizeof texels, texels);
+    double volume = 0; /* mm over a texel of 0.1 m / 256 */
+    for (int k = 0; k < 256 * 256; ++k) volume += (double)texels[4 * k + 2] * 1e-3 * pow(0.1 / 256, 2);
+    printf("10 microlitres are %.2f in the map\n", volume * 1e9);
+    CHECK(fabs(volume - 10e-9) < 0.5e-9);
+
+    /* Another context is current, whose names are others' things, and then none: nothing is done, nothing is deleted. */
+    const EGLDisplay display = eglGetCurrentDisplay();
+    const EGLContext own = eglGetCurrentContext();
+    CHECK(make_current() && eglGetCurrentContext() != own);
+    GLuint theirs[256];
+    glGenTextures(256, theirs);
+    for (int k = 0; k < 256; ++k) glBindTexture(GL_TEXTURE_2D, theirs[k]);
+    for (int k = 0; k < 2; ++k) {
+        REFUSED(rivulet_world_draw(world, &from, &to, &why), "not current");
+        REFUSED(rivulet_world_buffers(world, &buffers, &why), "not current");
+        REFUSED(rivulet_skin_texture(skin, &map, &why), "not current");
+        DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why)); /* the cpu's own */
+        rivulet_skin_destroy(skin);
+        rivulet_world_destroy(world);
+        rivulet_context_destroy(context);
+        if (k == 0)
+            for (int t = 0; t < 256; ++t) CHECK(glIsTexture(theirs[t]));
+        CHECK(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT));
+    }
+    CHECK(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, own));
+    DONE(rivulet_world_draw(world, &from, &to, &why));
+    rivulet_target painted = to;
+    painted.colours = 77;
+    REFUSED(rivulet_world_draw(world, &from, &painted, &why), "colours is 77");
+
+    CHECK(rivulet_context_memory(context) > 4 * WIDTH * HEIGHT);
+    rivulet_skin_destroy(skin);
+    rivulet_world_destroy(world);
+    CHECK(!glIsTexture(map) && !glIsBuffer(buffers.position));
+    rivulet_context_destroy(context);
+    CHECK(glGetError() == GL_NO_ERROR);
+    printf("%s\n", failures == 0 ? "all holds" : "something does not hold");
+    return failures == 0 ? 0 : 1;
+}

@@ -1,0 +1,209 @@
+// Every kernel that scenes run on cl, one dispatch at a time: from the same memory the cpu makes the same. What looks through neighbours
+// has another form on the cpu (lists, not cells), and is compared by what a step leaves: SimParity, ForcesParity, FoamParity, BodiesParity.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "engine/core/json.h"
+#include "fluid/bridge/session.h"
+#include "tests/parity/devices.h"
+
+namespace rivulet {
+namespace {
+
+// A kernel's figures over all its dispatches.
+struct Compared {
+    size_t dispatches = 0, words = 0, apart = 0;
+    double worst = 0;  // of the largest value in the buffer
+};
+
+// cl, which does on the cpu, too, what it is told to dispatch.
+class TwinDevice final : public Device {
+  public:
+    TwinDevice(Device& cl, Device& cpu) : cl_(cl), cpu_(cpu) {}
+    Backend backend() const override { return cl_.backend(); }
+    const DeviceInfo& info() const override { return cl_.info(); }
+    Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override {
+        const Result<Kernel> made = cl_.kernel(path, defines);
+        if (!made || known_.contains(made->index)) return made;
+        std::vector<Define> same;
+        for (const Define& d : defines)
+            if (d.name != "LOCAL_SIZE") same.push_back(d);
+        const Result<Kernel> other = cpu_.kernel(path, same);
+        known_[made->index] = {std::string(path), other ? std::optional(*other) : std::nullopt};
+        return made;
+    }
+    std::vector<std::string> kernels() const override { return cl_.kernels(); }
+    Result<Buffer> allocate(size_t bytes) override { return cl_.allocate(bytes); }
+    void release(uint64_t handle, size_t bytes) override { cl_.release(handle, bytes); }
+    void write(Buffer& to, std::span<const std::byte> bytes, size_t offset) override { cl_.write(to, bytes, offset); }
+    void read(const Buffer& from, std::span<std::byte> bytes, size_t offset) override { cl_.read(from, bytes, offset); }
+    void fill(Buffer& to, uint32_t word) override { cl_.fill(to, word); }
+    void copy(const Buffer& from, Buffer& to, size_t bytes) override { cl_.copy(from, to, bytes); }
+    void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) override {
+        cl_.readLater(from, bytes, std::move(then));
+    }
+    void poll() override { cl_.poll(); }
+    void finish() override { cl_.finish(); }
+    std::vector<PassTime> takeTimes() override { return cl_.takeTimes(); }
+    size_t bytesAllocated() const override { return cl_.bytesAllocated(); }
+    void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) override;
+
+    std::map<std::string, Compared> all;  // by path
+    std::set<std::string> alone;          // those that the cpu does not have, or has otherwise
+
+  private:
+    struct Known {
+        std::string path;
+        std::optional<Kernel> cpu;
+    };
+    Device &cl_, &cpu_;
+    std::map<uint32_t, Known> known_;
+};
+
+// Whose threads take a place in a list as they come: which is first is another in every run, what stands there is not.
+const std::set<std::string> kAsTheyCome = {"fluid/foam_born", "fluid/foam_move", "flow/leave", "flow/brim", "flow/map_touch"};
+
+// A buffer's words in order of what they are worth as floats, so that those that stand in another order are next to each other.
+std::vector<std::byte> sortedWords(std::span<const std::byte> bytes) {
+    std::vector<int32_t> words(bytes.size() / 4);
+    std::memcpy(words.data(), bytes.data(), 4 * words.size());
+    std::sort(words.begin(), words.end(), [](int32_t a, int32_t b) { return (a < 0 ? INT32_MIN - a : a) < (b < 0 ? INT32_MIN - b : b); });
+    std::vector<std::byte> sorted(4 * words.size());
+    std::memcpy(sorted.data(), words.data(), sorted.size());
+    return sorted;
+}
+
+// Whether the cpu has another form of it: lists of neighbours where a GPU has cells.
+bool looksThroughNeighbours(const std::string& path) {
+    const Result<std::string> text = readFile(std::string(RIVULET_SOURCE_DIR) + "/shaders/" + path + ".kernel");
+    EXPECT_TRUE(text) << path;
+    return text && text->find("NEIGHBOR_TYPE") != std::string::npos;
+}
+
+void compare(std::span<const std::byte> there, std::span<const std::byte> here, Compared& c) {
+    double largest = 0;
+    const size_t words = here.size() / 4;
+    const auto word = [](std::span<const std::byte> bytes, size_t i) {
+        uint32_t w = 0;
+        std::memcpy(&w, bytes.data() + 4 * i, 4);
+        return w;
+    };
+    const auto value = [&](std::span<const std::byte> bytes, size_t i) {
+        float f = 0;
+        std::memcpy(&f, bytes.data() + 4 * i, 4);
+        return double{f};
+    };
+    for (size_t i = 0; i < words; ++i)
+        if (std::isfinite(value(here, i))) largest = std::max(largest, std::abs(value(here, i)));
+    for (size_t i = 0; i < words; ++i) {
+        ++c.words;
+        if (word(there, i) == word(here, i)) continue;
+        const double a = value(there, i), b = value(here, i);
+        if (std::isnan(a) && std::isnan(b)) continue;
+        const double off = std::isfinite(a) && std::isfinite(b) && largest > 0 ? std::abs(a - b) / largest : 1.0;
+        // Counts and indices are no floats: as floats they are next to nothing.
+        const bool counts = word(there, i) < (1U << 23U) && word(here, i) < (1U << 23U);
+        c.worst = std::max(c.worst, counts ? 1.0 : off);
+        if (counts || off > 1.0e-5) ++c.apart;
+    }
+}
+
+void TwinDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
+    const Known& known = known_.at(kernel.index);
+    if (!known.cpu || looksThroughNeighbours(known.path)) {
+        alone.insert(known.path);
+        cl_.dispatch(kernel, params, buffers, threads);
+        return;
+    }
+    std::vector<Buffer> copies;
+    std::map<uint64_t, size_t> of;  // a buffer may be bound twice
+    std::vector<const Buffer*> bound;
+    std::vector<size_t> at;
+    for (const Buffer* b : buffers) {
+        if (b == nullptr) {
+            at.push_back(SIZE_MAX);
+            continue;
+        }
+        const auto [found, fresh] = of.try_emplace(b->handle(), copies.size());
+        if (fresh) {
+            copies.push_back(std::move(*cpu_.allocate(b->bytes())));
+            cpu_.writeAll<std::byte>(copies.back(), cl_.readAll<std::byte>(*b, b->bytes()));
+        }
+        at.push_back(found->second);
+    }
+    for (const size_t k : at) bound.push_back(k == SIZE_MAX ? nullptr : &copies[k]);
+    cl_.dispatch(kernel, params, buffers, threads);
+    cpu_.dispatch(*known.cpu, params, bound, threads);
+    Compared& c = all[known.path];
+    ++c.dispatches;
+    for (size_t k = 0; k < at.size(); ++k) {
+        if (at[k] == SIZE_MAX ||
+            std::find(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(k), at[k]) != at.begin() + static_cast<std::ptrdiff_t>(k))
+            continue;
+        std::vector<std::byte> there = cl_.readAll<std::byte>(*buffers[k], buffers[k]->bytes());
+        std::vector<std::byte> here = cpu_.readAll<std::byte>(copies[at[k]], buffers[k]->bytes());
+        if (kAsTheyCome.contains(known.path)) {
+            there = sortedWords(there);
+            here = sortedWords(here);
+        }
+        compare(there, here, c);
+    }
+}
+
+// Cells are filled in an order that is another in every run until they are sorted (SortTest); a solver's progress is a GPU's alone, as the
+// cpu reads its sums at once (SolverStops).
+const std::set<std::string> kElsewhere = {"fluid/cell_count", "fluid/cell_scatter", "fluid/cell_sort",   "fluid/reorder",
+                                          "fluid/scan_apply", "fluid/scan_blocks",  "fluid/scan_reduce", "fluid/solver_progress"};
+
+class KernelsOfCl : public testing::Test {
+  protected:
+    void SetUp() override {
+        Result<TestGpu> gpu = makeTestGpu("cl");
+        if (!gpu) GTEST_SKIP() << gpu.error().message;
+        gpu_ = std::move(*gpu);
+        cpu_ = makeTestCpu();
+        twin_ = std::make_unique<TwinDevice>(*gpu_.device, *cpu_);
+    }
+    // Some frames of a scene.
+    void run(const char* name, const std::vector<std::string>& set, int frames = 3) {
+        SCOPED_TRACE(name);
+        auto scene = loadScene(name, set);
+        ASSERT_TRUE(scene) << scene.error().message;
+        auto session = Session::create(*scene, *twin_, {});
+        ASSERT_TRUE(session) << session.error().message;
+        for (int f = 0; f < frames; ++f) (*session)->step(1.0 / 60, true);
+        EXPECT_EQ((*session)->world().stats().nan, 0U);
+    }
+    TestGpu gpu_;
+    std::unique_ptr<Device> cpu_;
+    std::unique_ptr<TwinDevice> twin_;
+};
+
+TEST_F(KernelsOfCl, EachDispatchIsTheCpus) {
+    run("dam_break", {"fluid.spacing=0.05", "fluid.method=wcsph", "fluid.forces.adhesion=1"});
+    run("dam_break", {"fluid.spacing=0.05", "fluid.method=wcsph_thesis", "fluid.forces.normals=thesis", "fluid.forces.tension=0.07"});
+    run("dam_break", {"fluid.spacing=0.05", "fluid.method=dfsph", "fluid.collision.walls=no-slip"});
+    run("dam_break",
+        {"fluid.spacing=0.05", "fluid.method=pbf", "fluid.foam.most=500", "fluid.ellipsoids=true", "fluid.forces.vorticity=0.1"});
+    run("honey", {"fluid.spacing=0.03"});
+    run("oil_on_water", {"fluid.spacing=0.05"});
+    run("wave_tank", {"fluid.spacing=0.06"});
+    run("cases/couette.json", {"fluid.spacing=2.5e-5"});
+    run("paddle_wheel", {"fluid.spacing=0.025", "colliders.0.resolution=32", "fluid.foam.most=500"});
+    run("waving_sheet", {"fluid.spacing=0.05", "colliders.0.resolution=24"});
+    run("window_rain", {"flow.0.mapSize=64", "flow.0.liquid.capacity=2048", "flow.0.liquid.filmCell=0.003"}, 6);
+    run("crying_thesis", {"flow.0.mapSize=64"}, 6);
+    for (const auto& [path, c] : twin_->all)
+        EXPECT_EQ(c.apart, 0U) << path << ": of " << c.words << " words in " << c.dispatches << " dispatches, at worst by " << c.worst;
+    EXPECT_GE(twin_->all.size(), 50U) << "kernels that these scenes run";
+    for (const std::string& path : twin_->alone)
+        EXPECT_TRUE(kElsewhere.contains(path) || looksThroughNeighbours(path)) << path << " is not compared";
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -1,0 +1,206 @@
+// HostScene: a host with a picture of its own: a chequered floor and a red post before the water, a blue one behind it, ray-traced in one
+// shader, in a framebuffer of any format and depth convention.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <rivulet_glad/gl.h>
+
+#include <array>
+#include <cmath>
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/render/frame_view.h"
+#include "fluid/render/host_target.h"
+#include "fluid/sim/fluid_world.h"
+
+namespace rivulet::testing {
+
+class HostScene {
+  public:
+    struct Options {
+        GLenum colour = GL_RGBA8, depth = GL_DEPTH24_STENCIL8;
+        bool zeroToOne = false, reversed = false;
+        int samples = 0, left = 0, bottom = 0;  // the viewport's place
+        bool textures = true;                   // else renderbuffers
+    };
+
+    HostScene(int width, int height) : HostScene(width, height, Options{}) {}
+    HostScene(int width, int height, const Options& options) : width_(width), height_(height), o_(options) {
+        const int w = width + o_.left, h = height + o_.bottom;
+        const bool both = o_.depth == GL_DEPTH24_STENCIL8 || o_.depth == GL_DEPTH32F_STENCIL8;
+        glCreateFramebuffers(1, &framebuffer_);
+        attach(GL_COLOR_ATTACHMENT0, o_.colour, w, h);
+        attach(both ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, o_.depth, w, h);
+        EXPECT_EQ(glCheckNamedFramebufferStatus(framebuffer_, GL_DRAW_FRAMEBUFFER), GLenum{GL_FRAMEBUFFER_COMPLETE});
+        draw();
+    }
+
+    // Of the picture, without GL state left behind.
+    void draw() {
+        GLuint program = glCreateProgram();
+        const std::string vertex =
+            "#version 450\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0); }";
+        const std::string fragment = R"(#version 450
+uniform mat4 back, clip; uniform vec3 eye; uniform vec4 place; uniform bool zeroToOne, isLinear;
+layout(location = 0) out vec4 colour;
+float post(vec3 d, vec2 at, float r) {
+    vec2 o = eye.xz - at; float a = dot(d.xz, d.xz), b = dot(o, d.xz), c = dot(o, o) - r * r, q = b * b - a * c;
+    float t = q < 0.0 ? -1.0 : (-b - sqrt(q)) / a; float y = eye.y + t * d.y;
+    return t > 0.0 && y > 0.0 && y < 0.9 ? t : 1e9;
+}
+void main() {
+    vec2 uv = (gl_FragCoord.xy - place.xy) / place.zw * 2.0 - 1.0;
+    vec4 far = back * vec4(uv, 0.5, 1.0); vec3 d = normalize(far.xyz / far.w - eye);
+    float t = d.y < 0.0 ? -eye.y / d.y : 1e9; vec3 c = vec3(0.3, 0.45, 0.6);
+    vec3 p = eye + t * d;
+    if (t < 1e8) c = mod(floor(8.0 * p.x) + floor(8.0 * p.z), 2.0) < 1.0 ? vec3(0.5, 0.48, 0.45) : vec3(0.2, 0.2, 0.22);
+    float r = post(d, vec2(0.32, 1.1), 0.05), b = post(d, vec2(0.5, -0.2), 0.06);
+    if (r < t) { t = r; c = vec3(0.7, 0.1, 0.08); }
+    if (b < t) { t = b; c = vec3(0.1, 0.15, 0.7); }
+    colour = vec4(isLinear ? c : mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), c)), 0.25);
+    vec4 at = clip * vec4(eye + t * d, 1.0); float z = at.z / at.w;
+    gl_FragDepth = t > 1e8 ? (zeroToOne && clip[3][2] > 0.0 ? 0.0 : 1.0) : zeroToOne ? z : 0.5 * z + 0.5;
+})";
+        for (const auto& [kind, text] : {std::pair(GL_VERTEX_SHADER, &vertex), std::pair(GL_FRAGMENT_SHADER, &fragment)}) {
+            const GLuint shader = glCreateShader(static_cast<GLenum>(kind));
+            const char* lines = text->c_str();
+            glShaderSource(shader, 1, &lines, nullptr);
+            glCompileShader(shader);
+            GLint fine = 0;
+            glGetShaderiv(shader, GL_COMPILE_STATUS, &fine);
+            std::array<char, 2000> log{};
+            glGetShaderInfoLog(shader, 2000, nullptr, log.data());
+            EXPECT_EQ(fine, GL_TRUE) << log.data();
+            glAttachShader(program, shader);
+            glDeleteShader(shader);
+        }
+        glLinkProgram(program);
+        GLuint array = 0;
+        glCreateVertexArrays(1, &array);
+        const FrameView v = view();
+        const mat4 clip = v.projection * v.view, back = glm::inverse(plain() * v.view);
+        const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
+        glProgramUniformMatrix4fv(program, at("back"), 1, GL_FALSE, &back[0][0]);
+        mat4 told = clip;
+        glProgramUniformMatrix4fv(program, at("clip"), 1, GL_FALSE, &told[0][0]);
+        glProgramUniform3f(program, at("eye"), v.cameraPosWorld.x, v.cameraPosWorld.y, v.cameraPosWorld.z);
+        glProgramUniform4f(program, at("place"), static_cast<float>(o_.left), static_cast<float>(o_.bottom), static_cast<float>(width_),
+                           static_cast<float>(height_));
+        glProgramUniform1i(program, at("zeroToOne"), o_.zeroToOne ? 1 : 0);
+        glProgramUniform1i(program, at("isLinear"), o_.colour == GL_RGBA16F ? 1 : 0);
+        if (o_.zeroToOne) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        glViewport(o_.left, o_.bottom, width_, height_);
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_ALWAYS);
+        glUseProgram(program);
+        glBindVertexArray(array);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        glBindVertexArray(0);
+        glUseProgram(0);
+        glDepthFunc(GL_LESS);
+        glDisable(GL_DEPTH_TEST);
+        glDeleteVertexArrays(1, &array);
+        glDeleteProgram(program);
+    }
+
+    FrameView view() const {
+        FrameView v;
+        v.width = width_;
+        v.height = height_;
+        v.cameraPosWorld = vec3(0.5F, 0.75F, 2.1F);
+        v.view = glm::lookAt(v.cameraPosWorld, vec3(0.5F, 0.25F, 0.4F), vec3(0, 1, 0));
+        v.nearPlane = 0.1F;
+        v.farPlane = 20.0F;
+        v.lightColour = vec3(1.0F);
+        v.projection = plain();
+        if (o_.zeroToOne) v.projection = glm::perspectiveRH_ZO(0.9F, aspect(), o_.reversed ? 20.0F : 0.1F, o_.reversed ? 0.1F : 20.0F);
+        return v;
+    }
+    HostTarget target() const { return {.framebuffer = framebuffer_, .x = o_.left, .y = o_.bottom, .width = width_, .height = height_}; }
+
+    // rgb as a screen shows it, 0..1, and a as stored; the bottom row first.
+    std::vector<vec4> pixels() const {
+        const GLuint from = resolved();
+        std::vector<vec4> all(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
+        glReadPixels(o_.left, o_.bottom, width_, height_, GL_RGBA, GL_FLOAT, all.data());
+        if (o_.colour == GL_RGBA16F)
+            for (vec4& p : all)
+                for (int k = 0; k < 3; ++k) {
+                    const float c = std::clamp(p[k], 0.0F, 1.0F);
+                    p[k] = c < 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1 / 2.4F) - 0.055F;
+                }
+        return all;
+    }
+    // m along the view axis; what is nothing far away.
+    std::vector<float> depths() const {
+        const GLuint from = resolved();
+        std::vector<float> all(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
+        glReadPixels(o_.left, o_.bottom, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, all.data());
+        const mat4 p = view().projection;
+        for (float& z : all) z = p[3][2] / ((o_.zeroToOne ? z : 2 * z - 1) + p[2][2]);
+        return all;
+    }
+
+    // A block of water that has just begun to fall, on backend gl or another.
+    static FluidParams water() {
+        FluidParams f;
+        f.spacing = 0.04F;
+        f.box.max = vec3(1.0F, 1.0F, 1.0F);
+        f.blocks = {{vec3(0.1F, 0.0F, 0.2F), vec3(0.9F, 0.4F, 0.8F), vec3(0.0F)}};
+        return f;
+    }
+    static FluidView viewOf(const FluidWorld& world) {
+        const ParticleView p = world.particles();
+        FluidView v;
+        v.position = static_cast<unsigned>(p.drawn->handle());
+        v.velocity = static_cast<unsigned>(p.velocity->handle());
+        v.id = static_cast<unsigned>(p.id->handle());
+        v.count = p.slots;
+        v.spacing = p.spacing;
+        v.radius = 0.55F * p.spacing;
+        v.bounds.add(world.params().box.min);
+        v.bounds.add(world.params().box.max);
+        return v;
+    }
+
+  private:
+    float aspect() const { return static_cast<float>(width_) / static_cast<float>(height_); }
+    mat4 plain() const { return glm::perspective(0.9F, aspect(), 0.1F, 20.0F); }
+    void attach(GLenum where, GLenum format, int w, int h) {
+        GLuint name = 0;
+        if (o_.textures) {
+            glCreateTextures(o_.samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, 1, &name);
+            if (o_.samples > 0)
+                glTextureStorage2DMultisample(name, o_.samples, format, w, h, GL_TRUE);
+            else
+                glTextureStorage2D(name, 1, format, w, h);
+            glNamedFramebufferTexture(framebuffer_, where, name, 0);
+        } else {
+            glCreateRenderbuffers(1, &name);
+            glNamedRenderbufferStorageMultisample(name, o_.samples, format, w, h);
+            glNamedFramebufferRenderbuffer(framebuffer_, where, GL_RENDERBUFFER, name);
+        }
+    }
+    GLuint resolved() const {
+        if (o_.samples == 0) return framebuffer_;
+        Options single = o_;
+        single.samples = 0;
+        const HostScene other(width_, height_, single);
+        const int w = width_ + o_.left, h = height_ + o_.bottom;
+        glBlitNamedFramebuffer(framebuffer_, other.framebuffer_, 0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT,
+                               GL_NEAREST);
+        return other.framebuffer_;
+    }
+
+    int width_, height_;
+    Options o_;
+    GLuint framebuffer_ = 0;
+};
+
+}  // namespace rivulet::testing

@@ -1,0 +1,306 @@
+// Scenes that are opened while another is shown: the window goes on, what fails or is given up leaves all as it was.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include "engine/core/json.h"
+#include "engine/scene/load_image.h"
+#include "fluid/bridge/viewer.h"
+#include "tests/unit/framebuffer_fixture.h"
+#include "tests/unit/program_runner.h"
+
+namespace rivulet {
+namespace {
+
+class Opening : public testing::FramebufferFixture, public ::testing::WithParamInterface<const char*> {
+  protected:
+    void SetUp() override {
+        open({900, 700}, {90, 70});
+        ASSERT_TRUE(context_ && target_.name() != 0);
+        input_.mouse = vec2(700, 100);
+        viewer_ = make(small());
+    }
+    void TearDown() override {
+        viewer_.reset();
+        FramebufferFixture::TearDown();
+    }
+    static SceneFile small() {
+        SceneFile scene;
+        scene.name = "small";
+        scene.fluid.spacing = 0.05F;
+        scene.fluid.blocks = {{.min = vec3(0.2F), .max = vec3(0.5F)}};
+        return scene;
+    }
+    // Seconds of work for one thread: a fine mesh.
+    static SceneFile large() {
+        SceneFile scene = small();
+        scene.name = "large";
+        scene.colliders.resize(2);
+        for (ColliderParams& collider : scene.colliders) {
+            collider.mesh = "meshes/spot.obj";
+            collider.fitSize = 0.6F;
+            collider.position = vec3(0.5F);
+            collider.resolution = 190;
+        }
+        scene.colliders[1].motion.spin = 20;
+        return scene;
+    }
+    std::unique_ptr<Viewer> make(const SceneFile& scene) {
+        auto made = Viewer::create(scene, {.backend = GetParam(), .share = [this] { return context_->shared(); }}, {});
+        EXPECT_TRUE(made) << made.error().message;
+        return made ? std::move(*made) : nullptr;
+    }
+    void frame(double seconds = 1.0 / 60) {
+        const Status drawn = viewer_->frame(input_, seconds, target_.name());
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        endFrame();
+    }
+    // How many frames were shown until nothing is being opened any more.
+    int wait() {
+        int frames = 0;
+        for (const auto from = std::chrono::steady_clock::now(); viewer_->opening() != nullptr; ++frames) {
+            frame();
+            if (std::chrono::steady_clock::now() - from > std::chrono::minutes(3)) {
+                ADD_FAILURE() << "it is never ready";
+                break;
+            }
+        }
+        return frames;
+    }
+    // Whether anything but one colour is to be seen.
+    bool seesSomething() {
+        std::vector<uint8_t> pixels(4 * 90 * 70);
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.name());
+        glReadPixels(0, 0, 90, 70, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+        return std::any_of(pixels.begin(), pixels.end(), [&](uint8_t v) { return v != pixels[0] && v != 255; });
+    }
+    std::unique_ptr<Viewer> viewer_;
+};
+
+TEST_P(Opening, TheSceneBeforeGoesOnUntilTheNextIsReady) {
+    frame();
+    const double then = viewer_->session().time();
+    viewer_->open(large());
+    ASSERT_NE(viewer_->opening(), nullptr) << "it takes longer than a glance";
+    EXPECT_EQ(viewer_->scene().name, "small");
+    EXPECT_GT(wait(), 3);
+    EXPECT_EQ(viewer_->scene().name, "large");
+    EXPECT_EQ(viewer_->message(), "");
+    EXPECT_GT(then, 0);
+    const double begins = viewer_->session().time();
+    EXPECT_LT(begins, 0.2) << "it begins at its own start";
+    for (int k = 0; k < 10; ++k) frame();
+    EXPECT_GT(viewer_->session().time(), begins);
+    EXPECT_EQ(viewer_->session().world().stats().nan, 0U);
+    EXPECT_TRUE(seesSomething());
+}
+
+TEST_P(Opening, AMistakeIsASentenceAndAllStays) {
+    SceneFile wrong = large();
+    wrong.colliders[1].mesh = "meshes/spt.obj";
+    viewer_->open(wrong);
+    wait();
+    EXPECT_EQ(viewer_->scene().name, "small");
+    EXPECT_NE(viewer_->message().find("spt.obj"), std::string::npos) << viewer_->message();
+    frame();
+    viewer_->open(small());
+    wait();
+    EXPECT_EQ(viewer_->message(), "");
+}
+
+TEST_P(Opening, WhoOpensAnotherMeanwhileSeesTheLast) {
+    viewer_->open(large());
+    frame();
+    SceneFile last = small();
+    last.name = "last";
+    viewer_->open(last);
+    wait();
+    EXPECT_EQ(viewer_->scene().name, "last");
+    for (int k = 0; k < 5; ++k) frame();
+    EXPECT_EQ(viewer_->scene().name, "last") << "what was given up does not come back";
+    viewer_->open(large());
+    frame();  // and is left while it is being opened
+}
+
+// The sky is made when a scene is opened: another one is seen then.
+TEST_P(Opening, AnotherSkyIsSeen) {
+    const auto brightness = [this] {
+        std::vector<uint8_t> pixels(4 * 90 * 70);
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.name());
+        glReadPixels(0, 0, 90, 70, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+        size_t sum = 0;
+        for (size_t k = 0; k < 4U * 90 * 20; ++k) sum += pixels[pixels.size() - 1 - k];
+        return sum;
+    };
+    frame();
+    const size_t studio = brightness();
+    SceneFile outdoors = small();
+    outdoors.background.sky = "clouds";
+    outdoors.background.zenith = vec3(0, 0, 5);
+    viewer_->open(outdoors);
+    wait();
+    frame();
+    EXPECT_NE(brightness(), studio);
+}
+
+// What is dropped onto the window.
+TEST_P(Opening, ADroppedMeshStandsInTheWaterAndADroppedSceneIsOpened) {
+    const std::string assets = std::string(RIVULET_SOURCE_DIR) + "/assets/";
+    const auto drop = [&](const std::string& path) {
+        input_.dropped = {path};
+        frame();
+        input_.dropped.clear();
+        wait();
+    };
+    drop(assets + "meshes/spot.obj");
+    ASSERT_EQ(viewer_->scene().colliders.size(), 1U) << viewer_->message();
+    EXPECT_FALSE(viewer_->session().field().empty());
+    const Bounds stands = viewer_->session().solids().bounds();
+    const BoxParams& box = viewer_->scene().fluid.box;
+    EXPECT_TRUE(glm::all(glm::greaterThanEqual(stands.min, box.min - 1e-4F)) && glm::all(glm::lessThanEqual(stands.max, box.max + 1e-4F)));
+    drop(assets + "SOURCES.md");
+    EXPECT_EQ(viewer_->scene().colliders.size(), 1U);
+    EXPECT_NE(viewer_->message().find("SOURCES.md"), std::string::npos) << viewer_->message();
+    drop(assets + "scenes/falling_cube.json");
+    EXPECT_EQ(viewer_->scene().name, "falling_cube") << viewer_->message();
+    drop(assets + "scenes/no_such_scene.json");
+    EXPECT_EQ(viewer_->scene().name, "falling_cube");
+    EXPECT_NE(viewer_->message().find("no_such_scene"), std::string::npos) << viewer_->message();
+}
+
+TEST_P(Opening, ASceneIsChosenAmongTheirPictures) {
+    input_.keysPressed = {'O'};
+    frame();
+    frame();
+    for (const char c : std::string("falling_cube")) {
+        input_.text = c;
+        frame();
+    }
+    frame();
+    for (const bool down : {true, false}) {
+        input_.mouse = vec2(180, 160);  // the first card
+        frame();
+        frame();
+        (down ? input_.buttonPressed : input_.buttonReleased)[0] = true;
+        input_.buttonDown[0] = down;
+        frame();
+    }
+    wait();
+    EXPECT_EQ(viewer_->scene().name, "falling_cube") << viewer_->message();
+}
+
+TEST_P(Opening, AVideoHasAPictureAStep) {
+    namespace fs = std::filesystem;
+    const fs::path before = fs::current_path(), folder = fs::temp_directory_path() / ("rivulet_video_" + std::string(GetParam()));
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    fs::current_path(folder);
+    const auto film = [this] {
+        input_.keysPressed = {key::kF1 + 8};
+        frame(0);
+    };
+    frame();
+    film();
+    const uint64_t from = viewer_->steps();
+    for (int k = 0; k < 12; ++k) frame(1.0 / 60);
+    for (int k = 0; k < 3; ++k) frame(0);  // pictures of no step are not in it
+    const uint64_t steps = viewer_->steps() - from;
+    film();
+    fs::current_path(before);
+    const auto counted = testing::runCommand({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v", "-show_entries",
+                                              "stream=nb_read_frames", "-of", "csv=p=0", (folder / "small_0001.mp4").string()});
+    EXPECT_GE(steps, 10U);
+    EXPECT_EQ(std::atoi(counted.out.c_str()), static_cast<int>(steps)) << counted.out;
+    fs::remove_all(folder);
+}
+
+// What is saved is the scene that is shown; a mesh that lay beside the old file is still found, and no file is written over unasked.
+TEST_P(Opening, TheSceneIsSavedAndReadsBackTheSame) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::temp_directory_path() / ("rivulet_saved_" + std::string(GetParam()));
+    fs::remove_all(folder);
+    fs::create_directories(folder / "old");
+    fs::create_directories(folder / "new");
+    fs::copy_file(std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/spot.obj", folder / "old/beside.obj");
+    std::ofstream(folder / "old/scene.json")
+        << R"({"name": "kept", "fluid": {"spacing": 0.05}, "colliders": [{"mesh": "beside.obj", "fitSize": 0.3}]})";
+    Result<SceneFile> loaded = loadScene((folder / "old/scene.json").string(), {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    viewer_->open(*loaded);
+    wait();
+    ASSERT_EQ(viewer_->scene().name, "kept") << viewer_->message();
+    const auto save = [&](const std::string& path) {
+        input_.keysDown = {key::kLeftControl};
+        input_.keysPressed = {'S'};
+        frame();
+        input_.keysDown.clear();
+        frame();
+        frame();
+        for (int k = 0; k < 40; ++k) {
+            input_.keysPressed = input_.keysDown = {key::kBackspace};
+            frame();
+            input_.keysDown.clear();
+            frame();
+        }
+        for (const char c : path) {
+            input_.text = c;
+            frame();
+        }
+        input_.keysPressed = input_.keysDown = {key::kEnter};
+        frame();
+        input_.keysDown.clear();
+        frame();
+    };
+    const auto textOf = [](SceneFile scene) { return writeJson([&scene](ParamVisitor& v) { scene.visit(v); }); };
+    const std::string path = (folder / "new/saved.json").string();
+    save(path);
+    ASSERT_TRUE(fs::exists(path)) << viewer_->message();
+    const Result<SceneFile> back = loadScene(path, {});
+    ASSERT_TRUE(back) << back.error().message;
+    SceneFile shown = viewer_->scene();
+    EXPECT_EQ(back->colliders.at(0).mesh, (folder / "old/beside.obj").string());
+    shown.colliders.at(0).mesh = back->colliders.at(0).mesh;
+    EXPECT_EQ(textOf(*back), textOf(shown));
+    viewer_->open(*back);
+    wait();
+    EXPECT_EQ(textOf(viewer_->scene()), textOf(*back));
+
+    const std::string taken = (folder / "new/taken.json").string();
+    std::ofstream(taken) << "somebody's";
+    save(taken);
+    EXPECT_EQ(*readFile(taken), "somebody's") << "Enter alone writes over nothing";
+    fs::remove_all(folder);
+}
+
+TEST_P(Opening, APictureIsTakenOfWhatIsShown) {
+    namespace fs = std::filesystem;
+    const fs::path before = fs::current_path(), folder = fs::temp_directory_path() / ("rivulet_picture_" + std::string(GetParam()));
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    fs::current_path(folder);
+    for (int k = 0; k < 2; ++k) {
+        frame();
+        input_.keysPressed = {key::kF1 + 11};
+        frame();
+    }
+    viewer_.reset();
+    fs::current_path(before);
+    for (const char* name : {"small_0001.png", "small_0002.png"}) {
+        const Result<Image> picture = loadImage((folder / name).string());
+        ASSERT_TRUE(picture) << picture.error().message;
+        EXPECT_EQ(picture->width, 90);
+        EXPECT_EQ(picture->height, 70);
+    }
+    fs::remove_all(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Opening, ::testing::Values("cpu", "gl"), [](const auto& each) { return std::string(each.param); });
+
+}  // namespace
+}  // namespace rivulet

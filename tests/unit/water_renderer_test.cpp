@@ -1,0 +1,252 @@
+// Water in a host's picture: where there is none nothing changes, what is in front hides it, and the host's formats make no difference.
+#include "fluid/render/water_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include "engine/app/capture.h"
+#include "engine/app/context_egl.h"
+#include "engine/gpu/device_gl.h"
+#include "fluid/render/renderers.h"
+#include "tests/unit/host_fixture.h"
+
+namespace rivulet {
+namespace {
+
+using testing::HostScene;
+constexpr int kWidth = 160, kHeight = 120;
+
+class WaterInAHostsPicture : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        Result<ContextEgl> context = ContextEgl::create();
+        if (!context) GTEST_SKIP() << context.error().message;
+        context_.emplace(std::move(*context));
+        device_ = makeGlDevice(ShaderFiles::developer());
+        auto world = FluidWorld::create(*device_, HostScene::water(), {}, {});
+        ASSERT_TRUE(world);
+        world_ = std::move(*world);
+        for (int k = 0; k < 4; ++k) world_->step({}, 1.0 / 60);
+        device_->finish();
+        auto renderer = WaterRenderer::create({});
+        ASSERT_TRUE(renderer) << renderer.error().message;
+        renderer_ = std::move(*renderer);
+    }
+    void TearDown() override {
+        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+        renderer_.reset();
+        world_.reset();
+        device_.reset();
+    }
+    Status draw(const HostScene& host, const RendererRow* row = nullptr) {
+        return renderer_->draw(host.view(), HostScene::viewOf(*world_), {}, host.target(), row);
+    }
+    static double meanDifference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+        double sum = 0;
+        for (size_t k = 0; k < a.size(); ++k) sum += glm::dot(glm::abs(vec3(a[k]) - vec3(b[k])), vec3(1.0F / 3));
+        return sum / static_cast<double>(a.size());
+    }
+
+    std::optional<ContextEgl> context_;
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<FluidWorld> world_;
+    std::unique_ptr<WaterRenderer> renderer_;
+};
+
+// The box that the water is in, as the picture has it: all that may change.
+bool mayBeWater(const FrameView& v, int x, int y) {
+    vec2 low(1e9F), high(-1e9F);
+    for (int k = 0; k < 8; ++k) {
+        const vec4 c = v.projection * v.view * vec4(k & 1, (k & 2) / 2 * 0.6F, (k & 4) / 4, 1.0F);
+        const vec2 at = (vec2(c) / c.w * 0.5F + 0.5F) * vec2(v.width, v.height);
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    return static_cast<float>(x) > low.x - 2 && static_cast<float>(x) < high.x + 2 && static_cast<float>(y) > low.y - 2 &&
+           static_cast<float>(y) < high.y + 2;
+}
+
+TEST_F(WaterInAHostsPicture, ChangesOnlyWhereThereIsWater) {
+    const HostScene host(kWidth, kHeight, {.left = 7, .bottom = 5});
+    const std::vector<vec4> before = host.pixels();
+    const std::vector<float> depthBefore = host.depths();
+    ASSERT_TRUE(draw(host));
+    const std::vector<vec4> after = host.pixels();
+    const std::vector<float> depthAfter = host.depths();
+    size_t changed = 0, nearer = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const auto k = static_cast<size_t>(y * kWidth + x);
+            const bool same = before[k] == after[k] && depthBefore[k] == depthAfter[k];
+            changed += same ? 0 : 1;
+            if (!mayBeWater(host.view(), x, y)) EXPECT_TRUE(same) << x << " " << y;
+            EXPECT_EQ(after[k].w, before[k].w) << "alpha is the host's";
+            EXPECT_LE(depthAfter[k], depthBefore[k] * 1.0001F) << "water lies before what it covers";
+            nearer += depthAfter[k] < depthBefore[k] ? 1 : 0;
+            // The red post stands before the water.
+            if (before[k].x > 0.7F && before[k].z < 0.4F) EXPECT_TRUE(same) << "at the post: " << x << " " << y;
+        }
+    EXPECT_GT(changed, before.size() / 8);
+    EXPECT_GT(nearer, changed / 2);
+    // Its depth is where the block of water is: the front face is near z = 0.8, 1.3 m and more from the camera.
+    for (size_t k = 0; k < before.size(); ++k)
+        if (depthAfter[k] < depthBefore[k]) EXPECT_GT(depthAfter[k], 0.9F);
+}
+
+TEST_F(WaterInAHostsPicture, FormatsAndConventionsMakeNoDifference) {
+    const HostScene plain(kWidth, kHeight);
+    ASSERT_TRUE(draw(plain));
+    const std::vector<vec4> truth = plain.pixels();
+    const std::vector<float> depth = plain.depths();
+    const struct {
+        const char* name;
+        HostScene::Options options;
+        double tolerance;  // of the picture's mean, of 1
+    } rows[] = {
+        {"linear floats", {.colour = GL_RGBA16F}, 0.002},
+        {"sRGB format", {.colour = GL_SRGB8_ALPHA8}, 0.002},
+        {"10 bits", {.colour = GL_RGB10_A2}, 0.003},
+        {"depth of 24 bits alone", {.depth = GL_DEPTH_COMPONENT24}, 1.0e-5},
+        {"depth of 16 bits", {.depth = GL_DEPTH_COMPONENT16}, 0.004},
+        {"depth of floats", {.depth = GL_DEPTH_COMPONENT32F}, 0.001},
+        {"floats and stencil", {.depth = GL_DEPTH32F_STENCIL8}, 0.001},
+        {"zero to one", {.depth = GL_DEPTH_COMPONENT32F, .zeroToOne = true}, 0.001},
+        {"reversed", {.depth = GL_DEPTH_COMPONENT32F, .zeroToOne = true, .reversed = true}, 0.001},
+        {"renderbuffers", {.textures = false}, 1.0e-5},
+        {"four samples", {.samples = 4}, 0.004},
+        {"four samples of renderbuffers", {.samples = 4, .textures = false}, 0.004},
+    };
+    for (const auto& row : rows) {
+        SCOPED_TRACE(row.name);
+        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+        const HostScene host(kWidth, kHeight, row.options);
+        const Status drawn = draw(host);
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        EXPECT_LT(meanDifference(host.pixels(), truth), row.tolerance);
+        const std::vector<float> depths = host.depths();
+        size_t off = 0;
+        for (size_t k = 0; k < depth.size(); ++k) off += depth[k] < 5 && std::abs(depths[k] - depth[k]) > 0.01F ? 1 : 0;
+        EXPECT_LT(off, depth.size() / 200);
+        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    }
+}
+
+TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
+    const HostScene host(kWidth, kHeight);
+    const FluidView fluid = HostScene::viewOf(*world_);
+    const auto said = [&](const FrameView& view, const HostTarget& target) {
+        const Status drawn = renderer_->draw(view, fluid, {}, target);
+        return drawn ? std::string() : drawn.error().message;
+    };
+    FrameView flat = host.view();
+    flat.projection = glm::ortho(-1.0F, 1.0F, -1.0F, 1.0F, 0.1F, 10.0F);
+    EXPECT_NE(said(flat, host.target()).find("no perspective"), std::string::npos);
+    FrameView endless = host.view();
+    endless.farPlane = std::numeric_limits<float>::infinity();
+    EXPECT_NE(said(endless, host.target()).find("farPlane"), std::string::npos);
+    HostTarget closed = host.target();
+    closed.height = 0;
+    EXPECT_NE(said(host.view(), closed).find("160 x 0"), std::string::npos);
+    glClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    EXPECT_NE(said(host.view(), host.target()).find("GL_UPPER_LEFT"), std::string::npos);
+    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    EXPECT_EQ(said(host.view(), host.target()), "");
+
+    // Numbers that are none, and a view that is more than a turn and a move.
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const auto refusedFor = [&](const char* word, const std::function<void(FrameView&)>& spoil) {
+        FrameView view = host.view();
+        spoil(view);
+        EXPECT_NE(said(view, host.target()).find(word), std::string::npos) << said(view, host.target());
+    };
+    refusedFor("no number", [&](FrameView& v) { v.view[3].x = nan; });
+    refusedFor("no number", [&](FrameView& v) { v.projection[0][0] = nan; });
+    refusedFor("a turn and a move", [&](FrameView& v) { v.view = mat4(0.0F); });
+    refusedFor("a turn and a move", [&](FrameView& v) { v.view = glm::scale(v.view, vec3(2.0F)); });
+    refusedFor("lightColour", [&](FrameView& v) { v.lightColour.y = nan; });
+    refusedFor("direction is 0", [&](FrameView& v) { v.lightDirWorld = vec3(0.0F); });
+
+    // Targets that take no water.
+    const auto refusedInto = [&](const char* word, const std::function<void(HostTarget&)>& spoil) {
+        HostTarget target = host.target();
+        spoil(target);
+        EXPECT_NE(said(host.view(), target).find(word), std::string::npos) << said(host.view(), target);
+        EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}) << word;
+    };
+    refusedInto("no framebuffer", [](HostTarget& t) { t.framebuffer = 999; });
+    refusedInto("no window", [](HostTarget& t) { t.framebuffer = 0; });
+    refusedInto("in no framebuffer", [](HostTarget& t) { t.x = std::numeric_limits<int>::max(); });
+    const auto whole = gpu::Texture::create({.width = kWidth, .height = kHeight, .format = gpu::Format::r32ui});
+    ASSERT_TRUE(whole);
+    const gpu::Framebuffer counts(*whole, nullptr);
+    refusedInto("whole numbers", [&](HostTarget& t) { t.framebuffer = counts.name(); });
+    GLuint empty = 0;
+    glCreateFramebuffers(1, &empty);
+    refusedInto("not complete", [&](HostTarget& t) { t.framebuffer = empty; });
+    glNamedFramebufferParameteri(empty, GL_FRAMEBUFFER_DEFAULT_WIDTH, kWidth);
+    glNamedFramebufferParameteri(empty, GL_FRAMEBUFFER_DEFAULT_HEIGHT, kHeight);
+    refusedInto("no colour", [&](HostTarget& t) { t.framebuffer = empty; });
+    glDeleteFramebuffers(1, &empty);
+
+    // What of the host's would count what is drawn.
+    GLuint query = 0;
+    glCreateQueries(GL_SAMPLES_PASSED, 1, &query);
+    glBeginQuery(GL_SAMPLES_PASSED, query);
+    EXPECT_NE(said(host.view(), host.target()).find("a query counts"), std::string::npos);
+    glEndQuery(GL_SAMPLES_PASSED);
+    GLuint passed = 1;
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT, &passed);
+    EXPECT_EQ(passed, 0U);
+    glDeleteQueries(1, &query);
+    EXPECT_EQ(said(host.view(), host.target()), "");
+
+    auto small = WaterRenderer::create({.memoryLimit = 1 << 16});
+    ASSERT_TRUE(small);
+    const Status refused = (*small)->draw(host.view(), fluid, {}, host.target());
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("allowed"), std::string::npos) << refused.error().message;
+}
+
+// A host may have opened as many debug groups as there can be, and wait for results in a buffer of its own.
+TEST_F(WaterInAHostsPicture, LeavesAHostsDebugGroupsAndQueryBufferAlone) {
+    const HostScene host(kWidth, kHeight);
+    GLint most = 0, depth = 0, there = 0;
+    glGetIntegerv(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &most);
+    for (glGetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &depth); depth < most; ++depth)
+        glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 1, 4, "host");
+    GLuint buffer = 0;
+    glCreateBuffers(1, &buffer);
+    glNamedBufferStorage(buffer, 64, nullptr, 0);
+    glBindBuffer(GL_QUERY_BUFFER, buffer);
+    for (int k = 0; k < 4; ++k) ASSERT_TRUE(draw(host));
+    glFinish();
+    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+    glGetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &depth);
+    EXPECT_EQ(depth, most);
+    glGetIntegerv(GL_QUERY_BUFFER_BINDING, &there);
+    EXPECT_EQ(static_cast<GLuint>(there), buffer);
+    EXPECT_FALSE(renderer_->times().empty()) << "the passes' times have arrived";
+    glBindBuffer(GL_QUERY_BUFFER, 0);
+    glDeleteBuffers(1, &buffer);
+    for (; depth > 1; --depth) glPopDebugGroup();
+}
+
+// A renderer that Rivulet does not know: it dyes what it is given.
+TEST_F(WaterInAHostsPicture, MayBeDrawnByAHostsOwnRow) {
+    const HostScene host(kWidth, kHeight), with(kWidth, kHeight);
+    const RendererRow row{"a host's", "dyes", true, [](gpu::FrameGraph& graph, FluidPrograms&, const FluidDraw& d) -> FluidLayers {
+                              graph.pass("dye", {}, {d.colour}, [colour = d.colour](gpu::PassContext& c) {
+                                  c.drawTo({colour}).clearColour(vec4(0.0F, 1.0F, 0.0F, 1.0F));
+                              });
+                              return {d.colour, {}};
+                          }};
+    ASSERT_TRUE(draw(with, &row));
+    for (const vec4& p : with.pixels()) ASSERT_EQ(vec3(p), vec3(0, 1, 0));
+    ASSERT_TRUE(draw(host, renderers().find("points")));
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -74,6 +74,22 @@ class Session {
     bool mayWorkAside() const;  // on the cpu, without skins and bending models, which are drawn from what is being stepped
     void reset();
 
+    // What of the scene a ray meets first (m, world), of what is drawn.
+    struct Thing {
+        enum class Kind { none, collider, body, emitter, sink } kind = Kind::none;
+        size_t index = 0;  // in the scene
+        bool operator==(const Thing&) const = default;
+    };
+    struct Met {
+        Thing thing;
+        vec3 place{0.0F}, normal{0.0F};  // m; unit, towards where the ray came from
+    };
+    Thing thingOf(size_t node) const;  // of solids(): whose it is; none: a skin's
+    std::optional<Met> meet(const vec3& origin, const vec3& direction) const;
+    Bounds boundsOf(const Thing& thing) const;  // m, world, as it is drawn now; of an emitter or sink, what the scene says
+    // A hand at a body (solids_bullet.h), until it lets go (nothing).
+    void hold(const std::optional<BulletSolids::Hold>& hand);
+
     // Goes on on another device, in the place of one that is full or lost: from what that one holds, or else from the last snapshot, which
     // a session on cl takes of itself now and then. time() of the world says from when on. Error (failed): out of memory; the session
     // is then of no more use. On the cpu fluid.grid linked_list, which it does not know, becomes sorted.

@@ -126,6 +126,7 @@ struct BulletSolids::Impl {
     std::vector<btRigidBody*> moving;
     std::vector<Pose> now, target;  // of those that move
     double left = 0;                // s until they are there
+    std::optional<Hold> hand;
 
     ~Impl() {
         for (auto* list : {&all, &bodies})
@@ -229,6 +230,21 @@ struct BulletSolids::Impl {
             b.updateInertiaTensor();
         }
     }
+    void pull(btRigidBody& b, const vec3& gravity, double seconds) const {
+        if (!(b.getMass() > 0) || !(seconds > 0)) return;
+        // Explicit, and a grip off the middle is up to four times as stiff: a step must be short beside the spring's time.
+        constexpr float kQuick = 30.0F, kShare = 0.1F;  // 1/s; of that time
+        constexpr float kCalm = 6.0F;                   // 1/s, what it turns about the grip
+        constexpr float kHardest = 200.0F;              // m/s^2
+        const float rate = std::min(kQuick, kShare / static_cast<float>(seconds));
+        const btVector3 arm = b.getWorldTransform() * to(hand->at) - b.getWorldTransform().getOrigin();
+        const vec3 place = from(b.getWorldTransform().getOrigin() + arm), velocity = from(b.getVelocityInLocalPoint(arm));
+        vec3 wanted = rate * rate * (hand->to - place) - 2 * rate * velocity;
+        if (const float hard = glm::length(wanted); hard > kHardest) wanted *= kHardest / hard;
+        b.applyForce(to(wanted * static_cast<float>(b.getMass())), arm);
+        b.applyCentralForce(to(-gravity * static_cast<float>(b.getMass())));  // at its middle: else it would hang from the grip and swing
+        b.setAngularVelocity(b.getAngularVelocity() * std::exp(-kCalm * static_cast<float>(seconds)));
+    }
     void advance(std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
         put(states);
         for (size_t k = 0; k < bodies.size(); ++k) {
@@ -237,6 +253,7 @@ struct BulletSolids::Impl {
             if (b.getMass() > 0) b.applyCentralForce(to(loads[k].force + dvec3(gravity) * double{b.getMass()}));
             if (b.getMass() > 0) b.applyTorque(to(loads[k].torque));
         }
+        if (hand && hand->body < bodies.size()) pull(*bodies[hand->body], gravity, seconds);
         const double share = left > 0 ? std::min(seconds / left, 1.0) : 1.0;
         left = std::max(left - seconds, 0.0);
         for (size_t k = 0; k < moving.size(); ++k) {
@@ -362,6 +379,8 @@ BodyHost BulletSolids::host() {
     };
     return h;
 }
+
+void BulletSolids::hold(const std::optional<Hold>& hand) { impl_->hand = hand; }
 
 void BulletSolids::moveTo(std::span<const Pose> poses, double seconds) {
     if (poses.size() != impl_->moving.size()) return;

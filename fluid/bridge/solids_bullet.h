@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,13 @@ class BulletSolids {
     BodyHost host();  // the BulletSolids must outlive its use
     // Where the moving meshes are to be when `seconds` have gone by; 0: they are there now.
     void moveTo(std::span<const Pose> poses, double seconds);
+    // A hand that holds a body, at `at` (m, the body's own frame), and draws that to `to` (m, world) until it lets go: by a spring that is
+    // damped critically, carries the body's weight, and never pulls harder than 20 times that.
+    struct Hold {
+        size_t body = 0;
+        vec3 at{0.0F}, to{0.0F};
+    };
+    void hold(const std::optional<Hold>& hand);
 
   private:
     struct Impl;

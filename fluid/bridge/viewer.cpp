@@ -10,10 +10,12 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "engine/core/assert.h"
 #include "engine/core/thread_clock.h"
 #include "fluid/bridge/plan_trial.h"
+#include "fluid/bridge/scene_tree.h"
 #include "fluid/bridge/takeover.h"
 #include "fluid/sim/world_state.h"
 
@@ -33,7 +35,9 @@ void drawHelp() {
     } kKeys[] = {{"left drag", "turn the view"},
                  {"right or middle drag", "move the view"},
                  {"wheel", "nearer, farther"},
-                 {"click", "a drop, on a skin"},
+                 {"click", "choose a mesh; a drop, on a skin"},
+                 {"drag a body", "lift it, throw it"},
+                 {"drag a handle", "move, turn what is chosen; control Z: back"},
                  {"space", "pause, go on"},
                  {"period", "one step"},
                  {"R", "start again"},
@@ -137,10 +141,12 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     if (browser_.shown()) chooseScene();
     panelCost_.made = 1000 * (threadSeconds() - began);
     takeDropped(input);
-    if (!ui_.wantsMouse()) {
+    if ((!ui_.wantsMouse() || hand_.holds()) && !handle(input, recreate)) {
         moveCamera(input);
         touch(input);
     }
+    if (showPanels_) hand_.draw(input, cameraOf(draft_.camera, session_->bounds()), *session_, draft_);
+    recreate = std::exchange(undone_, false) || recreate;
     if (edited_ || recreate) {
         takeEdits(recreate);
         params_.compare(visiting(draft_));
@@ -155,10 +161,18 @@ void Viewer::takeKeys(const InputEvents& input) {
     if (input.pressed(GLFW_KEY_SPACE)) paused_ = !paused_;
     if (input.pressed(GLFW_KEY_PERIOD)) paused_ = stepOnce_ = true;
     if (input.pressed(GLFW_KEY_R)) session_->reset();
-    if (input.pressed(GLFW_KEY_TAB)) showPanels_ = !showPanels_;
+    if (input.pressed(GLFW_KEY_TAB)) {
+        showPanels_ = !showPanels_;
+        hand_.choose({});
+    }
     if (input.pressed(GLFW_KEY_H)) showHelp_ = !showHelp_;
     const bool control = input.down(key::kLeftControl) || input.down(key::kRightControl);
     if (control && input.pressed('S')) saving_ = true;
+    if (input.pressed(key::kEscape)) hand_.choose({});
+    if (SceneHand::Asks asks; control && input.pressed('Z') && hand_.undo(draft_, asks)) {
+        edited_ = true;
+        undone_ = asks.recreate;
+    }
     if (control && input.pressed('F')) showPanels_ = params_.find = true;
     constexpr float kZoom = 1.25F;
     if (control && input.pressed('=')) zoom_ = std::min(zoom_ * kZoom, 4.0F);
@@ -170,6 +184,14 @@ void Viewer::takeKeys(const InputEvents& input) {
     };
     if (input.pressed(key::kF1 + 8)) say(toggleVideo());
     if (input.pressed(key::kF1 + 11)) say(takePicture());
+}
+
+bool Viewer::handle(const InputEvents& input, bool& recreate) {
+    if (input.size.x <= 0 || input.size.y <= 0) return false;
+    const SceneHand::Asks asks = hand_.take(input, cameraOf(draft_.camera, session_->bounds()), *session_, draft_);
+    edited_ = edited_ || asks.edited;
+    recreate = recreate || asks.recreate;
+    return asks.mouse;
 }
 
 void Viewer::moveCamera(const InputEvents& input) {
@@ -202,13 +224,9 @@ void Viewer::touch(const InputEvents& input) {
     if (input.buttonPressed[kLeft]) pressedAt_ = input.mouse;
     if (!input.buttonReleased[kLeft] || glm::distance(input.mouse, pressedAt_) > kStill || session_->flows().empty()) return;
     if (input.size.x <= 0 || input.size.y <= 0) return;
-    const Camera camera = cameraOf(draft_.camera, session_->bounds());
-    const vec2 size(input.size);
-    const mat4 back = glm::inverse(camera.projection(size.x / size.y) * camera.view());
-    const vec2 at(2 * input.mouse.x / size.x - 1, 1 - 2 * input.mouse.y / size.y);
-    const vec4 far = back * vec4(at, 1.0F, 1.0F);
+    const ViewRay ray = rayThrough(cameraOf(draft_.camera, session_->bounds()), input.mouse, vec2(input.size));
     constexpr uint32_t kTear = 8000000;  // picolitres
-    session_->flows().drip(dvec3(camera.position), dvec3(vec3(far) / far.w - camera.position), kTear);
+    session_->flows().drip(dvec3(ray.origin), dvec3(ray.direction), kTear);
 }
 
 // A button for each of the scene's presets.
@@ -269,6 +287,9 @@ bool Viewer::drawPanels() {
             edited_ = drawPresets() || edited_;
             ImGui::Spacing();
         }
+        const TreeAsks asks = drawSceneTree(*session_, draft_, hand_);
+        edited_ = edited_ || asks.edited;
+        if (!asks.find.empty()) params_.wanted = asks.find;
         ParamPanel panel(params_);
         panel.search(visiting(draft_));
         ImGui::BeginChild("parameters");
@@ -397,6 +418,8 @@ void Viewer::giveUpOpening() {
 // What it replaces goes only now.
 void Viewer::adopt(OpenedScene opened, bool other) {
     work_.reset();
+    hand_.letGo();
+    if (other) hand_ = {};
     session_ = std::move(opened.session);
     if (opened.device) {  // nothing is on the other any more
         device_ = std::move(opened.device);

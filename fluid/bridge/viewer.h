@@ -21,6 +21,7 @@
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_browser.h"
+#include "fluid/bridge/scene_hand.h"
 #include "fluid/bridge/scene_opening.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
@@ -56,6 +57,8 @@ class Viewer {
     const SceneFile& scene() const { return session_->scene(); }
     Session& session() { return *session_; }
     WatchWindow& watch() { return watch_; }
+    const SceneHand& hand() const { return hand_; }
+    void chooseThing(const SceneHand::Thing& thing) { hand_.choose(thing); }
     const SceneRenderer& renderer() const { return *renderer_; }
     // ms on the CPU for the last frame's panels: making them, and telling OpenGL of them.
     struct PanelCost {
@@ -81,9 +84,10 @@ class Viewer {
   private:
     void takeKeys(const InputEvents& input);
     void moveCamera(const InputEvents& input);
-    void touch(const InputEvents& input);  // a click that is no drag puts a drop on a skin
-    bool drawPresets();                    // whether one was chosen
-    bool drawPanels();                     // whether a new session is wanted
+    bool handle(const InputEvents& input, bool& recreate);  // whether the hand has the mouse
+    void touch(const InputEvents& input);                   // a click that is no drag puts a drop on a skin
+    bool drawPresets();                                     // whether one was chosen
+    bool drawPanels();                                      // whether a new session is wanted
     void takeEdits(bool recreate);
     void startOpening(SceneFile scene, bool other);  // `other`: it is not the one that is shown, edited
     void finishOpening();                            // when it is ready
@@ -146,6 +150,8 @@ class Viewer {
     uint64_t steps_ = 0, mostSteps_ = UINT64_MAX;
     std::function<Status(const Session&)> told_;
     SceneBrowser browser_;
+    SceneHand hand_;
+    bool undone_ = false;  // a thing was put back where a new world needs it
     std::optional<VideoWriter> video_;
     ivec2 videoSize_{0};
     bool stepShown_ = false;  // a step was made that no video has yet

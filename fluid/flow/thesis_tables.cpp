@@ -24,9 +24,9 @@ void ThesisParams::visit(ParamVisitor& v) {
     v.value({"stiffness", "UV^2/s^2", "k of the pressure k (density - rest density)", 0, 10}, stiffness);
     v.value({"viscosity", "UV^2/s", "how much particles take each other along", 0, 0.1}, viscosity);
     v.value({"friction", "", "mu of the friction with the skin; it grows with what presses a particle on", 0, 100}, friction);
-    v.value({"adhesive", "N", "force that holds a particle on the skin", 0, 0.01}, adhesive);
-    v.value({"curvature", "N kg/UV^3", "the same by surface tension, times the density's gradient", 0, 0.01}, curvature);
-    v.value({"curvatureMost", "N", "what surface tension adds at most: a lone particle's is endless else", 0, 0.01}, curvatureMost);
+    v.value({"adhesive", "N", "force that holds a particle on the skin", 0, 1, kLog}, adhesive);
+    v.value({"curvature", "N kg/UV^3", "the same by surface tension, times the density's gradient", 0, 1, kLog}, curvature);
+    v.value({"curvatureMost", "N", "what surface tension adds at most: a lone particle's is endless else", 0, 1, kLog}, curvatureMost);
     v.value({"windPush", "1/s", "acceleration by each m/s of wind", 0, 100}, windPush);
     v.value({"disc", "UV", "radius of the disc that the largest particle is drawn as", 1.0e-4, 0.5, kLog}, disc);
 }

@@ -164,7 +164,7 @@ void FluidParams::visit(ParamVisitor& v) {
          .doc = "a row of rivulet list liquids, whose density and viscosity hold instead of restDensity and viscosity; empty = these hold",
          .fixed = kFixed},
         liquid);
-    v.value({"restDensity", "kg/m^3", "density at rest; water 1000", 1, 20000, kLog}, restDensity);
+    v.value({"restDensity", "kg/m^3", "density at rest; water 1000", 1, 100000, kLog}, restDensity);
     v.value({"viscosity", "m^2/s", "kinematic viscosity; water 1e-6, honey about 5e-3", 0, 10, kLog}, viscosity);
     v.value({"artificialViscosity", "", "damping between particles that approach (Monaghan's alpha): 0.02 keeps a free surface calm", 0, 1},
             artificialViscosity);

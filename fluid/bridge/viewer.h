@@ -19,6 +19,7 @@
 #include "fluid/bridge/cooperation.h"
 #include "fluid/bridge/fluid_panel.h"
 #include "fluid/bridge/haste.h"
+#include "fluid/bridge/hot_reload.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_browser.h"
 #include "fluid/bridge/scene_opening.h"
@@ -63,6 +64,7 @@ class Viewer {
     };
     const PanelCost& panelCost() const { return panelCost_; }
     const std::string& message() const { return message_; }  // what the last edit was refused for; "" = nothing
+    const HotReload& reload() const { return reload_; }
 
     // Shows another scene, this one until that is ready; a mistake in it is a message.
     void open(SceneFile scene) { startOpening(std::move(scene), true); }
@@ -85,8 +87,10 @@ class Viewer {
     bool drawPresets();                    // whether one was chosen
     bool drawPanels();                     // whether a new session is wanted
     void takeEdits(bool recreate);
-    void startOpening(SceneFile scene, bool other);  // `other`: it is not the one that is shown, edited
-    void finishOpening();                            // when it is ready
+    // `other`: it is not the one that is shown, edited; `written`: its file was.
+    void startOpening(SceneFile scene, bool other, bool written = false);
+    void takeWritten(double seconds);
+    void finishOpening();  // when it is ready
     void giveUpOpening();
     void adopt(OpenedScene opened, bool other);
     void refuse(const Error& error, bool other, const SceneFile& before);
@@ -159,6 +163,8 @@ class Viewer {
     SharedGl elsewhere_;  // of the thread that opens scenes
     std::unique_ptr<Opening> opening_;
     std::vector<std::unique_ptr<SceneOpening>> givenUp_;  // and not done yet
+    HotReload reload_{ShaderFiles::developer().root()};
+    bool reopening_ = false;  // what is being opened is the shown scene, whose file was written
 
     explicit Viewer(UiLayer ui) : ui_(std::move(ui)) {}
 };

@@ -73,6 +73,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
         kept->sentences.emplace_back(text);
     };
     v.gl_ = currentGlFacts();
+    v.firstStart_ = FirstStart(options.seen);
     v.share_ = options.share;
     const auto surroundings = surroundingsOf(scene);
     if (!surroundings) return surroundings.error();
@@ -128,7 +129,8 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     InputEvents scaled = input;
     scaled.scale *= zoom_;
     ui_.begin(scaled, seconds);
-    if (!ui_.wantsKeyboard()) takeKeys(input);
+    const bool greets = firstStart_.shown();  // the key that ends it does nothing else
+    if (!greets && !ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
     if (!showPanels_) watch_.hide(*renderer_);
     if (showHelp_) drawHelp();
@@ -136,9 +138,10 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     reload_.draw();
     if (saving_) drawSaving();
     if (browser_.shown()) chooseScene();
+    firstStart_.draw(input);
     panelCost_.made = 1000 * (threadSeconds() - began);
     takeDropped(input);
-    if (!ui_.wantsMouse()) {
+    if (!greets && !ui_.wantsMouse()) {
         moveCamera(input);
         touch(input);
     }

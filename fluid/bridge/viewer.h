@@ -17,6 +17,7 @@
 #include "engine/ui/param_panel.h"
 #include "engine/ui/profiler_panel.h"
 #include "fluid/bridge/cooperation.h"
+#include "fluid/bridge/first_start.h"
 #include "fluid/bridge/fluid_panel.h"
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/hot_reload.h"
@@ -37,6 +38,7 @@ struct ViewerOptions {
     std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
     void* clipboard = nullptr;       // as UiLayer
     int width = 1280, height = 720;  // pixels, of what auto tries
+    std::string seen = {};           // as FirstStart
     // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
     std::function<Result<SharedGl>()> share = {};
 };
@@ -65,6 +67,7 @@ class Viewer {
     const PanelCost& panelCost() const { return panelCost_; }
     const std::string& message() const { return message_; }  // what the last edit was refused for; "" = nothing
     const HotReload& reload() const { return reload_; }
+    bool greets() const { return firstStart_.shown(); }
 
     // Shows another scene, this one until that is ready; a mistake in it is a message.
     void open(SceneFile scene) { startOpening(std::move(scene), true); }
@@ -150,6 +153,7 @@ class Viewer {
     uint64_t steps_ = 0, mostSteps_ = UINT64_MAX;
     std::function<Status(const Session&)> told_;
     SceneBrowser browser_;
+    FirstStart firstStart_;
     std::optional<VideoWriter> video_;
     ivec2 videoSize_{0};
     bool stepShown_ = false;  // a step was made that no video has yet

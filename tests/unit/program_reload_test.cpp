@@ -145,7 +145,7 @@ TEST_F(Reload, AShaderIsTakenAsItIsSavedAndABrokenOneIsNot) {
     EXPECT_NE(trouble().find("toSRGB"), std::string::npos) << trouble();
     EXPECT_TRUE(onScreen()) << "though the panels may be hidden";
     EXPECT_EQ(pixel(), (std::array<uint8_t, 4>{255, 0, 0, 255})) << "the last good one draws";
-    // Another file that is right does not hide what is wrong, nor does it come in alone.
+    // Another file that is right does not hide what is wrong.
     const fs::path other = shader("render/antialias.frag");
     writeFile(other, readFile(other) + "\n// a word more\n");
     wait();
@@ -161,7 +161,7 @@ TEST_F(Reload, AShaderIsTakenAsItIsSavedAndABrokenOneIsNot) {
     EXPECT_FALSE(onScreen());
 }
 
-TEST_F(Reload, AnIncludedFileReachesEveryProgramOrNone) {
+TEST_F(Reload, AnIncludedFileReachesWhatIncludesIt) {
     const fs::path file = shader("render/frame.glsl");
     const std::string good = readFile(file);
     const GLuint64 steps = viewer_->steps();

@@ -44,7 +44,7 @@ def held_against_help(words, where):
         if name.startswith("--") and not re.search(rf"(^|[ ,|]){name}\b", helps[verb], re.M):
             wrong.append(f"{where}: `rivulet {verb}` has no {name}")
         elif verb in LONG and re.fullmatch(r"[a-z][a-z0-9_]+", word) and words[words.index(word) - 1] not in ("--out", "--method", "--backend"):
-            if not re.search(rf"^  {word} ", helps[verb], re.M):
+            if not re.search(rf"\b{word}\b", helps[verb]):
                 wrong.append(f"{where}: `rivulet {verb}` knows no case {word}")
 
 
@@ -114,7 +114,7 @@ def look_at(text, where):
         if f'"{words[words.index("--preset") + 1]}"' not in (root / "CMakePresets.json").read_text():
             wrong.append(f"{where}: there is no preset {words[words.index('--preset') + 1]}")
     elif words[0] == "rivulet" and len(words) > 1:
-        if words[1] == "VERB":
+        if words[1] in ("VERB", "--help"):
             return
         if words[1] not in helps:
             wrong.append(f"{where}: there is no verb {words[1]}")
@@ -130,11 +130,21 @@ for page in pages:
     for link in re.findall(r"\]\(([^)#\s]+)[^)]*\)", text):
         if "://" not in link and not (page.parent / link).exists():
             wrong.append(f"{name}: the link {link} leads nowhere")
-    for block in re.findall(r"^```(?:sh|bash|)\n(.*?)^```$", text, re.M | re.S):
-        for line in re.sub(r"\\\n", " ", block).splitlines():
-            # A synopsis says after some blanks what the verb does.
-            look_at(re.split(r" {3,}", line.strip())[0] if "  " in line.strip() else line, name)
-    for line in re.sub(r"^```.*?^```$", "", text, flags=re.M | re.S).splitlines():
+    language = None  # of the block that this line is in
+    joined = ""
+    for line in text.splitlines():
+        if line.startswith("```"):
+            language = line[3:].split(" ")[0] if language is None else None
+            continue
+        if language is not None:
+            joined += line
+            if joined.endswith("\\"):
+                joined = joined[:-1]
+            else:
+                if language in ("", "sh", "bash"):
+                    look_at(re.split(r" {2,}", joined.strip())[0], name)  # after two blanks a synopsis says what the verb does
+                joined = ""
+            continue
         codes = re.findall(r"`([^`]+)`", line)
         row = [code for code in codes if code in scenes] if line.startswith("|") else []
         for code in codes:

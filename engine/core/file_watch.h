@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,8 +20,8 @@ class FileWatch {
 
   private:
     struct Stamp {
-        std::filesystem::file_time_type written;
-        uintmax_t bytes = 0;
+        int64_t seconds = 0, nanoseconds = 0, bytes = 0;  // when it was written, and how much
+        uint64_t inode = 0;                               // another where a file was renamed to this
         bool operator==(const Stamp&) const = default;
     };
     using Stamps = std::map<std::string, Stamp>;

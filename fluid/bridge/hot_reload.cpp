@@ -89,7 +89,9 @@ void HotReload::draw() const {
     ImGui::Begin("written", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::PushTextWrapPos(std::min(0.6F * display.x, 48 * ImGui::GetFontSize()));
+    // Between the panels, where there is room.
+    const float between = display.x - 2 * (std::clamp(0.26F * display.x, 320.0F, 420.0F) + 30);
+    ImGui::PushTextWrapPos(std::clamp(between, 20 * ImGui::GetFontSize(), 60 * ImGui::GetFontSize()));
     if (wrong.empty()) {
         ImGui::TextUnformatted(done_.c_str());
     } else {

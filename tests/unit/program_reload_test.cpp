@@ -87,10 +87,10 @@ class Reload : public testing::FramebufferFixture {
         FramebufferFixture::TearDown();
         unsetenv("RIVULET_SHADERS");
     }
-    void start(const std::vector<std::string>& assignments) {
+    void start(const std::vector<std::string>& assignments, const char* backend = "cpu") {
         const Result<SceneFile> scene = loadScene(scene_, assignments);
         ASSERT_TRUE(scene) << scene.error().message;
-        auto made = Viewer::create(*scene, {.backend = "cpu", .share = [this] { return context_->shared(); }}, {});
+        auto made = Viewer::create(*scene, {.backend = backend, .share = [this] { return context_->shared(); }}, {});
         ASSERT_TRUE(made) << made.error().message;
         viewer_ = std::move(*made);
         frame();
@@ -231,6 +231,36 @@ TEST_F(Reload, WhatTheCommandLineSetStaysSet) {
     EXPECT_EQ(viewer_->scene().name, "other");
     EXPECT_EQ(viewer_->scene().timeScale, 0.5F);
     EXPECT_EQ(viewer_->scene().fluid.viscosity, 0.25F);
+}
+
+TEST_F(Reload, KernelsOfAGpuAreTakenWhileTheWaterGoesOn) {
+    start({}, "gl");
+    const fs::path file = shader("fluid/pbf_predict.kernel");
+    const std::string good = readFile(file);
+    writeFile(file, good + "\nwrong\n");
+    wait();
+    EXPECT_NE(trouble().find("shaders/fluid/pbf_predict.kernel:"), std::string::npos) << trouble();
+    const double then = viewer_->session().time();
+    frame();
+    EXPECT_GT(viewer_->session().time(), then);
+    writeFile(file, good + "\n// a word more\n");
+    wait();
+    EXPECT_EQ(trouble(), "");
+    EXPECT_EQ(viewer_->session().world().stats().nan, 0U);
+}
+
+TEST_F(Reload, TheSceneThatIsOpenedNextIsWatchedInstead) {
+    const std::string text = readFile(scene_), next = scratch_.file("next.json", replaced(text, "small", "next"));
+    const Result<SceneFile> scene = loadScene(next, {});
+    ASSERT_TRUE(scene);
+    viewer_->open(*scene);
+    wait();
+    writeFile(scene_, replaced(text, "small", "nobody looks"));
+    wait();
+    EXPECT_EQ(viewer_->scene().name, "next");
+    writeFile(next, replaced(text, "small", "written"));
+    wait();
+    EXPECT_EQ(viewer_->scene().name, "written");
 }
 
 constexpr const char* kScale = R"(#include "shaders/common/lang.h"

@@ -263,6 +263,44 @@ TEST_F(Reload, TheSceneThatIsOpenedNextIsWatchedInstead) {
     EXPECT_EQ(viewer_->scene().name, "written");
 }
 
+// Saved over its own file, the scene is what the file says, and no longer what the command line said.
+TEST_F(Reload, ASceneThatIsSavedOverItsFileIsTheFiles) {
+    const fs::path before = fs::current_path();
+    fs::current_path(scratch_.path());
+    start({"fluid.viscosity=0.25"});
+    input_.keysDown = {key::kLeftControl};
+    input_.keysPressed = {'S'};
+    frame();
+    input_.keysDown.clear();
+    for (int k = 0; k < 3; ++k) frame();
+    const ImGuiWindow* dialog = ImGui::FindWindowByName("save the scene");
+    ASSERT_NE(dialog, nullptr);
+    const ImGuiID button = ImHashStr("###write", 0, dialog->ID);
+    const ImRect inside = dialog->Rect();
+    bool found = false;
+    for (float y = inside.Min.y; y < inside.Max.y && !found; y += 5) {
+        input_.mouse = vec2(inside.Min.x + 30, y);
+        for (int k = 0; k < 2; ++k) frame(0);
+        found = ImGui::GetCurrentContext()->HoveredIdPreviousFrame == button;
+    }
+    ASSERT_TRUE(found);
+    input_.buttonPressed[0] = input_.buttonDown[0] = true;
+    frame();
+    input_.buttonReleased[0] = true;
+    input_.buttonDown[0] = false;
+    frame();
+    fs::current_path(before);
+    const std::string saved = readFile(scene_);
+    EXPECT_NE(saved.find("0.25"), std::string::npos) << saved;
+    const double then = viewer_->session().time();
+    wait();
+    EXPECT_GT(viewer_->session().time(), then) << "what was saved is what is shown";
+    writeFile(scene_, replaced(saved, "0.25", "0.5"));
+    wait();
+    EXPECT_EQ(trouble(), "");
+    EXPECT_EQ(viewer_->scene().fluid.viscosity, 0.5F);
+}
+
 constexpr const char* kScale = R"(#include "shaders/common/lang.h"
 STRUCT(ScaleParams) { uint count; float factor; float padA; float padB; };
 #define ARGS(RO, RW) \

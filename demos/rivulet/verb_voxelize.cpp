@@ -9,6 +9,7 @@
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
 #include "engine/core/json.h"
+#include "engine/core/readable_bytes.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/bridge/takeover.h"
 #include "fluid/render/backend.h"
@@ -101,11 +102,6 @@ Status writeStats(const VoxelizeRequest& request, const VoxelModel& model, size_
     return writeFileAtomic(request.stats, Json::writeString(builder, v) + "\n");
 }
 
-std::string readable(double bytes) {
-    if (bytes < 1e4) return fmt::format("{:.0f} bytes", bytes);
-    return bytes < 1e6 ? fmt::format("{:.0f} kB", bytes / 1e3) : readableBytes(bytes);
-}
-
 constexpr int kColumn = 14;  // of the names, "material 11" and some room
 
 void printMaterials(const std::vector<VoxelMaterial>& materials) {
@@ -134,12 +130,12 @@ void printFigures(const VoxelizeRequest& request, const VoxelModel& model, const
     fmt::print("{:<{}}{} voxels\n", "surface", kColumn, model.labels.surface);
     fmt::print("{:<{}}{} voxels\n", "outside", kColumn, model.labels.outside);
     printMaterials(model.labels.materials);
-    std::string memory = fmt::format("bits {}, labels {}", readable(static_cast<double>(model.bits.bits.size())),
-                                     readable(static_cast<double>(model.labels.bytes())));
+    std::string memory = fmt::format("bits {}, labels {}", readableBytes(static_cast<double>(model.bits.bits.size())),
+                                     readableBytes(static_cast<double>(model.labels.bytes())));
     if (file.band)
-        memory += fmt::format(", band {}", readable(static_cast<double>(file.band->distance.size() * sizeof(float) +
-                                                                        file.band->normal.size() * sizeof(uint32_t))));
-    fmt::print("{:<{}}{}; the file {}\n", "memory", kColumn, memory, readable(static_cast<double>(bytes)));
+        memory += fmt::format(", band {}", readableBytes(static_cast<double>(file.band->distance.size() * sizeof(float) +
+                                                                             file.band->normal.size() * sizeof(uint32_t))));
+    fmt::print("{:<{}}{}; the file {}\n", "memory", kColumn, memory, readableBytes(static_cast<double>(bytes)));
     fmt::print("{:<{}}{:.1f} ms to voxelise on {}, {:.0f} ms in all\n", "time", kColumn, model.milliseconds, backendName(device.backend()),
                wholeMs);
 }

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "engine/core/assert.h"
 #include "engine/core/json.h"
 
 namespace rivulet {

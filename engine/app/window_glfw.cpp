@@ -11,6 +11,8 @@
 #include <mutex>
 #include <utility>
 
+#include "engine/app/input_queue.h"
+#include "engine/core/assert.h"
 #include "engine/gpu/device_gl.h"
 
 namespace rivulet {
@@ -21,7 +23,8 @@ static_assert(key::kEscape == GLFW_KEY_ESCAPE && key::kDelete == GLFW_KEY_DELETE
               key::kRightAlt == GLFW_KEY_RIGHT_ALT && 'R' == GLFW_KEY_R && ' ' == GLFW_KEY_SPACE);
 
 // UTF-8 of one code point.
-void append(std::string& text, unsigned code) {
+std::string utf8Of(unsigned code) {
+    std::string text;
     const auto put = [&](unsigned byte) { text += static_cast<char>(byte); };
     if (code < 0x80) {
         put(code);
@@ -38,6 +41,7 @@ void append(std::string& text, unsigned code) {
         put(0x80U | (code >> 6U & 0x3FU));
         put(0x80U | (code & 0x3FU));
     }
+    return text;
 }
 
 std::string glfwTrouble() {
@@ -50,7 +54,8 @@ std::string glfwTrouble() {
 
 struct WindowGlfw::Impl {
     GLFWwindow* window = nullptr;
-    InputEvents events;  // what callbacks gathered, and what is held
+    InputQueue queue;    // what callbacks gathered
+    InputEvents events;  // what is held
     bool hasMouse = false;
     std::string renderer;
 
@@ -62,30 +67,26 @@ struct WindowGlfw::Impl {
         glfwTerminate();
     }
 
-    static InputEvents& of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window))->events; }
+    static InputQueue& of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window))->queue; }
 
     // Set when the window is made: whoever installs his own later (ImGui) gets these to call on.
     void listen() {
         glfwSetWindowUserPointer(window, this);
+        glfwSetCursorPosCallback(window,
+                                 [](GLFWwindow* w, double x, double y) { of(w).move(vec2(static_cast<float>(x), static_cast<float>(y))); });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
             if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;  // left, right, middle: as in MouseButton
-            InputEvents& e = of(w);
-            e.buttonDown[button] = action != GLFW_RELEASE;
-            (action == GLFW_RELEASE ? e.buttonReleased : e.buttonPressed)[button] = true;
+            of(w).button(static_cast<MouseButton>(button), action != GLFW_RELEASE);
         });
         glfwSetScrollCallback(window,
-                              [](GLFWwindow* w, double x, double y) { of(w).wheel += vec2(static_cast<float>(x), static_cast<float>(y)); });
+                              [](GLFWwindow* w, double x, double y) { of(w).wheel(vec2(static_cast<float>(x), static_cast<float>(y))); });
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
-            if (key == GLFW_KEY_UNKNOWN || action == GLFW_REPEAT) return;
-            InputEvents& e = of(w);
-            std::erase(e.keysDown, key);
-            if (action != GLFW_PRESS) return;
-            e.keysDown.push_back(key);
-            e.keysPressed.push_back(key);
+            if (key != GLFW_KEY_UNKNOWN && action != GLFW_REPEAT) of(w).key(key, action == GLFW_PRESS);
         });
-        glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code) { append(of(w).text, code); });
-        glfwSetDropCallback(
-            window, [](GLFWwindow* w, int count, const char** paths) { of(w).dropped.insert(of(w).dropped.end(), paths, paths + count); });
+        glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code) { of(w).type(utf8Of(code)); });
+        glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+            for (int k = 0; k < count; ++k) of(w).drop(paths[k]);
+        });
     }
 };
 
@@ -126,12 +127,13 @@ WindowGlfw::~WindowGlfw() = default;
 InputEvents WindowGlfw::poll() {
     glfwPollEvents();
     InputEvents& gathered = impl_->events;
-    double x = 0, y = 0;
-    glfwGetCursorPos(impl_->window, &x, &y);
-    const vec2 mouse(static_cast<float>(x), static_cast<float>(y));
-    gathered.mouseDelta = impl_->hasMouse ? mouse - gathered.mouse : vec2(0);
-    gathered.mouse = mouse;
-    impl_->hasMouse = true;
+    if (!impl_->hasMouse) {  // where it is before it has moved
+        double x = 0, y = 0;
+        glfwGetCursorPos(impl_->window, &x, &y);
+        gathered.mouse = vec2(static_cast<float>(x), static_cast<float>(y));
+        impl_->hasMouse = true;
+    }
+    impl_->queue.take(gathered);
     glfwGetWindowSize(impl_->window, &gathered.size.x, &gathered.size.y);
     glfwGetFramebufferSize(impl_->window, &gathered.framebuffer.x, &gathered.framebuffer.y);
     float across = 1, up = 1;
@@ -142,14 +144,7 @@ InputEvents WindowGlfw::poll() {
     if (glfwGetWindowAttrib(impl_->window, GLFW_ICONIFIED) == GLFW_TRUE) gathered.size = gathered.framebuffer = ivec2(0);
     gathered.closed = glfwWindowShouldClose(impl_->window) == GLFW_TRUE;
 
-    InputEvents taken = gathered;
-    std::fill(std::begin(gathered.buttonPressed), std::end(gathered.buttonPressed), false);
-    std::fill(std::begin(gathered.buttonReleased), std::end(gathered.buttonReleased), false);
-    gathered.wheel = vec2(0);
-    gathered.keysPressed.clear();
-    gathered.text.clear();
-    gathered.dropped.clear();
-    return taken;
+    return gathered;
 }
 
 Result<SharedGl> WindowGlfw::shared() const {

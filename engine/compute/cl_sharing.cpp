@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/assert.h"
 #include "engine/core/words.h"
 
 namespace rivulet {

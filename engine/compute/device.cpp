@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/assert.h"
+#include "engine/core/readable_bytes.h"
+
 namespace rivulet {
 
 const char* backendName(Backend backend) {
@@ -18,8 +21,8 @@ const char* backendName(Backend backend) {
 
 Status Device::room(size_t bytes) const {
     if (bytesAllocated() + bytes <= mostBytes_) return ok();
-    return failed(fmt::format("{} MiB were asked for while {} of {} MiB that are allowed are in use; allow more, or use fewer particles",
-                              bytes >> 20U, bytesAllocated() >> 20U, mostBytes_ >> 20U));
+    return failed(fmt::format("{} were asked for while {} of the {} that are allowed are in use; allow more, or use fewer particles",
+                              readableBytes(bytes), readableBytes(bytesAllocated()), readableBytes(mostBytes_)));
 }
 
 Buffer::~Buffer() {

@@ -1,6 +1,6 @@
 // Device: runs kernels, on the CPU (oneTBB), in OpenGL compute shaders or in OpenCL. Everything a step needs is handed to it.
 //
-// Threading: a Device and its Buffers belong to the thread that made them (gl: to the thread whose context is current).
+// Threading: one thread at a time uses a Device and all that is made of it (gl: one on which its context is current); any may be the next.
 // Calls are in order: a dispatch sees what earlier dispatches and writes did. Nothing but read() and finish() waits for the GPU.
 #pragma once
 

@@ -10,6 +10,7 @@
 #include "engine/compute/cl_devices.h"
 #include "engine/compute/cl_owned.h"
 #include "engine/compute/cl_sharing.h"
+#include "engine/core/assert.h"
 
 namespace rivulet {
 namespace {

@@ -13,6 +13,8 @@
 #include <new>
 #include <optional>
 
+#include "engine/core/assert.h"
+
 namespace rivulet {
 
 const char* isaName(Isa isa) {

@@ -174,10 +174,21 @@ std::string readableLine(std::string_view line, const KernelSource& source) {
 
 ShaderFiles::ShaderFiles(std::string root) : root_(std::move(root)) {}
 
+namespace {
+
+// A program that was installed, or a host, must not depend on what a source tree on the same machine has become since.
+bool runsFromBuildTree() {
+    std::error_code ignored;
+    return std::filesystem::read_symlink("/proc/self/exe", ignored).string().starts_with(RIVULET_BINARY_DIR "/");
+}
+
+}  // namespace
+
 ShaderFiles ShaderFiles::developer() {
     if (const char* root = std::getenv("RIVULET_SHADERS"); root && *root) return ShaderFiles(root);
     std::error_code ignored;
-    if (std::filesystem::is_directory(RIVULET_SOURCE_DIR "/shaders", ignored)) return ShaderFiles(RIVULET_SOURCE_DIR);
+    if (runsFromBuildTree() && std::filesystem::is_directory(RIVULET_SOURCE_DIR "/shaders", ignored))
+        return ShaderFiles(RIVULET_SOURCE_DIR);
     return ShaderFiles();
 }
 

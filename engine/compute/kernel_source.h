@@ -27,8 +27,8 @@ class ShaderFiles {
   public:
     // Empty `root`: the embedded copies only; else files under root come first.
     explicit ShaderFiles(std::string root = {});
-    static ShaderFiles
-    developer();  // RIVULET_SHADERS from the environment, else the source tree the build came from if it is still there, else embedded
+    // RIVULET_SHADERS from the environment; else, of a program in the build folder, the source tree it came from; else the embedded copies.
+    static ShaderFiles developer();
     // A file that is nowhere else, or stands for another, e.g. a host's own kernel ("shaders/mine/gust.kernel", its KERNEL named gust). For
     // devices made after.
     void add(std::string path, std::string text) { added_.emplace_back(std::move(path), std::move(text)); }

@@ -1,7 +1,6 @@
 // Vectors and matrices: glm under the project's own names. SI units, right-handed, +Y up.
 #pragma once
 
-#define GLM_FORCE_XYZW_ONLY
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

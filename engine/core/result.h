@@ -5,9 +5,10 @@
 #include <utility>
 #include <variant>
 
-#include "engine/core/assert.h"
-
 namespace rivulet {
+
+// As core/assert.h, whose macro would be a host's, too.
+[[noreturn]] void assertFailed(const char* condition, const char* remedy, const char* file, int line);
 
 // What the program's exit code says about an error: badInput = 2 (what was asked makes no sense), failed = 1 (it could not be carried out).
 enum class Fault { badInput, failed };
@@ -27,15 +28,15 @@ class [[nodiscard]] Result {
     Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
     explicit operator bool() const { return state_.index() == 0; }
     T& value() {
-        ASSERT(state_.index() == 0, "test a Result before reading its value");
+        if (state_.index() != 0) assertFailed("a Result has a value", "test a Result before reading its value", __FILE__, __LINE__);
         return std::get<0>(state_);
     }
     const T& value() const {
-        ASSERT(state_.index() == 0, "test a Result before reading its value");
+        if (state_.index() != 0) assertFailed("a Result has a value", "test a Result before reading its value", __FILE__, __LINE__);
         return std::get<0>(state_);
     }
     const Error& error() const {
-        ASSERT(state_.index() == 1, "a Result that succeeded has no error");
+        if (state_.index() != 1) assertFailed("a Result has an error", "a Result that succeeded has no error", __FILE__, __LINE__);
         return std::get<1>(state_);
     }
     T& operator*() { return value(); }

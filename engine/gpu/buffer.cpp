@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/assert.h"
 #include "engine/gpu/gl_error.h"
 
 namespace rivulet::gpu {

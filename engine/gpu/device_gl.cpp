@@ -8,6 +8,7 @@
 #include <deque>
 #include <utility>
 
+#include "engine/core/assert.h"
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/fence.h"
 #include "engine/gpu/gl_error.h"

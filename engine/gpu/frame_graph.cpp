@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "engine/core/assert.h"
+#include "engine/core/readable_bytes.h"
 #include "engine/gpu/timer.h"
 #include "engine/gpu/vertex_array.h"
 
@@ -140,8 +142,9 @@ struct TransientPool::Impl {
     }
     Status room(size_t bytes) const {
         if (held() + bytes <= most) return ok();
-        return failed(fmt::format("{} MiB are allowed for pictures, and {} are in use; allow more, or draw fewer pixels", most >> 20U,
-                                  held() >> 20U));
+        return failed(
+            fmt::format("{} were asked for while {} of the {} that are allowed for pictures are in use; allow more, or draw fewer pixels",
+                        readableBytes(bytes), readableBytes(held()), readableBytes(most)));
     }
     Result<TextureItem*> lendTexture(const TextureDesc& desc) {
         return lend(textures, desc, frame, [&]() -> Result<Texture> {

@@ -6,6 +6,8 @@
 #include <array>
 #include <string>
 
+#include "engine/core/assert.h"
+
 namespace rivulet::gpu {
 namespace {
 

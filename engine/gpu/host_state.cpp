@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/assert.h"
 #include "engine/gpu/gl_object.h"
+#include "engine/gpu/load.h"
 
 namespace rivulet::gpu {
 namespace {
@@ -43,6 +45,12 @@ constexpr std::pair<GLenum, GLint> kPixelStore[] = {
     {GL_PACK_SKIP_ROWS, 0},    {GL_PACK_SKIP_PIXELS, 0},   {GL_PACK_SKIP_IMAGES, 0},   {GL_PACK_ALIGNMENT, 4},
     {GL_UNPACK_SWAP_BYTES, 0}, {GL_UNPACK_LSB_FIRST, 0},   {GL_UNPACK_ROW_LENGTH, 0},  {GL_UNPACK_IMAGE_HEIGHT, 0},
     {GL_UNPACK_SKIP_ROWS, 0},  {GL_UNPACK_SKIP_PIXELS, 0}, {GL_UNPACK_SKIP_IMAGES, 0}, {GL_UNPACK_ALIGNMENT, 4}};
+
+// What an old context does to pixels on their way: map colours, map stencils, index shift and offset, then scale and bias of red, green,
+// blue, alpha and depth.
+constexpr std::pair<GLenum, GLfloat> kPixelTransfer[] = {{0x0D10, 0}, {0x0D11, 0}, {0x0D12, 0}, {0x0D13, 0}, {0x0D14, 1},
+                                                         {0x0D15, 0}, {0x0D18, 1}, {0x0D19, 0}, {0x0D1A, 1}, {0x0D1B, 0},
+                                                         {0x0D1C, 1}, {0x0D1D, 0}, {0x0D1E, 1}, {0x0D1F, 0}};
 
 constexpr std::pair<GLenum, GLenum> kTextures[] = {{GL_TEXTURE_1D, GL_TEXTURE_BINDING_1D},
                                                    {GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
@@ -133,6 +141,7 @@ struct HostState::Kept {
     std::array<bool, kClipDistances> clips = {};
     GLint clampVertex = 0, clampFragment = 0, clampRead = 0;
     std::array<GLint, std::size(kPixelStore)> pixels = {};
+    std::array<GLfloat, std::size(kPixelTransfer)> transfers = {};
     std::vector<Blend> blends;
     std::array<GLfloat, 4> blendColour = {};
     std::vector<View> views;
@@ -160,6 +169,7 @@ void HostState::Kept::take() {
     if (old) clampFragment = number(kClampFragment);
     clampRead = number(GL_CLAMP_READ_COLOR);
     for (size_t k = 0; k < pixels.size(); ++k) pixels[k] = number(kPixelStore[k].first);
+    for (size_t k = 0; old && k < transfers.size(); ++k) glGetFloatv(kPixelTransfer[k].first, &transfers[k]);
     blends.resize(static_cast<size_t>(number(GL_MAX_DRAW_BUFFERS)));
     for (size_t k = 0; k < blends.size(); ++k) {
         const auto i = static_cast<GLint>(k);
@@ -271,6 +281,8 @@ void HostState::Kept::put() const {
         glColorMaski(i, b.mask[0], b.mask[1], b.mask[2], b.mask[3]);
     }
     for (size_t k = 0; k < pixels.size(); ++k) glPixelStorei(kPixelStore[k].first, pixels[k]);
+    if (const PixelTransfer transfer = old ? pixelTransfer() : nullptr; transfer != nullptr)
+        for (size_t k = 0; k < transfers.size(); ++k) transfer(kPixelTransfer[k].first, transfers[k]);
     glClampColor(GL_CLAMP_READ_COLOR, named(clampRead));
     if (old) glClampColor(kClampVertex, named(clampVertex));
     if (old) glClampColor(kClampFragment, named(clampFragment));
@@ -280,11 +292,13 @@ void HostState::Kept::put() const {
 }
 
 HostState::HostState() : kept_(std::make_unique<Kept>()) {
+    ASSERT(loaded(), "call rivulet::gpu::load with what finds OpenGL's functions, glfwGetProcAddress say, before all else");
     kept_->take();
     Kept plain;
     plain.old = kept_->old;
     plain.pixels = {};
     for (size_t k = 0; k < plain.pixels.size(); ++k) plain.pixels[k] = kPixelStore[k].second;
+    for (size_t k = 0; k < plain.transfers.size(); ++k) plain.transfers[k] = kPixelTransfer[k].second;
     plain.clampVertex = plain.clampFragment = GL_FALSE;
     plain.clampRead = kept_->clampRead;
     plain.blends.resize(kept_->blends.size());

@@ -3,9 +3,20 @@
 #include <fmt/format.h>
 #include <rivulet_glad/gl.h>
 
+#include <atomic>
 #include <mutex>
 
 namespace rivulet::gpu {
+
+namespace {
+
+std::atomic<PixelTransfer> foundPixelTransfer = nullptr;
+
+}  // namespace
+
+bool loaded() { return glGetString != nullptr; }
+
+PixelTransfer pixelTransfer() { return foundPixelTransfer; }
 
 Status load(FindFunction find) {
     if (find == nullptr) return badInput("no function was given that finds OpenGL's functions: glfwGetProcAddress, say");
@@ -18,17 +29,18 @@ Status load(FindFunction find) {
     if (version == nullptr) return failed("no OpenGL context is current on this thread: make one current first");
     // Threads may come with a context each. What one already calls is not written anew for the next.
     static std::mutex one;
-    static FindFunction loaded = nullptr;
+    static FindFunction last = nullptr;
     const std::scoped_lock lock(one);
     int got = 0;
-    if (loaded == find) {
+    if (last == find) {
         GLint major = 0, minor = 0;
         glGetIntegerv(GL_MAJOR_VERSION, &major);
         glGetIntegerv(GL_MINOR_VERSION, &minor);
         got = GLAD_MAKE_VERSION(major, minor);
     } else {
         got = rivuletLoadGL(find);
-        if (got >= GLAD_MAKE_VERSION(4, 5)) loaded = find;
+        if (got >= GLAD_MAKE_VERSION(4, 5)) last = find;
+        foundPixelTransfer = reinterpret_cast<PixelTransfer>(find("glPixelTransferf"));
     }
     if (got < GLAD_MAKE_VERSION(4, 5)) return failed(fmt::format("OpenGL 4.5 is needed, and this context is of OpenGL {}", version));
     return ok();

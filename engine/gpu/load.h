@@ -12,4 +12,10 @@ using FindFunction = FunctionPointer (*)(const char* name);
 // (failed): no context, or none of OpenGL 4.5; says which it is.
 Status load(FindFunction find);
 
+bool loaded();  // whether OpenGL's functions can be called at all
+
+// A compatibility context's glPixelTransferf, which no core header names; null where load() has not found it.
+using PixelTransfer = void (*)(unsigned name, float value);
+PixelTransfer pixelTransfer();
+
 }  // namespace rivulet::gpu

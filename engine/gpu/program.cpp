@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "engine/core/assert.h"
+
 namespace rivulet::gpu {
 namespace {
 

@@ -38,6 +38,12 @@ void StagingRing::copyTo(Buffer& to) {
                                  static_cast<GLsizeiptr>(used_ - taken_));
 }
 
+size_t StagingRing::bytes() const {
+    size_t sum = 0;
+    for (const Piece& piece : pieces_) sum += piece.memory.bytes();
+    return sum;
+}
+
 void StagingRing::end() { pieces_[at_].read = Fence::now(); }
 
 }  // namespace rivulet::gpu

@@ -26,6 +26,7 @@ class StagingRing {
     void end();
 
     uint64_t waits() const { return waits_; }
+    size_t bytes() const;
 
   private:
     struct Piece {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "engine/core/assert.h"
 #include "engine/gpu/gl_error.h"
 
 namespace rivulet::gpu {

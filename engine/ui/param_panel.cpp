@@ -117,6 +117,8 @@ void ParamPanel::search(const VisitFn& params) {
     const float clear =
         wanted.empty() ? 0 : ImGui::CalcTextSize("clear").x + 2 * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - clear);
+    if (memory_.find) ImGui::SetKeyboardFocusHere();
+    memory_.find = false;
     ImGui::InputTextWithHint("##wanted", "search: a name, a unit, a word", &wanted);
     if (clear > 0) {
         ImGui::SameLine();

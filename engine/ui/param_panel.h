@@ -28,6 +28,7 @@ class ParamMemory {
     const std::string* byDefault(const std::string& path) const;                    // in JSON; null: there is none of that name
 
     std::string wanted;  // words, any of them in any case; all must be in a Param's path, name or doc. "": all are shown
+    bool find = false;   // the next search() takes the keyboard
 
   private:
     std::map<std::string, std::string> opened_, defaults_, changed_;

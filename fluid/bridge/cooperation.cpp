@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/compute/device_cpu.h"
+#include "engine/core/assert.h"
 #include "engine/core/json.h"
 #include "fluid/sim/cpu_kernels.h"
 

@@ -373,8 +373,9 @@ void FlowComponent::apply(const FlowParams& params) {
     params_.regions = before.regions;
     for (size_t e = 0; e < std::min(before.expression.size(), params_.expression.size()); ++e)
         params_.expression[e].morph = before.expression[e].morph;
-    flow_->setParams(params.liquid);
-    if (thesis()) flow_->setThesis(params.thesis);
+    // What a scene's reader has let through is in its ranges.
+    (void)flow_->setParams(params.liquid);
+    if (thesis()) (void)flow_->setThesis(params.thesis);
     layer_->look = params.look;
     while (sources_.size() < params.sources.size()) {
         Source fresh;

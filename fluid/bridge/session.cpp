@@ -341,18 +341,22 @@ bool Session::needsNew(const SceneFile& scene) const {
     return surfaceOf != surfaceOf_ || flows_.needsNew(scene);
 }
 
+void Session::told(const Status& status) const {
+    if (!status) log_.notice(status.error().message);
+}
+
 void Session::apply(const SceneFile& scene) {
     std::string folder = scene_.folder;
     scene_ = scene;
     scene_.folder = folder;
     if (budget_) applySetting(budget_->setting(), scene_);
-    world_->setParams(simulated(scene_));
+    told(world_->setParams(simulated(scene_)));
     Sources sources{.sinks = scene_.sinks};
     for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
-    world_->setSources(sources);
+    told(world_->setSources(sources));
     flows_.apply(scene_);
     std::vector<uint8_t> unchanged;  // see needsNew
-    world_->setSurfaces(surfacesOf(scene_, unchanged));
+    told(world_->setSurfaces(surfacesOf(scene_, unchanged)));
     for (size_t m = 0; m < models_.size(); ++m)
         if (colliderOf_[m] < scene_.colliders.size()) models_[m].dress(scene_.colliders[colliderOf_[m]], solids_);
     for (size_t k = 0; k < bodyNodes_.size() && k < scene_.bodies.size(); ++k) {
@@ -493,9 +497,9 @@ Status Session::moveTo(Device& device) {
     if (Status made = makeWorld(device, params, quiet); !made) return made;
     Sources sources{.sinks = scene_.sinks};
     for (const EmitterParams& emitter : scene_.emitters) sources.emitters.push_back({emitter, {}});
-    world_->setSources(sources);
+    told(world_->setSources(sources));
     std::vector<uint8_t> unchanged;  // see needsNew
-    world_->setSurfaces(surfacesOf(scene_, unchanged));
+    told(world_->setSurfaces(surfacesOf(scene_, unchanged)));
     if (Status moved = flows_.moveTo(device, scene_, solids_, quiet, kept_ ? kept_->flows.get() : nullptr); !moved) return moved;
     *opening = false;
     if (!kept_) {
@@ -517,7 +521,7 @@ void Session::watchBudget(double ms, double seconds) {
     std::string sentence;
     if (budget_->frame(ms, seconds, world_->stats().avgCompression, sentence)) {
         applySetting(budget_->setting(), scene_);
-        world_->setParams(simulated(scene_));
+        told(world_->setParams(simulated(scene_)));
     }
     if (!sentence.empty()) log_.notice(sentence);
 }

@@ -94,6 +94,8 @@ class Session {
     Status restore(WorldState& state);
 
   private:
+    void told(const Status& status) const;  // what went wrong with a slider, to the person
+
     struct Rigid {
         size_t collider = 0, model = 0;
         std::unique_ptr<VoxelField> field;

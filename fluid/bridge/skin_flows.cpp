@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/core/assert.h"
 #include "fluid/bridge/scene_file.h"
 
 namespace rivulet {
@@ -178,7 +179,7 @@ void SkinFlows::takeLanding(const SceneFile& scene, FluidWorld& world, double se
 }
 
 // In the air a drop is a ball that falls and drags; it ends on the first skin in its way, in the world's water, or on the ground.
-void SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) {
+Status SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) {
     const vec3 wind = scene.flow.empty() ? vec3(0.0F) : scene.flow[0].wind;
     struct Way {
         dvec3 to;
@@ -205,7 +206,11 @@ void SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) 
         ways.push_back(way);
     }
     std::vector<FluidSample> full;
-    if (!places.empty()) full = world.sample(places);
+    if (!places.empty()) {
+        Result<std::vector<FluidSample>> sampled = world.sample(places);
+        if (!sampled) return sampled.error();
+        full = std::move(*sampled);
+    }
     size_t kept = 0;
     for (size_t i = 0; i < air_.size(); ++i) {
         FlowComponent::AirDrop& d = air_[i];
@@ -230,12 +235,13 @@ void SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds) 
             air_[kept++] = d;
     }
     air_.resize(kept);
+    return ok();
 }
 
 Status SkinFlows::step(const SceneFile& scene, FluidWorld& world, double seconds, Scene& nodes) {
     if (empty() || !(seconds > 0)) return ok();
     room_.clear();
-    fall(scene, world, seconds);
+    if (Status fallen = fall(scene, world, seconds); !fallen) return fallen;
     if (pools_) takeLanding(scene, world, seconds);
     for (const auto& skin : skins_) {
         if (Status moved = skin->step(time_, seconds, scene.fluid.gravity, air_); !moved) return moved;

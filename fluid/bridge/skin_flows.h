@@ -67,7 +67,7 @@ class SkinFlows {
     First firstOn(const dvec3& from, const dvec3& to, double then) const;
     bool hasRoom(const FlowComponent* skin, uint32_t count = 1);
     void takeLanding(const SceneFile& scene, FluidWorld& world, double seconds);
-    void fall(const SceneFile& scene, FluidWorld& world, double seconds);
+    Status fall(const SceneFile& scene, FluidWorld& world, double seconds);
 
     std::vector<std::unique_ptr<FlowComponent>> skins_;
     std::vector<FlowComponent::AirDrop> air_;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "engine/core/assert.h"
 #include "engine/core/thread_clock.h"
 #include "fluid/bridge/plan_trial.h"
 #include "fluid/bridge/takeover.h"
@@ -38,6 +39,7 @@ void drawHelp() {
                  {"R", "start again"},
                  {"O", "open another scene"},
                  {"control S", "save the scene"},
+                 {"control F", "find a parameter"},
                  {"drop a file", "a mesh, a scene, a sky"},
                  {"F9", "a video, till F9 again"},
                  {"F12", "a picture, without panels"},
@@ -163,6 +165,7 @@ void Viewer::takeKeys(const InputEvents& input) {
     if (input.pressed(GLFW_KEY_H)) showHelp_ = !showHelp_;
     const bool control = input.down(key::kLeftControl) || input.down(key::kRightControl);
     if (control && input.pressed('S')) saving_ = true;
+    if (control && input.pressed('F')) showPanels_ = params_.find = true;
     constexpr float kZoom = 1.25F;
     if (control && input.pressed('=')) zoom_ = std::min(zoom_ * kZoom, 4.0F);
     if (control && input.pressed('-')) zoom_ = std::max(zoom_ / kZoom, 0.5F);

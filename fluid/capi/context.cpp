@@ -49,6 +49,7 @@ Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     if (Status settled = settleBackend(backend, "auto", device); !settled) return settled;
     const Keep keep(c, Needs::drawing);
     c.device = makeDevice(backend, c.gl, c.log, device);
+    c.memoryLimit = o.memory_limit;
     if (o.memory_limit > 0) c.device->limitMemory(o.memory_limit);
     c.name = fmt::format("{}: {}", backendName(c.device->backend()), c.device->info().name);
     if (!c.gl.present()) return ok();
@@ -107,6 +108,28 @@ void rivulet_context_destroy(rivulet_context* context) {
 }
 
 const char* rivulet_context_device(const rivulet_context* context) { return context == nullptr ? "" : context->name.c_str(); }
+
+rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time* times, size_t capacity, size_t* count,
+                                     rivulet_error* why) {
+    return guarded(why, [&]() -> Status {
+        if (context == nullptr) return badInput("context is NULL");
+        if (count == nullptr || (times == nullptr && capacity > 0)) return badInput("count or times is NULL");
+        if (Status can = ready(*context, Needs::device); !can) return can;
+        const Keep keep(*context, Needs::device);
+        hearTimes(*context);
+        std::vector<PassTime> all;
+        for (const auto& [name, pass] : context->passes) all.push_back(pass);
+        if (context->water)
+            for (const PassTime& pass : context->water->times()) all.push_back(pass);
+        *count = all.size();
+        for (size_t k = 0; k < std::min(capacity, all.size()); ++k) {
+            times[k] = {.name = {}, .ms = all[k].ms, .calls = all[k].calls};
+            all[k].name.copy(times[k].name, sizeof times[k].name - 1);
+        }
+        if (all.size() <= capacity) context->passes.clear();
+        return ok();
+    });
+}
 
 size_t rivulet_context_memory(const rivulet_context* context) {
     if (context == nullptr) return 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
@@ -28,9 +29,12 @@ struct rivulet_context {
     std::unique_ptr<rivulet::Device> device;
     std::unique_ptr<rivulet::WaterRenderer> water;  // null: there is no OpenGL
     std::string name;
-    int children = 0;         // worlds and skins
-    void* current = nullptr;  // OpenGL's own context, which it was made in; null: there is none, or nobody knows
-    bool busy = false;        // a call is under way
+    std::map<std::string, rivulet::PassTime> passes;  // of the simulation, since rivulet_context_times()
+    double deviceMs = 0;                              // of the simulation, since the start
+    size_t memoryLimit = 0;                           // as rivulet_context_options
+    int children = 0;                                 // worlds and skins
+    void* current = nullptr;                          // OpenGL's own context, which it was made in; null: there is none, or nobody knows
+    bool busy = false;                                // a call is under way
 };
 
 namespace rivulet::capi {
@@ -64,6 +68,17 @@ inline Status ready(const rivulet_context& context, Needs needs) {
     if (needsGl(context, needs) && context.current != nullptr && gpu::currentContext().context != context.current)
         return badInput("the OpenGL context that this was created in is not current on this thread: make it current first");
     return ok();
+}
+
+// Hears of what the device did until now.
+inline void hearTimes(rivulet_context& context) {
+    for (const PassTime& heard : context.device->takeTimes()) {
+        PassTime& all = context.passes[heard.name];
+        all.name = heard.name;
+        all.ms += heard.ms;
+        all.calls += heard.calls;
+        context.deviceMs += heard.ms;
+    }
 }
 
 // While it lives the context is busy and, where the call needs OpenGL, its state is ours.
@@ -174,6 +189,7 @@ struct rivulet_world {
     std::unique_ptr<rivulet::FreeBodies> free;
     std::unique_ptr<rivulet::FluidWorld> world;
     rivulet::FluidUpload upload;
+    double deviceMs = 0;  // the context's, when this was last stepped
 };
 
 namespace rivulet::capi {

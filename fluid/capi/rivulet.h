@@ -80,7 +80,9 @@ typedef struct rivulet_context_options {
     const char* device;  /* of backend cl: its number or a part of its name; NULL: the first */
     void (*log)(void* user, rivulet_level level, const char* sentence); /* NULL: silent */
     void* log_user;
-    size_t memory_limit;                 /* bytes that the device's buffers may take; and as many its pictures; 0: no limit */
+    /* Bytes that the device's buffers may take; as many its pictures; as many what a world of backend cpu or cl brings over to be drawn; as
+       many a wall's voxels. What does not fit is RIVULET_FAILED. 0: no limit. */
+    size_t memory_limit;
     float sky_horizon[3], sky_zenith[3]; /* what water mirrors, radiance in the target's units; all 0: a grey-blue sky */
     float sky_sun[3];                    /* towards the sun; all 0: as rivulet_view's light by default */
     float clouds;                        /* share of the sky that they cover, about */
@@ -93,6 +95,17 @@ RIVULET_API void rivulet_context_destroy(rivulet_context* context);
 RIVULET_API const char* rivulet_context_device(const rivulet_context* context);
 /* Bytes in use now, of the device's buffers and of pictures. */
 RIVULET_API size_t rivulet_context_memory(const rivulet_context* context);
+
+/* What took how long: of the simulation since this was last called, of the drawing in the last frame that is known. A GPU's figures come
+   two or three frames late. */
+typedef struct rivulet_pass_time {
+    char name[64];
+    double ms;
+    int32_t calls;
+} rivulet_pass_time;
+/* `count`, out: of the passes, were there room or not. */
+RIVULET_API rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time* times, size_t capacity, size_t* count,
+                                                 rivulet_error* why);
 
 /* ---- Worlds ---- */
 

@@ -95,6 +95,10 @@ class _Stats(Structure):
                 ("substeps", c_int32)]
 
 
+class _PassTime(Structure):
+    _fields_ = [("name", ctypes.c_char * 64), ("ms", c_double), ("calls", ctypes.c_int32)]
+
+
 class _Particles(Structure):
     _fields_ = [("size", c_size_t), ("capacity", c_size_t), ("positions", c_void_p), ("velocities", c_void_p), ("densities", c_void_p),
                 ("ids", c_void_p), ("count", c_size_t)]
@@ -141,7 +145,8 @@ def _load():
 _lib = _load()
 _handle, _why = POINTER(c_void_p), POINTER(_Why)
 for _name, _arguments in {
-        "context_create": [POINTER(_ContextOptions), _handle], "world_create": [c_void_p, POINTER(_WorldOptions), _handle],
+        "context_create": [POINTER(_ContextOptions), _handle],
+        "context_times": [c_void_p, POINTER(_PassTime), c_size_t, POINTER(c_size_t)], "world_create": [c_void_p, POINTER(_WorldOptions), _handle],
         "world_step": [c_void_p, POINTER(_Inputs), c_double], "world_reset": [c_void_p], "world_set": [c_void_p, c_char_p],
         "world_stats": [c_void_p, POINTER(_Stats)], "world_particles": [c_void_p, POINTER(_Particles)],
         "world_bodies": [c_void_p, c_void_p, c_size_t], "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
@@ -253,6 +258,16 @@ class Context(_Handle):
     def memory(self):
         """Bytes in use now."""
         return _lib.rivulet_context_memory(self._pointer)
+
+    def times(self):
+        """{pass: (ms, calls)}: of the simulation since this was last called, of the drawing in the last frame that is known. A GPU's figures
+        come two or three frames late."""
+        count = c_size_t()
+        _call("context_times", self._pointer, None, 0, ctypes.byref(count))
+        room = count.value + 16
+        all = (_PassTime * room)()
+        _call("context_times", self._pointer, all, room, ctypes.byref(count))
+        return {t.name.decode(): (t.ms, t.calls) for t in all[:min(count.value, room)]}
 
     def world(self, scene=None, walls=(), bodies=(), body_host=None):
         """A World: particles as `scene` says, among `walls` (Mesh) and `bodies` (Body).

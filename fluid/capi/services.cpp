@@ -44,7 +44,9 @@ const auto* rowOf(const Rows& rows, const std::string& path) {
 rivulet_status rivulet_world_sample(rivulet_world* world, const float* places, size_t count, rivulet_sample* samples, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         if (count > 0 && (places == nullptr || samples == nullptr)) return badInput("places or samples is NULL, and count is not 0");
-        const std::vector<FluidSample> all = world->world->sample(placesOf(places, count));
+        const Result<std::vector<FluidSample>> answer = world->world->sample(placesOf(places, count));
+        if (!answer) return answer.error();
+        const std::vector<FluidSample>& all = *answer;
         for (size_t k = 0; k < all.size(); ++k) {
             samples[k].density = all[k].density;
             put(all[k].velocity, samples[k].velocity);
@@ -61,7 +63,9 @@ rivulet_status rivulet_world_cast(rivulet_world* world, const rivulet_ray* rays,
         for (size_t k = 0; k < count; ++k)
             asked.push_back({vectorOf(rays[k].origin), vectorOf(rays[k].direction),
                              rays[k].reach > 0 ? rays[k].reach : std::numeric_limits<float>::infinity()});
-        const std::vector<FluidHit> all = world->world->cast(asked);
+        const Result<std::vector<FluidHit>> answer = world->world->cast(asked);
+        if (!answer) return answer.error();
+        const std::vector<FluidHit>& all = *answer;
         for (size_t k = 0; k < all.size(); ++k) {
             hits[k].hit = all[k].hit ? 1 : 0;
             hits[k].inside = all[k].inside ? 1 : 0;
@@ -79,8 +83,9 @@ rivulet_status rivulet_world_heights(rivulet_world* world, const float* places, 
         if (count > 0 && (places == nullptr || heights == nullptr)) return badInput("places or heights is NULL, and count is not 0");
         std::vector<vec2> asked;
         for (size_t k = 0; k < count; ++k) asked.emplace_back(places[2 * k], places[2 * k + 1]);
-        const std::vector<float> all = world->world->heights(asked);
-        std::copy(all.begin(), all.end(), heights);
+        const Result<std::vector<float>> answer = world->world->heights(asked);
+        if (!answer) return answer.error();
+        std::copy(answer->begin(), answer->end(), heights);
         return ok();
     });
 }

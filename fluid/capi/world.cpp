@@ -44,7 +44,7 @@ FluidParams simulated(const rivulet_world& w) {
 }
 
 Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, std::span<const uint8_t> surfaces, int resolution,
-                                            float spacing) {
+                                            float spacing, size_t memoryLimit) {
     Bounds bounds;
     std::vector<MeshView> views;
     for (const HostMesh& mesh : meshes) {
@@ -57,6 +57,7 @@ Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, st
     options.resolution = resolution > 0 ? resolution : std::clamp(static_cast<int>(std::ceil(4 * side / spacing)), 2, 512);
     options.band = options.padding = 2 * spacing;  // who comes near finds the field before it touches
     options.surfaces = surfaces;
+    if (memoryLimit > 0) options.memoryLimit = memoryLimit;
     Result<VoxelField> field = bakeVoxelField(views, options);
     if (!field) return field.error();
     return std::make_unique<VoxelField>(std::move(*field));
@@ -92,14 +93,14 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
             finest = std::max(finest, wall.resolution);
             continue;
         }
-        auto field = fieldOf(std::span(&*mesh, 1), std::span(&surfaceNumber, 1), wall.resolution, spacing);
+        auto field = fieldOf(std::span(&*mesh, 1), std::span(&surfaceNumber, 1), wall.resolution, spacing, w.context->memoryLimit);
         if (!field) return Error{fmt::format("walls[{}]: {}", k, field.error().message), field.error().fault};
         solids.rigid.push_back({field->get(), {}});
         w.poses.emplace_back();
         w.fields.push_back(std::move(*field));
     }
     if (still.empty()) return ok();
-    auto field = fieldOf(still, stillSurfaces, finest, spacing);
+    auto field = fieldOf(still, stillSurfaces, finest, spacing, w.context->memoryLimit);
     if (!field) return Error{"walls: " + field.error().message, field.error().fault};
     solids.field = field->get();
     w.fields.push_back(std::move(*field));
@@ -171,6 +172,7 @@ Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solid
 
 Status createWorld(rivulet_context& context, const rivulet_world_options& o, rivulet_world& w) {
     w.context = &context;
+    if (context.memoryLimit > 0) w.upload.limitMemory(context.memoryLimit);
     if (o.json != nullptr)
         if (Status read = readJson(o.json, "json", visiting(w.params)); !read) return read;
     Solids solids;
@@ -230,6 +232,10 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         }
         if (in.poses != nullptr) world->poses = std::move(poses);
         to.poses = world->poses;
+        rivulet_context& context = *world->context;
+        hearTimes(context);
+        to.deviceMs = context.deviceMs - world->deviceMs;  // of all its worlds: nobody knows whose a pass was
+        world->deviceMs = context.deviceMs;
         world->world->step(to, seconds);
         if (const DeviceHealth health = world->context->device->health(); health.state == DeviceHealth::lost)
             return failed(fmt::format("{} {}; make a context of another backend", world->context->name, health.why));
@@ -255,10 +261,11 @@ rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, r
             return badInput(fmt::format("{}: emitters and sinks are as many as the world was made with", assignment));
         Result<Sources> sources = sourcesOf(changed);
         if (!sources) return sources.error();
-        world->params = std::move(changed);
-        world->world->setParams(simulated(*world));
-        world->world->setSources(*sources);
-        return ok();
+        std::swap(world->params, changed);
+        Status taken = world->world->setParams(simulated(*world));
+        if (taken) taken = world->world->setSources(*sources);
+        if (!taken) std::swap(world->params, changed);
+        return taken;
     });
 }
 

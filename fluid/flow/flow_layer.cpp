@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/compute/device_cpu.h"
+#include "engine/core/assert.h"
 
 namespace rivulet {
 

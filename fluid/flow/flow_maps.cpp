@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/core/assert.h"
 #include "fluid/flow/map_texels.h"
 #include "fluid/flow/skin_folds.h"
 #include "fluid/flow/surface_flow_impl.h"

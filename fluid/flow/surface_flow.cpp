@@ -1,3 +1,4 @@
+#include "engine/core/assert.h"
 #include "fluid/flow/surface_flow_impl.h"
 
 #include <fmt/format.h>
@@ -5,9 +6,23 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/core/param_check.h"
 #include "shaders/flow/facing.h"
 
 namespace rivulet {
+
+namespace {
+
+constexpr float kFarthest = 1.0e5F;  // m
+
+bool isFinite(const dmat4& m) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            if (!std::isfinite(m[column][row])) return false;
+    return true;
+}
+
+}  // namespace
 
 Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const {
     if (positions.empty()) return ok();
@@ -15,6 +30,9 @@ Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const 
         if (k >= positions.size())
             return badInput(fmt::format("a skin was given {} positions, too few: its triangles use number {}", positions.size(), k));
         if (!isFinite(positions[k])) return badInput(fmt::format("position {} of a skin is not a finite number", k));
+        if (glm::any(glm::greaterThan(glm::abs(positions[k]), vec3(kFarthest))))
+            return badInput(fmt::format("position {} of a skin is more than {:.0e} m from zero: drops there would have no place in floats",
+                                        k, kFarthest));
     }
     return ok();
 }
@@ -62,12 +80,15 @@ FlowStep SurfaceFlow::Impl::stepOf(const SurfaceFlowInputs& inputs, const StepPa
     return f;
 }
 
-void SurfaceFlow::setThesis(const ThesisParams& params) {
+Status SurfaceFlow::setThesis(const ThesisParams& params) {
     ASSERT(impl_->thesis, "only a flow of createThesis() has these");
+    if (Status s = checkParams("thesis", params); !s) return s;
     impl_->thesis->setParams(params);
+    return ok();
 }
 
-void SurfaceFlow::setParams(const SurfaceFlowParams& params) {
+Status SurfaceFlow::setParams(const SurfaceFlowParams& params) {
+    if (Status s = checkParams("liquid", params); !s) return s;
     SurfaceFlowParams p = params;
     p.capacity = impl_->params.capacity;
     p.footprint = impl_->params.footprint;
@@ -78,6 +99,7 @@ void SurfaceFlow::setParams(const SurfaceFlowParams& params) {
     p.receding = impl_->params.receding;
     p.touch = impl_->params.touch;
     impl_->params = p;
+    return ok();
 }
 
 void SurfaceFlow::Impl::bear(const FlowBirth& one) {
@@ -190,6 +212,8 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     w.device->poll();
     if (!(seconds > 0)) return ok();
     if (Status places = w.checkPositions(inputs.positions); !places) return places;
+    if (!isFinite(inputs.toWorld) || !isFinite(inputs.gravity) || !isFinite(inputs.wind))
+        return badInput("what a skin is told of the world (toWorld, gravity, wind) is not finite");
     StepParams s{};
     s.count = s.firstSample = w.count();
     w.grid->fill(s);

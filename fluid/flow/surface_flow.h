@@ -92,7 +92,8 @@ struct FlowView {
 
 class SurfaceFlow {
   public:
-    // `device` must outlive it. Error: a mesh whose skin would not fit; out of memory.
+    // `device` must outlive it. Error: a value out of its range, a mesh whose skin would not fit (badInput);
+    // out of memory.
     static Result<SurfaceFlow> create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims = {});
     // Thesis mode: the same walk on the layout of `uvs` (3 a triangle), by the thesis's forces. Drops do not merge, and leave no trail.
     // Places and velocities are told in space as ever, but FlowMaps does not know them: thesisPicture() draws them. Error: as create, and
@@ -105,16 +106,17 @@ class SurfaceFlow {
 
     const FlowMesh& mesh() const;
     const SurfaceFlowParams& params() const;
-    void setParams(const SurfaceFlowParams& params);  // those that are `fixed` stay: tables are sized for them
-    void setThesis(const ThesisParams& params);       // in thesis mode; reach stays
+    // Error (badInput): a value out of its range; nothing has changed then.
+    Status setParams(const SurfaceFlowParams& params);  // those that are `fixed` stay: tables are sized for them
+    Status setThesis(const ThesisParams& params);       // in thesis mode; reach stays
 
     // A drop that appears with the next step. Where no slot is free it is counted as refused.
     // `film`: it is not taken up by others, but part of a film as long as there is one.
     void add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity = vec3(0.0F), bool film = false);
     void addToBrim(uint32_t place, uint32_t picolitres);  // places count through all brims in their order
     void setGrip(std::span<const float> grip);            // of each of mesh()'s places: what holds drops there, 1 as usual. Waits
-    // Error: positions that are not as many as the mesh's, or not finite (badInput); no memory for the sort (failed). Nothing has moved
-    // then.
+    // Error: positions that are not as many as the mesh's, not finite or over 1e5 m from zero, inputs that are not finite (badInput); no
+    // memory for the sort (failed). Nothing has moved then.
     Status step(const SurfaceFlowInputs& inputs, double seconds);
 
     // Waits for the device.

@@ -1,9 +1,11 @@
+#include "engine/core/assert.h"
 #include "fluid/flow/surface_flow_impl.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "engine/core/param_check.h"
 #include "fluid/flow/footprint.h"
 #include "shaders/flow/cells.h"
 
@@ -223,6 +225,7 @@ const FlowMesh& SurfaceFlow::mesh() const { return impl_->mesh; }
 const SurfaceFlowParams& SurfaceFlow::params() const { return impl_->params; }
 
 Result<SurfaceFlow> SurfaceFlow::create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims) {
+    if (Status s = checkParams("liquid", params); !s) return s.error();
     auto impl = std::make_unique<Impl>();
     impl->mesh = std::move(mesh);
     impl->params = params;
@@ -232,6 +235,8 @@ Result<SurfaceFlow> SurfaceFlow::create(Device& device, FlowMesh mesh, const Sur
 
 Result<SurfaceFlow> SurfaceFlow::createThesis(Device& device, FlowMesh mesh, std::span<const vec2> uvs, const SurfaceFlowParams& params,
                                               const ThesisParams& thesis) {
+    if (Status s = checkParams("liquid", params); !s) return s.error();
+    if (Status s = checkParams("thesis", thesis); !s) return s.error();
     Result<ThesisTables> tables = ThesisTables::create(device, mesh, uvs, thesis);
     if (!tables) return tables.error();
     auto impl = std::make_unique<Impl>();

@@ -1,4 +1,5 @@
 // A flow's state, put away in host memory and taken up again on another device.
+#include "engine/core/assert.h"
 #include "fluid/flow/surface_flow_impl.h"
 
 namespace rivulet {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <queue>
 
+#include "engine/core/assert.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/uv_triangle.h"
 

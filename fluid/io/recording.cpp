@@ -8,6 +8,7 @@
 #include <cstring>
 #include <new>
 
+#include "engine/core/assert.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {

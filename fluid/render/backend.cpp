@@ -11,6 +11,7 @@
 #include "engine/compute/kernel_source.h"
 #include "engine/gpu/current_context.h"
 #include "engine/gpu/device_gl.h"
+#include "engine/gpu/load.h"
 #include "fluid/sim/cpu_kernels.h"
 
 namespace rivulet {
@@ -30,6 +31,7 @@ GlFacts currentGlFacts() {
         const GLubyte* value = glGetString(name);
         return std::string(value == nullptr ? "unknown" : reinterpret_cast<const char*>(value));
     };
+    if (!gpu::loaded()) return noGl("OpenGL's functions are not loaded: rivulet::gpu::load comes first");
     GlFacts facts;
     facts.absent.clear();
     facts.renderer = text(GL_RENDERER);

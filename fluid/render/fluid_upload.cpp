@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "engine/core/readable_bytes.h"
 #include "engine/core/timeline.h"
 
 namespace rivulet {
@@ -49,6 +50,24 @@ Status FluidUpload::Target::makeRoom(size_t bytes) {
 void FluidUpload::dropTargets() {
     for (Target* to : {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
         to->drop();
+}
+
+size_t FluidUpload::bytes() const {
+    size_t sum = ring_.bytes() + drops_.bytes();
+    for (const Target* to :
+         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
+        sum += to->memory.bytes();
+    return sum;
+}
+
+// Whether `arrays`, and `others` bytes, may be brought over, through the ring or at once.
+Status FluidUpload::room(std::span<const Array> arrays, size_t others, bool ring) const {
+    size_t each = others;
+    for (const Array& a : arrays) each += a.bytes;
+    const size_t needed = each * (ring ? 1 + gpu::StagingRing::kDeep : 1);
+    if (needed <= mostBytes_) return ok();
+    return failed(fmt::format("to draw the particles {} are brought over to OpenGL, and {} are allowed; allow more, or use fewer particles",
+                              readableBytes(needed), readableBytes(mostBytes_)));
 }
 
 // Another Device's: what the one before has wrapped means nothing to it.
@@ -123,6 +142,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
 Status FluidUpload::share(std::span<const Array> arrays) {
     std::vector<GlSharing::Copy> copies;
     Status done = ok();
+    if (Status fits = room(arrays, 0, false); !fits) return fits;
     for (const Array& a : arrays) {
         if (Status room = a.to->makeRoom(a.bytes); !room) return room;
         if (!a.to->seen) {
@@ -175,6 +195,7 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
 Status FluidUpload::bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out) {
     size_t bytes = 64 + out.count * sizeof(uint32_t);
     for (const Array& a : arrays) bytes += 64 + a.bytes;
+    if (Status fits = room(arrays, out.count * sizeof(uint32_t), true); !fits) return fits;
     if (Status s = ring_.begin(bytes); !s) return s;
     const struct End {
         gpu::StagingRing& ring;

@@ -34,7 +34,9 @@ class FluidUpload {
     Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {});
     // The same of a frame that was recorded, whatever simulated it.
     Result<FluidView> view(const RecordedFrame& frame, const FluidLookParams& look);
-    const TransferFacts& facts() const { return facts_; }  // of the last view()
+    size_t bytes() const;                                   // of OpenGL's memory, what is brought over
+    void limitMemory(size_t bytes) { mostBytes_ = bytes; }  // view() fails rather than hold more
+    const TransferFacts& facts() const { return facts_; }   // of the last view()
 
   private:
     // An OpenGL buffer, and how OpenCL sees it: let go first, also when both are destroyed.
@@ -59,6 +61,7 @@ class FluidUpload {
         size_t bytes;
         bool ofParticles;  // sorted where the picture is hurried
     };
+    Status room(std::span<const Array> arrays, size_t others, bool ring) const;
     void follow(std::shared_ptr<const GlSharing> sharing);
     void dropTargets();
     Status share(std::span<const Array> arrays);
@@ -74,6 +77,7 @@ class FluidUpload {
     std::vector<vec4> vectors_;
     std::vector<uint32_t> ids_, order_;  // ids_: of what is brought over
     TransferFacts facts_;
+    size_t mostBytes_ = SIZE_MAX;
 };
 
 }  // namespace rivulet

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/core/readable_bytes.h"
 #include "engine/gpu/gl_error.h"
 
 namespace rivulet {
@@ -141,6 +142,12 @@ Status HostPicture::fit(int width, int height) {
     const std::pair<gpu::Texture*, gpu::Format> wanted[] = {
         {&raw_, gpu::Format::rgba16f}, {&colour_, gpu::Format::rgba16f}, {&depth_, gpu::Format::depth32f}};
     colour_ = {};  // if one fails, all are made anew
+    size_t needed = 0;
+    for (const auto& [texture, format] : wanted) needed += gpu::TextureDesc{.width = width, .height = height, .format = format}.bytes();
+    needed += gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}.bytes();  // and the host's depth as it is
+    if (needed > most_)
+        return failed(fmt::format("a picture of {} x {} pixels needs {}, and {} are allowed for pictures; allow more, or draw fewer pixels",
+                                  width, height, readableBytes(needed), readableBytes(most_)));
     for (const auto& [texture, format] : wanted) {
         Result<gpu::Texture> made = gpu::Texture::create({.width = width, .height = height, .format = format});
         if (!made) return made.error();

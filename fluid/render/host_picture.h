@@ -33,6 +33,7 @@ class HostPicture {
     const gpu::Texture& colour() const { return colour_; }  // rgba16f, linear radiance
     const gpu::Texture& depth() const { return depth_; }    // depth32f, window depth by view()'s projection
     size_t bytes() const;                                   // of its textures
+    void limit(size_t bytes) { most_ = bytes; }             // take() fails rather than hold more
 
     // Puts a picture into the target where it differs from colour(), and its depth: that of water, `fluidDepth` (m; 1e6 where there is
     // none), or null: depth().
@@ -53,6 +54,7 @@ class HostPicture {
     GLenum rawFormat_ = 0;
     gpu::Texture raw_, colour_, depth_;
     gpu::VertexArray none_;
+    size_t most_ = SIZE_MAX;
 };
 
 }  // namespace rivulet

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "engine/core/assert.h"
 #include "fluid/render/raymarch.h"
 #include "fluid/render/renderers.h"
 

@@ -6,7 +6,9 @@
 #include <array>
 #include <optional>
 
+#include "engine/core/readable_bytes.h"
 #include "engine/gpu/host_state.h"
+#include "engine/gpu/load.h"
 #include "engine/render/environment_map.h"
 #include "engine/render/frame_params.h"
 #include "fluid/render/host_picture.h"
@@ -21,7 +23,9 @@ struct WaterRenderer::Impl {
     gpu::Buffer frame, coarse;
     gpu::Texture nothing, surroundings;
     std::array<vec4, 9> matte{};
+    size_t most = SIZE_MAX;  // bytes of pictures
 
+    size_t ownBytes() const { return surroundings.desc().bytes() + nothing.desc().bytes(); }
     Status create(const WaterRendererOptions& options);
     Status draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row);
 };
@@ -52,12 +56,16 @@ Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
     if (!texel) return texel.error();
     nothing = std::move(*texel);
     nothing.clear(vec4(0.0F));
-    pool.limit(options.memoryLimit);
+    most = options.memoryLimit;
+    if (const size_t taken = ownBytes(); taken > most)
+        return failed(
+            fmt::format("surroundings need {}, and {} are allowed for pictures; allow more", readableBytes(taken), readableBytes(most)));
     return ok();
 }
 
 Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row) {
     const FrameView& view = picture.view();
+    pool.limit(most - std::min(most, ownBytes() + picture.bytes()));
     Studio studio;
     studio.showFloor = false;
     const Bounds water = fluidView.count > 0 ? fluidView.bounds : Bounds();
@@ -123,6 +131,8 @@ WaterRenderer::WaterRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)
 WaterRenderer::~WaterRenderer() = default;
 
 Result<std::unique_ptr<WaterRenderer>> WaterRenderer::create(const WaterRendererOptions& options) {
+    if (!gpu::loaded())
+        return badInput("OpenGL's functions are not loaded: call rivulet::gpu::load with what finds them, glfwGetProcAddress say, first");
     const gpu::HostState keep;
     auto impl = std::make_unique<Impl>();
     if (Status made = impl->create(options); !made) return made.error();
@@ -136,12 +146,13 @@ Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (Status can = HostPicture::nothingUnderWay(); !can) return can;
     const HostDepth depth = HostDepth::current();
     const gpu::HostState keep;
+    impl_->picture.limit(impl_->most - impl_->ownBytes());
     if (Status taken = impl_->picture.take(target, depth, view); !taken) return taken;
     return impl_->draw(fluid, look, row != nullptr ? *row : *renderers().find("screen_space"));
 }
 
 const std::vector<PassTime>& WaterRenderer::times() const { return impl_->pool.times(); }
 
-size_t WaterRenderer::bytes() const { return impl_->pool.bytes() + impl_->picture.bytes(); }
+size_t WaterRenderer::bytes() const { return impl_->pool.bytes() + impl_->picture.bytes() + impl_->ownBytes(); }
 
 }  // namespace rivulet

@@ -27,12 +27,12 @@ struct WaterRendererOptions {
     // What water mirrors beside the picture itself: a map of the surroundings (read once; radiance in the target's units), or null: `sky`.
     const HdrImage* surroundings = nullptr;
     SkyLook sky = {};
-    size_t memoryLimit = SIZE_MAX;  // bytes, of its textures; beyond them draw() fails
+    size_t memoryLimit = SIZE_MAX;  // bytes, of its textures, the surroundings' included; create() and draw() fail rather than hold more
 };
 
 class WaterRenderer {
   public:
-    // Error (failed): a shader does not compile; out of memory.
+    // Error (failed): a shader does not compile; out of memory. (badInput): gpu::load has not been called.
     static Result<std::unique_ptr<WaterRenderer>> create(const WaterRendererOptions& options);
     ~WaterRenderer();
     WaterRenderer(const WaterRenderer&) = delete;

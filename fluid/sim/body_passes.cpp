@@ -27,6 +27,8 @@ std::string fault(const Body& body) {
     if (!std::all_of(s.samples.begin(), s.samples.end(), [](const vec3& p) { return rivulet::isFinite(p); }) || !isFinite(body.state))
         return "is not finite";
     if (!(s.mass >= 0) || !std::isfinite(s.mass)) return fmt::format("weighs {} kg, must weigh 0 (it never moves) or more", s.mass);
+    if (!(s.volume >= 0) || !std::isfinite(s.volume)) return fmt::format("displaces {} m^3, must displace 0 or more", s.volume);
+    if (!(s.sticks >= 0 && s.sticks <= 1)) return fmt::format("sticks by {}, must be between 0 (slips) and 1 (no-slip)", s.sticks);
     if (s.mass > 0 && !(s.inertia.x > 0 && s.inertia.y > 0 && s.inertia.z > 0))
         return "has a mass but no inertia: give it a shape with a volume, or a mass of 0";
     return "";
@@ -39,6 +41,8 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
     BodyPasses b;
     b.device_ = &device;
     if (bodies.empty()) return b;
+    if ((host.advance == nullptr) != (host.reset == nullptr))
+        return badInput("the host of the bodies has one of the functions advance and reset: give it both, or none");
     b.bodies_.assign(bodies.begin(), bodies.end());
     for (size_t k = 0; k < bodies.size(); ++k) {
         const BodyShape& shape = bodies[k].shape;
@@ -195,8 +199,12 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
     }
     std::vector<BodyState> next = states_;
     host_.advance(host_.self, loads_, vec3(step.gravity), seconds, next);
-    for (size_t k = 0; k < bodies; ++k)
-        if (isFinite(next[k])) states_[k] = next[k];
+    for (size_t k = 0; k < bodies; ++k) {
+        if (isFinite(next[k]))
+            states_[k] = next[k];
+        else
+            misled_ = k;
+    }
 }
 
 void BodyPasses::reset() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/compute/device.h"
@@ -17,8 +18,8 @@ namespace rivulet {
 // The bodies of a world, on its Device. In a substep: place, sort, index, then push as often as the method says, and advance.
 class BodyPasses {
   public:
-    // Error (badInput): a body without samples, not finite, with mass but no inertia; (failed): out of memory. `host` empty: they move
-    // freely.
+    // Error (badInput): a body without samples, not finite, with mass but no inertia, half a host; (failed): out of memory. `host` empty:
+    // they move freely.
     static Result<BodyPasses> create(Device& device, std::span<const Body> bodies, const BodyHost& host, const FluidParams& params,
                                      const PairTraits& traits);
 
@@ -46,6 +47,8 @@ class BodyPasses {
               float scale, const vec3& weight);
     // Sums the forces, waits for them (some KB: on a GPU that is one round trip a substep) and has the host move the bodies.
     void advance(const StepParams& step, Particles& particles, double seconds);
+    // The body whose host last gave a state that is not finite: it stayed where it was.
+    std::optional<size_t> misled() const { return misled_; }
     // Back to t = 0.
     void reset();
 
@@ -70,6 +73,7 @@ class BodyPasses {
     std::vector<Body> bodies_;
     std::vector<BodyState> states_;
     std::vector<BodyLoad> loads_;
+    std::optional<size_t> misled_;
     std::vector<float> reach_;  // m, of each body's farthest sample
     BodyLoads giving_{{}, FluidParams{}};
     std::shared_ptr<FreeBodies> free_;  // where there is no other host

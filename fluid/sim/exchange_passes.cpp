@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/assert.h"
+
 namespace rivulet {
 
 namespace {

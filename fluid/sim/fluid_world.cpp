@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/assert.h"
+#include "engine/core/param_check.h"
 #include "fluid/sim/fluid_world_impl.h"
 #include "fluid/sim/liquids.h"
 #include "shaders/fluid/stats_row.h"
@@ -200,6 +202,8 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
     bodies.advance(step, particles, dt);
+    if (const std::optional<size_t> body = bodies.misled())
+        say(fmt::format("the host of the bodies gave body {} a state that is not finite: it stayed where it was", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
     sources.run({step, params, *grid, particles, solids, bodies, remembered}, time + to * frameLength, dt, last);
 }
@@ -232,7 +236,10 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.warn();
     const double span = frame.before + seconds;  // until the solids are where they are to be
     w.frameLength = span;
-    w.gravity = inputs.gravity;
+    if (isFinite(inputs.gravity))
+        w.gravity = inputs.gravity;
+    else
+        w.say("the gravity that a step was given is not finite: it stayed as it was");
     if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.say(asked.error().message);
     // Remembered for a while: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
     constexpr double kForget = 0.5;  // s
@@ -476,15 +483,17 @@ void FluidWorld::take(std::span<const uint32_t> slots) {
     w.figures->taken = static_cast<double>(w.takenOut) * std::pow(double{w.params.spacing}, 3);
 }
 
-void FluidWorld::setSurfaces(std::span<const Surface> surfaces) { impl_->solids.setSurfaces(surfaces); }
+Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) { return impl_->solids.setSurfaces(surfaces); }
 
-void FluidWorld::setSources(const Sources& next) {
+Status FluidWorld::setSources(const Sources& next) {
     Impl& w = *impl_;
-    if (Status s = w.sources.set(next); !s) return w.say(s.error().message);
+    if (Status s = w.sources.set(next); !s) return s;
     for (size_t k = 0; k < next.emitters.size(); ++k) w.asked.emitters[k].params = next.emitters[k].params;
+    return ok();
 }
 
-void FluidWorld::setParams(const FluidParams& params) {
+Status FluidWorld::setParams(const FluidParams& params) {
+    if (Status s = checkParams("fluid", params); !s) return s;
     FluidParams next = params;
     // What sizes arrays or picks kernels stays as it was made.
     const FluidParams& old = impl_->params;
@@ -503,7 +512,7 @@ void FluidWorld::setParams(const FluidParams& params) {
     next.liquid = old.liquid;
     next.maxParticles = old.maxParticles;
     next.foam.most = old.foam.most;
-    if (Status s = takeLiquid(next); !s) return impl_->say(s.error().message);
+    if (Status s = takeLiquid(next); !s) return s;
     if (impl_->traits.matter) {  // particles have theirs for life
         next.restDensity = old.restDensity;
         next.viscosity = old.viscosity;
@@ -512,6 +521,7 @@ void FluidWorld::setParams(const FluidParams& params) {
     // A scene gives the origin in floats: it says nothing new of a double that rounds to them.
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
     impl_->params = next;
+    return ok();
 }
 
 std::vector<Pose> FluidWorld::drawnPoses() const {
@@ -544,6 +554,11 @@ ParticleView FluidWorld::particles() const {
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                        const Sources& sources, std::span<const HostForce> forces) {
+    if (Status s = checkParams("fluid", params); !s) return s.error();
+    const BoxParams& box = params.box;
+    if (!glm::all(glm::lessThan(box.min, box.max)))
+        return badInput(fmt::format("fluid.box.min [{}, {}, {}] m must lie below fluid.box.max [{}, {}, {}] m on every axis", box.min.x,
+                                    box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
     std::unique_ptr<FluidWorld> world(new FluidWorld());
     Impl& w = *world->impl_;
     w.device = &device;
@@ -557,8 +572,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.traits.linked = params.grid == "linked_list";
     if (w.traits.linked)
         if (Status can = w.mayLink(); !can) return can.error();
-    Result<SolidPasses> passes =
-        SolidPasses::create(device, solids, params.collision, !glm::all(params.box.periodic()), w.traits.threadDefines());
+    Result<SolidPasses> passes = SolidPasses::create(device, solids, params, w.traits.threadDefines());
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
     Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, params, {.periodic = params.box.periodic()});

@@ -59,7 +59,8 @@ struct FluidInputs {
 
 class FluidWorld {
   public:
-    // Error: a value that makes no sense together with another, out of memory. `device` must outlive the world, `forces` are the host's.
+    // Error (badInput): a value out of its range (docs/parameters.md) or that makes no sense together with another; (failed): out of
+    // memory. `device` must outlive the world, `forces` are the host's.
     static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                       const Sources& sources = {}, std::span<const HostForce> forces = {});
     ~FluidWorld();
@@ -82,12 +83,15 @@ class FluidWorld {
     };
     bool knowsCells() const;  // whether there is such work at all
     std::optional<CellWork> cellWork();
-    void giveCells(std::span<const uint32_t> cells);      // void where the world has been changed since cellWork()
-    void reset();                                         // back to t = 0
-    void setParams(const FluidParams&);                   // takes what can change between steps; `fixed` values wait for a new world
-    void setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces
-    void visitForces(ParamVisitor& v);                    // the Params of the host's own forces, a group each
-    void setSources(const Sources& sources);              // as many emitters and sinks as there are; shapes and meshes stay as they were
+    void giveCells(std::span<const uint32_t> cells);  // void where the world has been changed since cellWork()
+    void reset();                                     // back to t = 0
+    // Takes what can change between steps; `fixed` values wait for a new world. Error (badInput): a value out of its range; nothing
+    // changed.
+    Status setParams(const FluidParams&);
+    Status setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces. Error: as create
+    void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, a group each
+    // As many emitters and sinks as there are; shapes and meshes stay as they were. Error (badInput): as setParams.
+    Status setSources(const Sources& sources);
 
     // Water that others hold too, as skins do: Sources::poured says there are such, else these must not be called. Places m, velocities
     // m/s. pour: `volume` m^3 has come down there. It is a debt, and whenever that is as much as a particle, one is born above the place.
@@ -99,14 +103,14 @@ class FluidWorld {
     void take(std::span<const uint32_t> slots);
 
     // What the water is at places, and where rays meet it (water_query.h), as of now: at t = 0, and after each step. What a step's end gave
-    // birth to is known from the next on. Nothing of the world changes. They wait; where memory does not do, all is air.
-    std::vector<FluidSample> sample(std::span<const vec3> places);
-    std::vector<FluidHit> cast(std::span<const FluidRay> rays);
+    // birth to is known from the next on. Nothing of the world changes. They wait. Error (failed): out of memory.
+    Result<std::vector<FluidSample>> sample(std::span<const vec3> places);
+    Result<std::vector<FluidHit>> cast(std::span<const FluidRay> rays);
     // y (m) of the highest surface over (or under) each x, z, looking down from above the box; NaN where there is no water.
-    std::vector<float> heights(std::span<const vec2> places);
+    Result<std::vector<float>> heights(std::span<const vec2> places);
     // As sample(), without waiting: `then` hears of it once, 2 to 3 frames later on a GPU (within Device::poll(), which step() calls), on
-    // the cpu before this returns; it may outlive the world.
-    void sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then);
+    // the cpu before this returns; it may outlive the world. Error: as sample(); then nothing is heard.
+    Status sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then);
 
     // Volumes to watch (volumes.h), 32 at most, whose counts each step brings up to date; late on a GPU. They are saved and restored, and
     // reset() empties them. Errors as VolumePasses::set.

@@ -105,7 +105,7 @@ struct FluidWorld::Impl {
     void say(const std::string& sentence);
     void touch();  // particles are moved between steps
     template <class Answer, class Ask>
-    std::vector<Answer> ask(size_t count, const Ask& how);
+    Result<std::vector<Answer>> ask(size_t count, const Ask& how);
     Status prepareToAsk(StepParams& params);
     Status listForces();
     void findForces();

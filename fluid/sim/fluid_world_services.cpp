@@ -32,32 +32,25 @@ Status FluidWorld::Impl::prepareToAsk(StepParams& s) {
 }
 
 template <class Answer, class Ask>
-std::vector<Answer> FluidWorld::Impl::ask(size_t count, const Ask& how) {
+Result<std::vector<Answer>> FluidWorld::Impl::ask(size_t count, const Ask& how) {
     if (particles.count == 0) return std::vector<Answer>(count);
     StepParams s;
-    Status ready = prepareToAsk(s);
-    if (ready) {
-        const bool aside = !sorted && !traits.linked;
-        Result<std::vector<Answer>> answers =
-            how({s, *grid, aside ? particles.position : particles.positionNext, aside ? particles.velocity : particles.velocityNext});
-        if (answers) return std::move(*answers);
-        ready = answers.error();
-    }
-    say(ready.error().message);
-    return std::vector<Answer>(count);
+    if (Status ready = prepareToAsk(s); !ready) return ready.error();
+    const bool aside = !sorted && !traits.linked;
+    return how({s, *grid, aside ? particles.position : particles.positionNext, aside ? particles.velocity : particles.velocityNext});
 }
 
-std::vector<FluidSample> FluidWorld::sample(std::span<const vec3> places) {
+Result<std::vector<FluidSample>> FluidWorld::sample(std::span<const vec3> places) {
     Impl& w = *impl_;
     return w.ask<FluidSample>(places.size(), [&](const WaterQuery::Water& water) { return w.query.sample(water, places); });
 }
 
-std::vector<FluidHit> FluidWorld::cast(std::span<const FluidRay> rays) {
+Result<std::vector<FluidHit>> FluidWorld::cast(std::span<const FluidRay> rays) {
     Impl& w = *impl_;
     return w.ask<FluidHit>(rays.size(), [&](const WaterQuery::Water& water) { return w.query.cast(water, rays); });
 }
 
-void FluidWorld::sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then) {
+Status FluidWorld::sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then) {
     Impl& w = *impl_;
     bool asked = false;
     const auto later = [&](const WaterQuery::Water& water) -> Result<std::vector<FluidSample>> {
@@ -65,8 +58,10 @@ void FluidWorld::sampleLater(std::span<const vec3> places, std::function<void(st
         asked = true;
         return std::vector<FluidSample>();
     };
-    const std::vector<FluidSample> air = w.ask<FluidSample>(places.size(), later);
-    if (!asked) then(air);
+    const Result<std::vector<FluidSample>> air = w.ask<FluidSample>(places.size(), later);
+    if (!air) return air.error();
+    if (!asked) then(*air);
+    return ok();
 }
 
 void FluidWorld::visitForces(ParamVisitor& v) {
@@ -88,15 +83,17 @@ Status FluidWorld::setVolumes(std::span<const Volume> volumes) {
 std::vector<VolumeCount> FluidWorld::volumes() const { return impl_->volumes.counts(); }
 std::vector<VolumeCount> FluidWorld::takeVolumeEvents() { return impl_->volumes.takeEvents(); }
 
-std::vector<float> FluidWorld::heights(std::span<const vec2> places) {
+Result<std::vector<float>> FluidWorld::heights(std::span<const vec2> places) {
     const BoxParams& box = impl_->params.box;
     const float above = box.max.y + 2.0F * impl_->params.supportSpacings * impl_->params.spacing;
     std::vector<FluidRay> rays;
     rays.reserve(places.size());
     for (const vec2& p : places) rays.push_back({vec3(p.x, above, p.y), vec3(0.0F, -1.0F, 0.0F)});
+    const Result<std::vector<FluidHit>> hits = cast(rays);
+    if (!hits) return hits.error();
     std::vector<float> heights;
     heights.reserve(places.size());
-    for (const FluidHit& hit : cast(rays)) heights.push_back(hit.hit ? hit.place.y : std::numeric_limits<float>::quiet_NaN());
+    for (const FluidHit& hit : *hits) heights.push_back(hit.hit ? hit.place.y : std::numeric_limits<float>::quiet_NaN());
     return heights;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/compute/device_cpu.h"
+#include "engine/core/assert.h"
 #include "fluid/sim/kernels/cpu_grid.h"
 #include "shaders/fluid/linked_list.h"
 #include "shaders/fluid/scan_params.h"

@@ -65,23 +65,53 @@ Status SolidPasses::Field::upload(Device& device) {
     return hold<uint32_t>(device, normal, field->normal, 2 * kMostSurfaces * sizeof(uint32_t));
 }
 
-Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls,
-                                        std::span<const Define> threads) {
+namespace {
+
+Status check(std::span<const Surface> surfaces) {
+    if (surfaces.size() > kMostSurfaces)
+        return badInput(
+            fmt::format("{} kinds of wall are more than the {} there may be: give some colliders the same friction and restitution",
+                        surfaces.size(), kMostSurfaces));
+    for (size_t k = 0; k < surfaces.size(); ++k) {
+        if (!std::isfinite(surfaces[k].friction))
+            return badInput(fmt::format("the friction of surface {} is {}, must be 0 or more, or below 0 for fluid.collision's", k,
+                                        surfaces[k].friction));
+        if (!(surfaces[k].restitution <= 1) || !std::isfinite(surfaces[k].restitution))
+            return badInput(fmt::format("the restitution of surface {} is {}, must be between 0 and 1, or below 0 for fluid.collision's", k,
+                                        surfaces[k].restitution));
+    }
+    return ok();
+}
+
+// Who touches it must know of it before: fieldParams.
+Status reaches(const VoxelField& field, float spacing) {
+    if (0.5F * spacing < field.band) return ok();
+    return badInput(
+        fmt::format("a solid's voxel field has a band of {:.3g} m, which must be wider than half a spacing of {:.3g} m: bake it with a "
+                    "band of at least "
+                    "{:.3g} m",
+                    field.band, spacing, 2 * spacing));
+}
+
+}  // namespace
+
+Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const FluidParams& params, std::span<const Define> threads) {
     SolidPasses s;
     s.device_ = &device;
     s.planeSolids_ = solids.planes;
-    for (const PlaneSolid& p : s.planeSolids_)
+    for (const PlaneSolid& p : s.planeSolids_) {
+        if (!isFinite(p.position) || !isFinite(p.normal)) return badInput("a plane's place or normal is not finite");
         if (!(glm::length(p.normal) > 0.0F)) return badInput("a plane's normal is zero: give it a direction");
-    if (solids.surfaces.size() > kMostSurfaces)
-        return badInput(
-            fmt::format("{} kinds of wall are more than the {} there may be: give some colliders the same friction and restitution",
-                        solids.surfaces.size(), kMostSurfaces));
+        if (p.surface >= kMostSurfaces) return badInput(fmt::format("a plane's surface is {}, must be below {}", p.surface, kMostSurfaces));
+    }
+    if (Status sound = check(solids.surfaces); !sound) return sound.error();
     s.surfaces_ = solids.surfaces;
     Result<Buffer> planes = device.allocate(std::max<size_t>(s.planeSolids_.size(), 1) * 2 * sizeof(vec4));
     if (!planes) return planes.error();
     s.planes_ = std::move(*planes);
 
     if (solids.field != nullptr && !solids.field->empty()) {
+        if (Status wide = reaches(*solids.field, params.spacing); !wide) return wide.error();
         s.static_.field = solids.field;
         if (Status done = s.static_.upload(device); !done) return done.error();
         Result<Buffer> block = device.allocate(sizeof(FieldParams));
@@ -90,12 +120,16 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
     }
     for (const RigidSolid& rigid : solids.rigid) {
         if (!sound(rigid.pose)) return badInput("a moving solid's pose is not finite, or its rotation has no unit length");
+        if (rigid.field != nullptr)
+            if (Status wide = reaches(*rigid.field, params.spacing); !wide) return wide.error();
         Moving m;
         m.on.field = rigid.field;
         m.atStart = rigid.pose;
         if (Status done = s.addMoving(std::move(m)); !done) return done.error();
     }
     for (DeformingField* shape : solids.deforming) {
+        if (shape == nullptr) return badInput("a deforming solid has no field: bake its mesh first");
+        if (Status wide = reaches(shape->field(), params.spacing); !wide) return wide.error();
         Moving m;
         m.shape = shape;
         m.on.field = &shape->field();
@@ -108,8 +142,8 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         std::vector<Define> defines;
         bool wanted;
     };
-    s.walled_ = boxWalls || s.any();
-    s.thesis_ = collision.walk == "thesis";
+    s.walled_ = !glm::all(params.box.periodic()) || s.any();
+    s.thesis_ = params.collision.walk == "thesis";
     const bool thesis = s.thesis_, still = s.static_.field != nullptr;
     const auto collide = [&](const char* motion) {
         std::vector<Define> d(threads.begin(), threads.end());
@@ -173,9 +207,11 @@ bool SolidPasses::mayBeBorn(const vec3& p, float spacing) const {
     return static_.field == nullptr || static_.mayBeBorn(p, spacing);
 }
 
-void SolidPasses::setSurfaces(std::span<const Surface> surfaces) {
-    surfaces_.assign(surfaces.begin(), surfaces.begin() + static_cast<std::ptrdiff_t>(std::min(surfaces.size(), kMostSurfaces)));
+Status SolidPasses::setSurfaces(std::span<const Surface> surfaces) {
+    if (Status sound = check(surfaces); !sound) return sound;
+    surfaces_.assign(surfaces.begin(), surfaces.end());
     surfacesChanged_ = true;
+    return ok();
 }
 
 Status SolidPasses::reset() {
@@ -353,7 +389,7 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
             const vec3 n = glm::normalize(p.normal);
             list.emplace_back(n, -glm::dot(n, p.position));
             float values[2];
-            std::memcpy(values, &words[2 * std::min<size_t>(p.surface, kMostSurfaces - 1)], sizeof values);
+            std::memcpy(values, &words[2 * p.surface], sizeof values);
             list.emplace_back(values[0], values[1], 0.0F, 0.0F);
         }
         device_->writeAll<vec4>(planes_, list);

@@ -19,10 +19,10 @@ namespace rivulet {
 // The solids of a world, on its Device. Per frame: beginFrame, then a substep's advance, boundary, collide, each in that order.
 class SolidPasses {
   public:
-    // Error (badInput): a plane without direction, too many surfaces, an unknown walk; (failed): out of memory. `device` and the solids'
-    // fields must outlive it.
-    // `boxWalls`: the box has some; without them and without solids nothing is made for walls. `threads`: PairTraits::threadDefines().
-    static Result<SolidPasses> create(Device& device, const Solids& solids, const CollisionParams& collision, bool boxWalls,
+    // Error (badInput): a plane without direction, too many surfaces or one out of its range, a field whose band is too narrow for the
+    // spacing; (failed): out of memory. `device` and the solids' fields must outlive it. Without solids and a box with walls nothing is
+    // made for walls. `threads`: PairTraits::threadDefines().
+    static Result<SolidPasses> create(Device& device, const Solids& solids, const FluidParams& params,
                                       std::span<const Define> threads = {});
 
     // Whether a particle may be born at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not nearer
@@ -32,7 +32,8 @@ class SolidPasses {
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
     const Buffer& planes() const { return planes_; }  // as integrate.kernel wants them
 
-    void setSurfaces(std::span<const Surface> surfaces);
+    // Error (badInput): as create; nothing has changed then.
+    Status setSurfaces(std::span<const Surface> surfaces);
     // Back to where everything stood at t = 0.
     Status reset();
 

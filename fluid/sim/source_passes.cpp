@@ -6,6 +6,9 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "engine/core/assert.h"
+#include "engine/core/param_check.h"
+#include "engine/core/param_path.h"
 #include "fluid/sim/liquids.h"
 #include "fluid/sim/smoothing.h"
 #include "fluid/voxel/packed_array.h"
@@ -20,8 +23,15 @@ constexpr float kNearest = 0.8F;             // spacings
 constexpr float kCrowded = 1.01F;
 
 Status check(const Sources& sources, float spacing) {
+    for (size_t k = 0; k < sources.sinks.size(); ++k)
+        if (Status s = checkParams(pathOf("sinks", k), sources.sinks[k]); !s) return s;
+    if (!(sources.seconds >= 0) || !(sources.poured >= 0))
+        return badInput(fmt::format("sources run for {} s and are poured {} m^3: each must be 0 or more", sources.seconds, sources.poured));
     for (size_t k = 0; k < sources.emitters.size(); ++k) {
         const Emitter& e = sources.emitters[k];
+        if (Status s = checkParams(pathOf("emitters", k), e.params); !s) return s;
+        if (!std::all_of(e.triangles.begin(), e.triangles.end(), [](const vec3& p) { return isFinite(p); }))
+            return badInput(fmt::format("emitters[{}] has a mesh with corners that are NaN or infinite", k));
         if (const std::string wrong = contradiction(e.params); !wrong.empty()) return badInput(fmt::format("emitters[{}].{}", k, wrong));
         // They are laid out as one layer, and that would take all the memory there is.
         if (const double layer = layerOf(e.params, spacing); layer > kMostCandidates)

@@ -5,6 +5,7 @@
 #include <array>
 #include <new>
 
+#include "engine/core/assert.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {

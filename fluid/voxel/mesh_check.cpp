@@ -62,10 +62,4 @@ std::optional<Error> checkVoxel(const MeshExtent& extent, float voxel) {
     return std::nullopt;
 }
 
-std::string readableBytes(double bytes) {
-    if (bytes < 1e9) return fmt::format("{:.1f} MB", bytes / 1e6);
-    if (bytes < 1e12) return fmt::format("{:.1f} GB", bytes / 1e9);
-    return bytes < 1e15 ? fmt::format("{:.1f} TB", bytes / 1e12) : "over 1000 TB";
-}
-
 }  // namespace rivulet

@@ -23,6 +23,4 @@ std::optional<Error> checkMeshes(std::span<const MeshView> meshes);
 // An extent, and voxels that 32-bit floats can tell apart that far from the origin. `voxel`: m.
 std::optional<Error> checkVoxel(const MeshExtent& extent, float voxel);
 
-std::string readableBytes(double bytes);  // "3.6 MB", "1.2 GB"
-
 }  // namespace rivulet

@@ -8,6 +8,8 @@
 #include <new>
 #include <optional>
 
+#include "engine/core/assert.h"
+#include "engine/core/readable_bytes.h"
 #include "fluid/voxel/distance_band.h"
 #include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/mesh_defects.h"

@@ -8,7 +8,9 @@
 #include <cstring>
 #include <new>
 
+#include "engine/core/assert.h"
 #include "engine/core/json.h"
+#include "engine/core/readable_bytes.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
@@ -72,10 +74,6 @@ size_t pointsOf(const ivec3& size) {
 size_t bitBytesOf(const VoxelGrid& grid) { return (grid.count() + 31) / 32 * 4; }
 
 size_t rowsOf(const ivec3& size) { return static_cast<size_t>(size.y) * static_cast<size_t>(size.z); }
-
-std::string readableBytes(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
-}
 
 std::string_view asText(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 

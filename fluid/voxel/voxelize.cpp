@@ -8,6 +8,7 @@
 #include <chrono>
 #include <new>
 
+#include "engine/core/readable_bytes.h"
 #include "fluid/voxel/mesh_check.h"
 #include "fluid/voxel/voxelize_depth.h"
 #include "fluid/voxel/voxelize_solid.h"

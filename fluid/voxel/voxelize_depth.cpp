@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 
+#include "engine/core/assert.h"
 #include "fluid/voxel/depth_jobs.h"
 
 namespace rivulet {

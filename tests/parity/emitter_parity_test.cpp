@@ -116,7 +116,7 @@ TEST_P(EmitterParity, WhoIsDrainedIsForgotten) {
     };
     for (int k = 0; k < 2; ++k) (*world)->step({}, 1.0 / 60);
     const std::vector<float> before = remembered();
-    (*world)->setSources({.sinks = {sink}});
+    ASSERT_TRUE((*world)->setSources({.sinks = {sink}}));
     (*world)->step({}, 1.0 / 60);
     const std::vector<float> after = remembered();
     const ParticleView view = (*world)->particles();

@@ -458,7 +458,7 @@ TEST(LinkedListRefusal, NamesTheKeyAndTheRemedy) {
     FluidParams later = good;
     later.forces.vorticity = 1;
     later.grid = "sorted";  // waits for a new world
-    (*world)->setParams(later);
+    ASSERT_TRUE((*world)->setParams(later));
     (*world)->step({.gravity = good.gravity}, 1.0e-3);
     ASSERT_EQ((*world)->stats().limited.size(), 1U);
     EXPECT_NE((*world)->stats().limited[0].find("vorticity"), std::string::npos);

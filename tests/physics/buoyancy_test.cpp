@@ -35,7 +35,7 @@ struct Floater {
     void step(FluidWorld& world, double dt) {
         std::vector<vec3> places;
         addPlaces(points, state.pose, places);
-        const BodyLoad load = buoyancy(points, state, world.sample(places), params, double{shape.mass}, dt);
+        const BodyLoad load = buoyancy(points, state, *world.sample(places), params, double{shape.mass}, dt);
         state.velocity += vec3((load.force / double{shape.mass} + dvec3(params.gravity)) * dt);
         const quat turn = state.pose.rotation;
         const vec3 own = glm::conjugate(turn) * vec3(load.torque) / shape.inertia;  // without the gyroscopic term: it turns slowly

@@ -257,11 +257,11 @@ TEST(Emitter, WhoIsBornWithAnotherParticlesIdRemembersNothing) {
     // Whoever stood at the bottom of the pool at first was pressed, and is let out later.
     SinkParams away = sink;
     away.position.y = -5;
-    world->setSources({.sinks = {away}});
+    ASSERT_TRUE(world->setSources({.sinks = {away}}));
     run(*world, 0.1);
     WorldState before, after;
     const std::vector<float> pressed = remembered(before);
-    world->setSources({.sinks = {sink}});
+    ASSERT_TRUE(world->setSources({.sinks = {sink}}));
     run(*world, 0.1);
     const std::vector<float> left = remembered(after);
     const ParticleView view = world->particles();

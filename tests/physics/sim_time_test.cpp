@@ -84,7 +84,7 @@ TEST_P(Time, ABudgetSlowsTimeAndNotTheProgram) {
     EXPECT_NEAR(world->time(), 0.05, 1e-12);
     EXPECT_EQ(world->dropped(), 0);
     p.frameBudget = 1.0e-5F;
-    world->setParams(p);
+    ASSERT_TRUE(world->setParams(p));
     for (int k = 0; k < 5; ++k) {
         world->step({.gravity = p.gravity}, 0.1);
         EXPECT_EQ(world->lastSubsteps(), 1);
@@ -93,7 +93,7 @@ TEST_P(Time, ABudgetSlowsTimeAndNotTheProgram) {
     EXPECT_NEAR(world->time() + world->dropped(), 0.55, 1e-9);
     EXPECT_EQ(saying(*world, "frameBudget"), 1U);
     p.frameBudget = 0;
-    world->setParams(p);
+    ASSERT_TRUE(world->setParams(p));
     const double slowed = world->time();
     world->step({.gravity = p.gravity}, 0.1);
     EXPECT_NEAR(world->time() - slowed, 0.1, 1e-8);
@@ -312,7 +312,7 @@ TEST_P(Time, TenKilometresAwayAreTheSameBits) {
         EXPECT_NEAR(there->toHost(vec3(x)).x - 10000.1, double{x.x}, 1e-11);
         EXPECT_EQ(there->fromHost(there->toHost(vec3(x))), vec3(x));
     }
-    there->setParams(column(GetParam()));  // a scene that says nothing of it
+    ASSERT_TRUE(there->setParams(column(GetParam())));  // a scene that says nothing of it
     EXPECT_EQ(there->origin(), dvec3(0.0));
 }
 

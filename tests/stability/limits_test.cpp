@@ -47,7 +47,7 @@ TEST_P(Limits, OffAFrameIsAStep) {
     EXPECT_EQ(world->stats().dtMax, 0.25);
     EXPECT_TRUE(says(*world, "fluid.limits is off"));
     p.limits = true;
-    world->setParams(p);
+    ASSERT_TRUE(world->setParams(p));
     world->step({.gravity = p.gravity}, 0.05);
     EXPECT_GT(world->lastSubsteps(), 2);
 }

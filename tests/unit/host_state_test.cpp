@@ -1,6 +1,7 @@
 // What we do to a host's OpenGL: nothing that it could tell afterwards, whatever state it was in.
 #include "engine/gpu/host_state.h"
 
+#include <EGL/egl.h>
 #include <gtest/gtest.h>
 #include <rivulet_glad/gl.h>
 
@@ -10,6 +11,7 @@
 
 #include "engine/app/context_egl.h"
 #include "engine/gpu/device_gl.h"
+#include "engine/gpu/load.h"
 #include "fluid/render/water_renderer.h"
 #include "fluid/sim/fluid_world.h"
 #include "tests/unit/gl_snapshot.h"
@@ -121,6 +123,8 @@ void makeOdd(bool old) {
         glEnable(0x0BC0);  // GL_ALPHA_TEST
         glEnable(0x0B42);  // GL_POLYGON_STIPPLE
         glPolygonMode(GL_FRONT, GL_POINT);
+        for (const GLenum what : {0x0D14U, 0x0D18U, 0x0D1AU, 0x0D1CU, 0x0D1EU}) gpu::pixelTransfer()(what, 0.25F);  // GL_RED_SCALE and on
+        for (const GLenum what : {0x0D15U, 0x0D19U, 0x0D1BU, 0x0D1DU, 0x0D1FU}) gpu::pixelTransfer()(what, 0.125F);
     }
     ASSERT_EQ(glGetError(), GLenum{GL_NO_ERROR}) << "the test itself is wrong";
 }
@@ -128,6 +132,7 @@ void makeOdd(bool old) {
 TEST_P(HostStateIn, IsPutBackToTheBit) {
     Result<ContextEgl> context = ContextEgl::create({.compatibility = GetParam()});
     if (!context) GTEST_SKIP() << context.error().message;
+    ASSERT_TRUE(gpu::load(eglGetProcAddress));
     testing::HostScene host(80, 60);
     makeOdd(GetParam());
     ASSERT_FALSE(HasFatalFailure());
@@ -138,6 +143,12 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
         const gpu::HostState again;
         GLint on = glIsEnabled(GL_RASTERIZER_DISCARD);
         EXPECT_EQ(on, GL_FALSE);
+        if (GetParam()) {
+            GLfloat scale = 0, bias = 1;
+            glGetFloatv(0x0D14, &scale);  // GL_RED_SCALE
+            glGetFloatv(0x0D15, &bias);
+            EXPECT_TRUE(scale == 1 && bias == 0) << "pictures would be made with the host's scale";
+        }
     }
     EXPECT_EQ(difference(before, glSnapshot()), "");
 

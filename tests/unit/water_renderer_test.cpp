@@ -203,7 +203,12 @@ TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
     glDeleteQueries(1, &query);
     EXPECT_EQ(said(host.view(), host.target()), "");
 
-    auto small = WaterRenderer::create({.memoryLimit = 1 << 16});
+    const auto none = WaterRenderer::create({.memoryLimit = 1 << 16});
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("surroundings"), std::string::npos) << none.error().message;
+    auto free = WaterRenderer::create({});
+    ASSERT_TRUE(free);
+    auto small = WaterRenderer::create({.memoryLimit = (*free)->bytes() + (1 << 14)});
     ASSERT_TRUE(small);
     const Status refused = (*small)->draw(host.view(), fluid, {}, host.target());
     ASSERT_FALSE(refused);

@@ -595,6 +595,22 @@ int main(int count, char** arguments) {
     DONE(rivulet_context_create(&older, &context, &why));
     rivulet_world_destroy(make(context, kDrop));
     rivulet_context_destroy(context);
+    rivulet_pass_time passes[64];
+    size_t told = 99;
+    DONE(rivulet_context_create(&newer.known, &context, &why));
+    DONE(rivulet_context_times(context, NULL, 0, &told, &why));
+    CHECK(told == 0);
+    CHECK(rivulet_context_times(context, NULL, 1, &told, &why) == RIVULET_BAD_INPUT);
+    world = make(context, kDrop);
+    DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+    DONE(rivulet_context_times(context, passes, 1, &told, &why));
+    CHECK(told > 1 && passes[0].calls > 0 && passes[0].ms >= 0 && passes[0].name[0] != '\0');
+    DONE(rivulet_context_times(context, passes, 64, &told, &why)); /* what there was no room for is not lost */
+    CHECK(told > 1 && told < 64);
+    DONE(rivulet_context_times(context, passes, 64, &told, &why));
+    CHECK(told == 0);
+    rivulet_world_destroy(world);
+    rivulet_context_destroy(context);
     options = (rivulet_context_options){.size = sizeof options, .backend = "cpu", .memory_limit = 1 << 14};
     DONE(rivulet_context_create(&options, &context, &why));
     rivulet_world_options drop = {.size = sizeof drop, .json = kDrop};

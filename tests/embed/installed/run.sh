@@ -33,4 +33,9 @@ xargs -P 2 -I {} sh -c 'printf "#include \"%s\"\n" {} | $alone || { echo "{} doe
 echo "$(wc -l <"$work/headers") headers compile alone"
 
 # What the guide for hosts shows.
-python3 "$here/../guide.py" "$work/prefix" "$here/../../.."
+guide=(python3 "$here/../guide.py" "$work/prefix" "$here/../../..")
+if command -v xvfb-run >/dev/null; then
+    xvfb-run -a -s "-screen 0 1024x768x24" "${guide[@]}"
+else
+    "${guide[@]}"
+fi

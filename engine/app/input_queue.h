@@ -1,0 +1,40 @@
+// InputQueue: what the person did, in its order, handed out so that no frame loses any of it however long frames take: a click within a
+// frame is two frames', and it happens where the pointer was.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "engine/app/input_events.h"
+
+namespace rivulet {
+
+class InputQueue {
+  public:
+    void move(const vec2& to) { add({.kind = Kind::move, .at = to}); }  // window coordinates
+    void button(MouseButton which, bool down) { add({.kind = Kind::button, .code = static_cast<int>(which), .down = down}); }
+    void key(int which, bool down) { add({.kind = Kind::key, .code = which, .down = down}); }
+    void type(std::string utf8) { add({.kind = Kind::text, .text = std::move(utf8)}); }
+    void wheel(const vec2& steps) { add({.kind = Kind::wheel, .at = steps}); }
+    void drop(std::string path) { add({.kind = Kind::drop, .text = std::move(path)}); }
+
+    // The next frame's: from the oldest on, as much as happens together. What is held, and where the pointer is, `events` has from the
+    // frame before.
+    void take(InputEvents& events);
+    bool empty() const { return waiting_.empty(); }
+
+  private:
+    enum class Kind { move, button, key, text, wheel, drop };
+    struct Event {
+        Kind kind = Kind::move;
+        vec2 at{0.0F};
+        int code = 0;
+        bool down = false;
+        std::string text = {};
+    };
+    void add(Event event) { waiting_.push_back(std::move(event)); }
+
+    std::deque<Event> waiting_;
+};
+
+}  // namespace rivulet

@@ -28,6 +28,7 @@ int runWindow(const RunOptions& options) {
                                   .clipboard = window->handle(),
                                   .width = options.width,
                                   .height = options.height,
+                                  .seen = seenFile(),
                                   .share = [&window] { return window->shared(); }},
                                  options.log);
     if (!viewer) return report(viewer.error());

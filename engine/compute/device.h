@@ -109,6 +109,10 @@ class Device {
     virtual Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) = 0;
     Result<Kernel> kernel(std::string_view path) { return kernel(path, {}); }
 
+    // Reads the files of its kernels again. How many kernels are others now; 0 where they are compiled in. Error: what the compiler says,
+    // or a kernel that no longer takes what it is handed; all stay as they were.
+    virtual Result<size_t> reload() { return size_t{0}; }
+
     // What kernel() has made so far: "fluid/wcsph_density;MATTER=1;PERIODIC=1".
     virtual std::vector<std::string> kernels() const = 0;
 

@@ -41,6 +41,7 @@ class ClDevice final : public Device {
     const DeviceInfo& info() const override { return info_; }
     GlShare glShare() const override { return share_; }
     Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
+    Result<size_t> reload() override;
     std::vector<std::string> kernels() const override {
         std::vector<std::string> made;
         for (const Entry& e : kernels_) made.push_back(e.key);
@@ -67,6 +68,8 @@ class ClDevice final : public Device {
         cl::Kernel kernel;
         uint32_t localSize;
         cl_uint args;
+        std::vector<Define> defines;  // with LOCAL_SIZE
+        size_t text;                  // a hash of the source, to tell whether the files have changed
     };
     struct ParamSlot {
         Memory memory;
@@ -88,6 +91,7 @@ class ClDevice final : public Device {
     };
 
     Program build(const KernelSource& source, std::string_view file, Error& why);
+    Result<Entry> make(std::string key, std::string_view path, std::vector<Define> defines, uint32_t localSize, const KernelSource& source);
     Program cached(const std::string& key);
     void keep(const std::string& key, const Program& program);
     cl_mem params(std::span<const std::byte> bytes);
@@ -219,16 +223,25 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
     }
 
     const std::string file = fmt::format("shaders/{}.kernel", path);
-    Result<KernelSource> source = files_.flatten(file, sorted, Dialect::openclC);
+    const Result<KernelSource> source = files_.flatten(file, sorted, Dialect::openclC);
     if (!source) return source.error();
-    const std::string programKey = made_ + source->text;
+    Result<Entry> made = make(std::move(key), path, std::move(sorted), localSize, *source);
+    if (!made) return made.error();
+    kernels_.push_back(std::move(*made));
+    return Kernel{static_cast<uint32_t>(kernels_.size() - 1)};
+}
+
+Result<ClDevice::Entry> ClDevice::make(std::string key, std::string_view path, std::vector<Define> defines, uint32_t localSize,
+                                       const KernelSource& source) {
+    const std::string file = fmt::format("shaders/{}.kernel", path);
+    const std::string programKey = made_ + source.text;
     const std::string name(path.substr(path.rfind('/') + 1));
     cl_int code = CL_SUCCESS;
     Program program = cached(programKey);
     cl::Kernel object(program ? clCreateKernel(program.get(), name.c_str(), &code) : nullptr);
     if (!object) {
         Error why;
-        program = build(*source, file, why);
+        program = build(source, file, why);
         if (!program) return why;
         object = cl::Kernel(clCreateKernel(program.get(), name.c_str(), &code));
         if (!object)
@@ -242,8 +255,27 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
                                   std::min(allowed, maxLocalSize_)));
     cl_uint args = 0;
     clGetKernelInfo(object.get(), CL_KERNEL_NUM_ARGS, sizeof args, &args, nullptr);
-    kernels_.push_back({std::move(key), std::string(path), std::move(program), std::move(object), localSize, args});
-    return Kernel{static_cast<uint32_t>(kernels_.size() - 1)};
+    return Entry{std::move(key),     std::string(path),
+                 std::move(program), std::move(object),
+                 localSize,          args,
+                 std::move(defines), std::hash<std::string>()(source.text)};
+}
+
+Result<size_t> ClDevice::reload() {
+    std::vector<std::pair<Entry*, Entry>> fresh;
+    for (Entry& e : kernels_) {
+        const Result<KernelSource> source = files_.flatten(fmt::format("shaders/{}.kernel", e.path), e.defines, Dialect::openclC);
+        if (!source) return source.error();
+        if (std::hash<std::string>()(source->text) == e.text) continue;
+        Result<Entry> made = make(e.key, e.path, e.defines, e.localSize, *source);
+        if (!made) return made.error();
+        if (made->args != e.args)
+            return failed(fmt::format("shaders/{}.kernel now takes {} arguments and is handed {}: build the program anew", e.path,
+                                      made->args, e.args));
+        fresh.emplace_back(&e, std::move(*made));
+    }
+    for (auto& [entry, made] : fresh) *entry = std::move(made);
+    return fresh.size();
 }
 
 // OpenCL has no buffers of 0 bytes, and fills whole words.

@@ -34,6 +34,7 @@ class ShaderFiles {
     void add(std::string path, std::string text) { added_.emplace_back(std::move(path), std::move(text)); }
     // A define that every text flattened from now on has, before its own.
     void define(Define define) { always_.push_back(std::move(define)); }
+    const std::string& root() const { return root_; }
     Result<std::string> load(std::string_view path) const;
     // `path` e.g. "shaders/fluid/reorder.kernel". Each include is taken once. `header` goes before everything (e.g. "#version 450 core\n").
     Result<KernelSource> flatten(std::string_view path, std::span<const Define> defines, Dialect dialect,

@@ -48,6 +48,7 @@ class GlDevice final : public Device {
     Backend backend() const override { return Backend::gl; }
     const DeviceInfo& info() const override { return info_; }
     Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) override;
+    Result<size_t> reload() override;
     std::vector<std::string> kernels() const override {
         std::vector<std::string> made;
         for (const Entry& e : kernels_) made.push_back(e.key);
@@ -76,8 +77,10 @@ class GlDevice final : public Device {
         std::string path;
         gpu::Program program;
         uint32_t localSize;
-        size_t bindings;  // the highest SSBO binding that the kernel really uses
-        GLint groupBase;  // where lang.h's groupBase_ is; -1: the kernel needs no THREAD_ID
+        size_t bindings = 0;   // the highest SSBO binding that the kernel really uses
+        GLint groupBase = -1;  // where lang.h's groupBase_ is; -1: the kernel needs no THREAD_ID
+        size_t handed = 0;     // buffers, by the last dispatch; 0: there was none
+        void link();           // finds bindings and groupBase
     };
     // Parameter blocks, written one after the other by the host. A page is written anew when the GPU is done with all it holds.
     struct Page {
@@ -155,20 +158,42 @@ Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> d
             fmt::format("{} runs in work groups of {}, but {} allows {}; try --backend cpu", file, localSize, info_.name, maxLocalSize_));
     Result<gpu::Program> program = gpu::Program::create(files_, {file}, sorted);
     if (!program) return program.error();
+    kernels_.push_back({std::move(key), std::string(path), std::move(*program), localSize});
+    kernels_.back().link();
+    return Kernel{static_cast<uint32_t>(kernels_.size() - 1)};
+}
 
-    const GLuint name = program->name();
+size_t highestBinding(GLuint name) {
     GLint blocks = 0;
     glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
-    GLint bindings = 0;
+    GLint highest = 0;
     for (GLint k = 0; k < blocks; ++k) {
         const GLenum property = GL_BUFFER_BINDING;
         GLint binding = 0;
         glGetProgramResourceiv(name, GL_SHADER_STORAGE_BLOCK, static_cast<GLuint>(k), 1, &property, 1, nullptr, &binding);
-        bindings = std::max(bindings, binding);
+        highest = std::max(highest, binding);
     }
-    kernels_.push_back({std::move(key), std::string(path), std::move(*program), localSize, static_cast<size_t>(bindings),
-                        glGetUniformLocation(name, "groupBase_")});
-    return Kernel{static_cast<uint32_t>(kernels_.size() - 1)};
+    return static_cast<size_t>(highest);
+}
+
+void GlDevice::Entry::link() {
+    bindings = highestBinding(program.name());
+    groupBase = glGetUniformLocation(program.name(), "groupBase_");
+}
+
+Result<size_t> GlDevice::reload() {
+    std::vector<gpu::Program*> programs;
+    for (Entry& e : kernels_) programs.push_back(&e.program);
+    const Result<size_t> others = gpu::Program::reload(programs, [this](size_t k, GLuint name) {
+        const Entry& e = kernels_[k];
+        const size_t wanted = highestBinding(name);
+        if (e.handed == 0 || wanted <= e.handed) return ok();
+        return Status(failed(
+            fmt::format("shaders/{}.kernel now reads {} buffers and is handed {}: build the program anew", e.path, wanted, e.handed)));
+    });
+    if (!others) return others.error();
+    for (Entry& e : kernels_) e.link();
+    return others;
 }
 
 Result<Buffer> GlDevice::allocate(size_t bytes) {
@@ -290,6 +315,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     Entry& entry = kernels_[kernel.index];
     ASSERT(entry.bindings <= buffers.size(), "hand a buffer for every row of the kernel's ARGS");
     ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
+    entry.handed = buffers.size();
     if (threads == 0 || !bindParams(params)) return;
     for (size_t k = 0; k < buffers.size(); ++k)
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(k + 1), buffers[k] ? nameOf(*buffers[k]) : 0);

@@ -76,19 +76,46 @@ std::string infoLog(GLuint name, Get get, GetLog getLog) {
 
 std::string joined(const std::vector<std::string>& paths) { return fmt::format("{}", fmt::join(paths, " + ")); }
 
-struct Built {
+size_t hashOf(const std::vector<KernelSource>& sources) {
+    std::string all;
+    for (const KernelSource& source : sources) all += source.text;
+    return std::hash<std::string>()(all);
+}
+
+// "lights[2].colour" -> "lights".
+std::string_view baseName(std::string_view uniform) { return uniform.substr(0, uniform.find_first_of(".[")); }
+
+bool declares(std::string_view declarations, std::string_view uniform) {
+    return findWord(declarations, baseName(uniform)) != std::string_view::npos;
+}
+
+}  // namespace
+
+struct Program::Built {
     ProgramName name;
     std::string declarations;
+    size_t text = 0;
 };
 
-Result<Built> build(const ShaderFiles& files, const std::vector<std::string>& paths, const std::vector<Define>& defines) {
-    Built built{ProgramName(glCreateProgram()), {}};
-    std::vector<ShaderName> shaders;
+Result<std::vector<KernelSource>> Program::read(const ShaderFiles& files, const std::vector<std::string>& paths,
+                                                const std::vector<Define>& defines) {
+    std::vector<KernelSource> sources;
     for (const std::string& path : paths) {
+        Result<KernelSource> source = files.flatten(path, defines, Dialect::glsl, "#version 450 core\n");
+        if (!source) return source.error();
+        sources.push_back(std::move(*source));
+    }
+    return sources;
+}
+
+Result<Program::Built> Program::build(const std::vector<KernelSource>& sources, const std::vector<std::string>& paths) {
+    Built built{ProgramName(glCreateProgram()), {}, hashOf(sources)};
+    std::vector<ShaderName> shaders;
+    for (size_t k = 0; k < paths.size(); ++k) {
+        const std::string& path = paths[k];
+        const KernelSource* source = &sources[k];
         const std::optional<GLenum> stage = stageOf(path);
         ASSERT(stage, fmt::format("\"{}\": end a shader's name with .vert .frag .geom .comp or .kernel", path).c_str());
-        const Result<KernelSource> source = files.flatten(path, defines, Dialect::glsl, "#version 450 core\n");
-        if (!source) return source.error();
         built.declarations += uniformDeclarations(source->text);
         const ShaderName& shader = shaders.emplace_back(glCreateShader(*stage));
         const char* text = source->text.c_str();
@@ -113,15 +140,6 @@ Result<Built> build(const ShaderFiles& files, const std::vector<std::string>& pa
     return built;
 }
 
-// "lights[2].colour" -> "lights".
-std::string_view baseName(std::string_view uniform) { return uniform.substr(0, uniform.find_first_of(".[")); }
-
-bool declares(std::string_view declarations, std::string_view uniform) {
-    return findWord(declarations, baseName(uniform)) != std::string_view::npos;
-}
-
-}  // namespace
-
 Result<Program> Program::create(const ShaderFiles& files, std::vector<std::string> paths, std::vector<Define> defines) {
     ASSERT(!paths.empty(), "name at least one shader file");
     Program program;
@@ -134,22 +152,43 @@ Result<Program> Program::create(const ShaderFiles& files, std::vector<std::strin
 }
 
 Status Program::reload() {
-    Result<Built> built = build(files_, paths_, defines_);
-    if (!built) return built.error();
-    for (const auto& [uniform, at] : locations_)
-        if (!declares(built->declarations, uniform))
-            return failed(
-                fmt::format("{} no longer declares the uniform \"{}\", which the program sets; put it back", joined(paths_), uniform));
-    name_ = std::move(built->name);
-    declarations_ = std::move(built->declarations);
-    locations_.clear();
+    Program* self = this;
+    const Result<size_t> loaded = reload({&self, 1});
+    return loaded ? ok() : Status(loaded.error());
+}
+
+Result<size_t> Program::reload(std::span<Program* const> programs, const Fits& fits) {
+    std::vector<std::pair<Program*, Built>> fresh;
+    for (size_t k = 0; k < programs.size(); ++k) {
+        Program* program = programs[k];
+        const Result<std::vector<KernelSource>> sources = read(program->files_, program->paths_, program->defines_);
+        if (!sources) return sources.error();
+        if (program->name_ && hashOf(*sources) == program->text_) continue;
+        Result<Built> built = build(*sources, program->paths_);
+        if (!built) return built.error();
+        for (const auto& [uniform, at] : program->locations_)
+            if (!declares(built->declarations, uniform))
+                return failed(fmt::format("{} no longer declares the uniform \"{}\", which the program sets; put it back",
+                                          joined(program->paths_), uniform));
+        if (const Status fit = fits ? fits(k, built->name.name()) : ok(); !fit) return fit.error();
+        fresh.emplace_back(program, std::move(*built));
+    }
+    for (auto& [program, built] : fresh) program->take(std::move(built));
+    return fresh.size();
+}
+
+void Program::take(Built built) {
+    name_ = std::move(built.name);
+    text_ = built.text;
+    declarations_ = std::move(built.declarations);
+    // The names stay known: what the program sets, the next reload must declare too.
+    for (auto& [uniform, at] : locations_) at = glGetUniformLocation(name(), uniform.c_str());
     localSize_ = uvec3(0);
     if (stageOf(paths_.front()) == GL_COMPUTE_SHADER) {
         GLint size[3] = {0, 0, 0};
         glGetProgramiv(name(), GL_COMPUTE_WORK_GROUP_SIZE, size);
         localSize_ = uvec3(size[0], size[1], size[2]);
     }
-    return ok();
 }
 
 GLint Program::location(std::string_view uniform) {

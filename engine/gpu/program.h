@@ -6,6 +6,7 @@
 // Shader files have no #version line (450 core is put in front) and may #include "shaders/...".
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -27,8 +28,12 @@ class Program {
     static Result<Program> create(const ShaderFiles& files, std::vector<std::string> paths, std::vector<Define> defines = {});
 
     // Reads the files again. On failure (as create, or a uniform that was set is no longer declared) the last good program stays.
-    // On success the uniforms are at their defaults: set them each frame.
+    // On success the uniforms may be at their defaults: set them each frame.
     Status reload();
+    // The same for all of them, or on failure for none; only what reads otherwise now is compiled. How many that were. `fits` is asked of
+    // each, programs[k], by its new GL name; its Error is a failure too.
+    using Fits = std::function<Status(size_t k, GLuint name)>;
+    static Result<size_t> reload(std::span<Program* const> programs, const Fits& fits = {});
 
     GLuint name() const { return name_.name(); }
     const std::vector<std::string>& paths() const { return paths_; }
@@ -58,12 +63,18 @@ class Program {
     void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
 
   private:
+    struct Built;
+    static Result<std::vector<KernelSource>> read(const ShaderFiles& files, const std::vector<std::string>& paths,
+                                                  const std::vector<Define>& defines);
+    static Result<Built> build(const std::vector<KernelSource>& sources, const std::vector<std::string>& paths);
+    void take(Built built);
     GLint location(std::string_view uniform);
 
     ShaderFiles files_;
     std::vector<std::string> paths_;
     std::vector<Define> defines_;
     ProgramName name_;
+    size_t text_ = 0;                                      // a hash of all that was compiled, to tell whether the files have changed
     std::string declarations_;                             // every uniform declaration's text, to tell "optimised away" from "unknown"
     std::map<std::string, GLint, std::less<>> locations_;  // -1: optimised away
     uvec3 localSize_{0};                                   // of a compute program

@@ -113,9 +113,12 @@ void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
 
 }  // namespace
 
-std::array<Program*, 17> RenderPrograms::all() {
-    return {&shadow, &shadowHoles, &shadowFirst, &shadowHalve, &shadowBlur, &depth,        &floorDepth, &occlusion, &occlusionBlur,
-            &sky,    &floor,       &mesh,        &glass,       &box,        &boxOverWater, &tonemap,    &antialias};
+std::vector<Program*> RenderPrograms::all() {
+    std::vector<Program*> programs = {&shadow,     &shadowHoles, &shadowFirst,   &shadowHalve, &shadowBlur, &depth,
+                                      &floorDepth, &occlusion,   &occlusionBlur, &sky,         &floor,      &mesh,
+                                      &glass,      &box,         &boxOverWater,  &tonemap,     &antialias};
+    for (auto& [key, program] : parts_) programs.push_back(&program);
+    return programs;
 }
 
 Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
@@ -146,14 +149,6 @@ Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
         *into = std::move(*program);
     }
     return p;
-}
-
-Status RenderPrograms::reload() {
-    for (Program* program : all())
-        if (Status s = program->reload(); !s) return s;
-    for (auto& [key, program] : parts_)
-        if (Status s = program.reload(); !s) return s;
-    return ok();
 }
 
 Result<Program*> RenderPrograms::part(const Material& material, bool layered, bool water) {

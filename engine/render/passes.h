@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <span>
+#include <vector>
 
 #include "engine/compute/kernel_source.h"
 #include "engine/gpu/frame_graph.h"
@@ -17,19 +18,18 @@
 
 namespace rivulet {
 
-// The programs of all passes; a failed reload keeps the last good ones.
+// The programs of all passes.
 struct RenderPrograms {
     gpu::Program shadow, shadowHoles, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh,
         glass, box, boxOverWater, tonemap, antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
-    Status reload();
+    std::vector<gpu::Program*> all();  // and the parts' that were made so far
 
     // The program for parts of this material, with or without a layer on it, with or without water in the light's way: made when first
     // asked for. Error: as create.
     Result<gpu::Program*> part(const Material& material, bool layered, bool water);
 
   private:
-    std::array<gpu::Program*, 17> all();
     ShaderFiles files_;
     std::map<unsigned, gpu::Program> parts_;
 };

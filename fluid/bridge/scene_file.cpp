@@ -382,6 +382,7 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
     const VisitFn visit = visiting(scene);
     if (Status read = readJsonFile(*file, visit); !read) return read.error();
     scene.folder = fs::path(*file).parent_path().string();
+    scene.source = {*file, preset, {assignments.begin(), assignments.end()}};
     if (Status taken = takeInsteads(scene, assignments); !taken) return taken.error();
     if (!preset.empty())
         if (Status set = applyPreset(scene, preset); !set) return set.error();

@@ -151,6 +151,13 @@ struct BudgetParams {
     void visit(ParamVisitor& v);
 };
 
+// What loadScene was given.
+struct SceneSource {
+    std::string path;  // of the file that was found; "": the scene came from none
+    std::string preset;
+    std::vector<std::string> assignments;
+};
+
 struct SceneFile {
     std::string name = "unnamed";
     std::string doc;
@@ -169,6 +176,7 @@ struct SceneFile {
     BudgetParams budget;
     std::vector<PresetParams> presets;
     std::string folder;  // of the file it came from; not a Param
+    SceneSource source;  // nor this
     void visit(ParamVisitor& v);
 };
 

@@ -123,10 +123,12 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
     return r;
 }
 
-Status SceneRenderer::reload() {
-    shadowOf_.clear();
-    if (Status s = render_.reload(); !s) return s;
-    return fluid_.reload();
+Result<size_t> SceneRenderer::reload() {
+    std::vector<gpu::Program*> programs = render_.all();
+    for (gpu::Program* program : fluid_.all()) programs.push_back(program);
+    Result<size_t> others = gpu::Program::reload(programs);
+    if (others && *others > 0) shadowOf_.clear();
+    return others;
 }
 
 // Meshes that are new go to the GPU, those that are gone leave it, and the picture takes the view's size.

@@ -61,8 +61,8 @@ class SceneRenderer {
     void hurry(bool yes) { hurries_ = yes; }
     // It was made in another context, with which the one that is current now shares its objects, and has drawn nothing yet.
     void contextChanged() { fluid_.contextChanged(); }
-    // Reads the shaders again. Error: as create; the last good ones stay in use.
-    Status reload();
+    // Reads the shaders again. How many programs are others now. Error: as create; the last good ones stay in use, all of them.
+    Result<size_t> reload();
 
   private:
     SceneRenderer() = default;

@@ -79,6 +79,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
         kept->sentences.emplace_back(text);
     };
     v.gl_ = currentGlFacts();
+    v.firstStart_ = FirstStart(options.seen);
     v.share_ = options.share;
     const auto surroundings = surroundingsOf(scene);
     if (!surroundings) return surroundings.error();
@@ -119,6 +120,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     v.params_.open(visiting(v.draft_), visiting(none));
     v.haste_.begin(v.gl_.software);
     v.renderer_->hurry(v.haste_.fast());
+    v.reload_.follow(scene);
     return viewer;
 }
 
@@ -128,20 +130,24 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
         if (Status done = stepped(work_->finish(), seconds); !done) return done;
     std::erase_if(givenUp_, [](const std::unique_ptr<SceneOpening>& each) { return each->ready(); });
     if (opening_ && opening_->work->ready()) finishOpening();
+    if (!opening_) takeWritten(seconds);  // what is being opened would not hear of it
     const double began = threadSeconds();
     InputEvents scaled = input;
     scaled.scale *= zoom_;
     ui_.begin(scaled, seconds);
-    if (!ui_.wantsKeyboard()) takeKeys(input);
+    const bool greets = firstStart_.shown();  // the key that ends it does nothing else
+    if (!greets && !ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
     if (!showPanels_) watch_.hide(*renderer_);
     if (showHelp_) drawHelp();
     if (opening_) drawOpening();
+    reload_.draw();
     if (saving_) drawSaving();
     if (browser_.shown()) chooseScene();
+    firstStart_.draw(input);
     panelCost_.made = 1000 * (threadSeconds() - began);
     takeDropped(input);
-    if ((!ui_.wantsMouse() || hand_.holds()) && !handle(input, recreate)) {
+    if (!greets && (!ui_.wantsMouse() || hand_.holds()) && !handle(input, recreate)) {
         moveCamera(input);
         touch(input);
     }
@@ -331,7 +337,28 @@ void Viewer::takeEdits(bool recreate) {
         refuse(sense.error(), false, settled_);
 }
 
+// What is only live is taken as it runs.
+void Viewer::takeWritten(double seconds) {
+    std::optional<SceneFile> written = reload_.look(seconds, draft_, *renderer_, *device_);
+    if (!written) return;
+    SceneFile now = session_->scene();
+    if (session_->budget()) now.fluid = reload_.before().fluid;  // what a budget has picked
+    const bool same = fixedValues(visiting(*written)) == fixedValues(visiting(now)) && !session_->needsNew(*written);
+    if (!same && session_->replaying() != nullptr)
+        return reload_.refuse("replaying: what was written needs a new run, and this one shows what was recorded");
+    if (!same) {
+        draft_.camera = written->camera;
+        return startOpening(std::move(*written), true, true);
+    }
+    session_->apply(*written);
+    draft_ = settled_ = session_->scene();
+    message_.clear();
+    SceneFile none;
+    params_.open(visiting(draft_), visiting(none));
+}
+
 void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
+    if (std::exchange(reopening_, false)) return reload_.refuse(error.message);
     message_ = error.message;
     if (other) return;
     SceneFile back = before;  // a drag has gone through it
@@ -340,7 +367,8 @@ void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
     draft_ = session_->scene();
 }
 
-void Viewer::startOpening(SceneFile scene, bool other) {
+void Viewer::startOpening(SceneFile scene, bool other, bool written) {
+    reopening_ = written;
     {
         const std::lock_guard<std::mutex> lock(notices_->mutex);
         notices_->sentences.clear();
@@ -431,7 +459,15 @@ void Viewer::adopt(OpenedScene opened, bool other) {
         renderer_->hurry(haste_.fast());
     }
     begin();
-    draft_ = settled_ = session_->scene();  // a budget may have picked
+    const CameraParams camera = draft_.camera;
+    draft_ = session_->scene();  // a budget may have picked
+    if (std::exchange(reopening_, false)) {
+        draft_.camera = camera;  // it may have moved meanwhile
+        session_->apply(draft_);
+    } else if (other) {
+        reload_.follow(draft_);
+    }
+    settled_ = draft_;
     if (other) {
         SceneFile none;
         params_.open(visiting(draft_), visiting(none));
@@ -519,6 +555,10 @@ void Viewer::drawSaving() {
         return;
     }
     saving_ = false;
+    if (std::filesystem::equivalent(savePath_, draft_.source.path, error)) {  // from now on the file alone says what the scene is
+        draft_.source = {draft_.source.path, {}, {}};
+        reload_.follow(draft_);
+    }
     log_.notice(fmt::format("the scene is in {}", std::filesystem::absolute(savePath_, error).string()));
 }
 
@@ -694,7 +734,10 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
         return ok();
     }
     const SceneFile& scene = session_->scene();
-    if (Status drawn = drawWater(*session_, width, height, stepOn); !drawn) return drawn;
+    if (Status drawn = drawWater(*session_, width, height, stepOn); !drawn) {
+        if (!reload_.broken()) return drawn;
+        message_ = drawn.error().message;  // a program that is wanted for the first time: the last picture stays
+    }
     if (recorder_) recorder_->transferred(upload_.facts());
     if (Status filmed = film(); !filmed) {
         video_.reset();

@@ -17,8 +17,10 @@
 #include "engine/ui/param_panel.h"
 #include "engine/ui/profiler_panel.h"
 #include "fluid/bridge/cooperation.h"
+#include "fluid/bridge/first_start.h"
 #include "fluid/bridge/fluid_panel.h"
 #include "fluid/bridge/haste.h"
+#include "fluid/bridge/hot_reload.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_browser.h"
 #include "fluid/bridge/scene_hand.h"
@@ -37,6 +39,7 @@ struct ViewerOptions {
     std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
     void* clipboard = nullptr;       // as UiLayer
     int width = 1280, height = 720;  // pixels, of what auto tries
+    std::string seen = {};           // as FirstStart
     // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
     std::function<Result<SharedGl>()> share = {};
 };
@@ -66,6 +69,8 @@ class Viewer {
     };
     const PanelCost& panelCost() const { return panelCost_; }
     const std::string& message() const { return message_; }  // what the last edit was refused for; "" = nothing
+    const HotReload& reload() const { return reload_; }
+    bool greets() const { return firstStart_.shown(); }
 
     // Shows another scene, this one until that is ready; a mistake in it is a message.
     void open(SceneFile scene) { startOpening(std::move(scene), true); }
@@ -89,8 +94,10 @@ class Viewer {
     bool drawPresets();                                     // whether one was chosen
     bool drawPanels();                                      // whether a new session is wanted
     void takeEdits(bool recreate);
-    void startOpening(SceneFile scene, bool other);  // `other`: it is not the one that is shown, edited
-    void finishOpening();                            // when it is ready
+    // `other`: it is not the one that is shown, edited; `written`: its file was.
+    void startOpening(SceneFile scene, bool other, bool written = false);
+    void takeWritten(double seconds);
+    void finishOpening();  // when it is ready
     void giveUpOpening();
     void adopt(OpenedScene opened, bool other);
     void refuse(const Error& error, bool other, const SceneFile& before);
@@ -152,6 +159,7 @@ class Viewer {
     SceneBrowser browser_;
     SceneHand hand_;
     bool undone_ = false;  // a thing was put back where a new world needs it
+    FirstStart firstStart_;
     std::optional<VideoWriter> video_;
     ivec2 videoSize_{0};
     bool stepShown_ = false;  // a step was made that no video has yet
@@ -165,6 +173,8 @@ class Viewer {
     SharedGl elsewhere_;  // of the thread that opens scenes
     std::unique_ptr<Opening> opening_;
     std::vector<std::unique_ptr<SceneOpening>> givenUp_;  // and not done yet
+    HotReload reload_{ShaderFiles::developer().root()};
+    bool reopening_ = false;  // what is being opened is the shown scene, whose file was written
 
     explicit Viewer(UiLayer ui) : ui_(std::move(ui)) {}
 };

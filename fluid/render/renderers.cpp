@@ -132,12 +132,6 @@ Status FluidPrograms::fits(const FluidView& fluid) const {
     return ok();
 }
 
-Status FluidPrograms::reload() {
-    for (gpu::Program* program : all())
-        if (Status s = program->reload(); !s) return s;
-    return ok();
-}
-
 void FluidPrograms::drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows) {
     if (count == 0) return;
     for (GLuint k = 0; k < rows.size(); ++k) {

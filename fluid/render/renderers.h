@@ -36,7 +36,7 @@ struct QuadRows {
 
 struct MarchedTruth;
 
-// The programs of all renderers; a failed reload keeps the last good ones. Whose particles are drawn is set anew each frame.
+// The programs of all renderers. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
     gpu::Program waterBlocks, waterTiles, refine;
     gpu::Program points, pointsShade, blur, shade, lightWater, lightWaterFirst, lightWaterLast, shadeInk, showView;
@@ -51,7 +51,7 @@ struct FluidPrograms {
     std::shared_ptr<MarchedTruth> marched;  // by the row `truth`, the last time
     uint32_t mostTexels = 0;                // of a buffer that shaders read as a texture, as this GPU has it
     static Result<FluidPrograms> create(const ShaderFiles& files);
-    Status reload();
+    std::vector<gpu::Program*> all();
     // They were made in another context, with which the one that is current now shares its objects.
     void contextChanged();
     // Error (failed): more rows than this GPU can read, and those beyond would lie anywhere.
@@ -63,9 +63,6 @@ struct FluidPrograms {
     void drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t count);
     // The marked ones, with the program in use, whose vertex shader is tile.vert; the mask is bound to `unit`.
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
-
-  private:
-    std::vector<gpu::Program*> all();
 };
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.

@@ -154,7 +154,7 @@ TEST_F(LookPicture, anySizeIsDrawnAndShadersReloadWithoutChangingThePicture) {
     const std::vector<uint8_t> first = shot(view);
     for (const ivec2 size : {ivec2(1, 1), ivec2(0, 0), ivec2(33, 17), ivec2(7, 200)})
         EXPECT_EQ(picture(camera, size.x, size.y, view).size(), size_t(std::max(size.x, 1)) * size_t(std::max(size.y, 1)) * 4);
-    const Status reloaded = renderer().reload();
+    const Result<size_t> reloaded = renderer().reload();
     ASSERT_TRUE(reloaded) << reloaded.error().message;
     EXPECT_EQ(first, shot(view));
 }

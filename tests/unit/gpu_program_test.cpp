@@ -103,6 +103,26 @@ TEST_F(GpuProgram, AFailedReloadKeepsTheLastGoodProgram) {
     EXPECT_EQ(paint(*program), vec4(1.5F));
 }
 
+TEST_F(GpuProgram, ProgramsAreReloadedAllOrNone) {
+    writeFile("shaders/value.h", "const float kValue = 1.0;\n");
+    writeFile("shaders/paint.frag", "#include \"shaders/value.h\"\nout vec4 result;\nvoid main() { result = vec4(kValue); }\n");
+    Result<Program> plain = load(), other = load({{"OTHER", "1"}});
+    ASSERT_TRUE(plain && other);
+    Program* const both[] = {&*plain, &*other};
+    Result<size_t> others = Program::reload(both);
+    ASSERT_TRUE(others);
+    EXPECT_EQ(*others, 0U) << "nothing was written";
+    writeFile("shaders/value.h", "#ifdef OTHER\nconst float kValue = wrong;\n#else\nconst float kValue = 2.0;\n#endif\n");
+    EXPECT_FALSE(Program::reload(both));
+    EXPECT_EQ(paint(*plain), vec4(1.0F));
+    writeFile("shaders/value.h", "const float kValue = 2.0;\n");
+    others = Program::reload(both);
+    ASSERT_TRUE(others) << others.error().message;
+    EXPECT_EQ(*others, 2U);
+    EXPECT_EQ(paint(*plain), vec4(2.0F));
+    EXPECT_EQ(paint(*other), vec4(2.0F));
+}
+
 TEST_F(GpuProgram, SettingAUniformThatNobodyDeclaresIsAMistake) {
     writeFile(
         "shaders/paint.frag",

@@ -1,0 +1,99 @@
+// The screen that explains the window is shown once, and its last key or click does nothing else.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "fluid/bridge/viewer.h"
+#include "tests/unit/framebuffer_fixture.h"
+#include "tests/unit/program_runner.h"
+
+namespace rivulet {
+namespace {
+
+class FirstStartTest : public testing::FramebufferFixture {
+  protected:
+    void SetUp() override {
+        open({900, 700}, {90, 70});
+        ASSERT_TRUE(context_ && target_.name() != 0);
+    }
+    void TearDown() override {
+        viewer_.reset();
+        FramebufferFixture::TearDown();
+    }
+    void start() {
+        SceneFile scene;
+        scene.fluid.spacing = 0.1F;
+        scene.look.renderer = "points";
+        auto made = Viewer::create(scene, {.backend = "cpu", .seen = seen_}, {});
+        ASSERT_TRUE(made) << made.error().message;
+        viewer_ = std::move(*made);
+        frame();
+    }
+    void frame() {
+        const Status drawn = viewer_->frame(input_, 1.0 / 60, target_.name());
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        endFrame();
+    }
+    testing::Scratch scratch_;
+    std::string seen_ = (scratch_.path() / "config/rivulet/seen").string();
+    std::unique_ptr<Viewer> viewer_;
+};
+
+TEST_F(FirstStartTest, AKeyEndsItForGood) {
+    start();
+    EXPECT_TRUE(viewer_->greets());
+    for (int k = 0; k < 3; ++k) frame();
+    EXPECT_TRUE(viewer_->greets()) << "nobody has pressed anything";
+    EXPECT_FALSE(std::filesystem::exists(seen_));
+    input_.keysPressed = {' '};
+    frame();
+    EXPECT_FALSE(viewer_->greets());
+    EXPECT_FALSE(viewer_->paused()) << "the space did nothing else";
+    EXPECT_TRUE(std::filesystem::exists(seen_));
+    input_.keysPressed = {' '};
+    frame();
+    EXPECT_TRUE(viewer_->paused());
+    start();
+    EXPECT_FALSE(viewer_->greets());
+}
+
+TEST_F(FirstStartTest, AClickEndsItAndMovesNothing) {
+    start();
+    const vec3 eye = viewer_->scene().camera.position;
+    input_.mouse = vec2(450, 650);
+    input_.buttonDown[0] = true;
+    input_.buttonPressed[0] = true;
+    input_.mouseDelta = vec2(40, 0);
+    frame();
+    EXPECT_FALSE(viewer_->greets());
+    EXPECT_EQ(viewer_->scene().camera.position, eye);
+}
+
+TEST_F(FirstStartTest, WhereNothingCanBeKeptItIsNoError) {
+    seen_ = scratch_.file("a file", "x") + "/seen";
+    start();
+    EXPECT_TRUE(viewer_->greets());
+    input_.keysPressed = {'A'};
+    frame();
+    EXPECT_FALSE(viewer_->greets());
+    seen_ = "";
+    start();
+    EXPECT_FALSE(viewer_->greets());
+}
+
+TEST(SeenFile, LiesWhereSettingsLie) {
+    const char* before = std::getenv("XDG_CONFIG_HOME");
+    const std::string kept = before != nullptr ? before : "";
+    setenv("XDG_CONFIG_HOME", "/somewhere", 1);
+    EXPECT_EQ(seenFile(), "/somewhere/rivulet/seen");
+    setenv("XDG_CONFIG_HOME", "not a whole path", 1);
+    EXPECT_TRUE(seenFile().ends_with("/.config/rivulet/seen") || seenFile().empty()) << seenFile();
+    if (before != nullptr)
+        setenv("XDG_CONFIG_HOME", kept.c_str(), 1);
+    else
+        unsetenv("XDG_CONFIG_HOME");
+}
+
+}  // namespace
+}  // namespace rivulet

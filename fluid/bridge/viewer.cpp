@@ -4,10 +4,8 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -17,15 +15,10 @@
 #include "fluid/bridge/plan_trial.h"
 #include "fluid/bridge/scene_tree.h"
 #include "fluid/bridge/takeover.h"
-#include "fluid/sim/world_state.h"
 
 namespace rivulet {
 
 namespace {
-
-VisitFn visiting(SceneFile& scene) {
-    return [&scene](ParamVisitor& v) { scene.visit(v); };
-}
 
 void drawHelp() {
     ImVec2 display = ImGui::GetIO().DisplaySize;
@@ -63,6 +56,10 @@ void drawHelp() {
 }
 
 }  // namespace
+
+VisitFn Viewer::visiting(SceneFile& scene) {
+    return [&scene](ParamVisitor& v) { scene.visit(v); };
+}
 
 Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const ViewerOptions& options, const Log& log) {
     Result<UiLayer> ui = UiLayer::create(options.clipboard);
@@ -309,267 +306,6 @@ bool Viewer::drawPanels() {
     const float room = display.x - width - 3 * kMargin;
     if (watch_.draw(*session_, *renderer_, timeline_, profiler_, draft_, kMargin, room)) recreate = edited_ = true;
     return recreate;
-}
-
-// An edit that makes no sense is refused with a sentence, and the last good scene stays.
-void Viewer::takeEdits(bool recreate) {
-    Status sense = checkScene(draft_);
-    if (!sense && !recreate) {
-        message_ = sense.error().message;  // a drag may pass through it: the draft stays as it is
-        return;
-    }
-    recreate = recreate || (!(opening_ && !opening_->other) && session_->needsNew(draft_));
-    if (recreate && session_->replaying() != nullptr) {
-        message_ = "replaying: this was settled when the run was recorded; run the scene without --replay to change it";
-        session_->apply(settled_);
-        draft_ = session_->scene();
-        return;
-    }
-    if (!recreate) {
-        message_.clear();
-        session_->apply(draft_);
-        if (session_->budget()) draft_.fluid = session_->scene().fluid;  // what a budget holds, an edit does not change
-        return;
-    }
-    if (sense)
-        startOpening(draft_, false);
-    else
-        refuse(sense.error(), false, settled_);
-}
-
-// What is only live is taken as it runs.
-void Viewer::takeWritten(double seconds) {
-    std::optional<SceneFile> written = reload_.look(seconds, draft_, *renderer_, *device_);
-    if (!written) return;
-    SceneFile now = session_->scene();
-    if (session_->budget()) now.fluid = reload_.before().fluid;  // what a budget has picked
-    const bool same = fixedValues(visiting(*written)) == fixedValues(visiting(now)) && !session_->needsNew(*written);
-    if (!same && session_->replaying() != nullptr)
-        return reload_.refuse("replaying: what was written needs a new run, and this one shows what was recorded");
-    if (!same) {
-        draft_.camera = written->camera;
-        return startOpening(std::move(*written), true, true);
-    }
-    session_->apply(*written);
-    draft_ = settled_ = session_->scene();
-    message_.clear();
-    SceneFile none;
-    params_.open(visiting(draft_), visiting(none));
-}
-
-void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
-    if (std::exchange(reopening_, false)) return reload_.refuse(error.message);
-    message_ = error.message;
-    if (other) return;
-    SceneFile back = before;  // a drag has gone through it
-    back.camera = draft_.camera;
-    session_->apply(back);
-    draft_ = session_->scene();
-}
-
-void Viewer::startOpening(SceneFile scene, bool other, bool written) {
-    reopening_ = written;
-    {
-        const std::lock_guard<std::mutex> lock(notices_->mutex);
-        notices_->sentences.clear();
-    }
-    message_.clear();
-    const SceneFile before = opening_ && !opening_->other ? opening_->before : settled_;
-    if (opening_) {
-        opening_->work->giveUp();
-        givenUp_.push_back(std::move(opening_->work));
-        opening_.reset();
-    }
-    const Backend backend = device_->backend();
-    if (share_ && !elsewhere_ && backend != Backend::cl) {
-        if (Result<SharedGl> made = share_())
-            elsewhere_ = std::move(*made);
-        else
-            log_.notice(made.error().message + ": the window waits while a scene is opened");
-        share_ = {};
-    }
-    const std::string asked = other ? asked_ : "cpu";
-    if (elsewhere_ && backend != Backend::cl) {
-        const bool renderer = needsOtherRenderer(session_->scene(), scene);
-        opening_ = std::make_unique<Opening>();
-        opening_->other = other;
-        opening_->before = before;
-        opening_->work = std::make_unique<SceneOpening>(SceneOpening::Request{.scene = std::move(scene),
-                                                                              .device = makeDevice(backendName(backend), gl_, log_),
-                                                                              .backend = asked,
-                                                                              .renderer = renderer,
-                                                                              .gl = elsewhere_,
-                                                                              .log = log_});
-        constexpr double kAtOnce = 0.05;  // s: nobody sees that the window waited
-        if (opening_->work->ready(kAtOnce)) finishOpening();
-        return;
-    }
-    OpenedScene opened;
-    if (needsOtherRenderer(session_->scene(), scene)) {
-        const auto surroundings = surroundingsOf(scene);
-        if (!surroundings) return refuse(surroundings.error(), other, before);
-        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
-        if (!renderer) return refuse(renderer.error(), other, before);
-        opened.renderer = std::move(*renderer);
-    }
-    Result<OpenedSession> fresh = openSession(scene, *device_, log_, asked);
-    if (!fresh) return refuse(fresh.error(), other, before);
-    opened.session = std::move(fresh->session);
-    opened.device = std::move(fresh->instead);
-    adopt(std::move(opened), other);
-}
-
-void Viewer::finishOpening() {
-    Opening done = std::move(*opening_);
-    opening_.reset();
-    Result<OpenedScene> opened = done.work->take();
-    if (!opened) return refuse(opened.error(), done.other, done.before);
-    const SceneFile wanted = draft_;
-    adopt(std::move(*opened), done.other);
-    if (done.other) return;
-    // Meanwhile the camera may have moved, or a slider.
-    SceneFile made = done.work->scene(), now = wanted;
-    const bool same = fixedValues(visiting(made)) == fixedValues(visiting(now)) && !session_->needsNew(wanted);
-    if (same) session_->apply(wanted);
-    draft_ = same ? session_->scene() : wanted;
-    if (!same) startOpening(wanted, false);
-}
-
-void Viewer::giveUpOpening() {
-    Opening left = std::move(*opening_);
-    opening_.reset();
-    left.work->giveUp();
-    if (!left.other) refuse({}, false, left.before);
-    givenUp_.push_back(std::move(left.work));
-}
-
-// What it replaces goes only now.
-void Viewer::adopt(OpenedScene opened, bool other) {
-    work_.reset();
-    hand_.letGo();
-    if (other) hand_ = {};
-    session_ = std::move(opened.session);
-    if (opened.device) {  // nothing is on the other any more
-        device_ = std::move(opened.device);
-        traceKernels(*device_, timeline_);
-    }
-    if (opened.renderer) {
-        renderer_ = std::move(opened.renderer);
-        renderer_->onSpan(timeline_.lane(kDrawingLane));
-        renderer_->hurry(haste_.fast());
-    }
-    begin();
-    const CameraParams camera = draft_.camera;
-    draft_ = session_->scene();  // a budget may have picked
-    if (std::exchange(reopening_, false)) {
-        draft_.camera = camera;  // it may have moved meanwhile
-        session_->apply(draft_);
-    } else if (other) {
-        reload_.follow(draft_);
-    }
-    settled_ = draft_;
-    if (other) {
-        SceneFile none;
-        params_.open(visiting(draft_), visiting(none));
-    }
-    repicked_ = 0;
-    message_.clear();
-    profiler_.clear();
-    watch_.clear();
-    if (recorder_) record();
-}
-
-// Over the picture, low in its middle.
-void Viewer::drawOpening() {
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const SceneOpening::Step step = opening_->work->step();
-    ImGui::SetNextWindowPos(ImVec2(display.x / 2, 0.86F * display.y), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
-    ImGui::Begin(
-        "opening", nullptr,
-        ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::Text("%s: %s", opening_->work->scene().name.c_str(), step.what.c_str());
-    ImGui::ProgressBar(static_cast<float>(step.share), ImVec2(ImGui::GetFontSize() * 20, 0));
-    ImGui::SameLine();
-    const bool cancel = ImGui::Button("cancel");
-    ImGui::End();
-    if (cancel) giveUpOpening();
-}
-
-// A scene is opened, a picture of light surrounds this one, and any other file is a mesh that stands in the middle of the box.
-void Viewer::takeDropped(const InputEvents& input) {
-    if (input.dropped.empty()) return;
-    if (session_->replaying() != nullptr) {
-        message_ = "replaying: what was recorded is shown; run the scene without --replay to change it";
-        return;
-    }
-    bool edited = false;
-    for (const std::string& path : input.dropped) {
-        std::string kind = std::filesystem::path(path).extension().string();
-        for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        if (kind == ".json") {
-            Result<SceneFile> scene = loadScene(path, {});
-            if (scene) return open(std::move(*scene));
-            message_ = scene.error().message;
-            return;
-        }
-        edited = true;
-        if (kind == ".hdr") {
-            draft_.background.surroundings = path;
-            continue;
-        }
-        const BoxParams& box = draft_.fluid.box;
-        const vec3 size = box.max - box.min;
-        ColliderParams& collider = draft_.colliders.emplace_back();
-        collider.mesh = path;
-        collider.fitSize = 0.5F * std::min({size.x, size.y, size.z});
-        collider.position = vec3(0.5F * (box.min.x + box.max.x), box.min.y + 0.5F * collider.fitSize, 0.5F * (box.min.z + box.max.z));
-    }
-    if (!edited) return;
-    takeEdits(true);
-    params_.compare(visiting(draft_));
-}
-
-void Viewer::drawSaving() {
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    if (savePath_.empty()) savePath_ = draft_.name + ".json";
-    ImGui::SetNextWindowPos(ImVec2(display.x / 2, display.y / 2), ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
-    ImGui::Begin("save the scene", &saving_, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 28);
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("##path", &savePath_, ImGuiInputTextFlags_EnterReturnsTrue);
-    std::error_code error;
-    const bool there = std::filesystem::exists(savePath_, error);
-    const bool pressed = ImGui::Button(there ? "write over it###write" : "save###write");
-    ImGui::SameLine();
-    if (ImGui::Button("cancel")) saving_ = false;
-    if (there) {
-        ImGui::SameLine();
-        ImGui::TextDisabled("a file of this name is there");
-    }
-    ImGui::End();
-    // Enter alone does not write over a file.
-    if (!(pressed || (entered && !there)) || savePath_.empty()) return;
-    SceneFile scene = draft_;
-    if (Status saved = saveScene(scene, savePath_); !saved) {
-        message_ = saved.error().message;
-        return;
-    }
-    saving_ = false;
-    if (std::filesystem::equivalent(savePath_, draft_.source.path, error)) {  // from now on the file alone says what the scene is
-        draft_.source = {draft_.source.path, {}, {}};
-        reload_.follow(draft_);
-    }
-    log_.notice(fmt::format("the scene is in {}", std::filesystem::absolute(savePath_, error).string()));
-}
-
-void Viewer::chooseScene() {
-    const std::optional<std::string> path = browser_.draw();
-    if (!path) return;
-    Result<SceneFile> scene = loadScene(*path, {});
-    if (scene)
-        open(std::move(*scene));
-    else
-        message_ = scene.error().message;
 }
 
 Status Viewer::toggleVideo() {

@@ -87,6 +87,7 @@ class Viewer {
     const Timeline& wholeTimeline();  // the same, after settle(): waits for the GPU, the times of its last frames are there then
 
   private:
+    static VisitFn visiting(SceneFile& scene);
     void takeKeys(const InputEvents& input);
     void moveCamera(const InputEvents& input);
     bool handle(const InputEvents& input, bool& recreate);  // whether the hand has the mouse

@@ -203,11 +203,14 @@ TEST_F(ReplayPerson, WhatWasSettledIsRefused) {
     input_.framebuffer = ivec2(0);  // the panel alone
     frame(0);
     const float spacing = viewer_->scene().fluid.spacing;
-    for (ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
-        if (std::string_view(window->Name).find("parameters") != std::string_view::npos)
-            window->StateStorage.SetInt(ImHashStr("fluid", 0, ImHashStr("fluid", 0, window->ID)), 1);  // unfolded
+    float top = 1580;
+    for (ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+        if (std::string_view(window->Name).find("parameters") == std::string_view::npos) continue;
+        window->StateStorage.SetInt(ImHashStr("fluid", 0, ImHashStr("fluid", 0, window->ID)), 1);  // unfolded
+        top = window->InnerRect.Min.y;
+    }
     std::string said;
-    for (float y = 200; y < 1580; y += 12) {
+    for (float y = top + 4; y < 1580; y += 12) {
         for (const vec2 to : {vec2(210, y), vec2(200, y + 2)}) {
             input_.mouseDelta = to - input_.mouse;
             input_.mouse = to;

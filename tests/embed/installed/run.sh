@@ -35,7 +35,7 @@ echo "$(wc -l <"$work/headers") headers compile alone"
 # What the guide for hosts shows.
 guide=(python3 "$here/../guide.py" "$work/prefix" "$here/../../..")
 if command -v xvfb-run >/dev/null; then
-    xvfb-run -a -s "-screen 0 1024x768x24" "${guide[@]}"
+    xvfb-run -a -n 150 -s "-screen 0 1024x768x24" "${guide[@]}"  # far from what tests beside this one take
 else
     "${guide[@]}"
 fi

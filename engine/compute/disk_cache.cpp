@@ -28,8 +28,9 @@ struct Header {
 constexpr std::array<char, 8> kMagic = {'R', 'V', 'L', 'T', 'K', 'P', '0', '1'};
 constexpr const char* kEnding = ".kept";
 
-// Deletes what was used longest ago until the rest fits, and what a program that crashed has left half-written.
-void trim(const fs::path& folder) {
+}  // namespace
+
+void trimCache(const std::string& folder, std::string_view ending, size_t mostFiles, size_t mostBytes) {
     struct Entry {
         fs::path path;
         fs::file_time_type used;
@@ -45,21 +46,19 @@ void trim(const fs::path& folder) {
         if (!gone) entry.bytes = static_cast<size_t>(at->file_size(gone));
         if (gone) continue;
         if (entry.path.extension() == ".tmp" && entry.used < longAgo) fs::remove(entry.path, gone);
-        if (entry.path.extension() != kEnding) continue;
+        if (entry.path.extension() != ending) continue;
         total += entry.bytes;
         entries.push_back(entry);
     }
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
     size_t files = entries.size();
     for (const Entry& entry : entries) {
-        if (files <= DiskCache::kMostFiles && total <= DiskCache::kMostBytes) return;
+        if (files <= mostFiles && total <= mostBytes) return;
         fs::remove(entry.path, ignored);
         total -= entry.bytes;
         --files;
     }
 }
-
-}  // namespace
 
 std::string cacheFolder(std::string_view name) {
     for (const auto& [variable, below] : {std::pair("XDG_CACHE_HOME", "rivulet"), std::pair("HOME", ".cache/rivulet")}) {
@@ -92,7 +91,7 @@ std::optional<std::vector<std::byte>> DiskCache::find(std::string_view key) cons
         header.thingBytes != rest.size() - key.size() || header.checksum != XXH3_64bits(rest.data(), rest.size()) ||
         rest.substr(0, key.size()) != key)
         return std::nullopt;
-    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trim() keeps it longer
+    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trimCache keeps it longer
     const auto thing = std::as_bytes(std::span(rest.substr(key.size())));
     return std::vector<std::byte>(thing.begin(), thing.end());
 }
@@ -106,7 +105,7 @@ void DiskCache::keep(std::string_view key, std::span<const std::byte> thing) con
     std::memcpy(file.data(), &header, sizeof header);
     std::error_code ignored;
     fs::create_directories(folder_, ignored);
-    if (writeFileAtomic(pathOf(key), file)) trim(folder_);
+    if (writeFileAtomic(pathOf(key), file)) trimCache(folder_, kEnding, kMostFiles, kMostBytes);
 }
 
 }  // namespace rivulet

@@ -16,6 +16,10 @@ std::string cacheFolder(std::string_view name);
 // 32 hexadecimal digits of these bytes (XXH3): for a key of what is large.
 std::string hashOf(std::span<const std::byte> bytes);
 
+// Deletes of a folder's files with this ending those used longest ago until the rest fits, and what a program that crashed has left
+// half-written.
+void trimCache(const std::string& folder, std::string_view ending, size_t mostFiles, size_t mostBytes);
+
 // A folder of things, each known by all that it was made of. What cannot be read is a miss, what cannot be written is not kept: neither
 // is an error, and nobody is told. Any number of processes may share a folder.
 class DiskCache {

@@ -1,16 +1,14 @@
 #include "fluid/voxel/voxel_cache.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <xxhash.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cstdlib>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <new>
 
+#include "engine/compute/disk_cache.h"
 #include "fluid/voxel/voxel_file.h"
 
 namespace rivulet {
@@ -20,6 +18,8 @@ extern const char kBakerVersion[];  // made by baker_version.cmake
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kEnding = ".rvox";
 
 // 32 hexadecimal digits of everything that makes one field differ from another.
 std::string keyOf(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
@@ -60,35 +60,6 @@ bool isFieldFor(const VoxelFile& file, const VoxelFieldOptions& options) {
     return file.band && file.band->band >= options.band && file.band->band >= 0.999F * kBandVoxels * file.bits.voxel;
 }
 
-// Deletes what was used longest ago until the rest fits, and what a program that crashed has left half-written.
-void trim(const fs::path& folder) {
-    struct Entry {
-        fs::path path;
-        fs::file_time_type used;
-        size_t bytes;
-    };
-    std::vector<Entry> entries;
-    std::error_code ignored;
-    const auto longAgo = fs::file_time_type::clock::now() - std::chrono::hours(1);
-    size_t total = 0;
-    for (fs::directory_iterator at(folder, ignored), end; at != end; at.increment(ignored)) {
-        std::error_code gone;  // by another program
-        Entry entry{at->path(), at->last_write_time(gone), 0};
-        if (!gone) entry.bytes = static_cast<size_t>(at->file_size(gone));
-        if (gone) continue;
-        if (entry.path.extension() == ".tmp" && entry.used < longAgo) fs::remove(entry.path, gone);
-        if (entry.path.extension() != ".rvox") continue;
-        total += entry.bytes;
-        entries.push_back(entry);
-    }
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
-    for (const Entry& entry : entries) {
-        if (total <= kVoxelCacheBytes) return;
-        fs::remove(entry.path, ignored);
-        total -= entry.bytes;
-    }
-}
-
 // The field at `path`, if there is one that may be believed.
 std::optional<VoxelField> readField(const fs::path& path, const VoxelFieldOptions& options, const Log& log) {
     std::error_code ignored;
@@ -102,7 +73,7 @@ std::optional<VoxelField> readField(const fs::path& path, const VoxelFieldOption
         log.notice(fmt::format("the cached voxels are made anew: {} is not what its name says", path.string()));
         return std::nullopt;
     }
-    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trim() keeps it longer
+    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trimCache keeps it longer
     return fieldOf(std::move(*file));
 }
 
@@ -113,24 +84,18 @@ VoxelField writeField(const fs::path& path, VoxelField field, const Log& log) {
     VoxelFile file = fileOf(std::move(field));
     const Result<size_t> written = writeVoxelFile(path.string(), file);
     if (!written) log.notice(fmt::format("the voxels of the scene's meshes are not kept for the next start: {}", written.error().message));
-    if (written) trim(path.parent_path());
+    if (written) trimCache(path.parent_path().string(), kEnding, SIZE_MAX, kVoxelCacheBytes);
     return fieldOf(std::move(file));
 }
 
 }  // namespace
 
-std::string voxelCacheFolder() {
-    for (const auto& [variable, below] : {std::pair("XDG_CACHE_HOME", "rivulet/voxels"), std::pair("HOME", ".cache/rivulet/voxels")}) {
-        const char* root = std::getenv(variable);
-        if (root != nullptr && root[0] == '/') return (fs::path(root) / below).string();
-    }
-    return {};
-}
+std::string voxelCacheFolder() { return cacheFolder("voxels"); }
 
 Result<VoxelField> cachedVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options, const Log& log) {
     const std::string folder = voxelCacheFolder();
     if (folder.empty()) return bakeVoxelField(meshes, options);
-    const fs::path path = fs::path(folder) / (keyOf(meshes, options) + ".rvox");
+    const fs::path path = fs::path(folder) / (keyOf(meshes, options) + kEnding);
     if (std::optional<VoxelField> field = readField(path, options, log)) return std::move(*field);
     Result<VoxelField> field = bakeVoxelField(meshes, options);
     if (!field) return field;

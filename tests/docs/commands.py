@@ -32,7 +32,7 @@ if "run" not in helps or not all(helps.values()):
     sys.exit(f"{program} --help names verbs that have no --help: {helps.keys()}")
 
 
-def placeholder(word):
+def for_the_reader_to_name(word):
     return bool(re.fullmatch(r"\[?[A-Z]{2,}[A-Za-z0-9_.]*\]?(\.\.\.\]?)?|S|N", word)) or "YOUR" in word or "..." in word
 
 
@@ -118,7 +118,7 @@ def look_at(text, where):
             return
         if words[1] not in helps:
             wrong.append(f"{where}: there is no verb {words[1]}")
-        elif words[1] in LONG or any(placeholder(word) for word in words[2:]) or "--replay" in words or "--resume" in words:
+        elif words[1] in LONG or any(for_the_reader_to_name(word) for word in words[2:]) or "--replay" in words or "--resume" in words:
             held_against_help(words, where)
         else:
             runs.setdefault(tuple(words), where)

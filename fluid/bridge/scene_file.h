@@ -177,6 +177,7 @@ struct SceneFile {
     std::vector<PresetParams> presets;
     std::string folder;  // of the file it came from; not a Param
     SceneSource source;  // nor this
+    uint32_t room = 0;   // nor this: particles there is room for at least, as Sources::least
     void visit(ParamVisitor& v);
 };
 

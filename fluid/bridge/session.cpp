@@ -161,7 +161,7 @@ Status Session::importColliders() {
 }
 
 Result<Sources> Session::importEmitters() const {
-    Sources sources{.sinks = scene_.sinks, .seconds = static_cast<double>(scene_.duration)};
+    Sources sources{.sinks = scene_.sinks, .seconds = static_cast<double>(scene_.duration), .least = scene_.room};
     sources.poured = SkinFlows::expectedPoured(scene_, sources.seconds);
     for (const EmitterParams& params : scene_.emitters) {
         Emitter emitter{params, {}};
@@ -364,10 +364,7 @@ void Session::advance(double seconds, double deviceMs) {
     }
     std::vector<std::span<const vec3>> shapes;
     for (Deforming& d : deforming_) {
-        if (models_[d.model].plays())
-            models_[d.model].shape(then, d.shape);
-        else
-            waveShape(scene_.colliders[d.collider].wave, d.rest, then, d.shape);
+        bend(d, then);
         shapes.emplace_back(d.shape);
     }
     if (contacts_) contacts_->moveTo(poses, seconds);
@@ -377,6 +374,14 @@ void Session::advance(double seconds, double deviceMs) {
     const double gone = world_->time() - before;  // less than asked where time slows
     if (Status flowed = flows_.step(scene_, *world_, gone, solids_); !flowed) log_.notice(flowed.error().message);
     for (Rigid& r : rigid_) r.turned = std::fmod(r.turned + double{scene_.colliders[r.collider].motion.spin} * gone, 360.0);
+}
+
+// Into its shape at `time` (s).
+void Session::bend(Deforming& deforming, double time) {
+    if (models_[deforming.model].plays())
+        models_[deforming.model].shape(time, deforming.shape);
+    else
+        waveShape(scene_.colliders[deforming.collider].wave, deforming.rest, time, deforming.shape);
 }
 
 Pose Session::poseOf(size_t model, double time, double turned) const {
@@ -585,10 +590,79 @@ Status Session::restore(WorldState& state) {
     if (!turned) return turned.error();
     for (double degrees : *turned)
         if (!std::isfinite(degrees)) return badInput("the saved state's angles make no sense: save it again");
-    if (Status done = world_->restore(state); !done) return done;
+    if (Status done = restoreWorld(state); !done) return done;
     for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].turned = (*turned)[k];
     placeNodes();
     if (world_->device().backend() == Backend::cl) takeSnapshot();
+    return ok();
+}
+
+Status Session::restoreWorld(WorldState& state) {
+    const std::optional<uint32_t> room = world_->savable() ? moreRoom(state) : std::nullopt;
+    if (!room) return world_->restore(state);
+    const uint32_t least = sources_.least;
+    WorldState mine;
+    world_->save(mine);
+    Status done = remake(*room);
+    if (done) done = world_->restore(state);
+    if (done) return done;
+    if (Status back = remake(least); !back) return back;
+    if (Status back = world_->restore(mine); !back) return back;
+    placeNodes();
+    return done;
+}
+
+// The slots of the world that was saved, where they are more than those of this one: it may have gone on from one whose solids left room
+// for more.
+std::optional<uint32_t> Session::moreRoom(const WorldState& state) const {
+    const auto ids = state.sections().find("particles.id");
+    constexpr size_t kMost = size_t{1} << 30U;  // bytes: what the world says of more is a better sentence
+    if (ids == state.sections().end() || ids->second.size() % sizeof(uint32_t) != 0 || ids->second.size() > kMost) return std::nullopt;
+    const size_t slots = ids->second.size() / sizeof(uint32_t);
+    const ParticleView now = world_->particles();
+    if (slots <= now.slots) return std::nullopt;
+    return static_cast<uint32_t>(slots - (now.slots - now.count));
+}
+
+// A world as at first, but for its room.
+Status Session::remake(uint32_t least) {
+    sources_.least = scene_.room = least;
+    for (Deforming& d : deforming_)
+        if (const auto back = d.field->update(d.rest); !back) return back.error();
+    if (Status made = makeWorld(world_->device(), world_->params(), {}); !made) return made;
+    startSolids();
+    return ok();
+}
+
+bool Session::sameWater(const SceneFile& before, const SceneFile& after) {
+    const auto fixed = [](SceneFile scene) {
+        scene.fluid.maxParticles = 0;
+        return fixedValues([&scene](ParamVisitor& v) { scene.fluid.visit(v); });
+    };
+    return fixed(before) == fixed(after);
+}
+
+Status Session::goOnFrom(Session& other) {
+    if (replay_ || other.replay_) return badInput("what was recorded does not go on");
+    const double time = other.world_->time();
+    for (Rigid& r : rigid_)
+        for (const Rigid& before : other.rigid_)
+            if (before.collider == r.collider && scene_.colliders[r.collider].mesh == other.scene_.colliders[r.collider].mesh)
+                r.turned = before.turned;
+    std::vector<Pose> poses;
+    for (const Rigid& r : rigid_) poses.push_back(poseOf(r.model, time, r.turned));
+    std::vector<std::span<const vec3>> shapes;
+    for (Deforming& d : deforming_) {
+        bend(d, time);
+        shapes.emplace_back(d.shape);
+    }
+    if (Status gone = world_->goOnFrom(*other.world_, poses, shapes); !gone) {
+        world_->reset();
+        startSolids();
+        return gone;
+    }
+    if (contacts_) contacts_->moveTo(poses, 0);
+    placeNodes();
     return ok();
 }
 

@@ -109,6 +109,12 @@ class Session {
     void save(WorldState& state);
     Status restore(WorldState& state);
 
+    // Whether the water of a session of `before` may go on in one of `after`: only things in it, emitters and the look are others.
+    static bool sameWater(const SceneFile& before, const SceneFile& after);
+    // Goes on with another session's water and at its time (FluidWorld::goOnFrom); skins begin anew. Error: as there, or it is replaying;
+    // then the session is at its start.
+    Status goOnFrom(Session& other);
+
   private:
     void told(const Status& status) const;  // what went wrong with a slider, to the person
 
@@ -143,6 +149,10 @@ class Session {
     float voxelEdge(const ColliderParams& collider, const Bounds& bounds, const Log& log) const;
     bool anyMoves() const;
     void advance(double seconds, double deviceMs);
+    void bend(Deforming& deforming, double time);
+    std::optional<uint32_t> moreRoom(const WorldState& state) const;
+    Status remake(uint32_t least);
+    Status restoreWorld(WorldState& state);
     Pose poseOf(size_t model, double time, double turned) const;
     Node& nodeOf(size_t model) { return solids_.nodes()[models_[model].node()]; }
     const Node& nodeOf(size_t model) const { return solids_.nodes()[models_[model].node()]; }

@@ -71,6 +71,7 @@ void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
 
 void Viewer::startOpening(SceneFile scene, bool other, bool written) {
     reopening_ = written;
+    if (!other || written) scene.room = std::max(scene.room, session_->world().particles().count);
     {
         const std::lock_guard<std::mutex> lock(notices_->mutex);
         notices_->sentences.clear();
@@ -145,9 +146,11 @@ void Viewer::giveUpOpening() {
     givenUp_.push_back(std::move(left.work));
 }
 
-// What it replaces goes only now.
+// What it replaces goes only now. An edit of what is in the water leaves the water as it is.
 void Viewer::adopt(OpenedScene opened, bool other) {
     work_.reset();
+    if ((!other || reopening_) && Session::sameWater(session_->scene(), opened.session->scene()))
+        if (Status gone = opened.session->goOnFrom(*session_); !gone) log_.notice(gone.error().message);
     hand_.letGo();
     if (other) hand_ = {};
     session_ = std::move(opened.session);

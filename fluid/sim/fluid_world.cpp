@@ -381,7 +381,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                          .limited = {}};
     device->readLater(
         statsRows, STATS_THREADS * sizeof(StatsRow),
-        [now, weak = std::weak_ptr(figures), count = start.size(), volume = std::pow(double{params.spacing}, 3), mass = double{step.mass},
+        [now, weak = std::weak_ptr(figures), count = begun, volume = std::pow(double{params.spacing}, 3), mass = double{step.mass},
          g = gravity, maxSpeed = step.maxSpeed, spacingAStep = params.spacing / step.dt, this](std::span<const std::byte> bytes) {
             const std::shared_ptr<FluidStats> into = weak.lock();
             if (!into) return;  // the world was reset meanwhile, or is no more

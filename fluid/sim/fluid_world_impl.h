@@ -39,6 +39,7 @@ struct FluidWorld::Impl {
     std::unique_ptr<NeighborGrid> grid;
     Particles particles;
     std::vector<NewParticle> start;
+    uint32_t begun = 0;  // particles that were there when counting began: those of `start`, or of the world that this one goes on from
     SolidPasses solids;
     Sources asked;  // emitters and sinks
     SourcePasses sources;

@@ -190,7 +190,7 @@ Status FluidWorld::Impl::findSlots() {
         log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
                                static_cast<uint64_t>(room), start.size(), asked.seconds));
     }
-    slots = static_cast<uint32_t>(room);
+    slots = std::max(static_cast<uint32_t>(room), asked.least);
     return ok();
 }
 
@@ -271,11 +271,12 @@ void FluidWorld::Impl::writeStart() {
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
     method->forget();
     figures = std::make_shared<FluidStats>();
-    figures->particles = static_cast<uint32_t>(start.size());
+    begun = static_cast<uint32_t>(start.size());
+    figures->particles = begun;
     // The first step must know, too.
     for (const NewParticle& p : start) fastestStart = std::max(fastestStart, glm::length(p.velocity));
     knowFastest(double{fastestStart});
-    figures->emitted = static_cast<double>(start.size()) * std::pow(double{params.spacing}, 3);
+    figures->emitted = static_cast<double>(begun) * std::pow(double{params.spacing}, 3);
 }
 
 void FluidWorld::Impl::knowFastest(double speed) {

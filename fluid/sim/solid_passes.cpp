@@ -222,6 +222,9 @@ Status SolidPasses::reset() {
 }
 
 Status SolidPasses::restore(const Places& places) {
+    if (places.poses.size() != rigid_.size() || places.shapes.size() != deforming_.size())
+        return badInput(fmt::format("there are {} poses and {} shapes, and {} solids that move and {} that bend", places.poses.size(),
+                                    places.shapes.size(), rigid_.size(), deforming_.size()));
     poses_ = places.poses;
     for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
     for (size_t k = 0; k < deforming_.size(); ++k) {

@@ -13,6 +13,7 @@
 #include "fluid/bridge/scene_hand.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/viewer.h"
+#include "fluid/sim/host_particles.h"
 #include "tests/unit/framebuffer_fixture.h"
 
 namespace rivulet {
@@ -200,6 +201,14 @@ TEST_F(Hand, MovesAMeshByItsHandlesAndPutsItBack) {
     ASSERT_EQ(viewer_->hand().chosen(), (Session::Thing{Session::Thing::Kind::collider, 0}));
     const vec3 middle = viewer_->session().boundsOf(viewer_->hand().chosen()).centre();
     const float length = 0.1F * glm::distance(camera().position, middle);
+    const auto heightOfAll = [&] {
+        double sum = 0;
+        for (const vec4& p : readParticles(viewer_->session().world()).position) sum += double{p.y};
+        return sum;
+    };
+    for (int k = 0; k < 6; ++k) frame(kFrame);
+    const double time = viewer_->session().time();
+    const double height = heightOfAll();
     const Bounds water = [&] {
         Bounds b;
         b.add(viewer_->session().field().surface.origin);
@@ -210,6 +219,9 @@ TEST_F(Hand, MovesAMeshByItsHandlesAndPutsItBack) {
     EXPECT_FLOAT_EQ(viewer_->scene().colliders[0].position.x, was.x) << "along one axis";
     EXPECT_NEAR(viewer_->session().field().surface.origin.y, water.min.y - 0.15F, 0.02F) << "water meets it where it now is";
     EXPECT_EQ(viewer_->hand().chosen(), (Session::Thing{Session::Thing::Kind::collider, 0})) << "it is still chosen";
+    EXPECT_EQ(viewer_->session().time(), time) << "and the water goes on";
+    EXPECT_GT(time, 0);
+    EXPECT_NEAR(heightOfAll(), height, 1.0e-6);
 
     input_.keysDown = {key::kLeftControl};
     input_.keysPressed = {'Z'};

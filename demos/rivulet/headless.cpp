@@ -282,7 +282,8 @@ int runHeadless(const RunOptions& options) {
         if (Status closed = to->writer->close(); !closed) return report(closed.error());
     if (!options.trace.empty())
         if (Status written = writeTrace(options.trace, timeline, options.log); !written) return report(written.error());
-    const std::string shown = fmt::format("{}{} pictures {}_*.png", to->writer ? to->video + ", " : "", loop.pictures, to->picturePrefix);
+    const std::string shown = fmt::format("{}{} picture{} {}_*.png", to->writer ? to->video + ", " : "", loop.pictures,
+                                          loop.pictures == 1 ? "" : "s", to->picturePrefix);
     if (!loop.recorder) {
         fmt::print("{}\n", shown);
         return graceful.interrupted() ? kInterrupted : kDone;

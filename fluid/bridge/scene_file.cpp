@@ -329,7 +329,9 @@ Result<std::string> findScene(const std::string& path) {
         if (names.back() == stem) return s.path;
     }
     const std::string near = nearestName(stem, names);
-    return near.empty() ? file : badInput(fmt::format("{}; did you mean the scene {}?", file.error().message, near));
+    const std::string remedy =
+        near.empty() ? "`rivulet list scenes` names those there are" : fmt::format("did you mean the scene {}?", near);
+    return badInput(fmt::format("{}; {}", file.error().message, remedy));
 }
 
 }  // namespace

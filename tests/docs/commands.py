@@ -109,7 +109,8 @@ def look_at(text, where):
         if not script.is_file() or subprocess.run(["bash", "-n", script]).returncode != 0:
             wrong.append(f"{where}: {words[1]} is no script of this project")
         if words[1] == "demos/run.sh" and len(words) > 2:
-            look_at("rivulet " + shlex.join(words[2:] if words[2] in helps else ["run", "column_over_spot", *words[2:]]), where)
+            before = [] if words[2] in helps else ["run", "column_over_spot"] if words[2].startswith("-") else ["run"]
+            look_at("rivulet " + shlex.join(before + words[2:]), where)
     elif words[0] == "cmake" and "--preset" in words:
         if f'"{words[words.index("--preset") + 1]}"' not in (root / "CMakePresets.json").read_text():
             wrong.append(f"{where}: there is no preset {words[words.index('--preset') + 1]}")

@@ -21,7 +21,8 @@ constexpr std::pair<const char*, const char*> kGestures[] = {{"drag", "turn the 
                                                              {"space", "pause, go on"},
                                                              {"O", "another scene, out of pictures"},
                                                              {"H", "all keys"}};
-constexpr const char* kTries[] = {"Search for viscosity at the left, and drag its slider up: water, oil, honey.",
+constexpr const char* kTries[] = {"P, and hold the left button: water, wherever you point. P again ends it.",
+                                  "Search for viscosity at the left, and drag its slider up: water, oil, honey.",
                                   "Drop a mesh file onto the window (.obj, .gltf, .fbx): water runs over it.",
                                   "O, then crying: tears on a face; a click on the skin is one more."};
 const ImVec4 kAccent(0.42F, 0.78F, 0.94F, 1);
@@ -84,7 +85,7 @@ void FirstStart::draw(const InputEvents& input) {
         ImGui::SameLine(pad + 6 * em);
         ImGui::TextDisabled("%s", does);
     }
-    heading("Three to try");
+    heading("Four to try");
     for (const char* each : kTries) {
         ImGui::Bullet();
         ImGui::TextUnformatted(each);

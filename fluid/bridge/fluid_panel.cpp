@@ -41,17 +41,18 @@ void simulationFacts(const FluidWorld& world) {
 FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState& state) {
     FluidPanelActions actions;
     float gap = ImGui::GetStyle().ItemSpacing.x;
-    ImVec2 button((ImGui::GetContentRegionAvail().x - 3 * gap) / 4, 0);
+    const ImVec2 button((ImGui::GetContentRegionAvail().x - 2 * gap) / 3, 0);
     actions.togglePause = ImGui::Button(state.paused ? "run###pause" : "pause###pause", button);
     ImGui::SameLine();
     actions.step = ImGui::Button("step", button);
     ImGui::SameLine();
     actions.reset = ImGui::Button("reset", button);
-    ImGui::SameLine();
-    actions.help = ImGui::Button("keys", button);
     actions.scenes = ImGui::Button("scenes", button);
     ImGui::SameLine();
     actions.save = ImGui::Button("save", button);
+    ImGui::SameLine();
+    actions.help = ImGui::Button("keys", button);
+    actions.pour = ImGui::Button(state.pouring ? "stop pouring###pour" : "pour###pour", button);
     ImGui::SameLine();
     actions.picture = ImGui::Button("picture", button);
     ImGui::SameLine();

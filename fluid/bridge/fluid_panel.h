@@ -9,7 +9,7 @@
 namespace rivulet {
 
 struct FluidPanelState {
-    bool paused = false, filming = false;
+    bool paused = false, filming = false, pouring = false;
     std::string backend;   // what simulates: "cpu: Intel(R) ..."
     std::string transfer;  // how particles come to be drawn: as sentenceOf(TransferFacts)
     std::string plan;      // who simulates while who draws: "off: a frame is stepped, then drawn"
@@ -21,7 +21,8 @@ struct FluidPanelState {
 };
 
 struct FluidPanelActions {
-    bool togglePause = false, step = false, reset = false, help = false, scenes = false, save = false, picture = false, video = false;
+    bool togglePause = false, step = false, reset = false, help = false, scenes = false, save = false, picture = false, video = false,
+         pour = false;
 };
 
 // Inside an ImGui window.

@@ -300,6 +300,7 @@ void SceneFile::visit(ParamVisitor& v) {
     v.list({.name = "colliders", .doc = "what is solid", .fixed = kFixed}, colliders);
     v.list({.name = "emitters", .doc = "where fluid comes in"}, emitters);
     v.list({.name = "sinks", .doc = "where fluid goes"}, sinks);
+    v.group({.name = "pour", .doc = "what a hand pours in, by the key P"}, pour);
     v.list({.name = "bodies", .doc = "what floats or sinks, and is pushed by the fluid", .fixed = kFixed}, bodies);
     v.list({.name = "flow", .doc = "skins that something flows on: tears, rain, sweat", .fixed = kFixed}, flow);
     v.group({.name = "look", .doc = "how the fluid is drawn"}, look);

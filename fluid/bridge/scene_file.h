@@ -9,6 +9,7 @@
 #include "engine/core/params.h"
 #include "engine/core/result.h"
 #include "fluid/bridge/flow_params.h"
+#include "fluid/bridge/pour_params.h"
 #include "fluid/render/look_params.h"
 #include "fluid/sim/emitter.h"
 #include "fluid/sim/fluid_params.h"
@@ -167,6 +168,7 @@ struct SceneFile {
     std::vector<ColliderParams> colliders;
     std::vector<EmitterParams> emitters;
     std::vector<SinkParams> sinks;
+    PourParams pour;
     std::vector<BodyParams> bodies;
     std::vector<FlowParams> flow;
     FluidLookParams look;

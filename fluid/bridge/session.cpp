@@ -177,7 +177,25 @@ Result<Sources> Session::importEmitters() const {
         }
         sources.emitters.push_back(std::move(emitter));
     }
+    if (scene_.pour.litres > 0) {
+        sources.emitters.push_back({pouring(scene_.pour, scene_.fluid, std::nullopt), {}});
+        sources.more = 1.0e-3 * double{scene_.pour.litres};
+    }
     return sources;
+}
+
+// What may change while it runs, as it is now.
+Sources Session::sourcesNow() const {
+    Sources sources{.sinks = scene_.sinks};
+    for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
+    if (scene_.pour.litres > 0) sources.emitters.push_back({pouring(scene_.pour, scene_.fluid, pouredOnto_), {}});
+    return sources;
+}
+
+void Session::pourOnto(const std::optional<vec3>& place) {
+    if (replay_ || scene_.pour.litres <= 0 || place == pouredOnto_) return;
+    pouredOnto_ = place;
+    told(world_->setSources(sourcesNow()));
 }
 
 Status Session::addBodies(Solids& solids) {
@@ -321,6 +339,7 @@ bool Session::needsNew(const SceneFile& scene) const {
         if (a.motion.moves() != b.motion.moves() || (a.wave.amplitude > 0) != (b.wave.amplitude > 0)) return true;
     }
     if (scene.emitters.size() != scene_.emitters.size() || scene.sinks.size() != scene_.sinks.size()) return true;
+    if ((scene.pour.litres > 0) != (scene_.pour.litres > 0)) return true;
     std::vector<uint8_t> surfaceOf;
     (void)surfacesOf(scene, surfaceOf);
     return surfaceOf != surfaceOf_ || flows_.needsNew(scene);
@@ -336,9 +355,7 @@ void Session::apply(const SceneFile& scene) {
     scene_.folder = folder;
     if (budget_) applySetting(budget_->setting(), scene_);
     told(world_->setParams(simulated(scene_)));
-    Sources sources{.sinks = scene_.sinks};
-    for (const EmitterParams& params : scene_.emitters) sources.emitters.push_back({params, {}});
-    told(world_->setSources(sources));
+    told(world_->setSources(sourcesNow()));
     flows_.apply(scene_);
     std::vector<uint8_t> unchanged;  // see needsNew
     told(world_->setSurfaces(surfacesOf(scene_, unchanged)));
@@ -485,9 +502,7 @@ Status Session::moveTo(Device& device) {
     FluidParams params = world_->params();  // of the scene's, an edit may be under way
     if (device.backend() == Backend::cpu) params.grid = scene_.fluid.grid = "sorted";
     if (Status made = makeWorld(device, params, quiet); !made) return made;
-    Sources sources{.sinks = scene_.sinks};
-    for (const EmitterParams& emitter : scene_.emitters) sources.emitters.push_back({emitter, {}});
-    told(world_->setSources(sources));
+    told(world_->setSources(sourcesNow()));
     std::vector<uint8_t> unchanged;  // see needsNew
     told(world_->setSurfaces(surfacesOf(scene_, unchanged)));
     if (Status moved = flows_.moveTo(device, scene_, solids_, quiet, kept_ ? kept_->flows.get() : nullptr); !moved) return moved;

@@ -89,6 +89,9 @@ class Session {
     Bounds boundsOf(const Thing& thing) const;  // m, world, as it is drawn now; of an emitter or sink, what the scene says
     // A hand at a body (solids_bullet.h), until it lets go (nothing).
     void hold(const std::optional<BulletSolids::Hold>& hand);
+    // Water falls from a hand onto that place (m, world) from the next step on; nothing: no more does. Where scene().pour has no room for
+    // any, or what is shown was recorded, none falls.
+    void pourOnto(const std::optional<vec3>& place);
 
     // Goes on on another device, in the place of one that is full or lost: from what that one holds, or else from the last snapshot, which
     // a session on cl takes of itself now and then. time() of the world says from when on. Error (failed): out of memory; the session
@@ -142,6 +145,7 @@ class Session {
     Status makeWorld(Device& device, const FluidParams& params, const Log& log);
     Status importColliders();
     Result<Sources> importEmitters() const;
+    Sources sourcesNow() const;
     Status bake(const Log& log);
     Status addBodies(Solids& solids);
     Result<VoxelField> bakeMeshes(std::span<const MeshView> views, std::span<const uint8_t> surfaces, float edge, const Log& log) const;
@@ -180,8 +184,9 @@ class Session {
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies
     std::unique_ptr<Device> held_;
-    Solids given_;     // what the world was made among
-    Sources sources_;  // and with
+    Solids given_;                    // what the world was made among
+    Sources sources_;                 // and with
+    std::optional<vec3> pouredOnto_;  // m, by a hand
     std::unique_ptr<FluidWorld> world_;
     SkinFlows flows_;
     std::optional<Replay> replay_;

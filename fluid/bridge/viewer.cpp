@@ -31,6 +31,7 @@ void drawHelp() {
                  {"click", "choose a mesh; a drop, on a skin"},
                  {"drag a body", "lift it, throw it"},
                  {"drag a handle", "move, turn what is chosen; control Z: back"},
+                 {"P", "pour with the left button, till P again"},
                  {"space", "pause, go on"},
                  {"period", "one step"},
                  {"R", "start again"},
@@ -144,12 +145,15 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     firstStart_.draw(input);
     panelCost_.made = 1000 * (threadSeconds() - began);
     takeDropped(input);
-    if (!greets && (!ui_.wantsMouse() || hand_.holds()) && !handle(input, recreate)) {
+    const Camera camera = cameraOf(draft_.camera, session_->bounds());
+    const bool pours = !greets && brush_.take(input, camera, *session_, ui_.wantsMouse());
+    brush_.draw(input, camera, *session_);
+    if (!greets && !pours && (!ui_.wantsMouse() || hand_.holds()) && !handle(input, recreate)) {
         moveCamera(input);
         touch(input);
     }
-    if (showPanels_) hand_.draw(input, cameraOf(draft_.camera, session_->bounds()), *session_, draft_);
-    recreate = std::exchange(undone_, false) || recreate;
+    if (showPanels_) hand_.draw(input, camera, *session_, draft_);
+    recreate = std::exchange(anew_, false) || recreate;
     if (edited_ || recreate) {
         takeEdits(recreate);
         params_.compare(visiting(draft_));
@@ -164,6 +168,7 @@ void Viewer::takeKeys(const InputEvents& input) {
     if (input.pressed(GLFW_KEY_SPACE)) paused_ = !paused_;
     if (input.pressed(GLFW_KEY_PERIOD)) paused_ = stepOnce_ = true;
     if (input.pressed(GLFW_KEY_R)) session_->reset();
+    if (input.pressed('P')) turnBrush();
     if (input.pressed(GLFW_KEY_TAB)) {
         showPanels_ = !showPanels_;
         hand_.choose({});
@@ -171,10 +176,13 @@ void Viewer::takeKeys(const InputEvents& input) {
     if (input.pressed(GLFW_KEY_H)) showHelp_ = !showHelp_;
     const bool control = input.down(key::kLeftControl) || input.down(key::kRightControl);
     if (control && input.pressed('S')) saving_ = true;
-    if (input.pressed(key::kEscape)) hand_.choose({});
+    if (input.pressed(key::kEscape)) {
+        hand_.choose({});
+        brush_.turn(false);
+    }
     if (SceneHand::Asks asks; control && input.pressed('Z') && hand_.undo(draft_, asks)) {
         edited_ = true;
-        undone_ = asks.recreate;
+        anew_ = asks.recreate;
     }
     if (control && input.pressed('F')) showPanels_ = params_.find = true;
     constexpr float kZoom = 1.25F;
@@ -195,6 +203,18 @@ bool Viewer::handle(const InputEvents& input, bool& recreate) {
     edited_ = edited_ || asks.edited;
     recreate = recreate || asks.recreate;
     return asks.mouse;
+}
+
+// The first time the world is made anew, with the same water.
+void Viewer::turnBrush() {
+    if (session_->replaying() != nullptr) {
+        message_ = "replaying: what was recorded is shown; run the scene without --replay to pour water in";
+        return;
+    }
+    brush_.turn(!brush_.on());
+    if (!brush_.on() || draft_.pour.litres > 0) return;
+    draft_.pour.litres = litresToPour(draft_.fluid, session_->world().particles().count);
+    anew_ = true;
 }
 
 void Viewer::moveCamera(const InputEvents& input) {
@@ -263,6 +283,7 @@ bool Viewer::drawPanels() {
         FluidPanelState state;
         state.paused = paused_;
         state.filming = video_.has_value();
+        state.pouring = brush_.on();
         state.backend = fmt::format("{}: {}", backendName(device_->backend()), device.name);
         state.renderer = gl_.renderer;
         state.transfer = sentenceOf(upload_.facts());
@@ -283,6 +304,7 @@ bool Viewer::drawPanels() {
         if (actions.help) showHelp_ = !showHelp_;
         if (actions.scenes) browser_.show(!browser_.shown());
         if (actions.save) saving_ = true;
+        if (actions.pour) turnBrush();
         const Status taken = actions.picture ? takePicture() : actions.video ? toggleVideo() : ok();
         if (!taken) message_ = taken.error().message;
         ImGui::Spacing();

@@ -21,6 +21,7 @@
 #include "fluid/bridge/fluid_panel.h"
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/hot_reload.h"
+#include "fluid/bridge/pour_brush.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_browser.h"
 #include "fluid/bridge/scene_hand.h"
@@ -61,6 +62,7 @@ class Viewer {
     Session& session() { return *session_; }
     WatchWindow& watch() { return watch_; }
     const SceneHand& hand() const { return hand_; }
+    const PourBrush& brush() const { return brush_; }
     void chooseThing(const SceneHand::Thing& thing) { hand_.choose(thing); }
     const SceneRenderer& renderer() const { return *renderer_; }
     // ms on the CPU for the last frame's panels: making them, and telling OpenGL of them.
@@ -90,6 +92,7 @@ class Viewer {
     static VisitFn visiting(SceneFile& scene);
     void takeKeys(const InputEvents& input);
     void moveCamera(const InputEvents& input);
+    void turnBrush();                                       // on, with room for what it pours, or off
     bool handle(const InputEvents& input, bool& recreate);  // whether the hand has the mouse
     void touch(const InputEvents& input);                   // a click that is no drag puts a drop on a skin
     bool drawPresets();                                     // whether one was chosen
@@ -159,7 +162,8 @@ class Viewer {
     std::function<Status(const Session&)> told_;
     SceneBrowser browser_;
     SceneHand hand_;
-    bool undone_ = false;  // a thing was put back where a new world needs it
+    PourBrush brush_;
+    bool anew_ = false;  // a key has asked for what needs a new world
     FirstStart firstStart_;
     std::optional<VideoWriter> video_;
     ivec2 videoSize_{0};

@@ -67,6 +67,7 @@ void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
     back.camera = draft_.camera;
     session_->apply(back);
     draft_ = session_->scene();
+    if (draft_.pour.litres <= 0) brush_.turn(false);
 }
 
 void Viewer::startOpening(SceneFile scene, bool other, bool written) {
@@ -153,6 +154,7 @@ void Viewer::adopt(OpenedScene opened, bool other) {
         if (Status gone = opened.session->goOnFrom(*session_); !gone) log_.notice(gone.error().message);
     hand_.letGo();
     if (other) hand_ = {};
+    if (other) brush_ = {};
     session_ = std::move(opened.session);
     if (opened.device) {  // nothing is on the other any more
         device_ = std::move(opened.device);

@@ -109,12 +109,12 @@ Status BodyPasses::allocate(uint32_t slots) {
     return ok();
 }
 
-bool BodyPasses::mayBeBorn(const vec3& p, float spacing) const {
+bool BodyPasses::mayBeBorn(const vec3& p, float spacing, float near) const {
     for (size_t k = 0; k < bodies_.size(); ++k) {
         if (!bodies_[k].shape.distance) continue;
         const vec3 own = states_[k].pose.toOwn(p);
         // A hair less than where it would rest, so that a lattice beside a body is not lost to rounding.
-        if (glm::length(own) < reach_[k] + spacing && bodies_[k].shape.distance(own) < 0.499F * spacing) return false;
+        if (glm::length(own) < reach_[k] + spacing && bodies_[k].shape.distance(own) < 0.499F * near * spacing) return false;
     }
     return true;
 }

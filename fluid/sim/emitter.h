@@ -53,6 +53,7 @@ struct Sources {
     double seconds = 10;  // how long emitters are expected to run: what fluid.maxParticles = 0 makes room for
     // m^3 that FluidWorld::pour() is expected to bring in that time, beyond what take() has taken. 0: nobody holds water but the world.
     double poured = 0;
+    double more = 0;     // m^3 there is room for beyond all that
     uint32_t least = 0;  // particles there is room for at least, wherever they come from
 };
 

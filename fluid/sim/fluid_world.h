@@ -152,7 +152,7 @@ class FluidWorld {
     // allTaken; the params that are `fixed` or the solids are others. The world is then as it was.
     Status restore(WorldState& state);
     // Goes on where another world is that has the same box and spacing, among solids that stand at `poses` and have `shapes` now (as
-    // FluidInputs; all of them): with its time, its particles, but for those that a solid here is too near to, and its bodies, if they are
+    // FluidInputs; all of them): with its time, its particles, but for those that are inside a solid here, and its bodies, if they are
     // the same. What emitters and sinks have done begins to be counted anew, foam is left behind. Waits for both devices. Error
     // (badInput): another box or spacing, liquids that this world does not know, more particles than it has room for.
     Status goOnFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);

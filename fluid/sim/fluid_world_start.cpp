@@ -187,8 +187,11 @@ Status FluidWorld::Impl::findSlots() {
                                         params.maxParticles, start.size()));
     } else if (!asked.emitters.empty() || asked.poured > 0) {
         room = std::min(room, kMostParticles);
-        log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
-                               static_cast<uint64_t>(room), start.size(), asked.seconds));
+        const bool lets = asked.poured > 0 || std::any_of(asked.emitters.begin(), asked.emitters.end(),
+                                                          [](const Emitter& e) { return e.params.litresPerSecond > 0; });
+        if (lets)
+            log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
+                                   static_cast<uint64_t>(room), start.size(), asked.seconds));
     }
     slots = std::max(static_cast<uint32_t>(room), asked.least);
     return ok();

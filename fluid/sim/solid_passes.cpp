@@ -191,20 +191,21 @@ Status SolidPasses::addMoving(Moving m) {
     return ok();
 }
 
-bool SolidPasses::Field::mayBeBorn(const vec3& p, float spacing) const {
-    if (field->clearance(p) < fieldParams(*field, FieldContact{.spacing = spacing}).contact || field->inside(p)) return false;
+bool SolidPasses::Field::mayBeBorn(const vec3& p, float spacing, float near) const {
+    const float contact = fieldParams(*field, FieldContact{.spacing = spacing}).contact;
+    if ((near > 0 && field->clearance(p) < near * contact) || field->inside(p)) return false;
     const ivec3 voxel = field->surface.cellOf(p);
     return field->closed || !field->surface.contains(voxel) || outside[field->surface.index(voxel)] != 0;
 }
 
-bool SolidPasses::mayBeBorn(const vec3& p, float spacing) const {
+bool SolidPasses::mayBeBorn(const vec3& p, float spacing, float near) const {
     for (const PlaneSolid& plane : planeSolids_)
-        if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * spacing) return false;
+        if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * near * spacing) return false;
     for (size_t k = 0; k < rigid_.size(); ++k)
-        if (!rigid_[k].on.mayBeBorn(poses_[k].toOwn(p), spacing)) return false;
+        if (!rigid_[k].on.mayBeBorn(poses_[k].toOwn(p), spacing, near)) return false;
     for (const Moving& m : deforming_)
-        if (!m.on.mayBeBorn(p, spacing)) return false;
-    return static_.field == nullptr || static_.mayBeBorn(p, spacing);
+        if (!m.on.mayBeBorn(p, spacing, near)) return false;
+    return static_.field == nullptr || static_.mayBeBorn(p, spacing, near);
 }
 
 Status SolidPasses::setSurfaces(std::span<const Surface> surfaces) {

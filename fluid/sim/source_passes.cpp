@@ -25,8 +25,9 @@ constexpr float kCrowded = 1.01F;
 Status check(const Sources& sources, float spacing) {
     for (size_t k = 0; k < sources.sinks.size(); ++k)
         if (Status s = checkParams(pathOf("sinks", k), sources.sinks[k]); !s) return s;
-    if (!(sources.seconds >= 0) || !(sources.poured >= 0))
-        return badInput(fmt::format("sources run for {} s and are poured {} m^3: each must be 0 or more", sources.seconds, sources.poured));
+    if (!(sources.seconds >= 0) || !(sources.poured >= 0) || !(sources.more >= 0))
+        return badInput(fmt::format("sources run for {} s, are poured {} m^3 and have room for {} more: each must be 0 or more",
+                                    sources.seconds, sources.poured, sources.more));
     for (size_t k = 0; k < sources.emitters.size(); ++k) {
         const Emitter& e = sources.emitters[k];
         if (Status s = checkParams(pathOf("emitters", k), e.params); !s) return s;
@@ -102,6 +103,7 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
 double SourcePasses::slotsFor(const Sources& sources, const FluidParams& params) {
     const double volume = std::pow(double{params.spacing}, 3);
     double slots = sources.poured > 0 ? std::ceil(sources.poured / volume) + 1 : 0;
+    slots += std::ceil(sources.more / volume);
     for (const Emitter& e : sources.emitters) slots += std::ceil(volumeAfter(e.params, sources.seconds) / volume) + 1;
     const dvec3 size(params.box.max - params.box.min);
     // A box that is full takes no more; a tenth for what is denser.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 
 #include "engine/core/json.h"
@@ -256,6 +257,47 @@ TEST_F(Hand, AnEmitterMovesAtOnce) {
     drag(was + vec3(length, 0, 0), was + vec3(length + 0.2F, 0, 0));
     EXPECT_NEAR(viewer_->scene().emitters[0].position.x, was.x + 0.2F, 0.01F);
     EXPECT_EQ(viewer_->session().time(), time) << "the same water";
+}
+
+// P makes room and keeps the water; then the left button pours where it points, and turns no view.
+TEST_F(Hand, PoursWhereTheMousePoints) {
+    for (int k = 0; k < 4; ++k) frame(kFrame);
+    const double time = viewer_->session().time();
+    const auto count = [&] { return readParticles(viewer_->session().world()).position.size(); };
+    const size_t held = count();
+    const vec3 place(0.8F, 0.0F, 0.6F);
+    moveTo(seen(place));
+    input_.keysPressed = {'P'};
+    frame();
+    settle();
+    EXPECT_TRUE(viewer_->brush().on());
+    EXPECT_GT(viewer_->scene().pour.litres, 1);
+    EXPECT_EQ(viewer_->session().time(), time) << "the same water";
+    EXPECT_NEAR(static_cast<double>(count()), static_cast<double>(held), 2) << "but the emitter's";
+    const vec3 eye = viewer_->scene().camera.position;
+    press(true, kFrame);
+    for (int k = 0; k < 20; ++k) moveTo(seen(place) + vec2(k % 2, 0), kFrame);
+    const size_t poured = count();
+    EXPECT_GT(poured, held + 100);
+    EXPECT_EQ(viewer_->scene().camera.position, eye);
+    press(false, kFrame);
+    EXPECT_EQ(viewer_->hand().chosen(), Session::Thing{}) << "no click";
+    for (int k = 0; k < 3; ++k) frame(kFrame);
+    EXPECT_LT(count(), poured + 20) << "let go of, it ends; the scene's own emitter goes on";
+    input_.keysPressed = {key::kEscape};
+    frame();
+    EXPECT_FALSE(viewer_->brush().on());
+    press(true, kFrame);
+    moveTo(seen(place) + vec2(40, 0), kFrame);
+    press(false, kFrame);
+    EXPECT_NE(viewer_->scene().camera.position, eye) << "the button turns the view again";
+    const std::string path = "poured.json";
+    SceneFile saved = viewer_->scene();
+    ASSERT_TRUE(saveScene(saved, path));
+    const auto again = loadScene(path, {});
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->pour.litres, saved.pour.litres);
+    std::filesystem::remove(path);
 }
 
 TEST_F(Hand, TheTreeChoosesHidesAndLooksUp) {

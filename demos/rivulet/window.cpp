@@ -16,11 +16,21 @@ namespace rivulet {
 
 int runWindow(const RunOptions& options) {
     WindowGlfw::Options wish;
-    wish.title = options.scene.name + " - rivulet";
+    wish.title = "opening " + options.scene.name + " - rivulet";
     wish.width = options.width;
     wish.height = options.height;
     Result<WindowGlfw> window = WindowGlfw::create(wish);
     if (!window) return report(window.error());
+    Graceful graceful;
+    bool closed = false;
+    const auto showing = [&](const ViewerOptions::Draw& draw) {
+        const InputEvents input = window->poll();
+        closed = input.closed;
+        if (closed || graceful.interrupted()) return false;
+        draw(input, 0);
+        window->swap();
+        return true;
+    };
     auto viewer = Viewer::create(options.scene,
                                  {.backend = options.backend,
                                   .device = options.device,
@@ -29,8 +39,11 @@ int runWindow(const RunOptions& options) {
                                   .width = options.width,
                                   .height = options.height,
                                   .seen = seenFile(),
-                                  .share = [&window] { return window->shared(); }},
+                                  .share = [&window] { return window->shared(); },
+                                  .showing = showing},
                                  options.log);
+    if (graceful.interrupted()) return kInterrupted;
+    if (closed) return kDone;
     if (!viewer) return report(viewer.error());
     Viewer& v = **viewer;
     if (!options.resume.empty())
@@ -48,8 +61,7 @@ int runWindow(const RunOptions& options) {
     if (recorded) v.record();
     if (options.frames) v.stepAtMost(static_cast<uint64_t>(*options.frames));
 
-    Graceful graceful;
-    std::string shown = options.scene.name;
+    std::string shown;
     auto last = std::chrono::steady_clock::now();
     while (!graceful.interrupted() && (!options.frames || v.steps() < static_cast<uint64_t>(*options.frames))) {
         InputEvents input = window->poll();
@@ -68,7 +80,7 @@ int runWindow(const RunOptions& options) {
     }
     if (Status settled = v.settle(); !settled) return report(settled.error());
     if (*recording)
-        if (Status closed = (*recording)->close(); !closed) return report(closed.error());
+        if (Status whole = (*recording)->close(); !whole) return report(whole.error());
     if (recorded) {
         const RunStats stats = v.finishRecord();
         if (!options.stats.empty())

@@ -57,7 +57,7 @@ void applyUiStyle() {
     set({ImGuiCol_Tab, ImGuiCol_TabUnfocused}, 0.11F, 0.16F, 0.20F, 1);
     set({ImGuiCol_TabHovered}, 0.17F, 0.33F, 0.42F, 1);
     set({ImGuiCol_TabActive, ImGuiCol_TabUnfocusedActive}, 0.16F, 0.36F, 0.46F, 1);
-    set({ImGuiCol_SliderGrab, ImGuiCol_CheckMark}, 0.27F, 0.66F, 0.84F, 1);
+    set({ImGuiCol_SliderGrab, ImGuiCol_CheckMark, ImGuiCol_PlotHistogram}, 0.27F, 0.66F, 0.84F, 1);
     set({ImGuiCol_SliderGrabActive}, 0.42F, 0.78F, 0.94F, 1);
     set({ImGuiCol_ScrollbarBg}, 0, 0, 0, 0);
     set({ImGuiCol_ScrollbarGrab}, 0.24F, 0.30F, 0.35F, 0.8F);

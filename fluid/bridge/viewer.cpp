@@ -79,12 +79,27 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     v.gl_ = currentGlFacts();
     v.firstStart_ = FirstStart(options.seen);
     v.share_ = options.share;
-    const auto surroundings = surroundingsOf(scene);
-    if (!surroundings) return surroundings.error();
-    auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
-    if (!renderer) return renderer.error();
-    v.renderer_ = std::move(*renderer);
     std::string backend = options.backend;
+    OpenedScene first;
+    if (options.showing && options.share && options.cooperate != "auto") {
+        v.device_ = makeDevice(backend, v.gl_, v.log_, options.device);
+        Result<SharedGl> made = v.device_->backend() != Backend::cl ? options.share() : failed("");
+        if (made) {
+            v.elsewhere_ = std::move(*made);
+            v.share_ = {};
+            Result<OpenedScene> shown = v.openShowing(scene, options, backend);
+            if (!shown) return shown.error();
+            first = std::move(*shown);
+        }
+    }
+    v.renderer_ = std::move(first.renderer);
+    if (!v.renderer_) {
+        const auto surroundings = surroundingsOf(scene);
+        if (!surroundings) return surroundings.error();
+        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
+        if (!renderer) return renderer.error();
+        v.renderer_ = std::move(*renderer);
+    }
     if (options.cooperate == "auto") {
         const DrawFrame draw = [&](Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
             if (Status drawn = v.drawWater(session, options.width, options.height, uploaded); !drawn) return drawn;
@@ -103,11 +118,16 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     } else {
         v.plan_ = plans().find(options.cooperate)->plan;
     }
-    v.device_ = makeDevice(backend, v.gl_, v.log_, options.device);
-    auto opened = openSession(scene, *v.device_, v.log_, backend);
-    if (!opened) return opened.error();
-    if (opened->instead) v.device_ = std::move(opened->instead);
-    v.session_ = std::move(opened->session);
+    if (first.session) {
+        v.device_ = std::move(first.device);
+        v.session_ = std::move(first.session);
+    } else {
+        if (!v.device_) v.device_ = makeDevice(backend, v.gl_, v.log_, options.device);
+        auto opened = openSession(scene, *v.device_, v.log_, backend);
+        if (!opened) return opened.error();
+        if (opened->instead) v.device_ = std::move(opened->instead);
+        v.session_ = std::move(opened->session);
+    }
     v.asked_ = backend;
     v.timeline_.restart();  // times of what auto tried may be on their way
     traceKernels(*v.device_, v.timeline_);

@@ -43,11 +43,15 @@ struct ViewerOptions {
     std::string seen = {};           // as FirstStart
     // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
     std::function<Result<SharedGl>()> share = {};
+    // With `share`: shows what `draw` draws into a framebuffer, while the first scene is being opened. false: the person has closed the
+    // window. None: create() returns when all is ready, and shows nothing till then.
+    using Draw = std::function<void(const InputEvents& input, GLuint framebuffer)>;
+    std::function<bool(const Draw& draw)> showing = {};
 };
 
 class Viewer {
   public:
-    // Needs a current OpenGL 4.5 context until destroyed. Error: as Session and SceneRenderer.
+    // Needs a current OpenGL 4.5 context until destroyed. Error: as Session and SceneRenderer; (failed): the window was closed.
     static Result<std::unique_ptr<Viewer>> create(const SceneFile& scene, const ViewerOptions& options, const Log& log);
 
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
@@ -103,6 +107,8 @@ class Viewer {
     void takeWritten(double seconds);
     void finishOpening();  // when it is ready
     void giveUpOpening();
+    Result<OpenedScene> openShowing(const SceneFile& scene, const ViewerOptions& options, const std::string& backend);
+    static bool drawProgress(const SceneOpening& work, float height);  // a share of the window's; whether "cancel" was pressed
     void adopt(OpenedScene opened, bool other);
     void refuse(const Error& error, bool other, const SceneFile& before);
     void drawOpening();

@@ -6,6 +6,7 @@
 #include <imgui_stdlib.h>
 
 #include <cctype>
+#include <chrono>
 #include <filesystem>
 
 #include "fluid/bridge/takeover.h"
@@ -186,20 +187,46 @@ void Viewer::adopt(OpenedScene opened, bool other) {
     if (recorder_) record();
 }
 
-// Over the picture, low in its middle.
-void Viewer::drawOpening() {
+bool Viewer::drawProgress(const SceneOpening& work, float height) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const SceneOpening::Step step = opening_->work->step();
-    ImGui::SetNextWindowPos(ImVec2(display.x / 2, 0.86F * display.y), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    const SceneOpening::Step step = work.step();
+    ImGui::SetNextWindowPos(ImVec2(display.x / 2, height * display.y), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     ImGui::Begin(
         "opening", nullptr,
         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-    ImGui::Text("%s: %s", opening_->work->scene().name.c_str(), step.what.c_str());
+    ImGui::Text("%s: %s", work.scene().name.c_str(), step.what.c_str());
     ImGui::ProgressBar(static_cast<float>(step.share), ImVec2(ImGui::GetFontSize() * 20, 0));
     ImGui::SameLine();
     const bool cancel = ImGui::Button("cancel");
     ImGui::End();
-    if (cancel) giveUpOpening();
+    return cancel;
+}
+
+// Over the picture, low in its middle.
+void Viewer::drawOpening() {
+    if (drawProgress(*opening_->work, 0.86F)) giveUpOpening();
+}
+
+Result<OpenedScene> Viewer::openShowing(const SceneFile& scene, const ViewerOptions& options, const std::string& backend) {
+    SceneOpening work({.scene = scene, .device = std::move(device_), .backend = backend, .renderer = true, .gl = elsewhere_, .log = log_});
+    bool goesOn = true;
+    auto last = std::chrono::steady_clock::now();
+    constexpr double kPicture = 0.05;  // s: the machine has better things to do
+    while (!work.ready(kPicture)) {
+        const bool open = options.showing([&](const InputEvents& input, GLuint framebuffer) {
+            const auto now = std::chrono::steady_clock::now();
+            ui_.begin(input, std::chrono::duration<double>(now - last).count());
+            last = now;
+            glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+            glViewport(0, 0, input.framebuffer.x, input.framebuffer.y);
+            glClearColor(0.055F, 0.07F, 0.085F, 1);
+            glClear(GL_COLOR_BUFFER_BIT);
+            if (drawProgress(work, 0.5F)) goesOn = false;
+            ui_.draw();
+        });
+        if (!open || !goesOn) return failed(fmt::format("opening {} was given up", scene.name));
+    }
+    return work.take();
 }
 
 // A scene is opened, a picture of light surrounds this one, and any other file is a mesh that stands in the middle of the box.

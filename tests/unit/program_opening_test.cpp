@@ -82,6 +82,43 @@ class Opening : public testing::FramebufferFixture, public ::testing::WithParamI
     std::unique_ptr<Viewer> viewer_;
 };
 
+// The first scene, too, is opened behind a picture; a window that is closed meanwhile, or "cancel", ends it.
+TEST_P(Opening, TheFirstIsOpenedBehindAPicture) {
+    int shown = 0;
+    const auto open = [&](const SceneFile& scene, int most) {
+        shown = 0;
+        return Viewer::create(scene,
+                              {.backend = GetParam(),
+                               .share = [this] { return context_->shared(); },
+                               .showing =
+                                   [&, most](const ViewerOptions::Draw& draw) {
+                                       draw(input_, target_.name());
+                                       EXPECT_TRUE(seesSomething()) << "what is done, and how far it is";
+                                       return ++shown < most;
+                                   }},
+                              {});
+    };
+    SceneFile scene = large();
+    scene.colliders[0].resolution = 191;  // in no cache yet
+    auto closed = open(scene, 1);
+    ASSERT_FALSE(closed);
+    EXPECT_NE(closed.error().message.find("given up"), std::string::npos) << closed.error().message;
+    auto opened = open(scene, 100000);
+    ASSERT_TRUE(opened) << opened.error().message;
+    EXPECT_GT(shown, 0);
+    viewer_ = std::move(*opened);
+    for (int k = 0; k < 3; ++k) frame();
+    EXPECT_EQ(viewer_->scene().name, "large");
+    EXPECT_TRUE(seesSomething());
+    viewer_->open(small());  // by the same second context
+    wait();
+    EXPECT_EQ(viewer_->scene().name, "small");
+    scene.colliders[1].mesh = "nowhere.obj";
+    const auto wrong = open(scene, 100000);
+    ASSERT_FALSE(wrong);
+    EXPECT_NE(wrong.error().message.find("nowhere.obj"), std::string::npos);
+}
+
 TEST_P(Opening, TheSceneBeforeGoesOnUntilTheNextIsReady) {
     frame();
     const double then = viewer_->session().time();

@@ -39,8 +39,8 @@ drag() {
 open_window() {
     "$program" run "$1" --set fluid.spacing=0.05 --set look.renderer=points --size 1000x700 >said 2>&1 &
     running=$!
-    until_ 'window="$(xdotool search --name rivulet 2>/dev/null | head -1)"; [ -n "$window" ]' "a window"
-    until_ 'xdotool windowfocus "$window" 2>/dev/null' "the window's focus"  # it may not be shown yet
+    until_ 'window="$(xdotool search --name "^falling_cube - rivulet" 2>/dev/null | head -1)"; [ -n "$window" ]' "a window"
+    until_ 'xdotool windowfocus "$window" 2>/dev/null' "the window's focus"
     sleep 2
 }
 

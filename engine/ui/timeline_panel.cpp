@@ -47,7 +47,8 @@ void TimelinePanel::draw(const Timeline& timeline, double frame, float width) {
             list->AddRectFilled(a, b, colourOf(span.name), b.x - a.x > kRounded ? 1 : 0);
             if (held_ && mouse.x >= a.x && mouse.x <= b.x && mouse.y >= top && mouse.y < top + row) pointed = &span;
         }
-        list->AddText(ImVec2(low.x + 5, top + 3), IM_COL32(0, 0, 0, 160), lanes[k].name.c_str());
+        const ImVec2 named = ImGui::CalcTextSize(lanes[k].name.c_str());  // readable over any colour
+        list->AddRectFilled(ImVec2(low.x + 1, top + 1), ImVec2(low.x + named.x + 8, top + row - 1), IM_COL32(10, 14, 18, 190), 3);
         list->AddText(ImVec2(low.x + 4, top + 2), IM_COL32(255, 255, 255, 220), lanes[k].name.c_str());
     }
     list->PopClipRect();

@@ -314,7 +314,7 @@ void ChartPanel::drawLegend(const Session& session, float width) {
     const FluidParams& params = session.scene().fluid;
     const ChartSetting* setting = settingOf(params);
     ImGui::Spacing();
-    line("here", fmt::format("{}, {:.3g} m: density {} off, {} a simulated second",
+    line("here", fmt::format("{}, {:.3g} m:\ndensity {} off,\n{} a simulated second",
                              setting != nullptr ? std::string(setting->name) : params.method + " with values of its own", params.spacing,
                              percentText(measured_.densityError()), seconds(measured_.wallPerSecond())));
     line("measured on", machine_);

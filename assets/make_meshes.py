@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes meshes of the scenes glass, fountain, splash_crown and cove, by formulas: python3 assets/make_meshes.py assets/meshes"""
+"""Makes meshes of the scenes glass, fountain, splash_crown, koi and cove, by formulas: python3 assets/make_meshes.py assets/meshes"""
 import math
 import os
 import sys
@@ -68,6 +68,11 @@ def spout():
 
 def dish():
     line = [(0, -0.004, 0), (0.030, -0.004, 0), (0.037, 0.0036, 0.0015), (0.0222, 0.0032, 0.001), (0.0200, 0, 0.002), (0, 0, 0)]
+    return revolved(rounded(line), 96)
+
+
+def pond():
+    line = [(0, -0.03, 0), (0.55, -0.03, 0.02), (0.56, 0.135, 0.02), (0.465, 0.135, 0.02), (0.455, 0, 0.05), (0, 0, 0)]
     return revolved(rounded(line), 96)
 
 
@@ -205,6 +210,7 @@ def main():
     write(folder, "tumbler.obj", "A drinking glass with a thick foot, 0.12 m high: a closed surface of revolution.", *tumbler())
     write(folder, "spout.obj", "A spout that ends in a hollow, m: a closed surface of revolution.", *spout())
     write(folder, "dish.obj", "A shallow dish with a broad rim, m: a closed surface of revolution.", *dish())
+    write(folder, "pond.obj", "A round pond with a broad rim, m: a closed surface of revolution.", *pond())
     write(folder, "basin.obj", "A fountain's basin with a bowl on a stem, m: a closed surface of revolution.", *basin())
     write(folder, "rocks.obj", "Rocks that stand in a cove, m.", *rocks())
     write(folder, "cove.obj", "A cove: sea bed, beach and cliffs on a block, m.", *cove())

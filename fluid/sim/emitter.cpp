@@ -113,6 +113,10 @@ void EmitterFeed::take(const EmitterParams& params) {
     layOut();
 }
 
+float EmitterFeed::fastest() const {
+    return !poured_ && emitter_.params.shape == "nozzle" ? static_cast<float>(kCatchUp) * speed_ : speed_;
+}
+
 void EmitterFeed::reset() { restore({}, {}); }
 
 void EmitterFeed::restore(const Account& account, const Flight& flight) {

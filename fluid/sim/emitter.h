@@ -99,7 +99,7 @@ class EmitterFeed {
     const Emitter& emitter() const { return emitter_; }
     vec4 matter{1.0F, 1.0F, 0.0F, 0.0F}, absorption{0.0F};  // of its particles
     double due() const { return account_.due; }             // particles, since the start
-    float speed() const { return speed_; }                  // m/s, where they come out
+    float fastest() const;                                  // m/s, where they come out, in a hurry
 
   private:
     EmitterFeed(uint32_t index, float spacing) : index_(index), spacing_(spacing) {}

@@ -141,7 +141,7 @@ void SourcePasses::reset() {
 
 float SourcePasses::fastest() const {
     float v = 0;
-    for (const EmitterFeed& feed : feeds_) v = std::max(v, feed.speed());
+    for (const EmitterFeed& feed : feeds_) v = std::max(v, feed.fastest());
     return v;
 }
 

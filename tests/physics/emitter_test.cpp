@@ -86,6 +86,25 @@ TEST(Emitter, LitresASecondAreExactToAParticle) {
     }
 }
 
+// A nozzle that has been blocked lets out what it owes faster: what step length is chosen by knows of it.
+TEST(Emitter, NothingComesOutFasterThanItSays) {
+    EmitterFeed feed(nozzle(0.5F, 0.0F, 0.05F), 0, 0.02F);
+    std::vector<Candidate> out;
+    float fastest = 0;
+    const auto offer = [&](int k) {
+        out.clear();
+        feed.offer(k * kFrame, kFrame, vec3(0.0F), 1000, out);
+        for (const Candidate& c : out) fastest = std::max(fastest, glm::length(vec3(c.velocity)));
+        return out.size();
+    };
+    for (int k = 0; k < 30; ++k) feed.refuse(offer(k));
+    const float regular = fastest;
+    for (int k = 30; k < 60; ++k) offer(k);
+    EXPECT_NEAR(fastest, 1.1F * 0.5e-3F / (kPi * 0.05F * 0.05F), 1.0e-4F);
+    EXPECT_GE(fastest, regular);
+    EXPECT_LE(fastest, feed.fastest());
+}
+
 TEST(Emitter, ItBeginsAndEndsWhenItShould) {
     auto device = makeTestCpu();
     Emitter e = nozzle(1.2F, 0.0F, 0.05F);

@@ -412,7 +412,7 @@ TEST(MovingSolid, AThinHollowBallKeepsEveryParticle) {
 // Every scene that comes with the program runs: none lost, none in a solid, none NaN.
 TEST(ShippedScenes, RunWithNothingLost) {
     for (const char* name : {"bunny_rain", "nested_shells", "paddle_wheel", "thin_cup", "valley", "waving_sheet", "rubber_ducks", "honey",
-                             "oil_on_water", "hourglass", "wave_tank", "fountain"}) {
+                             "oil_on_water", "hourglass", "wave_tank", "fountain", "koi"}) {
         Result<SceneFile> scene = loadScene(std::string(RIVULET_SOURCE_DIR) + "/assets/scenes/" + name + ".json", {});
         ASSERT_TRUE(scene) << scene.error().message;
         if (!scene->colliders.empty() && !findAsset(scene->colliders[0].mesh, scene->folder)) {
@@ -430,7 +430,7 @@ TEST(ShippedScenes, RunWithNothingLost) {
         EXPECT_EQ(stats.lost, 0U) << name;
         EXPECT_EQ(stats.nan, 0U) << name;
         EXPECT_EQ(stats.penetrations, 0U) << name;
-        EXPECT_EQ(stats.voxelsRewritten > 0, std::string(name) == "waving_sheet");
+        EXPECT_EQ(stats.voxelsRewritten > 0, std::string(name) == "waving_sheet" || std::string(name) == "koi");
     }
 }
 

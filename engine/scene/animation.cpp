@@ -60,6 +60,7 @@ std::vector<float> morphsAt(const ModelPart& part, const Clip& clip, double time
     for (const MorphTrack& track : clip.morphs)
         if (track.node == part.node) weights = at(track.weights, time);
     if (!weights.empty()) weights.resize(part.morphs.size(), 0.0F);
+    for (size_t k = 0; k < std::min(weights.size(), part.resting.size()); ++k) weights[k] -= part.resting[k];
     return weights;
 }
 

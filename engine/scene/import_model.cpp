@@ -107,6 +107,19 @@ std::vector<MorphTarget> morphsOf(const aiMesh& from) {
     return morphs;
 }
 
+// Bends the mesh as its file has it while no clip says otherwise.
+void rest(const aiMesh& from, ModelPart& part) {
+    for (unsigned k = 0; k < from.mNumAnimMeshes; ++k) {
+        const float weight = from.mAnimMeshes[k]->mWeight;
+        if (weight == 0.0F || !std::isfinite(weight)) continue;
+        part.resting.resize(part.morphs.size(), 0.0F);
+        part.resting[k] = weight;
+        const MorphTarget& morph = part.morphs[k];
+        for (size_t i = 0; i < morph.vertices.size(); ++i) part.mesh.positions[morph.vertices[i]] += weight * morph.offsets[i];
+    }
+    if (!part.resting.empty()) recomputeNormals(part.mesh);
+}
+
 // The four strongest of a vertex's bones, their weights brought to a sum of 1.
 Status gripsOf(const aiMesh& from, const std::map<std::string, int>& nodeOf, ModelPart& part) {
     if (from.mNumBones == 0) return ok();
@@ -214,6 +227,7 @@ Result<Model> modelFrom(Assimp::Importer& importer, const std::string& path) {
         part.dressed = isFiles(**scene, from.mMaterialIndex, gltf);
         part.node = node;
         part.morphs = morphsOf(from);
+        rest(from, part);
         if (Status held = gripsOf(from, nodeOf, part); !held) return meshFileError(path, held.error().message);
         model.parts.push_back(std::move(part));
     }

@@ -21,6 +21,9 @@ struct Mesh {
     Bounds bounds() const;
 };
 
+// Each corner's from its triangles, weighted by their areas.
+void recomputeNormals(Mesh& mesh);
+
 // A copy with positions moved by `toWorld` and normals by its inverse transpose; a mirroring matrix also turns the triangles around.
 Mesh transformed(const Mesh& mesh, const mat4& toWorld);
 

@@ -43,6 +43,7 @@ struct ModelPart {
     bool dressed = false;      // whether the material is the file's; else it is the default one
     int node = 0;
     std::vector<MorphTarget> morphs;
+    std::vector<float> resting;  // of them, as the file says where no clip does; the mesh is that already. Empty: all 0
     std::vector<Bone> bones;
     std::vector<Grip> grips;  // empty, or one a vertex
 };

@@ -39,20 +39,6 @@ mat4 matrixOf(const Pose& pose) {
     return m;
 }
 
-// Area-weighted.
-void recomputeNormals(Mesh& mesh) {
-    mesh.normals.assign(mesh.positions.size(), vec3(0.0F));
-    for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-        const uint32_t a = mesh.indices[t], b = mesh.indices[t + 1], c = mesh.indices[t + 2];
-        const vec3 n = glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
-        for (uint32_t v : {a, b, c}) mesh.normals[v] += n;
-    }
-    for (vec3& n : mesh.normals) {
-        const float size = glm::length(n);
-        n = size > 0 ? n / size : vec3(0, 1, 0);
-    }
-}
-
 // One surface a collider while they suffice, so that each can be edited; else colliders that are alike share one.
 std::vector<Surface> surfacesOf(const SceneFile& scene, std::vector<uint8_t>& surfaceOf) {
     std::vector<Surface> table;

@@ -68,6 +68,82 @@ TEST(SceneAnimation, ANodeIsWhereItsKeysAndItsParentsSay) {
     }
 }
 
+// A lift whose ways between keys are said by `interpolation`; `output` has a key's numbers in a row.
+std::string lift(const Scratch& scratch, const std::string& interpolation, const std::vector<float>& output) {
+    GltfFile file;
+    const std::string mesh = file.box(0, 1, 0, 1, 0, 1);
+    const int times = file.floats("SCALAR", {0, 1, 3}), way = file.floats("VEC3", output);
+    return file.write(scratch.path(), "lift_" + interpolation,
+                      fmt::format(R"("scenes":[{{"nodes":[0]}}],"nodes":[{{"name":"lift","mesh":0}}],"meshes":[{0}],
+"animations":[{{"name":"up","samplers":[{{"input":{1},"output":{2},"interpolation":"{3}"}}],
+"channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}]}}])",
+                                  mesh, times, way, interpolation));
+}
+
+vec3 liftedTo(const Model& model, double time) {
+    return transformPoint(model.worldMatrices(nodesAt(model, model.clips[0], time))[static_cast<size_t>(nodeCalled(model, "lift"))],
+                          vec3(0));
+}
+
+// What assimp 5.2 hands over of STEP and CUBICSPLINE are their keys alone, without the tangents: they are exact there, and straight
+// between.
+TEST(SceneAnimation, KeysAreExactWhateverIsBetween) {
+    const Scratch scratch;
+    for (const auto& [kind, output] :
+         {std::pair<const char*, std::vector<float>>("STEP", {0, 0, 0, 0, 2, 0, 0, 5, 0}),
+          std::pair<const char*, std::vector<float>>("CUBICSPLINE",
+                                                     {9, 9, 9, 0, 0, 0, 0, 3, 0, 0, 1, 0, 0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 5, 0, 9, 9, 9})}) {
+        const Result<Model> model = importModel(lift(scratch, kind, output));
+        ASSERT_TRUE(model) << model.error().message;
+        ASSERT_EQ(model->clips.size(), 1U);
+        EXPECT_NEAR(model->clips[0].seconds, 3.0, 1e-6);
+        for (const auto& [time, y] :
+             {std::pair(0.0, 0.0F), std::pair(0.5, 1.0F), std::pair(1.0, 2.0F), std::pair(2.0, 3.5F), std::pair(3.0, 5.0F)})
+            expectNear(liftedTo(*model, time), vec3(0, y, 0));
+    }
+}
+
+// The weights that a mesh has while no clip says others.
+TEST(SceneAnimation, AMeshRestsWithItsFilesMorphs) {
+    const Scratch scratch;
+    GltfFile file;
+    std::vector<float> rise(24, 0.0F), widen(24, 0.0F);
+    for (size_t k = 0; k < 8; ++k) {
+        rise[3 * k + 1] = k < 4 ? 0.0F : 1.0F;  // the corners with z 1
+        widen[3 * k] = 2.0F;
+    }
+    const int a = file.floats("VEC3", rise), b = file.floats("VEC3", widen);
+    std::string mesh = file.box(0, 1, 0, 1, 0, 1, fmt::format(R"(,"targets":[{{"POSITION":{}}},{{"POSITION":{}}}])", a, b));
+    mesh.insert(1, R"("weights":[0.5,0.25],)");
+    const int times = file.floats("SCALAR", {0, 1}), weights = file.floats("SCALAR", {0, 1, 1, 1});
+    const std::string animation = fmt::format(
+        R"("animations":[{{"name":"w","samplers":[{{"input":{},"output":{}}}],"channels":[{{"sampler":0,"target":{{"node":0,"path":"weights"}}}}]}}],)",
+        times, weights);
+    const Result<Model> model = importModel(
+        file.write(scratch.path(), "rests",
+                   fmt::format(R"({}"scenes":[{{"nodes":[0]}}],"nodes":[{{"name":"m","mesh":0}}],"meshes":[{}])", animation, mesh)));
+    ASSERT_TRUE(model) << model.error().message;
+    ASSERT_EQ(model->parts.size(), 1U);
+    const ModelPart& part = model->parts[0];
+    const Bounds rests = part.mesh.bounds();
+    expectNear(rests.min, vec3(0.5F, 0, 0));
+    expectNear(rests.max, vec3(1.5F, 1.5F, 1));
+    // A clip's weights are all there is then.
+    ASSERT_EQ(model->clips.size(), 1U);
+    auto device = makeCpuDevice(cpuKernels());
+    auto bent = Deformer::create(*device, part);
+    ASSERT_TRUE(bent) << bent.error().message;
+    for (const auto& [time, low, high] : {std::tuple(0.0, vec3(2, 0, 0), vec3(3, 1, 1)), std::tuple(1.0, vec3(2, 0, 0), vec3(3, 2, 1))}) {
+        bent->run(morphsAt(part, model->clips[0], time), {});
+        Bounds all;
+        std::vector<vec4> now(part.mesh.positions.size());
+        device->read(bent->positions(), std::as_writable_bytes(std::span(now)), 0);
+        for (const vec4& p : now) all.add(vec3(p));
+        expectNear(all.min, low);
+        expectNear(all.max, high);
+    }
+}
+
 TEST(SceneAnimation, CamerasAndLightsAreTheFiles) {
     const Scratch scratch;
     const Result<Model> model = importModel(crane(scratch));

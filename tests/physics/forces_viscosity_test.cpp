@@ -192,7 +192,7 @@ TEST_P(Thread, CoilsAndPilesUp) {
     FluidWorld& world = **made;
     // As fast as it comes out, and as it falls.
     const double out = 1.0e-4 / (M_PI * 0.0075 * 0.0075), most = std::sqrt(out * out + 2 * 9.81 * 0.16);
-    double fastest = 0, high = 0, turned = 0, before = 0, widest = 0;
+    double fastest = 0, high = 0, turned = 0, before = 0, widest = 0, least = 0, furthest = 0;
     int piled = 0;
     constexpr int kFalls = 18;
     const int frames = coils ? 42 : 22;
@@ -225,13 +225,16 @@ TEST_P(Thread, CoilsAndPilesUp) {
         const double angle = std::atan2(slice[1], slice[0]);
         if (frame > kFalls) turned += std::remainder(angle - before, 2 * M_PI);
         before = angle;
+        least = std::min(least, turned);
+        furthest = std::max(furthest, turned);
     }
-    std::printf("fastest %.2f of %.2f m/s, pile %.1f spacings high, in %d of %d frames over 8; %.2f turns; %.3f m wide\n", fastest, most,
-                high / double{p.spacing}, piled, frames - kFalls, turned / (2 * M_PI), widest);
+    std::printf("fastest %.2f of %.2f m/s, pile %.1f spacings high, in %d of %d frames over 8; %.2f turns one way round; %.3f m wide\n",
+                fastest, most, high / double{p.spacing}, piled, frames - kFalls, (furthest - least) / (2 * M_PI), widest);
     EXPECT_EQ(world.stats().lost, 0U);
     EXPECT_LT(fastest, 1.1 * most);
     EXPECT_GT(piled, (frames - kFalls) / 2);
-    if (coils) EXPECT_GT(std::abs(turned), 2 * M_PI) << "it coils, one way round";
+    // A coil may turn back on itself, and when is chance: what it turned one way counts. A walk at random comes to about one turn.
+    if (coils) EXPECT_GT(furthest - least, 1.5 * 2 * M_PI) << "it coils, one way round";
 }
 INSTANTIATE_TEST_SUITE_P(Methods, Thread, testing::Values("wcsph", "pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
 

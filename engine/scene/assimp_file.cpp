@@ -70,8 +70,9 @@ Status checkFile(const std::string& path) {
     std::filesystem::file_status status = std::filesystem::status(path, error);
     if (status.type() == std::filesystem::file_type::not_found) return meshFileError(path, "cannot be read: there is no such file");
     if (error) return meshFileError(path, fmt::format("cannot be read: {}", error.message()));
-    if (std::filesystem::is_directory(status)) return meshFileError(path, "is a folder; name an OBJ, glTF, PLY or STL file in it");
-    if (!std::filesystem::is_regular_file(status)) return meshFileError(path, "is not a plain file; name an OBJ, glTF, PLY or STL file");
+    if (std::filesystem::is_directory(status)) return meshFileError(path, "is a folder; name an OBJ, glTF, FBX, PLY or STL file in it");
+    if (!std::filesystem::is_regular_file(status))
+        return meshFileError(path, "is not a plain file; name an OBJ, glTF, FBX, PLY or STL file");
     std::ifstream file(path, std::ios::binary);
     if (!file) return meshFileError(path, "cannot be opened: check its permissions");
     if (std::filesystem::file_size(path, error) == 0) return meshFileError(path, "is an empty file");
@@ -96,7 +97,7 @@ Result<const aiScene*> readMeshFile(Assimp::Importer& importer, const std::strin
         if (why.find("No suitable reader") != std::string::npos)
             return meshFileError(path, importer.IsExtensionSupported(extensionOf(path))
                                            ? "cannot be read: it is damaged, or not what its name says"
-                                           : "is of a kind that cannot be read; use OBJ, glTF, PLY or STL");
+                                           : "is of a kind that cannot be read; use OBJ, glTF, FBX, PLY or STL");
         if (why.find("out of range") != std::string::npos) return meshFileError(path, fmt::format("has an index out of range ({})", why));
         return meshFileError(path, fmt::format("cannot be read: {}", why));
     }

@@ -64,7 +64,7 @@ std::string shortened(std::string text, float width) {
 
 // Digits enough to tell the range's steps apart.
 const char* formatFor(const ParamInfo& info, float v) {
-    if (info.logarithmic || isOpen(info)) return "%.4g";
+    if (info.logarithmic || isOpen(info) || info.max - info.min > kSliderSpan) return "%.4g";
     float size = std::max(std::abs(v), static_cast<float>(info.max - info.min) * 0.1F);
     return size < 0.1F ? "%.5f" : size < 10.0F ? "%.3f" : "%.2f";
 }

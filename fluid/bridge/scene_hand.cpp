@@ -229,10 +229,7 @@ bool SceneHand::undo(SceneFile& draft, Asks& asks) {
     return true;
 }
 
-void SceneHand::letGo() {
-    held_.reset();
-    move_.reset();
-}
+void SceneHand::letGo() { held_.reset(); }
 
 void SceneHand::draw(const InputEvents& input, const Camera& camera, const Session& session, const SceneFile& draft) const {
     const vec2 size(glm::max(input.size, ivec2(1)));

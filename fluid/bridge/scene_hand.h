@@ -38,7 +38,7 @@ class SceneHand {
     const Thing& chosen() const { return chosen_; }
     void choose(const Thing& thing) { chosen_ = thing; }
     bool holds() const { return held_ || move_; }  // the mouse is its, also over a panel
-    // The session is another one: what was in the hand is gone.
+    // The session is another one: a body that was in the hand is gone. A thing that is being moved by its handles still is.
     void letGo();
 
   private:

@@ -1,5 +1,7 @@
 #include "fluid/bridge/scene_opening.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -46,6 +48,8 @@ Result<OpenedScene> SceneOpening::work() {
         }
         auto session = openSession(request_.scene, *request_.device, request_.log, request_.backend, steps);
         if (!session) return session.error();
+        if (const std::lock_guard<std::mutex> lock(mutex_); givenUp_)  // what it made goes in the context that it was made in
+            return failed(fmt::format("opening {} was given up", request_.scene.name));
         opened.device = session->instead ? std::move(session->instead) : std::move(request_.device);
         opened.session = std::move(session->session);
         return opened;

@@ -39,8 +39,8 @@ class SceneOpening {
     void giveUp();
 
     struct Step {
-        std::string what;  // "voxels of rocks.obj"
-        double share = 0;  // of all that is done, 0..1
+        std::string what = "waiting for what was given up";  // or "voxels of rocks.obj"
+        double share = 0;                                    // of all that is done, 0..1
     };
     Step step() const;
     const SceneFile& scene() const { return request_.scene; }

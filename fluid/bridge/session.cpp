@@ -77,7 +77,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     s.steps_ = steps;
     const auto isMesh = [](const ColliderParams& c) { return c.shape == "mesh"; };
     const auto meshes = std::count_if(scene.colliders.begin(), scene.colliders.end(), isMesh);
-    s.stepsInAll_ = static_cast<int>(2 * meshes) + (scene.bodies.empty() ? 0 : 1) + 1 + static_cast<int>(scene.flow.size());
+    s.stepsInAll_ = static_cast<int>(2 * meshes) + 1 + (scene.bodies.empty() ? 0 : 1) + 1 + static_cast<int>(scene.flow.size());
     Result<std::optional<Budget>> budget = openBudget(scene, device, log);
     if (!budget) return budget.error();
     s.budget_ = std::move(*budget);
@@ -311,6 +311,7 @@ Status Session::bake(const Log& log) {
             stillSurfaces.push_back(surface);
         }
     }
+    if (Status on = next("voxels of what stands still"); !on) return on;
     if (still.empty()) return ok();
     Result<VoxelField> field = bakeMeshes(still, stillSurfaces, edge, log);
     if (!field) return still.size() == 1 ? about(field.error(), one, scene_.colliders[one]) : field.error();

@@ -154,6 +154,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     scaled.scale *= zoom_;
     ui_.begin(scaled, seconds);
     const bool greets = firstStart_.shown();  // the key that ends it does nothing else
+    if (!greets && input.pressed(key::kEscape) && (saving_ || browser_.shown() || showHelp_)) closeTopmost();
     if (!greets && !ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
     if (!showPanels_) watch_.hide(*renderer_);
@@ -172,7 +173,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
         moveCamera(input);
         touch(input);
     }
-    if (showPanels_) hand_.draw(input, camera, *session_, draft_);
+    hand_.draw(input, camera, *session_, draft_);
     recreate = std::exchange(anew_, false) || recreate;
     if (edited_ || recreate) {
         takeEdits(recreate);
@@ -225,8 +226,26 @@ bool Viewer::handle(const InputEvents& input, bool& recreate) {
     return asks.mouse;
 }
 
+void Viewer::closeTopmost() {
+    if (saving_)
+        saving_ = false;
+    else if (browser_.shown())
+        browser_.show(false);
+    else
+        showHelp_ = false;
+}
+
+Viewer::~Viewer() {
+    if (!video_) return;
+    if (Status closed = video_->close(); !closed) log_.notice(closed.error().message);
+}
+
 // The first time the world is made anew, with the same water.
 void Viewer::turnBrush() {
+    if (!brush_.on() && !draft_.flow.empty() && draft_.fluid.blocks.empty() && draft_.emitters.empty()) {
+        message_ = "this scene's water is on its skin alone: a click on the skin is a drop";
+        return;
+    }
     if (session_->replaying() != nullptr) {
         message_ = "replaying: what was recorded is shown; run the scene without --replay to pour water in";
         return;
@@ -241,7 +260,10 @@ void Viewer::moveCamera(const InputEvents& input) {
     vec2 size(std::max(input.size.x, 1), std::max(input.size.y, 1));
     vec2 moved = input.mouseDelta / size.y;
     bool turns = input.down(MouseButton::left), pans = input.down(MouseButton::right) || input.down(MouseButton::middle);
-    bool any = (turns || pans) && moved != vec2(0.0F);
+    // What the mouse did before it was pressed is no drag.
+    const bool pressed = input.pressed(MouseButton::left) || input.pressed(MouseButton::right) || input.pressed(MouseButton::middle);
+    bool any = (turns || pans) && !pressed && moved != vec2(0.0F);
+    if (!any) turns = pans = false;
     if (!any && input.wheel.y == 0) return;
     Camera camera = cameraOf(draft_.camera, session_->bounds());
     OrbitCamera orbit = OrbitCamera::from(camera);
@@ -294,9 +316,13 @@ bool Viewer::drawPanels() {
     if (!ImGui::IsAnyItemActive() && !(opening_ && !opening_->other)) settled_ = session_->scene();
     ImVec2 display = ImGui::GetIO().DisplaySize;
     constexpr float kMargin = 10;
-    float width = std::clamp(display.x * 0.26F, 320.0F, 420.0F), tall = std::max(display.y - 2 * kMargin, 80.0F);
-    ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), ImGuiCond_Once);
-    ImGui::SetNextWindowSize(ImVec2(width, tall), ImGuiCond_Once);
+    const float half = std::max(0.5F * (display.x - 3 * kMargin), 160.0F);
+    float width = std::min(std::clamp(display.x * 0.26F, 320.0F, 420.0F), half), tall = std::max(display.y - 2 * kMargin, 80.0F);
+    if (vec2(display.x, display.y) != laidOutFor_) {  // wherever it was put, it would be in another window
+        laidOutFor_ = vec2(display.x, display.y);
+        ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), ImGuiCond_Always);
+        ImGui::SetNextWindowSize(ImVec2(width, tall), ImGuiCond_Always);
+    }
     bool recreate = false;
     if (ImGui::Begin(fmt::format("{}###scene", draft_.name).c_str())) {
         const DeviceInfo& device = device_->info();
@@ -337,7 +363,8 @@ bool Viewer::drawPanels() {
         if (!asks.find.empty()) params_.wanted = asks.find;
         ParamPanel panel(params_);
         panel.search(visiting(draft_));
-        ImGui::BeginChild("parameters");
+        constexpr float kLeast = 12;  // lines, and the panel is scrolled
+        ImGui::BeginChild("parameters", ImVec2(0, std::max(ImGui::GetContentRegionAvail().y, kLeast * ImGui::GetFontSize())));
         draft_.visit(panel);
         ImGui::EndChild();
         edited_ = edited_ || panel.changed();

@@ -54,6 +54,8 @@ class Viewer {
     // Needs a current OpenGL 4.5 context until destroyed. Error: as Session and SceneRenderer; (failed): the window was closed.
     static Result<std::unique_ptr<Viewer>> create(const SceneFile& scene, const ViewerOptions& options, const Log& log);
 
+    ~Viewer();  // a video in the making is closed
+
     // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
     // machine shows slow water, not fewer pictures. With fluid.fixedStep the water has all of the time, but fluid.longestFrame. A window of
     // 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.
@@ -96,6 +98,7 @@ class Viewer {
     static VisitFn visiting(SceneFile& scene);
     void takeKeys(const InputEvents& input);
     void moveCamera(const InputEvents& input);
+    void closeTopmost();                                    // of what Escape closes
     void turnBrush();                                       // on, with room for what it pours, or off
     bool handle(const InputEvents& input, bool& recreate);  // whether the hand has the mouse
     void touch(const InputEvents& input);                   // a click that is no drag puts a drop on a skin
@@ -158,8 +161,9 @@ class Viewer {
     ParamMemory params_;
     std::string message_;
     bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
-    vec2 pressedAt_{0.0F};  // where the left button went down; window coordinates
-    double waiting_ = 0;    // s on the wall that the water has not been stepped for
+    vec2 laidOutFor_{0.0F};  // the window's size that the panel was put into, in ImGui's coordinates
+    vec2 pressedAt_{0.0F};   // where the left button went down; window coordinates
+    double waiting_ = 0;     // s on the wall that the water has not been stepped for
     double uiMs_ = 0;
     PanelCost panelCost_;
     double deviceMs_ = 0;  // of the passes last heard of

@@ -19,6 +19,9 @@ void Viewer::takeEdits(bool recreate) {
     Status sense = checkScene(draft_);
     if (!sense && !recreate) {
         message_ = sense.error().message;  // a drag may pass through it: the draft stays as it is
+        SceneFile seen = session_->scene();
+        seen.camera = draft_.camera;
+        session_->apply(seen);
         return;
     }
     recreate = recreate || (!(opening_ && !opening_->other) && session_->needsNew(draft_));
@@ -154,6 +157,7 @@ void Viewer::adopt(OpenedScene opened, bool other) {
     if ((!other || reopening_) && Session::sameWater(session_->scene(), opened.session->scene()))
         if (Status gone = opened.session->goOnFrom(*session_); !gone) log_.notice(gone.error().message);
     hand_.letGo();
+    if (other && !reopening_) savePath_.clear();  // or it would be offered for the next scene
     if (other) hand_ = {};
     if (other) brush_ = {};
     session_ = std::move(opened.session);

@@ -205,6 +205,56 @@ TEST_F(Person, TheMouseMovesTheCamera) {
     before = camera();
     drag(MouseButton::left, {100, 1500}, {200, 1400});
     EXPECT_EQ(camera().position, before.position) << "a drag over the panel is no camera movement";
+
+    input_.mouseDelta = vec2(650, 1100) - input_.mouse;  // there and pressed within one frame
+    input_.mouse = vec2(650, 1100);
+    press(MouseButton::left, true);
+    EXPECT_EQ(camera().position, before.position) << "what came before the press is no drag";
+    press(MouseButton::left, false);
+}
+
+// A draft that makes no sense yet leaves the water as it was, not the view.
+TEST_F(Person, TheViewTurnsAlsoWhileAnEditIsRefused) {
+    key(GLFW_KEY_SPACE);
+    input_.keysDown = {key::kLeftControl};
+    key('F');
+    input_.keysDown.clear();
+    frame();
+    input_.text = "refractiveIndex";
+    frame();
+    ASSERT_TRUE(hover("parameters", {"look", "refractiveIndex", "##v", "#0", ""}));
+    press(MouseButton::left, true);
+    for (int k = 0; k < 60 && viewer_->message().empty(); ++k) moveTo(input_.mouse + vec2(k % 2 == 0 ? k : -k, 0));
+    press(MouseButton::left, false);
+    ASSERT_NE(viewer_->message(), "") << "less than 1, more than 0";
+    const CameraParams before = camera();
+    drag(MouseButton::left, {600, 1200}, {700, 1150});
+    EXPECT_GT(glm::length(camera().position - before.position), 0.1F * distance());
+}
+
+TEST_F(Person, EscapeClosesWhatLiesOnTop) {
+    const auto shown = [](const char* name) {
+        const ImGuiWindow* window = ImGui::FindWindowByName(name);
+        return window != nullptr && window->Active;
+    };
+    key(GLFW_KEY_H);
+    key(GLFW_KEY_O);
+    frame();
+    EXPECT_TRUE(shown("keys") && shown("scenes"));
+    key(key::kEscape);
+    frame();
+    EXPECT_TRUE(shown("keys") && !shown("scenes"));
+    key(key::kEscape);
+    frame();
+    EXPECT_FALSE(shown("keys"));
+    input_.keysDown = {key::kLeftControl};
+    key('S');
+    input_.keysDown.clear();
+    frame();
+    EXPECT_TRUE(shown("save the scene"));
+    key(key::kEscape);
+    frame();
+    EXPECT_FALSE(shown("save the scene"));
 }
 
 TEST_F(Person, AWindowOfNoSizeIsNoError) {
@@ -277,8 +327,13 @@ TEST_F(Person, PanelsGrowWithTheScreenAndAsWanted) {
     input_.keysDown = {key::kLeftControl};
     for (int k = 0; k < 3; ++k) key('=');  // 1.25 each
     input_.keysDown.clear();
-    moveTo(button * std::pow(1.25F, 3.0F));
     frame();
+    frame();
+    const float smaller = static_cast<float>(kWindow.x) / std::pow(1.25F, 3.0F);
+    EXPECT_NEAR(ImGui::GetIO().DisplaySize.x, smaller, 1.0F);
+    EXPECT_LE(panel().Max.x, 0.5F * smaller) << "the picture is still to be seen";
+    EXPECT_LE(panel().Max.y, ImGui::GetIO().DisplaySize.y) << "the panel follows the window";
+    ASSERT_TRUE(hover("###scene", {"step"}));
     click();
     EXPECT_EQ(viewer_->steps(), steps + 2);
 }

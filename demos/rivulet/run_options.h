@@ -22,6 +22,7 @@ struct RunOptions {
     bool explain = false;
     std::optional<int> frames;       // how many; nothing: the loop's own default
     int width = 1280, height = 720;  // pixels
+    bool sized = false;              // they were asked for
     std::string out = "out";         // folder of what is written
     std::string video;               // file; empty: out/NAME.mp4
     std::string stats;               // file; empty: out/stats.json, or none in the window

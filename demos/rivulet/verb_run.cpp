@@ -100,7 +100,7 @@ Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, co
 int runVerb(const Arguments& arguments) {
     ArgumentReader reader(
         "run", "Runs a scene: in a window where there is a display, else (or with --headless) to a video, pictures and figures.");
-    std::string scene, size = "1280x720";
+    std::string scene, size;
     RunOptions options;
     std::vector<std::string> assignments;
     std::string preset;
@@ -116,7 +116,7 @@ int runVerb(const Arguments& arguments) {
     reader.option("--seconds", "S", "how long, simulated; headless default: the scene's duration", seconds, 0,
                   static_cast<double>(kMostFrames) / kFramesPerSecond);
     reader.exclude("--seconds", "--frames");
-    reader.option("--size", "WxH", "of the picture, in pixels", size);
+    reader.option("--size", "WxH", "of the picture, in pixels; 1280x720 if not said", size);
     reader.option("--out", "DIR", "folder that the video, pictures and figures go to", options.out);
     reader.option("--video", "FILE.mp4", "the video's file, instead of DIR/NAME.mp4", options.video);
     reader.option("--still", "S", "draw only the frame at this second, and no video; as often as you like", stills);
@@ -136,7 +136,8 @@ int runVerb(const Arguments& arguments) {
     std::vector<std::string> cooperations = plans().names();
     cooperations.emplace_back("auto");
     if (Status known = checkWord("plan", options.cooperate, cooperations); !known) return report(known.error());
-    Result<std::pair<int, int>> pixels = parseSize(size);
+    options.sized = !size.empty();
+    Result<std::pair<int, int>> pixels = parseSize(options.sized ? size : "1280x720");
     if (!pixels) return report(pixels.error());
     std::tie(options.width, options.height) = *pixels;
     if (noRender && !options.video.empty())

@@ -19,6 +19,7 @@ int runWindow(const RunOptions& options) {
     wish.title = "opening " + options.scene.name + " - rivulet";
     wish.width = options.width;
     wish.height = options.height;
+    wish.scaled = !options.sized;
     Result<WindowGlfw> window = WindowGlfw::create(wish);
     if (!window) return report(window.error());
     Graceful graceful;

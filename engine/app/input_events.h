@@ -11,7 +11,8 @@ namespace rivulet {
 
 enum class MouseButton { left, right, middle };
 
-// Keys that print nothing, by GLFW's numbers; the others are their character on a US keyboard: 'R', ' ', '.'.
+// Keys that print nothing, by GLFW's numbers; the others are the character they print without shift, in capitals: 'R', ' ', '.'; where
+// that is none of ASCII's, as on a Greek keyboard: of a US keyboard.
 namespace key {
 inline constexpr int kEscape = 256, kEnter = 257, kTab = 258, kBackspace = 259, kInsert = 260, kDelete = 261;
 inline constexpr int kRight = 262, kLeft = 263, kDown = 264, kUp = 265;

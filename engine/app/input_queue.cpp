@@ -4,6 +4,12 @@
 
 namespace rivulet {
 
+int keyOf(int code, const char* prints) {
+    if (prints == nullptr || prints[0] <= ' ' || prints[0] > '~' || prints[1] != 0) return code;
+    const char c = prints[0];
+    return c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c;
+}
+
 void InputQueue::take(InputEvents& e) {
     std::fill(std::begin(e.buttonPressed), std::end(e.buttonPressed), false);
     std::fill(std::begin(e.buttonReleased), std::end(e.buttonReleased), false);

@@ -9,6 +9,9 @@
 
 namespace rivulet {
 
+// A key by what it prints (UTF-8 without shift; null: nothing), where `code` is what it is on a US keyboard: as InputEvents has keys.
+int keyOf(int code, const char* prints);
+
 class InputQueue {
   public:
     void move(const vec2& to) { add({.kind = Kind::move, .at = to}); }  // window coordinates

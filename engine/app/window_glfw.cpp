@@ -8,6 +8,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -54,8 +55,9 @@ std::string glfwTrouble() {
 
 struct WindowGlfw::Impl {
     GLFWwindow* window = nullptr;
-    InputQueue queue;    // what callbacks gathered
-    InputEvents events;  // what is held
+    InputQueue queue;         // what callbacks gathered
+    InputEvents events;       // what is held
+    std::map<int, int> keys;  // by GLFW's key: what it was when it went down
     bool hasMouse = false;
     std::string renderer;
 
@@ -80,8 +82,12 @@ struct WindowGlfw::Impl {
         });
         glfwSetScrollCallback(window,
                               [](GLFWwindow* w, double x, double y) { of(w).wheel(vec2(static_cast<float>(x), static_cast<float>(y))); });
-        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
-            if (key != GLFW_KEY_UNKNOWN && action != GLFW_REPEAT) of(w).key(key, action == GLFW_PRESS);
+        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int) {
+            if (key == GLFW_KEY_UNKNOWN || action == GLFW_REPEAT) return;
+            auto& known = static_cast<Impl*>(glfwGetWindowUserPointer(w))->keys;
+            if (action == GLFW_PRESS) known[key] = keyOf(key, glfwGetKeyName(key, scancode));
+            const auto pressed = known.find(key);  // the keyboard may be another by now
+            of(w).key(pressed != known.end() ? pressed->second : key, action == GLFW_PRESS);
         });
         glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code) { of(w).type(utf8Of(code)); });
         glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
@@ -103,6 +109,7 @@ Result<WindowGlfw> WindowGlfw::create(const Options& options) {
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, options.scaled ? GLFW_TRUE : GLFW_FALSE);
     impl->window = glfwCreateWindow(std::max(options.width, 1), std::max(options.height, 1), options.title.c_str(), nullptr, nullptr);
     if (!impl->window)
         return failed(

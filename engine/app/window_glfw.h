@@ -19,6 +19,7 @@ class WindowGlfw {
     struct Options {
         std::string title = "rivulet";
         int width = 1280, height = 720;
+        bool scaled = false;  // width and height are of an ordinary screen: more pixels where text is larger
         bool visible = true;
         bool vsync = true;
         bool debug = false;  // drivers say more, and are slower

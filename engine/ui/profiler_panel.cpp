@@ -107,7 +107,7 @@ void ProfilerPanel::drawGraph(float across) const {
     float below = low.y;  // no text is written over another
     for (float ms : {0.999F * top, 1000.0F / 30, 1000.0F / 60}) {
         if (ms >= top || height(ms) < below) continue;
-        const std::string text = fmt::format("{:.3g} ms", ms);
+        const std::string text = ms < 100 ? fmt::format("{:.3g} ms", ms) : fmt::format("{:.0f} ms", ms);
         const ImVec2 at(low.x + 4, height(ms) + 1), box = ImGui::CalcTextSize(text.c_str());
         list->AddLine(ImVec2(low.x, height(ms)), ImVec2(high.x, height(ms)), IM_COL32(255, 255, 255, 60));
         if (at.y + box.y > high.y) continue;

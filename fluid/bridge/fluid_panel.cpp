@@ -73,7 +73,11 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     for (const std::string& text : world.stats().limited) sentence(amber, text);
     const std::vector<std::string>& limited = world.stats().limited;
     for (const std::string& text : state.notices)
-        if (std::find(limited.begin(), limited.end(), text) == limited.end()) sentence(amber, text);
+        if (std::find(limited.begin(), limited.end(), text) == limited.end()) {
+            sentence(amber, text);
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("a click takes it away");
+            if (ImGui::IsItemClicked()) actions.dismiss = text;
+        }
     return actions;
 }
 

@@ -23,6 +23,7 @@ struct FluidPanelState {
 struct FluidPanelActions {
     bool togglePause = false, step = false, reset = false, help = false, scenes = false, save = false, picture = false, video = false,
          pour = false;
+    std::optional<std::string> dismiss;  // a notice that was read
 };
 
 // Inside an ImGui window.

@@ -12,6 +12,7 @@ namespace rivulet {
 class PourBrush {
   public:
     bool on() const { return on_; }
+    bool pours() const { return pours_; }
     void turn(bool on) { on_ = on; }
     // One frame's input. `over`: a panel has the mouse. Whether the left button is the brush's.
     bool take(const InputEvents& input, const Camera& camera, Session& session, bool over);

@@ -28,6 +28,7 @@ bool holds(const std::string& text, const std::string& part) {
 
 void SceneBrowser::show(bool yes) {
     shown_ = yes;
+    trouble_.clear();
     if (yes) scenes_ = listScenes();
 }
 
@@ -56,7 +57,14 @@ bool SceneBrowser::card(size_t index, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool chosen = ImGui::InvisibleButton("card", ImVec2(width, tall + text + 8));
     const bool hovered = ImGui::IsItemHovered();
-    if (hovered) ImGui::SetTooltip("%s", scene.path.c_str());
+    if (hovered) {
+        ImGui::BeginTooltip();
+        ImGui::PushTextWrapPos(30 * ImGui::GetFontSize());
+        ImGui::TextUnformatted(scene.doc.c_str());
+        ImGui::TextDisabled("%s", scene.path.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
+    }
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 under(at.x + width, at.y + tall);
     list.AddRectFilled(at, ImVec2(at.x + width, at.y + tall + text + 8),
@@ -64,6 +72,8 @@ bool SceneBrowser::card(size_t index, float width) {
     if (const gpu::Texture* picture = pictureOf(scene.path))
         list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(picture->name())), at, under, ImVec2(0, 1), ImVec2(1, 0),
                              IM_COL32_WHITE, 4, ImDrawFlags_RoundCornersTop);
+    else if (pictures_.contains(scene.path))  // looked for
+        list.AddText(ImVec2(at.x + 7, at.y + 7), ImGui::GetColorU32(ImGuiCol_TextDisabled), "no picture yet");
     const ImVec2 name(at.x + 7, at.y + tall + 4);
     list.AddText(name, ImGui::GetColorU32(ImGuiCol_Text), scene.name.c_str());
     const float small = 0.88F * ImGui::GetFontSize(), doc = name.y + ImGui::GetTextLineHeight() + 1;
@@ -86,7 +96,9 @@ std::optional<std::string> SceneBrowser::draw() {
         ImGui::SetNextItemWidth(-1);
         if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
         ImGui::InputTextWithHint("##wanted", "search: a name, a word of what it shows", &wanted_);
-        const float below = ImGui::GetFrameHeightWithSpacing();
+        const float wrapped = ImGui::GetContentRegionAvail().x, gapBelow = ImGui::GetStyle().ItemSpacing.y;
+        const float said = trouble_.empty() ? 0 : ImGui::CalcTextSize(trouble_.c_str(), nullptr, false, wrapped).y + gapBelow;
+        const float below = ImGui::GetFrameHeightWithSpacing() + said;
         ImGui::BeginChild("cards", ImVec2(0, -below));
         const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
         const int across = std::max(1, static_cast<int>((room + gap) / (kCard + gap)));
@@ -99,15 +111,22 @@ std::optional<std::string> SceneBrowser::draw() {
             column = (column + 1) % across;
         }
         ImGui::EndChild();
+        if (!trouble_.empty()) {
+            ImGui::PushTextWrapPos(0);
+            ImGui::TextColored(ImVec4(0.98F, 0.55F, 0.45F, 1), "%s", trouble_.c_str());
+            ImGui::PopTextWrapPos();
+        }
         const float open = ImGui::CalcTextSize("open").x + 2 * ImGui::GetStyle().FramePadding.x;
         ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - open - ImGui::GetStyle().ItemSpacing.x);
+        if (refocus_) ImGui::SetKeyboardFocusHere();
+        refocus_ = false;
         const bool entered =
             ImGui::InputTextWithHint("##path", "or the path of a scene file", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+        if (entered) refocus_ = true;  // should it be refused
         ImGui::SameLine();
         if ((ImGui::Button("open") || entered) && !path_.empty()) chosen = path_;
     }
     ImGui::End();
-    if (chosen) shown_ = false;
     return chosen;
 }
 

@@ -456,6 +456,9 @@ Result<std::string> findAsset(const std::string& path, const std::string& sceneF
     std::vector<std::string> looked;
     looked.reserve(places.size());
     for (const fs::path& place : places) looked.push_back(place.string());
+    for (const fs::path& folder : assetFolders())  // what may not be shipped is fetched
+        if (const fs::path script = folder / ("fetch_" + fs::path(path).stem().string() + ".sh"); isFile(script))
+            return badInput(fmt::format("{} does not exist; `bash {}` brings it", path, script.string()));
     return badInput(fmt::format("{} does not exist; looked at {}", path, fmt::join(looked, ", ")));
 }
 

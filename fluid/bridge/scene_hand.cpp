@@ -207,7 +207,7 @@ SceneHand::Asks SceneHand::take(const InputEvents& input, const Camera& camera, 
         if (!down || place.position == nullptr) {
             const bool moved = place.position != nullptr &&
                                (*place.position != move_->position || (place.rotation != nullptr && *place.rotation != move_->rotation));
-            if (moved) before_ = Before{chosen_, move_->position, move_->rotation};
+            if (moved) before_ = Before{chosen_, move_->position, move_->rotation, *place.position};
             asks.recreate = moved && place.recreate;
             move_.reset();
         }
@@ -221,8 +221,9 @@ SceneHand::Asks SceneHand::take(const InputEvents& input, const Camera& camera, 
 bool SceneHand::undo(SceneFile& draft, Asks& asks) {
     if (!before_) return false;
     const Place<vec3> place = placeOf(before_->thing, draft);
-    if (place.position == nullptr) return false;
+    if (place.position == nullptr || *place.position != before_->movedTo) return false;
     std::swap(*place.position, before_->position);  // once more, and it is done again
+    before_->movedTo = *place.position;
     if (place.rotation != nullptr) std::swap(*place.rotation, before_->rotation);
     asks.edited = true;
     asks.recreate = place.recreate;

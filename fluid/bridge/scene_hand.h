@@ -67,6 +67,7 @@ class SceneHand {
     struct Before {
         Thing thing;
         vec3 position{0.0F}, rotation{0.0F};
+        vec3 movedTo{0.0F};  // whatever else stands under its number by now is left alone
     };
     std::optional<Before> before_;
     vec2 pressedAt_{0.0F};

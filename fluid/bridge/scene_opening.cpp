@@ -27,7 +27,7 @@ SceneOpening::SceneOpening(Request request) : request_(std::move(request)) {
 
 SceneOpening::~SceneOpening() {
     giveUp();
-    if (thread_.joinable()) thread_.join();
+    if (thread_.joinable()) (void)take();  // what nobody took goes in this context, and knows it
 }
 
 Result<OpenedScene> SceneOpening::work() {

@@ -157,7 +157,10 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     if (!greets && input.pressed(key::kEscape) && (saving_ || browser_.shown() || showHelp_)) closeTopmost();
     if (!greets && !ui_.wantsKeyboard()) takeKeys(input);
     bool recreate = showPanels_ && drawPanels();
-    if (!showPanels_) watch_.hide(*renderer_);
+    if (!showPanels_) {
+        watch_.hide(*renderer_);
+        drawSaid(seconds);
+    }
     if (showHelp_) drawHelp();
     if (opening_) drawOpening();
     reload_.draw();
@@ -169,6 +172,8 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     const Camera camera = cameraOf(draft_.camera, session_->bounds());
     const bool pours = !greets && brush_.take(input, camera, *session_, ui_.wantsMouse());
     brush_.draw(input, camera, *session_);
+    if (brush_.pours() && session_->world().stats().particles >= session_->world().particles().count)
+        message_ = fmt::format("the {} litres that pour.litres makes room for are poured: raise it to pour more", draft_.pour.litres);
     if (!greets && !pours && (!ui_.wantsMouse() || hand_.holds()) && !handle(input, recreate)) {
         moveCamera(input);
         touch(input);
@@ -207,7 +212,7 @@ void Viewer::takeKeys(const InputEvents& input) {
     }
     if (control && input.pressed('F')) showPanels_ = params_.find = true;
     constexpr float kZoom = 1.25F;
-    if (control && input.pressed('=')) zoom_ = std::min(zoom_ * kZoom, 4.0F);
+    if (control && (input.pressed('=') || input.pressed('+'))) zoom_ = std::min(zoom_ * kZoom, 4.0F);
     if (control && input.pressed('-')) zoom_ = std::max(zoom_ / kZoom, 0.5F);
     if (control && input.pressed('0')) zoom_ = 1;
     if (input.pressed('O')) browser_.show(!browser_.shown());
@@ -339,10 +344,8 @@ bool Viewer::drawPanels() {
         state.frameMs = profiler_.meanFrame();
         state.message = message_;
         if (session_->replaying() != nullptr) state.replay = session_->replaying()->sentence();
-        {
-            const std::lock_guard<std::mutex> lock(notices_->mutex);
-            state.notices = notices_->sentences;
-        }
+        const std::vector<std::string> notices = notices_->all();
+        state.notices = notices;
         FluidPanelActions actions = drawFluidPanel(session_->world(), state);
         if (actions.togglePause) paused_ = !paused_;
         if (actions.step) paused_ = stepOnce_ = true;
@@ -351,6 +354,7 @@ bool Viewer::drawPanels() {
         if (actions.scenes) browser_.show(!browser_.shown());
         if (actions.save) saving_ = true;
         if (actions.pour) turnBrush();
+        if (actions.dismiss) notices_->forget(*actions.dismiss);
         const Status taken = actions.picture ? takePicture() : actions.video ? toggleVideo() : ok();
         if (!taken) message_ = taken.error().message;
         ImGui::Spacing();

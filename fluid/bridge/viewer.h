@@ -117,6 +117,7 @@ class Viewer {
     void drawOpening();
     void takeDropped(const InputEvents& input);
     void drawSaving();
+    void drawSaid(double seconds);  // what the panels would say, for as long as reading it takes
     void chooseScene();
     Result<std::string> freePath(const char* kind) const;
     Status toggleVideo();
@@ -133,6 +134,14 @@ class Viewer {
     struct Notices {
         std::mutex mutex;
         std::vector<std::string> sentences;
+        std::vector<std::string> all() {
+            const std::lock_guard<std::mutex> lock(mutex);
+            return sentences;
+        }
+        void forget(const std::string& which) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            std::erase(sentences, which);
+        }
     };
     struct Opening {
         std::unique_ptr<SceneOpening> work;
@@ -159,7 +168,8 @@ class Viewer {
     SceneFile draft_;    // what the panel edits; becomes the session's when it makes sense
     SceneFile settled_;  // as it was before the edit that is under way
     ParamMemory params_;
-    std::string message_;
+    std::string message_, said_;  // said_: what drawSaid() shows
+    double saidFor_ = 0;          // s
     bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
     vec2 laidOutFor_{0.0F};  // the window's size that the panel was put into, in ImGui's coordinates
     vec2 pressedAt_{0.0F};   // where the left button went down; window coordinates
@@ -177,13 +187,13 @@ class Viewer {
     FirstStart firstStart_;
     std::optional<VideoWriter> video_;
     ivec2 videoSize_{0};
-    bool stepShown_ = false;  // a step was made that no video has yet
-    std::string savePath_;    // where the scene is to go; asked for while saving_
-    bool saving_ = false;
-    float zoom_ = 1;               // of the panels, as the person likes it
-    std::future<Status> written_;  // the picture taken last
-    int repicked_ = 0;             // by the session's budget
-    std::string asked_;            // as --backend
+    bool stepShown_ = false;                 // a step was made that no video has yet
+    std::string savePath_, saveTrouble_;     // where the scene is to go, asked for while saving_; why it did not
+    bool saving_ = false, refocus_ = false;  // refocus_: what was refused is typed on
+    float zoom_ = 1;                         // of the panels, as the person likes it
+    std::future<Status> written_;            // the picture taken last
+    int repicked_ = 0;                       // by the session's budget
+    std::string asked_;                      // as --backend
     std::function<Result<SharedGl>()> share_;
     SharedGl elsewhere_;  // of the thread that opens scenes
     std::unique_ptr<Opening> opening_;

@@ -7,12 +7,27 @@
 
 #include <cctype>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include "fluid/bridge/takeover.h"
 #include "fluid/sim/world_state.h"
 
 namespace rivulet {
+
+namespace {
+
+const ImVec4 kRefused(0.98F, 0.55F, 0.45F, 1);
+
+// As a shell would have it: ~ is the person's own folder.
+std::string fullPath(const std::string& typed) {
+    const char* home = std::getenv("HOME");
+    const bool own = home != nullptr && (typed == "~" || typed.starts_with("~/"));
+    return own ? home + typed.substr(1) : typed;
+}
+
+}  // namespace
 
 // An edit that makes no sense is refused with a sentence, and the last good scene stays.
 void Viewer::takeEdits(bool recreate) {
@@ -157,7 +172,10 @@ void Viewer::adopt(OpenedScene opened, bool other) {
     if ((!other || reopening_) && Session::sameWater(session_->scene(), opened.session->scene()))
         if (Status gone = opened.session->goOnFrom(*session_); !gone) log_.notice(gone.error().message);
     hand_.letGo();
-    if (other && !reopening_) savePath_.clear();  // or it would be offered for the next scene
+    if (other && !reopening_) {
+        savePath_.clear();  // or it would be offered for the next scene
+        paused_ = false;
+    }
     if (other) hand_ = {};
     if (other) brush_ = {};
     session_ = std::move(opened.session);
@@ -267,16 +285,39 @@ void Viewer::takeDropped(const InputEvents& input) {
     params_.compare(visiting(draft_));
 }
 
+// Low in the middle, for who has hidden the panels.
+void Viewer::drawSaid(double seconds) {
+    std::string now = message_;
+    for (const std::string& notice : notices_->all()) now += (now.empty() ? "" : "\n") + notice;
+    constexpr double kReading = 12;  // s
+    saidFor_ = now == std::exchange(said_, now) ? saidFor_ + seconds : 0;
+    if (now.empty() || saidFor_ > kReading || !reload_.message().empty()) return;
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(display.x / 2, 0.94F * display.y), ImGuiCond_Always, ImVec2(0.5F, 1.0F));
+    ImGui::Begin("said", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PushTextWrapPos(std::min(0.8F * display.x, 40 * ImGui::GetFontSize()));
+    ImGui::TextUnformatted(now.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
 void Viewer::drawSaving() {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     if (savePath_.empty()) savePath_ = draft_.name + ".json";
     ImGui::SetNextWindowPos(ImVec2(display.x / 2, display.y / 2), ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
     ImGui::Begin("save the scene", &saving_, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 28);
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (ImGui::IsWindowAppearing()) saveTrouble_.clear();
+    if (ImGui::IsWindowAppearing() || refocus_) ImGui::SetKeyboardFocusHere();
+    refocus_ = false;
     const bool entered = ImGui::InputText("##path", &savePath_, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (ImGui::IsItemEdited()) saveTrouble_.clear();
+    std::string path = fullPath(savePath_);
+    if (!path.empty() && std::filesystem::path(path).extension() != ".json") path += ".json";  // by which a scene is known
     std::error_code error;
-    const bool there = std::filesystem::exists(savePath_, error);
+    const bool there = std::filesystem::exists(path, error);
     const bool pressed = ImGui::Button(there ? "write over it###write" : "save###write");
     ImGui::SameLine();
     if (ImGui::Button("cancel")) saving_ = false;
@@ -284,14 +325,22 @@ void Viewer::drawSaving() {
         ImGui::SameLine();
         ImGui::TextDisabled("a file of this name is there");
     }
+    if (!saveTrouble_.empty()) {
+        ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28);
+        ImGui::TextColored(kRefused, "%s", saveTrouble_.c_str());
+        ImGui::PopTextWrapPos();
+    }
     ImGui::End();
+    if (entered && there) refocus_ = true;
     // Enter alone does not write over a file.
     if (!(pressed || (entered && !there)) || savePath_.empty()) return;
     SceneFile scene = draft_;
-    if (Status saved = saveScene(scene, savePath_); !saved) {
-        message_ = saved.error().message;
+    if (Status saved = saveScene(scene, path); !saved) {
+        saveTrouble_ = saved.error().message;
+        refocus_ = true;
         return;
     }
+    savePath_ = path;
     saving_ = false;
     if (std::filesystem::equivalent(savePath_, draft_.source.path, error)) {  // from now on the file alone says what the scene is
         draft_.source = {draft_.source.path, {}, {}};
@@ -303,11 +352,10 @@ void Viewer::drawSaving() {
 void Viewer::chooseScene() {
     const std::optional<std::string> path = browser_.draw();
     if (!path) return;
-    Result<SceneFile> scene = loadScene(*path, {});
-    if (scene)
-        open(std::move(*scene));
-    else
-        message_ = scene.error().message;
+    Result<SceneFile> scene = loadScene(fullPath(*path), {});
+    if (!scene) return browser_.refuse(scene.error().message);
+    browser_.show(false);
+    open(std::move(*scene));
 }
 
 }  // namespace rivulet

@@ -170,6 +170,8 @@ bool WatchWindow::draw(const Session& session, SceneRenderer& renderer, const Ti
                        SceneFile& draft, float margin, float room) {
     if (asked_ != Tab::none) open_ = asked_;
     anchor(margin, room);
+    constexpr float kNarrow = 850;  // there the picture comes first
+    if (asked_ == Tab::none) ImGui::SetNextWindowCollapsed(ImGui::GetIO().DisplaySize.x < kNarrow, ImGuiCond_Once);
     shown_ = Tab::none;
     bool recreate = false;
     if (ImGui::Begin("measured###watch", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {

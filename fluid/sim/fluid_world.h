@@ -153,7 +153,7 @@ class FluidWorld {
     Status restore(WorldState& state);
     // Goes on where another world is that has the same box and spacing, among solids that stand at `poses` and have `shapes` now (as
     // FluidInputs; all of them): with its time, its particles, but for those that are inside a solid here, and its bodies, if they are
-    // the same. What emitters and sinks have done begins to be counted anew, foam is left behind. Waits for both devices. Error
+    // the same, and its foam, where as many flecks may be here. What emitters and sinks have done is counted anew. Waits for both. Error
     // (badInput): another box or spacing, liquids that this world does not know, more particles than it has room for.
     Status goOnFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 

@@ -199,6 +199,11 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
     handOver(w.particles.matterOf, o.particles.matterOf, o.traits.matter, vec4(1.0F, 1.0F, own.viscosity, own.row));
     handOver(w.particles.absorptionOf, o.particles.absorptionOf, o.coloured, own.absorption);
     w.gatherColours();
+    if (w.foam && o.foam) {
+        WorldState state;
+        o.foam->save(state);
+        if (const auto saved = w.foam->take(state)) w.foam->restore(*saved);  // else another number may be: it begins without
+    }
     w.begun = static_cast<uint32_t>(kept.size());
     w.time = o.time;
     w.pace.reset(o.pace.pending());

@@ -86,6 +86,41 @@ TEST(GoOn, OnlyWhatIsInTheMovedBallIsTakenAway) {
 }
 
 // A state that is saved after it can be resumed by a session that knows nothing of the first.
+TEST(GoOn, FoamStaysOnTheWater) {
+    auto device = cpu();
+    SceneFile before = scene();
+    before.fluid.foam.most = 2000;
+    before.fluid.foam.speedFrom = 0.2F;
+    before.fluid.foam.speedTo = 1;
+    before.fluid.foam.airFrom = 0.5F;
+    before.fluid.foam.airTo = 2;
+    auto one = open(*device, before);
+    run(*one, 40);
+    const auto flecks = [&](Session& session) {
+        device->finish();
+        const ParticleView view = session.world().particles();
+        std::vector<vec4> alive;
+        for (const vec4& fleck : device->readAll<vec4>(*view.foam, view.foamSlots))
+            if (fleck.w > 0) alive.push_back(fleck);
+        return alive;
+    };
+    const std::vector<vec4> had = flecks(*one);
+    ASSERT_GT(had.size(), 20U);
+    SceneFile after = before;
+    after.colliders[0].position = vec3(0.6F, 0.15F, 0.3F);
+    after.room = one->world().particles().count;
+    auto two = open(*device, after);
+    ASSERT_TRUE(two->goOnFrom(*one));
+    EXPECT_EQ(flecks(*two), had);
+    run(*two, 1);
+    EXPECT_GT(flecks(*two).size(), had.size() / 2) << "they live on";
+
+    after.fluid.foam.most = 1000;
+    auto three = open(*device, after);
+    ASSERT_TRUE(three->goOnFrom(*one));
+    EXPECT_TRUE(flecks(*three).empty()) << "another number of them begins anew";
+}
+
 TEST(GoOn, ASavedStateBringsItsRoom) {
     auto device = cpu();
     SceneFile inTheWater = scene();

@@ -41,6 +41,19 @@ TEST(InputQueue, ADragWithinAFrameMovesWhileTheButtonIsHeld) {
     EXPECT_FALSE(e.down(MouseButton::left));
 }
 
+// On a German keyboard Z is where Y is on a US one, and plus has a key of its own.
+TEST(InputQueue, AKeyIsWhatItPrints) {
+    EXPECT_EQ(keyOf('Y', "z"), 'Z');
+    EXPECT_EQ(keyOf('Z', "y"), 'Y');
+    EXPECT_EQ(keyOf(']', "+"), '+');
+    EXPECT_EQ(keyOf(334, "+"), '+') << "the number pad's";
+    EXPECT_EQ(keyOf('1', "1"), '1');
+    EXPECT_EQ(keyOf('A', "\xD1\x84"), 'A') << "Cyrillic";
+    EXPECT_EQ(keyOf('2', "\xC3\xA9"), '2') << "French digits are with shift";
+    EXPECT_EQ(keyOf(' ', " "), ' ');
+    EXPECT_EQ(keyOf(key::kEscape, nullptr), key::kEscape);
+}
+
 TEST(InputQueue, TwoClicksAreTwo) {
     InputQueue queue;
     InputEvents e;

@@ -280,6 +280,7 @@ TEST_F(Hand, PoursWhereTheMousePoints) {
     const size_t poured = count();
     EXPECT_GT(poured, held + 100);
     EXPECT_EQ(viewer_->scene().camera.position, eye);
+    EXPECT_EQ(viewer_->message(), "");
     press(false, kFrame);
     EXPECT_EQ(viewer_->hand().chosen(), Session::Thing{}) << "no click";
     for (int k = 0; k < 3; ++k) frame(kFrame);
@@ -298,6 +299,23 @@ TEST_F(Hand, PoursWhereTheMousePoints) {
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->pour.litres, saved.pour.litres);
     std::filesystem::remove(path);
+}
+
+TEST_F(Hand, SaysWhenAllIsPouredThatThereIsRoomFor) {
+    SceneFile little = viewer_->scene();
+    little.emitters.clear();
+    little.pour.litres = 3;
+    viewer_->open(little);
+    settle();
+    const vec3 place(0.8F, 0.0F, 0.6F);
+    moveTo(seen(place));
+    input_.keysPressed = {'P'};
+    frame();
+    press(true, kFrame);
+    EXPECT_EQ(viewer_->message(), "");
+    for (int k = 0; k < 120 && viewer_->message().empty(); ++k) moveTo(seen(place) + vec2(k % 2, 0), kFrame);
+    EXPECT_NE(viewer_->message().find("pour.litres"), std::string::npos)
+        << viewer_->session().world().stats().particles << " of " << viewer_->session().world().particles().count;
 }
 
 TEST_F(Hand, TheTreeChoosesHidesAndLooksUp) {

@@ -1,7 +1,10 @@
 // Scenes that are opened while another is shown: the window goes on, what fails or is given up leaves all as it was.
 #include <gtest/gtest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -232,6 +235,54 @@ TEST_P(Opening, ASceneIsChosenAmongTheirPictures) {
     EXPECT_EQ(viewer_->scene().name, "falling_cube") << viewer_->message();
 }
 
+// A wrong path is said in the browser, which stays.
+TEST_P(Opening, AWrongPathLeavesTheBrowser) {
+    const auto browser = [] {
+        const ImGuiWindow* window = ImGui::FindWindowByName("scenes");
+        return window != nullptr && window->Active;
+    };
+    input_.keysPressed = {'O'};
+    frame();
+    frame();
+    const auto type = [&](const std::string& path) {
+        const ImGuiWindow* window = ImGui::FindWindowByName("scenes");
+        for (const bool down : {true, false}) {
+            input_.mouse = vec2(window->InnerRect.Min.x + 40, window->InnerRect.Max.y - 18);
+            frame();
+            frame();
+            (down ? input_.buttonPressed : input_.buttonReleased)[0] = true;
+            input_.buttonDown[0] = down;
+            frame();
+        }
+        frame();
+        input_.text = path;
+        frame();
+        input_.keysPressed = input_.keysDown = {key::kEnter};
+        frame();
+        input_.keysDown.clear();
+        frame();
+    };
+    type("nowhere.json");
+    EXPECT_TRUE(browser());
+    EXPECT_EQ(viewer_->scene().name, "small");
+    for (int k = 0; k < 3; ++k) frame();
+    for (int k = 0; k < 20; ++k) {
+        input_.keysPressed = input_.keysDown = {key::kBackspace};
+        frame();
+        input_.keysDown.clear();
+        frame();
+    }
+    input_.text = "falling_cube";
+    frame();
+    input_.keysPressed = input_.keysDown = {key::kEnter};
+    frame();
+    input_.keysDown.clear();
+    wait();
+    frame();
+    EXPECT_EQ(viewer_->scene().name, "falling_cube") << viewer_->message();
+    EXPECT_FALSE(browser());
+}
+
 TEST_P(Opening, AVideoHasAPictureAStep) {
     namespace fs = std::filesystem;
     const fs::path before = fs::current_path(), folder = fs::temp_directory_path() / ("rivulet_video_" + std::string(GetParam()));
@@ -321,6 +372,20 @@ TEST_P(Opening, TheSceneIsSavedAndReadsBackTheSame) {
     std::ofstream(taken) << "somebody's";
     save(taken);
     EXPECT_EQ(*readFile(taken), "somebody's") << "Enter alone writes over nothing";
+    // What is refused is said where it was typed, which is typed on.
+    input_.keysPressed = {key::kEscape};
+    frame();
+    frame();
+    save((folder / "nowhere/x.json").string());
+    EXPECT_FALSE(fs::exists(folder / "nowhere"));
+    for (int k = 0; k < 3; ++k) frame();
+    EXPECT_TRUE(ImGui::GetIO().WantTextInput);
+    const char* const home = std::getenv("HOME");
+    const std::string own = home != nullptr ? home : "";
+    setenv("HOME", (folder / "new").c_str(), 1);
+    save("~/plain");
+    setenv("HOME", own.c_str(), 1);
+    EXPECT_TRUE(fs::exists(folder / "new/plain.json")) << "in the person's folder, with the ending by which a scene is known";
     fs::remove_all(folder);
 }
 

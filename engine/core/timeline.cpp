@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 namespace rivulet {
 
@@ -53,8 +54,11 @@ std::vector<Timeline::Lane> Timeline::lanes(double from) const {
     std::vector<Lane> some;
     for (const Lane& l : lanes_) {
         some.push_back({l.name, {}});
-        for (const PassSpan& s : l.spans)
-            if (s.end > from) some.back().spans.push_back(s);
+        // The newest of minutes are wanted: they lie at the end, nearly in order, for who tells of spans tells of them as they end.
+        constexpr double kLate = 1;  // s
+        auto first = l.spans.end();
+        while (first != l.spans.begin() && std::prev(first)->end > from - kLate) --first;
+        std::copy_if(first, l.spans.end(), std::back_inserter(some.back().spans), [&](const PassSpan& s) { return s.end > from; });
     }
     return some;
 }

@@ -32,7 +32,8 @@ class Timeline {
         std::string name;
         std::vector<PassSpan> spans;  // as they came
     };
-    std::vector<Lane> lanes(double from = 0) const;  // what ended after `from`, s
+    // What ended after `from`, s. A lane's spans are told of in the order of their ends, to a second.
+    std::vector<Lane> lanes(double from = 0) const;
     // s of hostSeconds(): all that ended later is there still. 0: nothing has been forgotten.
     double remembersSince() const;
     void restart();  // as new; of what began before now it hears no more, as it does some frames late of a GPU

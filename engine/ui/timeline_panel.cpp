@@ -40,11 +40,15 @@ void TimelinePanel::draw(const Timeline& timeline, double frame, float width) {
     const PassSpan* pointed = nullptr;
     for (size_t k = 0; k < lanes.size(); ++k) {
         const float top = low.y + row * static_cast<float>(k);
+        float drawn = 0;
         for (const PassSpan& span : lanes[k].spans) {
             if (span.begin > until_) continue;
             const ImVec2 a(at(span.begin), top + 2), b(std::max(at(span.end), a.x + 0.5F), top + row - 2);
-            constexpr float kRounded = 4;  // px: below, corners are not seen
-            list->AddRectFilled(a, b, colourOf(span.name), b.x - a.x > kRounded ? 1 : 0);
+            constexpr float kSeen = 0.7F, kRounded = 4;  // px: of what is less not all are drawn; below the other, corners are not seen
+            if (b.x - a.x >= kSeen || a.x - drawn >= kSeen) {
+                list->AddRectFilled(a, b, colourOf(span.name), b.x - a.x > kRounded ? 1 : 0);
+                drawn = a.x;
+            }
             if (held_ && mouse.x >= a.x && mouse.x <= b.x && mouse.y >= top && mouse.y < top + row) pointed = &span;
         }
         const ImVec2 named = ImGui::CalcTextSize(lanes[k].name.c_str());  // readable over any colour

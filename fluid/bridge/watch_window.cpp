@@ -157,8 +157,11 @@ void WatchWindow::anchor(float margin, float room) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     if (width_ == 0) corner_ = vec2(display.x - margin, margin);
     if (display_ > 0) corner_.x += display.x - display_;
-    const float wish = kTabs[static_cast<size_t>(open_)].wide * ImGui::GetFontSize();
-    const float wide = std::floor(std::max(std::min(wish, room), 17 * ImGui::GetFontSize()));
+    const auto widthOf = [&](float wish) {
+        return std::floor(std::max(std::min(wish, room / ImGui::GetFontSize()), 17.0F) * ImGui::GetFontSize());
+    };
+    const float wide = widthOf(kTabs[static_cast<size_t>(open_)].wide);
+    shift_ = wide - widthOf(kTabs[0].wide);
     const float tall = std::max(display.y - 2 * margin, 80.0F);
     if (wide != width_ || display_ != display.x) ImGui::SetNextWindowPos(ImVec2(corner_.x, corner_.y), ImGuiCond_Always, ImVec2(1, 0));
     ImGui::SetNextWindowSizeConstraints(ImVec2(wide, 0), ImVec2(wide, tall));
@@ -175,12 +178,16 @@ bool WatchWindow::draw(const Session& session, SceneRenderer& renderer, const Ti
     shown_ = Tab::none;
     bool recreate = false;
     if (ImGui::Begin("measured###watch", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+        // Their names stay where they are, whichever is open.
+        const float left = ImGui::GetCursorPosX();
+        ImGui::SetCursorPosX(left + shift_);
         if (ImGui::BeginTabBar("watched")) {
             for (size_t k = 0; k < std::size(kTabs); ++k) {
                 const auto tab = static_cast<Tab>(k);
                 const ImGuiTabItemFlags flags = asked_ == tab ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None;
                 if (!ImGui::BeginTabItem(kTabs[k].name, nullptr, flags)) continue;
                 open_ = shown_ = tab;
+                ImGui::SetCursorPosX(left);
                 const ImVec2 display = ImGui::GetIO().DisplaySize;
                 const float used = ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y;
                 recreate = drawTab(session, renderer, timeline, profiler, draft, display.y - 2 * margin - used);

@@ -59,6 +59,7 @@ class WatchWindow {
     double time_ = 0;     // s simulated, of those
     vec2 corner_{0.0F};   // px: where its right edge and its top are
     float width_ = 0;     // px, of the last frame
+    float shift_ = 0;     // px: how much wider it is than with the first tab
     float display_ = 0;   // px across
 };
 

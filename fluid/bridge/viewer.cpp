@@ -79,11 +79,12 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     v.gl_ = currentGlFacts();
     v.firstStart_ = FirstStart(options.seen);
     v.share_ = options.share;
+    v.clDevice_ = options.device;
     std::string backend = options.backend;
     OpenedScene first;
     if (options.showing && options.share && options.cooperate != "auto") {
         v.device_ = makeDevice(backend, v.gl_, v.log_, options.device);
-        Result<SharedGl> made = v.device_->backend() != Backend::cl ? options.share() : failed("");
+        Result<SharedGl> made = options.share();
         if (made) {
             v.elsewhere_ = std::move(*made);
             v.share_ = {};

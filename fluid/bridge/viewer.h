@@ -193,7 +193,7 @@ class Viewer {
     float zoom_ = 1;                         // of the panels, as the person likes it
     std::future<Status> written_;            // the picture taken last
     int repicked_ = 0;                       // by the session's budget
-    std::string asked_;                      // as --backend
+    std::string asked_, clDevice_;           // as --backend, --device
     std::function<Result<SharedGl>()> share_;
     SharedGl elsewhere_;  // of the thread that opens scenes
     std::unique_ptr<Opening> opening_;

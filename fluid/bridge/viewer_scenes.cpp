@@ -104,7 +104,7 @@ void Viewer::startOpening(SceneFile scene, bool other, bool written) {
         opening_.reset();
     }
     const Backend backend = device_->backend();
-    if (share_ && !elsewhere_ && backend != Backend::cl) {
+    if (share_ && !elsewhere_) {
         if (Result<SharedGl> made = share_())
             elsewhere_ = std::move(*made);
         else
@@ -112,17 +112,18 @@ void Viewer::startOpening(SceneFile scene, bool other, bool written) {
         share_ = {};
     }
     const std::string asked = other ? asked_ : "cpu";
-    if (elsewhere_ && backend != Backend::cl) {
+    if (elsewhere_) {
         const bool renderer = needsOtherRenderer(session_->scene(), scene);
         opening_ = std::make_unique<Opening>();
         opening_->other = other;
         opening_->before = before;
-        opening_->work = std::make_unique<SceneOpening>(SceneOpening::Request{.scene = std::move(scene),
-                                                                              .device = makeDevice(backendName(backend), gl_, log_),
-                                                                              .backend = asked,
-                                                                              .renderer = renderer,
-                                                                              .gl = elsewhere_,
-                                                                              .log = log_});
+        opening_->work =
+            std::make_unique<SceneOpening>(SceneOpening::Request{.scene = std::move(scene),
+                                                                 .device = makeDevice(backendName(backend), gl_, log_, clDevice_),
+                                                                 .backend = asked,
+                                                                 .renderer = renderer,
+                                                                 .gl = elsewhere_,
+                                                                 .log = log_});
         constexpr double kAtOnce = 0.05;  // s: nobody sees that the window waited
         if (opening_->work->ready(kAtOnce)) finishOpening();
         return;

@@ -26,6 +26,8 @@ class Opening : public testing::FramebufferFixture, public ::testing::WithParamI
         ASSERT_TRUE(context_ && target_.name() != 0);
         input_.mouse = vec2(700, 100);
         viewer_ = make(small());
+        ASSERT_TRUE(viewer_);
+        ASSERT_STREQ(backendName(viewer_->session().world().device().backend()), GetParam());
     }
     void TearDown() override {
         viewer_.reset();
@@ -130,6 +132,7 @@ TEST_P(Opening, TheSceneBeforeGoesOnUntilTheNextIsReady) {
     EXPECT_EQ(viewer_->scene().name, "small");
     EXPECT_GT(wait(), 3);
     EXPECT_EQ(viewer_->scene().name, "large");
+    EXPECT_STREQ(backendName(viewer_->session().world().device().backend()), GetParam());
     EXPECT_EQ(viewer_->message(), "");
     EXPECT_GT(then, 0);
     const double begins = viewer_->session().time();
@@ -411,7 +414,7 @@ TEST_P(Opening, APictureIsTakenOfWhatIsShown) {
     fs::remove_all(folder);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Opening, ::testing::Values("cpu", "gl"), [](const auto& each) { return std::string(each.param); });
+INSTANTIATE_TEST_SUITE_P(Devices, Opening, ::testing::Values("cpu", "gl", "cl"), [](const auto& each) { return std::string(each.param); });
 
 }  // namespace
 }  // namespace rivulet

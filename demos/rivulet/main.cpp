@@ -6,10 +6,13 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "engine/core/table.h"
+#include "fluid/bridge/scene_file.h"
 
 namespace rivulet {
 
@@ -50,7 +53,12 @@ int dispatch(const Arguments& words) {
     }
     const Verb* verb = verbs().find(words[0]);
     if (verb == nullptr) {
-        std::vector<std::string> names = verbs().names();
+        std::vector<std::string> names = verbs().names(), scenes;
+        if (nearestName(words[0], names).empty()) {  // who names a scene alone wants to see it
+            for (const SceneListing& each : listScenes()) scenes.push_back(std::filesystem::path(each.path).stem().string());
+            const std::string scene = words[0].ends_with(".json") ? words[0] : nearestName(words[0], scenes);
+            if (!scene.empty()) return report(badInput(fmt::format("unknown verb '{}'; `rivulet run {}` opens a scene", words[0], scene)));
+        }
         return report(checkWord("verb", words[0], names).error());
     }
     return verb->run({words.begin() + 1, words.end()});

@@ -34,6 +34,8 @@ TEST(ProgramCli, AMistypedNameIsAnsweredWithTheNearest) {
     Scratch scratch;
     std::string scene = scratch.file("small.json", smallScene());
     expectRefusal(runProgram({"runn", scene}), 2, "did you mean 'run'");
+    expectRefusal(runProgram({"falling_cub"}), 2, "`rivulet run falling_cube`");
+    expectRefusal(runProgram({scene}), 2, "`rivulet run " + scene + "`");
     expectRefusal(runProgram({"run", scene, "--bakcend", "cpu"}), 2, "did you mean '--backend'");
     expectRefusal(runProgram({"run", "--headles", scene}), 2, "did you mean '--headless'");
     expectRefusal(runProgram({"run", scene, "--backend", "cpuu"}), 2, "did you mean 'cpu'");

@@ -5,39 +5,24 @@
 #include <filesystem>
 
 #include "fluid/bridge/viewer.h"
-#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/program_runner.h"
+#include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {
 namespace {
 
-class FirstStartTest : public testing::FramebufferFixture {
+class FirstStartTest : public testing::ViewerFixture {
   protected:
-    void SetUp() override {
-        open({900, 700}, {90, 70});
-        ASSERT_TRUE(context_ && target_.name() != 0);
-    }
-    void TearDown() override {
-        viewer_.reset();
-        FramebufferFixture::TearDown();
-    }
+    void SetUp() override { usual_ = 1.0 / 60; }
     void start() {
         SceneFile scene;
         scene.fluid.spacing = 0.1F;
         scene.look.renderer = "points";
-        auto made = Viewer::create(scene, {.backend = "cpu", .seen = seen_}, {});
-        ASSERT_TRUE(made) << made.error().message;
-        viewer_ = std::move(*made);
+        begin(scene, {900, 700}, {90, 70}, {.backend = "cpu", .seen = seen_});
         frame();
-    }
-    void frame() {
-        const Status drawn = viewer_->frame(input_, 1.0 / 60, target_.name());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        endFrame();
     }
     testing::Scratch scratch_;
     std::string seen_ = (scratch_.path() / "config/rivulet/seen").string();
-    std::unique_ptr<Viewer> viewer_;
 };
 
 TEST_F(FirstStartTest, AKeyEndsItForGood) {

@@ -3,9 +3,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 
@@ -15,7 +13,7 @@
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/viewer.h"
 #include "fluid/sim/host_particles.h"
-#include "tests/unit/framebuffer_fixture.h"
+#include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {
 namespace {
@@ -49,11 +47,9 @@ TEST(ScenePick, ARayMeetsTheNearestVisibleTriangleFromEitherSide) {
     EXPECT_FALSE(pick(scene, vec3(5, 0, 0), vec3(0, 0, 1)));
 }
 
-class Hand : public testing::FramebufferFixture {
+class Hand : public testing::ViewerFixture {
   protected:
     void SetUp() override {
-        open(kWindow, {140, 70});
-        ASSERT_TRUE(context_ && target_.name() != 0);
         SceneFile scene;
         scene.name = "hand";
         scene.fluid.spacing = 0.05F;
@@ -70,36 +66,9 @@ class Hand : public testing::FramebufferFixture {
         scene.emitters.resize(1);
         scene.emitters[0].position = vec3(0.2F, 0.8F, 0.8F);
         scene.emitters[0].litresPerSecond = 0.5F;
-        auto viewer = Viewer::create(scene, {.backend = "cpu"}, {});
-        ASSERT_TRUE(viewer) << viewer.error().message;
-        viewer_ = std::move(*viewer);
+        begin(scene, kWindow, {140, 70});
         moveTo(vec2(690, 690));
         frame();
-    }
-    void TearDown() override {
-        FramebufferFixture::TearDown();
-        viewer_.reset();
-    }
-    void frame(double seconds = 0) {
-        const Status drawn = viewer_->frame(input_, seconds, target_.name());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        endFrame();
-    }
-    void moveTo(vec2 place, double seconds = 0) {
-        input_.mouseDelta = place - input_.mouse;
-        input_.mouse = place;
-        frame(seconds);
-    }
-    void press(bool down, double seconds = 0) {
-        (down ? input_.buttonPressed : input_.buttonReleased)[0] = true;
-        input_.buttonDown[0] = down;
-        frame(seconds);
-    }
-    void settle() {
-        for (const auto from = std::chrono::steady_clock::now(); viewer_->opening() != nullptr;) {
-            frame();
-            ASSERT_LT(std::chrono::steady_clock::now() - from, std::chrono::minutes(2));
-        }
     }
     Camera camera() { return cameraOf(viewer_->scene().camera, viewer_->session().bounds()); }
     vec2 seen(const vec3& p) { return *seenAt(camera(), p, vec2(kWindow)); }
@@ -118,34 +87,8 @@ class Hand : public testing::FramebufferFixture {
         settle();
     }
 
-    // Moves the mouse over the widget of these names ("#2": a number) in the window whose name holds `window`, row by row.
-    bool hover(std::string_view window, std::initializer_list<const char*> names) {
-        for (ImGuiWindow* each : ImGui::GetCurrentContext()->Windows) {
-            if (!each->WasActive || std::string_view(each->Name).find(window) == std::string_view::npos) continue;
-            ImGuiID id = each->ID;
-            for (const char* name : names) {
-                const int number = name[0] == '#' && name[1] != '#' ? std::atoi(name + 1) : -1;
-                id = number >= 0 ? ImHashData(&number, sizeof number, id) : ImHashStr(name, 0, id);
-            }
-            const ImRect inside = each->InnerRect;
-            for (const float x : {14.0F, 100.0F})
-                for (float y = inside.Min.y + 3; y < inside.Max.y; y += 5) {
-                    moveTo({inside.Min.x + x, y});
-                    frame();
-                    if (ImGui::GetCurrentContext()->HoveredIdPreviousFrame == id) return true;
-                }
-        }
-        return false;
-    }
-    void click() {
-        press(true);
-        press(false);
-        frame();
-    }
-
     static constexpr ivec2 kWindow{1400, 700};
     static constexpr double kFrame = 1.0 / 60;
-    std::unique_ptr<Viewer> viewer_;
 };
 
 TEST_F(Hand, LiftsABodyAndThrowsIt) {
@@ -154,7 +97,7 @@ TEST_F(Hand, LiftsABodyAndThrowsIt) {
     EXPECT_LT(rest.y, 0.2F) << "it has fallen to the floor";
     const CameraParams before = viewer_->scene().camera;
     moveTo(seen(rest));
-    press(true, kFrame);
+    press(true, MouseButton::left, kFrame);
     EXPECT_TRUE(viewer_->hand().holds());
     const ViewRay ray = rayThrough(camera(), input_.mouse, vec2(kWindow));
     const Pose taken = viewer_->session().world().bodies()[0].pose;
@@ -171,7 +114,7 @@ TEST_F(Hand, LiftsABodyAndThrowsIt) {
     // 0.3 m within a tenth of a second, and let go.
     const vec3 high = bodyAt();
     for (int k = 1; k <= 6; ++k) moveTo(seen(high + vec3(-0.05F * static_cast<float>(k), 0, 0)), kFrame);
-    press(false, kFrame);
+    press(false, MouseButton::left, kFrame);
     EXPECT_FALSE(viewer_->hand().holds());
     const BodyState thrown = viewer_->session().world().bodies()[0];
     EXPECT_LT(thrown.velocity.x, -0.5F);
@@ -187,9 +130,9 @@ TEST_F(Hand, LiftsABodyAndThrowsIt) {
 // However hard one pulls, through walls and far outside, it comes back.
 TEST_F(Hand, PullsThroughNoWall) {
     moveTo(seen(bodyAt()));
-    press(true, kFrame);
+    press(true, MouseButton::left, kFrame);
     for (int k = 0; k < 60; ++k) moveTo({360.0F + static_cast<float>(k * 211 % 640), static_cast<float>(k * 137 % 690)}, kFrame);
-    press(false, kFrame);
+    press(false, MouseButton::left, kFrame);
     for (int k = 0; k < 60; ++k) frame(kFrame);
     EXPECT_EQ(glm::clamp(bodyAt(), vec3(0.0F), vec3(1.0F)), bodyAt());
     EXPECT_EQ(viewer_->session().world().stats().nan, 0U);
@@ -224,10 +167,7 @@ TEST_F(Hand, MovesAMeshByItsHandlesAndPutsItBack) {
     EXPECT_GT(time, 0);
     EXPECT_NEAR(heightOfAll(), height, 1.0e-6);
 
-    input_.keysDown = {key::kLeftControl};
-    input_.keysPressed = {'Z'};
-    frame();
-    input_.keysDown.clear();
+    withControl('Z');
     settle();
     EXPECT_EQ(viewer_->scene().colliders[0].position, was);
 
@@ -267,30 +207,28 @@ TEST_F(Hand, PoursWhereTheMousePoints) {
     const size_t held = count();
     const vec3 place(0.8F, 0.0F, 0.6F);
     moveTo(seen(place));
-    input_.keysPressed = {'P'};
-    frame();
+    key('P');
     settle();
     EXPECT_TRUE(viewer_->brush().on());
     EXPECT_GT(viewer_->scene().pour.litres, 1);
     EXPECT_EQ(viewer_->session().time(), time) << "the same water";
     EXPECT_NEAR(static_cast<double>(count()), static_cast<double>(held), 2) << "but the emitter's";
     const vec3 eye = viewer_->scene().camera.position;
-    press(true, kFrame);
+    press(true, MouseButton::left, kFrame);
     for (int k = 0; k < 20; ++k) moveTo(seen(place) + vec2(k % 2, 0), kFrame);
     const size_t poured = count();
     EXPECT_GT(poured, held + 100);
     EXPECT_EQ(viewer_->scene().camera.position, eye);
     EXPECT_EQ(viewer_->message(), "");
-    press(false, kFrame);
+    press(false, MouseButton::left, kFrame);
     EXPECT_EQ(viewer_->hand().chosen(), Session::Thing{}) << "no click";
     for (int k = 0; k < 3; ++k) frame(kFrame);
     EXPECT_LT(count(), poured + 20) << "let go of, it ends; the scene's own emitter goes on";
-    input_.keysPressed = {key::kEscape};
-    frame();
+    key(key::kEscape);
     EXPECT_FALSE(viewer_->brush().on());
-    press(true, kFrame);
+    press(true, MouseButton::left, kFrame);
     moveTo(seen(place) + vec2(40, 0), kFrame);
-    press(false, kFrame);
+    press(false, MouseButton::left, kFrame);
     EXPECT_NE(viewer_->scene().camera.position, eye) << "the button turns the view again";
     const std::string path = "poured.json";
     SceneFile saved = viewer_->scene();
@@ -309,9 +247,8 @@ TEST_F(Hand, SaysWhenAllIsPouredThatThereIsRoomFor) {
     settle();
     const vec3 place(0.8F, 0.0F, 0.6F);
     moveTo(seen(place));
-    input_.keysPressed = {'P'};
-    frame();
-    press(true, kFrame);
+    key('P');
+    press(true, MouseButton::left, kFrame);
     EXPECT_EQ(viewer_->message(), "");
     for (int k = 0; k < 120 && viewer_->message().empty(); ++k) moveTo(seen(place) + vec2(k % 2, 0), kFrame);
     EXPECT_NE(viewer_->message().find("pour.litres"), std::string::npos)

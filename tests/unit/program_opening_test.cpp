@@ -3,35 +3,27 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <thread>
 
 #include "engine/core/json.h"
 #include "engine/scene/load_image.h"
 #include "fluid/bridge/viewer.h"
-#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/program_runner.h"
+#include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {
 namespace {
 
-class Opening : public testing::FramebufferFixture, public ::testing::WithParamInterface<const char*> {
+class Opening : public testing::ViewerFixture, public ::testing::WithParamInterface<const char*> {
   protected:
     void SetUp() override {
-        open({900, 700}, {90, 70});
-        ASSERT_TRUE(context_ && target_.name() != 0);
         input_.mouse = vec2(700, 100);
-        viewer_ = make(small());
+        usual_ = 1.0 / 60;
+        begin(small(), {900, 700}, {90, 70}, {.backend = GetParam(), .share = [this] { return context_->shared(); }});
         ASSERT_TRUE(viewer_);
         ASSERT_STREQ(backendName(viewer_->session().world().device().backend()), GetParam());
-    }
-    void TearDown() override {
-        viewer_.reset();
-        FramebufferFixture::TearDown();
     }
     static SceneFile small() {
         SceneFile scene;
@@ -54,28 +46,6 @@ class Opening : public testing::FramebufferFixture, public ::testing::WithParamI
         scene.colliders[1].motion.spin = 20;
         return scene;
     }
-    std::unique_ptr<Viewer> make(const SceneFile& scene) {
-        auto made = Viewer::create(scene, {.backend = GetParam(), .share = [this] { return context_->shared(); }}, {});
-        EXPECT_TRUE(made) << made.error().message;
-        return made ? std::move(*made) : nullptr;
-    }
-    void frame(double seconds = 1.0 / 60) {
-        const Status drawn = viewer_->frame(input_, seconds, target_.name());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        endFrame();
-    }
-    // How many frames were shown until nothing is being opened any more.
-    int wait() {
-        int frames = 0;
-        for (const auto from = std::chrono::steady_clock::now(); viewer_->opening() != nullptr; ++frames) {
-            frame();
-            if (std::chrono::steady_clock::now() - from > std::chrono::minutes(3)) {
-                ADD_FAILURE() << "it is never ready";
-                break;
-            }
-        }
-        return frames;
-    }
     // Whether anything but one colour is to be seen.
     bool seesSomething() {
         std::vector<uint8_t> pixels(4 * 90 * 70);
@@ -84,7 +54,6 @@ class Opening : public testing::FramebufferFixture, public ::testing::WithParamI
         glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
         return std::any_of(pixels.begin(), pixels.end(), [&](uint8_t v) { return v != pixels[0] && v != 255; });
     }
-    std::unique_ptr<Viewer> viewer_;
 };
 
 // The first scene, too, is opened behind a picture; a window that is closed meanwhile, or "cancel", ends it.
@@ -116,7 +85,7 @@ TEST_P(Opening, TheFirstIsOpenedBehindAPicture) {
     EXPECT_EQ(viewer_->scene().name, "large");
     EXPECT_TRUE(seesSomething());
     viewer_->open(small());  // by the same second context
-    wait();
+    settle();
     EXPECT_EQ(viewer_->scene().name, "small");
     scene.colliders[1].mesh = "nowhere.obj";
     const auto wrong = open(scene, 100000);
@@ -130,7 +99,7 @@ TEST_P(Opening, TheSceneBeforeGoesOnUntilTheNextIsReady) {
     viewer_->open(large());
     ASSERT_NE(viewer_->opening(), nullptr) << "it takes longer than a glance";
     EXPECT_EQ(viewer_->scene().name, "small");
-    EXPECT_GT(wait(), 3);
+    EXPECT_GT(settle(), 3);
     EXPECT_EQ(viewer_->scene().name, "large");
     EXPECT_STREQ(backendName(viewer_->session().world().device().backend()), GetParam());
     EXPECT_EQ(viewer_->message(), "");
@@ -147,12 +116,12 @@ TEST_P(Opening, AMistakeIsASentenceAndAllStays) {
     SceneFile wrong = large();
     wrong.colliders[1].mesh = "meshes/spt.obj";
     viewer_->open(wrong);
-    wait();
+    settle();
     EXPECT_EQ(viewer_->scene().name, "small");
     EXPECT_NE(viewer_->message().find("spt.obj"), std::string::npos) << viewer_->message();
     frame();
     viewer_->open(small());
-    wait();
+    settle();
     EXPECT_EQ(viewer_->message(), "");
 }
 
@@ -162,7 +131,7 @@ TEST_P(Opening, WhoOpensAnotherMeanwhileSeesTheLast) {
     SceneFile last = small();
     last.name = "last";
     viewer_->open(last);
-    wait();
+    settle();
     EXPECT_EQ(viewer_->scene().name, "last");
     for (int k = 0; k < 5; ++k) frame();
     EXPECT_EQ(viewer_->scene().name, "last") << "what was given up does not come back";
@@ -187,7 +156,7 @@ TEST_P(Opening, AnotherSkyIsSeen) {
     outdoors.background.sky = "clouds";
     outdoors.background.zenith = vec3(0, 0, 5);
     viewer_->open(outdoors);
-    wait();
+    settle();
     frame();
     EXPECT_NE(brightness(), studio);
 }
@@ -199,7 +168,7 @@ TEST_P(Opening, ADroppedMeshStandsInTheWaterAndADroppedSceneIsOpened) {
         input_.dropped = {path};
         frame();
         input_.dropped.clear();
-        wait();
+        settle();
     };
     drop(assets + "meshes/spot.obj");
     ASSERT_EQ(viewer_->scene().colliders.size(), 1U) << viewer_->message();
@@ -218,72 +187,33 @@ TEST_P(Opening, ADroppedMeshStandsInTheWaterAndADroppedSceneIsOpened) {
 }
 
 TEST_P(Opening, ASceneIsChosenAmongTheirPictures) {
-    input_.keysPressed = {'O'};
+    key('O');
     frame();
+    type("falling_cube");
     frame();
-    for (const char c : std::string("falling_cube")) {
-        input_.text = c;
-        frame();
-    }
-    frame();
-    for (const bool down : {true, false}) {
-        input_.mouse = vec2(180, 160);  // the first card
-        frame();
-        frame();
-        (down ? input_.buttonPressed : input_.buttonReleased)[0] = true;
-        input_.buttonDown[0] = down;
-        frame();
-    }
-    wait();
+    clickAt(vec2(180, 160));  // the first card
+    settle();
     EXPECT_EQ(viewer_->scene().name, "falling_cube") << viewer_->message();
 }
 
 // A wrong path is said in the browser, which stays.
 TEST_P(Opening, AWrongPathLeavesTheBrowser) {
-    const auto browser = [] {
-        const ImGuiWindow* window = ImGui::FindWindowByName("scenes");
-        return window != nullptr && window->Active;
-    };
-    input_.keysPressed = {'O'};
+    key('O');
     frame();
-    frame();
-    const auto type = [&](const std::string& path) {
-        const ImGuiWindow* window = ImGui::FindWindowByName("scenes");
-        for (const bool down : {true, false}) {
-            input_.mouse = vec2(window->InnerRect.Min.x + 40, window->InnerRect.Max.y - 18);
-            frame();
-            frame();
-            (down ? input_.buttonPressed : input_.buttonReleased)[0] = true;
-            input_.buttonDown[0] = down;
-            frame();
-        }
-        frame();
-        input_.text = path;
-        frame();
-        input_.keysPressed = input_.keysDown = {key::kEnter};
-        frame();
-        input_.keysDown.clear();
-        frame();
-    };
+    const ImRect inside = ImGui::FindWindowByName("scenes")->InnerRect;
+    clickAt(vec2(inside.Min.x + 40, inside.Max.y - 18));
     type("nowhere.json");
-    EXPECT_TRUE(browser());
+    hit(key::kEnter);
+    EXPECT_TRUE(shows("scenes"));
     EXPECT_EQ(viewer_->scene().name, "small");
     for (int k = 0; k < 3; ++k) frame();
-    for (int k = 0; k < 20; ++k) {
-        input_.keysPressed = input_.keysDown = {key::kBackspace};
-        frame();
-        input_.keysDown.clear();
-        frame();
-    }
-    input_.text = "falling_cube";
-    frame();
-    input_.keysPressed = input_.keysDown = {key::kEnter};
-    frame();
-    input_.keysDown.clear();
-    wait();
+    for (int k = 0; k < 20; ++k) hit(key::kBackspace);
+    type("falling_cube");
+    hit(key::kEnter);
+    settle();
     frame();
     EXPECT_EQ(viewer_->scene().name, "falling_cube") << viewer_->message();
-    EXPECT_FALSE(browser());
+    EXPECT_FALSE(shows("scenes"));
 }
 
 TEST_P(Opening, AVideoHasAPictureAStep) {
@@ -333,29 +263,14 @@ TEST_P(Opening, TheSceneIsSavedAndReadsBackTheSame) {
     Result<SceneFile> loaded = loadScene((folder / "old/scene.json").string(), {});
     ASSERT_TRUE(loaded) << loaded.error().message;
     viewer_->open(*loaded);
-    wait();
+    settle();
     ASSERT_EQ(viewer_->scene().name, "kept") << viewer_->message();
     const auto save = [&](const std::string& path) {
-        input_.keysDown = {key::kLeftControl};
-        input_.keysPressed = {'S'};
+        withControl('S');
         frame();
-        input_.keysDown.clear();
-        frame();
-        frame();
-        for (int k = 0; k < 40; ++k) {
-            input_.keysPressed = input_.keysDown = {key::kBackspace};
-            frame();
-            input_.keysDown.clear();
-            frame();
-        }
-        for (const char c : path) {
-            input_.text = c;
-            frame();
-        }
-        input_.keysPressed = input_.keysDown = {key::kEnter};
-        frame();
-        input_.keysDown.clear();
-        frame();
+        for (int k = 0; k < 40; ++k) hit(key::kBackspace);
+        type(path);
+        hit(key::kEnter);
     };
     const auto textOf = [](SceneFile scene) { return writeJson([&scene](ParamVisitor& v) { scene.visit(v); }); };
     const std::string path = (folder / "new/saved.json").string();
@@ -368,7 +283,7 @@ TEST_P(Opening, TheSceneIsSavedAndReadsBackTheSame) {
     shown.colliders.at(0).mesh = back->colliders.at(0).mesh;
     EXPECT_EQ(textOf(*back), textOf(shown));
     viewer_->open(*back);
-    wait();
+    settle();
     EXPECT_EQ(textOf(viewer_->scene()), textOf(*back));
 
     const std::string taken = (folder / "new/taken.json").string();
@@ -376,8 +291,7 @@ TEST_P(Opening, TheSceneIsSavedAndReadsBackTheSame) {
     save(taken);
     EXPECT_EQ(*readFile(taken), "somebody's") << "Enter alone writes over nothing";
     // What is refused is said where it was typed, which is typed on.
-    input_.keysPressed = {key::kEscape};
-    frame();
+    key(key::kEscape);
     frame();
     save((folder / "nowhere/x.json").string());
     EXPECT_FALSE(fs::exists(folder / "nowhere"));
@@ -400,8 +314,7 @@ TEST_P(Opening, APictureIsTakenOfWhatIsShown) {
     fs::current_path(folder);
     for (int k = 0; k < 2; ++k) {
         frame();
-        input_.keysPressed = {key::kF1 + 11};
-        frame();
+        key(key::kF1 + 11);
     }
     viewer_.reset();
     fs::current_path(before);

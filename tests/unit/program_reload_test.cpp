@@ -14,8 +14,8 @@
 #include "engine/core/file_watch.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/bridge/viewer.h"
-#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/program_runner.h"
+#include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {
 namespace {
@@ -68,14 +68,14 @@ TEST(FileWatch, TellsOnceOfWhatWasWrittenAndKeepsStill) {
 }
 
 // A window whose shaders are a copy that can be spoiled.
-class Reload : public testing::FramebufferFixture {
+class Reload : public testing::ViewerFixture {
   protected:
     void SetUp() override {
         fs::copy(fs::path(RIVULET_SOURCE_DIR) / "shaders", scratch_.path() / "shaders", fs::copy_options::recursive);
         setenv("RIVULET_SHADERS", scratch_.path().c_str(), 1);
         open({900, 700}, {90, 70});
-        ASSERT_TRUE(context_ && target_.name() != 0);
         input_.mouse = vec2(700, 100);
+        usual_ = 1.0 / 60;
         scene_ =
             scratch_.file("small.json",
                           R"({"name": "small", "fluid": {"spacing": 0.05, "blocks": [{"min": [0.2, 0.2, 0.2], "max": [0.5, 0.5, 0.5]}]},
@@ -83,27 +83,19 @@ class Reload : public testing::FramebufferFixture {
         start({});
     }
     void TearDown() override {
-        viewer_.reset();
-        FramebufferFixture::TearDown();
+        ViewerFixture::TearDown();
         unsetenv("RIVULET_SHADERS");
     }
     void start(const std::vector<std::string>& assignments, const char* backend = "cpu") {
         const Result<SceneFile> scene = loadScene(scene_, assignments);
         ASSERT_TRUE(scene) << scene.error().message;
-        auto made = Viewer::create(*scene, {.backend = backend, .share = [this] { return context_->shared(); }}, {});
-        ASSERT_TRUE(made) << made.error().message;
-        viewer_ = std::move(*made);
+        begin(*scene, input_.size, input_.framebuffer, {.backend = backend, .share = [this] { return context_->shared(); }});
         frame();
-    }
-    void frame(double seconds = 1.0 / 60) {
-        const Status drawn = viewer_->frame(input_, seconds, target_.name());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        endFrame();
     }
     // Until what was written has been seen, twice, and is there.
     void wait() {
         for (int k = 0; k < 3; ++k) frame(0.21);
-        while (viewer_->opening() != nullptr) frame();
+        settle();
         frame();
     }
     std::array<uint8_t, 4> pixel() {
@@ -125,7 +117,6 @@ class Reload : public testing::FramebufferFixture {
 
     testing::Scratch scratch_;
     std::string scene_, trouble_;
-    std::unique_ptr<Viewer> viewer_;
 };
 
 TEST_F(Reload, AShaderIsTakenAsItIsSavedAndABrokenOneIsNot) {

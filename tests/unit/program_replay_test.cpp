@@ -9,8 +9,8 @@
 
 #include "engine/core/json.h"
 #include "fluid/bridge/viewer.h"
-#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/program_runner.h"
+#include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {
 namespace {
@@ -128,52 +128,32 @@ TEST(ProgramReplay, ARunThatWasCutIsShown) {
 }
 
 // A person at a window that shows a recording: keys do what they do, and what was settled stays.
-class ReplayPerson : public testing::FramebufferFixture {
+class ReplayPerson : public testing::ViewerFixture {
   protected:
     void SetUp() override {
-        open({900, 1600}, {90, 160});
-        ASSERT_TRUE(context_ && target_.name() != 0);
         SceneFile scene;
         scene.name = "small";
         scene.fluid.spacing = 0.05F;
         scene.look.renderer = "points";
         scene.fluid.blocks = {{.min = vec3(0.2F), .max = vec3(0.4F)}};
         path_ = scratch_.file("p.rrec");
-        auto viewer = Viewer::create(scene, {.backend = "cpu"}, {});
-        ASSERT_TRUE(viewer) << viewer.error().message;
+        begin(scene, {900, 1600}, {90, 160});
         Result<RecordingWriter> file = RecordingWriter::open(path_, aboutOf(scene));
         ASSERT_TRUE(file);
-        (*viewer)->onStepped([&](const Session& session) { return file->add(frameOf(session)); });
-        viewer_ = std::move(*viewer);
+        viewer_->onStepped([&](const Session& session) { return file->add(frameOf(session)); });
         for (int f = 0; f < kFrames; ++f) frame(1.0 / 60);
         ASSERT_EQ(file->frames(), size_t{kFrames});
         ASSERT_TRUE(file->close());
-        viewer = Viewer::create(scene, {.backend = "cpu"}, {});
-        ASSERT_TRUE(viewer);
-        viewer_ = std::move(*viewer);
+        begin(scene, {900, 1600}, {90, 160});
         Result<Replay> replay = Replay::open(path_, scene, {});
         ASSERT_TRUE(replay) << replay.error().message;
         ASSERT_TRUE(viewer_->session().replay(std::move(*replay)));
-    }
-    void TearDown() override {
-        FramebufferFixture::TearDown();
-        viewer_.reset();
-    }
-    void frame(double seconds) {
-        Status drawn = viewer_->frame(input_, seconds, target_.name());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        endFrame();
-    }
-    void key(int which) {
-        input_.keysPressed = {which};
-        frame(0);
     }
     size_t at() { return viewer_->session().replaying()->at(); }
 
     static constexpr int kFrames = 6;
     Scratch scratch_;
     std::string path_;
-    std::unique_ptr<Viewer> viewer_;
 };
 
 TEST_F(ReplayPerson, KeysPauseStepAndReset) {

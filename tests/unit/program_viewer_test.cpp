@@ -5,69 +5,35 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include <cctype>
-#include <cstdlib>
-#include <optional>
-
 #include "engine/core/json.h"
 #include "engine/ui/param_panel.h"
 #include "fluid/bridge/viewer.h"
-#include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/program_runner.h"
+#include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {
 namespace {
 
 // A person at a window of 900 x 1600: the panels lie in its left part, the scene is to be seen at its right. The picture has few pixels,
 // for the sake of machines without a GPU.
-class Person : public testing::FramebufferFixture {
+class Person : public testing::ViewerFixture {
   protected:
     void SetUp() override {
-        open(kWindow, kPixels);
-        ASSERT_TRUE(context_ && target_.name() != 0);
         input_.mouse = vec2(700, 1200);
         SceneFile scene;
         scene.name = "small";
         scene.fluid.spacing = 0.05F;
         scene.look.renderer = "points";
         scene.fluid.blocks = {{.min = vec3(0.2F), .max = vec3(0.4F)}};
-        auto viewer = Viewer::create(scene, {.backend = "cpu"}, {});
-        ASSERT_TRUE(viewer) << viewer.error().message;
-        viewer_ = std::move(*viewer);
+        begin(scene, kWindow, kPixels);
     }
 
-    void TearDown() override {
-        FramebufferFixture::TearDown();
-        viewer_.reset();
-    }
-
-    // One frame of the input so far.
-    void frame(double seconds = 0) {
-        Status drawn = viewer_->frame(input_, seconds, target_.name());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        endFrame();
-    }
-    void key(int which) {
-        input_.keysPressed = {which};
-        frame();
-    }
-    void moveTo(vec2 place) {
-        input_.mouseDelta = place - input_.mouse;
-        input_.mouse = place;
-        frame();
-    }
-    void press(MouseButton button, bool down) {
-        auto k = static_cast<int>(button);
-        (down ? input_.buttonPressed : input_.buttonReleased)[k] = true;
-        input_.buttonDown[k] = down;
-        frame();
-    }
     void drag(MouseButton button, vec2 from, vec2 to) {
         moveTo(from);
         frame();
-        press(button, true);
+        press(true, button);
         moveTo(to);
-        press(button, false);
+        press(false, button);
         frame();
     }
     // Unfolds a group of the parameters' panel, which knows it by the names on the way.
@@ -94,42 +60,10 @@ class Person : public testing::FramebufferFixture {
         unfold({"fluid", "box"});
         unfold({"fluid", "collision"});
     }
-    // Moves the mouse over the widget of these names ("#2": a number) in the windows whose names hold `window`: looks for it row by row,
-    // as a person does.
-    bool hover(std::string_view window, std::initializer_list<const char*> names) {
-        for (ImGuiWindow* each : ImGui::GetCurrentContext()->Windows) {
-            if (!each->WasActive || std::string_view(each->Name).find(window) == std::string_view::npos) continue;
-            ImGuiID id = each->ID;
-            for (const char* name : names) {
-                const int number = name[0] == '#' && std::isdigit(name[1]) != 0 ? std::atoi(name + 1) : -1;
-                id = number >= 0 ? ImHashData(&number, sizeof number, id) : ImHashStr(name, 0, id);
-            }
-            const ImRect inside = each->InnerRect;
-            for (const float share : {0.12F, 0.35F, 0.6F, 0.92F})
-                for (float y = inside.Min.y + 4; y < inside.Max.y; y += 7) {
-                    moveTo({inside.Min.x + share * inside.GetWidth(), y});
-                    frame();
-                    if (ImGui::GetCurrentContext()->HoveredIdPreviousFrame == id) return true;
-                }
-        }
-        return false;
-    }
-    void click(MouseButton button = MouseButton::left) {
-        press(button, true);
-        press(button, false);
-        frame();
-    }
-    void type(const char* text) {
-        for (; *text != '\0'; ++text) {
-            input_.text = *text;
-            frame();
-        }
-    }
     const CameraParams& camera() const { return viewer_->scene().camera; }
     float distance() const { return glm::length(camera().position - camera().target); }
 
     static constexpr ivec2 kWindow{900, 1600}, kPixels{90, 160};
-    std::unique_ptr<Viewer> viewer_;
 };
 
 // With fixed steps the world is told of every frame as it comes, and keeps what is left over.
@@ -208,24 +142,20 @@ TEST_F(Person, TheMouseMovesTheCamera) {
 
     input_.mouseDelta = vec2(650, 1100) - input_.mouse;  // there and pressed within one frame
     input_.mouse = vec2(650, 1100);
-    press(MouseButton::left, true);
+    press(true);
     EXPECT_EQ(camera().position, before.position) << "what came before the press is no drag";
-    press(MouseButton::left, false);
+    press(false);
 }
 
 // A draft that makes no sense yet leaves the water as it was, not the view.
 TEST_F(Person, TheViewTurnsAlsoWhileAnEditIsRefused) {
     key(GLFW_KEY_SPACE);
-    input_.keysDown = {key::kLeftControl};
-    key('F');
-    input_.keysDown.clear();
-    frame();
-    input_.text = "refractiveIndex";
-    frame();
+    withControl('F');
+    type("refractiveIndex");
     ASSERT_TRUE(hover("parameters", {"look", "refractiveIndex", "##v", "#0", ""}));
-    press(MouseButton::left, true);
+    press(true);
     for (int k = 0; k < 60 && viewer_->message().empty(); ++k) moveTo(input_.mouse + vec2(k % 2 == 0 ? k : -k, 0));
-    press(MouseButton::left, false);
+    press(false);
     ASSERT_NE(viewer_->message(), "") << "less than 1, more than 0";
     const CameraParams before = camera();
     drag(MouseButton::left, {600, 1200}, {700, 1150});
@@ -233,28 +163,21 @@ TEST_F(Person, TheViewTurnsAlsoWhileAnEditIsRefused) {
 }
 
 TEST_F(Person, EscapeClosesWhatLiesOnTop) {
-    const auto shown = [](const char* name) {
-        const ImGuiWindow* window = ImGui::FindWindowByName(name);
-        return window != nullptr && window->Active;
-    };
     key(GLFW_KEY_H);
     key(GLFW_KEY_O);
     frame();
-    EXPECT_TRUE(shown("keys") && shown("scenes"));
+    EXPECT_TRUE(shows("keys") && shows("scenes"));
     key(key::kEscape);
     frame();
-    EXPECT_TRUE(shown("keys") && !shown("scenes"));
+    EXPECT_TRUE(shows("keys") && !shows("scenes"));
     key(key::kEscape);
     frame();
-    EXPECT_FALSE(shown("keys"));
-    input_.keysDown = {key::kLeftControl};
-    key('S');
-    input_.keysDown.clear();
-    frame();
-    EXPECT_TRUE(shown("save the scene"));
+    EXPECT_FALSE(shows("keys"));
+    withControl('S');
+    EXPECT_TRUE(shows("save the scene"));
     key(key::kEscape);
     frame();
-    EXPECT_FALSE(shown("save the scene"));
+    EXPECT_FALSE(shows("save the scene"));
 }
 
 TEST_F(Person, AWindowOfNoSizeIsNoError) {
@@ -381,19 +304,15 @@ TEST_F(Person, ParametersAreFoundByWordsAndResetToWhatTheyWere) {
     const float was = viewer_->scene().fluid.viscosity;
     static constexpr std::initializer_list<const char*> kSlider = {"fluid", "viscosity", "##v", "#0", ""};
     EXPECT_FALSE(hover("parameters", kSlider)) << "it is folded away";
-    input_.keysDown = {key::kLeftControl};
-    key('F');
-    input_.keysDown.clear();
-    input_.keysPressed.clear();
-    frame();
+    withControl('F');
     type("Kinematic VISC");
     ASSERT_TRUE(hover("parameters", kSlider)) << "found by two words of its doc";
     EXPECT_FALSE(hover("parameters", {"fluid", "spacing", "##v", "#0", ""})) << "it has nothing to do with that";
     const auto slide = [&] {
         ASSERT_TRUE(hover("parameters", kSlider));
-        press(MouseButton::left, true);
+        press(true);
         moveTo(input_.mouse + vec2(40, 0));
-        press(MouseButton::left, false);
+        press(false);
         EXPECT_NE(viewer_->scene().fluid.viscosity, was);
     };
     slide();

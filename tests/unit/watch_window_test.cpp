@@ -11,12 +11,12 @@
 
 #include "engine/app/capture.h"
 #include "fluid/bridge/viewer.h"
-#include "tests/unit/framebuffer_fixture.h"
+#include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {
 namespace {
 
-class Watching : public testing::FramebufferFixture {
+class Watching : public testing::ViewerFixture {
   protected:
     static SceneFile damBreak() {
         SceneFile scene;
@@ -26,38 +26,7 @@ class Watching : public testing::FramebufferFixture {
         scene.look.renderer = "points";
         return scene;
     }
-    void begin(const SceneFile& scene, const ivec2& window, const ivec2& pixels) {
-        open(window, pixels);
-        ASSERT_TRUE(context_ && target_.name() != 0);
-        input_.mouse = vec2(-100);
-        auto viewer = Viewer::create(scene, {.backend = "cpu"}, {});
-        ASSERT_TRUE(viewer) << viewer.error().message;
-        viewer_ = std::move(*viewer);
-    }
-    void TearDown() override {
-        FramebufferFixture::TearDown();
-        viewer_.reset();
-    }
-    void frame(double seconds = 0) {
-        Status drawn = viewer_->frame(input_, seconds, target_.name());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        endFrame();
-    }
-    void key(int which) {
-        input_.keysPressed = {which};
-        frame();
-    }
-    void click(vec2 place) {
-        input_.mouse = place;
-        frame();
-        frame();
-        input_.buttonPressed[0] = input_.buttonDown[0] = true;
-        frame();
-        input_.buttonDown[0] = false;
-        input_.buttonReleased[0] = true;
-        frame();
-        frame();
-    }
+    void SetUp() override { input_.mouse = vec2(-100); }
     // Clicks on a tab, as it lies in the tab bar.
     void openTab(const char* name) {
         for (int k = 0; k < 3; ++k) frame();
@@ -70,7 +39,7 @@ class Watching : public testing::FramebufferFixture {
                     middle = vec2(bar.BarRect.Min.x + tab.Offset + 0.5F * tab.Width, 0.5F * (bar.BarRect.Min.y + bar.BarRect.Max.y));
         }
         ASSERT_GT(middle.x, 0) << name;
-        click(middle);
+        clickAt(middle);
         input_.mouse = vec2(-100);
         for (int k = 0; k < 3; ++k) frame();
     }
@@ -90,7 +59,6 @@ class Watching : public testing::FramebufferFixture {
     }
 
     static constexpr ivec2 kWindow{1280, 720}, kPixels{64, 36};
-    std::unique_ptr<Viewer> viewer_;
 };
 
 TEST_F(Watching, GraphsShowWhatTheSessionSays) {
@@ -201,7 +169,7 @@ TEST_F(Watching, AClickOnTheChartTakesItsMethodAndValues) {
             if (alone) place = p.at;
         }
         ASSERT_GT(place.x, 0) << wanted;
-        click(place);
+        clickAt(place);
         const ChartSetting& setting = *chartSettings().find(wanted);
         EXPECT_EQ(viewer_->scene().fluid.method, setting.method) << viewer_->message();
         SceneFile as = viewer_->scene();
@@ -232,12 +200,12 @@ TEST_F(Watching, AClickMayTakeTheNumberOfParticles) {
     const uint32_t few = viewer_->session().world().stats().particles;
     bool taken = false;
     for (float y = window->Pos.y + window->Size.y - 20; y > window->Pos.y + 0.5F * window->Size.y && !taken; y -= 12) {
-        click(vec2(window->Pos.x + 20, y));
+        clickAt(vec2(window->Pos.x + 20, y));
         const auto point = std::find_if(chart.placed().begin(), chart.placed().end(), [](const auto& p) {
             return p.row != nullptr && p.row->setting == "pbf" && p.row->particles == 8192;
         });
         ASSERT_NE(point, chart.placed().end());
-        click(point->at);
+        clickAt(point->at);
         taken = viewer_->session().world().particles().count != few;
     }
     ASSERT_TRUE(taken);

@@ -72,6 +72,29 @@ std::vector<ParamEntry> listParams(const VisitFn& visit) {
     return entries;
 }
 
+std::map<std::string, std::string> paramTexts(const VisitFn& visit) {
+    std::map<std::string, std::string> texts;
+    for (ParamEntry& entry : listParams(visit))
+        if (entry.kind == ParamEntry::Kind::value) texts[entry.path] = std::move(entry.text);
+    return texts;
+}
+
+std::string plainText(const std::string& json) {
+    if (!json.starts_with('"')) return json;
+    std::string text;
+    for (size_t k = 1; k + 1 < json.size(); ++k) {
+        if (json[k] == '\\' && json[k + 1] == 'u') {  // of what is below a blank, none else
+            text += static_cast<char>(std::stoi(json.substr(k + 2, 4), nullptr, 16));
+            k += 5;
+            continue;
+        }
+        const bool line = json[k] == '\\' && json[k + 1] == 'n';
+        if (json[k] == '\\') ++k;
+        text += line ? '\n' : json[k];
+    }
+    return text;
+}
+
 std::string unknownParam(std::string_view group, std::string_view name, std::span<const std::string> beside, const VisitFn& visit) {
     const std::string complaint = excerpt(pathOf(group, name)) + " is not a parameter; ";
     const std::string near = nearestName(name, beside);

@@ -1,6 +1,7 @@
 // Every Param behind a visit as a flat list, in the visit's order.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,9 @@ struct ParamEntry {
 };
 
 std::vector<ParamEntry> listParams(const VisitFn& visit);
+std::map<std::string, std::string> paramTexts(const VisitFn& visit);  // of the values alone, by path
+
+// A value's JSON, as setParam takes it: a string without its quotes.
+std::string plainText(const std::string& json);
 
 }  // namespace rivulet

@@ -39,22 +39,6 @@ std::vector<std::string> wordsOf(const std::string& text) {
     return words;
 }
 
-// What valueText made of a string.
-std::string unquoted(const std::string& json) {
-    std::string text;
-    for (size_t k = 1; k + 1 < json.size(); ++k) {
-        if (json[k] == '\\' && json[k + 1] == 'u') {  // of what is below a blank, none else
-            text += static_cast<char>(std::stoi(json.substr(k + 2, 4), nullptr, 16));
-            k += 5;
-            continue;
-        }
-        const bool line = json[k] == '\\' && json[k + 1] == 'n';
-        if (json[k] == '\\') ++k;
-        text += line ? '\n' : json[k];
-    }
-    return text;
-}
-
 // As much of it as so many pixels hold.
 std::string shortened(std::string text, float width) {
     if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
@@ -82,14 +66,8 @@ std::string readableName(std::string_view name) {
 }
 
 void ParamMemory::open(const VisitFn& params, const VisitFn& defaults) {
-    const auto textsOf = [](const VisitFn& visit) {
-        std::map<std::string, std::string> texts;
-        for (ParamEntry& entry : listParams(visit))
-            if (entry.kind == ParamEntry::Kind::value) texts[entry.path] = std::move(entry.text);
-        return texts;
-    };
-    opened_ = textsOf(params);
-    defaults_ = textsOf(defaults);
+    opened_ = paramTexts(params);
+    defaults_ = paramTexts(defaults);
     changed_.clear();
 }
 
@@ -150,7 +128,7 @@ void ParamPanel::search(const VisitFn& params) {
 void ParamPanel::resetAll(const VisitFn& params) {
     for (const auto& [path, text] : memory_.changed()) {
         std::string was = text;
-        if (was.starts_with('"')) was = unquoted(was);
+        was = plainText(was);
         if (setParam(fmt::format("{}={}", path, was), params)) changed_ = recreate_ = true;
     }
 }
@@ -214,7 +192,7 @@ void ParamPanel::edit(const ParamInfo& info, const Widget& widget, const Take& t
     bool edited = widget();
     bool ended = info.fixed && ImGui::IsItemDeactivatedAfterEdit();
     if (!text.empty()) {
-        take(text.starts_with('"') ? unquoted(text) : text);
+        take(plainText(text));
         edited = true;
         ended = info.fixed;
     }

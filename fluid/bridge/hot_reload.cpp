@@ -6,7 +6,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
+
+#include "engine/core/param_list.h"
 
 namespace rivulet {
 
@@ -14,6 +18,23 @@ namespace {
 
 bool sameCamera(const CameraParams& a, const CameraParams& b) {
     return a.from == b.from && a.position == b.position && a.target == b.target && a.fieldOfView == b.fieldOfView;
+}
+
+// What a person has set since the file was `before` stays set in what was `written`, where the file says what it said.
+void keepEdits(SceneFile before, SceneFile shown, SceneFile& written) {
+    const auto visiting = [](SceneFile& scene) { return [&scene](ParamVisitor& v) { scene.visit(v); }; };
+    const std::map<std::string, std::string> was = paramTexts(visiting(before)), is = paramTexts(visiting(written));
+    const bool picks = written.budget.frameMs > 0;  // then what is shown of the fluid is no person's
+    for (const ParamEntry& entry : listParams(visiting(shown))) {
+        const std::string& path = entry.path;
+        if (entry.kind != ParamEntry::Kind::value || path.find("[]") != std::string::npos) continue;
+        if (path.starts_with("camera.") || (picks && path.starts_with("fluid."))) continue;
+        const auto then = was.find(path), now = is.find(path);
+        const bool inFile = now != is.end();
+        if (then != was.end() && (then->second == entry.text || !inFile || now->second != then->second)) continue;
+        if (then == was.end() && inFile) continue;
+        if (!setParam(path + "=" + plainText(entry.text), visiting(written))) return;  // a list that the file has shortened
+    }
 }
 
 bool isKernel(const std::string& path) { return path.ends_with(".kernel"); }
@@ -74,6 +95,8 @@ std::optional<SceneFile> HotReload::takeScene(const SceneFile& shown) {
         read->light.direction = shown.light.direction;
         read->light.colour = shown.light.colour;
     }
+    opened_ = *read;
+    keepEdits(before_, shown, *read);
     return std::move(*read);
 }
 

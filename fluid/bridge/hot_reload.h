@@ -19,9 +19,11 @@ class HotReload {
     void follow(const SceneFile& scene);
 
     // Looks some times a second. Shaders that were written are taken by the renderer and the device. A scene that was written and can be
-    // read is returned, once, with what is kept of the one that is `shown`: the camera, unless it is the camera that was written.
+    // read is returned, once, with what a person has made of the one that is `shown`: the camera, values and things that were added, all
+    // unless it is they that were written.
     std::optional<SceneFile> look(double seconds, const SceneFile& shown, SceneRenderer& renderer, Device& device);
     const SceneFile& before() const { return before_; }           // as the file was before that
+    const SceneFile& opened() const { return opened_; }           // as it is, without what a person made of it
     void refuse(const std::string& why) { sceneTrouble_ = why; }  // what look() returned cannot be shown
 
     bool broken() const { return !shaderTrouble_.empty(); }  // what is drawn with is not what the files say
@@ -35,6 +37,7 @@ class HotReload {
     FileWatch watch_;
     std::string scene_;        // its file
     SceneFile read_, before_;  // as the file was when it could be read last, and before that
+    SceneFile opened_;
     std::string shaderTrouble_, sceneTrouble_, done_;
     double waited_ = 0;   // s since it looked
     double doneFor_ = 0;  // s that done_ is still shown

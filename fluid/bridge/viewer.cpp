@@ -135,8 +135,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     v.renderer_->onSpan(v.timeline_.lane(kDrawingLane));
     v.begin();
     v.draft_ = v.session_->scene();
-    SceneFile none;
-    v.params_.open(visiting(v.draft_), visiting(none));
+    v.rememberOpened(false);
     v.haste_.begin(v.gl_.software);
     v.renderer_->hurry(v.haste_.fast());
     v.reload_.follow(scene);

@@ -108,6 +108,7 @@ class Viewer {
     // `other`: it is not the one that is shown, edited; `written`: its file was.
     void startOpening(SceneFile scene, bool other, bool written = false);
     void takeWritten(double seconds);
+    void rememberOpened(bool written);
     void finishOpening();  // when it is ready
     void giveUpOpening();
     Result<OpenedScene> openShowing(const SceneFile& scene, const ViewerOptions& options, const std::string& backend);

@@ -74,8 +74,15 @@ void Viewer::takeWritten(double seconds) {
     session_->apply(*written);
     draft_ = settled_ = session_->scene();
     message_.clear();
-    SceneFile none;
-    params_.open(visiting(draft_), visiting(none));
+    rememberOpened(true);
+}
+
+// What a reset goes back to. `written`: the file says it, not what is shown, which a person may have edited.
+void Viewer::rememberOpened(bool written) {
+    SceneFile none, opened = written ? reload_.opened() : draft_;
+    if (session_->budget()) opened.fluid = draft_.fluid;  // what it picks
+    params_.open(visiting(opened), visiting(none));
+    params_.compare(visiting(draft_));
 }
 
 void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
@@ -192,17 +199,15 @@ void Viewer::adopt(OpenedScene opened, bool other) {
     begin();
     const CameraParams camera = draft_.camera;
     draft_ = session_->scene();  // a budget may have picked
-    if (std::exchange(reopening_, false)) {
+    const bool written = std::exchange(reopening_, false);
+    if (written) {
         draft_.camera = camera;  // it may have moved meanwhile
         session_->apply(draft_);
     } else if (other) {
         reload_.follow(draft_);
     }
     settled_ = draft_;
-    if (other) {
-        SceneFile none;
-        params_.open(visiting(draft_), visiting(none));
-    }
+    if (other) rememberOpened(written);
     repicked_ = 0;
     message_.clear();
     profiler_.clear();

@@ -254,6 +254,36 @@ TEST_F(Reload, TheSceneThatIsOpenedNextIsWatchedInstead) {
     EXPECT_EQ(viewer_->scene().name, "written");
 }
 
+// What a person has set stays set, unless the file says something else of it; and so does a mesh that was dropped.
+TEST_F(Reload, WhatAPersonHasSetStaysSet) {
+    const std::string text = readFile(scene_);
+    input_.dropped = {std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/sphere.obj"};
+    frame();
+    input_.dropped.clear();
+    settle();
+    ASSERT_EQ(viewer_->scene().colliders.size(), 1U);
+    withControl('F');
+    type("timeScale");
+    ASSERT_TRUE(hover("parameters", {"timeScale", "##v", "#0", ""}));
+    click();
+    const float slow = viewer_->scene().timeScale;
+    ASSERT_NE(slow, 1.0F);
+
+    writeFile(scene_, replaced(text, R"("fluid": {)", R"("fluid": {"viscosity": 0.5, )"));
+    wait();
+    EXPECT_EQ(trouble(), "");
+    EXPECT_EQ(viewer_->scene().fluid.viscosity, 0.5F);
+    EXPECT_EQ(viewer_->scene().timeScale, slow);
+    ASSERT_EQ(viewer_->scene().colliders.size(), 1U);
+    EXPECT_NE(viewer_->scene().colliders[0].mesh.find("sphere.obj"), std::string::npos);
+    ASSERT_TRUE(hover("###scene", {"reset all"})) << "what the file says is what a reset goes back to";
+
+    writeFile(scene_, replaced(text, R"("name": "small",)", R"("name": "small", "timeScale": 0.25,)"));
+    wait();
+    EXPECT_EQ(viewer_->scene().timeScale, 0.25F) << "the last who said so";
+    EXPECT_NE(viewer_->scene().fluid.viscosity, 0.5F) << "the file no longer says it";
+}
+
 // Saved over its own file, the scene is what the file says, and no longer what the command line said.
 TEST_F(Reload, ASceneThatIsSavedOverItsFileIsTheFiles) {
     const fs::path before = fs::current_path();

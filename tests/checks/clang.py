@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Reads every C++ file of the project a second time, with clang: `clang.py syntax BUILD` compiles it with -Werror and writes
-nothing, `clang.py tidy BUILD` runs clang-tidy with .clang-tidy. A file that passed is not read again until its command, one of
+"""Reads every C++ file of the project a second time, with clang: `clang.py tidy BUILD` runs clang-tidy with .clang-tidy, which tells
+of the compiler's own warnings too; `clang.py syntax BUILD` compiles the others, the tests, with -Werror and writes nothing. A file that passed is not read again until its command, one of
 the files it includes, or .clang-tidy changes (stamps in BUILD/clang_stamps). Exit 77: clang is not installed."""
 import hashlib, json, os, shlex, shutil, subprocess, sys
 from concurrent.futures import ThreadPoolExecutor
@@ -68,8 +68,9 @@ def check(entry):
 
 with open(os.path.join(build, "compile_commands.json")) as stream:
     entries = [e for e in json.load(stream) if e["file"].startswith(root + "/") and not e["file"].startswith(build) and e["file"].endswith(".cpp")]
-if mode == "tidy":  # a kernel is compiled once an instruction set; tidy reads it once, and leaves the tests alone
-    entries = list({e["file"]: e for e in entries if not e["file"].startswith(root + "/tests/")}.values())
+# A kernel is compiled once an instruction set; tidy reads it once, and leaves the tests alone.
+tidied = list({e["file"]: e for e in entries if not e["file"].startswith(root + "/tests/")}.values())
+entries = tidied if mode == "tidy" else [e for e in entries if e not in tidied]
 with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
     results = list(pool.map(check, entries))
 for passed, text in results:

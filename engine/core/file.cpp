@@ -126,7 +126,12 @@ Status writeFileAtomic(const std::string& path, std::string_view bytes) {
 
     std::string temporary;
     Descriptor file(openBeside(target, temporary));
-    if (!file.valid()) return cannotWrite(path, errno == ENOENT ? "its folder does not exist" : reason(errno));
+    if (!file.valid()) {
+        const int why = errno;
+        const fs::path folder = fs::path(target).parent_path();
+        const bool gone = why == ENOENT && !folder.empty() && !fs::exists(folder, error);
+        return cannotWrite(path, gone ? "its folder does not exist" : why == ENOENT ? "no file can be made in its folder" : reason(why));
+    }
     if (fs::exists(existing)) (void)::fchmod(file.get(), static_cast<mode_t>(existing.permissions()));
     int failure = writeAll(file.get(), bytes);
     if (!file.close() && failure == 0) failure = errno;

@@ -252,7 +252,7 @@ void GraphPanel::drawLegend(size_t graph, float width) const {
         const Series& series = graphs_[graph].series[k];
         const std::string figure = readableFigure(ringValue(first_[graph] + k, 0), graphs_[graph].unit);
         // As wide as a figure may get: what follows does not move with it.
-        const float name = ImGui::CalcTextSize(series.name.c_str()).x, wide = side + 4 + name + 5 + ImGui::CalcTextSize("0.888 %").x;
+        const float name = ImGui::CalcTextSize(series.name.c_str()).x, wide = side + 4 + name + 5 + ImGui::CalcTextSize("0.08888 %").x;
         if (k > 0 && used + gap + wide <= width) {
             ImGui::SameLine(begin + used + gap);
             used += gap;

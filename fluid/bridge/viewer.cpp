@@ -58,6 +58,12 @@ void drawHelp() {
 
 }  // namespace
 
+std::string fileName(std::string sceneName) {
+    for (char& c : sceneName)
+        if (c == '/' || static_cast<unsigned char>(c) < ' ') c = '_';
+    return sceneName.empty() || sceneName.front() == '.' ? "scene" + sceneName : sceneName;
+}
+
 VisitFn Viewer::visiting(SceneFile& scene) {
     return [&scene](ParamVisitor& v) { scene.visit(v); };
 }
@@ -80,6 +86,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     v.firstStart_ = FirstStart(options.seen);
     v.share_ = options.share;
     v.clDevice_ = options.device;
+    v.longestStep_ = options.longestStep;
     std::string backend = options.backend;
     OpenedScene first;
     if (options.showing && options.share && options.cooperate != "auto") {
@@ -156,6 +163,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     const bool greets = firstStart_.shown();  // the key that ends it does nothing else
     if (!greets && input.pressed(key::kEscape) && (saving_ || browser_.shown() || showHelp_)) closeTopmost();
     if (!greets && !ui_.wantsKeyboard()) takeKeys(input);
+    if (!greets) takeKeysAlways(input);
     bool recreate = showPanels_ && drawPanels();
     if (!showPanels_) {
         watch_.hide(*renderer_);
@@ -201,21 +209,30 @@ void Viewer::takeKeys(const InputEvents& input) {
     }
     if (input.pressed(GLFW_KEY_H)) showHelp_ = !showHelp_;
     const bool control = input.down(key::kLeftControl) || input.down(key::kRightControl);
-    if (control && input.pressed('S')) saving_ = true;
     if (input.pressed(key::kEscape)) {
         hand_.choose({});
         brush_.turn(false);
     }
-    if (SceneHand::Asks asks; control && input.pressed('Z') && hand_.undo(draft_, asks)) {
-        edited_ = true;
-        anew_ = asks.recreate;
+    if (control && input.pressed('Z')) {
+        if (SceneHand::Asks asks; hand_.undo(draft_, asks)) {
+            edited_ = true;
+            anew_ = asks.recreate;
+        } else if (left_) {
+            open(*std::exchange(left_, std::nullopt));
+        }
     }
-    if (control && input.pressed('F')) showPanels_ = params_.find = true;
     constexpr float kZoom = 1.25F;
     if (control && (input.pressed('=') || input.pressed('+'))) zoom_ = std::min(zoom_ * kZoom, 4.0F);
     if (control && input.pressed('-')) zoom_ = std::max(zoom_ / kZoom, 0.5F);
     if (control && input.pressed('0')) zoom_ = 1;
     if (input.pressed('O')) browser_.show(!browser_.shown());
+}
+
+// Also while a field is typed into.
+void Viewer::takeKeysAlways(const InputEvents& input) {
+    const bool control = input.down(key::kLeftControl) || input.down(key::kRightControl);
+    if (control && input.pressed('S')) saving_ = true;
+    if (control && input.pressed('F')) showPanels_ = params_.find = true;
     const auto say = [this](const Status& done) {
         if (!done) message_ = done.error().message;
     };
@@ -359,7 +376,12 @@ bool Viewer::drawPanels() {
         if (!taken) message_ = taken.error().message;
         ImGui::Spacing();
         if (!draft_.presets.empty()) {
-            edited_ = drawPresets() || edited_;
+            if (drawPresets()) {
+                edited_ = true;
+                SceneFile now = session_->scene();
+                if (session_->budget()) now.fluid = draft_.fluid;
+                recreate = fixedValues(visiting(now)) != fixedValues(visiting(draft_));
+            }
             ImGui::Spacing();
         }
         const TreeAsks asks = drawSceneTree(*session_, draft_, hand_);
@@ -372,7 +394,7 @@ bool Viewer::drawPanels() {
         draft_.visit(panel);
         ImGui::EndChild();
         edited_ = edited_ || panel.changed();
-        recreate = panel.recreate();
+        recreate = panel.recreate() || recreate;
     }
     ImGui::End();
 
@@ -385,7 +407,9 @@ Status Viewer::toggleVideo() {
     if (video_) {
         VideoWriter done = std::move(*video_);
         video_.reset();
-        return done.close();
+        const Status closed = done.close();
+        if (closed) log_.notice(filmed_ > 0 ? "the video is in " + videoPath_ : "nothing moved: no video was written");
+        return closed;
     }
     videoSize_ = {renderer_->width(), renderer_->height()};
     if (videoSize_.x <= 0) return ok();
@@ -394,15 +418,20 @@ Status Viewer::toggleVideo() {
     Result<VideoWriter> video = VideoWriter::open(*path, videoSize_.x, videoSize_.y, kFramesPerSecond);
     if (!video) return video.error();
     video_ = std::move(*video);
+    videoPath_ = *path;
+    filmed_ = 0;
     stepShown_ = false;
-    log_.notice("a video goes into " + *path);
+    log_.notice("a video is made, till F9 again");
     return ok();
 }
 
 // As fast as the water: a picture a step, however long that took.
 Status Viewer::film() {
     if (!video_ || !std::exchange(stepShown_, false)) return ok();
-    if (ivec2(renderer_->width(), renderer_->height()) == videoSize_) return video_->add(renderer_->pixels());
+    if (ivec2(renderer_->width(), renderer_->height()) == videoSize_) {
+        ++filmed_;
+        return video_->add(renderer_->pixels());
+    }
     log_.notice("the window has another size: the video ends here");
     return toggleVideo();
 }
@@ -411,7 +440,8 @@ Status Viewer::film() {
 Result<std::string> Viewer::freePath(const char* kind) const {
     std::error_code error;
     std::string path;
-    for (int k = 1; path.empty() || std::filesystem::exists(path, error); ++k) path = fmt::format("{}_{:04}.{}", draft_.name, k, kind);
+    for (int k = 1; path.empty() || std::filesystem::exists(path, error); ++k)
+        path = fmt::format("{}_{:04}.{}", fileName(draft_.name), k, kind);
     if (Status writable = checkWritable(path); !writable) return writable.error();
     return path;
 }

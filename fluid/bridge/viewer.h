@@ -41,6 +41,7 @@ struct ViewerOptions {
     void* clipboard = nullptr;       // as UiLayer
     int width = 1280, height = 720;  // pixels, of what auto tries
     std::string seen = {};           // as FirstStart
+    double longestStep = 20;         // s: an edit after which a picture would take longer is refused
     // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
     std::function<Result<SharedGl>()> share = {};
     // With `share`: shows what `draw` draws into a framebuffer, while the first scene is being opened. false: the person has closed the
@@ -48,6 +49,9 @@ struct ViewerOptions {
     using Draw = std::function<void(const InputEvents& input, GLuint framebuffer)>;
     std::function<bool(const Draw& draw)> showing = {};
 };
+
+// A scene's name as the beginning of a file's.
+std::string fileName(std::string sceneName);
 
 class Viewer {
   public:
@@ -97,6 +101,7 @@ class Viewer {
   private:
     static VisitFn visiting(SceneFile& scene);
     void takeKeys(const InputEvents& input);
+    void takeKeysAlways(const InputEvents& input);
     void moveCamera(const InputEvents& input);
     void closeTopmost();                                    // of what Escape closes
     void turnBrush();                                       // on, with room for what it pours, or off
@@ -109,8 +114,10 @@ class Viewer {
     void startOpening(SceneFile scene, bool other, bool written = false);
     void takeWritten(double seconds);
     void rememberOpened(bool written);
+    bool edited() const;
     void finishOpening();  // when it is ready
     void giveUpOpening();
+    std::string waitOf(const Session& next) const;
     Result<OpenedScene> openShowing(const SceneFile& scene, const ViewerOptions& options, const std::string& backend);
     static bool drawProgress(const SceneOpening& work, float height);  // a share of the window's; whether "cancel" was pressed
     void adopt(OpenedScene opened, bool other);
@@ -157,7 +164,8 @@ class Viewer {
     Plan plan_ = Plan::alone;
     std::vector<CooperationStats::Tried> tried_;  // by --cooperate auto
     std::unique_ptr<Cooperation> work_;
-    double due_ = 0;  // s simulated, that are to be stepped while this frame is drawn
+    double longestStep_ = 0;  // s
+    double due_ = 0;          // s simulated, that are to be stepped while this frame is drawn
     std::unique_ptr<SceneRenderer> renderer_;
     FluidUpload upload_;
     UiLayer ui_;
@@ -169,6 +177,7 @@ class Viewer {
     SceneFile draft_;    // what the panel edits; becomes the session's when it makes sense
     SceneFile settled_;  // as it was before the edit that is under way
     ParamMemory params_;
+    std::string openedText_;      // JSON of the scene as it was opened or saved last, but for the view
     std::string message_, said_;  // said_: what drawSaid() shows
     double saidFor_ = 0;          // s
     bool paused_ = false, stepOnce_ = false, showPanels_ = true, showHelp_ = false, edited_ = false;
@@ -188,12 +197,15 @@ class Viewer {
     FirstStart firstStart_;
     std::optional<VideoWriter> video_;
     ivec2 videoSize_{0};
+    std::string videoPath_;
+    uint64_t filmed_ = 0;                    // pictures
     bool stepShown_ = false;                 // a step was made that no video has yet
     std::string savePath_, saveTrouble_;     // where the scene is to go, asked for while saving_; why it did not
     bool saving_ = false, refocus_ = false;  // refocus_: what was refused is typed on
     float zoom_ = 1;                         // of the panels, as the person likes it
     std::future<Status> written_;            // the picture taken last
     int repicked_ = 0;                       // by the session's budget
+    std::optional<SceneFile> left_;          // the scene before this, that was edited and not saved
     std::string asked_, clDevice_;           // as --backend, --device
     std::function<Result<SharedGl>()> share_;
     SharedGl elsewhere_;  // of the thread that opens scenes

@@ -3,14 +3,17 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
 
+#include "engine/core/json.h"
 #include "fluid/bridge/takeover.h"
 #include "fluid/sim/world_state.h"
 
@@ -77,12 +80,21 @@ void Viewer::takeWritten(double seconds) {
     rememberOpened(true);
 }
 
+// Whether anything but the view is no longer as it was opened or saved.
+bool Viewer::edited() const {
+    SceneFile scene = draft_;
+    scene.camera = {};
+    return writeJson(visiting(scene)) != openedText_;
+}
+
 // What a reset goes back to. `written`: the file says it, not what is shown, which a person may have edited.
 void Viewer::rememberOpened(bool written) {
     SceneFile none, opened = written ? reload_.opened() : draft_;
     if (session_->budget()) opened.fluid = draft_.fluid;  // what it picks
     params_.open(visiting(opened), visiting(none));
     params_.compare(visiting(draft_));
+    opened.camera = {};
+    openedText_ = writeJson(visiting(opened));
 }
 
 void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
@@ -156,6 +168,7 @@ void Viewer::finishOpening() {
     Result<OpenedScene> opened = done.work->take();
     if (!opened) return refuse(opened.error(), done.other, done.before);
     const SceneFile wanted = draft_;
+    if (const std::string wait = done.other ? "" : waitOf(*opened->session); !wait.empty()) return refuse(failed(wait), false, done.before);
     adopt(std::move(*opened), done.other);
     if (done.other) return;
     // Meanwhile the camera may have moved, or a slider.
@@ -164,6 +177,19 @@ void Viewer::finishOpening() {
     if (same) session_->apply(wanted);
     draft_ = same ? session_->scene() : wanted;
     if (!same) startOpening(wanted, false);
+}
+
+// An edit after which the window would stand still, by what a particle and step take now; "": it would not.
+std::string Viewer::waitOf(const Session& next) const {
+    const uint32_t now = session_->world().particles().count, then = next.world().particles().count;
+    const double ms = profiler_.mean("simulate"), finer = session_->scene().fluid.spacing / next.scene().fluid.spacing;
+    if (now == 0 || then <= now || !(ms > 0)) return "";
+    const double seconds = 1.0e-3 * ms * then / now * std::max(finer, 1.0);
+    if (seconds < longestStep_) return "";
+    return fmt::format(
+        "{} particles would take some {:.0f} s a picture here, and the window would stand still: it is not done; run the scene with --set "
+        "for that",
+        then, seconds);
 }
 
 void Viewer::giveUpOpening() {
@@ -181,6 +207,10 @@ void Viewer::adopt(OpenedScene opened, bool other) {
         if (Status gone = opened.session->goOnFrom(*session_); !gone) log_.notice(gone.error().message);
     hand_.letGo();
     if (other && !reopening_) {
+        if (edited()) {
+            left_ = draft_;
+            log_.notice(fmt::format("{} was changed and not saved: control Z brings it back", draft_.name));
+        }
         savePath_.clear();  // or it would be offered for the next scene
         paused_ = false;
     }
@@ -208,11 +238,16 @@ void Viewer::adopt(OpenedScene opened, bool other) {
     }
     settled_ = draft_;
     if (other) rememberOpened(written);
+    if (draft_.pour.litres <= 0) brush_.turn(false);
     repicked_ = 0;
     message_.clear();
     profiler_.clear();
     watch_.clear();
     if (recorder_) record();
+    if (told_) {
+        told_ = {};
+        log_.notice("what is recorded ends here: another scene, or an edit that needs new water, is no part of it");
+    }
 }
 
 bool Viewer::drawProgress(const SceneOpening& work, float height) {
@@ -222,6 +257,7 @@ bool Viewer::drawProgress(const SceneOpening& work, float height) {
     ImGui::Begin(
         "opening", nullptr,
         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());  // without the focus, which a person may need elsewhere
     ImGui::Text("%s: %s", work.scene().name.c_str(), step.what.c_str());
     ImGui::ProgressBar(static_cast<float>(step.share), ImVec2(ImGui::GetFontSize() * 20, 0));
     ImGui::SameLine();
@@ -264,18 +300,25 @@ void Viewer::takeDropped(const InputEvents& input) {
         message_ = "replaying: what was recorded is shown; run the scene without --replay to change it";
         return;
     }
-    bool edited = false;
-    for (const std::string& path : input.dropped) {
+    const auto kindOf = [](const std::string& path) {
         std::string kind = std::filesystem::path(path).extension().string();
         for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        if (kind == ".json") {
-            Result<SceneFile> scene = loadScene(path, {});
-            if (scene) return open(std::move(*scene));
-            message_ = scene.error().message;
+        return kind;
+    };
+    const auto isScene = [&](const std::string& path) { return kindOf(path) == ".json"; };
+    if (const auto at = std::find_if(input.dropped.begin(), input.dropped.end(), isScene); at != input.dropped.end()) {
+        if (input.dropped.size() > 1) {
+            message_ =
+                fmt::format("{} is a scene: drop it alone, or the other files alone", std::filesystem::path(*at).filename().string());
             return;
         }
-        edited = true;
-        if (kind == ".hdr") {
+        Result<SceneFile> scene = loadScene(*at, {});
+        if (scene) return open(std::move(*scene));
+        message_ = scene.error().message;
+        return;
+    }
+    for (const std::string& path : input.dropped) {
+        if (kindOf(path) == ".hdr") {
             draft_.background.surroundings = path;
             continue;
         }
@@ -286,7 +329,6 @@ void Viewer::takeDropped(const InputEvents& input) {
         collider.fitSize = 0.5F * std::min({size.x, size.y, size.z});
         collider.position = vec3(0.5F * (box.min.x + box.max.x), box.min.y + 0.5F * collider.fitSize, 0.5F * (box.min.z + box.max.z));
     }
-    if (!edited) return;
     takeEdits(true);
     params_.compare(visiting(draft_));
 }
@@ -311,7 +353,7 @@ void Viewer::drawSaid(double seconds) {
 
 void Viewer::drawSaving() {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    if (savePath_.empty()) savePath_ = draft_.name + ".json";
+    if (savePath_.empty()) savePath_ = fileName(draft_.name) + ".json";
     ImGui::SetNextWindowPos(ImVec2(display.x / 2, display.y / 2), ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
     ImGui::Begin("save the scene", &saving_, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 28);
@@ -347,6 +389,9 @@ void Viewer::drawSaving() {
         return;
     }
     savePath_ = path;
+    scene = draft_;
+    scene.camera = {};
+    openedText_ = writeJson(visiting(scene));
     saving_ = false;
     if (std::filesystem::equivalent(savePath_, draft_.source.path, error)) {  // from now on the file alone says what the scene is
         draft_.source = {draft_.source.path, {}, {}};
@@ -358,6 +403,7 @@ void Viewer::drawSaving() {
 void Viewer::chooseScene() {
     const std::optional<std::string> path = browser_.draw();
     if (!path) return;
+    if (session_->replaying() != nullptr) return browser_.refuse("replaying: what was recorded is shown; run the scene without --replay");
     Result<SceneFile> scene = loadScene(fullPath(*path), {});
     if (!scene) return browser_.refuse(scene.error().message);
     browser_.show(false);

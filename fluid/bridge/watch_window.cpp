@@ -174,7 +174,9 @@ bool WatchWindow::draw(const Session& session, SceneRenderer& renderer, const Ti
     if (asked_ != Tab::none) open_ = asked_;
     anchor(margin, room);
     constexpr float kNarrow = 850;  // there the picture comes first
-    if (asked_ == Tab::none) ImGui::SetNextWindowCollapsed(ImGui::GetIO().DisplaySize.x < kNarrow, ImGuiCond_Once);
+    const bool narrow = ImGui::GetIO().DisplaySize.x < kNarrow;
+    if (asked_ == Tab::none && narrow != narrow_) ImGui::SetNextWindowCollapsed(narrow, ImGuiCond_Always);
+    narrow_ = narrow;
     shown_ = Tab::none;
     bool recreate = false;
     if (ImGui::Begin("measured###watch", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {

@@ -61,6 +61,7 @@ class WatchWindow {
     float width_ = 0;     // px, of the last frame
     float shift_ = 0;     // px: how much wider it is than with the first tab
     float display_ = 0;   // px across
+    bool narrow_ = false;
 };
 
 }  // namespace rivulet

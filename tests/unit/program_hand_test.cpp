@@ -239,6 +239,17 @@ TEST_F(Hand, PoursWhereTheMousePoints) {
     std::filesystem::remove(path);
 }
 
+TEST_F(Hand, NoBrushIsLeftWhereNothingCanBePoured) {
+    key('P');
+    settle();
+    ASSERT_TRUE(viewer_->brush().on());
+    ASSERT_TRUE(hover("###scene", {"reset all"}));
+    click();
+    settle();
+    EXPECT_EQ(viewer_->scene().pour.litres, 0);
+    EXPECT_FALSE(viewer_->brush().on());
+}
+
 TEST_F(Hand, SaysWhenAllIsPouredThatThereIsRoomFor) {
     SceneFile little = viewer_->scene();
     little.emitters.clear();

@@ -187,6 +187,77 @@ TEST_P(Opening, ADroppedMeshStandsInTheWaterAndADroppedSceneIsOpened) {
     EXPECT_NE(viewer_->message().find("no_such_scene"), std::string::npos) << viewer_->message();
 }
 
+// A scene comes alone, and the one before, if it was edited, comes back by control Z.
+TEST_P(Opening, NothingThatWasMadeIsLost) {
+    const std::string assets = std::string(RIVULET_SOURCE_DIR) + "/assets/";
+    const auto drop = [&](const std::vector<std::string>& paths) {
+        input_.dropped = paths;
+        frame();
+        input_.dropped.clear();
+        settle();
+    };
+    drop({assets + "meshes/sphere.obj", assets + "scenes/falling_cube.json"});
+    EXPECT_EQ(viewer_->scene().name, "small");
+    EXPECT_NE(viewer_->message().find("falling_cube.json"), std::string::npos) << viewer_->message();
+    drop({assets + "meshes/sphere.obj"});
+    EXPECT_EQ(viewer_->scene().colliders.size(), 1U) << "what was refused left nothing behind";
+    int recorded = 0;
+    viewer_->onStepped([&](const Session&) {
+        ++recorded;
+        return ok();
+    });
+    frame();
+    EXPECT_EQ(recorded, 1);
+    drop({assets + "scenes/falling_cube.json"});
+    ASSERT_EQ(viewer_->scene().name, "falling_cube") << viewer_->message();
+    const int then = recorded;
+    frame();
+    EXPECT_EQ(recorded, then) << "a recording is of one scene";
+    withControl('Z');
+    settle();
+    EXPECT_EQ(viewer_->scene().name, "small");
+    EXPECT_EQ(viewer_->scene().colliders.size(), 1U);
+}
+
+TEST_P(Opening, APresetThatNeedsNewWaterGetsIt) {
+    SceneFile scene = small();
+    scene.presets = {{.name = "coarse", .doc = "fewer", .set = "fluid.spacing=0.1; fluid.viscosity=0.25"}};
+    viewer_->open(scene);
+    settle();
+    frame();
+    frame();
+    const uint32_t before = viewer_->session().world().stats().particles;
+    ASSERT_GT(before, 100U);
+    ASSERT_TRUE(hover("###scene", {"###preset0"}));
+    click();
+    settle();
+    EXPECT_EQ(viewer_->scene().fluid.spacing, 0.1F);
+    EXPECT_EQ(viewer_->scene().fluid.viscosity, 0.25F);
+    for (int k = 0; k < 6; ++k) frame();
+    EXPECT_LT(viewer_->session().world().stats().particles, before / 4);
+}
+
+// An edit that would make the window stand still is refused.
+TEST_P(Opening, AnEditThatWouldTakeForEverIsRefused) {
+    begin(small(), {900, 700}, {90, 70}, {.backend = GetParam(), .longestStep = 1.0e-4, .share = [this] { return context_->shared(); }});
+    for (int k = 0; k < 5; ++k) frame();
+    withControl('F');
+    type("fluid.spacing");
+    frame();
+    ASSERT_TRUE(hover("parameters", {"fluid", "spacing", "##v", "#0", ""}));
+    input_.keysDown = {key::kLeftControl};  // typed rather than dragged
+    click();
+    input_.keysDown.clear();
+    type("0.02");
+    hit(key::kEnter);
+    for (int k = 0; k < 3; ++k) {
+        settle();
+        frame();
+    }
+    EXPECT_EQ(viewer_->scene().fluid.spacing, 0.05F);
+    EXPECT_NE(viewer_->message().find("a picture"), std::string::npos) << viewer_->message();
+}
+
 TEST_P(Opening, ASceneIsChosenAmongTheirPictures) {
     key('O');
     frame();

@@ -162,6 +162,24 @@ TEST_F(Person, TheViewTurnsAlsoWhileAnEditIsRefused) {
     EXPECT_GT(glm::length(camera().position - before.position), 0.1F * distance());
 }
 
+TEST_F(Person, SavesAlsoWhileAFieldIsTypedInto) {
+    frame();
+    withControl('F');
+    type("gravity");
+    frame();
+    ASSERT_TRUE(ImGui::GetIO().WantTextInput);
+    withControl('S');
+    frame();
+    EXPECT_TRUE(shows("save the scene"));
+}
+
+TEST(FileName, IsOfAFileWhateverTheSceneIsCalled) {
+    EXPECT_EQ(fileName("a scene"), "a scene");
+    EXPECT_EQ(fileName("a/b"), "a_b");
+    EXPECT_EQ(fileName(""), "scene");
+    EXPECT_EQ(fileName(".hidden"), "scene.hidden");
+}
+
 TEST_F(Person, EscapeClosesWhatLiesOnTop) {
     key(GLFW_KEY_H);
     key(GLFW_KEY_O);

@@ -254,6 +254,7 @@ bool Viewer::drawProgress(const SceneOpening& work, float height) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const SceneOpening::Step step = work.step();
     ImGui::SetNextWindowPos(ImVec2(display.x / 2, height * display.y), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    ImGui::SetNextWindowBgAlpha(1);  // a panel may lie under it
     ImGui::Begin(
         "opening", nullptr,
         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);

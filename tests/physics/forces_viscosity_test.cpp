@@ -168,8 +168,8 @@ TEST_P(Poured, HoneySpreadsAsHuppertSaysWithStepsAsLongAsWaters) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Poured, testing::Values("pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
 
-// A thread of cold honey falls ten of its widths: it does not run into the puddle but stands, buckles and lays itself down in coils, always
-// the same way round (liquid rope coiling, Ribe 2004), piled above the puddle, and all stays finite.
+// A thread of cold honey falls ten of its widths: it does not run into the puddle but stands, buckles and lays itself down in coils
+// (liquid rope coiling, Ribe 2004), piled above the puddle, and all stays finite.
 class Thread : public testing::TestWithParam<const char*> {};
 TEST_P(Thread, CoilsAndPilesUp) {
     auto device = cpu();

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "engine/ui/style.h"
+
 namespace rivulet {
 
 namespace {
@@ -68,7 +70,7 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     if (!replays) simulationFacts(world);
     fact("frame", fmt::format("{:.1f} ms", state.frameMs) + (replays ? "" : fmt::format(", of it simulation {:.1f} ms", state.simulateMs)));
 
-    const ImVec4 red(0.98F, 0.55F, 0.45F, 1), amber(0.95F, 0.78F, 0.45F, 1);
+    const ImVec4 red = refusedColour(), amber(0.95F, 0.78F, 0.45F, 1);
     if (!state.message.empty()) sentence(red, state.message);
     for (const std::string& text : world.stats().limited) sentence(amber, text);
     const std::vector<std::string>& limited = world.stats().limited;

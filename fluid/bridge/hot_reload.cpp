@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/param_list.h"
+#include "engine/ui/style.h"
 
 namespace rivulet {
 
@@ -97,6 +98,7 @@ std::optional<SceneFile> HotReload::takeScene(const SceneFile& shown) {
     }
     opened_ = *read;
     keepEdits(before_, shown, *read);
+    if (!checkScene(*read)) *read = opened_;  // the two contradict each other: the file is right
     return std::move(*read);
 }
 
@@ -118,7 +120,7 @@ void HotReload::draw() const {
     if (wrong.empty()) {
         ImGui::TextUnformatted(done_.c_str());
     } else {
-        ImGui::TextColored(ImVec4(0.98F, 0.55F, 0.45F, 1), "what was written is not taken; the last that was right stays");
+        ImGui::TextColored(refusedColour(), "what was written is not taken; the last that was right stays");
         ImGui::TextUnformatted(wrong.c_str());
     }
     ImGui::PopTextWrapPos();

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "engine/scene/load_image.h"
+#include "engine/ui/style.h"
 
 namespace rivulet {
 
@@ -113,7 +114,7 @@ std::optional<std::string> SceneBrowser::draw() {
         ImGui::EndChild();
         if (!trouble_.empty()) {
             ImGui::PushTextWrapPos(0);
-            ImGui::TextColored(ImVec4(0.98F, 0.55F, 0.45F, 1), "%s", trouble_.c_str());
+            ImGui::TextColored(refusedColour(), "%s", trouble_.c_str());
             ImGui::PopTextWrapPos();
         }
         const float open = ImGui::CalcTextSize("open").x + 2 * ImGui::GetStyle().FramePadding.x;

@@ -90,7 +90,7 @@ class Viewer {
 
     // From now on keeps the record of the run; starts anew with every new session.
     void record();
-    // Told after each step, before anything steps on. Its Error ends frame().
+    // Told after each step, before anything steps on, until another session begins. Its Error ends frame().
     void onStepped(std::function<Status(const Session&)> told) { told_ = std::move(told); }
     RunStats finishRecord();  // after record()
     // What is under way on another thread is done then, and counted: before session() is read between frames. Error: as frame().
@@ -114,10 +114,10 @@ class Viewer {
     void startOpening(SceneFile scene, bool other, bool written = false);
     void takeWritten(double seconds);
     void rememberOpened(bool written);
-    bool edited() const;
+    std::string madeOf(SceneFile scene) const;
     void finishOpening();  // when it is ready
     void giveUpOpening();
-    std::string waitOf(const Session& next) const;
+    Status showsSoon(const Session& next) const;
     Result<OpenedScene> openShowing(const SceneFile& scene, const ViewerOptions& options, const std::string& backend);
     static bool drawProgress(const SceneOpening& work, float height);  // a share of the window's; whether "cancel" was pressed
     void adopt(OpenedScene opened, bool other);

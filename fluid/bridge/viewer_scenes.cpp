@@ -14,14 +14,13 @@
 #include <utility>
 
 #include "engine/core/json.h"
+#include "engine/ui/style.h"
 #include "fluid/bridge/takeover.h"
 #include "fluid/sim/world_state.h"
 
 namespace rivulet {
 
 namespace {
-
-const ImVec4 kRefused(0.98F, 0.55F, 0.45F, 1);
 
 // As a shell would have it: ~ is the person's own folder.
 std::string fullPath(const std::string& typed) {
@@ -80,11 +79,11 @@ void Viewer::takeWritten(double seconds) {
     rememberOpened(true);
 }
 
-// Whether anything but the view is no longer as it was opened or saved.
-bool Viewer::edited() const {
-    SceneFile scene = draft_;
+// What of a scene is a person's to lose: not the view, and not what a budget picks.
+std::string Viewer::madeOf(SceneFile scene) const {
     scene.camera = {};
-    return writeJson(visiting(scene)) != openedText_;
+    if (session_->budget()) scene.fluid = {};
+    return writeJson(visiting(scene));
 }
 
 // What a reset goes back to. `written`: the file says it, not what is shown, which a person may have edited.
@@ -93,8 +92,7 @@ void Viewer::rememberOpened(bool written) {
     if (session_->budget()) opened.fluid = draft_.fluid;  // what it picks
     params_.open(visiting(opened), visiting(none));
     params_.compare(visiting(draft_));
-    opened.camera = {};
-    openedText_ = writeJson(visiting(opened));
+    openedText_ = madeOf(opened);
 }
 
 void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
@@ -157,6 +155,7 @@ void Viewer::startOpening(SceneFile scene, bool other, bool written) {
     }
     Result<OpenedSession> fresh = openSession(scene, *device_, log_, asked);
     if (!fresh) return refuse(fresh.error(), other, before);
+    if (Status soon = other ? ok() : showsSoon(*fresh->session); !soon) return refuse(soon.error(), false, before);
     opened.session = std::move(fresh->session);
     opened.device = std::move(fresh->instead);
     adopt(std::move(opened), other);
@@ -168,7 +167,7 @@ void Viewer::finishOpening() {
     Result<OpenedScene> opened = done.work->take();
     if (!opened) return refuse(opened.error(), done.other, done.before);
     const SceneFile wanted = draft_;
-    if (const std::string wait = done.other ? "" : waitOf(*opened->session); !wait.empty()) return refuse(failed(wait), false, done.before);
+    if (Status soon = done.other ? ok() : showsSoon(*opened->session); !soon) return refuse(soon.error(), false, done.before);
     adopt(std::move(*opened), done.other);
     if (done.other) return;
     // Meanwhile the camera may have moved, or a slider.
@@ -179,17 +178,17 @@ void Viewer::finishOpening() {
     if (!same) startOpening(wanted, false);
 }
 
-// An edit after which the window would stand still, by what a particle and step take now; "": it would not.
-std::string Viewer::waitOf(const Session& next) const {
+// Error (failed): after this edit the window would stand still, by what a particle and step take now.
+Status Viewer::showsSoon(const Session& next) const {
     const uint32_t now = session_->world().particles().count, then = next.world().particles().count;
     const double ms = profiler_.mean("simulate"), finer = session_->scene().fluid.spacing / next.scene().fluid.spacing;
-    if (now == 0 || then <= now || !(ms > 0)) return "";
+    if (now == 0 || then <= now || !(ms > 0)) return ok();
     const double seconds = 1.0e-3 * ms * then / now * std::max(finer, 1.0);
-    if (seconds < longestStep_) return "";
-    return fmt::format(
-        "{} particles would take some {:.0f} s a picture here, and the window would stand still: it is not done; run the scene with --set "
-        "for that",
-        then, seconds);
+    if (seconds < longestStep_) return ok();
+    return failed(
+        fmt::format("{} particles would take some {:.0f} s a picture here, and the window would stand still: it is not done; run "
+                    "the scene with --set for that",
+                    then, seconds));
 }
 
 void Viewer::giveUpOpening() {
@@ -207,7 +206,7 @@ void Viewer::adopt(OpenedScene opened, bool other) {
         if (Status gone = opened.session->goOnFrom(*session_); !gone) log_.notice(gone.error().message);
     hand_.letGo();
     if (other && !reopening_) {
-        if (edited()) {
+        if (madeOf(draft_) != openedText_) {
             left_ = draft_;
             log_.notice(fmt::format("{} was changed and not saved: control Z brings it back", draft_.name));
         }
@@ -376,7 +375,7 @@ void Viewer::drawSaving() {
     }
     if (!saveTrouble_.empty()) {
         ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28);
-        ImGui::TextColored(kRefused, "%s", saveTrouble_.c_str());
+        ImGui::TextColored(refusedColour(), "%s", saveTrouble_.c_str());
         ImGui::PopTextWrapPos();
     }
     ImGui::End();
@@ -390,9 +389,7 @@ void Viewer::drawSaving() {
         return;
     }
     savePath_ = path;
-    scene = draft_;
-    scene.camera = {};
-    openedText_ = writeJson(visiting(scene));
+    openedText_ = madeOf(draft_);
     saving_ = false;
     if (std::filesystem::equivalent(savePath_, draft_.source.path, error)) {  // from now on the file alone says what the scene is
         draft_.source = {draft_.source.path, {}, {}};

@@ -5,7 +5,6 @@
 #include <functional>
 #include <future>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +20,7 @@
 #include "fluid/bridge/fluid_panel.h"
 #include "fluid/bridge/haste.h"
 #include "fluid/bridge/hot_reload.h"
+#include "fluid/bridge/notices.h"
 #include "fluid/bridge/pour_brush.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/scene_browser.h"
@@ -28,27 +28,12 @@
 #include "fluid/bridge/scene_opening.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
+#include "fluid/bridge/viewer_options.h"
 #include "fluid/bridge/watch_window.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
 
 namespace rivulet {
-
-struct ViewerOptions {
-    std::string backend = "auto";
-    std::string device = {};         // of cl, as makeDevice
-    std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
-    void* clipboard = nullptr;       // as UiLayer
-    int width = 1280, height = 720;  // pixels, of what auto tries
-    std::string seen = {};           // as FirstStart
-    double longestStep = 20;         // s: an edit after which a picture would take longer is refused
-    // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
-    std::function<Result<SharedGl>()> share = {};
-    // With `share`: shows what `draw` draws into a framebuffer, while the first scene is being opened. false: the person has closed the
-    // window. None: create() returns when all is ready, and shows nothing till then.
-    using Draw = std::function<void(const InputEvents& input, GLuint framebuffer)>;
-    std::function<bool(const Draw& draw)> showing = {};
-};
 
 // A scene's name as the beginning of a file's.
 std::string fileName(std::string sceneName);
@@ -138,19 +123,6 @@ class Viewer {
     void drawUi();
     Status draw(const InputEvents& input, GLuint framebuffer);
 
-    // Said to the person, from whichever thread.
-    struct Notices {
-        std::mutex mutex;
-        std::vector<std::string> sentences;
-        std::vector<std::string> all() {
-            const std::lock_guard<std::mutex> lock(mutex);
-            return sentences;
-        }
-        void forget(const std::string& which) {
-            const std::lock_guard<std::mutex> lock(mutex);
-            std::erase(sentences, which);
-        }
-    };
     struct Opening {
         std::unique_ptr<SceneOpening> work;
         bool other = false;

@@ -109,10 +109,7 @@ void Viewer::refuse(const Error& error, bool other, const SceneFile& before) {
 void Viewer::startOpening(SceneFile scene, bool other, bool written) {
     reopening_ = written;
     if (!other || written) scene.room = std::max(scene.room, session_->world().particles().count);
-    {
-        const std::lock_guard<std::mutex> lock(notices_->mutex);
-        notices_->sentences.clear();
-    }
+    notices_->clear();
     message_.clear();
     const SceneFile before = opening_ && !opening_->other ? opening_->before : settled_;
     if (opening_) {

@@ -1,0 +1,37 @@
+// Notices: the last sentences that were said to the person, from whichever thread.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rivulet {
+
+class Notices {
+  public:
+    void add(std::string_view text) {
+        constexpr size_t kMost = 4;
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (sentences_.size() == kMost) sentences_.erase(sentences_.begin());
+        sentences_.emplace_back(text);
+    }
+    std::vector<std::string> all() const {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return sentences_;
+    }
+    void forget(const std::string& which) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        std::erase(sentences_, which);
+    }
+    void clear() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        sentences_.clear();
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::vector<std::string> sentences_;  // the newest last
+};
+
+}  // namespace rivulet

@@ -10,8 +10,8 @@
 #include "engine/compute/device_cpu.h"
 #include "fluid/bridge/takeover.h"
 #include "fluid/render/backend.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 

@@ -10,7 +10,7 @@
 #include "engine/scene/import_assimp.h"
 #include "fluid/bridge/session.h"
 #include "fluid/flow/flow_maps.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
 

@@ -7,8 +7,8 @@
 
 #include "demos/rivulet/bench_cases.h"
 #include "engine/compute/device_cpu.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 

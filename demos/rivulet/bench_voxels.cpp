@@ -8,7 +8,7 @@
 #include "engine/compute/device_cpu.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/bridge/session.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/voxel/voxel_field.h"
 #include "fluid/voxel/voxelize.h"
 

@@ -6,7 +6,7 @@
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
 #include "fluid/bridge/run_stats.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/chart.h"
 #include "fluid/validate/envelope.h"
 #include "fluid/validate/surface_chart.h"

@@ -7,8 +7,8 @@
 #include "fluid/render/backend.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
-#include "fluid/sim/liquids.h"
-#include "fluid/sim/method.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/sources/liquids.h"
 #include "fluid/voxel/voxelize.h"
 
 namespace rivulet {

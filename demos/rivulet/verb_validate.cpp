@@ -11,8 +11,8 @@
 #include "engine/core/json.h"
 #include "fluid/bridge/run_stats.h"
 #include "fluid/render/backend.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/method.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/physics_case.h"
 
 namespace rivulet {

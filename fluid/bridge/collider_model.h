@@ -12,7 +12,7 @@
 #include "engine/scene/animation.h"
 #include "engine/scene/scene.h"
 #include "fluid/bridge/scene_file.h"
-#include "fluid/sim/pose.h"
+#include "fluid/sim/world/pose.h"
 
 namespace rivulet {
 

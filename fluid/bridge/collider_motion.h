@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fluid/bridge/scene_file.h"
-#include "fluid/sim/solids.h"
+#include "fluid/sim/solids/solids.h"
 
 namespace rivulet {
 

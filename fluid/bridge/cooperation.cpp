@@ -9,7 +9,7 @@
 #include "engine/compute/device_cpu.h"
 #include "engine/core/assert.h"
 #include "engine/core/json.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 

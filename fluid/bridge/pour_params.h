@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "fluid/sim/emitter.h"
-#include "fluid/sim/fluid_params.h"
+#include "fluid/sim/sources/emitter.h"
+#include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 

@@ -12,8 +12,8 @@
 #include "engine/compute/device.h"
 #include "fluid/bridge/session.h"
 #include "fluid/render/fluid_upload.h"
-#include "fluid/sim/fluid_world.h"
-#include "fluid/sim/host_particles.h"
+#include "fluid/sim/world/fluid_world.h"
+#include "fluid/sim/world/host_particles.h"
 
 namespace rivulet {
 

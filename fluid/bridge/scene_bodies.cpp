@@ -6,7 +6,7 @@
 
 #include "engine/scene/import_assimp.h"
 #include "engine/scene/transform.h"
-#include "fluid/sim/body_shapes.h"
+#include "fluid/sim/solids/body_shapes.h"
 
 namespace rivulet {
 

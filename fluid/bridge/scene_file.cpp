@@ -10,7 +10,7 @@
 
 #include "engine/core/json.h"
 #include "engine/core/table.h"
-#include "fluid/sim/solids.h"
+#include "fluid/sim/solids/solids.h"
 
 namespace rivulet {
 

@@ -11,8 +11,8 @@
 #include "fluid/bridge/flow_params.h"
 #include "fluid/bridge/pour_params.h"
 #include "fluid/render/look_params.h"
-#include "fluid/sim/emitter.h"
-#include "fluid/sim/fluid_params.h"
+#include "fluid/sim/sources/emitter.h"
+#include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 

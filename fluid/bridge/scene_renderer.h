@@ -20,7 +20,7 @@
 #include "engine/scene/scene.h"
 #include "fluid/bridge/scene_file.h"
 #include "fluid/render/renderers.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 

@@ -11,7 +11,7 @@
 #include "engine/scene/transform.h"
 #include "fluid/bridge/collider_motion.h"
 #include "fluid/bridge/scene_bodies.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/voxel/voxel_cache.h"
 
 namespace rivulet {

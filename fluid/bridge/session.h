@@ -15,7 +15,7 @@
 #include "fluid/bridge/scene_file.h"
 #include "fluid/bridge/skin_flows.h"
 #include "fluid/bridge/solids_bullet.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "fluid/voxel/deforming_field.h"
 #include "fluid/voxel/voxel_field.h"
 

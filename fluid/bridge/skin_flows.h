@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fluid/bridge/flow_component.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 

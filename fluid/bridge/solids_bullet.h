@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/core/mesh_view.h"
-#include "fluid/sim/solids.h"
+#include "fluid/sim/solids/solids.h"
 
 namespace rivulet {
 

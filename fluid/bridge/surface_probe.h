@@ -8,7 +8,7 @@
 #include "engine/app/context_egl.h"
 #include "engine/render/frame_view.h"
 #include "fluid/render/renderers.h"
-#include "fluid/sim/ellipsoids.h"
+#include "fluid/sim/surface/ellipsoids.h"
 
 namespace rivulet {
 

@@ -16,7 +16,7 @@
 #include "engine/core/json.h"
 #include "engine/ui/style.h"
 #include "fluid/bridge/takeover.h"
-#include "fluid/sim/world_state.h"
+#include "fluid/sim/world/world_state.h"
 
 namespace rivulet {
 

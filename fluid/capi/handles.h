@@ -21,7 +21,7 @@
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/render/water_renderer.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 
 struct rivulet_context {
     rivulet::Log log;

@@ -9,7 +9,7 @@
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
-#include "fluid/sim/host_particles.h"
+#include "fluid/sim/world/host_particles.h"
 
 using namespace rivulet;
 using namespace rivulet::capi;

@@ -5,8 +5,8 @@
 
 #include "engine/core/json.h"
 #include "fluid/capi/handles.h"
-#include "fluid/sim/host_particles.h"
-#include "fluid/sim/world_state.h"
+#include "fluid/sim/world/host_particles.h"
+#include "fluid/sim/world/world_state.h"
 
 namespace rivulet::capi {
 

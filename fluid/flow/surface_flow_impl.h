@@ -8,8 +8,8 @@
 
 #include "fluid/flow/surface_flow.h"
 #include "fluid/flow/thesis_tables.h"
-#include "fluid/sim/neighbor_grid.h"
-#include "fluid/sim/step_context.h"
+#include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/world/step_context.h"
 #include "shaders/flow/flow_step.h"
 
 namespace rivulet {

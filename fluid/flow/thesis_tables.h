@@ -8,7 +8,7 @@
 #include "engine/compute/device.h"
 #include "engine/core/params.h"
 #include "fluid/flow/flow_mesh.h"
-#include "fluid/sim/step_context.h"
+#include "fluid/sim/world/step_context.h"
 #include "shaders/flow/flow_step.h"
 #include "shaders/flow/thesis_step.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/core/mesh_view.h"
-#include "fluid/sim/iso_surface.h"
+#include "fluid/sim/surface/iso_surface.h"
 
 namespace rivulet {
 

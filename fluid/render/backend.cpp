@@ -12,7 +12,7 @@
 #include "engine/gpu/current_context.h"
 #include "engine/gpu/device_gl.h"
 #include "engine/gpu/load.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
 

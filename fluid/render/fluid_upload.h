@@ -12,7 +12,7 @@
 #include "fluid/io/recording.h"
 #include "fluid/render/fluid_view.h"
 #include "fluid/render/look_params.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 

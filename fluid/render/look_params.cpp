@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fluid/render/filters.h"
-#include "fluid/sim/liquids.h"
+#include "fluid/sim/sources/liquids.h"
 
 namespace rivulet {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/render/frame_view.h"
-#include "fluid/sim/iso_surface.h"
+#include "fluid/sim/surface/iso_surface.h"
 
 namespace rivulet {
 

@@ -8,7 +8,7 @@
 #include "engine/core/assert.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/session.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <numbers>
 
-#include "fluid/sim/block.h"
+#include "fluid/sim/sources/block.h"
 #include "fluid/validate/envelope_run.h"
 #include "fluid/validate/trial.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fluid/sim/force.h"
+#include "fluid/sim/forces/force.h"
 #include "fluid/validate/envelope_run.h"
 
 namespace rivulet {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/render/frame_view.h"
-#include "fluid/sim/ellipsoids.h"
+#include "fluid/sim/surface/ellipsoids.h"
 #include "fluid/validate/surface_metrics.h"
 
 namespace rivulet {

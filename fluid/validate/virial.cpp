@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "engine/core/assert.h"
-#include "fluid/sim/smoothing.h"
+#include "fluid/sim/methods/smoothing.h"
 
 namespace rivulet {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fluid/sim/fluid_params.h"
+#include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 

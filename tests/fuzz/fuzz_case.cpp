@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "engine/core/json.h"
-#include "fluid/sim/block.h"
-#include "fluid/sim/method.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/sources/block.h"
 
 namespace rivulet::fuzz {
 

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "fluid/sim/method.h"
+#include "fluid/sim/methods/method.h"
 #include "tests/fuzz/fuzz_run.h"
 
 namespace rivulet::fuzz {

@@ -6,7 +6,7 @@
 
 #include "engine/core/param_path.h"
 #include "engine/core/param_value.h"
-#include "fluid/sim/liquids.h"
+#include "fluid/sim/sources/liquids.h"
 
 namespace rivulet::fuzz {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fluid/bridge/collider_model.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 #include "tests/unit/gltf_file.h"
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "engine/app/capture.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/ellipsoids.h"
+#include "fluid/sim/surface/ellipsoids.h"
+#include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
 

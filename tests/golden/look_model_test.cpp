@@ -8,7 +8,7 @@
 #include "engine/render/skin_tables.h"
 #include "engine/scene/head_look.h"
 #include "engine/scene/import_model.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 
 namespace rivulet {

@@ -6,7 +6,7 @@
 #include "engine/render/made_sky.h"
 #include "fluid/bridge/session.h"
 #include "fluid/render/fluid_upload.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 
 namespace rivulet {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "fluid/sim/body_shapes.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/solids/body_shapes.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

@@ -2,7 +2,7 @@
 // device.
 #include <gtest/gtest.h>
 
-#include "fluid/sim/solids.h"
+#include "fluid/sim/solids/solids.h"
 #include "fluid/voxel/voxel_field.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"

@@ -8,8 +8,8 @@
 #include "engine/compute/device_cl.h"
 #include "engine/compute/device_cpu.h"
 #include "engine/compute/kernel_source.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 

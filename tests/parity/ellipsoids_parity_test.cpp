@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "fluid/sim/ellipsoids.h"
+#include "fluid/sim/surface/ellipsoids.h"
 #include "shaders/fluid/anisotropy_params.h"
 #include "tests/parity/devices.h"
 

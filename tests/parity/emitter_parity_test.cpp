@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

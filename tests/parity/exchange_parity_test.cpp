@@ -1,7 +1,7 @@
 // Water that others hold beside the world, on cl and gl: as many taken, as many born of what is poured.
 #include <gtest/gtest.h>
 
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

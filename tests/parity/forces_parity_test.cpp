@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "fluid/sim/force.h"
-#include "fluid/sim/method.h"
-#include "fluid/sim/neighbor_grid.h"
-#include "fluid/sim/smoothing.h"
+#include "fluid/sim/forces/force.h"
+#include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/methods/smoothing.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

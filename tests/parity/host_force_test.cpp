@@ -8,7 +8,7 @@
 #include "engine/app/context_egl.h"
 #include "engine/core/json.h"
 #include "engine/gpu/device_gl.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 #include "tests/parity/host_force_kernels.h"
 

@@ -8,8 +8,8 @@
 
 #include "fluid/bridge/run_stats.h"
 #include "fluid/bridge/session.h"
-#include "fluid/sim/ellipsoids.h"
-#include "fluid/sim/method.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/surface/ellipsoids.h"
 #include "shaders/fluid/linked_list.h"
 #include "shaders/fluid/stats_row.h"
 #include "tests/parity/devices.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "fluid/bridge/run_stats.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

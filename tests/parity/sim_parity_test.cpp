@@ -6,10 +6,10 @@
 #include <map>
 #include <random>
 
-#include "fluid/sim/fluid_world.h"
-#include "fluid/sim/method.h"
-#include "fluid/sim/neighbor_grid.h"
-#include "fluid/sim/particles.h"
+#include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/world/fluid_world.h"
+#include "fluid/sim/world/particles.h"
 #include "shaders/fluid/stats_row.h"
 #include "tests/parity/devices.h"
 

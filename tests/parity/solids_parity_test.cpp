@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fluid/bridge/run_stats.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 

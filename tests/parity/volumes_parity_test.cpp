@@ -1,7 +1,7 @@
 // Volumes that are watched on cl and gl: exact counts of that device's own particles, some steps late.
 #include <gtest/gtest.h>
 
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

@@ -1,6 +1,6 @@
 // Bodies in the fluid against what must be: Archimedes, Newton's third law, walls of boundary particles as good as walls, light bodies
 // that stay finite.
-#include "fluid/sim/bodies.h"
+#include "fluid/sim/solids/bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/bridge/session.h"
-#include "fluid/sim/body_shapes.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
-#include "fluid/sim/smoothing.h"
+#include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/solids/body_shapes.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 namespace {

@@ -1,11 +1,11 @@
 // Bodies that float on sampled water, integrated by a host of a few lines: as deep as Archimedes has it, and the water knows nothing of it.
-#include "fluid/sim/buoyancy.h"
+#include "fluid/sim/solids/buoyancy.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "fluid/sim/body_shapes.h"
+#include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

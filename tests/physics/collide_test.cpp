@@ -1,7 +1,7 @@
 // Particles against the static field: nothing in, nothing through, nothing sticks.
 #include <gtest/gtest.h>
 
-#include "fluid/sim/solids.h"
+#include "fluid/sim/solids/solids.h"
 #include "fluid/voxel/voxel_field.h"
 #include "tests/physics/collide_unit.h"
 #include "tests/unit/voxel_test_meshes.h"

@@ -1,13 +1,13 @@
 // Emitters and sinks: how much comes in and goes, and that nothing explodes, is lost or appears from nowhere.
-#include "fluid/sim/emitter.h"
+#include "fluid/sim/sources/emitter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "fluid/sim/body_shapes.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/solids/body_shapes.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 

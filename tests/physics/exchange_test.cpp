@@ -1,12 +1,12 @@
 // Water that others hold beside the world: what it gives, and that what is poured into it is there.
-#include "fluid/sim/exchange_passes.h"
+#include "fluid/sim/sources/exchange_passes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

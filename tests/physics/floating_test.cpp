@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "fluid/sim/body_shapes.h"
+#include "fluid/sim/solids/body_shapes.h"
 #include "fluid/validate/draught.h"
 #include "tests/physics/worlds.h"
 

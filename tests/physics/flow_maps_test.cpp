@@ -12,7 +12,7 @@
 #include "fluid/flow/map_texels.h"
 #include "fluid/flow/skin_folds.h"
 #include "fluid/flow/thesis_picture.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "shaders/flow/map_step.h"
 #include "tests/physics/charted_skins.h"
 #include "tests/physics/worlds.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "fluid/voxel/voxel_field.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"

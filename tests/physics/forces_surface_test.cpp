@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
-#include "fluid/sim/force.h"
+#include "fluid/sim/forces/force.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

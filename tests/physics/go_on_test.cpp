@@ -5,7 +5,7 @@
 #include <map>
 
 #include "fluid/bridge/session.h"
-#include "fluid/sim/host_particles.h"
+#include "fluid/sim/world/host_particles.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

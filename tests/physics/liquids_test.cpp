@@ -1,12 +1,12 @@
 // Liquids: the table, and two of them in one world against what hydrostatics says.
-#include "fluid/sim/liquids.h"
+#include "fluid/sim/sources/liquids.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/sim/block.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
-#include "fluid/sim/smoothing.h"
+#include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/sources/block.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fluid/bridge/pour_brush.h"
-#include "fluid/sim/host_particles.h"
+#include "fluid/sim/world/host_particles.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

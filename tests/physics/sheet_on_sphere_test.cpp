@@ -6,7 +6,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/bridge/session.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
 namespace {

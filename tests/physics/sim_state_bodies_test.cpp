@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "fluid/bridge/session.h"
-#include "fluid/sim/body_shapes.h"
+#include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

@@ -6,8 +6,8 @@
 
 #include "engine/compute/device_cpu.h"
 #include "fluid/bridge/session.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet {

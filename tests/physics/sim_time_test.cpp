@@ -6,9 +6,9 @@
 #include <map>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
-#include "fluid/sim/pace.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
+#include "fluid/sim/world/frame_stepper.h"
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 

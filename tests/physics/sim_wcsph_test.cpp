@@ -6,10 +6,10 @@
 #include <random>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/sim/cpu_kernels.h"
-#include "fluid/sim/fluid_world.h"
-#include "fluid/sim/method.h"
-#include "fluid/sim/smoothing.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 

@@ -1,5 +1,5 @@
 // Volumes that are watched: what they hold is what lies in them, and what has come less what has gone, whatever happens.
-#include "fluid/sim/volumes.h"
+#include "fluid/sim/query/volumes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What a world says of its water: at places, along rays. Against sums over all particles in double, and against water whose shape is known.
-#include "fluid/sim/water_query.h"
+#include "fluid/sim/query/water_query.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "engine/core/json.h"
 #include "fluid/bridge/budget.h"
 #include "fluid/bridge/session.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
 namespace {

@@ -10,7 +10,7 @@
 #include "engine/scene/transform.h"
 #include "fluid/bridge/session.h"
 #include "fluid/io/recording.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "tests/unit/gltf_file.h"
 #include "tests/unit/program_runner.h"
 

@@ -14,7 +14,7 @@
 
 #include "engine/render/frame_view.h"
 #include "fluid/render/host_target.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 
 namespace rivulet::testing {
 

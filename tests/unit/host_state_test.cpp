@@ -13,7 +13,7 @@
 #include "engine/gpu/device_gl.h"
 #include "engine/gpu/load.h"
 #include "fluid/render/water_renderer.h"
-#include "fluid/sim/fluid_world.h"
+#include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/gl_snapshot.h"
 #include "tests/unit/host_fixture.h"
 

@@ -164,11 +164,11 @@ TEST(IncludeRules, EveryIncludedFileOfTheProjectExists) {
 TEST(IncludeRules, APlantedBreachIsFound) {
     EXPECT_TRUE(breachIn("engine/core/json.cpp", R"(#include "engine/compute/device.h")"));
     EXPECT_TRUE(breachIn("engine/compute/device.cpp", R"(#include "engine/gpu/buffer.h")"));
-    EXPECT_TRUE(breachIn("engine/app/app.cpp", R"(#include "fluid/sim/fluid_world.h")"));
+    EXPECT_TRUE(breachIn("engine/app/app.cpp", R"(#include "fluid/sim/world/fluid_world.h")"));
     EXPECT_TRUE(breachIn("engine/material/material.cpp", R"(#include "engine/scene/mesh.h")"));
-    EXPECT_TRUE(breachIn("fluid/sim/fluid_world.cpp", R"(  #  include "engine/gpu/buffer.h")"));
-    EXPECT_TRUE(breachIn("fluid/sim/fluid_world.cpp", "#include <rivulet_glad/gl.h>"));
-    EXPECT_TRUE(breachIn("fluid/voxel/voxel_grid.cpp", R"(#include "fluid/sim/stats.h")"));
+    EXPECT_TRUE(breachIn("fluid/sim/world/fluid_world.cpp", R"(  #  include "engine/gpu/buffer.h")"));
+    EXPECT_TRUE(breachIn("fluid/sim/world/fluid_world.cpp", "#include <rivulet_glad/gl.h>"));
+    EXPECT_TRUE(breachIn("fluid/voxel/voxel_grid.cpp", R"(#include "fluid/sim/world/stats.h")"));
     EXPECT_TRUE(breachIn("fluid/render/points.cpp", R"(#include "engine/render/passes.h")"));
     EXPECT_TRUE(breachIn("fluid/io/export.cpp", R"(#include "fluid/bridge/scene_file.h")"));
     EXPECT_TRUE(breachIn("engine/ui/param_panel.cpp", "#include <GLFW/glfw3.h>"));
@@ -178,7 +178,7 @@ TEST(IncludeRules, APlantedBreachIsFound) {
 
     EXPECT_FALSE(breachIn("fluid/render/points.cpp", R"(#include "engine/render/frame_view.h")"));
     EXPECT_FALSE(breachIn("fluid/flow/flow_layer.cpp", R"(#include "engine/material/layer.h")"));
-    EXPECT_FALSE(breachIn("fluid/sim/fluid_world.cpp", R"(#include "shaders/fluid/step_params.h")"));
+    EXPECT_FALSE(breachIn("fluid/sim/world/fluid_world.cpp", R"(#include "shaders/fluid/step_params.h")"));
     EXPECT_FALSE(breachIn("fluid/bridge/session.cpp", R"(#include "engine/app/context_egl.h")"));
     EXPECT_FALSE(breachIn("engine/core/json.cpp", "#include <json/json.h>"));
     EXPECT_FALSE(breachIn("engine/core/json.cpp", "// #include nothing"));

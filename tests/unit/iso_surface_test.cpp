@@ -1,5 +1,5 @@
 // The iso-surface of particles against half spaces, balls and differences of its own value.
-#include "fluid/sim/iso_surface.h"
+#include "fluid/sim/surface/iso_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "fluid/bridge/scene_hand.h"
 #include "fluid/bridge/scene_renderer.h"
 #include "fluid/bridge/viewer.h"
-#include "fluid/sim/host_particles.h"
+#include "fluid/sim/world/host_particles.h"
 #include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {

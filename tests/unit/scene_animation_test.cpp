@@ -9,7 +9,7 @@
 #include "engine/scene/import_model.h"
 #include "engine/scene/skin.h"
 #include "engine/scene/transform.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "tests/unit/gltf_file.h"
 #include "tests/unit/program_runner.h"
 

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "engine/core/json.h"
-#include "fluid/sim/block.h"
+#include "fluid/sim/sources/block.h"
 
 namespace rivulet {
 

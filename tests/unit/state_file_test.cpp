@@ -8,7 +8,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "fluid/sim/world_state.h"
+#include "fluid/sim/world/world_state.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::testing {

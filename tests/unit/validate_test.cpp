@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "engine/core/json.h"
-#include "fluid/sim/cpu_kernels.h"
+#include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/draught.h"
 #include "fluid/validate/reference_data.h"
 #include "fluid/validate/trial.h"

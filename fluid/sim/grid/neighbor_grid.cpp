@@ -1,0 +1,348 @@
+#include "fluid/sim/grid/neighbor_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/compute/device_cpu.h"
+#include "engine/core/assert.h"
+#include "fluid/sim/kernels/cpu_grid.h"
+#include "shaders/fluid/linked_list.h"
+#include "shaders/fluid/scan_params.h"
+
+namespace rivulet {
+
+namespace {
+
+// Cells above this would take more memory than the particles of any scene that fits one device.
+constexpr double kMostCells = 64.0e6;
+
+// Takes the first Error of several allocations.
+struct Allocator {
+    Device& device;
+    Status status = ok();
+    Buffer operator()(size_t bytes) {
+        if (!status) return {};
+        Result<Buffer> buffer = device.allocate(bytes);
+        if (!buffer) {
+            status = buffer.error();
+            return {};
+        }
+        return std::move(*buffer);
+    }
+};
+
+}  // namespace
+
+struct NeighborGrid::Impl {
+    Device* device = nullptr;
+    vec3 origin{0.0F};
+    float h = 0, margin = 1;
+    ivec3 cells{0};  // padded
+    vec3 scale{0.0F}, period{0.0F};
+    uint32_t count = 0;
+    PairTraits traits;
+    Buffer cellStart, cellOf;
+
+    // CPU
+    uint32_t chunks = 1;
+    uint32_t groupCount = 0, fluidGroups = 0;
+    uint32_t listCapacity = 0;
+    Buffer x, y, z, histogram, segmentSum, groups, list, listCursor, lists;
+    Kernel sortCount, sortSegments, sortOffsets, sortScatter, neighborList;
+
+    // GPU
+    Buffer cellCounts, rank, order, blockSum;
+    bool given = false;  // cellOf is the next build's
+    Kernel cellCount, cellCountGiven, scanReduce, scanBlocks, scanApply, cellScatter, cellSort, reorder, cellLink;
+
+    bool onCpu() const { return device->backend() == Backend::cpu; }
+    uint32_t coarseCells() const {
+        return static_cast<uint32_t>(cells.x) * static_cast<uint32_t>(cells.y) * static_cast<uint32_t>(cells.z);
+    }
+    uint32_t sortedCells() const { return onCpu() ? 2 * coarseCells() : coarseCells(); }
+    uint32_t totalCells() const { return traits.samples > 0 ? 2 * sortedCells() : sortedCells(); }
+    uint32_t firstSample() const { return count - traits.samples; }
+    Status allocate();
+    Status findKernels();
+    CpuGridJob job(Particles& p) const;
+    Status buildCpu(Particles& p);
+    void buildGroups();
+    void buildGpu(const StepParams& params, Particles& p);
+    void buildLinked(const StepParams& params, Particles& p);
+};
+
+Status NeighborGrid::Impl::allocate() {
+    Allocator take{*device};
+    const size_t sorted = totalCells();
+    if (traits.linked) {
+        cellStart = take((NEXT_OF(sorted, count)) * sizeof(uint32_t));
+        cellCounts = take(sorted * sizeof(uint32_t));
+        return take.status;
+    }
+    cellStart = take((sorted + 4) * sizeof(uint32_t));
+    cellOf = take(count * sizeof(uint32_t));
+    if (onCpu()) {
+        chunks = static_cast<uint32_t>(std::clamp(static_cast<CpuDevice*>(device)->threads(), 1, 16));
+        for (Buffer* b : {&x, &y, &z}) *b = take((count + 8) * sizeof(float));
+        histogram = take(chunks * (sorted + 3) * sizeof(uint32_t));
+        segmentSum = take(kScanSegments * sizeof(uint32_t));
+        // A row's last group may be short: at most one such a row.
+        const size_t rows = sorted / (2 * static_cast<size_t>(cells.x));
+        groups = take((count / 8 + std::min<size_t>(count, rows) + 1) * sizeof(CpuGroup));
+        listCursor = take(sizeof(uint32_t));
+        lists = take(sizeof(CpuNeighborLists));
+        listCapacity = count * 14 + 64 * kListRegion / 8;
+        list = take(size_t{listCapacity} * sizeof(uint32_t));
+    } else {
+        cellCounts = take((sorted + 4) * sizeof(uint32_t));
+        rank = take(count * sizeof(uint32_t));
+        order = take(count * sizeof(uint32_t));
+        blockSum = take(((sorted + 4) / SCAN_BLOCK + 1) * sizeof(uint32_t));
+    }
+    return take.status;
+}
+
+Status NeighborGrid::Impl::findKernels() {
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+        std::vector<Define> defines;
+    };
+    std::vector<Wanted> wanted;
+    std::vector<Define> listDefines;
+    if (glm::any(traits.periodic)) listDefines.push_back({"PERIODIC", "1"});
+    if (onCpu())
+        wanted = {{&sortCount, "fluid/cpu_sort_count", {}},
+                  {&sortSegments, "fluid/cpu_sort_segments", {}},
+                  {&sortOffsets, "fluid/cpu_sort_offsets", {}},
+                  {&sortScatter, "fluid/cpu_sort_scatter", {}},
+                  {&neighborList, "fluid/cpu_neighbor_list", listDefines}};
+    else if (traits.linked)
+        wanted = {{&cellLink, "fluid/cell_link", traits.threadDefines()}};
+    else {
+        const std::vector<Define> threads = traits.threadDefines();
+        const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
+        std::vector<Define> givenDefines = threads;
+        givenDefines.push_back({"GIVEN", "1"});
+        wanted = {{&cellCount, "fluid/cell_count", threads},    {&cellCountGiven, "fluid/cell_count", givenDefines},
+                  {&scanReduce, "fluid/scan_reduce", scanSize}, {&scanBlocks, "fluid/scan_blocks", scanSize},
+                  {&scanApply, "fluid/scan_apply", scanSize},   {&cellScatter, "fluid/cell_scatter", threads},
+                  {&cellSort, "fluid/cell_sort", threads},      {&reorder, "fluid/reorder", threads}};
+    }
+    for (Wanted& w : wanted) {
+        Result<Kernel> found = device->kernel(w.path, w.defines);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    return ok();
+}
+
+CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
+    CpuGridJob j{};
+    j.originX = origin.x;
+    j.originY = origin.y;
+    j.originZ = origin.z;
+    j.scaleX = scale.x;
+    j.scaleY = scale.y;
+    j.scaleZ = scale.z;
+    j.periodX = period.x;
+    j.periodY = period.y;
+    j.periodZ = period.z;
+    j.reach = h * margin;
+    j.totalCells = totalCells();
+    j.firstSample = firstSample();
+    j.cellsX = cells.x;
+    j.cellsY = cells.y;
+    j.cellsZ = cells.z;
+    j.count = count;
+    j.chunks = chunks;
+    j.groupCount = groupCount;
+    j.listCapacity = listCapacity;
+    j.position = hostPointer<Float4>(p.positionNext);
+    j.velocity = hostPointer<Float4>(p.velocityNext);
+    j.id = hostPointer<uint32_t>(p.id);
+    j.positionOut = hostPointer<Float4>(p.position);
+    j.velocityOut = hostPointer<Float4>(p.velocity);
+    j.idOut = hostPointer<uint32_t>(p.idNext);
+    j.x = hostPointer<float>(x);
+    j.y = hostPointer<float>(y);
+    j.z = hostPointer<float>(z);
+    j.cell = hostPointer<uint32_t>(cellOf);
+    j.histogram = hostPointer<uint32_t>(histogram);
+    j.segmentSum = hostPointer<uint32_t>(segmentSum);
+    j.cellStart = hostPointer<uint32_t>(cellStart);
+    j.groups = hostPointer<CpuGroup>(groups);
+    j.list = hostPointer<uint32_t>(list);
+    j.listCursor = hostPointer<uint32_t>(listCursor);
+    return j;
+}
+
+// Groups of up to 8 consecutive particles that do not cross the end of a row.
+void NeighborGrid::Impl::buildGroups() {
+    const uint32_t* start = hostPointer<uint32_t>(cellStart);
+    CpuGroup* group = hostPointer<CpuGroup>(groups);
+    const size_t rowLength = 2 * static_cast<size_t>(cells.x), rows = totalCells() / rowLength;
+    groupCount = fluidGroups = 0;
+    for (size_t row = 0; row < rows; ++row) {
+        if (row * rowLength == sortedCells()) fluidGroups = groupCount;
+        const uint32_t end = start[(row + 1) * rowLength];
+        for (uint32_t first = start[row * rowLength]; first < end; first += 8)
+            group[groupCount++] = {first, std::min(8U, end - first), 0, 0};
+    }
+    if (traits.samples == 0) fluidGroups = groupCount;
+}
+
+Status NeighborGrid::Impl::buildCpu(Particles& p) {
+    CpuDevice& cpu = *static_cast<CpuDevice*>(device);
+    auto run = [&](Kernel k, const CpuGridJob& j, uint32_t threads) { cpu.dispatch(k, std::as_bytes(std::span(&j, 1)), {}, threads); };
+    CpuGridJob j = job(p);
+    run(sortCount, j, chunks);
+    run(sortSegments, j, kScanSegments);
+    run(sortOffsets, j, kScanSegments);
+    run(sortScatter, j, chunks);
+    p.id.swap(p.idNext);
+    buildGroups();
+    while (true) {
+        *hostPointer<uint32_t>(listCursor) = 0;
+        j = job(p);
+        run(neighborList, j, groupCount);
+        const uint32_t taken = *hostPointer<uint32_t>(listCursor);
+        if (taken <= listCapacity) break;
+        if (taken > UINT32_MAX / 2)
+            return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
+        listCapacity = taken + taken / 4;
+        Result<Buffer> larger = device->allocate(size_t{listCapacity} * sizeof(uint32_t));
+        if (!larger) return larger.error();
+        list = std::move(*larger);
+    }
+    *hostPointer<CpuNeighborLists>(lists) = {hostPointer<CpuGroup>(groups), hostPointer<uint32_t>(list),
+                                             hostPointer<CpuGroup>(groups) + fluidGroups};
+    return ok();
+}
+
+void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
+    device->fill(cellCounts, 0);
+    device->run(std::exchange(given, false) ? cellCountGiven : cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank},
+                count);
+    const uint32_t counts = totalCells() + 4;
+    const ScanParams scan{counts, (counts + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
+    device->run(scanReduce, scan, {&cellCounts, &blockSum}, scan.blocks * SCAN_THREADS);
+    device->run(scanBlocks, scan, {&blockSum}, SCAN_THREADS);
+    device->run(scanApply, scan, {&cellCounts, &blockSum, &cellStart}, scan.blocks * SCAN_THREADS);
+    device->run(cellScatter, params, {&cellStart, &cellOf, &rank, &order}, count);
+    device->run(cellSort, params, {&cellStart, &p.id, &order}, totalCells());
+    device->run(reorder, params, {&order, &p.positionNext, &p.velocityNext, &p.id, &p.position, &p.velocity, &p.idNext}, count);
+    p.id.swap(p.idNext);
+}
+
+// As in the thesis the state is in two copies that take turns; the lists are cleared as a whole, next ones with them.
+void NeighborGrid::Impl::buildLinked(const StepParams& params, Particles& p) {
+    p.position.swap(p.positionNext);
+    p.velocity.swap(p.velocityNext);
+    device->fill(cellStart, LIST_END);
+    device->fill(cellCounts, 0);
+    device->run(cellLink, params, {&p.position, &cellStart, &cellCounts}, count);
+}
+
+std::vector<Define> PairTraits::threadDefines() const {
+    std::vector<Define> d;
+    if (linked) d.push_back({"LINKED_LIST", "1"});
+    if (workGroup > 0) d.push_back({"LOCAL_SIZE", std::to_string(workGroup)});
+    return d;
+}
+
+std::vector<Define> PairTraits::defines() const {
+    std::vector<Define> d = threadDefines();
+    if (matter) d.push_back({"MATTER", "1"});
+    if (glm::any(periodic)) d.push_back({"PERIODIC", "1"});
+    return d;
+}
+
+std::vector<Define> PairTraits::wallDefines(std::vector<Define> extra) const {
+    if (!walls) extra.push_back({"OPEN", "1"});
+    return extra;
+}
+
+Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits) {
+    ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");
+    ASSERT(!traits.linked || (device.backend() != Backend::cpu && traits.samples == 0 && !glm::any(traits.periodic)),
+           "linked lists are for a GPU, without samples and periodic axes");
+    auto impl = std::make_unique<Impl>();
+    impl->device = &device;
+    impl->h = h;
+    impl->count = count;
+    impl->traits = traits;
+    const vec3 size = inside.size() / h;
+    const double cells = (std::ceil(double{size.x}) + 3) * (std::ceil(double{size.y}) + 3) * (std::ceil(double{size.z}) + 3);
+    if (cells > kMostCells)
+        return badInput(fmt::format(
+            "the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
+            inside.size().x, inside.size().y, inside.size().z, cells, h, h / 2 * std::cbrt(cells / kMostCells)));
+    for (int k = 0; k < 3; ++k) {
+        // One empty cell on every side: rows need no bounds checks.
+        if (traits.periodic[k]) {
+            // As many cells as fit, so that they meet where the axis wraps.
+            const auto n = static_cast<int>(std::floor(size[k] * 1.0001F));
+            if (n < 2)
+                return badInput(fmt::format("the box is {:.3g} m along the periodic axis {}, must be two support radii, {:.3g} m, or more",
+                                            inside.size()[k], "xyz"[k], 2 * h));
+            impl->cells[k] = n + 2;
+            impl->period[k] = inside.size()[k];
+            impl->scale[k] = static_cast<float>(n) / inside.size()[k];
+        } else {
+            // The last interior cell may be cut by the bounds; a wall's own coordinate still lies inside.
+            impl->cells[k] = static_cast<int>(std::floor(size[k])) + 3;
+            impl->scale[k] = 1.0F / h;
+        }
+        impl->origin[k] = inside.min[k] - 1.0F / impl->scale[k];
+    }
+    if (Status s = impl->findKernels(); !s) return s.error();
+    if (Status s = impl->allocate(); !s) return s.error();
+    return NeighborGrid(std::move(impl));
+}
+
+NeighborGrid::NeighborGrid(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+NeighborGrid::NeighborGrid(NeighborGrid&&) noexcept = default;
+NeighborGrid& NeighborGrid::operator=(NeighborGrid&&) noexcept = default;
+NeighborGrid::~NeighborGrid() = default;
+
+void NeighborGrid::give(std::span<const uint32_t> cells) {
+    ASSERT(cells.empty() || (cells.size() == impl_->count && impl_->cellCountGiven.index != UINT32_MAX), "give a GPU's sort a cell a slot");
+    impl_->given = !cells.empty();
+    if (impl_->given) impl_->device->writeAll<uint32_t>(impl_->cellOf, cells);
+}
+
+void NeighborGrid::fill(StepParams& params) const {
+    const Impl& g = *impl_;
+    params.gridOrigin = vec4(g.origin, 0.0F);
+    params.gridScale = vec4(g.scale, 0.0F);
+    params.period = vec4(g.period, 0.0F);
+    for (int k = 0; k < 3; ++k) params.invPeriod[k] = g.period[k] > 0 ? 1.0F / g.period[k] : 0.0F;
+    params.cellsX = g.cells.x;
+    params.cellsY = g.cells.y;
+    params.cellsZ = g.cells.z;
+    params.cellCount = g.sortedCells();
+    params.totalCells = g.totalCells();
+    params.firstSample = g.firstSample();
+}
+
+Status NeighborGrid::build(const StepParams& params, Particles& particles) {
+    if (impl_->onCpu()) return impl_->buildCpu(particles);
+    if (impl_->traits.linked)
+        impl_->buildLinked(params, particles);
+    else
+        impl_->buildGpu(params, particles);
+    return ok();
+}
+
+void NeighborGrid::setMargin(float margin) { impl_->margin = margin; }
+const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }
+const Buffer& NeighborGrid::cellStart() const { return impl_->cellStart; }
+const Buffer& NeighborGrid::cellCounts() const { return impl_->cellCounts; }
+uint32_t NeighborGrid::pairThreads() const { return impl_->onCpu() ? impl_->fluidGroups : impl_->count; }
+uint32_t NeighborGrid::sampleThreads() const { return impl_->onCpu() ? impl_->groupCount - impl_->fluidGroups : impl_->traits.samples; }
+
+}  // namespace rivulet

@@ -1,0 +1,66 @@
+// The neighbour grid: particles sorted by cell (edge = support radius h), so that a row of cells is contiguous in memory.
+// Behind the fluid come the samples on bodies, in cells of their own; then what is indexed nowhere: particles outside the bounds or with
+// NaN, and free slots. shaders/fluid/grid.h says where each begins.
+//
+// GPU: atomics count, a three-dispatch prefix sum, a sort by id inside each cell (the same order in every run); kernels sweep rows.
+// CPU: a stable counting sort, groups of 8 particles, and a list of candidate neighbours for each group.
+// fluid.grid linked_list, on a GPU: nothing is sorted, each cell has a list (thesis 4.2; shaders/fluid/linked_list.h).
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "engine/compute/device.h"
+#include "engine/core/math.h"
+#include "fluid/sim/world/particles.h"
+#include "shaders/fluid/step_params.h"
+
+namespace rivulet {
+
+// What decides which form of the pair kernels a world needs.
+struct PairTraits {
+    bvec3 periodic{false};   // axes on which the bounds wrap round
+    bool matter = false;     // particles differ: several liquids, or samples on bodies
+    uint32_t samples = 0;    // on bodies: the last ids
+    bool walls = true;       // else the box wraps round along all axes and there are no colliders
+    bool linked = false;     // fluid.grid linked_list
+    uint32_t workGroup = 0;  // threads, of a GPU; 0 = as the device has it
+    // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that knows who takes part.
+    std::vector<Define> threadDefines() const;
+    std::vector<Define> defines() const;  // MATTER, PERIODIC and those above: of every kernel with FOR_NEIGHBORS
+    // OPEN where there are no walls: of every kernel that asks for them. `extra`: others.
+    std::vector<Define> wallDefines(std::vector<Define> extra = {}) const;
+};
+
+class NeighborGrid {
+  public:
+    // `inside`: where particles may be (m); `count`: slots, samples with them. Error: so many cells that memory would not hold them, with
+    // what spacing would fit; a periodic axis shorter than 2 h.
+    static Result<NeighborGrid> create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits = {});
+    NeighborGrid(NeighborGrid&&) noexcept;
+    NeighborGrid& operator=(NeighborGrid&&) noexcept;
+    ~NeighborGrid();
+
+    void fill(StepParams& params) const;  // the grid's part of it
+    // For who moves particles before the next build: lists reach this times h.
+    void setMargin(float margin);
+    // GPU, sorted: the cells of the particles as they lie, as fluid/cell_of finds them: the next build takes them instead of finding them
+    // itself. Whoever moves particles before then calls with none.
+    void give(std::span<const uint32_t> cells);
+    // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error: out of
+    // memory for the lists.
+    Status build(const StepParams& params, Particles& particles);
+
+    const Buffer& neighbors() const;   // binding 1 of a kernel with FOR_NEIGHBORS
+    const Buffer& cellStart() const;   // [params.cellCount] = how many particles of the fluid are inside; or the linked lists
+    const Buffer& cellCounts() const;  // particles of each cell, of linked lists
+    uint32_t pairThreads() const;      // threads of a kernel with FOR_NEIGHBORS over the fluid: groups on the CPU, particles on a GPU
+    uint32_t sampleThreads() const;    // the same over the samples on bodies
+
+  private:
+    struct Impl;
+    explicit NeighborGrid(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rivulet

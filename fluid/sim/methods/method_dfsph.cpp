@@ -1,0 +1,143 @@
+// DFSPH (Bender and Koschier 2015) as one solve for rates of compression (see dfsph_rate.kernel), with pressures summed over the
+// iterations, kept from pulling, and begun with those of the step before.
+#include "fluid/sim/methods/method_dfsph.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/methods/solver_residual.h"
+
+namespace rivulet {
+
+namespace {
+
+// The speed of sound over that of the flow: compression under pressure is the square of its inverse, at most.
+constexpr float kSound = 100.0F;
+// The same where there is no surface: the mean of a disordered fluid's densities is above that of a lattice, nothing can give way, and a
+// stiff fluid's pressure for it would drown all others.
+constexpr float kSoundClosed = 10.0F;
+float squared(float x) { return x * x; }
+
+class Dfsph final : public Method {
+  public:
+    Kernel integrate, begin, end;
+    PairKernel density, rate, push;
+    Buffer solve, kept;  // kept: pressures of the last step, by id
+    SolverResidual residual;
+    float coupling = 1;   // of the iteration, over that with a support of 2 spacings
+    bool closed = false;  // periodic along all axes: there may be no surface
+
+    float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
+    StepLimit stepLimit(const FluidParams& p, float) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
+
+    void fill(const FluidParams& p, float fastest, StepParams& s) const override {
+        fillSmoothing(p, s);
+        // There is no sound: damping is what it is in weakly compressible water.
+        s.artificial = p.artificialViscosity * 10.0F * fastest * 0.5F * s.h;
+        s.stiffness = squared((closed ? kSoundClosed : kSound) * fastest);
+        s.relaxation = p.dfsph.relaxation / coupling;
+        s.warmStart = p.dfsph.warmStart;
+        s.correction = p.dfsph.correction;
+        s.momentum = p.dfsph.momentum;
+    }
+
+    std::vector<NamedBuffer> remembered() override { return {{"pressure", &kept}}; }
+    void forget() override { residual.forget(); }
+
+    std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
+        const std::vector<uint32_t> id = device.readAll<uint32_t>(p.id, p.count);
+        const std::vector<float> remembered = device.readAll<float>(kept, p.count);
+        std::vector<float> pascal(p.count);
+        for (size_t i = 0; i < id.size(); ++i) pascal[i] = remembered[id[i]] * s.restDensity;
+        return pascal;
+    }
+
+    void step(StepContext& c) override {
+        if (!c.build(false)) return;
+        Particles& p = c.particles;
+        c.boundary(p.position);
+        density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
+                    c.grid.pairThreads());
+        c.forces();
+        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
+        pushOn(c, 0, vec3(c.params.gravity) * c.params.dt);
+        iterate(c);
+        c.solve.iterations = residual.iterations();
+        c.solve.residual = residual.value();
+        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept}, p.count);
+        c.device.run(
+            integrate, c.params,
+            {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
+            p.count);
+    }
+
+  private:
+    // Velocities follow the change in p.pressure in iteration k, which goes on into bodies by `weight` a metre (Adami et al. 2012).
+    void pushOn(StepContext& c, int k, const vec3& weight) {
+        Particles& p = c.particles;
+        StepParams s = c.params;
+        s.iteration = k > 0 ? 1 : 0;
+        s.force = vec4(weight, 0.0F);
+        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure, &residual.progress()},
+                 c.grid.pairThreads());
+        c.pushSamples(p.position, p.pressure, 2.0F / c.params.dt, weight);  // MIRRORED
+    }
+    // Runs the solver to its tolerance.
+    void iterate(StepContext& c) {
+        Particles& p = c.particles;
+        const DfsphParams& d = c.fluid.dfsph;
+        const bool cpu = c.device.backend() == Backend::cpu;
+        const int most = cpu ? d.maxIterations : residual.worthQueueing(d.maxIterations);
+        StepParams s = c.params;
+        s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
+        for (int k = 0; k < most; ++k) {
+            s.iteration = k > 0 ? 1 : 0;  // not its number: a device keeps few different blocks of params at hand
+            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress()},
+                     c.grid.pairThreads());
+            pushOn(c, k, vec3(0.0F));
+            if (residual.enough(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
+        }
+        if (!cpu) residual.tellLater(c);
+    }
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& setup) {
+    if (setup.params.kernel != "wendland")
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method dfsph works with wendland");
+    auto m = std::make_unique<Dfsph>();
+    const double support = setup.params.supportSpacings;
+    m->coupling = static_cast<float>(std::max(wendlandCoupling(support) / wendlandCoupling(2), 1.0));
+    m->closed = glm::all(setup.traits.periodic);
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+        std::vector<Define> defines;
+    };
+    for (const Wanted& w : {Wanted{&m->integrate, "fluid/integrate", setup.traits.wallDefines({{"COAST", "1"}})},
+                            Wanted{&m->begin, "fluid/dfsph_begin", {}}, Wanted{&m->end, "fluid/dfsph_end", {}}}) {
+        Result<Kernel> found = device.kernel(w.path, w.defines);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    for (auto [kernel, path] : {std::pair(&m->density, "fluid/dfsph_density"), std::pair(&m->rate, "fluid/dfsph_rate"),
+                                std::pair(&m->push, "fluid/dfsph_push")}) {
+        Result<PairKernel> found = PairKernel::find(device, path, setup.traits, setup.traits.wallDefines());
+        if (!found) return found.error();
+        *kernel = *found;
+    }
+    Result<SolverResidual> residual = SolverResidual::create(device, {});
+    if (!residual) return residual.error();
+    m->residual = std::move(*residual);
+    const size_t count = setup.count;
+    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float))}) {
+        Result<Buffer> made = device.allocate(bytes);
+        if (!made) return made.error();
+        *buffer = std::move(*made);
+    }
+    return std::unique_ptr<Method>(std::move(m));
+}
+
+}  // namespace rivulet

@@ -1,0 +1,140 @@
+// Position Based Fluids (Macklin and Mueller 2013).
+#include "fluid/sim/methods/method_pbf.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/methods/solver_residual.h"
+
+namespace rivulet {
+
+namespace {
+
+class Pbf final : public Method {
+  public:
+    Kernel predict, finish, kick, weigh, setRatio;
+    PairKernel lambda, shift;
+    Buffer corrected[2], given;  // given: multipliers, summed over the iterations of the last step
+    SolverResidual residual;
+
+    float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
+    // A column at rest is as much too dense as its weight asks of the corrections of a step: a g H dt^2 / (k h^2) on its floor, a the
+    // diagonal of a lattice over h^2. Where that comes to a tenth, corrections throw particles about: seen at 0.36 to 0.48 h sqrt(k / a) /
+    // sqrt(2 g H). Few corrections that go the whole way overshoot, and stand less.
+    StepLimit stepLimit(const FluidParams& p, float fastest) const override {
+        constexpr double kDiagonal = 1.9, kShare = 0.35;
+        const double k = p.pbf.tolerance > 0 ? p.pbf.maxIterations : p.pbf.iterations, r = p.pbf.relaxation;
+        const double beyond = std::max(r - 0.7, 0.0) / k, h = double{p.supportSpacings} * double{p.spacing};
+        const double holds = kShare / (1 + 20 * beyond * beyond) * h * std::sqrt(k * r / kDiagonal) / std::max(double{fastest}, 1.0e-9);
+        const double asked = 1.0 / (60 * p.pbf.minSubsteps);
+        if (holds < asked) return {p.pbf.reach, holds, "the weight that its iterations can bear (fluid.pbf.iterations)"};
+        return {p.pbf.reach, asked};
+    }
+
+    void fill(const FluidParams& p, float, StepParams& s) const override {
+        fillSmoothing(p, s);
+        s.relaxation = p.pbf.relaxation;
+    }
+
+    std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
+        std::vector<float> pascal = device.readAll<float>(given, p.count);
+        for (float& x : pascal) x *= s.restDensity / (s.dt * s.dt);
+        return pascal;
+    }
+
+    void forget() override { residual.forget(); }
+
+    bool predicts() const override { return true; }
+    void step(StepContext& c) override {
+        Particles& p = c.particles;
+        c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
+        c.grid.setMargin(1.05F);  // as pbf_lambda keeps
+        if (!c.build(true)) return;
+        // p.position: predicted; p.velocity: where each particle comes from.
+        const uint32_t threads = c.grid.pairThreads();
+        const Buffer& neighbors = c.grid.neighbors();
+        const Buffer* at = &p.position;
+        // Samples on bodies are never corrected, but looked at there.
+        if (c.params.firstSample < c.params.count)
+            for (Buffer& b : corrected) c.device.copy(p.position, b, size_t{p.count} * sizeof(vec4));
+        const PbfParams& pbf = c.fluid.pbf;
+        const bool toTolerance = pbf.tolerance > 0, cpu = c.device.backend() == Backend::cpu;
+        const int most = !toTolerance ? pbf.iterations
+                         : cpu        ? pbf.maxIterations
+                                      : residual.planned(double{pbf.tolerance}, pbf.maxIterations);
+        int k = 0;
+        StepParams s = c.params;
+        for (; k < most; ++k) {
+            s.iteration = static_cast<uint32_t>(k);
+            c.boundary(*at);
+            lambda.run(c, c.params, {&neighbors, &p.position, at, &p.boundary, &p.density, &p.pressure}, threads);
+            if (toTolerance && (cpu || k + 1 == most)) {
+                const double left = residual.measure(c, p.density);
+                if (cpu && k > 0 && left <= double{pbf.tolerance}) break;
+            }
+            shift.run(c, s, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2], &given}, threads);
+            c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt), vec3(0.0F));
+            at = &corrected[k % 2];
+        }
+        c.solve.iterations = k;
+        if (toTolerance) c.solve.residual = residual.value();
+        c.device.run(finish, c.params,
+                     {&c.grid.cellStart(), &p.position, at, &p.velocity, &p.density, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
+        // The other forces act on the velocity that came out; the next step's prediction follows it.
+        if (c.hasForces) {
+            p.velocity.swap(p.velocityNext);
+            c.device.run(weigh, c.noGravity(), {&c.grid.cellStart(), &p.acceleration}, p.count);
+            c.forces();
+            c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, p.count);
+            p.velocity.swap(p.velocityNext);
+        }
+        p.position.swap(p.velocity);  // what follows walks from where the step began
+    }
+
+    void measure(StepContext& c) override {
+        Particles& p = c.particles;
+        c.boundary(p.positionNext);
+        // p.velocity: where the grid was built, see the end of step().
+        lambda.run(c, c.params, {&c.grid.neighbors(), &p.velocity, &p.positionNext, &p.boundary, &p.density, &p.pressure},
+                   c.grid.pairThreads());
+        c.device.run(setRatio, c.params, {&c.grid.cellStart(), &p.density, &p.positionNext}, p.count);
+    }
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
+    if (setup.params.kernel != "wendland")
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method pbf works with wendland");
+    auto m = std::make_unique<Pbf>();
+    const std::vector<Define> walls = setup.traits.wallDefines();
+    for (auto [kernel, path, defines] :
+         {std::tuple(&m->predict, "fluid/pbf_predict", walls), std::tuple(&m->finish, "fluid/pbf_finish", walls),
+          std::tuple(&m->kick, "fluid/kick", std::vector<Define>()), std::tuple(&m->weigh, "fluid/weigh", std::vector<Define>()),
+          std::tuple(&m->setRatio, "fluid/set_ratio", std::vector<Define>())}) {
+        Result<Kernel> found = device.kernel(path, defines);
+        if (!found) return found.error();
+        *kernel = *found;
+    }
+    for (auto [kernel, path] : {std::pair(&m->lambda, "fluid/pbf_lambda"), std::pair(&m->shift, "fluid/pbf_shift")}) {
+        Result<PairKernel> found = PairKernel::find(device, path, setup.traits, walls);
+        if (!found) return found.error();
+        *kernel = *found;
+    }
+    const Define density{"DENSITY", "1"};
+    Result<SolverResidual> residual = SolverResidual::create(device, std::span(&density, 1));
+    if (!residual) return residual.error();
+    m->residual = std::move(*residual);
+    for (auto [buffer, bytes] :
+         {std::pair(&m->corrected[0], sizeof(vec4)), std::pair(&m->corrected[1], sizeof(vec4)), std::pair(&m->given, sizeof(float))}) {
+        Result<Buffer> made = device.allocate(size_t{setup.count} * bytes);
+        if (!made) return made.error();
+        *buffer = std::move(*made);
+    }
+    return std::unique_ptr<Method>(std::move(m));
+}
+
+}  // namespace rivulet

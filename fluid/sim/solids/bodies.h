@@ -1,0 +1,106 @@
+// Bodies that the fluid pushes, and that push it: boundary particles on their surface (Akinci et al. 2012), and who moves them.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/core/math.h"
+#include "engine/core/result.h"
+#include "fluid/sim/world/fluid_params.h"
+#include "fluid/sim/world/pose.h"
+
+namespace rivulet {
+
+// A body's own frame has its origin at the centre of mass and its axes along the principal axes of inertia.
+struct BodyShape {
+    std::vector<vec3> samples;  // m, half a spacing of the fluid under the surface, about a spacing apart
+    float mass = 0;             // kg; 0: it never moves
+    vec3 inertia{0.0F};         // kg m^2, about the own axes
+    float volume = 0;           // m^3, of water it displaces when it is under
+    float sticks = 0;           // 1: fluid sticks to it (no-slip), 0: it slips
+    // Distance (m) of a point of the own frame from the surface, negative inside. May be empty: then no fluid is left out.
+    std::function<float(const vec3&)> distance = {};
+};
+
+struct BodyState {
+    Pose pose;
+    vec3 velocity{0.0F};  // m/s, of the centre of mass
+    vec3 spin{0.0F};      // rad/s, world
+    vec3 velocityAt(const vec3& p) const { return velocity + glm::cross(spin, p - pose.position); }
+};
+
+struct Body {
+    BodyShape shape;
+    BodyState state;  // at t = 0
+};
+
+// What the fluid does to a body in a substep: force, N, and torque about the centre of mass, N m, in the world's axes.
+struct BodyLoad {
+    dvec3 force{0.0}, torque{0.0};
+    dvec3 impulseOwed{0.0}, turnOwed{0.0};  // N s, N m s: done to it already, to be handed over in later substeps, see BodyLoads
+};
+
+// Who moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither.
+struct BodyHost {
+    void* self = nullptr;
+    // Moves all bodies on by `seconds` under the fluid's `loads`, its own contacts and `gravity` (m/s^2). `states`: as they are -> as they
+    // are then.
+    void (*advance)(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds,
+                    std::span<BodyState> states) = nullptr;
+    // Back to `states`, those at t = 0.
+    void (*reset)(void* self, std::span<const BodyState> states) = nullptr;
+    // For a world that is saved. Whether advance depends on nothing but what it is given; else the host has the other two, or its world
+    // cannot be saved.
+    bool remembersNothing = false;
+    // All that advance depends on beside what it is given.
+    std::vector<std::byte> (*save)(void* self) = nullptr;
+    // Goes on from there; the bodies are in `states`. Error (badInput): the bytes make no sense; then nothing has changed.
+    Status (*restore)(void* self, std::span<const std::byte> bytes, std::span<const BodyState> states) = nullptr;
+};
+
+// A host for worlds where bodies meet nothing but fluid: rigid motion, symplectic Euler, momentum and angular momentum kept.
+class FreeBodies {
+  public:
+    explicit FreeBodies(std::span<const Body> bodies);
+    BodyHost host();  // the FreeBodies must outlive its use
+
+  private:
+    struct Own {
+        double mass;
+        dvec3 inertia;
+    };
+    std::vector<Own> own_;
+};
+
+// What bodies are given of what the fluid does to them. Fluid that has to be moved along with a body answers to the body's acceleration of
+// the step before (added mass), and a body lighter than about that fluid would swing ever farther (Causin, Gerbeau and Nobile 2005). So a
+// body is given as much less as if it had that fluid's mass a besides, and what it was not given it is owed (a fictitious mass, as Baek and
+// Karniadakis 2012): (m + a) F' = m (F + owed), owed = F + owed - F'. Nothing is lost, and where the load is steady F' = F.
+// Where water is let compress (wcsph), only what sound reaches in a step answers a step late: the layer of particles before the samples. A
+// fictitious mass beyond what that needs makes the body answer late, too, and it then shakes water off: a box half as dense as water had
+// 0.44 of itself under instead of 0.5.
+class BodyLoads {
+  public:
+    BodyLoads(std::span<const Body> bodies, const FluidParams& params);
+    // Of a substep of `seconds`; `wet`: share of the surface that is in the fluid, 0..1.
+    BodyLoad give(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds);
+    void restore(std::span<const BodyLoad> last);  // what give returned last, of each
+    void reset();
+
+  private:
+    struct Own {
+        double added;  // mass of the fluid moved along, over the body's
+        BodyLoad last;
+    };
+    std::vector<Own> own_;
+};
+
+// The volume (over spacing^3) each sample stands for: gamma / sum of W over the body's samples (Akinci et al. 2012), gamma such that fluid
+// whose lattice begins half a spacing off the surface, one off a plane of samples, is at rest density. Samples lie that deep because nearer
+// ones would have to be so light for it that their gradient, which falls towards the plane, could not carry the fluid's pressure: it
+// leaked. Kernel and spacing of `params`.
+std::vector<float> sampleVolumes(std::span<const vec3> samples, const FluidParams& params);
+
+}  // namespace rivulet

@@ -1,0 +1,507 @@
+#include "fluid/sim/solids/solid_passes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
+#include "fluid/voxel/labels.h"
+#include "fluid/voxel/packed_array.h"
+
+namespace rivulet {
+
+namespace {
+
+bool sound(const Pose& p) {
+    const float length = glm::dot(p.rotation, p.rotation);
+    return isFinite(p.position) && std::isfinite(length) && std::abs(length - 1.0F) < 1.0e-3F;
+}
+
+// World -> own frame, as rows.
+std::array<vec4, 3> rows(const Pose& p) {
+    const mat3 turn = glm::mat3_cast(p.rotation);  // own -> world: its columns are the rows of the way back
+    std::array<vec4, 3> r{};
+    for (int k = 0; k < 3; ++k) r[static_cast<size_t>(k)] = vec4(turn[k], -glm::dot(turn[k], p.position));
+    return r;
+}
+
+// The turn from `a` to `b` as an axis times an angle (rad), the short way round.
+vec3 turnBetween(const quat& a, const quat& b) {
+    quat q = b * glm::conjugate(a);
+    if (q.w < 0) q = -q;
+    const vec3 axis(q.x, q.y, q.z);
+    const float size = glm::length(axis);
+    return size > 0 ? axis * (2.0F * std::atan2(size, q.w) / size) : vec3(0.0F);
+}
+
+template <class T>
+Status hold(Device& device, Buffer& buffer, std::span<const T> items, size_t extra = 0) {
+    Result<Buffer> made = device.allocate(items.size_bytes() + extra);
+    if (!made) return made.error();
+    buffer = std::move(*made);
+    device.write(buffer, std::as_bytes(items));
+    return ok();
+}
+
+}  // namespace
+
+std::array<uint32_t, 2 * kMostSurfaces> surfaceWords(std::span<const Surface> surfaces, const Surface& otherwise) {
+    std::array<uint32_t, 2 * kMostSurfaces> words{};
+    for (size_t k = 0; k < kMostSurfaces; ++k) {
+        const Surface s = k < surfaces.size() ? surfaces[k] : Surface{};
+        const float values[2] = {s.friction >= 0 ? s.friction : otherwise.friction,
+                                 s.restitution >= 0 ? s.restitution : otherwise.restitution};
+        std::memcpy(&words[2 * k], values, sizeof values);
+    }
+    return words;
+}
+
+Status SolidPasses::Field::upload(Device& device) {
+    // Where a mesh is not closed nobody knows which side of it is inside: what cannot be reached from the border counts as that.
+    if (!field->closed) outside = reachableFromBorder(field->surface);
+    if (Status s = hold<uint8_t>(device, bits, field->surface.bits); !s) return s;
+    if (Status s = hold<float>(device, distance, field->distance); !s) return s;
+    return hold<uint32_t>(device, normal, field->normal, 2 * kMostSurfaces * sizeof(uint32_t));
+}
+
+namespace {
+
+Status check(std::span<const Surface> surfaces) {
+    if (surfaces.size() > kMostSurfaces)
+        return badInput(
+            fmt::format("{} kinds of wall are more than the {} there may be: give some colliders the same friction and restitution",
+                        surfaces.size(), kMostSurfaces));
+    for (size_t k = 0; k < surfaces.size(); ++k) {
+        if (!std::isfinite(surfaces[k].friction))
+            return badInput(fmt::format("the friction of surface {} is {}, must be 0 or more, or below 0 for fluid.collision's", k,
+                                        surfaces[k].friction));
+        if (!(surfaces[k].restitution <= 1) || !std::isfinite(surfaces[k].restitution))
+            return badInput(fmt::format("the restitution of surface {} is {}, must be between 0 and 1, or below 0 for fluid.collision's", k,
+                                        surfaces[k].restitution));
+    }
+    return ok();
+}
+
+// Who touches it must know of it before: fieldParams.
+Status reaches(const VoxelField& field, float spacing) {
+    if (0.5F * spacing < field.band) return ok();
+    return badInput(
+        fmt::format("a solid's voxel field has a band of {:.3g} m, which must be wider than half a spacing of {:.3g} m: bake it with a "
+                    "band of at least "
+                    "{:.3g} m",
+                    field.band, spacing, 2 * spacing));
+}
+
+}  // namespace
+
+Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, const FluidParams& params, std::span<const Define> threads) {
+    SolidPasses s;
+    s.device_ = &device;
+    s.planeSolids_ = solids.planes;
+    for (const PlaneSolid& p : s.planeSolids_) {
+        if (!isFinite(p.position) || !isFinite(p.normal)) return badInput("a plane's place or normal is not finite");
+        if (!(glm::length(p.normal) > 0.0F)) return badInput("a plane's normal is zero: give it a direction");
+        if (p.surface >= kMostSurfaces) return badInput(fmt::format("a plane's surface is {}, must be below {}", p.surface, kMostSurfaces));
+    }
+    if (Status sound = check(solids.surfaces); !sound) return sound.error();
+    s.surfaces_ = solids.surfaces;
+    Result<Buffer> planes = device.allocate(std::max<size_t>(s.planeSolids_.size(), 1) * 2 * sizeof(vec4));
+    if (!planes) return planes.error();
+    s.planes_ = std::move(*planes);
+
+    if (solids.field != nullptr && !solids.field->empty()) {
+        if (Status wide = reaches(*solids.field, params.spacing); !wide) return wide.error();
+        s.static_.field = solids.field;
+        if (Status done = s.static_.upload(device); !done) return done.error();
+        Result<Buffer> block = device.allocate(sizeof(FieldParams));
+        if (!block) return block.error();
+        s.staticBlock_ = std::move(*block);
+    }
+    for (const RigidSolid& rigid : solids.rigid) {
+        if (!sound(rigid.pose)) return badInput("a moving solid's pose is not finite, or its rotation has no unit length");
+        if (rigid.field != nullptr)
+            if (Status wide = reaches(*rigid.field, params.spacing); !wide) return wide.error();
+        Moving m;
+        m.on.field = rigid.field;
+        m.atStart = rigid.pose;
+        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
+    }
+    for (DeformingField* shape : solids.deforming) {
+        if (shape == nullptr) return badInput("a deforming solid has no field: bake its mesh first");
+        if (Status wide = reaches(shape->field(), params.spacing); !wide) return wide.error();
+        Moving m;
+        m.shape = shape;
+        m.on.field = &shape->field();
+        m.shapeAtStart.assign(shape->positions().begin(), shape->positions().end());
+        if (Status done = s.addMoving(std::move(m)); !done) return done.error();
+    }
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+        std::vector<Define> defines;
+        bool wanted;
+    };
+    s.walled_ = !glm::all(params.box.periodic()) || s.any();
+    s.thesis_ = params.collision.walk == "thesis";
+    const bool thesis = s.thesis_, still = s.static_.field != nullptr;
+    const auto collide = [&](const char* motion) {
+        std::vector<Define> d(threads.begin(), threads.end());
+        if (*motion != 0) d.push_back({motion, "1"});
+        if (std::string_view(motion) == "DEFORMING") d.push_back({"MOVING", "1"});
+        if (thesis) d.push_back({"THESIS", "1"});
+        return d;
+    };
+    for (const Wanted& w :
+         {Wanted{&s.boundary_, "fluid/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.frictionMoving_, "fluid/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.walls_, "fluid/walls", {threads.begin(), threads.end()}, s.walled_},
+          Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.collide_, "fluid/collide", collide(""), still},
+          Wanted{&s.collideRigid_, "fluid/collide", collide("MOVING"), !s.rigid_.empty()},
+          Wanted{&s.collideDeforming_, "fluid/collide", collide("DEFORMING"), !s.deforming_.empty()}}) {
+        if (!w.wanted) continue;
+        Result<Kernel> found = device.kernel(w.path, w.defines);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    if (Status done = s.reset(); !done) return done.error();
+    return s;
+}
+
+Status SolidPasses::addMoving(Moving m) {
+    if (m.on.field == nullptr || m.on.field->empty()) return badInput("a moving solid has no voxels: bake its mesh first");
+    if (Status done = m.on.upload(*device_); !done) return done;
+    Result<Buffer> block = device_->allocate(sizeof(MotionParams));
+    if (!block) return block.error();
+    m.block = std::move(*block);
+    const VoxelGrid& grid = m.on.field->surface;
+    for (int k = 0; k < 8; ++k) {
+        const vec3 corner = grid.origin + grid.voxel * vec3(grid.size) * vec3(k & 1, (k >> 1) & 1, k >> 2);
+        m.radius = std::max(m.radius, glm::length(corner));
+    }
+    if (m.shape != nullptr) {
+        Result<Buffer> displacement = device_->allocate(m.on.field->distance.size() * sizeof(vec4));
+        if (!displacement) return displacement.error();
+        m.displacement = std::move(*displacement);
+    }
+    (m.shape != nullptr ? deforming_ : rigid_).push_back(std::move(m));
+    return ok();
+}
+
+bool SolidPasses::Field::mayBeBorn(const vec3& p, float spacing, float near) const {
+    const float contact = fieldParams(*field, FieldContact{.spacing = spacing}).contact;
+    if ((near > 0 && field->clearance(p) < near * contact) || field->inside(p)) return false;
+    const ivec3 voxel = field->surface.cellOf(p);
+    return field->closed || !field->surface.contains(voxel) || outside[field->surface.index(voxel)] != 0;
+}
+
+bool SolidPasses::mayBeBorn(const vec3& p, float spacing, float near) const {
+    for (const PlaneSolid& plane : planeSolids_)
+        if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * near * spacing) return false;
+    for (size_t k = 0; k < rigid_.size(); ++k)
+        if (!rigid_[k].on.mayBeBorn(poses_[k].toOwn(p), spacing, near)) return false;
+    for (const Moving& m : deforming_)
+        if (!m.on.mayBeBorn(p, spacing, near)) return false;
+    return static_.field == nullptr || static_.mayBeBorn(p, spacing, near);
+}
+
+Status SolidPasses::setSurfaces(std::span<const Surface> surfaces) {
+    if (Status sound = check(surfaces); !sound) return sound;
+    surfaces_.assign(surfaces.begin(), surfaces.end());
+    surfacesChanged_ = true;
+    return ok();
+}
+
+Status SolidPasses::reset() {
+    Places start;
+    for (const Moving& m : rigid_) start.poses.push_back(m.atStart);
+    for (const Moving& m : deforming_) start.shapes.push_back(m.shapeAtStart);
+    return restore(start);
+}
+
+Status SolidPasses::restore(const Places& places) {
+    if (places.poses.size() != rigid_.size() || places.shapes.size() != deforming_.size())
+        return badInput(fmt::format("there are {} poses and {} shapes, and {} solids that move and {} that bend", places.poses.size(),
+                                    places.shapes.size(), rigid_.size(), deforming_.size()));
+    poses_ = places.poses;
+    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        Moving& m = deforming_[k];
+        m.shapeFrom = m.shapeTarget = m.shapeNow = places.shapes[k];
+        m.updates = 1;
+        // Twice: the second time nothing has moved, and the wall's velocity is nought again.
+        for (int twice = 0; twice < 2; ++twice) {
+            m.updated = 0;
+            if (Status done = deform(m, 1.0, 1.0); !done) return done;
+        }
+    }
+    fastestWall_ = 0;
+    voxelsRewritten_ = places.voxelsRewritten;
+    return ok();
+}
+
+uint64_t SolidPasses::voxelsHash() const {
+    uint64_t hash = 0;
+    const auto add = [&hash](const Field& f) {
+        if (f.field == nullptr) return;
+        const VoxelGrid& grid = f.field->surface;
+        hash = checksum(std::as_bytes(std::span(&grid.size, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(&grid.origin, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(&grid.voxel, 1)), hash);
+        hash = checksum(std::as_bytes(std::span(grid.bits)), hash);
+    };
+    add(static_);
+    for (const Moving& m : rigid_) add(m.on);
+    return hash;
+}
+
+void SolidPasses::save(WorldState& state) const {
+    const uint64_t numbers[] = {voxelsHash(), rigid_.size(), deforming_.size(), voxelsRewritten_};
+    state.put<uint64_t>("solids.numbers", numbers);
+    state.put<Pose>("solids.poses", poses_);
+    for (size_t k = 0; k < deforming_.size(); ++k) state.put<vec3>(fmt::format("solids.shape.{}", k), deforming_[k].shapeNow);
+}
+
+Result<SolidPasses::Places> SolidPasses::take(WorldState& state) const {
+    Result<std::vector<uint64_t>> numbers = state.take<uint64_t>("solids.numbers", 4);
+    if (!numbers) return numbers.error();
+    const std::vector<uint64_t>& n = *numbers;
+    if (n[1] != rigid_.size() || n[2] != deforming_.size())
+        return badInput(fmt::format("the state was saved with {} moving and {} deforming solids, this scene has {} and {}", n[1], n[2],
+                                    rigid_.size(), deforming_.size()));
+    if (n[0] != voxelsHash())
+        return badInput("the state was saved among other voxels: a mesh, its place or its resolution is not what it was");
+    Result<std::vector<Pose>> poses = state.take<Pose>("solids.poses", rigid_.size());
+    if (!poses) return poses.error();
+    Places places{std::move(*poses), {}, n[3]};
+    for (size_t k = 0; k < places.poses.size(); ++k)
+        if (!sound(places.poses[k])) return badInput(fmt::format("the saved pose of moving solid {} is none", k));
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        const std::string name = fmt::format("solids.shape.{}", k);
+        Result<std::vector<vec3>> shape = state.take<vec3>(name, deforming_[k].shapeAtStart.size());
+        if (!shape) return shape.error();
+        if (Status fits = deforming_[k].shape->checkPlaces(*shape); !fits) return fits.error();
+        places.shapes.push_back(std::move(*shape));
+    }
+    return places;
+}
+
+Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) {
+    // Refused or not: nothing moves but to where this frame asks.
+    frameSeconds_ = seconds;
+    fastestWall_ = 0;
+    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
+    for (Moving& m : deforming_) {
+        m.shapeFrom = m.shapeTarget = m.shapeNow;
+        m.updates = 1;
+        m.updated = 0;
+    }
+    if (!poses.empty() && poses.size() != rigid_.size())
+        return badInput(fmt::format("{} poses were given for {} moving solids: give one for each", poses.size(), rigid_.size()));
+    if (!shapes.empty() && shapes.size() != deforming_.size())
+        return badInput(fmt::format("{} shapes were given for {} deforming solids: give one for each", shapes.size(), deforming_.size()));
+    for (size_t k = 0; k < poses.size(); ++k)
+        if (!sound(poses[k]))
+            return badInput(fmt::format("the pose of moving solid {} is not finite, or its rotation has no unit length", k));
+    for (size_t k = 0; k < shapes.size(); ++k)
+        if (shapes[k].size() != deforming_[k].shapeAtStart.size())
+            return badInput(fmt::format("{} vertices were given for deforming solid {}, which has {}", shapes[k].size(), k,
+                                        deforming_[k].shapeAtStart.size()));
+    for (size_t k = 0; k < shapes.size(); ++k)
+        if (Status fits = deforming_[k].shape->checkPlaces(shapes[k]); !fits) return fits;
+    for (size_t k = 0; k < rigid_.size(); ++k) {
+        Moving& m = rigid_[k];
+        if (!poses.empty()) m.target = poses[k];
+        const float moved =
+            glm::length(m.target.position - m.from.position) + m.radius * glm::length(turnBetween(m.from.rotation, m.target.rotation));
+        fastestWall_ = std::max(fastestWall_, static_cast<float>(moved / seconds));
+    }
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        Moving& m = deforming_[k];
+        if (!shapes.empty()) m.shapeTarget.assign(shapes[k].begin(), shapes[k].end());
+        float moved2 = 0;
+        for (size_t i = 0; i < m.shapeTarget.size(); ++i) {
+            const vec3 way = m.shapeTarget[i] - m.shapeFrom[i];
+            moved2 = std::max(moved2, glm::dot(way, way));
+        }
+        const float moved = std::sqrt(moved2);
+        fastestWall_ = std::max(fastestWall_, static_cast<float>(moved / seconds));
+        // The way of a particle starts where the wall carries it: exact where the wall moves evenly. Some voxels at a time keep it so.
+        constexpr float kMostVoxels = 4.0F;
+        m.updates = std::max(1, static_cast<int>(std::ceil(std::min(moved / (kMostVoxels * m.on.field->surface.voxel), 64.0F))));
+    }
+    return ok();
+}
+
+Status SolidPasses::deform(Moving& m, double share, double seconds) {
+    ++m.updated;
+    m.motion.perSecond = seconds > 0 ? static_cast<float>(m.updates / seconds) : 0.0F;
+    std::vector<vec3> next(m.shapeNow.size());
+    for (size_t i = 0; i < next.size(); ++i) next[i] = glm::mix(m.shapeFrom[i], m.shapeTarget[i], static_cast<float>(share));
+    Result<DeformingField::Change> changed = m.shape->update(next);
+    if (!changed) return changed.error();
+    m.shapeNow = std::move(next);
+    voxelsRewritten_ += changed->voxels;
+    const VoxelGrid& grid = m.on.field->surface;
+    const size_t layer = (static_cast<size_t>(grid.size.x) + 1) * (static_cast<size_t>(grid.size.y) + 1);
+    const size_t first = layer * static_cast<size_t>(changed->firstLayer), end = layer * static_cast<size_t>(changed->endLayer);
+    if (first >= end) return ok();
+    const auto send = [&]<class T>(Buffer& to, std::span<const T> all, size_t from, size_t until) {
+        device_->write(to, std::as_bytes(all.subspan(from, until - from)), from * sizeof(T));
+    };
+    send(m.on.distance, std::span<const float>(m.on.field->distance), first, end);
+    send(m.on.normal, std::span<const uint32_t>(m.on.field->normal), first, end);
+    send(m.displacement, m.shape->displacement(), first, end);
+    // The bits of layers of voxels [firstLayer - 1, endLayer), in whole words.
+    const size_t voxels = static_cast<size_t>(grid.size.x) * static_cast<size_t>(grid.size.y);
+    const size_t firstBit = voxels * static_cast<size_t>(std::max(changed->firstLayer - 1, 0));
+    const size_t endBit = voxels * static_cast<size_t>(std::min(changed->endLayer, grid.size.z));
+    send(m.on.bits, std::span<const uint8_t>(grid.bits), firstBit / 32 * 4, std::min(grid.bits.size(), (endBit + 31) / 32 * 4));
+    return ok();
+}
+
+void SolidPasses::setMotion(MotionParams& m, const Pose& start, const Pose& end, float dt) {
+    const std::array<vec4, 3> a = rows(start), b = rows(end);
+    m.startX = a[0];
+    m.startY = a[1];
+    m.startZ = a[2];
+    m.endX = b[0];
+    m.endY = b[1];
+    m.endZ = b[2];
+    m.velocity = vec4((end.position - start.position) / dt, 0.0F);
+    m.spin = vec4(turnBetween(start.rotation, end.rotation) / dt, 0.0F);
+    m.origin = vec4(end.position, 0.0F);
+}
+
+Status SolidPasses::advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to) {
+    const Surface otherwise{params.collision.friction, params.collision.restitution};
+    if (surfacesChanged_ || otherwise.friction != otherwise_.friction || otherwise.restitution != otherwise_.restitution) {
+        otherwise_ = otherwise;
+        surfacesChanged_ = false;
+        const auto words = surfaceWords(surfaces_, otherwise_);
+        const auto tell = [&](Field& f) {
+            device_->write(f.normal, std::as_bytes(std::span(words)), f.field->normal.size() * sizeof(uint32_t));
+        };
+        if (static_.field != nullptr) tell(static_);
+        for (Moving& m : rigid_) tell(m.on);
+        for (Moving& m : deforming_) tell(m.on);
+        std::vector<vec4> list;
+        for (const PlaneSolid& p : planeSolids_) {
+            const vec3 n = glm::normalize(p.normal);
+            list.emplace_back(n, -glm::dot(n, p.position));
+            float values[2];
+            std::memcpy(values, &words[2 * p.surface], sizeof values);
+            list.emplace_back(values[0], values[1], 0.0F, 0.0F);
+        }
+        device_->writeAll<vec4>(planes_, list);
+    }
+    const FieldContact contact{.spacing = params.spacing, .restSpeed = 2.0F * gravity * step.dt, .countIndex = step.cellCount};
+    if (static_.field != nullptr) {
+        block_ = fieldParams(*static_.field, contact);
+        if (blockDt_ != step.dt) device_->write(staticBlock_, std::as_bytes(std::span(&block_, 1)));
+        blockDt_ = step.dt;
+    }
+    for (size_t k = 0; k < rigid_.size(); ++k) {
+        Moving& m = rigid_[k];
+        const Pose start = poses_[k];
+        poses_[k] = between(m.from, m.target, to);
+        m.motion.field = fieldParams(*m.on.field, contact);
+        setMotion(m.motion, start, poses_[k], step.dt);
+        device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
+    }
+    for (Moving& m : deforming_) {
+        m.motion.carried = 0.0F;
+        // A substep can take one update: where they are fewer, each goes further, and the wall is in time.
+        if (m.updated == 0) m.updates = std::clamp(static_cast<int>(std::lround(1.0 / std::max(to - from, 1.0e-6))), 1, m.updates);
+        m.motion.field = fieldParams(*m.on.field, contact);
+        if (m.updated < m.updates && from * m.updates >= m.updated - 1.0e-6) {
+            m.motion.carried = 1.0F;
+            if (Status done = deform(m, static_cast<double>(m.updated + 1) / m.updates, frameSeconds_); !done) return done;
+        }
+        setMotion(m.motion, {}, {}, step.dt);
+        device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
+    }
+    return ok();
+}
+
+void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary) {
+    if (!walled_) return;
+    const uint32_t n = step.count;
+    const Buffer& start = grid.cellStart();
+    if (static_.field != nullptr)
+        device_->run(boundary_, step, {&start, &position, &planes_, &boundary, &staticBlock_, &static_.distance}, n);
+    else
+        device_->run(boundary_, step, {&start, &position, &planes_, &boundary}, n);
+    for (std::vector<Moving>* list : {&rigid_, &deforming_})
+        for (const Moving& m : *list) device_->run(boundaryMoving_, step, {&start, &position, &boundary, &m.block, &m.on.distance}, n);
+}
+
+void SolidPasses::friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction) {
+    if (!walled_) return;
+    const uint32_t n = step.count;
+    const Buffer& start = grid.cellStart();
+    if (static_.field != nullptr)
+        device_->run(friction_, step, {&start, &position, &planes_, &friction, &staticBlock_, &static_.distance}, n);
+    else
+        device_->run(friction_, step, {&start, &position, &planes_, &friction}, n);
+    for (std::vector<Moving>* list : {&rigid_, &deforming_})
+        for (const Moving& m : *list) device_->run(frictionMoving_, step, {&start, &position, &friction, &m.block, &m.on.distance}, n);
+}
+
+void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Particles& p) {
+    if (!walled_) return;
+    const Buffer& start = grid.cellStart();
+    if (static_.field != nullptr)
+        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration, &staticBlock_, &static_.distance}, step.count);
+    else
+        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration}, step.count);
+}
+
+void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
+    collide(step,
+            {&particles.position, &particles.positionNext, &particles.velocityNext, &grid.cellStart(), step.cellCount, particles.count},
+            moving(), std::nullopt);
+}
+
+void SolidPasses::keepOut(const StepParams& step, const Movers& movers, double seconds) { collide(step, movers, true, seconds); }
+
+void SolidPasses::collide(const StepParams& step, const Movers& m, bool planes, std::optional<double> seconds) {
+    const bool still = seconds && !(*seconds > 0);
+    StepParams walls = step;
+    walls.cellCount = m.index;
+    for (Moving& solid : deforming_) {
+        MotionParams motion = solid.motion;
+        motion.field.countIndex = m.index;
+        if (still) motion.carried = 0.0F;
+        device_->run(collideDeforming_, motion,
+                     {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal, &solid.displacement},
+                     m.slots);
+    }
+    for (size_t k = 0; k < rigid_.size(); ++k) {
+        const Moving& solid = rigid_[k];
+        MotionParams motion = solid.motion;
+        motion.field.countIndex = m.index;
+        if (still) {
+            motion.startX = motion.endX;
+            motion.startY = motion.endY;
+            motion.startZ = motion.endZ;
+        } else if (seconds) {
+            setMotion(motion, solid.from, poses_[k], static_cast<float>(*seconds));
+        }
+        device_->run(collideRigid_, motion, {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal},
+                     m.slots);
+    }
+    if (planes && walled_) device_->run(walls_, walls, {m.counts, &planes_, m.to, m.velocity}, m.slots);
+    // Last: what stands still is never entered, whatever squeezes.
+    if (static_.field == nullptr) return;
+    FieldParams block = block_;
+    block.countIndex = m.index;
+    device_->run(collide_, block, {m.from, m.to, m.velocity, m.counts, &static_.bits, &static_.distance, &static_.normal}, m.slots);
+    // The thesis's way back by a voxel asks nothing of the box: a mesh beside a wall would put particles beyond it, and they would be lost.
+    if (thesis_) device_->run(walls_, walls, {m.counts, &planes_, m.to, m.velocity}, m.slots);
+}
+
+}  // namespace rivulet

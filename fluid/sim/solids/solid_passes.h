@@ -1,0 +1,128 @@
+// The passes of a step that know solids: what walls add to density, and what keeps particles out of them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/solids/solids.h"
+#include "fluid/sim/world/fluid_params.h"
+#include "fluid/sim/world/particles.h"
+#include "fluid/sim/world/world_state.h"
+#include "shaders/fluid/step_params.h"
+#include "shaders/voxel/motion_params.h"
+
+namespace rivulet {
+
+// The solids of a world, on its Device. Per frame: beginFrame, then a substep's advance, boundary, collide, each in that order.
+class SolidPasses {
+  public:
+    // Error (badInput): a plane without direction, too many surfaces or one out of its range, a field whose band is too narrow for the
+    // spacing; (failed): out of memory. `device` and the solids' fields must outlive it. Without solids and a box with walls nothing is
+    // made for walls. `threads`: PairTraits::threadDefines().
+    static Result<SolidPasses> create(Device& device, const Solids& solids, const FluidParams& params,
+                                      std::span<const Define> threads = {});
+
+    // Whether a particle may be born at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not nearer
+    // than it would rest. Of one that is there already, and is pushed out where it is only near, `near` is how near that may be, in shares
+    // of where it would rest.
+    bool mayBeBorn(const vec3& p, float spacing, float near = 1) const;
+    bool any() const { return planeCount() > 0 || static_.field != nullptr || !rigid_.empty() || !deforming_.empty(); }
+    uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
+    const Buffer& planes() const { return planes_; }  // as integrate.kernel wants them
+
+    // Error (badInput): as create; nothing has changed then.
+    Status setSurfaces(std::span<const Surface> surfaces);
+    // Back to where everything stood at t = 0.
+    Status reset();
+
+    // Where everything stands.
+    struct Places {
+        std::vector<Pose> poses;
+        std::vector<std::vector<vec3>> shapes;
+        uint64_t voxelsRewritten = 0;
+    };
+    void save(WorldState& state) const;
+    // Error: as WorldState::take; or the voxels are others than those that it was saved with.
+    Result<Places> take(WorldState& state) const;
+    Status restore(const Places& places);
+
+    // Where solids are to be `seconds` from now; empty spans: where they are. Error (badInput): not one pose a rigid solid, not one shape
+    // a deforming one, not finite, a vertex beyond its field's reach; then nothing moves.
+    Status beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds);
+    float fastestWall() const { return fastestWall_; }  // m/s, of the frame
+
+    // Moves the solids on to the frame's shares [from, to] of its time, 0..1. `gravity` m/s^2.
+    Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
+    // Fills `boundary` with the walls' share at `position`, sorted.
+    void boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary);
+    // Fills `friction` with what no-slip walls do at `position`, sorted: see StepContext::wallFriction. Bending ones count as at rest.
+    void friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction);
+    // Adds the adhesion of walls that stand still to particles.acceleration; step.force.w as fluid/wall_adhesion wants it.
+    void adhesion(const StepParams& step, const NeighborGrid& grid, Particles& particles);
+    // Moves particles.positionNext and velocityNext out of the solids.
+    void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);
+    // Anything else that moves: vec4 each, xyz m or m/s, w passed through. `from` is in no solid.
+    struct Movers {
+        const Buffer *from, *to, *velocity;
+        const Buffer* counts;  // uint; [index]: how many there are, the first ones
+        uint32_t index, slots;
+    };
+    // The same, of these, and out of planes and the box. `seconds`: their way is the frame's so far, with the rigid solids' poses since
+    // beginFrame; bending ones have only the last substep's shape. 0: it is of no time, past solids where they are.
+    void keepOut(const StepParams& step, const Movers& movers, double seconds);
+    bool moving() const { return !rigid_.empty() || !deforming_.empty(); }  // some can
+
+    const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now
+    uint64_t voxelsRewritten() const { return voxelsRewritten_; }  // of the deforming ones, since the start
+
+  private:
+    struct Field {
+        const VoxelField* field = nullptr;
+        Buffer bits, distance, normal;
+        std::vector<uint8_t> outside;  // of its voxels: reachable from the grid's border; empty where the mesh is closed
+        Status upload(Device& device);
+        bool mayBeBorn(const vec3& p, float spacing, float near) const;  // in the field's frame
+    };
+    struct Moving {
+        Field on;
+        DeformingField* shape = nullptr;  // null: rigid
+        MotionParams motion{};
+        Buffer block;  // a MotionParams, for the boundary pass
+        Pose atStart, from, target;
+        std::vector<vec3> shapeAtStart, shapeFrom, shapeTarget, shapeNow;
+        int updates = 1, updated = 0;  // of the frame
+        float radius = 0;              // m, about the frame's origin
+        Buffer displacement;
+    };
+
+    Status addMoving(Moving moving);
+    // `planes`: what is pushed may be beyond the box or a plane. `seconds`: as keepOut; nothing: the way is the last substep's.
+    void collide(const StepParams& step, const Movers& movers, bool planes, std::optional<double> seconds);
+    uint64_t voxelsHash() const;  // of what was baked and stays
+    Status deform(Moving& moving, double share, double seconds);
+    static void setMotion(MotionParams& motion, const Pose& start, const Pose& end, float dt);
+
+    Device* device_ = nullptr;
+    std::vector<PlaneSolid> planeSolids_;
+    std::vector<Surface> surfaces_;
+    Surface otherwise_;
+    bool surfacesChanged_ = true;
+    Buffer planes_;
+    bool walled_ = true;   // the box or solids
+    bool thesis_ = false;  // collision.walk
+    Kernel boundary_, friction_, frictionMoving_, adhesion_, collide_, walls_, boundaryMoving_, collideRigid_, collideDeforming_;
+    Field static_;
+    FieldParams block_{};
+    Buffer staticBlock_;
+    float blockDt_ = 0;  // staticBlock_ was written for this step length
+    std::vector<Moving> rigid_, deforming_;
+    std::vector<Pose> poses_;
+    double frameSeconds_ = 0;
+    float fastestWall_ = 0;
+    uint64_t voxelsRewritten_ = 0;
+};
+
+}  // namespace rivulet

@@ -1,0 +1,94 @@
+// The passes of a step that know emitters and sinks: what makes particles of free slots, and free slots of particles.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/compute/device.h"
+#include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/solids/body_passes.h"
+#include "fluid/sim/solids/solid_passes.h"
+#include "fluid/sim/sources/emitter.h"
+#include "fluid/sim/world/fluid_params.h"
+#include "fluid/sim/world/particles.h"
+#include "fluid/sim/world/world_state.h"
+
+namespace rivulet {
+
+class SourcePasses {
+  public:
+    // Error (badInput): an emitter that makes no sense, a liquid that is not known; (failed): out of memory. `traits.matter` and
+    // `absorption`: whether particles have those tables. `device` must outlive it.
+    static Result<SourcePasses> create(Device& device, const Sources& sources, const FluidParams& params, bool matter, bool absorption);
+
+    // Slots that emitters would ever fill by the end of sources.seconds, and the box could hold.
+    static double slotsFor(const Sources& sources, const FluidParams& params);
+
+    bool any() const { return !feeds_.empty() || sinkCount_ > 0; }
+    float fastest() const;  // m/s, that emitters let water out with
+    // Takes what can change between steps. Error (badInput): it makes no sense; then all stays as it was.
+    Status set(const Sources& sources);
+    void reset();  // back to t = 0
+
+    // What a step of it needs to know of the world.
+    struct World {
+        const StepParams& step;
+        const FluidParams& params;
+        const NeighborGrid& grid;
+        Particles& particles;  // sorted as the substep sorted them
+        const SolidPasses& solids;
+        const BodyPasses& bodies;
+        std::span<const NamedBuffer> remembered;  // of the method: what it knows of a particle goes with the particle
+    };
+    // After a substep of `dt` that ended at `time`; `last` of its frame.
+    void run(const World& world, double time, double dt, bool last);
+    // m^3 from others, that become particles at `place` (m) with the steps to come. sources.poured was more than 0.
+    void pour(const vec3& place, const vec3& velocity, double volume);
+    // Has the counts read, late on a GPU.
+    void report();
+
+    // As far as is known.
+    uint64_t given() const;    // particles, by all emitters, and of what was poured
+    uint64_t born() const;     // of these, of what was poured
+    uint64_t drained() const;  // particles
+    bool full() const;         // whether one had to wait because no slot was free
+    double owed() const;       // particles due, and not taken yet
+    double debt() const;       // of these, of what was poured
+
+    // The emitters' accounts and what is counted. Before save, report and wait for the device.
+    struct Saved {
+        std::vector<EmitterFeed::Account> accounts;
+        std::vector<uint32_t> heard, counters;
+        double waited = 0;
+        EmitterFeed::Flight flight;
+    };
+    void save(WorldState& state) const;
+    // Error: as WorldState::take; other emitters or sinks, or accounts that do not add up.
+    Result<Saved> take(WorldState& state) const;
+    void restore(const Saved& saved);
+
+  private:
+    struct Late {
+        std::vector<uint32_t> counters;
+    };
+    void hearCounts();
+    void writeSinks(const std::vector<SinkParams>& sinks);
+    void dropUnfit(const World& world);
+    uint64_t meshesHash() const;
+
+    Device* device_ = nullptr;
+    bool matter_ = false, absorption_ = false;
+    float spacing_ = 0;
+    std::vector<EmitterFeed> feeds_;  // of the emitters; behind them that of what is poured, if others do
+    bool poured_ = false;
+    std::vector<uint32_t> heard_;  // refused by the device, of each, that its feed knows of; it turns over with the counters
+    size_t sinkCount_ = 0;
+    Kernel emit_, drain_, forget_;
+    Buffer candidates_, sinks_, counters_;
+    std::vector<Candidate> list_;
+    double waited_ = 0;  // s since emitters last ran
+    std::shared_ptr<Late> late_;
+};
+
+}  // namespace rivulet

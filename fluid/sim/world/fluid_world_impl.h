@@ -1,0 +1,119 @@
+// FluidWorld::Impl: what a world is made of. For fluid_world*.cpp alone: made in _start, stepped in fluid_world.cpp, kept in _state.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fluid/sim/forces/force.h"
+#include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/methods/method.h"
+#include "fluid/sim/query/volumes.h"
+#include "fluid/sim/query/water_query.h"
+#include "fluid/sim/solids/body_passes.h"
+#include "fluid/sim/solids/solid_passes.h"
+#include "fluid/sim/sources/block.h"
+#include "fluid/sim/sources/exchange_passes.h"
+#include "fluid/sim/sources/source_passes.h"
+#include "fluid/sim/surface/ellipsoids.h"
+#include "fluid/sim/surface/foam_passes.h"
+#include "fluid/sim/world/drawn_positions.h"
+#include "fluid/sim/world/fluid_world.h"
+#include "fluid/sim/world/frame_stepper.h"
+#include "fluid/sim/world/particles.h"
+
+namespace rivulet {
+
+// The longest step that is stable, s, and what says so.
+struct StepLimit {
+    double dt;
+    const char* why;
+};
+
+struct FluidWorld::Impl {
+    Device* device = nullptr;
+    FluidParams params;
+    Log log;
+    std::unique_ptr<Method> method;
+    std::unique_ptr<NeighborGrid> grid;
+    Particles particles;
+    std::vector<NewParticle> start;
+    uint32_t begun = 0;  // particles that were there when counting began: those of `start`, or of the world that this one goes on from
+    SolidPasses solids;
+    Sources asked;  // emitters and sinks
+    SourcePasses sources;
+    ExchangePasses exchange;  // where others hold water, too
+    uint64_t takenOut = 0;    // particles, by them
+    VolumePasses volumes;
+    WaterQuery query;          // made when it is first asked
+    bool sortedToAsk = false;  // as `sorted`, of position and velocity where a step has not been yet
+    std::optional<FoamPasses> foam;
+    bool sorted = false;    // the grid is of the particles as they lie
+    uint32_t slots = 0;     // of particles: those of the blocks and room for more
+    bool coloured = false;  // particles differ to the eye
+    float mostViscous = 0;  // m^2/s, of the world's liquids
+    BodyPasses bodies;
+    Buffer statsRows, corner;
+    Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
+    PairTraits traits;
+    struct ForceState {
+        std::string name;
+        std::function<bool(const FluidParams& params, bool doesViscosity)> wanted;
+        std::function<Result<ForcePass>(Device& device, const MethodSetup& setup)> make;
+        ForcePass pass = {};  // made when it is first on
+        bool on = false;
+    };
+    std::vector<HostForce> hostForces;
+    std::vector<ForceState> forcePasses;
+    SolveFigures solve;
+    double iterations = 0;  // of this frame's substeps, all of them
+    Pace pace;
+    DrawnPositions drawn;
+    Ellipsoids ellipsoids;
+    std::vector<Pose> posesBefore;                                         // the rigid solids', before the last fixed step
+    std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
+    StepParams step{};
+    vec3 gravity{0.0F};
+    double time = 0, dropped = 0;
+    double frameLength = 0;  // s, of the frame under way: what the substeps' shares are of
+    uint64_t frame = 0;
+    bool untouched = false;  // since cellWork()
+    int lastSubsteps = 0;
+    double dtMin = 0, dtMax = 0;
+    float fastestWall = 0;   // m/s, of moving solids, lately
+    float fastestStart = 0;  // m/s, of particles as they were put in, or taken up from a saved state
+    float fastestEver = 0;   // m/s, the largest fastestPossible() since t = 0
+    bool budgetSaid = false;
+    int lastPiece = 0;  // substeps
+
+    Status prepare();
+    Status mayLink() const;                                    // whether fluid.grid linked_list knows all that is asked for
+    static std::string linkedWithout(std::string_view force);  // a sentence
+    Status checkPrecision() const;
+    void fillStart();
+    Status findSlots();
+    void findLiquids();
+    void writeStart();
+    void gatherColours();
+    float fastestFall() const;
+    void knowFastest(double speed);  // m/s: where nothing has been measured yet
+    float fastestPossible() const;
+    void warn();
+    StepLimit stepLimit(double now, double frameSeconds) const;  // s
+    void fillStep();
+    double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
+    void say(const std::string& sentence);
+    void touch();  // particles are moved between steps
+    template <class Answer, class Ask>
+    Result<std::vector<Answer>> ask(size_t count, const Ask& how);
+    Status prepareToAsk(StepParams& params);
+    Status listForces();
+    void findForces();
+    bool build(bool fromPositions, double from, double to);
+    // `last`: of a piece of its frame.
+    void substep(double dt, double from, double to, bool last);
+    void gatherStats(int substeps, double until);
+};
+
+}  // namespace rivulet

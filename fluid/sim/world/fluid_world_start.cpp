@@ -1,0 +1,292 @@
+// How a world begins: room for its particles, its kernels, and what is there at t = 0.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/fluid_world_impl.h"
+#include "shaders/fluid/stats_row.h"
+
+namespace rivulet {
+
+namespace {
+
+// Above this a device's memory is surely exceeded; said before anything is allocated.
+constexpr double kMostParticles = 64.0e6;
+
+}  // namespace
+
+Status FluidWorld::Impl::prepare() {
+    const MethodRow* row = methods().find(params.method);
+    if (row == nullptr) return badInput(fmt::format("fluid.method '{}' is not known", params.method));
+    const float h = params.supportSpacings * params.spacing;
+    double wanted = 0;
+    for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
+    if (wanted > kMostParticles)
+        return badInput(fmt::format(
+            "fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
+            params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
+    fillStart();
+    if (Status s = findSlots(); !s) return s;
+    findLiquids();
+
+    struct Wanted {
+        Kernel* kernel;
+        const char* path;
+        std::vector<Define> defines;
+        bool wanted;
+    };
+    const Define fromPositions{"FROM_POSITIONS", "1"};
+    traits.periodic = params.box.periodic();
+    traits.walls = !glm::all(traits.periodic) || solids.any();
+    traits.samples = bodies.sampleCount();
+    traits.matter = traits.matter || bodies.any();
+    for (const Wanted& w : {Wanted{&stats, "fluid/stats",
+                                   traits.matter   ? std::vector<Define>{{"MATTER", "1"}}
+                                   : traits.linked ? std::vector<Define>{{"LINKED_LIST", "1"}}
+                                                   : std::vector<Define>{},
+                                   true},
+                            Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
+                            Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
+                            Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter},
+                            Wanted{&gatherAbsorption, "fluid/gather_absorption", {}, coloured}}) {
+        if (!w.wanted) continue;
+        Result<Kernel> found = device->kernel(w.path, w.defines);
+        if (!found) return found.error();
+        *w.kernel = *found;
+    }
+    const uint32_t count = slots + traits.samples;
+    Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
+    if (!made) return made.error();
+    method = std::move(*made);
+    if (Status s = checkPrecision(); !s) return s;
+
+    Result<NeighborGrid> newGrid = NeighborGrid::create(*device, Bounds{params.box.min, params.box.max}, h, count, traits);
+    if (!newGrid) return newGrid.error();
+    grid = std::make_unique<NeighborGrid>(std::move(*newGrid));
+    if (glm::any(traits.periodic)) {
+        Result<Buffer> low = device->allocate(sizeof(vec4));
+        if (!low) return low.error();
+        corner = std::move(*low);
+        const vec4 value(params.box.min, 0.0F);
+        device->write(corner, std::as_bytes(std::span(&value, 1)));
+    }
+    Result<Particles> newParticles = Particles::create(*device, count, traits.matter, coloured);
+    if (!newParticles) return newParticles.error();
+    particles = std::move(*newParticles);
+    Result<Buffer> rows = device->allocate(STATS_THREADS * sizeof(StatsRow));
+    if (!rows) return rows.error();
+    statsRows = std::move(*rows);
+    if (Status room = bodies.allocate(count); !room) return room.error();
+    Result<SourcePasses> passes = SourcePasses::create(*device, asked, params, traits.matter, coloured);
+    if (!passes) return passes.error();
+    sources = std::move(*passes);
+    if (asked.poured > 0) {
+        Result<ExchangePasses> handed = ExchangePasses::create(*device);
+        if (!handed) return handed.error();
+        exchange = std::move(*handed);
+    }
+    if (params.foam.most > 0) {
+        Result<FoamPasses> foaming = FoamPasses::create(*device, params, traits, count);
+        if (!foaming) return foaming.error();
+        foam = std::move(*foaming);
+    }
+    if (count == 0) log.notice("the scene has no particles");
+    writeStart();
+    return ok();
+}
+
+// The host's own first: of the others the last wants to know where all lead.
+Status FluidWorld::Impl::listForces() {
+    for (const HostForce& f : hostForces) {
+        if (f.make == nullptr) return badInput(fmt::format("the host's force '{}' has no function make: give it one", f.name));
+        for (const ForceState& other : forcePasses)
+            if (other.name == f.name) return badInput(fmt::format("the host has two forces '{}': give each a name of its own", f.name));
+        if (forces().find(f.name) != nullptr)
+            return badInput(fmt::format("there is a force '{}' already: give the host's another name", f.name));
+        forcePasses.push_back({f.name, [f](const FluidParams& p, bool) { return f.on == nullptr || f.on(f.self, p); },
+                               [f](Device& d, const MethodSetup& setup) { return f.make(f.self, d, setup); }});
+    }
+    for (const ForceRow& force : forces().rows) forcePasses.push_back({force.name, force.on, force.make});
+    return ok();
+}
+
+std::string FluidWorld::Impl::linkedWithout(std::string_view force) {
+    return fmt::format(
+        "fluid.grid linked_list knows no force '{}': turn it off in fluid.forces, let fluid.collision.walls slip, or choose fluid.grid "
+        "sorted",
+        force);
+}
+
+Status FluidWorld::Impl::mayLink() const {
+    if (device->backend() == Backend::cpu)
+        return badInput(
+            "fluid.grid linked_list is built by a GPU's atomics: simulate with --backend gl or cl, or choose fluid.grid sorted");
+    if (params.method != "wcsph_thesis")
+        return badInput(fmt::format("fluid.grid linked_list is for method wcsph_thesis, not {}: choose that method, or fluid.grid sorted",
+                                    params.method));
+    if (!asked.emitters.empty() || !asked.sinks.empty() || asked.poured > 0)
+        return badInput("fluid.grid linked_list knows no emitters, sinks and skins: take them away, or choose fluid.grid sorted");
+    if (params.foam.most > 0) return badInput("fluid.grid linked_list knows no foam: make fluid.foam.most 0, or choose fluid.grid sorted");
+    for (const ForceState& force : forcePasses)
+        if (force.wanted(params, true)) return badInput(linkedWithout(force.name));
+    return ok();
+}
+
+// Factors of the smoothing kernels go with the eighth or ninth power of the support radius: those of a very small one are no floats.
+Status FluidWorld::Impl::checkPrecision() const {
+    const auto fits = [this](float spacing) {
+        FluidParams p = params;
+        p.spacing = spacing;
+        StepParams s{};
+        s.h = p.supportSpacings * spacing;
+        s.invH = 1.0F / s.h;
+        s.contact = 0.5F * spacing;
+        method->fill(p, 1.0F, s);
+        FluidParams forces = p;  // they have Wendland's kernel, whatever the method has
+        forces.kernel = "wendland";
+        StepParams f = s;
+        fillSmoothing(forces, f);
+        return std::isfinite(s.kernelK) && std::isfinite(s.gradientK) && std::isfinite(f.kernelK) && std::isfinite(f.gradientK);
+    };
+    float least = params.spacing;
+    while (!fits(least)) least *= 1.1F;
+    if (least == params.spacing) return ok();
+    return badInput(
+        fmt::format("fluid.spacing is {} m, too fine for single precision with method {} and a reach of {} spacings: use at "
+                    "least {:.2g} m",
+                    params.spacing, params.method, params.supportSpacings, 1.1F * least));
+}
+
+// The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
+void FluidWorld::Impl::fillStart() {
+    for (size_t k = 0; k < params.blocks.size(); ++k) {
+        const size_t first = start.size();
+        fillBlock(params.blocks[k], params.spacing, start);
+        for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
+    }
+    size_t left = 0;
+    std::erase_if(start, [&](const NewParticle& p) {
+        const bool may = solids.mayBeBorn(p.position, params.spacing) && bodies.mayBeBorn(p.position, params.spacing);
+        if (!may && !params.blocks[p.block].cut) ++left;
+        return !may;
+    });
+    if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
+}
+
+// How many particles there is room for.
+Status FluidWorld::Impl::findSlots() {
+    const double held = static_cast<double>(start.size()), wanted = SourcePasses::slotsFor(asked, params);
+    double room = held + wanted;
+    if (params.maxParticles > 0) {
+        room = params.maxParticles;
+        if (room < held)
+            return badInput(fmt::format("fluid.maxParticles is {}, but the blocks hold {} particles: raise it, or 0 makes room for all",
+                                        params.maxParticles, start.size()));
+    } else if (!asked.emitters.empty() || asked.poured > 0) {
+        room = std::min(room, kMostParticles);
+        const bool lets = asked.poured > 0 || std::any_of(asked.emitters.begin(), asked.emitters.end(),
+                                                          [](const Emitter& e) { return e.params.litresPerSecond > 0; });
+        if (lets)
+            log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
+                                   static_cast<uint64_t>(room), start.size(), asked.seconds));
+    }
+    slots = std::max(static_cast<uint32_t>(room), asked.least);
+    return ok();
+}
+
+// Whether particles differ, in what they are or in what they look like.
+void FluidWorld::Impl::findLiquids() {
+    std::vector<LiquidOf> all = {liquidOf(params, "")};
+    const auto add = [&](const std::string& name, const vec3& dye, float amount, float scattering) {
+        if (liquids().find(name) == nullptr && !name.empty()) return;  // said when sources are made
+        all.push_back(liquidOf(params, name));
+        if (all.back().row != 0) traits.matter = coloured = true;
+        if ((dye != vec3(1.0F) && amount > 0) || scattering > 0) coloured = true;
+    };
+    for (const BlockParams& b : params.blocks) add(b.liquid, b.dye, b.dyeAmount, b.dyeScattering);
+    for (const Emitter& e : asked.emitters) add(e.params.liquid, e.params.dye, e.params.dyeAmount, e.params.dyeScattering);
+    // A pair has the harmonic mean of the two.
+    mostViscous = 0;
+    for (const LiquidOf& a : all)
+        for (const LiquidOf& b : all)
+            mostViscous =
+                std::max(mostViscous, 2 * a.viscosity * b.viscosity / std::max((a.viscosity + b.viscosity) * a.density, 1.0e-30F));
+}
+
+void FluidWorld::Impl::writeStart() {
+    std::vector<vec4> position, velocity;
+    std::vector<uint32_t> id;
+    position.reserve(particles.count);
+    velocity.reserve(particles.count);
+    id.reserve(particles.count);
+    for (const NewParticle& p : start) {
+        position.emplace_back(p.position, 1.0F);
+        velocity.emplace_back(p.velocity, 0.0F);
+        id.push_back(static_cast<uint32_t>(id.size()));
+    }
+    for (uint32_t k = static_cast<uint32_t>(start.size()); k < slots; ++k) {
+        position.emplace_back(params.box.min, -1.0F);
+        velocity.emplace_back(0.0F);
+        id.push_back(k);
+    }
+    // Samples on bodies come last; each substep puts them where they are.
+    for (uint32_t k = 0; k < traits.samples; ++k) {
+        position.emplace_back(0.0F, 0.0F, 0.0F, -1.0F);
+        velocity.emplace_back(0.0F);
+        id.push_back(static_cast<uint32_t>(id.size()));
+    }
+    std::vector<vec4> matterOf, absorptionOf;
+    for (const NewParticle& p : start) {
+        const BlockParams& b = params.blocks[p.block];
+        const LiquidOf liquid = liquidOf(params, b.liquid);
+        if (traits.matter) matterOf.emplace_back(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
+        if (coloured) absorptionOf.push_back(dyed(liquid, b.dye, b.dyeAmount, b.dyeScattering));
+    }
+    if (traits.matter) {
+        matterOf.resize(slots, vec4(1.0F, 1.0F, params.viscosity * params.restDensity, 0.0F));
+        const std::vector<vec4> samples = bodies.matter();
+        matterOf.insert(matterOf.end(), samples.begin(), samples.end());
+        device->writeAll<vec4>(particles.matterOf, matterOf);
+    }
+    if (coloured) device->writeAll<vec4>(particles.absorptionOf, absorptionOf);
+    device->writeAll<vec4>(particles.positionNext, position);
+    device->writeAll<vec4>(particles.velocityNext, velocity);
+    device->writeAll<uint32_t>(particles.id, id);
+    sources.reset();
+    takenOut = 0;
+    if (foam) foam->reset();
+    volumes.reset();
+    sorted = false;
+    touch();
+    gatherColours();
+    time = dropped = 0;
+    frame = 0;
+    dtMin = dtMax = 0;
+    fastestEver = fastestStart = 0;
+    budgetSaid = false;
+    pace.reset();
+    drawn.forget();
+    ellipsoids.forget();
+    posesBefore.clear();
+    for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
+    method->forget();
+    figures = std::make_shared<FluidStats>();
+    begun = static_cast<uint32_t>(start.size());
+    figures->particles = begun;
+    // The first step must know, too.
+    for (const NewParticle& p : start) fastestStart = std::max(fastestStart, glm::length(p.velocity));
+    knowFastest(double{fastestStart});
+    figures->emitted = static_cast<double>(begun) * std::pow(double{params.spacing}, 3);
+}
+
+void FluidWorld::Impl::knowFastest(double speed) {
+    figures->maxSpeed = speed;
+    std::vector<StatsRow> rows(STATS_THREADS);
+    rows[0].speed2Max = static_cast<float>(speed * speed);
+    device->writeAll<StatsRow>(statsRows, rows);
+}
+
+}  // namespace rivulet

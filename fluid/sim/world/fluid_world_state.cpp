@@ -1,0 +1,224 @@
+// A world's state, put away and taken up again.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/assert.h"
+#include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/fluid_world_impl.h"
+
+namespace rivulet {
+
+Status FluidWorld::savable() const { return impl_->bodies.savable(); }
+
+void FluidWorld::save(WorldState& state) {
+    Impl& w = *impl_;
+    ASSERT(savable(), "a world whose bodies cannot be saved");
+    w.sources.report();
+    w.device->finish();
+    w.device->poll();
+    state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
+    const FluidStats& f = *w.figures;
+    const double numbers[] = {w.time,
+                              w.pace.pending(),
+                              w.dropped,
+                              w.dtMin,
+                              w.dtMax,
+                              f.maxSpeed,
+                              w.fastestWall,
+                              w.fastestEver,
+                              static_cast<double>(w.frame),
+                              w.params.origin.x,
+                              w.params.origin.y,
+                              w.params.origin.z};
+    state.put<double>("world.numbers", numbers);
+    if (w.begun != w.start.size()) state.put<uint32_t>("world.begun", std::span(&w.begun, 1));
+    state.putText("world.limited", fmt::format("{}", fmt::join(f.limited, "\n")));
+    w.particles.save(*w.device, state);
+    for (const NamedBuffer& b : w.method->remembered())
+        state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
+    w.solids.save(state);
+    w.sources.save(state);
+    if (w.foam) w.foam->save(state);
+    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.takenOut, 1));
+    w.volumes.save(state);
+    w.bodies.save(state);
+}
+
+Status FluidWorld::restore(WorldState& state) {
+    Impl& w = *impl_;
+    if (Status can = savable(); !can) return can;
+    // All of it is taken and judged before anything changes.
+    Result<std::string> params = state.takeText("world.params");
+    if (!params) return params.error();
+    if (Status same = sameFixedValues(*params, fixedValues([&w](ParamVisitor& v) { w.params.visit(v); })); !same) return same;
+    Result<std::vector<double>> numbers = state.take<double>("world.numbers", 12);
+    if (!numbers) return numbers.error();
+    const std::vector<double>& n = *numbers;
+    if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
+        std::any_of(n.begin(), n.begin() + 9, [](double v) { return v < 0; }))
+        return badInput("the saved state's numbers make no sense: save it again");
+    std::optional<uint32_t> begun;
+    if (state.sections().contains("world.begun")) {
+        Result<std::vector<uint32_t>> count = state.take<uint32_t>("world.begun", 1);
+        if (!count) return count.error();
+        begun = (*count)[0];
+    }
+    Result<std::string> limited = state.takeText("world.limited");
+    if (!limited) return limited.error();
+    Result<Particles::Saved> saved = w.particles.take(state);
+    if (!saved) return saved.error();
+    const std::vector<NamedBuffer> remembered = w.method->remembered();
+    std::vector<std::vector<float>> memory;
+    for (const NamedBuffer& b : remembered) {
+        Result<std::vector<float>> values = state.take<float>(fmt::format("method.{}", b.name), b.buffer->bytes() / sizeof(float));
+        if (!values) return values.error();
+        memory.push_back(std::move(*values));
+    }
+    Result<SolidPasses::Places> places = w.solids.take(state);
+    if (!places) return places.error();
+    Result<SourcePasses::Saved> sources = w.sources.take(state);
+    if (!sources) return sources.error();
+    uint64_t taken = 0;
+    if (w.exchange.any()) {
+        Result<std::vector<uint64_t>> count = state.take<uint64_t>("world.taken", 1);
+        if (!count) return count.error();
+        taken = (*count)[0];
+    }
+    FoamPasses::Saved foam;
+    if (w.foam) {
+        Result<FoamPasses::Saved> foamed = w.foam->take(state);
+        if (!foamed) return foamed.error();
+        foam = std::move(*foamed);
+    }
+    Result<VolumePasses::Saved> volumes = VolumePasses::take(state, w.slots);
+    if (!volumes) return volumes.error();
+    Result<BodyPasses::Saved> bodies = w.bodies.take(state);
+    if (!bodies) return bodies.error();
+    if (Status all = state.allTaken(); !all) return all;
+    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the last host that can object
+
+    w.writeStart();
+    if (begun) w.begun = *begun;
+    w.particles.restore(*w.device, *saved);
+    w.gatherColours();
+    w.sources.restore(*sources);
+    w.takenOut = taken;
+    if (w.foam) w.foam->restore(foam);
+    for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
+    w.time = n[0];
+    w.pace.reset(n[1]);
+    w.dropped = n[2];
+    w.dtMin = n[3];
+    w.dtMax = n[4];
+    w.knowFastest(n[5]);
+    for (const vec4& v : saved->velocity)
+        if (isFinite(vec3(v))) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(v)));
+    w.fastestWall = static_cast<float>(n[6]);
+    w.fastestEver = static_cast<float>(n[7]);
+    w.frame = static_cast<uint64_t>(n[8]);
+    w.params.origin = dvec3(n[9], n[10], n[11]);
+    FluidStats& f = *w.figures;
+    const double volume = std::pow(double{w.params.spacing}, 3);
+    f.frame = w.frame;
+    f.time = w.time;
+    f.particles =
+        static_cast<uint32_t>(std::count_if(saved->position.begin(), saved->position.end(), [](const vec4& p) { return !(p.w < 0); }));
+    f.emitted = (static_cast<double>(w.begun) + static_cast<double>(w.sources.given())) * volume;
+    f.drained = static_cast<double>(w.sources.drained()) * volume;
+    f.owed = w.sources.owed() * volume;
+    f.poured = static_cast<double>(w.sources.born()) * volume;
+    f.debt = w.sources.debt() * volume;
+    f.taken = static_cast<double>(w.takenOut) * volume;
+    for (size_t at = 0; at < limited->size();) {
+        const size_t end = std::min(limited->find('\n', at), limited->size());
+        f.limited.push_back(limited->substr(at, end - at));
+        at = end + 1;
+    }
+    if (Status watched = w.volumes.restore(*w.device, *volumes, w.slots, volume); !watched) return watched;
+    return w.solids.restore(*places);
+}
+
+Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes) {
+    Impl &w = *impl_, &o = *other.impl_;
+    const BoxParams &box = w.params.box, &then = o.params.box;
+    if (w.params.spacing != o.params.spacing || box.min != then.min || box.max != then.max || box.periodic() != then.periodic())
+        return badInput("the box or the spacing is another: the water starts anew");
+    if ((o.coloured && !w.coloured) || (o.traits.matter && !w.traits.matter && !o.bodies.any()))
+        return badInput("there are liquids in the water that this scene no longer knows: the water starts anew");
+    SolidPasses::Places places{.poses = {poses.begin(), poses.end()}, .shapes = {}, .voxelsRewritten = 0};
+    for (const std::span<const vec3>& shape : shapes) places.shapes.emplace_back(shape.begin(), shape.end());
+    if (Status sound = w.solids.beginFrame(poses, shapes, 0); !sound) return sound;
+    if (Status placed = w.solids.restore(places); !placed) return placed;
+    o.device->finish();
+    o.device->poll();
+    bool sameBodies = false;
+    if (w.bodies.any() && savable() && other.savable()) {
+        WorldState state;
+        o.bodies.save(state);
+        const Result<BodyPasses::Saved> saved = w.bodies.take(state);
+        sameBodies = saved && w.bodies.restore(*saved);
+    }
+    const std::vector<vec4> position = o.device->readAll<vec4>(o.particles.positionNext, o.particles.count),
+                            velocity = o.device->readAll<vec4>(o.particles.velocityNext, o.particles.count);
+    const std::vector<uint32_t> id = o.device->readAll<uint32_t>(o.particles.id, o.particles.count);
+    std::vector<size_t> kept;
+    size_t met = 0;
+    for (size_t k = 0; k < position.size(); ++k) {
+        const vec3 at(position[k]);
+        if (position[k].w < 0 || id[k] >= o.slots || !isFinite(at)) continue;
+        const bool may = w.solids.mayBeBorn(at, w.params.spacing, 0) && (sameBodies || w.bodies.mayBeBorn(at, w.params.spacing, 0));
+        if (may)
+            kept.push_back(k);
+        else
+            ++met;
+    }
+    if (kept.size() > w.slots)
+        return badInput(fmt::format("there is room for {} particles, and there are {}: the water starts anew", w.slots, kept.size()));
+    if (met > 0) w.log.notice(fmt::format("{} particles were where a solid is now: they were taken away", met));
+
+    w.writeStart();
+    std::vector<vec4> positions = w.device->readAll<vec4>(w.particles.positionNext, w.particles.count),
+                      velocities(w.particles.count, vec4(0.0F));
+    for (uint32_t k = 0; k < w.slots; ++k) {
+        positions[k] = k < kept.size() ? position[kept[k]] : vec4(box.min, -1.0F);
+        if (k < kept.size()) velocities[k] = velocity[kept[k]];
+    }
+    w.device->writeAll<vec4>(w.particles.positionNext, positions);
+    w.device->writeAll<vec4>(w.particles.velocityNext, velocities);
+    const auto handOver = [&](Buffer& of, const Buffer& from, bool has, const vec4& otherwise) {
+        if (of.bytes() == 0) return;
+        std::vector<vec4> table = w.device->readAll<vec4>(of, w.particles.count);
+        const std::vector<vec4> before = has ? o.device->readAll<vec4>(from, o.particles.count) : std::vector<vec4>();
+        for (size_t k = 0; k < kept.size(); ++k) table[k] = has ? before[id[kept[k]]] : otherwise;
+        w.device->writeAll<vec4>(of, table);
+    };
+    const LiquidOf own = liquidOf(w.params, "");
+    handOver(w.particles.matterOf, o.particles.matterOf, o.traits.matter, vec4(1.0F, 1.0F, own.viscosity, own.row));
+    handOver(w.particles.absorptionOf, o.particles.absorptionOf, o.coloured, own.absorption);
+    w.gatherColours();
+    if (w.foam && o.foam) {
+        WorldState state;
+        o.foam->save(state);
+        if (const auto saved = w.foam->take(state)) w.foam->restore(*saved);  // else another number may be: it begins without
+    }
+    w.begun = static_cast<uint32_t>(kept.size());
+    w.time = o.time;
+    w.pace.reset(o.pace.pending());
+    w.dropped = o.dropped;
+    w.frame = o.frame;
+    w.params.origin = o.params.origin;
+    w.knowFastest(o.figures->maxSpeed);
+    for (const size_t k : kept) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(velocity[k])));
+    w.fastestEver = o.fastestEver;
+    FluidStats& f = *w.figures;
+    f.frame = w.frame;
+    f.time = w.time;
+    f.particles = w.begun;
+    f.emitted = w.begun * std::pow(double{w.params.spacing}, 3);
+    return ok();
+}
+
+}  // namespace rivulet

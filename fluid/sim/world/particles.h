@@ -1,0 +1,43 @@
+// Every array that belongs to a particle. Between steps the newest state is positionNext, velocityNext, id; a step sorts it into
+// position, velocity, id (sorted by cell), computes, and integrates back into positionNext, velocityNext in the sorted order.
+// What stays with a particle for its life is a table by id, and is gathered into sorted order after each sort.
+#pragma once
+
+#include "engine/compute/device.h"
+#include "engine/core/math.h"
+#include "fluid/sim/world/world_state.h"
+
+namespace rivulet {
+
+struct Particles {
+    uint32_t count = 0;                 // slots: particles, free slots and the samples on bodies, whose ids are the last
+    Buffer position, velocity;          // vec4: m, m/s; sorted, at the step's start
+    Buffer positionNext, velocityNext;  // vec4; w: density / rest density (negative: a free slot), 1 where the speed was limited
+    Buffer id, idNext;                  // uint; id goes with the newest state
+    Buffer density;                     // float, density / rest density
+    Buffer pressure;                    // float, what the method makes of it
+    Buffer acceleration;                // vec4, m/s^2; of a sample: what it would be for a particle of the fluid
+    Buffer boundary;                    // vec4: gradient (1/m) and share of the walls
+    Buffer normal;                      // vec4: of the surface (fluid/normals), w its length; empty while no force row makes them
+    // Where particles differ (PairTraits::matter). vec4: x volume / spacing^3; y reference rest density / own; z dynamic viscosity, Pa s;
+    // w the liquid's row, or of a sample on body k: -1 - k.
+    Buffer matterOf;  // by id
+    Buffer matter;    // sorted
+    // Where liquids or dyes differ, for drawing; as ParticleView::absorption.
+    Buffer absorptionOf;  // by id
+    Buffer absorption;    // in the order of the newest state, as of the last frame's end
+
+    // `matter`: whether particles differ; `absorption`: whether they do to the eye.
+    static Result<Particles> create(Device& device, uint32_t count, bool matter = false, bool absorption = false);
+
+    // The newest state.
+    struct Saved {
+        std::vector<vec4> position, velocity, matter, absorption;
+        std::vector<uint32_t> id;
+    };
+    void save(Device& device, WorldState& state) const;
+    Result<Saved> take(WorldState& state) const;  // error: as WorldState::take; ids that are not each there once
+    void restore(Device& device, const Saved& saved);
+};
+
+}  // namespace rivulet

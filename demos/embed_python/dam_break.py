@@ -14,7 +14,7 @@ import rivulet
 A, SPACING, GRAVITY = 0.25, 0.25 / 16, 9.81  # m, m, m/s^2: the column's width, and how fine
 SCENE = {"fluid": {"method": "dfsph", "spacing": SPACING, "box": {"max": [5 * A, 3 * A, A]}, "blocks": [{"max": [A, 2 * A, A]}]}}
 TO_T = np.sqrt(2 * GRAVITY / A)  # T = t sqrt(2 g / a), as they made time dimensionless
-DATA = pathlib.Path(__file__).resolve().parents[2] / "tests/physics/data"
+DATA = pathlib.Path(__file__).resolve().parents[2] / "assets/reference"
 
 
 def front_of(positions):

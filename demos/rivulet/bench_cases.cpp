@@ -8,8 +8,8 @@
 
 #include "engine/app/context_egl.h"
 #include "engine/compute/device_cpu.h"
-#include "fluid/bridge/takeover.h"
 #include "fluid/render/backend.h"
+#include "fluid/session/cpu_fallback.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 

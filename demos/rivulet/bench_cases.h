@@ -9,7 +9,7 @@
 #include "engine/core/log.h"
 #include "engine/core/result.h"
 #include "engine/core/table.h"
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/run_stats.h"
 
 namespace rivulet {
 

@@ -8,8 +8,8 @@
 #include "demos/rivulet/bench_cases.h"
 #include "engine/compute/device_cpu.h"
 #include "engine/scene/import_assimp.h"
-#include "fluid/bridge/session.h"
 #include "fluid/flow/flow_maps.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {

@@ -6,7 +6,7 @@
 #include "engine/app/context_egl.h"
 #include "engine/core/thread_clock.h"
 #include "engine/gpu/framebuffer.h"
-#include "fluid/bridge/viewer.h"
+#include "fluid/viewer/viewer.h"
 
 namespace rivulet {
 

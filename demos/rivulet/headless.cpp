@@ -11,15 +11,15 @@
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
 #include "engine/core/json.h"
-#include "fluid/bridge/cooperation.h"
-#include "fluid/bridge/explain.h"
-#include "fluid/bridge/plan_trial.h"
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/scene_renderer.h"
-#include "fluid/bridge/session.h"
-#include "fluid/bridge/takeover.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/session/autotune.h"
+#include "fluid/session/cooperation.h"
+#include "fluid/session/cpu_fallback.h"
+#include "fluid/session/explain.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/scene_renderer.h"
+#include "fluid/session/session.h"
 
 namespace rivulet {
 

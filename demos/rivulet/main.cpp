@@ -12,7 +12,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/core/table.h"
-#include "fluid/bridge/scene_file.h"
+#include "fluid/scene/scene_file.h"
 
 namespace rivulet {
 

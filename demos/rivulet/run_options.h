@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/core/log.h"
-#include "fluid/bridge/scene_file.h"
-#include "fluid/bridge/session.h"
+#include "fluid/scene/scene_file.h"
+#include "fluid/session/session.h"
 
 namespace rivulet {
 

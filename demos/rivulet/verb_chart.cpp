@@ -5,7 +5,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/run_stats.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/chart.h"
 #include "fluid/validate/envelope.h"

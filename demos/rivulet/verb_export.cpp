@@ -10,11 +10,11 @@
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
 #include "engine/core/json.h"
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/takeover.h"
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
+#include "fluid/session/cpu_fallback.h"
+#include "fluid/session/run_stats.h"
 
 namespace rivulet {
 

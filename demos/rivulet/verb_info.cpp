@@ -3,8 +3,8 @@
 #include "demos/rivulet/cli.h"
 #include "engine/app/context_egl.h"
 #include "engine/compute/device_cl.h"
-#include "fluid/bridge/run_stats.h"
 #include "fluid/render/backend.h"
+#include "fluid/session/run_stats.h"
 
 namespace rivulet {
 

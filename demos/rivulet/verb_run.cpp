@@ -6,9 +6,9 @@
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/run_options.h"
-#include "fluid/bridge/cooperation.h"
-#include "fluid/bridge/session.h"
 #include "fluid/render/backend.h"
+#include "fluid/session/cooperation.h"
+#include "fluid/session/session.h"
 
 namespace rivulet {
 

@@ -9,8 +9,8 @@
 #include "engine/app/capture.h"
 #include "engine/app/window_glfw.h"
 #include "engine/core/json.h"
-#include "fluid/bridge/explain.h"
-#include "fluid/bridge/viewer.h"
+#include "fluid/session/explain.h"
+#include "fluid/viewer/viewer.h"
 
 namespace rivulet {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fluid/bridge/scene_renderer.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/session/scene_renderer.h"
 
 namespace rivulet {
 

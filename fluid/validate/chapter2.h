@@ -8,8 +8,8 @@
 
 #include "engine/core/log.h"
 #include "engine/core/result.h"
-#include "fluid/bridge/plan_trial.h"
 #include "fluid/render/backend.h"
+#include "fluid/session/autotune.h"
 
 namespace rivulet {
 

@@ -6,8 +6,8 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/core/assert.h"
-#include "fluid/bridge/scene_renderer.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/scene_renderer.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {

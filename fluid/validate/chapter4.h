@@ -10,7 +10,7 @@
 #include "engine/compute/device.h"
 #include "engine/core/log.h"
 #include "engine/core/result.h"
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/run_stats.h"
 
 namespace rivulet {
 

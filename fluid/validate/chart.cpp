@@ -10,28 +10,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr ChartSetting kSettings[] = {
-    {"pbf 1", "1 correction a step", "pbf", "fluid.pbf.iterations=1", false},
-    {"pbf 2", "2 corrections a step", "pbf", "fluid.pbf.iterations=2", true},
-    {"pbf", "3 corrections a step, as it comes", "pbf", "", true},
-    {"pbf 6", "6 corrections a step", "pbf", "fluid.pbf.iterations=6", true},
-    {"pbf 3, short steps", "3 corrections in steps half as long", "pbf", "fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8", true},
-    {"pbf 10, short steps", "10 corrections in steps half as long", "pbf",
-     "fluid.pbf.iterations=10; fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8", false},
-    {"dfsph 1e-2, long steps", "tolerance 1 %, steps twice as long", "dfsph",
-     "fluid.dfsph.tolerance=1e-2; fluid.dfsph.reach=0.6; fluid.dfsph.minSubsteps=4", true},
-    {"dfsph 3e-3, long steps", "tolerance 0.3 %, steps twice as long", "dfsph",
-     "fluid.dfsph.tolerance=3e-3; fluid.dfsph.reach=0.6; fluid.dfsph.minSubsteps=4", true},
-    {"dfsph 1e-3", "tolerance 0.1 %", "dfsph", "fluid.dfsph.tolerance=1e-3", true},
-    {"dfsph", "tolerance 0.03 %, as it comes", "dfsph", "", true},
-    {"dfsph 1e-4", "tolerance 0.01 %", "dfsph", "fluid.dfsph.tolerance=1e-4", true},
-    {"dfsph 1e-4, short steps", "tolerance 0.01 %, steps half as long", "dfsph",
-     "fluid.dfsph.tolerance=1e-4; fluid.dfsph.reach=0.15; fluid.dfsph.minSubsteps=16", false},
-    {"wcsph", "weakly compressible, sound ten times as fast as the flow", "wcsph", "", true},
-    {"wcsph, short steps", "steps half as long", "wcsph", "fluid.cfl=0.2", false},
-    {"wcsph_thesis", "the thesis's pressure", "wcsph_thesis", "", true},
-};
-
 // A case of the chart: coarser and finer than `validate --quick` has it.
 struct ChartCase {
     const char* name;
@@ -69,7 +47,7 @@ std::vector<Run> plannedRuns(const ChartRequest& request) {
         const bool named = std::find(request.names.begin(), request.names.end(), c.name) != request.names.end();
         if (request.names.empty() ? request.quick && !c.quick : !named) continue;
         for (const Size size : {kCoarse, kMiddle, kFine})
-            for (const ChartSetting& s : kSettings)
+            for (const ChartSetting& s : chartSettings().rows)
                 if ((s.quick || !request.quick) && (size == kMiddle || (*s.assignments == '\0' && !(request.quick && size == kFine))))
                     runs.push_back({&c, &s, size});
     }
@@ -96,18 +74,6 @@ std::vector<std::string> chartCases() {
     for (const ChartCase& c : kCases) names.emplace_back(c.name);
     return names;
 }
-
-std::vector<std::string> assignmentsOf(std::string_view joined) {
-    std::vector<std::string> each;
-    for (size_t at = 0; at < joined.size();) {
-        const size_t end = std::min(joined.find("; ", at), joined.size());
-        each.emplace_back(joined.substr(at, end - at));
-        at = end + 2;
-    }
-    return each;
-}
-
-Table<ChartSetting> chartSettings() { return {kSettings}; }
 
 void markFront(std::vector<ChartRow>& rows) {
     for (ChartRow& row : rows)

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <map>
 
@@ -178,36 +177,6 @@ std::string csvOf(const Chart& chart, const std::string& machine) {
 }
 
 }  // namespace
-
-std::string percentText(double fraction) {
-    const double p = 100 * fraction;
-    return p < 99.5 ? fmt::format("{:.2g} %", p) : fmt::format("{:.0f} %", p);
-}
-
-std::vector<ChartRow> readChart(std::string_view csv) {
-    std::vector<ChartRow> rows;
-    for (size_t at = 0; at < csv.size();) {
-        const size_t end = std::min(csv.find('\n', at), csv.size());
-        std::vector<std::string> cells(1);
-        for (const char c : csv.substr(at, end - at))
-            if (c == ',')
-                cells.emplace_back();
-            else
-                cells.back() += c;
-        at = end + 1;
-        if (cells.size() != 12 || cells[0].starts_with('#') || cells[0] == "case") continue;
-        std::replace(cells[2].begin(), cells[2].end(), ';', ',');
-        const auto number = [&](size_t k) {
-            double x = 0;
-            std::from_chars(cells[k].data(), cells[k].data() + cells[k].size(), x);
-            return x;
-        };
-        if (chartSettings().find(cells[2]) == nullptr) continue;  // of an older table
-        rows.push_back({cells[0], cells[1], cells[2], number(3), static_cast<uint32_t>(number(4)), number(5), number(6), number(7),
-                        number(8), number(9), number(10), cells[11] == "1"});
-    }
-    return rows;
-}
 
 Status writeChart(const Chart& chart, const std::string& folder, const std::string& machine, const std::string& command) {
     const std::filesystem::path to(folder);

@@ -1,8 +1,8 @@
 // A stability scene under way: what is seen of it, and the search for where it fails. For fluid/validate/envelope_*.cpp alone.
 #pragma once
 
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/session.h"
 #include "fluid/validate/envelope.h"
 
 namespace rivulet {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "fluid/session/reference_data.h"
 #include "fluid/validate/flow_case.h"
-#include "fluid/validate/reference_data.h"
 
 namespace rivulet {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fluid/bridge/takeover.h"
+#include "fluid/session/cpu_fallback.h"
 #include "fluid/validate/surface.h"
 #include "fluid/validate/trial.h"
 

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fluid/validate/reference_data.h"
+#include "fluid/session/reference_data.h"
 #include "fluid/validate/trial.h"
 
 namespace rivulet {

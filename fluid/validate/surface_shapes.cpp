@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "fluid/bridge/scene_renderer.h"
 #include "fluid/render/raymarch.h"
+#include "fluid/session/scene_renderer.h"
 
 namespace rivulet {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/scene_renderer.h"
-#include "fluid/bridge/session.h"
-#include "fluid/bridge/surface_probe.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/scene_renderer.h"
+#include "fluid/session/session.h"
+#include "fluid/session/surface_probe.h"
 #include "fluid/validate/physics_case.h"
 #include "fluid/validate/surface_shapes.h"
 

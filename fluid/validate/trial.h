@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/session.h"
 #include "fluid/validate/physics_case.h"
 
 namespace rivulet {

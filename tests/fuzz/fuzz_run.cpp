@@ -14,8 +14,8 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/core/json.h"
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet::fuzz {

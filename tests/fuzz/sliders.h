@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/core/params.h"
-#include "fluid/bridge/scene_file.h"
+#include "fluid/scene/scene_file.h"
 
 namespace rivulet::fuzz {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fluid/bridge/collider_model.h"
+#include "fluid/scene/collider_model.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 #include "tests/unit/gltf_file.h"

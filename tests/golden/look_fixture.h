@@ -9,7 +9,7 @@
 
 #include "engine/app/context_egl.h"
 #include "engine/gpu/debug.h"
-#include "fluid/bridge/scene_renderer.h"
+#include "fluid/session/scene_renderer.h"
 
 namespace rivulet {
 

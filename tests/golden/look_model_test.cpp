@@ -6,8 +6,8 @@
 
 #include "engine/gpu/device_gl.h"
 #include "engine/render/skin_tables.h"
-#include "engine/scene/head_look.h"
 #include "engine/scene/import_model.h"
+#include "fluid/scene/head_look.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/render/made_sky.h"
-#include "fluid/bridge/session.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 

@@ -1,5 +1,5 @@
 // Who simulates while who draws: whatever the plan, the water is the same, and a plan that overlaps does overlap.
-#include "fluid/bridge/plan_trial.h"
+#include "fluid/session/autotune.h"
 
 #include <gtest/gtest.h>
 

@@ -12,9 +12,9 @@
 
 #include "engine/core/words.h"
 #include "engine/gpu/current_context.h"
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/takeover.h"
 #include "fluid/render/fluid_upload.h"
+#include "fluid/session/cpu_fallback.h"
+#include "fluid/session/run_stats.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/gpu_context.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "engine/core/json.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/session.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/methods/method.h"
 #include "fluid/sim/surface/ellipsoids.h"
 #include "shaders/fluid/linked_list.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/run_stats.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 

@@ -1,7 +1,7 @@
 // A small world with a wall of every kind on gl and cl against the cpu: the same water, none of it in a solid.
 #include <gtest/gtest.h>
 
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/run_stats.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"

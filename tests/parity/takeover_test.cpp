@@ -1,5 +1,5 @@
 // A device that has no memory for a scene, or is lost while it runs: the cpu goes on, nothing of the water is lost, and it is said once.
-#include "fluid/bridge/takeover.h"
+#include "fluid/session/cpu_fallback.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "fluid/bridge/cooperation.h"
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/cooperation.h"
+#include "fluid/session/run_stats.h"
 #include "fluid/validate/physics_case.h"
 #include "tests/parity/devices.h"
 

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/cpu_kernels.h"

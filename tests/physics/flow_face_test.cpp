@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "engine/scene/import_model.h"
-#include "fluid/bridge/face_marks.h"
-#include "fluid/bridge/scene_file.h"
 #include "fluid/flow/flow_maps.h"
+#include "fluid/scene/face_marks.h"
+#include "fluid/scene/scene_file.h"
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 

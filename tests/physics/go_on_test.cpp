@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "fluid/bridge/session.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/host_particles.h"
 #include "tests/physics/worlds.h"
 

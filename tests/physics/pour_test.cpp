@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "fluid/bridge/pour_brush.h"
 #include "fluid/sim/world/host_particles.h"
+#include "fluid/viewer/pour_brush.h"
 #include "tests/physics/worlds.h"
 
 namespace rivulet {

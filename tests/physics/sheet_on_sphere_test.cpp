@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {

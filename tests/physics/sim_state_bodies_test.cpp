@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "fluid/bridge/session.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 

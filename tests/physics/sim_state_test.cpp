@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "engine/compute/device_cpu.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/voxel_test_meshes.h"

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "engine/core/json.h"
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/run_stats.h"
 #include "fluid/validate/envelope_run.h"
 #include "tests/physics/worlds.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/core/json.h"
-#include "fluid/bridge/budget.h"
-#include "fluid/bridge/session.h"
+#include "fluid/session/budget.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {

@@ -1,5 +1,5 @@
 // Model files as colliders: parts, animations that water meets, what is only drawn, cameras and lights. Against places computed by hand.
-#include "fluid/bridge/collider_model.h"
+#include "fluid/scene/collider_model.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/scene/transform.h"
-#include "fluid/bridge/session.h"
 #include "fluid/io/recording.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "tests/unit/gltf_file.h"
 #include "tests/unit/program_runner.h"

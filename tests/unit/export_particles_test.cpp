@@ -9,11 +9,11 @@
 #include <sstream>
 
 #include "engine/scene/import_assimp.h"
-#include "fluid/bridge/run_stats.h"
-#include "fluid/bridge/session.h"
 #include "fluid/io/export.h"
 #include "fluid/io/mesh_file.h"
 #include "fluid/render/backend.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/session.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::testing {

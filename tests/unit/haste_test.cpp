@@ -1,7 +1,7 @@
 // The picture gives way before the frame rate does, comes back when there is room, and does not swing to and fro.
 #include <gtest/gtest.h>
 
-#include "fluid/bridge/haste.h"
+#include "fluid/session/adaptive_quality.h"
 
 namespace rivulet {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/head_look.h"
 #include "engine/scene/import_model.h"
+#include "fluid/scene/head_look.h"
 
 namespace rivulet {
 namespace {

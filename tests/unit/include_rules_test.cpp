@@ -40,7 +40,9 @@ const std::map<std::string, Names>& rules() {
                                             "engine/material/image.h",
                                             "fluid/io/recording.h"};  // plain data
     static const Names io = sim + Names{"fluid/io"};
-    static const Names allFluid = flow + render + io + Names{"fluid/validate"};
+    // scene <- session <- viewer, validate: only the viewer sees panels.
+    static const Names scenes = flow + render + io + scene + Names{"engine/render", "engine/app", "fluid/scene"};
+    static const Names sessions = scenes + Names{"fluid/session"};
     static const std::map<std::string, Names> table = {
         {"engine/core", {"engine/core"}},
         {"engine/compute", {"engine/core", "engine/compute", "shaders"}},
@@ -55,9 +57,11 @@ const std::map<std::string, Names>& rules() {
         {"fluid/flow", flow},
         {"fluid/render", render},
         {"fluid/io", io},
-        {"fluid/validate", allFluid + Names{"fluid/bridge"}},  // cases are scenes
+        {"fluid/scene", scenes},
+        {"fluid/session", sessions},
+        {"fluid/viewer", sessions + Names{"engine/ui", "fluid/viewer"}},
+        {"fluid/validate", sessions + Names{"fluid/validate"}},  // cases are scenes
         {"fluid/capi", flow + render + io + Names{"fluid/capi"}},
-        {"fluid/bridge", engine + allFluid + Names{"fluid/bridge"}},
         {"shaders", {"shaders", "engine/core/math.h"}},  // math.h: only where a kernel is C++
     };
     return table;
@@ -65,26 +69,26 @@ const std::map<std::string, Names>& rules() {
 
 // Outside libraries -> the folders that may see them.
 const std::map<std::string, Names>& libraries() {
-    static const Names gl = {"engine/gpu", "engine/scene", "engine/material", "engine/render", "engine/ui",
-                             "engine/app", "fluid/flow",   "fluid/render",    "fluid/bridge"};
+    static const Names gl = {"engine/gpu", "engine/scene", "engine/material", "engine/render", "engine/ui",   "engine/app",
+                             "fluid/flow", "fluid/render", "fluid/scene",     "fluid/session", "fluid/viewer"};
     static const std::map<std::string, Names> table = {
         {"rivulet_glad/", gl},
         {"GL/", {}},  // glad is the loader
-        {"GLFW/", {"engine/app", "fluid/bridge"}},
+        {"GLFW/", {"engine/app", "fluid/viewer"}},
         {"EGL/", {"engine/app"}},
-        {"imgui", {"engine/ui", "engine/app", "fluid/bridge"}},
+        {"imgui", {"engine/ui", "engine/app", "fluid/viewer"}},
         {"assimp/", {"engine/scene"}},
         {"CL/", {"engine/compute"}},
         {"tbb/", {"engine/compute", "fluid/voxel"}},
         {"oneapi/", {"engine/compute", "fluid/voxel", "fluid/sim", "fluid/render", "fluid/io"}},
-        {"json/", {"engine/core", "fluid/bridge"}},
+        {"json/", {"engine/core", "fluid/scene", "fluid/session", "fluid/viewer"}},
         {"zstd", {"fluid/voxel"}},
         {"xxh", {"engine/compute", "fluid/voxel"}},
         {"stb", {"engine/scene", "engine/render", "engine/app", "fluid/flow"}},
         {"Eigen/", {"fluid/flow", "fluid/sim"}},
-        {"bullet", {"fluid/bridge"}},
-        {"btBullet", {"fluid/bridge"}},
-        {"LinearMath/", {"fluid/bridge"}},
+        {"bullet", {"fluid/scene"}},
+        {"btBullet", {"fluid/scene"}},
+        {"LinearMath/", {"fluid/scene"}},
     };
     return table;
 }
@@ -170,7 +174,7 @@ TEST(IncludeRules, APlantedBreachIsFound) {
     EXPECT_TRUE(breachIn("fluid/sim/world/fluid_world.cpp", "#include <rivulet_glad/gl.h>"));
     EXPECT_TRUE(breachIn("fluid/voxel/voxel_grid.cpp", R"(#include "fluid/sim/world/stats.h")"));
     EXPECT_TRUE(breachIn("fluid/render/points.cpp", R"(#include "engine/render/passes.h")"));
-    EXPECT_TRUE(breachIn("fluid/io/export.cpp", R"(#include "fluid/bridge/scene_file.h")"));
+    EXPECT_TRUE(breachIn("fluid/io/export.cpp", R"(#include "fluid/scene/scene_file.h")"));
     EXPECT_TRUE(breachIn("engine/ui/param_panel.cpp", "#include <GLFW/glfw3.h>"));
     EXPECT_TRUE(breachIn("engine/core/json.cpp", R"(#include "json.h")"));
     EXPECT_TRUE(breachIn("engine/tools/x.cpp", "#include <vector>"));
@@ -179,7 +183,7 @@ TEST(IncludeRules, APlantedBreachIsFound) {
     EXPECT_FALSE(breachIn("fluid/render/points.cpp", R"(#include "engine/render/frame_view.h")"));
     EXPECT_FALSE(breachIn("fluid/flow/flow_layer.cpp", R"(#include "engine/material/layer.h")"));
     EXPECT_FALSE(breachIn("fluid/sim/world/fluid_world.cpp", R"(#include "shaders/fluid/step_params.h")"));
-    EXPECT_FALSE(breachIn("fluid/bridge/session.cpp", R"(#include "engine/app/context_egl.h")"));
+    EXPECT_FALSE(breachIn("fluid/session/session.cpp", R"(#include "engine/app/context_egl.h")"));
     EXPECT_FALSE(breachIn("engine/core/json.cpp", "#include <json/json.h>"));
     EXPECT_FALSE(breachIn("engine/core/json.cpp", "// #include nothing"));
 }

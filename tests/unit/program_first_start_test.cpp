@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "fluid/bridge/viewer.h"
+#include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 

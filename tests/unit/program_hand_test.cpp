@@ -9,10 +9,10 @@
 
 #include "engine/core/json.h"
 #include "engine/scene/pick.h"
-#include "fluid/bridge/scene_hand.h"
-#include "fluid/bridge/scene_renderer.h"
-#include "fluid/bridge/viewer.h"
+#include "fluid/session/scene_renderer.h"
 #include "fluid/sim/world/host_particles.h"
+#include "fluid/viewer/manipulator.h"
+#include "fluid/viewer/viewer.h"
 #include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {

@@ -10,7 +10,7 @@
 
 #include "engine/core/json.h"
 #include "engine/scene/load_image.h"
-#include "fluid/bridge/viewer.h"
+#include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 

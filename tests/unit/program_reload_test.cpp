@@ -13,7 +13,7 @@
 #include "engine/compute/device_cl.h"
 #include "engine/core/file_watch.h"
 #include "engine/gpu/device_gl.h"
-#include "fluid/bridge/viewer.h"
+#include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 

@@ -8,7 +8,7 @@
 #include <signal.h>
 
 #include "engine/core/json.h"
-#include "fluid/bridge/viewer.h"
+#include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 

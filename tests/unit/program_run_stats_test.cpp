@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "fluid/bridge/run_stats.h"
+#include "fluid/session/run_stats.h"
 
 namespace rivulet {
 namespace {

@@ -1,4 +1,4 @@
-#include "fluid/bridge/scene_file.h"
+#include "fluid/scene/scene_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

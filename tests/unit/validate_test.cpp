@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "engine/core/json.h"
+#include "fluid/session/reference_data.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/draught.h"
-#include "fluid/validate/reference_data.h"
 #include "fluid/validate/trial.h"
 #include "fluid/validate/virial.h"
 

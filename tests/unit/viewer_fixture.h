@@ -11,7 +11,7 @@
 #include <memory>
 #include <string_view>
 
-#include "fluid/bridge/viewer.h"
+#include "fluid/viewer/viewer.h"
 #include "tests/unit/framebuffer_fixture.h"
 
 namespace rivulet::testing {

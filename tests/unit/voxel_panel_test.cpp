@@ -1,5 +1,5 @@
 // The voxel panel, driven by InputEvents and drawn into a framebuffer: what it shows is what the field holds.
-#include "fluid/bridge/voxel_panel.h"
+#include "fluid/viewer/voxel_panel.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "engine/app/capture.h"
-#include "fluid/bridge/viewer.h"
+#include "fluid/viewer/viewer.h"
 #include "tests/unit/viewer_fixture.h"
 
 namespace rivulet {

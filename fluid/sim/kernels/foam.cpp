@@ -30,8 +30,8 @@ namespace foam_drawn_unit {
 
 std::span<const CpuKernelRow> foamRows() {
     static const CpuKernelRow rows[] = {
-        PAIR_ROWS(foam_air_unit, foam_air, ""),
-        PAIR_ROWS(foam_crest_unit, foam_crest, ""),
+        PAIR_ROWS(foam_air_unit, surface, foam_air, ""),
+        PAIR_ROWS(foam_crest_unit, surface, foam_crest, ""),
         {"fluid/foam_move", "", RIVULET_UNIT_ISA, foam_move_unit::foam_move, 64},
         {"fluid/foam_wanted", "", RIVULET_UNIT_ISA, foam_wanted_unit::foam_wanted, 4096},
         {"fluid/foam_born", "", RIVULET_UNIT_ISA, foam_born_unit::foam_born, 1024},

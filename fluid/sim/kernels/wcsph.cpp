@@ -35,14 +35,14 @@ namespace thesis_forces {
 
 std::span<const CpuKernelRow> wcsphRows() {
     static const CpuKernelRow rows[] = {
-        PAIR_ROWS(density, wcsph_density, ""),
-        OPEN_ROWS(density, wcsph_density, ""),
-        PAIR_ROWS(forces, wcsph_forces, ""),
-        OPEN_ROWS(forces, wcsph_forces, ""),
-        PAIR_ROWS(cubic_density, wcsph_density, "CUBIC=1"),
-        OPEN_ROWS(cubic_density, wcsph_density, "CUBIC=1"),
-        PAIR_ROWS(cubic_forces, wcsph_forces, "CUBIC=1"),
-        OPEN_ROWS(cubic_forces, wcsph_forces, "CUBIC=1"),
+        PAIR_ROWS(density, methods, wcsph_density, ""),
+        OPEN_ROWS(density, methods, wcsph_density, ""),
+        PAIR_ROWS(forces, methods, wcsph_forces, ""),
+        OPEN_ROWS(forces, methods, wcsph_forces, ""),
+        PAIR_ROWS(cubic_density, methods, wcsph_density, "CUBIC=1"),
+        OPEN_ROWS(cubic_density, methods, wcsph_density, "CUBIC=1"),
+        PAIR_ROWS(cubic_forces, methods, wcsph_forces, "CUBIC=1"),
+        OPEN_ROWS(cubic_forces, methods, wcsph_forces, "CUBIC=1"),
         {"fluid/wcsph_density", "THESIS=1", RIVULET_UNIT_ISA, thesis_density::wcsph_density, 64},
         {"fluid/wcsph_forces", "THESIS=1", RIVULET_UNIT_ISA, thesis_forces::wcsph_forces, 64},
     };

@@ -1,0 +1,591 @@
+#include "fluid/scene/flow_component.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "engine/core/table.h"
+#include "engine/scene/import_model.h"
+#include "engine/scene/load_image.h"
+#include "engine/scene/transform.h"
+#include "fluid/flow/unwrap.h"
+#include "fluid/scene/head_look.h"
+#include "fluid/scene/scene_file.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kMicrolitre = 1.0e6;  // picolitres
+constexpr float kBrimStep = 6.0e-4F;   // m, between the places of a brim
+constexpr int kMostBrimPlaces = 400;
+constexpr size_t kMostABirth = 4096;  // drops of one source in one step
+
+Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
+    Bounds all;
+    for (const ModelPart& part : model.parts)
+        for (const vec3& p : part.mesh.positions) all.add(transformPoint(world[static_cast<size_t>(part.node)], p));
+    return all;
+}
+
+// Puts a part into the frame of the whole: positions, normals, morphs.
+void place(ModelPart& part, const mat4& to) {
+    part.mesh = transformed(part.mesh, to);
+    for (MorphTarget& morph : part.morphs)
+        for (vec3& offset : morph.offsets) offset = mat3(to) * offset;
+    for (Bone& bone : part.bones) bone.fromMesh = bone.fromMesh * glm::inverse(to);
+}
+
+vec3 along(const std::vector<vec3>& line, float way) {
+    for (size_t k = 1; k < line.size(); ++k) {
+        const float step = glm::distance(line[k - 1], line[k]);
+        if (way <= step || k + 1 == line.size()) return glm::mix(line[k - 1], line[k], step > 0 ? std::min(way / step, 1.0F) : 0.0F);
+        way -= step;
+    }
+    return line.front();
+}
+
+// Whether `list` ("M_Iris*, M_EyeBlend") names a part, by its own name or its material's.
+bool named(std::string_view list, const ModelPart& part) {
+    while (!list.empty()) {
+        std::string_view one = list.substr(0, list.find(','));
+        list.remove_prefix(std::min(one.size() + 1, list.size()));
+        while (one.starts_with(' ')) one.remove_prefix(1);
+        const bool like = one.ends_with('*');
+        if (like) one.remove_suffix(1);
+        for (const std::string& name : {part.name, part.materialName})
+            if (!one.empty() && (like ? name.starts_with(one) : name == one)) return true;
+    }
+    return false;
+}
+
+// Vertices anew, one for each UV that a vertex has in `uvs` (3 a triangle of `mesh`, which was made of the part).
+void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
+    Mesh fresh;
+    fresh.name = part.mesh.name;
+    std::map<std::tuple<uint32_t, float, float>, uint32_t> known;
+    std::vector<std::vector<uint32_t>> become(part.mesh.positions.size());
+    std::vector<Grip> grips;
+    for (size_t t = 0; t < mesh.triangleCount(); ++t)
+        for (size_t k = 0; k < 3; ++k) {
+            uint32_t from = mesh.given[mesh.corner[3 * t + k]];
+            for (size_t c = 0; c < 3; ++c)
+                if (const uint32_t i = part.mesh.indices[3 * size_t{mesh.source[t]} + c];
+                    part.mesh.positions[i] == mesh.rest[mesh.corner[3 * t + k]])
+                    from = i;
+            const vec2 uv = uvs[3 * t + k];
+            const auto [at, added] = known.try_emplace({from, uv.x, uv.y}, static_cast<uint32_t>(fresh.positions.size()));
+            if (added) {
+                fresh.positions.push_back(part.mesh.positions[from]);
+                if (!part.mesh.normals.empty()) fresh.normals.push_back(part.mesh.normals[from]);
+                fresh.uvs.push_back(uv);
+                if (!part.grips.empty()) grips.push_back(part.grips[from]);
+                become[from].push_back(at->second);
+            }
+            fresh.indices.push_back(at->second);
+        }
+    for (MorphTarget& morph : part.morphs) {
+        std::vector<std::pair<uint32_t, vec3>> moved;
+        for (size_t k = 0; k < morph.vertices.size(); ++k)
+            for (const uint32_t v : become[morph.vertices[k]]) moved.emplace_back(v, morph.offsets[k]);
+        std::sort(moved.begin(), moved.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        morph.vertices.clear();
+        morph.offsets.clear();
+        for (const auto& [v, offset] : moved) {
+            morph.vertices.push_back(v);
+            morph.offsets.push_back(offset);
+        }
+    }
+    part.mesh = std::move(fresh);
+    part.grips = std::move(grips);
+}
+
+// Two directions across `n`, a unit vector.
+std::pair<vec3, vec3> across(const vec3& n) {
+    const vec3 a = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9F ? vec3(0, 1, 0) : vec3(1, 0, 0)));
+    return {a, glm::cross(n, a)};
+}
+
+float lengthOf(const std::vector<vec3>& line) {
+    float sum = 0;
+    for (size_t k = 1; k < line.size(); ++k) sum += glm::distance(line[k - 1], line[k]);
+    return sum;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& params, const std::string& sceneFolder, Device& device,
+                                                             Scene& scene, const Log& log) {
+    std::unique_ptr<FlowComponent> made(new FlowComponent());
+    FlowComponent& c = *made;
+    c.params_ = params;
+    c.device_ = &device;
+    c.log_ = log;
+    Result<std::string> path = findAsset(params.mesh, sceneFolder);
+    if (!path) return path.error();
+    Result<Model> model = importModel(*path);
+    if (!model) return model.error();
+    const std::vector<mat4> world = model->worldMatrices();
+    const Bounds all = boundsOf(*model, world);
+    const Transform asked{params.position, params.rotation, params.scale};
+    mat4 to = params.fitSize > 0 ? Transform::fitted(all, params.fitSize, params.position, params.rotation) : asked.matrix();
+    c.toWorld_ = c.worldAt(0);
+    to = glm::translate(mat4(1.0F), -params.position) * to;
+    for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
+    if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
+    if (Status marked = c.readMarks(*path, sceneFolder, to); !marked) return marked.error();
+    Result<ModelPart*> skin = c.skinOf(*model);
+    if (!skin) return skin.error();
+    if (Status laid = c.layOut(**skin, log); !laid) return laid.error();
+    if (Status added = c.addParts(*model, *skin, scene); !added) return added.error();
+    if (Status ready = c.prepareFlow((*skin)->mesh); !ready) return ready.error();
+    if (Status masked = c.readRegions(sceneFolder, (*skin)->mesh); !masked) return masked.error();
+    c.apply(params);
+    c.placeNode(scene);
+    return made;
+}
+
+Status FlowComponent::readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& to) {
+    std::string path = params_.marks;
+    if (path.empty()) {
+        fs::path beside(meshPath);
+        beside.replace_extension(".json");
+        if (!fs::exists(beside)) beside = beside.parent_path() / "landmarks.json";
+        if (!fs::exists(beside)) return ok();
+        path = beside.string();
+    } else {
+        Result<std::string> found = findAsset(path, sceneFolder);
+        if (!found) return found.error();
+        path = *found;
+    }
+    Result<FaceMarks> marks = readFaceMarks(path);
+    if (!marks) return marks.error();
+    marks_ = *marks;
+    for (EyeMarks& eye : marks_.eyes) {
+        if (eye.tear) eye.tear = transformPoint(to, *eye.tear);
+        for (vec3& p : eye.lowerLid) p = transformPoint(to, p);
+    }
+    return ok();
+}
+
+Result<ModelPart*> FlowComponent::skinOf(Model& model) const {
+    if (model.parts.size() == 1) return model.parts.data();
+    std::vector<std::string> names;
+    for (ModelPart& part : model.parts) {
+        if (part.name == params_.part || part.materialName == params_.part) return &part;
+        names.push_back(part.materialName.empty() ? part.name : part.materialName);
+    }
+    return badInput(fmt::format("{} has no part `{}`; there are {}", params_.mesh, params_.part, fmt::join(names, ", ")));
+}
+
+// UVs that can be drawn into: the mesh's, or own ones, for which its vertices are split where charts end.
+Status FlowComponent::layOut(ModelPart& skin, const Log& log) {
+    Result<FlowMesh> mesh = makeFlowMesh(skin.mesh.view());
+    if (!mesh) return badInput(fmt::format("{}: {}", params_.mesh, mesh.error().message));
+    if (const std::string found = mesh->report.sentence(); !found.empty()) log.info(fmt::format("{}: {}", params_.mesh, found));
+    Result<SkinUvs> uvs = skinUvs(*mesh, skin.mesh.view(), std::clamp(params_.mapSize, 256, 2048));
+    if (!uvs) return badInput(fmt::format("{}: {}", params_.mesh, uvs.error().message));
+    if (!uvs->said.empty()) log.notice(fmt::format("{}: {}", params_.mesh, uvs->said));
+    if (uvs->unwrapped) {
+        split(skin, *mesh, uvs->uvs);
+        mesh = makeFlowMesh(skin.mesh.view());
+        if (!mesh) return mesh.error();
+    }
+    uvs_ = cornerUvs(*mesh, skin.mesh.view());
+    return ok();
+}
+
+Status FlowComponent::addParts(Model& model, const ModelPart* skin, Scene& scene) {
+    std::vector<std::string> morphNames;
+    for (const ModelPart& part : model.parts)
+        for (const MorphTarget& m : part.morphs) morphNames.push_back(m.name);
+    for (const ExpressionParams& e : params_.expression)
+        if (!e.morph.empty() && std::find(morphNames.begin(), morphNames.end(), e.morph) == morphNames.end()) {
+            const std::string near = nearestName(e.morph, morphNames);
+            return badInput(fmt::format("{} has no morph target `{}`{}", params_.mesh, e.morph,
+                                        near.empty() ? std::string() : fmt::format("; did you mean {}?", near)));
+        }
+    Node group;
+    group.name = params_.mesh;
+    group_ = scene.add(std::move(group));
+    layer_ = std::make_shared<Layer>();
+    const std::vector<mat4> stand = model.worldMatrices();
+    for (ModelPart& part : model.parts) {
+        Node node;
+        node.name = part.name;
+        node.parent = group_;
+        node.material = part.material;
+        node.visible = !named(params_.hide, part);
+        if (named(params_.skinParts, part)) {
+            auto look = std::make_shared<SkinLook>();
+            node.material.skin = look;
+        }
+        if (&part == skin) {
+            node.layer = layer_;
+            if (!part.material.colour && !node.material.skin) {
+                node.material = params_.material;
+                node.material.blended = params_.material.opacity < 1;
+            }
+        }
+        if (!part.morphs.empty() || !part.grips.empty()) {
+            Result<Deformer> deformer = Deformer::create(*device_, part);
+            if (!deformer) return deformer.error();
+            Deformed d;
+            d.deformer = std::make_shared<Deformer>(std::move(*deformer));
+            d.morphs = part.morphs.size();
+            for (const ExpressionParams& e : params_.expression) {
+                const auto at =
+                    std::find_if(part.morphs.begin(), part.morphs.end(), [&](const MorphTarget& m) { return m.name == e.morph; });
+                d.morphOf.push_back(at == part.morphs.end() ? -1 : static_cast<int>(at - part.morphs.begin()));
+            }
+            if (!part.grips.empty()) d.bones = model.boneMatrices(part, stand);
+            d.deformer->run({}, d.bones);
+            node.deformer = d.deformer;
+            if (&part == skin) skinDeformer_ = d.deformer;
+            deformed_.push_back(std::move(d));
+        }
+        node.mesh = std::make_shared<const Mesh>(part.mesh);
+        scene.add(std::move(node));
+    }
+    return ok();
+}
+
+Status FlowComponent::prepareFlow(const Mesh& skin) {
+    Result<FlowMesh> mesh = makeFlowMesh(skin.view());
+    if (!mesh) return mesh.error();
+    for (size_t side = 0; side < 2; ++side)
+        if (marks_.eyes[side].tear) tears_[side] = nearestPoint(*mesh, *marks_.eyes[side].tear);
+    for (const FlowSourceParams& source : params_.sources)
+        if (const std::string fault = faultOf(source); source.rate > 0 && !fault.empty()) return badInput(fault);
+    // The thesis knows no lids: what would fill a brim begins below the eye's corner.
+    const std::vector<SkinBrim> along = thesis() ? std::vector<SkinBrim>() : brims(*mesh);
+    Result<SurfaceFlow> flow = thesis() ? SurfaceFlow::createThesis(*device_, std::move(*mesh), uvs_, params_.liquid, params_.thesis)
+                                        : SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
+    if (!flow) return badInput(fmt::format("{}: {}", params_.mesh, flow.error().message));
+    flow_.emplace(std::move(*flow));
+    search_.emplace(flow_->mesh());
+    if (thesis()) return ok();  // its picture wants the UVs
+    Result<FlowMaps> maps = FlowMaps::create(*flow_, std::exchange(uvs_, {}), params_.mapSize);
+    if (!maps) return badInput(fmt::format("{}: {}", params_.mesh, maps.error().message));
+    maps_.emplace(std::move(*maps));
+    return ok();
+}
+
+// The eyes that a source may be at: those that its side names, where what its kind needs is marked.
+std::vector<size_t> FlowComponent::eyesOf(const FlowSourceParams& source) const {
+    std::vector<size_t> eyes;
+    for (const size_t side : {size_t{0}, size_t{1}}) {
+        if (source.side == (side == 0 ? "right" : "left")) continue;
+        const bool inBrim = source.kind == "brim" && !thesis();  // the thesis knows no lids
+        if (inBrim ? marks_.eyes[side].lowerLid.size() >= 2 : marks_.eyes[side].tear.has_value()) eyes.push_back(side);
+    }
+    return eyes;
+}
+
+// "", or why nothing can come from there.
+std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
+    if (source.kind != "corner" && source.kind != "brim") return {};
+    if (eyesOf(source).empty())
+        return fmt::format("{} has no marks of {}: a source of kind {} has nowhere to be; use spot, strewn or rain", params_.mesh,
+                           source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind);
+    constexpr float kMostOfAnEye = 1.0e5F;  // microlitres a minute
+    if (source.rate > kMostOfAnEye)
+        return fmt::format(
+            "a source of kind {} lets {:.3g} ul a minute out, and an eye no more than {:.0f}: lower its rate, or use spot or rain",
+            source.kind, source.rate, kMostOfAnEye);
+    return {};
+}
+
+// Along each lower lid, one place every half millimetre or so. What spills begins on the skin below.
+std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
+    std::vector<SkinBrim> all;
+    for (size_t side = 0; side < 2; ++side) {
+        const std::vector<vec3>& lid = marks_.eyes[side].lowerLid;
+        brimBegin_[side + 1] = brimBegin_[side];
+        if (lid.size() < 2) continue;
+        const float length = lengthOf(lid);
+        SkinBrim brim;
+        brim.picolitres = static_cast<uint32_t>(double{params_.liquid.brimStarts} * kMicrolitre);
+        const int places = std::clamp(static_cast<int>(std::min(length / kBrimStep, 1.0e6F)), 4, kMostBrimPlaces);
+        for (int k = 0; k < places; ++k) {
+            const vec3 x = along(lid, length * (static_cast<float>(k) + 0.5F) / static_cast<float>(places));
+            brim.places.push_back(nearestPoint(mesh, x));
+            brim.spills.push_back(nearestPoint(mesh, x + vec3(0.0F, -0.0025F, 0.0015F)));
+        }
+        brimBegin_[side + 1] += static_cast<uint32_t>(places);
+        emitted_ += uint64_t{brim.picolitres / static_cast<uint32_t>(places)} * static_cast<uint32_t>(places);
+        all.push_back(std::move(brim));
+    }
+    return all;
+}
+
+Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& skin) {
+    const FlowMesh& mesh = flow_->mesh();
+    oily_.assign(mesh.rest.size(), 255);
+    if (!params_.regions.mask.empty()) {
+        Result<std::string> path = findAsset(params_.regions.mask, sceneFolder);
+        if (!path) return path.error();
+        Result<Image> mask = loadImage(*path);
+        if (!mask) return mask.error();
+        if (skin.uvs.empty()) return badInput(fmt::format("{} has no UVs, so {} cannot lie on it", params_.mesh, params_.regions.mask));
+        std::vector<float> grip;
+        grip.reserve(mesh.rest.size());
+        for (size_t p = 0; p < mesh.rest.size(); ++p) {
+            const vec2 uv = skin.uvs[mesh.given[p]] - glm::floor(skin.uvs[mesh.given[p]]);
+            const auto x = std::min(static_cast<size_t>(uv.x * static_cast<float>(mask->width)), static_cast<size_t>(mask->width) - 1);
+            const auto y = std::min(static_cast<size_t>(uv.y * static_cast<float>(mask->height)), static_cast<size_t>(mask->height) - 1);
+            const uint8_t* texel = &mask->rgba[4 * (y * static_cast<size_t>(mask->width) + x)];
+            const float factor[] = {params_.regions.oily, params_.regions.dry, params_.regions.hair, params_.regions.lip};
+            float g = 1;
+            for (size_t k = 0; k < 4; ++k) g *= 1 + (factor[k] - 1) * static_cast<float>(texel[k]) / 255.0F;
+            grip.push_back(g);
+            oily_[p] = texel[0];
+        }
+        flow_->setGrip(grip);
+    }
+    // Drops are strewn where a skin sweats: mostly where it is oily.
+    double sum = 0;
+    for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+        const uint32_t* c = &mesh.corner[3 * size_t{t}];
+        const double area = 0.5 * double{glm::length(glm::cross(mesh.rest[c[1]] - mesh.rest[c[0]], mesh.rest[c[2]] - mesh.rest[c[0]]))};
+        sum += area * (0.03 + (oily_[c[0]] + oily_[c[1]] + oily_[c[2]]) / 765.0);
+        areaTo_.push_back(sum);
+    }
+    return ok();
+}
+
+void FlowComponent::apply(const FlowParams& params) {
+    // What tables are sized for, or files were read by, stays: a panel may be dragging it.
+    const FlowParams before = std::exchange(params_, params);
+    params_.mode = before.mode;
+    params_.mesh = before.mesh;
+    params_.part = before.part;
+    params_.position = before.position;
+    params_.mapSize = before.mapSize;
+    params_.regions = before.regions;
+    for (size_t e = 0; e < std::min(before.expression.size(), params_.expression.size()); ++e)
+        params_.expression[e].morph = before.expression[e].morph;
+    // What a scene's reader has let through is in its ranges.
+    (void)flow_->setParams(params.liquid);
+    if (thesis()) (void)flow_->setThesis(params.thesis);
+    layer_->look = params.look;
+    while (sources_.size() < params.sources.size()) {
+        Source fresh;
+        fresh.random = std::mt19937(static_cast<uint32_t>(11 + 7 * sources_.size()));
+        sources_.push_back(fresh);
+    }
+}
+
+bool FlowComponent::needsNew(const FlowParams& params) const { return params.expression.size() != params_.expression.size(); }
+
+SkinPoint FlowComponent::somewhere(const FlowSourceParams& source, Source& state) {
+    const FlowMesh& mesh = flow_->mesh();
+    std::uniform_real_distribution<float> any(0.0F, 1.0F);
+    SkinPoint at;
+    for (int tries = 0; tries < 200; ++tries) {
+        const double wanted = double{any(state.random)} * areaTo_.back();
+        at.triangle = static_cast<uint32_t>(std::lower_bound(areaTo_.begin(), areaTo_.end(), wanted) - areaTo_.begin());
+        at.triangle = std::min(at.triangle, static_cast<uint32_t>(mesh.triangleCount() - 1));
+        const float r = std::sqrt(any(state.random)), s = any(state.random);
+        at.b1 = r * (1 - s);
+        at.b2 = r * s;
+        if (source.radius == 0 || glm::distance(positionOf(mesh, at), source.position) < source.radius) return at;
+    }
+    return nearestPoint(mesh, source.position);
+}
+
+void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint32_t picolitres, std::vector<AirDrop>& air) {
+    std::uniform_real_distribution<float> any(-1.0F, 1.0F);
+    const auto disc = [&] {
+        for (;;) {
+            const vec2 p(any(state.random), any(state.random));
+            if (glm::dot(p, p) <= 1) return p * source.radius;
+        }
+    };
+    emitted_ += picolitres;
+    if (source.kind == "strewn") {
+        flow_->add(somewhere(source, state), picolitres, vec3(0.0F), source.film);
+    } else if (source.kind == "spot") {
+        flow_->add(besideSpot(source, state, disc()), picolitres, vec3(0.0F), source.film);
+    } else if (source.kind == "rain") {
+        if (around_.empty()) around_ = bounds();
+        const vec3 way = glm::length(source.along) > 0 ? glm::normalize(source.along) : vec3(0, -1, 0);
+        const auto [a, b] = across(way);
+        const float reach = 0.5F * glm::length(around_.size());
+        const vec3 middle = source.radius > 0 ? vec3(toWorld_ * glm::dvec4(dvec3(source.position), 1)) : around_.centre();
+        const vec2 off = source.radius > 0 ? disc() : vec2(any(state.random), any(state.random)) * reach;
+        air.push_back({dvec3(middle + a * off.x + b * off.y - way * (reach * (1.2F + 0.2F * any(state.random)))), dvec3(way * source.speed),
+                       picolitres});
+    } else {
+        const std::vector<size_t> eyes = eyesOf(source);
+        const size_t side = eyes[state.random() % eyes.size()];
+        if (source.kind == "corner" || thesis()) {
+            flow_->add(tears_[side], picolitres);
+        } else {
+            const uint32_t from = brimBegin_[side], count = brimBegin_[side + 1] - from;
+            flow_->addToBrim(from + static_cast<uint32_t>(state.random() % count), picolitres);
+        }
+    }
+}
+
+// A point of the disc about a spot, `off` (m) from its middle in the plane of the skin there. All triangles are asked only where the spot
+// has been moved, or the skin turns away under the disc.
+SkinPoint FlowComponent::besideSpot(const FlowSourceParams& source, Source& state, const vec2& off) {
+    const FlowMesh& mesh = flow_->mesh();
+    if (!state.spot || state.spotOf != source.position) {
+        state.spot = nearestPoint(mesh, source.position);
+        state.spotOf = source.position;
+    }
+    if (source.radius == 0) return *state.spot;
+    const uint32_t* c = &mesh.corner[3 * size_t{state.spot->triangle}];
+    const std::vector<vec3>& x = search_->places();
+    const vec3 n = glm::normalize(glm::cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]));
+    if (!isFinite(n)) return *state.spot;
+    const auto [a, b] = across(n);
+    const vec3 at =
+        (1 - state.spot->b1 - state.spot->b2) * x[c[0]] + state.spot->b1 * x[c[1]] + state.spot->b2 * x[c[2]] + a * off.x + b * off.y;
+    const std::optional<SkinSearch::Hit> hit = search_->first(at + n * source.radius, at - n * source.radius);
+    return hit ? hit->at : nearestPoint(mesh, at);
+}
+
+void FlowComponent::sayOnce(const std::string& sentence) {
+    if (std::find(said_.begin(), said_.end(), sentence) != said_.end()) return;
+    said_.push_back(sentence);
+    log_.notice(sentence);
+}
+
+void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air) {
+    for (size_t k = 0; k < params_.sources.size(); ++k) {
+        const FlowSourceParams& source = params_.sources[k];
+        Source& state = sources_[k];
+        if (!(source.rate > 0) || time < double{source.start} || time >= double{source.stop}) {
+            state.begun = false;
+            continue;
+        }
+        if (const std::string fault = faultOf(source); !fault.empty()) {
+            sayOnce(fault);
+            continue;
+        }
+        const double wave = 1 + double{source.swell} * std::sin(2 * std::numbers::pi * time / double{source.period});
+        state.due += double{source.rate} * kMicrolitre / 60 * seconds * wave;
+        const auto each = static_cast<uint32_t>(std::max(double{source.drop} * kMicrolitre, 1.0));
+        // The first drop comes at once, not when the rate has made up for it.
+        if (!std::exchange(state.begun, true)) state.due = std::max(state.due, static_cast<double>(each));
+        size_t born = 0;
+        for (; state.due >= each && born < kMostABirth; ++born, state.due -= each) emitOne(source, state, each, air);
+        if (born == kMostABirth) {
+            state.due = 0;
+            sayOnce(fmt::format(
+                "flow.sources[{}] would let more than {} drops out at once: the others are not let out; make its drops larger, or "
+                "its rate smaller",
+                k, kMostABirth));
+        }
+    }
+}
+
+Status FlowComponent::step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air) {
+    const double then = time + seconds;
+    toWorld_ = worldAt(then);
+    time_ = then;
+    around_ = {};
+    bend(then);
+    seen_ = false;
+    emit(time, seconds, air);
+    SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld_};
+    if (skinDeformer_) inputs.moved = &skinDeformer_->positions();
+    if (Status moved = flow_->step(inputs, seconds); !moved) return moved;
+    if (flow_->refused() > 0)
+        sayOnce(
+            "a skin has no room for more drops: what finds none is lost, and counted as drained; flow.liquid.capacity says how many there "
+            "may be");
+    for (const LeftDrop& d : flow_->takeLeft())
+        air.push_back({dvec3(toWorld_ * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld_) * dvec3(d.velocity), d.picolitres});
+    return ok();
+}
+
+// The expression that it has then.
+void FlowComponent::bend(double time) {
+    for (Deformed& d : deformed_) {
+        std::vector<float> weights(d.morphs, 0.0F);
+        for (size_t e = 0; e < std::min(d.morphOf.size(), params_.expression.size()); ++e)
+            if (d.morphOf[e] >= 0)
+                weights[static_cast<size_t>(d.morphOf[e])] += params_.expressive * static_cast<float>(params_.expression[e].at(time));
+        d.deformer->run(weights, d.bones);
+    }
+}
+
+void FlowComponent::look() {
+    if (seen_) return;
+    seen_ = true;
+    const FlowView view = flow_->view();
+    search_->follow(device_->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
+}
+
+dmat4 FlowComponent::worldAt(double time) const { return glm::translate(dmat4(1.0), dvec3(params_.position)) * params_.motion.at(time); }
+
+std::optional<SkinSearch::Hit> FlowComponent::meets(const dvec3& from, const dvec3& to, double then) {
+    look();
+    const dmat4 now = glm::inverse(toWorld_), later = then == time_ ? now : glm::inverse(worldAt(then));
+    return search_->first(vec3(now * glm::dvec4(from, 1)), vec3(later * glm::dvec4(to, 1)));
+}
+
+void FlowComponent::land(const SkinSearch::Hit& where, const AirDrop& drop) {
+    // What comes straight at the skin stays there: it keeps the part of its speed that goes along, and no more than runs down by itself.
+    // Against the skin, as it moves as a whole.
+    constexpr double kMoment = 1.0e-4;  // s
+    const glm::dvec4 at(dvec3(where.position), 1);
+    const dvec3 carried = dvec3(worldAt(time_ + kMoment) * at - worldAt(time_) * at) / kMoment;
+    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * (drop.velocity - carried));
+    v -= where.normal * glm::dot(v, where.normal);
+    constexpr float kMost = 0.2F;  // m/s
+    if (const float pace = glm::length(v); pace > kMost) v *= kMost / pace;
+    flow_->add(where.at, drop.picolitres, v);
+}
+
+void FlowComponent::placeNode(Scene& scene) const { scene.nodes()[static_cast<size_t>(group_)].local = mat4(toWorld_); }
+
+Status FlowComponent::draw() {
+    if (!texture_) {
+        Result<FlowLayer> made = FlowLayer::create(params_.mapSize);
+        if (!made) return made.error();
+        texture_.emplace(std::move(*made));
+    }
+    layer_->texels = &texture_->texture();
+    if (thesis()) {
+        drawThesis();
+        return ok();
+    }
+    maps_->draw(*flow_);
+    texture_->update(*maps_);
+    return ok();
+}
+
+// (22) and (23) on the host, so this waits for the device: a baseline, not for speed. A particle's mass is its height, by the contact
+// angle.
+void FlowComponent::drawThesis() {
+    std::vector<ThesisParticle> particles;
+    double largest = 0;  // m^3
+    for (const SkinDrop& d : flow_->drops()) {
+        particles.push_back({uvAt(uvs_, d.at), static_cast<float>(d.volume * double{params_.liquid.density})});
+        largest = std::max(largest, d.volume);
+    }
+    const float mass = static_cast<float>(std::max(largest, 1.0e-15) * double{params_.liquid.density});
+    picture_ = thesisPicture(particles, params_.mapSize, params_.thesis.disc, mass);
+    texture_->update(picture_, capHeight(largest, 0.5 * double{params_.liquid.advancing + params_.liquid.receding}));
+}
+
+Bounds FlowComponent::bounds() const {
+    Bounds own;
+    for (const vec3& p : search_->places()) own.add(p);
+    return transformBounds(mat4(toWorld_), own);
+}
+
+}  // namespace rivulet

@@ -1,0 +1,124 @@
+// FlowComponent: a skin of a scene with what flows on it. Loads the mesh and dresses it, bends and turns it, lets drops out where the scene
+// says, steps the flow and draws its maps.
+#pragma once
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/core/log.h"
+#include "engine/scene/scene.h"
+#include "fluid/flow/flow_layer.h"
+#include "fluid/flow/flow_maps.h"
+#include "fluid/flow/skin_search.h"
+#include "fluid/scene/face_marks.h"
+#include "fluid/scene/flow_params.h"
+
+namespace rivulet {
+
+class FlowComponent {
+  public:
+    // Adds its nodes to `scene`. `device` must outlive it. Error (badInput): a file that is missing or damaged, a part or a morph that is
+    // not there, UVs that leave no texel, no eyes where a source needs them; (failed): out of memory.
+    static Result<std::unique_ptr<FlowComponent>> create(const FlowParams& params, const std::string& sceneFolder, Device& device,
+                                                         Scene& scene, const Log& log);
+    // Takes what may change while it runs.
+    void apply(const FlowParams& params);
+    bool needsNew(const FlowParams& params) const;
+
+    // Moves the skin to where it is at `time` + `seconds`, and what flows on it. What leaves goes to `left`, what begins in the air to
+    // `air`: in the world. Error (failed): out of memory.
+    struct AirDrop {
+        dvec3 position{0.0}, velocity{0.0};  // m, m/s
+        uint32_t picolitres = 0;
+    };
+    Status step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air);
+    // Where a way through the world first meets the skin, as a share of it. Nothing: nowhere. The skin has the shape it has now; as a
+    // whole it is where it is now when the way begins, and where it will be at `then` (s) when it ends.
+    std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
+    // A drop that comes to rest on the skin there.
+    void land(const SkinSearch::Hit& where, const AirDrop& drop);
+    void placeNode(Scene& scene) const;
+
+    // Brings the layer up to date. Needs a current OpenGL context.
+    Status draw();
+
+    // Where it was, to be taken up by one that was made of the same params, on whichever device.
+    struct Snapshot;
+    std::shared_ptr<const Snapshot> save() const;  // waits
+    Status restore(const Snapshot& snapshot);      // error (failed): out of memory
+
+    uint64_t emitted() const { return emitted_; }  // picolitres, by sources; not what has landed
+    const SurfaceFlow& flow() const { return *flow_; }
+    double time() const { return time_; }  // s, of where it is
+    const FlowParams& params() const { return params_; }
+    const FlowMaps& maps() const { return *maps_; }  // in mode drops
+    // As last drawn, in mode thesis; of size 0 else.
+    const ThesisPicture& picture() const { return picture_; }
+    Bounds bounds() const;  // m, world
+
+  private:
+    struct Source {
+        double due = 0;  // picolitres
+        bool begun = false;
+        std::optional<SkinPoint> spot;  // of kind spot, where it was last asked for
+        vec3 spotOf{0.0F};
+        std::mt19937 random;
+    };
+    struct Deformed {
+        std::shared_ptr<Deformer> deformer;
+        std::vector<int> morphOf;  // of each of params_.expression, or -1
+        size_t morphs = 0;
+        std::vector<mat4> bones;  // as the file's nodes stand
+    };
+
+    FlowComponent() = default;
+    bool thesis() const { return params_.mode == "thesis"; }
+    void drawThesis();
+    Result<ModelPart*> skinOf(Model& model) const;
+    Status layOut(ModelPart& skin, const Log& log);
+    Status addParts(Model& model, const ModelPart* skin, Scene& scene);
+    Status prepareFlow(const Mesh& skin);
+    Status readMarks(const std::string& meshPath, const std::string& sceneFolder, const mat4& place);
+    std::vector<SkinBrim> brims(const FlowMesh& mesh);
+    Status readRegions(const std::string& sceneFolder, const Mesh& skin);
+    void bend(double time);
+    void emit(double time, double seconds, std::vector<AirDrop>& air);
+    void emitOne(const FlowSourceParams& source, Source& state, uint32_t picolitres, std::vector<AirDrop>& air);
+    SkinPoint somewhere(const FlowSourceParams& source, Source& state);
+    dmat4 worldAt(double time) const;
+    std::vector<size_t> eyesOf(const FlowSourceParams& source) const;
+    std::string faultOf(const FlowSourceParams& source) const;
+    SkinPoint besideSpot(const FlowSourceParams& source, Source& state, const vec2& off);
+    void sayOnce(const std::string& sentence);
+    void look();  // where the skin is now
+
+    FlowParams params_;
+    Log log_;
+    std::vector<std::string> said_;
+    Bounds around_;  // bounds(), once a step
+    Device* device_ = nullptr;
+    int group_ = 0;  // the node that all parts hang from
+    dmat4 toWorld_{1.0};
+    double time_ = 0;  // s, at which toWorld_ is
+    std::vector<Deformed> deformed_;
+    std::shared_ptr<const Deformer> skinDeformer_;  // null: it keeps its shape
+    std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them; of mode thesis for ever
+    std::optional<SurfaceFlow> flow_;
+    std::optional<FlowMaps> maps_;
+    ThesisPicture picture_;
+    std::optional<FlowLayer> texture_;
+    std::shared_ptr<Layer> layer_;
+    std::optional<SkinSearch> search_;
+    bool seen_ = false;  // search_ is as the skin is now
+    FaceMarks marks_;
+    std::vector<Source> sources_;
+    std::array<SkinPoint, 2> tears_{};     // of the left and right eye
+    std::array<uint32_t, 3> brimBegin_{};  // places of the left, the right brim, and the end
+    std::vector<double> areaTo_;           // of the triangles, one by one, as far as each: m^2, weighted by how oily they are
+    std::vector<uint8_t> oily_;            // of each place
+    uint64_t emitted_ = 0;
+};
+
+}  // namespace rivulet

@@ -1,0 +1,31 @@
+// Where a skin was, put away in host memory and taken up again on another device.
+#include "fluid/scene/flow_component.h"
+
+namespace rivulet {
+
+struct FlowComponent::Snapshot {
+    double time = 0;
+    dmat4 toWorld{1.0};
+    std::vector<Source> sources;
+    std::vector<std::string> said;
+    uint64_t emitted = 0;
+    std::shared_ptr<const SurfaceFlow::Snapshot> flow;
+};
+
+std::shared_ptr<const FlowComponent::Snapshot> FlowComponent::save() const {
+    return std::make_shared<const Snapshot>(Snapshot{time_, toWorld_, sources_, said_, emitted_, flow_->save()});
+}
+
+Status FlowComponent::restore(const Snapshot& snapshot) {
+    time_ = snapshot.time;
+    toWorld_ = snapshot.toWorld;
+    sources_ = snapshot.sources;
+    said_ = snapshot.said;
+    emitted_ = snapshot.emitted;
+    around_ = {};
+    seen_ = false;
+    bend(time_);
+    return flow_->restore(*snapshot.flow);
+}
+
+}  // namespace rivulet

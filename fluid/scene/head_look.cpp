@@ -1,0 +1,200 @@
+#include "fluid/scene/head_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <glm/matrix.hpp>
+
+#include "engine/scene/load_image.h"
+
+namespace rivulet {
+namespace {
+
+constexpr vec3 kTint(0.93F, 1.0F, 1.15F);  // the painted skin is warmer than skin is
+
+// |x|^2 = 2 c . x + (r^2 - |c|^2), least squares about the mean. False where the points lie in a plane.
+bool fitSphere(const std::vector<vec3>& points, vec3& centre, float& radius) {
+    if (points.size() < 4) return false;
+    glm::dvec3 mean(0.0), right(0.0);
+    for (const vec3& p : points) mean += glm::dvec3(p) / static_cast<double>(points.size());
+    glm::dmat3 spread(0.0);
+    double square = 0;
+    for (const vec3& p : points) square += glm::dot(glm::dvec3(p) - mean, glm::dvec3(p) - mean) / static_cast<double>(points.size());
+    for (const vec3& p : points) {
+        const glm::dvec3 x = glm::dvec3(p) - mean;
+        spread += glm::outerProduct(x, x);
+        right += 0.5 * x * (glm::dot(x, x) - square);
+    }
+    if (std::abs(glm::determinant(spread)) < 1e-30) return false;
+    const glm::dvec3 c = glm::inverse(spread) * right;
+    centre = vec3(c + mean);
+    radius = static_cast<float>(std::sqrt(square + glm::dot(c, c)));
+    return std::isfinite(radius) && radius > 0;
+}
+
+Result<std::shared_ptr<const Image>> imageIfThere(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) return std::shared_ptr<const Image>();
+    Result<Image> image = loadImage(path);
+    if (!image) return image.error();
+    return std::make_shared<const Image>(std::move(*image));
+}
+
+// A ribbon narrower than a pixel breaks up into dots: it is made wider, and the hair covers its middle only.
+void widenStrands(ModelPart& part) {
+    constexpr float kWider = 4.0F;
+    std::vector<vec3>& x = part.mesh.positions;
+    for (size_t i = 0; i + 1 < std::min(x.size(), part.mesh.uvs.size()); ++i) {
+        const vec2 a = part.mesh.uvs[i], b = part.mesh.uvs[i + 1];
+        if (a.x != 0.0F || b.x != 1.0F || a.y != b.y) continue;
+        const vec3 more = (0.5F * (kWider - 1.0F)) * (x[i + 1] - x[i]);
+        x[i] -= more;
+        x[i + 1] += more;
+    }
+    part.material.blended = true;
+    part.material.strand = 1.0F / kWider;
+}
+
+// m, from the eyeball's centre to the white or the cornea.
+float eyeSurface(const EyeLook& eye, const vec3& direction) {
+    const float forward = glm::dot(direction, eye.sight);
+    const float under = eye.corneaRadius * eye.corneaRadius - eye.corneaCentre * eye.corneaCentre * (1.0F - forward * forward);
+    if (forward <= 0 || under <= 0) return eye.radius;
+    return eye.radius * std::max(1.0F, eye.corneaCentre * forward + std::sqrt(under));
+}
+
+// The edge of the lower lid where it touches the eye, from one corner to the other: of the skin's vertices that lie on the eyeball below
+// the line of sight, the highest in each of a row of sectors. Indices into the skin's positions.
+std::vector<uint32_t> lowerLidEdge(const Mesh& skin, const EyeLook& eye, const vec3& side, const vec3& up) {
+    constexpr size_t kSectors = 36;
+    constexpr float kNear = 0.16F, kWidest = 0.93F;  // in radii: how far off the ball a lid's edge may be, and how far to the side
+    constexpr uint32_t kNone = UINT32_MAX;
+    std::vector<uint32_t> highest(kSectors, kNone);
+    auto seen = [&](uint32_t v) {
+        const vec3 x = (skin.positions[v] - eye.centre) / eye.radius;
+        return vec3(glm::dot(x, side), glm::dot(x, up), glm::dot(x, eye.sight));
+    };
+    for (uint32_t v = 0; v < skin.positions.size(); ++v) {
+        const vec3 x = seen(v);
+        const float off = glm::length(x) - 1.0F;
+        if (x.z < 0.2F || x.y > 0.05F || off < 0.0F || off > kNear || std::abs(x.x) > kWidest) continue;
+        const auto sector = std::min(static_cast<size_t>((x.x + kWidest) / (2.0F * kWidest) * kSectors), kSectors - 1);
+        // Of a lid's rim the edge that touches the eye is wanted, not the one that lashes grow on: near beats high.
+        auto rank = [&](const vec3& p) { return p.y - 0.6F * (glm::length(p) - 1.0F); };
+        if (highest[sector] == kNone || rank(x) > rank(seen(highest[sector]))) highest[sector] = v;
+    }
+    std::erase(highest, kNone);
+    return highest;
+}
+
+}  // namespace
+
+ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width) {
+    constexpr uint32_t kAcross = 7;
+    ModelPart part;
+    part.name = name;
+    part.node = skin.node;
+    part.mesh.name = name;
+    const vec3 side = glm::normalize(glm::cross(vec3(0, 1, 0.001F), eye.sight)), up = glm::cross(eye.sight, side);
+    const std::vector<uint32_t> edge = lowerLidEdge(skin.mesh, eye, side, up);
+    if (edge.size() < 6) return part;
+    std::vector<vec3> lid(edge.size());
+    for (size_t k = 0; k < edge.size(); ++k) lid[k] = skin.mesh.positions[edge[k]];
+    for (int pass = 0; pass < 4; ++pass) {
+        std::vector<vec3> smooth = lid;
+        for (size_t k = 1; k + 1 < lid.size(); ++k) smooth[k] = 0.25F * lid[k - 1] + 0.5F * lid[k] + 0.25F * lid[k + 1];
+        lid = smooth;
+    }
+    for (size_t k = 0; k < lid.size(); ++k) {
+        const float along = static_cast<float>(k) / static_cast<float>(lid.size() - 1), full = std::sin(kPi * along);
+        const vec3 out = glm::normalize(lid[k] - eye.centre), onto = glm::normalize(up - out * glm::dot(up, out));
+        const float off = std::max(glm::distance(lid[k], eye.centre) - eyeSurface(eye, out), 1.0e-4F);
+        const float reach = width * (0.08F + 0.92F * full);
+        for (uint32_t j = 0; j < kAcross; ++j) {  // a quarter of an ellipse, hollow as a meniscus is
+            const float angle = 0.5F * kPi * static_cast<float>(j) / (kAcross - 1);
+            const vec3 above = glm::normalize(lid[k] + onto * (reach * (1.0F - std::cos(angle))) - eye.centre);
+            part.mesh.positions.push_back(eye.centre + above * (eyeSurface(eye, above) + 2.0e-5F + off * (1.0F - std::sin(angle))));
+            part.mesh.uvs.emplace_back(along, static_cast<float>(j) / (kAcross - 1));
+        }
+    }
+    const auto stations = static_cast<uint32_t>(lid.size());
+    for (uint32_t k = 0; k + 1 < stations; ++k)
+        for (uint32_t j = 0; j + 1 < kAcross; ++j) {
+            const uint32_t a = k * kAcross + j, b = a + kAcross;
+            part.mesh.indices.insert(part.mesh.indices.end(), {a, b, b + 1, a, b + 1, a + 1});
+        }
+    for (const MorphTarget& morph : skin.morphs) {
+        MorphTarget& own = part.morphs.emplace_back();
+        own.name = morph.name;
+        for (uint32_t k = 0; k < stations; ++k) {
+            const auto at = std::lower_bound(morph.vertices.begin(), morph.vertices.end(), edge[k]);
+            if (at == morph.vertices.end() || *at != edge[k]) continue;
+            for (uint32_t j = 0; j < kAcross; ++j) {
+                own.vertices.push_back(k * kAcross + j);
+                own.offsets.push_back(morph.offsets[static_cast<size_t>(at - morph.vertices.begin())]);
+            }
+        }
+    }
+    part.mesh.normals.assign(part.mesh.positions.size(), eye.sight);
+    part.material.baseColour = vec3(1.0F);
+    part.material.opacity = 0.10F;
+    part.material.roughness = 0.04F;
+    part.material.blended = true;
+    return part;
+}
+
+EyeLook eyeLookOf(const Mesh& mesh) {
+    EyeLook look;
+    std::vector<vec3> points = mesh.positions;
+    if (!fitSphere(points, look.centre, look.radius)) return look;
+    for (int again = 0; again < 6; ++again) {  // without what is no part of the ball: the iris's bowl
+        std::erase_if(points, [&](const vec3& p) { return std::abs(glm::distance(p, look.centre) - look.radius) > 0.03F * look.radius; });
+        if (!fitSphere(points, look.centre, look.radius)) break;
+        points = mesh.positions;
+    }
+    float nearest = 1e9F;
+    for (size_t i = 0; i < std::min(mesh.uvs.size(), mesh.positions.size()); ++i) {
+        const float d = glm::distance(mesh.uvs[i], vec2(0.5F));
+        if (d >= nearest) continue;
+        nearest = d;
+        look.sight = glm::normalize(mesh.positions[i] - look.centre);
+    }
+    return look;
+}
+
+Status dressHead(Model& head, const std::string& folder) {
+    std::vector<ModelPart> lines;
+    for (ModelPart& part : head.parts) {
+        if (part.name == "skin") {
+            auto skin = std::make_shared<SkinLook>();
+            const std::pair<const char*, std::shared_ptr<const Image>*> pictures[] = {{"head_relief.png", &skin->relief},
+                                                                                      {"skin_regions.png", &skin->regions}};
+            for (const auto& [name, into] : pictures) {
+                Result<std::shared_ptr<const Image>> image = imageIfThere((std::filesystem::path(folder) / name).string());
+                if (!image) return image.error();
+                *into = std::move(*image);
+            }
+            part.material.skin = std::move(skin);
+            part.material.baseColour = kTint;
+            part.material.doubleSided = true;  // beside the eye one looks into the head
+        }
+        if (part.name.starts_with("caruncle")) {
+            auto flesh = std::make_shared<SkinLook>();
+            flesh->pores = 0.0F;
+            part.material.skin = std::move(flesh);
+            part.material.doubleSided = true;
+        }
+        if (part.name.starts_with("lashes")) widenStrands(part);
+        if (part.name.starts_with("eye") && !part.material.blended) part.material.eye = std::make_shared<EyeLook>(eyeLookOf(part.mesh));
+    }
+    if (const ModelPart* skin = head.find("skin"); skin != nullptr)
+        for (const ModelPart& part : head.parts) {
+            if (!part.material.eye) continue;
+            ModelPart line = makeTearLine(*skin, *part.material.eye, "tearLine" + part.name.substr(3));
+            if (!line.mesh.indices.empty()) lines.push_back(std::move(line));
+        }
+    for (ModelPart& line : lines) head.parts.push_back(std::move(line));
+    return ok();
+}
+
+}  // namespace rivulet

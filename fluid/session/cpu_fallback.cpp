@@ -1,0 +1,72 @@
+#include "fluid/session/cpu_fallback.h"
+
+#include <fmt/format.h>
+
+#include "fluid/render/backend.h"
+
+namespace rivulet {
+
+namespace {
+
+// Makes them what the cpu knows. What was changed, to follow another sentence; "": nothing.
+const char* fitToCpu(FluidParams& fluid) {
+    if (fluid.grid != "linked_list") return "";
+    fluid.grid = "sorted";
+    return "; fluid.grid is sorted there, as a linked_list needs a GPU's atomics";
+}
+
+}  // namespace
+
+Result<OpenedSession> openSession(SceneFile scene, Device& device, const Log& log, std::string_view asked, const OpeningSteps& steps) {
+    OpenedSession opened;
+    const bool standsIn = device.backend() == Backend::cpu && asked != "cpu";
+    const char* changed = standsIn ? fitToCpu(scene.fluid) : "";
+    auto session = Session::create(scene, device, log, steps);
+    const bool fails = device.health().state != DeviceHealth::works || (!session && session.error().fault == Fault::failed);
+    if (device.backend() != Backend::cl || !fails) {
+        if (!session) return session.error();
+        opened.session = std::move(*session);
+        if (*changed != '\0') log.notice(fmt::format("{}: the cpu simulates{}", scene.name, changed));
+        return opened;
+    }
+    const std::string why = session ? fmt::format("{} {}", device.info().name, device.health().why) : session.error().message;
+    changed = fitToCpu(scene.fluid);
+    opened.instead = makeCpu();
+    auto other = Session::create(scene, *opened.instead, log, steps);
+    if (!other) {
+        device.forgiveFull();  // who has another session on it goes on
+        return other.error();
+    }
+    opened.session = std::move(*other);
+    log.notice(fmt::format("{}: the cpu simulates instead of OpenCL ({}){}", scene.name, why, changed));
+    return opened;
+}
+
+Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, const Log& log) {
+    if (!session.replayed()) return session.replayed().error();
+    const DeviceHealth health = device->health();
+    if (health.state == DeviceHealth::works) return false;
+    const double reached = session.world().time();
+    FluidParams before = session.scene().fluid;
+    std::unique_ptr<Device> cpu = makeCpu();
+    if (Status moved = session.moveTo(*cpu); !moved) {
+        session.hold(std::move(cpu));
+        return Error{fmt::format("OpenCL on {} {}, and the cpu cannot go on: {}", device->info().name, health.why, moved.error().message),
+                     moved.error().fault};
+    }
+    const double from = session.world().time();
+    const std::string back = reached - from > 1.0e-9 ? fmt::format(", {:.3g} s back", reached - from) : std::string();
+    log.notice(
+        fmt::format("OpenCL on {} {}: the cpu goes on from {:.3f} s{}{}", device->info().name, health.why, from, back, fitToCpu(before)));
+    device = std::move(cpu);
+    return true;
+}
+
+Status stillWorks(const Device& device) {
+    const DeviceHealth health = device.health();
+    if (health.state == DeviceHealth::works) return ok();
+    return failed(fmt::format("OpenCL on {} {}: what it has found means nothing; use --backend cpu, or fewer particles", device.info().name,
+                              health.why));
+}
+
+}  // namespace rivulet

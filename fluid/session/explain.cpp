@@ -1,0 +1,95 @@
+#include "fluid/session/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace rivulet {
+
+namespace {
+
+// What a scene may do without, and how that shows in the kernels: none has a path that begins so (up to '|', several), or none was made
+// with the define.
+struct Part {
+    const char* name;
+    const char* why;     // it is not there
+    const char* paths;   // "" = told by `define`
+    const char* define;  // "" = told by `paths`
+};
+constexpr Part kParts[] = {
+    {"walls", "the box wraps round along all axes, and there are no colliders", "fluid/boundary|fluid/wall", ""},
+    {"meshes to collide with", "no collider is a mesh", "fluid/collide", ""},
+    {"moving meshes", "no collider moves or bends", "fluid/boundary_moving|fluid/wall_friction_moving", ""},
+    {"floating bodies", "the scene has none", "fluid/place_samples|fluid/push_samples|fluid/sum_loads|fluid/index_samples", ""},
+    {"particles that differ", "there is one liquid and no body", "", "MATTER"},
+    {"wrapping round", "no axis of the box is periodic", "fluid/wrap", "PERIODIC"},
+    {"surface tension", "fluid.forces.tension and adhesion are 0", "fluid/cohesion", ""},
+    {"the thesis's tension", "fluid.forces.thesisTension is 0", "fluid/tension_thesis", ""},
+    {"viscosity by pairs", "fluid.forces.viscosity finds nothing to do, or the method has it among its own",
+     "fluid/viscosity|fluid/viscous", ""},
+    {"vorticity confinement", "fluid.forces.vorticity is 0", "fluid/vorticity|fluid/confinement", ""},
+    {"air", "fluid.forces.airDrag is 0", "fluid/air", ""},
+    {"normals of the surface", "fluid.forces.normals is none", "fluid/normals", ""},
+    {"ellipsoids about particles", "fluid.ellipsoids is false, and look asks for spheres", "fluid/ellipsoids", ""},
+    {"emitters", "the scene has none", "fluid/emit", ""},
+    {"sinks", "the scene has none", "fluid/drain", ""},
+    {"dyes", "all particles look alike", "fluid/gather_absorption", ""},
+    {"positions between steps", "fluid.fixedStep is 0", "fluid/blend", ""},
+};
+
+bool beginsWithAny(const std::string& text, std::string_view paths) {
+    for (size_t at = 0; at < paths.size();) {
+        const size_t end = std::min(paths.find('|', at), paths.size());
+        if (text.starts_with(paths.substr(at, end - at))) return true;
+        at = end + 1;
+    }
+    return false;
+}
+
+bool isThere(const Part& part, const std::vector<std::string>& kernels) {
+    return std::any_of(kernels.begin(), kernels.end(), [&](const std::string& k) {
+        return beginsWithAny(k, part.paths) || (*part.define != '\0' && k.find(fmt::format(";{}=", part.define)) != std::string::npos);
+    });
+}
+
+}  // namespace
+
+std::string explain(const Session& session, const RunStats& stats) {
+    const FluidWorld& world = session.world();
+    const Device& device = world.device();
+    const FluidParams& p = world.params();
+    std::string text = fmt::format("chosen\n  {}: {}{}{}\n", backendName(device.backend()), device.info().name,
+                                   device.info().driver.empty() ? "" : ", ", device.info().driver);
+    text += fmt::format("  method {}, {} particles {} m apart, reaching {} spacings\n", p.method, world.stats().particles, p.spacing,
+                        p.supportSpacings);
+    if (session.budget()) text += session.budget()->report();
+
+    std::vector<std::string> kernels = device.kernels();
+    std::sort(kernels.begin(), kernels.end());
+    text += "left out\n";
+    for (const Part& part : kParts)
+        if (!isThere(part, kernels)) text += fmt::format("  {}: {}\n", part.name, part.why);
+
+    text +=
+        fmt::format("made, {} kernels{}\n", kernels.size(), session.budget() ? ", those of methods that the budget tried among them" : "");
+    for (std::string k : kernels) {
+        std::replace(k.begin(), k.end(), ';', ' ');
+        for (size_t at = 0; (at = k.find("=1", at)) != std::string::npos;) {
+            const bool all = at + 2 == k.size() || k[at + 2] == ' ';  // LOCAL_SIZE=128 stays
+            if (all) k.erase(at, 2);
+            if (!all) at += 2;
+        }
+        text += "  " + k + '\n';
+    }
+
+    text += stats.frames > 0 ? fmt::format("costs, ms a frame, median of {}\n", stats.frames) : "costs: nothing has run yet\n";
+    std::vector<std::pair<double, std::string>> costs;
+    for (const auto& [name, spread] : stats.passes) costs.emplace_back(spread.median, name);
+    std::sort(costs.rbegin(), costs.rend());
+    for (const auto& [ms, name] : costs) text += fmt::format("  {:>9.3f}  {}\n", ms, name);
+    if (stats.frames > 0) text += fmt::format("  {:>9.3f}  simulation, all of it\n", stats.simulateMs.median);
+    return text;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,100 @@
+// SceneRenderer: one frame of a scene: shadow -> depth -> opaque -> fluid -> tonemap. Window, headless runs and tests share it.
+//
+//     Result<std::unique_ptr<SceneRenderer>> r = SceneRenderer::create(ShaderFiles::developer());
+//     Status drawn = (*r)->draw(frameViewOf(camera, settings.light, width, height, time), fluid, scene, settings);
+//     (*r)->present(0, width, height);  or  (*r)->pixels();
+//
+// Needs a current OpenGL 4.5 context throughout, its destruction included.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/render/environment_map.h"
+#include "engine/render/passes.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/scene.h"
+#include "fluid/render/renderers.h"
+#include "fluid/scene/scene_file.h"
+#include "fluid/sim/world/fluid_world.h"
+
+namespace rivulet {
+
+// The scene file's camera, with planes that hold `bounds` (m, world).
+Camera cameraOf(const CameraParams& params, const Bounds& bounds);
+// What surrounds the scene, or nothing where the studio does. Error (badInput): the picture is missing or damaged.
+Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene);
+// A window of 0 pixels gives a view of 1.
+FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time);
+
+class SceneRenderer {
+  public:
+    // `surroundings`: what lights the scene beside the key light, and is seen behind it; null: the studio.
+    // Error (failed): a shader does not compile, or is missing.
+    static Result<std::unique_ptr<SceneRenderer>> create(const ShaderFiles& files, const HdrImage* surroundings = nullptr);
+
+    // Draws into a picture of its own, of the view's size. Error: an unknown renderer or colouring (badInput); out of GPU memory (failed).
+    Status draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings);
+
+    // Of a renderer that takes seconds: told the share that is done, from any thread; false: the rest of the picture may stay empty.
+    void onProgress(std::function<bool(double)> told) { progress_ = std::move(told); }
+
+    // The last picture, scaled into a framebuffer of this size (0: the window).
+    void present(GLuint framebuffer, int width, int height) const;
+    // The last picture: RGBA8, sRGB, top row first, alpha 255. Waits for the GPU.
+    std::vector<uint8_t> pixels() const;
+    void finish();  // waits until it is drawn: times() are the last picture's then, and onSpan() has heard of all
+    int width() const { return picture_.desc().width; }
+    int height() const { return picture_.desc().height; }
+
+    // GPU time a pass, some frames late.
+    const std::vector<PassTime>& times() const { return pool_.times(); }
+    void onSpan(SpanSink sink) { pool_.onSpan(std::move(sink)); }  // hears of each pass, as late
+    // What the last picture's graph was. Nothing, unless describe(true) was said before the picture was drawn.
+    const std::optional<gpu::FrameGraphDescription>& description() const { return description_; }
+    void describe(bool yes) { describes_ = yes; }
+    // Whether look.quality auto is fast. It is fine until this says so.
+    void hurry(bool yes) { hurries_ = yes; }
+    // It was made in another context, with which the one that is current now shares its objects, and has drawn nothing yet.
+    void contextChanged() { fluid_.contextChanged(); }
+    // Reads the shaders again. How many programs are others now. Error: as create; the last good ones stay in use, all of them.
+    Result<size_t> reload();
+
+  private:
+    SceneRenderer() = default;
+    Status prepare(const FrameView& view, const Scene& scene);
+    Result<DrawnMesh> drawnOf(const Node& node, const mat4& toWorld, bool water);
+    void addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
+                    LightMaps& light);
+
+    RenderPrograms render_;
+    FluidPrograms fluid_;
+    gpu::TransientPool pool_;
+    gpu::Buffer frame_, coarse_;                            // FrameParams; of half the resolution
+    gpu::Texture picture_;                                  // the last frame
+    std::array<gpu::Texture, 2> shadowSharp_, shadowSoft_;  // and the quick ones
+    std::vector<mat4> shadowOf_;                            // what the shadow maps show: the light's projection, then a matrix a mesh
+    std::vector<const GpuMesh*> shadowMeshes_;
+    gpu::Texture nothing_;                  // stands in for a map of the light that is not there
+    std::vector<uint64_t> shadowVersions_;  // of their deformers
+    struct MeshKey {
+        std::shared_ptr<const Mesh> mesh;
+        std::weak_ptr<const Deformer> deformer;  // weak: a deformer must not outlive its device, but this may
+        bool operator<(const MeshKey& other) const {
+            return mesh != other.mesh ? mesh < other.mesh : deformer.owner_before(other.deformer);
+        }
+    };
+    std::map<MeshKey, GpuMesh> meshes_;
+    GpuImages images_;
+    std::function<bool(double)> progress_ = [](double) { return true; };
+    gpu::Texture surroundings_;  // empty: the studio
+    std::array<vec4, 9> matteLight_{};
+    bool hurries_ = false, describes_ = false;
+    std::optional<gpu::FrameGraphDescription> description_;
+};
+
+}  // namespace rivulet

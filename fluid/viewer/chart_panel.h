@@ -1,0 +1,76 @@
+// Speed against accuracy, with "you are here": the chart that the program was built with, and where the run that is on lies on it. A click
+// on one of its points takes that point's method and values into the scene.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/math.h"
+#include "engine/ui/plot.h"
+#include "fluid/session/chart_table.h"
+#include "fluid/session/session.h"
+
+namespace rivulet {
+
+// The chart's setting that these values are; null: none.
+const ChartSetting* settingOf(const FluidParams& params);
+
+// What a run has measured of itself of late: sums that fade.
+struct ChartMeasured {
+    double ms = 0, seconds = 0;  // on the wall; simulated
+    double particleSteps = 0;    // each substep as often as there were particles
+    double compression = 0;      // mean over particles, times simulated seconds
+    void add(double addedMs, double addedSeconds, double particles, int substeps, double avgCompression);
+    double wallPerSecond() const { return seconds > 0 ? 1e-3 * ms / seconds : 0; }  // s
+    double nsPerParticleStep() const { return particleSteps > 0 ? 1e6 * ms / particleSteps : 0; }
+    double densityError() const { return seconds > 0 ? compression / seconds : 0; }  // a fraction
+};
+
+// The row that a run is compared with: of the case, of the run's setting or else its method's own, of the sizes the one nearest in
+// particles. Null: the case was not run with that method.
+const ChartRow* rowLike(const std::vector<ChartRow>& chart, std::string_view name, const ChartSetting* setting, std::string_view method,
+                        double particles);
+// s on the wall per simulated second that the row's case would take if each of its particles cost as much a step as the run's do.
+double broughtTo(const ChartRow& row, const ChartMeasured& measured);
+
+class ChartPanel {
+  public:
+    ChartPanel();
+    void stepped(const FluidWorld& world, double ms, double seconds);  // on the wall; simulated
+    void clear() { measured_ = {}; }
+    // Inside an ImGui window, pixels. Whether a point was clicked: `draft` has its values then, and needs a new session.
+    bool draw(const Session& session, SceneFile& draft, float width, float height);
+
+    const ChartMeasured& measured() const { return measured_; }
+    struct Placed {
+        const ChartRow* row = nullptr;  // null: here
+        vec2 at{0.0F};                  // window coordinates, when it was last drawn
+    };
+    const std::vector<Placed>& placed() const { return placed_; }
+
+  private:
+    double errorOf(const ChartRow& row) const;
+    void chooseCase(float width);
+    void place(const Session& session, vec2 low, vec2 size);
+    void drawAxes(vec2 low, vec2 size) const;
+    void drawCurves() const;
+    void drawHere(const Session& session, vec2 low, vec2 size) const;
+    void drawLegend(const Session& session, float width);
+    void tellRow(const ChartRow& row, const Session& session, const SceneFile& draft) const;
+    void tellHere(const Session& session) const;
+    double spacingFor(const ChartRow& row, const Session& session) const;
+    bool take(const ChartRow& row, const Session& session, SceneFile& draft) const;
+
+    std::vector<ChartRow> chart_;
+    std::vector<std::string> cases_, methods_;
+    std::string machine_;  // that the chart was measured on
+    size_t case_ = 0;
+    bool ofDensity_ = true;  // the error shown; else the case's own figure
+    bool asMany_ = false;    // a click takes the point's number of particles, too
+    ChartMeasured measured_;
+    PlotAxis cost_, error_;
+    std::vector<Placed> placed_;
+};
+
+}  // namespace rivulet

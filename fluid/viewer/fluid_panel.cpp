@@ -1,0 +1,86 @@
+#include "fluid/viewer/fluid_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "engine/ui/style.h"
+
+namespace rivulet {
+
+namespace {
+
+void fact(const char* name, const std::string& text) {
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine(ImGui::GetFontSize() * 7.5F);
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+void sentence(const ImVec4& colour, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+void simulationFacts(const FluidWorld& world) {
+    const FluidStats& stats = world.stats();
+    fact("time", fmt::format("{:.2f} s, {} substeps a frame", world.time(), world.lastSubsteps()));
+    fact("particles",
+         stats.lost > 0 ? fmt::format("{}, {} of them lost", stats.particles, stats.lost) : fmt::format("{}", stats.particles));
+    fact("compression", fmt::format("{:.2f} % mean, {:.1f} % most", 100 * stats.avgCompression, 100 * stats.maxCompression));
+    if (stats.iterations > 0)
+        fact("pressure", stats.residual ? fmt::format("{:.1f} iterations a substep, {:.3f} % left", stats.iterations, 100 * *stats.residual)
+                                        : fmt::format("{:.1f} iterations a substep", stats.iterations));
+}
+
+}  // namespace
+
+FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState& state) {
+    FluidPanelActions actions;
+    float gap = ImGui::GetStyle().ItemSpacing.x;
+    const ImVec2 button((ImGui::GetContentRegionAvail().x - 2 * gap) / 3, 0);
+    actions.togglePause = ImGui::Button(state.paused ? "run###pause" : "pause###pause", button);
+    ImGui::SameLine();
+    actions.step = ImGui::Button("step", button);
+    ImGui::SameLine();
+    actions.reset = ImGui::Button("reset", button);
+    actions.scenes = ImGui::Button("scenes", button);
+    ImGui::SameLine();
+    actions.save = ImGui::Button("save", button);
+    ImGui::SameLine();
+    actions.help = ImGui::Button("keys", button);
+    actions.pour = ImGui::Button(state.pouring ? "stop pouring###pour" : "pour###pour", button);
+    ImGui::SameLine();
+    actions.picture = ImGui::Button("picture", button);
+    ImGui::SameLine();
+    actions.video = ImGui::Button(state.filming ? "stop###video" : "video###video", button);
+    ImGui::Spacing();
+
+    const bool replays = !state.replay.empty();
+    if (replays) fact("replaying", state.replay);
+    if (!replays) fact("simulated by", state.backend);
+    if (!replays) fact("cooperation", state.plan);
+    fact("transfer", state.transfer);
+    fact("drawn by", state.renderer);
+    if (!replays) simulationFacts(world);
+    fact("frame", fmt::format("{:.1f} ms", state.frameMs) + (replays ? "" : fmt::format(", of it simulation {:.1f} ms", state.simulateMs)));
+
+    const ImVec4 red = refusedColour(), amber(0.95F, 0.78F, 0.45F, 1);
+    if (!state.message.empty()) sentence(red, state.message);
+    for (const std::string& text : world.stats().limited) sentence(amber, text);
+    const std::vector<std::string>& limited = world.stats().limited;
+    for (const std::string& text : state.notices)
+        if (std::find(limited.begin(), limited.end(), text) == limited.end()) {
+            sentence(amber, text);
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("a click takes it away");
+            if (ImGui::IsItemClicked()) actions.dismiss = text;
+        }
+    return actions;
+}
+
+}  // namespace rivulet

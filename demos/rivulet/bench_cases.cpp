@@ -144,8 +144,8 @@ Status benchDensity(const BenchContext& context) {
                 status = m.error();
                 return 0.0;
             }
-            list = m->passes["fluid/cpu_neighbor_list"];
-            return m->passes["fluid/wcsph_density"];
+            list = m->passes["fluid/grid/cpu_neighbor_list"];
+            return m->passes["fluid/methods/wcsph_density"];
         });
         if (!status) return status;
         BenchRow row{.name = fmt::format("density pass, column 31k, {}", backendName(device->backend())),

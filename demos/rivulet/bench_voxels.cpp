@@ -146,7 +146,7 @@ Status benchCollide(const BenchContext& context) {
             all += t.ms;
             passes[t.name] = t.ms / kFrames;
         }
-        collide = passes["fluid/collide"] * kFrames;
+        collide = passes["fluid/solids/collide"] * kFrames;
         return 100 * collide / all;
     });
     if (!status) return status;

@@ -75,7 +75,7 @@ struct DeviceHealth {
         full,  // it had no memory for something; what it holds can still be read
         lost,  // something that it was told was not done: what is read back from it means nothing
     } state = works;
-    std::string why;  // half a sentence: "could not run fluid/reorder: CL_OUT_OF_RESOURCES"
+    std::string why;  // half a sentence: "could not run fluid/grid/reorder: CL_OUT_OF_RESOURCES"
 };
 
 // How what a Device holds comes into OpenGL's own buffers without passing through the host.
@@ -105,7 +105,7 @@ class Device {
     }
     virtual GlShare glShare() const { return {nullptr, "only OpenCL shares memory with OpenGL"}; }
 
-    // `path` as "fluid/wcsph_density" (shaders/fluid/wcsph_density.kernel). The same path and defines give the same Kernel.
+    // `path` as "fluid/methods/wcsph_density" (shaders/fluid/methods/wcsph_density.kernel). The same path and defines give the same Kernel.
     virtual Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) = 0;
     Result<Kernel> kernel(std::string_view path) { return kernel(path, {}); }
 
@@ -113,7 +113,7 @@ class Device {
     // or a kernel that no longer takes what it is handed; all stay as they were.
     virtual Result<size_t> reload() { return size_t{0}; }
 
-    // What kernel() has made so far: "fluid/wcsph_density;MATTER=1;PERIODIC=1".
+    // What kernel() has made so far: "fluid/methods/wcsph_density;MATTER=1;PERIODIC=1".
     virtual std::vector<std::string> kernels() const = 0;
 
     // Contents are zero. 0 bytes give a valid Buffer of 0 bytes.

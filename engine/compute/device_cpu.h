@@ -14,7 +14,7 @@ Isa bestIsa();  // what this machine runs
 // One compiled kernel. `defines` as "A=1;B=2", empty for none.
 using CpuKernelFn = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
 struct CpuKernelRow {
-    const char* path;  // "fluid/wcsph_density"
+    const char* path;  // "fluid/methods/wcsph_density"
     const char* defines;
     Isa isa;
     CpuKernelFn run;

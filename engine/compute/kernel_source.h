@@ -36,7 +36,8 @@ class ShaderFiles {
     void define(Define define) { always_.push_back(std::move(define)); }
     const std::string& root() const { return root_; }
     Result<std::string> load(std::string_view path) const;
-    // `path` e.g. "shaders/fluid/reorder.kernel". Each include is taken once. `header` goes before everything (e.g. "#version 450 core\n").
+    // `path` e.g. "shaders/fluid/grid/reorder.kernel". Each include is taken once. `header` goes before everything (e.g. "#version 450
+    // core\n").
     Result<KernelSource> flatten(std::string_view path, std::span<const Define> defines, Dialect dialect,
                                  std::string_view header = {}) const;
 

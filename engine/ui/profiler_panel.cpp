@@ -168,7 +168,7 @@ void ProfilerPanel::drawTable() const {
         ImGui::TableNextColumn();
         ImGui::Indent(8);
         ImGui::TextColored(ImColor(hueOf(i)), "%s",
-                           l.name.c_str() + (l.name.rfind('/') + 1));  // "fluid/integrate": the folder says nothing here
+                           l.name.c_str() + (l.name.rfind('/') + 1));  // "fluid/methods/integrate": the folder says nothing here
         ImGui::Unindent(8);
         ImGui::TableNextColumn();
         ImGui::Text("%7.2f", ms);

@@ -11,7 +11,7 @@
 #include "engine/core/params.h"
 #include "fluid/flow/flow_mesh.h"
 #include "fluid/flow/thesis_tables.h"
-#include "shaders/fluid/step_params.h"
+#include "shaders/fluid/world/step_params.h"
 
 namespace rivulet {
 

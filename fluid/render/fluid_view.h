@@ -17,8 +17,8 @@ struct FluidView {
     // GL buffer name, vec4: xyz what red, green and blue fade by in its liquid and dye, w what is scattered there, 1/m, on top of
     // FluidLook's; w < 0: instead of FluidLook's, and -1 - w is scattered. 0: all particles are alike.
     unsigned absorption = 0;
-    // GL buffer names, vec4 each, of the ellipsoids about the particles, as shaders/fluid/ellipsoids.kernel writes them: centre, spread,
-    // slant. 0: they are drawn as spheres.
+    // GL buffer names, vec4 each, of the ellipsoids about the particles, as shaders/fluid/surface/ellipsoids.kernel writes them: centre,
+    // spread, slant. 0: they are drawn as spheres.
     std::array<unsigned, 3> ellipsoids = {};
     uint32_t count = 0;     // 0: nothing is drawn, and the names may be 0. Particles with NaN are left out
     uint32_t half = 0;      // the first so many are every second particle, the same ones each frame; 0: they are in no such order

@@ -49,7 +49,7 @@ struct Cooperation::Cells {
         const std::vector<CpuKernelRow> rows = cpuKernels();
         auto made = std::make_unique<Cells>();
         made->cpu = makeCpuDevice(rows);
-        Result<Kernel> kernel = made->cpu->kernel("fluid/cell_of");
+        Result<Kernel> kernel = made->cpu->kernel("fluid/grid/cell_of");
         if (!kernel) return kernel.error();
         made->cellOf = *kernel;
         return made.release();

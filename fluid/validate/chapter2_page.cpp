@@ -39,7 +39,7 @@ std::vector<std::string> ways(const Chapter2& chapter) {
 
 // The thesis's steps [fig. 2.1]; a GPU finds neighbours while it sweeps, so that what is left of step 2 is the sort.
 const char* stepOf(const std::string& pass) {
-    if (pass == "fluid/cell_count") return "1, cells";
+    if (pass == "fluid/grid/cell_count") return "1, cells";
     for (const char* sort : {"scan_", "cell_", "reorder", "cpu_sort", "cpu_neighbor"})
         if (pass.find(sort) != std::string::npos) return "2, neighbours";
     if (pass.find("density") != std::string::npos) return "3, density";

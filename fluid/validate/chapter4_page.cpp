@@ -75,7 +75,7 @@ double shareOfStep(const Chapter4Row& row) {
     double all = 0, collision = 0;
     for (const auto& [name, ms] : row.passes) {
         all += ms;
-        if (name == "fluid/collide" || name == "fluid/walls") collision += ms;
+        if (name == "fluid/solids/collide" || name == "fluid/solids/walls") collision += ms;
     }
     return all > 0 ? 100 * collision / all : 0;
 }

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "engine/core/assert.h"
-#include "shaders/fluid/scan_params.h"
+#include "shaders/fluid/grid/scan_params.h"
 #include "shaders/voxel/crossing.h"
 
 namespace rivulet {
@@ -201,8 +201,8 @@ Result<ColumnCrossings> crossColumnsOn(Device& device, const CrossedTriangles& t
     Taker take{device};
     const Define counting[] = {{"FILL", "0"}}, filling[] = {{"FILL", "1"}}, scanning[] = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
     const Kernel count = take.kernel("voxel/voxelize_cross", counting), fill = take.kernel("voxel/voxelize_cross", filling);
-    const Kernel reduce = take.kernel("fluid/scan_reduce", scanning), blocks = take.kernel("fluid/scan_blocks", scanning);
-    const Kernel apply = take.kernel("fluid/scan_apply", scanning), solid = take.kernel("voxel/voxelize_solid");
+    const Kernel reduce = take.kernel("fluid/grid/scan_reduce", scanning), blocks = take.kernel("fluid/grid/scan_blocks", scanning);
+    const Kernel apply = take.kernel("fluid/grid/scan_apply", scanning), solid = take.kernel("voxel/voxelize_solid");
     const auto columns = static_cast<uint32_t>(columnsOf(grid));
     const ScanParams scan{columns + 1, (columns + 1 + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
     Buffer counts = take.buffer((columns + size_t{1}) * sizeof(uint32_t)), starts = take.buffer(counts.bytes());

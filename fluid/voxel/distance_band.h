@@ -49,7 +49,7 @@ class DistanceBand {
 
 // A direction on an octahedron (Meyer et al. 2010), x and y of its unfolded square as 14 bits each, x low: 1 is 8191 above the middle. The
 // nearest of the four codes around (Cigolle et al. 2014), within 1.73e-4 rad of the direction; axes are exact. Any length but 0. Above them
-// 4 bits: `surface`, 0..15, whose wall it is. Unpacked by unpackNormal and wallSurface of shaders/fluid/contact_walls.h.
+// 4 bits: `surface`, 0..15, whose wall it is. Unpacked by unpackNormal and wallSurface of shaders/fluid/solids/contact_walls.h.
 uint32_t packNormal(const dvec3& direction, uint32_t surface);
 
 }  // namespace rivulet

@@ -32,7 +32,7 @@ struct VoxelFieldOptions {
     float band = 0;                         // m, at least this wide (and at least kBandVoxels voxels)
     float padding = 0;                      // m, around the bounds: at least the band, so that whoever comes near is inside the grid
     size_t memoryLimit = size_t{1} << 30U;  // bytes the field may take
-    // Of each mesh, 0..kMaxSurface: what wallSurface of shaders/fluid/contact_walls.h says of its walls. Empty: all 0.
+    // Of each mesh, 0..kMaxSurface: what wallSurface of shaders/fluid/solids/contact_walls.h says of its walls. Empty: all 0.
     std::span<const uint8_t> surfaces = {};
 };
 
@@ -64,7 +64,7 @@ struct FieldContact {
     uint32_t countIndex = 0;  // of the buffer whose element [countIndex] is the number of active particles
 };
 
-// The parameter block of shaders/fluid/collide.kernel. The surfaces' friction and restitution follow the normals in their buffer.
+// The parameter block of shaders/fluid/solids/collide.kernel. The surfaces' friction and restitution follow the normals in their buffer.
 FieldParams fieldParams(const VoxelField& field, const FieldContact& contact);
 
 }  // namespace rivulet

@@ -82,7 +82,7 @@ typedef float real; typedef float3 real3;
 #endif
 #if !defined(__cplusplus)  // what a lane is on a GPU: the particle itself
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))
-#define NEIGHBOR_TYPE uint  // see fluid/neighbors.h
+#define NEIGHBOR_TYPE uint  // see fluid/grid/neighbors.h
 #define LOAD(b, i) b[i]
 #define LOAD3(b, i) b[i].xyz
 #define LOADX(b, i) b[i].x

@@ -48,7 +48,7 @@ namespace rivulet {
 // Of the film's thickness two halves a uint, mm: where those of a triangle begin, which is the t-th, its cells from `first` on.
 #define THICK_BEGIN(first, t) (2u * (((first) + (t)) >> 1u))
 STRUCT(FlowMapStep) {
-    vec4  gridOrigin;  // of the flow's grid, see fluid/step_params.h
+    vec4  gridOrigin;  // of the flow's grid, see fluid/world/step_params.h
     vec4  gridScale;
     int   cellsX;
     int   cellsY;

@@ -2,7 +2,7 @@
 #include "shaders/screen_space/quads.glsl"
 ROWS(0, particles) // xyz m, world
 #if defined(ELLIPSOIDS)
-ROWS(4, centres)    // xyz m: see fluid/ellipsoids.kernel
+ROWS(4, centres)    // xyz m: see fluid/surface/ellipsoids.kernel
 ROWS(5, spreads)    // xx, yy, zz of the squared half axes, a round particle's 1
 ROWS(6, slants)     // yz, zx, xy
 #endif

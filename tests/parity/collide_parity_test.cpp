@@ -36,7 +36,7 @@ struct Collider {
     Buffer from, to, speed, cellStart, bits, distance, normal;
 
     Collider(Device& d, const VoxelField& field, FieldContact contact, Surface surface) : device(d) {
-        const Result<Kernel> made = device.kernel("fluid/collide");
+        const Result<Kernel> made = device.kernel("fluid/solids/collide");
         EXPECT_TRUE(made) << (made ? "" : made.error().message);
         if (made) kernel = *made;
         params = fieldParams(field, contact);

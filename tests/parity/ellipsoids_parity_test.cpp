@@ -5,7 +5,7 @@
 #include <random>
 
 #include "fluid/sim/surface/ellipsoids.h"
-#include "shaders/fluid/anisotropy_params.h"
+#include "shaders/fluid/surface/anisotropy_params.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {

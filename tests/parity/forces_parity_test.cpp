@@ -126,7 +126,7 @@ std::vector<vec4> result(Device& device, const Case& c, float dt = 2.0e-3F) {
         EXPECT_TRUE(found) << (found ? "" : found.error().message);
         return found ? *found : Kernel{};
     };
-    const Kernel friction = kernel("fluid/wall_friction"), adhesion = kernel("fluid/wall_adhesion");
+    const Kernel friction = kernel("fluid/forces/wall_friction"), adhesion = kernel("fluid/forces/wall_adhesion");
     SolveFigures solve;
     StepContext context{
         .device = device,

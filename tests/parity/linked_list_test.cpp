@@ -10,8 +10,8 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/methods/method.h"
 #include "fluid/sim/surface/ellipsoids.h"
-#include "shaders/fluid/linked_list.h"
-#include "shaders/fluid/stats_row.h"
+#include "shaders/fluid/grid/linked_list.h"
+#include "shaders/fluid/world/stats_row.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {
@@ -121,7 +121,7 @@ struct Bench {
     std::vector<StatsRow> stats() {
         const std::vector<Define> defines = traits.linked ? std::vector<Define>{{"LINKED_LIST", "1"}} : std::vector<Define>{};
         Buffer rows = std::move(*device.allocate(STATS_THREADS * sizeof(StatsRow)));
-        device.run(*device.kernel("fluid/stats", defines), step,
+        device.run(*device.kernel("fluid/world/stats", defines), step,
                    {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &rows}, STATS_THREADS);
         return device.readAll<StatsRow>(rows, STATS_THREADS);
     }
@@ -311,7 +311,7 @@ TEST_P(LinkedList, AnyWorkGroupGivesTheSameStep) {
             if (lists.cloud.inside(i)) ASSERT_NEAR(density[i] / here[i], 1.0F, 1.0e-5F) << "work groups of " << size;
     }
     const std::vector<std::string> made = gpu->device->kernels();
-    EXPECT_NE(std::find(made.begin(), made.end(), "fluid/wcsph_forces;LINKED_LIST=1;LOCAL_SIZE=256;MOVES=1;THESIS=1"), made.end());
+    EXPECT_NE(std::find(made.begin(), made.end(), "fluid/methods/wcsph_forces;LINKED_LIST=1;LOCAL_SIZE=256;MOVES=1;THESIS=1"), made.end());
 }
 
 FluidParams fallingBlock(const char* grid) {

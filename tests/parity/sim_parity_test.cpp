@@ -10,7 +10,7 @@
 #include "fluid/sim/methods/method.h"
 #include "fluid/sim/world/fluid_world.h"
 #include "fluid/sim/world/particles.h"
-#include "shaders/fluid/stats_row.h"
+#include "shaders/fluid/world/stats_row.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {
@@ -94,8 +94,8 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     auto particles = Particles::create(device, count);
     std::vector<Define> defines;
     if (field != nullptr) defines.push_back({"FIELD", "1"});
-    auto boundary = device.kernel("fluid/boundary", defines), collide = device.kernel("fluid/collide"),
-         stats = device.kernel("fluid/stats");
+    auto boundary = device.kernel("fluid/solids/boundary", defines), collide = device.kernel("fluid/solids/collide"),
+         stats = device.kernel("fluid/world/stats");
     for (const Result<Kernel>* k : {&boundary, &collide, &stats}) {
         EXPECT_TRUE(*k) << (*k ? "" : k->error().message);
         if (!*k) return out;

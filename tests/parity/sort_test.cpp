@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "shaders/fluid/scan_params.h"
-#include "shaders/fluid/step_params.h"
+#include "shaders/fluid/grid/scan_params.h"
+#include "shaders/fluid/world/step_params.h"
 #include "tests/parity/devices.h"
 
 namespace rivulet {
@@ -20,9 +20,9 @@ const Define kScanDefines[] = {{"LOCAL_SIZE", "256"}};
 std::vector<uint32_t> scanOnDevice(Device& device, const Buffer& values, uint32_t count, Buffer& sums) {
     const ScanParams params{count, (count + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
     Buffer blockSums = std::move(*device.allocate(params.blocks * sizeof(uint32_t)));
-    device.run(*device.kernel("fluid/scan_reduce", kScanDefines), params, {&values, &blockSums}, params.blocks * SCAN_THREADS);
-    device.run(*device.kernel("fluid/scan_blocks", kScanDefines), params, {&blockSums}, SCAN_THREADS);
-    device.run(*device.kernel("fluid/scan_apply", kScanDefines), params, {&values, &blockSums, &sums}, params.blocks * SCAN_THREADS);
+    device.run(*device.kernel("fluid/grid/scan_reduce", kScanDefines), params, {&values, &blockSums}, params.blocks * SCAN_THREADS);
+    device.run(*device.kernel("fluid/grid/scan_blocks", kScanDefines), params, {&blockSums}, SCAN_THREADS);
+    device.run(*device.kernel("fluid/grid/scan_apply", kScanDefines), params, {&values, &blockSums, &sums}, params.blocks * SCAN_THREADS);
     return device.readAll<uint32_t>(sums, count);
 }
 
@@ -91,11 +91,12 @@ uint32_t expectSorted(Device& device, const Particles& in, bool byId = true) {
            idOut = words(count);
 
     device.fill(cellParticles, 0);
-    device.run(*device.kernel("fluid/cell_count"), params, {&position, &id, &cellParticles, &cell, &rank}, count);
+    device.run(*device.kernel("fluid/grid/cell_count"), params, {&position, &id, &cellParticles, &cell, &rank}, count);
     const std::vector<uint32_t> starts = scanOnDevice(device, cellParticles, cells + 4, cellStart);
-    device.run(*device.kernel("fluid/cell_scatter"), params, {&cellStart, &cell, &rank, &order}, count);
-    device.run(*device.kernel("fluid/cell_sort"), params, {&cellStart, &id, &order}, cells);
-    device.run(*device.kernel("fluid/reorder"), params, {&order, &position, &velocity, &id, &positionOut, &velocityOut, &idOut}, count);
+    device.run(*device.kernel("fluid/grid/cell_scatter"), params, {&cellStart, &cell, &rank, &order}, count);
+    device.run(*device.kernel("fluid/grid/cell_sort"), params, {&cellStart, &id, &order}, cells);
+    device.run(*device.kernel("fluid/grid/reorder"), params, {&order, &position, &velocity, &id, &positionOut, &velocityOut, &idOut},
+               count);
 
     std::vector<uint32_t> reference(count);
     std::iota(reference.begin(), reference.end(), 0U);
@@ -143,11 +144,11 @@ class SortTest : public testing::TestWithParam<const char*> {
         if (!made) GTEST_SKIP() << made.error().message;
         gpu_ = std::move(*made);
         device_ = gpu_.device.get();
-        for (const char* path : {"fluid/cell_count", "fluid/cell_scatter", "fluid/cell_sort", "fluid/reorder"}) {
+        for (const char* path : {"fluid/grid/cell_count", "fluid/grid/cell_scatter", "fluid/grid/cell_sort", "fluid/grid/reorder"}) {
             const auto kernel = device_->kernel(path);
             ASSERT_TRUE(kernel) << kernel.error().message;
         }
-        for (const char* path : {"fluid/scan_reduce", "fluid/scan_blocks", "fluid/scan_apply"}) {
+        for (const char* path : {"fluid/grid/scan_reduce", "fluid/grid/scan_blocks", "fluid/grid/scan_apply"}) {
             const auto kernel = device_->kernel(path, kScanDefines);
             ASSERT_TRUE(kernel) << kernel.error().message;
         }

@@ -2,11 +2,11 @@
 #include "shaders/common/lang.h"
 namespace rivulet::RIVULET_KERNEL_UNIT {
 namespace still {
-#include "shaders/fluid/collide.kernel"
+#include "shaders/fluid/solids/collide.kernel"
 }
 #define THESIS 1
 namespace thesis {
-#include "shaders/fluid/collide.kernel"
+#include "shaders/fluid/solids/collide.kernel"
 }
 #undef THESIS
 }  // namespace rivulet::RIVULET_KERNEL_UNIT

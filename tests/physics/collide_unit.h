@@ -1,4 +1,4 @@
-// The collide kernel compiled as C++ for the tests: threads [begin, end), see shaders/fluid/collide.kernel for the buffers.
+// The collide kernel compiled as C++ for the tests: threads [begin, end), see shaders/fluid/solids/collide.kernel for the buffers.
 #pragma once
 
 #include <cstdint>

@@ -24,8 +24,8 @@ Chapter2Row row(int particles, const char* backend, Plan plan, double stepMs, do
     r.way.stepMs = stepMs;
     r.way.drawMs = drawMs;
     r.way.overlapMs = overlapMs;
-    r.way.passes = {{"fluid/cell_count", 1},    {"fluid/scan_apply", 1},    {"fluid/reorder", 2},
-                    {"fluid/wcsph_density", 4}, {"fluid/wcsph_forces", 10}, {"fluid/walls", 2}};
+    r.way.passes = {{"fluid/grid/cell_count", 1},    {"fluid/grid/scan_apply", 1},    {"fluid/grid/reorder", 2},
+                    {"fluid/methods/wcsph_density", 4}, {"fluid/methods/wcsph_forces", 10}, {"fluid/solids/walls", 2}};
     return r;
 }
 
@@ -89,7 +89,7 @@ TEST(Chapter2, AShortRunMeasuresEveryPlanThatThereIs) {
     for (const Chapter2Row& r : chapter->rows) {
         EXPECT_TRUE(r.particles == 256 || r.particles == 512) << r.particles;
         EXPECT_NEAR(r.way.stepMs + r.way.drawMs, r.way.frameMs.median, 1.0e-6);
-        EXPECT_EQ(r.way.passes.contains("fluid/wcsph_forces"), true);
+        EXPECT_EQ(r.way.passes.contains("fluid/methods/wcsph_forces"), true);
         if (r.way.plan == Plan::alone) EXPECT_EQ(r.way.overlapMs, 0);
     }
     request.goOn = [] { return false; };

@@ -25,8 +25,8 @@ Chapter4Row row(int particles, const char* grid, const char* walk, double stepMs
             .frameMs = ms,
             .stepMs = stepMs,
             .drawMs = drawMs,
-            .passes = *walk != '\0' ? std::map<std::string, double>{{"fluid/collide", 2}, {"fluid/walls", 1}, {"fluid/wcsph_density", 9}}
-                                    : std::map<std::string, double>{{"fluid/wcsph_density", 9}}};
+            .passes = *walk != '\0' ? std::map<std::string, double>{{"fluid/solids/collide", 2}, {"fluid/solids/walls", 1}, {"fluid/methods/wcsph_density", 9}}
+                                    : std::map<std::string, double>{{"fluid/methods/wcsph_density", 9}}};
 }
 
 TEST(Chapter4, ThePageReadsTheTableAloudBesideTheThesis) {
@@ -88,9 +88,9 @@ TEST(Chapter4, AShortRunMeasuresAllThatTakesTurns) {
         EXPECT_EQ(r.frames.count, 1U);
         EXPECT_NEAR(r.frames.median * r.frameMs, 1000, 1.0e-6);
         EXPECT_NEAR(r.stepMs + r.drawMs, r.frameMs, 1.0e-6);
-        EXPECT_EQ(r.passes.contains("fluid/collide"), !r.walk.empty()) << r.grid;
-        EXPECT_EQ(r.passes.contains("fluid/cell_link"), r.grid == "linked_list");
-        EXPECT_EQ(r.passes.contains("fluid/cell_sort"), r.grid == "sorted");
+        EXPECT_EQ(r.passes.contains("fluid/solids/collide"), !r.walk.empty()) << r.grid;
+        EXPECT_EQ(r.passes.contains("fluid/grid/cell_link"), r.grid == "linked_list");
+        EXPECT_EQ(r.passes.contains("fluid/grid/cell_sort"), r.grid == "sorted");
     }
     EXPECT_EQ(chapter->rows[5].workGroup, 32);
     EXPECT_TRUE(chapter->rows[5].sizes);

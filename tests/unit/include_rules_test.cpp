@@ -182,7 +182,7 @@ TEST(IncludeRules, APlantedBreachIsFound) {
 
     EXPECT_FALSE(breachIn("fluid/render/points.cpp", R"(#include "engine/render/frame_view.h")"));
     EXPECT_FALSE(breachIn("fluid/flow/flow_layer.cpp", R"(#include "engine/material/layer.h")"));
-    EXPECT_FALSE(breachIn("fluid/sim/world/fluid_world.cpp", R"(#include "shaders/fluid/step_params.h")"));
+    EXPECT_FALSE(breachIn("fluid/sim/world/fluid_world.cpp", R"(#include "shaders/fluid/world/step_params.h")"));
     EXPECT_FALSE(breachIn("fluid/session/session.cpp", R"(#include "engine/app/context_egl.h")"));
     EXPECT_FALSE(breachIn("engine/core/json.cpp", "#include <json/json.h>"));
     EXPECT_FALSE(breachIn("engine/core/json.cpp", "// #include nothing"));

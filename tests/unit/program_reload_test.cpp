@@ -226,11 +226,11 @@ TEST_F(Reload, WhatTheCommandLineSetStaysSet) {
 
 TEST_F(Reload, KernelsOfAGpuAreTakenWhileTheWaterGoesOn) {
     start({}, "gl");
-    const fs::path file = shader("fluid/pbf_predict.kernel");
+    const fs::path file = shader("fluid/methods/pbf_predict.kernel");
     const std::string good = readFile(file);
     writeFile(file, good + "\nwrong\n");
     wait();
-    EXPECT_NE(trouble().find("shaders/fluid/pbf_predict.kernel:"), std::string::npos) << trouble();
+    EXPECT_NE(trouble().find("shaders/fluid/methods/pbf_predict.kernel:"), std::string::npos) << trouble();
     const double then = viewer_->session().time();
     frame();
     EXPECT_GT(viewer_->session().time(), then);

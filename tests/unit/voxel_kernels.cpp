@@ -8,9 +8,9 @@ namespace {
 
 #include "shaders/voxel/walk.h"
 
-#include "shaders/fluid/contact.h"
+#include "shaders/fluid/solids/contact.h"
 
-#include "shaders/fluid/contact_thesis.h"
+#include "shaders/fluid/solids/contact_thesis.h"
 vec3 point(const float* p) { return vec3(p[0], p[1], p[2]); }
 }  // namespace
 }  // namespace rivulet::RIVULET_KERNEL_UNIT

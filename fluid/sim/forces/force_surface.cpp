@@ -10,7 +10,7 @@ namespace rivulet {
 namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
-constexpr double kTensionFrom = 0.2;  // as in fluid/cohesion
+constexpr double kTensionFrom = 0.2;  // as in fluid/forces/cohesion
 
 // Wendland's factors, whatever kernel the method has, and the constants of the row's kernels.
 StepParams paramsOf(const StepContext& c, vec4 force) {
@@ -40,7 +40,7 @@ double flatNormal(double support, bool coulomb) {
 
 // What a flat surface pulls along itself with, per length (unit spacing), of particles strewn evenly under it, one a cubic spacing: the
 // integral over depth z of t(z) times what pairs with what lies deeper and shallower pass on along the surface, less what they pull inward
-// with; t and the pull as in fluid/cohesion. A lattice's sum differs by up to a half, as its layers do or do not come within reach.
+// with; t and the pull as in fluid/forces/cohesion. A lattice's sum differs by up to a half, as its layers do or do not come within reach.
 double flatTension(double support) {
     constexpr int kSlices = 64;  // of a support
     const double slice = support / kSlices, flat = flatNormal(support, false);
@@ -78,7 +78,7 @@ struct Normals {
         std::vector<Define> defines;
         if (coulomb) defines.push_back({"COULOMB", "1"});
         if (walled) defines.push_back({"WALLED", "1"});
-        Result<PairKernel> found = PairKernel::find(device, "fluid/normals", traits, defines);
+        Result<PairKernel> found = PairKernel::find(device, "fluid/forces/normals", traits, defines);
         if (!found) return found.error();
         return Normals{*found, coulomb};
     }
@@ -121,7 +121,7 @@ bool thesisTensionOn(const FluidParams& p, bool) { return p.forces.thesisTension
 Result<ForcePass> makeThesisTension(Device& device, const MethodSetup& setup) {
     Result<Normals> normals = Normals::find(device, setup.traits, true, false);
     if (!normals) return normals.error();
-    Result<PairKernel> pull = PairKernel::find(device, "fluid/tension_thesis", setup.traits);
+    Result<PairKernel> pull = PairKernel::find(device, "fluid/forces/tension_thesis", setup.traits);
     if (!pull) return pull.error();
     Result<Buffer> buffer = device.allocate(size_t{setup.count} * sizeof(vec4));
     if (!buffer) return buffer.error();
@@ -140,13 +140,13 @@ bool cohesionOn(const FluidParams& p, bool) { return p.forces.tension > 0 || p.f
 Result<ForcePass> makeCohesion(Device& device, const MethodSetup& setup) {
     Result<Normals> normals = Normals::find(device, setup.traits, false, false);
     if (!normals) return normals.error();
-    Result<PairKernel> pull = PairKernel::find(device, "fluid/cohesion", setup.traits);
+    Result<PairKernel> pull = PairKernel::find(device, "fluid/forces/cohesion", setup.traits);
     if (!pull) return pull.error();
     PairKernel onSamples;
     const bool samples = setup.traits.matter && setup.traits.samples > 0;
     if (samples) {
         const Define define{"SAMPLES", "1"};
-        Result<PairKernel> found = PairKernel::find(device, "fluid/cohesion", setup.traits, std::span(&define, 1));
+        Result<PairKernel> found = PairKernel::find(device, "fluid/forces/cohesion", setup.traits, std::span(&define, 1));
         if (!found) return found.error();
         onSamples = *found;
     }
@@ -179,9 +179,9 @@ Result<ForcePass> makeCohesion(Device& device, const MethodSetup& setup) {
 bool vorticityOn(const FluidParams& p, bool) { return p.forces.vorticity > 0; }
 
 Result<ForcePass> makeVorticity(Device& device, const MethodSetup& setup) {
-    Result<PairKernel> curl = PairKernel::find(device, "fluid/vorticity", setup.traits);
+    Result<PairKernel> curl = PairKernel::find(device, "fluid/forces/vorticity", setup.traits);
     if (!curl) return curl.error();
-    Result<PairKernel> confine = PairKernel::find(device, "fluid/confinement", setup.traits);
+    Result<PairKernel> confine = PairKernel::find(device, "fluid/forces/confinement", setup.traits);
     if (!confine) return confine.error();
     Result<Buffer> buffer = device.allocate(size_t{setup.count} * sizeof(vec4));
     if (!buffer) return buffer.error();
@@ -202,7 +202,7 @@ bool airOn(const FluidParams& p, bool) { return p.forces.airDrag > 0; }
 Result<ForcePass> makeAir(Device& device, const MethodSetup& setup) {
     std::vector<Define> matter;
     if (setup.traits.matter) matter.push_back({"MATTER", "1"});
-    Result<Kernel> air = device.kernel("fluid/air", matter);
+    Result<Kernel> air = device.kernel("fluid/forces/air", matter);
     if (!air) return air.error();
     return ForcePass([air = *air, differ = setup.traits.matter](StepContext& c) {
         // 1/2 rho C A |u| u of a sphere with the particle's volume, over its mass.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "shaders/fluid/stats_row.h"
+#include "shaders/fluid/world/stats_row.h"
 
 namespace rivulet {
 
@@ -152,9 +152,10 @@ Result<ForcePass> makeViscosity(Device& device, const MethodSetup& setup) {
         bool wanted = true;
     };
     v->walled = setup.traits.walls;
-    for (const Wanted& w : {Wanted{&v->drag, "fluid/wall_drag", matter, v->walled}, Wanted{&v->guess, "fluid/viscous_guess", matter},
-                            Wanted{&v->sum, "fluid/viscous_sum", {}}, Wanted{&v->scalars, "fluid/viscous_scalars", {}},
-                            Wanted{&v->update, "fluid/viscous_update", {}}, Wanted{&v->finish, "fluid/viscous_finish", {}}}) {
+    for (const Wanted& w :
+         {Wanted{&v->drag, "fluid/forces/wall_drag", matter, v->walled}, Wanted{&v->guess, "fluid/forces/viscous_guess", matter},
+          Wanted{&v->sum, "fluid/forces/viscous_sum", {}}, Wanted{&v->scalars, "fluid/forces/viscous_scalars", {}},
+          Wanted{&v->update, "fluid/forces/viscous_update", {}}, Wanted{&v->finish, "fluid/forces/viscous_finish", {}}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
@@ -167,9 +168,10 @@ Result<ForcePass> makeViscosity(Device& device, const MethodSetup& setup) {
         bool wanted;
     };
     const Define samples{"SAMPLES", "1"}, begin{"START", "1"};
-    for (const WantedPair& w :
-         {WantedPair{&v->explicit_, "fluid/viscosity", {}, true}, WantedPair{&v->onSamples, "fluid/viscosity", {samples}, v->samples},
-          WantedPair{&v->start, "fluid/viscous_sweep", {begin}, true}, WantedPair{&v->apply, "fluid/viscous_sweep", {}, true}}) {
+    for (const WantedPair& w : {WantedPair{&v->explicit_, "fluid/forces/viscosity", {}, true},
+                                WantedPair{&v->onSamples, "fluid/forces/viscosity", {samples}, v->samples},
+                                WantedPair{&v->start, "fluid/forces/viscous_sweep", {begin}, true},
+                                WantedPair{&v->apply, "fluid/forces/viscous_sweep", {}, true}}) {
         if (!w.wanted) continue;
         Result<PairKernel> found = PairKernel::find(device, w.path, setup.traits, w.defines);
         if (!found) return found.error();

@@ -9,8 +9,8 @@
 #include "engine/compute/device_cpu.h"
 #include "engine/core/assert.h"
 #include "fluid/sim/kernels/cpu_grid.h"
-#include "shaders/fluid/linked_list.h"
-#include "shaders/fluid/scan_params.h"
+#include "shaders/fluid/grid/linked_list.h"
+#include "shaders/fluid/grid/scan_params.h"
 
 namespace rivulet {
 
@@ -115,22 +115,22 @@ Status NeighborGrid::Impl::findKernels() {
     std::vector<Define> listDefines;
     if (glm::any(traits.periodic)) listDefines.push_back({"PERIODIC", "1"});
     if (onCpu())
-        wanted = {{&sortCount, "fluid/cpu_sort_count", {}},
-                  {&sortSegments, "fluid/cpu_sort_segments", {}},
-                  {&sortOffsets, "fluid/cpu_sort_offsets", {}},
-                  {&sortScatter, "fluid/cpu_sort_scatter", {}},
-                  {&neighborList, "fluid/cpu_neighbor_list", listDefines}};
+        wanted = {{&sortCount, "fluid/grid/cpu_sort_count", {}},
+                  {&sortSegments, "fluid/grid/cpu_sort_segments", {}},
+                  {&sortOffsets, "fluid/grid/cpu_sort_offsets", {}},
+                  {&sortScatter, "fluid/grid/cpu_sort_scatter", {}},
+                  {&neighborList, "fluid/grid/cpu_neighbor_list", listDefines}};
     else if (traits.linked)
-        wanted = {{&cellLink, "fluid/cell_link", traits.threadDefines()}};
+        wanted = {{&cellLink, "fluid/grid/cell_link", traits.threadDefines()}};
     else {
         const std::vector<Define> threads = traits.threadDefines();
         const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
         std::vector<Define> givenDefines = threads;
         givenDefines.push_back({"GIVEN", "1"});
-        wanted = {{&cellCount, "fluid/cell_count", threads},    {&cellCountGiven, "fluid/cell_count", givenDefines},
-                  {&scanReduce, "fluid/scan_reduce", scanSize}, {&scanBlocks, "fluid/scan_blocks", scanSize},
-                  {&scanApply, "fluid/scan_apply", scanSize},   {&cellScatter, "fluid/cell_scatter", threads},
-                  {&cellSort, "fluid/cell_sort", threads},      {&reorder, "fluid/reorder", threads}};
+        wanted = {{&cellCount, "fluid/grid/cell_count", threads},    {&cellCountGiven, "fluid/grid/cell_count", givenDefines},
+                  {&scanReduce, "fluid/grid/scan_reduce", scanSize}, {&scanBlocks, "fluid/grid/scan_blocks", scanSize},
+                  {&scanApply, "fluid/grid/scan_apply", scanSize},   {&cellScatter, "fluid/grid/cell_scatter", threads},
+                  {&cellSort, "fluid/grid/cell_sort", threads},      {&reorder, "fluid/grid/reorder", threads}};
     }
     for (Wanted& w : wanted) {
         Result<Kernel> found = device->kernel(w.path, w.defines);

@@ -1,10 +1,10 @@
 // The neighbour grid: particles sorted by cell (edge = support radius h), so that a row of cells is contiguous in memory.
 // Behind the fluid come the samples on bodies, in cells of their own; then what is indexed nowhere: particles outside the bounds or with
-// NaN, and free slots. shaders/fluid/grid.h says where each begins.
+// NaN, and free slots. shaders/fluid/grid/grid.h says where each begins.
 //
 // GPU: atomics count, a three-dispatch prefix sum, a sort by id inside each cell (the same order in every run); kernels sweep rows.
 // CPU: a stable counting sort, groups of 8 particles, and a list of candidate neighbours for each group.
-// fluid.grid linked_list, on a GPU: nothing is sorted, each cell has a list (thesis 4.2; shaders/fluid/linked_list.h).
+// fluid.grid linked_list, on a GPU: nothing is sorted, each cell has a list (thesis 4.2; shaders/fluid/grid/linked_list.h).
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 #include "engine/compute/device.h"
 #include "engine/core/math.h"
 #include "fluid/sim/world/particles.h"
-#include "shaders/fluid/step_params.h"
+#include "shaders/fluid/world/step_params.h"
 
 namespace rivulet {
 
@@ -44,8 +44,8 @@ class NeighborGrid {
     void fill(StepParams& params) const;  // the grid's part of it
     // For who moves particles before the next build: lists reach this times h.
     void setMargin(float margin);
-    // GPU, sorted: the cells of the particles as they lie, as fluid/cell_of finds them: the next build takes them instead of finding them
-    // itself. Whoever moves particles before then calls with none.
+    // GPU, sorted: the cells of the particles as they lie, as fluid/grid/cell_of finds them: the next build takes them instead of finding
+    // them itself. Whoever moves particles before then calls with none.
     void give(std::span<const uint32_t> cells);
     // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error: out of
     // memory for the lists.

@@ -2,7 +2,7 @@
 // These passes have no GPU twin (a GPU sorts by atomics and sweeps rows), so they are plain C++, compiled once an instruction set.
 //
 // Cells are h wide in y and z and h / 2 in x: the sort along a row is then fine enough that 8 consecutive particles lie close together.
-// Where bodies have samples, theirs are a second set of cells behind the fluid's; see shaders/fluid/grid.h for what follows.
+// Where bodies have samples, theirs are a second set of cells behind the fluid's; see shaders/fluid/grid/grid.h for what follows.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ struct CpuGridJob {
     uint32_t* cell;        // of each unsorted particle
     uint32_t* histogram;   // chunks * (totalCells + 3)
     uint32_t* segmentSum;  // kScanSegments
-    uint32_t* cellStart;   // totalCells + 4, see shaders/fluid/grid.h
+    uint32_t* cellStart;   // totalCells + 4, see shaders/fluid/grid/grid.h
     CpuGroup* groups;
     uint32_t* list;
     uint32_t* listCursor;  // entries taken; above listCapacity: the lists did not fit

@@ -40,13 +40,13 @@ namespace RIVULET_PASTE(PAIR_UNIT, _open) {
 
 #if !defined(PAIR_ROWS)
 // `room`: the kernel's folder under shaders/fluid; `extra`: other defines, as "CUBIC=1".
-#define PAIR_ROWS(unit, room, name, extra)                                                                          \
+#define PAIR_ROWS(unit, room, name, extra)                                                                              \
     {"fluid/" #room "/" #name, extra, RIVULET_UNIT_ISA, unit##_plain::name, 64},                                        \
         {"fluid/" #room "/" #name, "MATTER=1;" extra, RIVULET_UNIT_ISA, unit##_matter::name, 64},                       \
         {"fluid/" #room "/" #name, "MATTER=1;PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_matter_periodic::name, 64}, { \
         "fluid/" #room "/" #name, "PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_periodic::name, 64                      \
     }
-#define OPEN_ROWS(unit, room, name, extra)                                                                         \
+#define OPEN_ROWS(unit, room, name, extra)                                                                             \
     {"fluid/" #room "/" #name, "MATTER=1;OPEN=1;PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_matter_open::name, 64}, { \
         "fluid/" #room "/" #name, "OPEN=1;PERIODIC=1;" extra, RIVULET_UNIT_ISA, unit##_open::name, 64                  \
     }

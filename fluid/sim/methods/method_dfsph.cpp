@@ -116,14 +116,14 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         const char* path;
         std::vector<Define> defines;
     };
-    for (const Wanted& w : {Wanted{&m->integrate, "fluid/integrate", setup.traits.wallDefines({{"COAST", "1"}})},
-                            Wanted{&m->begin, "fluid/dfsph_begin", {}}, Wanted{&m->end, "fluid/dfsph_end", {}}}) {
+    for (const Wanted& w : {Wanted{&m->integrate, "fluid/methods/integrate", setup.traits.wallDefines({{"COAST", "1"}})},
+                            Wanted{&m->begin, "fluid/methods/dfsph_begin", {}}, Wanted{&m->end, "fluid/methods/dfsph_end", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
     }
-    for (auto [kernel, path] : {std::pair(&m->density, "fluid/dfsph_density"), std::pair(&m->rate, "fluid/dfsph_rate"),
-                                std::pair(&m->push, "fluid/dfsph_push")}) {
+    for (auto [kernel, path] : {std::pair(&m->density, "fluid/methods/dfsph_density"), std::pair(&m->rate, "fluid/methods/dfsph_rate"),
+                                std::pair(&m->push, "fluid/methods/dfsph_push")}) {
         Result<PairKernel> found = PairKernel::find(device, path, setup.traits, setup.traits.wallDefines());
         if (!found) return found.error();
         *kernel = *found;

@@ -112,14 +112,14 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
     auto m = std::make_unique<Pbf>();
     const std::vector<Define> walls = setup.traits.wallDefines();
     for (auto [kernel, path, defines] :
-         {std::tuple(&m->predict, "fluid/pbf_predict", walls), std::tuple(&m->finish, "fluid/pbf_finish", walls),
-          std::tuple(&m->kick, "fluid/kick", std::vector<Define>()), std::tuple(&m->weigh, "fluid/weigh", std::vector<Define>()),
-          std::tuple(&m->setRatio, "fluid/set_ratio", std::vector<Define>())}) {
+         {std::tuple(&m->predict, "fluid/methods/pbf_predict", walls), std::tuple(&m->finish, "fluid/methods/pbf_finish", walls),
+          std::tuple(&m->kick, "fluid/methods/kick", std::vector<Define>()), std::tuple(&m->weigh, "fluid/forces/weigh", std::vector<Define>()),
+          std::tuple(&m->setRatio, "fluid/world/set_ratio", std::vector<Define>())}) {
         Result<Kernel> found = device.kernel(path, defines);
         if (!found) return found.error();
         *kernel = *found;
     }
-    for (auto [kernel, path] : {std::pair(&m->lambda, "fluid/pbf_lambda"), std::pair(&m->shift, "fluid/pbf_shift")}) {
+    for (auto [kernel, path] : {std::pair(&m->lambda, "fluid/methods/pbf_lambda"), std::pair(&m->shift, "fluid/methods/pbf_shift")}) {
         Result<PairKernel> found = PairKernel::find(device, path, setup.traits, walls);
         if (!found) return found.error();
         *kernel = *found;

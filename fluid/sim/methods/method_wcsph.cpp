@@ -94,15 +94,15 @@ Result<std::unique_ptr<Method>> make(Device& device, const MethodSetup& setup, b
     std::vector<Define> defines = setup.traits.wallDefines();
     if (thesis) defines.push_back({"THESIS", "1"});
     if (!thesis && setup.params.kernel == "cubic_spline") defines.push_back({"CUBIC", "1"});
-    Result<PairKernel> density = PairKernel::find(device, "fluid/wcsph_density", setup.traits, defines);
+    Result<PairKernel> density = PairKernel::find(device, "fluid/methods/wcsph_density", setup.traits, defines);
     if (!density) return density.error();
     if (moves) defines.push_back({"MOVES", "1"});
-    Result<PairKernel> forces = PairKernel::find(device, "fluid/wcsph_forces", setup.traits, defines);
+    Result<PairKernel> forces = PairKernel::find(device, "fluid/methods/wcsph_forces", setup.traits, defines);
     if (!forces) return forces.error();
     method->density = *density;
     method->forces = *forces;
     if (!moves) {
-        Result<Kernel> integrate = device.kernel("fluid/integrate", setup.traits.wallDefines(setup.traits.threadDefines()));
+        Result<Kernel> integrate = device.kernel("fluid/methods/integrate", setup.traits.wallDefines(setup.traits.threadDefines()));
         if (!integrate) return integrate.error();
         method->integrate = *integrate;
     }

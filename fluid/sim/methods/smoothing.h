@@ -1,8 +1,8 @@
-// The smoothing kernels' factors: what shaders/fluid/shape.h leaves out.
+// The smoothing kernels' factors: what shaders/fluid/methods/shape.h leaves out.
 #pragma once
 
 #include "fluid/sim/world/fluid_params.h"
-#include "shaders/fluid/step_params.h"
+#include "shaders/fluid/world/step_params.h"
 
 namespace rivulet {
 

@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shaders/fluid/solver_stop.h"
-#include "shaders/fluid/stats_row.h"
+#include "shaders/fluid/methods/solver_stop.h"
+#include "shaders/fluid/world/stats_row.h"
 
 namespace rivulet {
 
 namespace {
-constexpr uint32_t kGroup = 256;  // of fluid/solver_progress
+constexpr uint32_t kGroup = 256;  // of fluid/methods/solver_progress
 }
 
 Result<SolverResidual> SolverResidual::create(Device& device, std::span<const Define> defines) {
     SolverResidual r;
-    Result<Kernel> found = device.kernel("fluid/residual", defines);
+    Result<Kernel> found = device.kernel("fluid/methods/residual", defines);
     if (!found) return found.error();
     r.kernel_ = *found;
     Result<Buffer> rows = device.allocate((STATS_THREADS + 1) * sizeof(float));
@@ -25,7 +25,7 @@ Result<SolverResidual> SolverResidual::create(Device& device, std::span<const De
     r.progress_ = std::move(*progress);
     if (device.backend() == Backend::cpu) return r;
     const Define group{"LOCAL_SIZE", std::to_string(kGroup)};
-    Result<Kernel> advance = device.kernel("fluid/solver_progress", std::span(&group, 1));
+    Result<Kernel> advance = device.kernel("fluid/methods/solver_progress", std::span(&group, 1));
     if (!advance) return advance.error();
     r.advance_ = *advance;
     return r;

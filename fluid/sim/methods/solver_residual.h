@@ -11,7 +11,7 @@ namespace rivulet {
 
 class SolverResidual {
   public:
-    // `defines`: of fluid/residual, which says what it sums.
+    // `defines`: of fluid/methods/residual, which says what it sums.
     static Result<SolverResidual> create(Device& device, std::span<const Define> defines);
 
     // What the last step known left, the mean over all particles, a fraction; and the iterations of a step. A GPU: those are the mean over
@@ -19,12 +19,12 @@ class SolverResidual {
     double value() const { return last_->value; }
     double iterations() const { return iterations_; }
 
-    // Measures `of` (see fluid/residual). cpu: and returns it. A GPU: it is known later, and what is returned is older.
+    // Measures `of` (see fluid/methods/residual). cpu: and returns it. A GPU: it is known later, and what is returned is older.
     double measure(StepContext& context, const Buffer& of);
     // A GPU: how many iterations, 1 to `most`, the last one known asks for.
     int planned(double tolerance, int most);
 
-    // For kernels that do nothing once iterations are enough: see fluid/solver_progress. On the cpu it never says so.
+    // For kernels that do nothing once iterations are enough: see fluid/methods/solver_progress. On the cpu it never says so.
     const Buffer& progress() const { return progress_; }
     // After iteration `k`, from 0: whether `of` after what has just been applied is at its goal, see goalAt() of solver_stop.h; `reach`:
     // how far the fastest may go in a step, m. A GPU: the device knows.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "shaders/fluid/volume_params.h"
+#include "shaders/fluid/query/volume_params.h"
 
 namespace rivulet {
 
@@ -39,7 +39,7 @@ Status check(std::span<const Volume> volumes) {
 
 Status VolumePasses::prepare(Device& device, uint32_t slots) {
     if (device_ != nullptr) return ok();
-    Result<Kernel> found = device.kernel("fluid/count_volumes");
+    Result<Kernel> found = device.kernel("fluid/query/count_volumes");
     if (!found) return found.error();
     Result<Buffer> shapes = device.allocate(kMost * sizeof(SinkVolume)), inside = device.allocate(size_t{slots} * sizeof(uint32_t)),
                    counters = device.allocate(2 * kMost * sizeof(uint32_t));

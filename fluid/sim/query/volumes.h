@@ -16,7 +16,7 @@
 #include "engine/core/math.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_state.h"
-#include "shaders/fluid/emit_params.h"
+#include "shaders/fluid/sources/emit_params.h"
 
 namespace rivulet {
 

@@ -7,7 +7,7 @@
 
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/surface/iso_surface.h"
-#include "shaders/fluid/query_params.h"
+#include "shaders/fluid/query/query_params.h"
 
 namespace rivulet {
 
@@ -75,7 +75,7 @@ Result<WaterQuery> WaterQuery::create(Device& device, const FluidParams& params,
     q.weight_ = static_cast<float>(21.0 / (2.0 * std::numbers::pi * support * support * support) / wendlandLatticeSum(support));
     std::vector<Define> defines;
     if (traits.linked) defines.push_back({"LINKED_LIST", "1"});
-    for (auto [kernel, path] : {std::pair(&q.sample_, "fluid/sample_water"), std::pair(&q.cast_, "fluid/cast_rays")}) {
+    for (auto [kernel, path] : {std::pair(&q.sample_, "fluid/query/sample_water"), std::pair(&q.cast_, "fluid/query/cast_rays")}) {
         Result<Kernel> found = device.kernel(path, defines);
         if (!found) return found.error();
         *kernel = *found;

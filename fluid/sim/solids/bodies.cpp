@@ -15,7 +15,7 @@ using dmat3 = glm::dmat3;
 
 constexpr double kPiD = 3.14159265358979323846;
 
-// The smoothing kernels' shapes, as shaders/fluid/shape.h has them.
+// The smoothing kernels' shapes, as shaders/fluid/methods/shape.h has them.
 double shapeOf(bool cubic, double q) {
     const double a = std::max(1.0 - q, 0.0);
     if (!cubic) return a * a * a * a * (4.0 * q + 1.0);

@@ -76,9 +76,9 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         const char* path;
         std::span<const Define> defines;
     };
-    for (const Wanted& w : {Wanted{&b.place_, "fluid/place_samples", {}}, Wanted{&b.index_, "fluid/index_samples", {}},
-                            Wanted{&b.wetSamples_, "fluid/wet_samples", cubic}, Wanted{&b.push_, "fluid/push_samples", push},
-                            Wanted{&b.sumLoads_, "fluid/sum_loads", {}}}) {
+    for (const Wanted& w : {Wanted{&b.place_, "fluid/solids/place_samples", {}}, Wanted{&b.index_, "fluid/solids/index_samples", {}},
+                            Wanted{&b.wetSamples_, "fluid/solids/wet_samples", cubic}, Wanted{&b.push_, "fluid/solids/push_samples", push},
+                            Wanted{&b.sumLoads_, "fluid/solids/sum_loads", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;

@@ -10,8 +10,8 @@
 #include "fluid/sim/solids/bodies.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_state.h"
-#include "shaders/fluid/body_state.h"
-#include "shaders/fluid/step_params.h"
+#include "shaders/fluid/solids/body_state.h"
+#include "shaders/fluid/world/step_params.h"
 
 namespace rivulet {
 

@@ -153,15 +153,15 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         return d;
     };
     for (const Wanted& w :
-         {Wanted{&s.boundary_, "fluid/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
-          Wanted{&s.friction_, "fluid/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
-          Wanted{&s.adhesion_, "fluid/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
-          Wanted{&s.frictionMoving_, "fluid/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
-          Wanted{&s.walls_, "fluid/walls", {threads.begin(), threads.end()}, s.walled_},
-          Wanted{&s.boundaryMoving_, "fluid/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
-          Wanted{&s.collide_, "fluid/collide", collide(""), still},
-          Wanted{&s.collideRigid_, "fluid/collide", collide("MOVING"), !s.rigid_.empty()},
-          Wanted{&s.collideDeforming_, "fluid/collide", collide("DEFORMING"), !s.deforming_.empty()}}) {
+         {Wanted{&s.boundary_, "fluid/solids/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.friction_, "fluid/forces/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.walls_, "fluid/solids/walls", {threads.begin(), threads.end()}, s.walled_},
+          Wanted{&s.boundaryMoving_, "fluid/solids/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.collide_, "fluid/solids/collide", collide(""), still},
+          Wanted{&s.collideRigid_, "fluid/solids/collide", collide("MOVING"), !s.rigid_.empty()},
+          Wanted{&s.collideDeforming_, "fluid/solids/collide", collide("DEFORMING"), !s.deforming_.empty()}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();

@@ -11,7 +11,7 @@
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_state.h"
-#include "shaders/fluid/step_params.h"
+#include "shaders/fluid/world/step_params.h"
 #include "shaders/voxel/motion_params.h"
 
 namespace rivulet {
@@ -60,7 +60,7 @@ class SolidPasses {
     void boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary);
     // Fills `friction` with what no-slip walls do at `position`, sorted: see StepContext::wallFriction. Bending ones count as at rest.
     void friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction);
-    // Adds the adhesion of walls that stand still to particles.acceleration; step.force.w as fluid/wall_adhesion wants it.
+    // Adds the adhesion of walls that stand still to particles.acceleration; step.force.w as fluid/forces/wall_adhesion wants it.
     void adhesion(const StepParams& step, const NeighborGrid& grid, Particles& particles);
     // Moves particles.positionNext and velocityNext out of the solids.
     void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);

@@ -9,7 +9,7 @@
 
 #include "engine/core/params.h"
 #include "engine/core/result.h"
-#include "shaders/fluid/emit_params.h"
+#include "shaders/fluid/sources/emit_params.h"
 
 namespace rivulet {
 

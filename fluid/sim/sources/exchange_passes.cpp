@@ -16,7 +16,7 @@ Result<ExchangePasses> ExchangePasses::create(Device& device) {
     ExchangePasses e;
     e.device_ = &device;
     for (auto [kernel, path] :
-         {std::pair(&e.within_, "fluid/within"), std::pair(&e.take_, "fluid/take"), std::pair(&e.forget_, "fluid/forget")}) {
+         {std::pair(&e.within_, "fluid/sources/within"), std::pair(&e.take_, "fluid/sources/take"), std::pair(&e.forget_, "fluid/sources/forget")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;

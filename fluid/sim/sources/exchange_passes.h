@@ -10,7 +10,7 @@
 #include "fluid/sim/methods/method.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_particle.h"
-#include "shaders/fluid/exchange_params.h"
+#include "shaders/fluid/sources/exchange_params.h"
 
 namespace rivulet {
 

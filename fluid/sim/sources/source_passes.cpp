@@ -80,8 +80,8 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
     std::vector<Define> defines;
     if (absorption) defines.push_back({"ABSORPTION", "1"});
     if (matter) defines.push_back({"MATTER", "1"});
-    Result<Kernel> emit = device.kernel("fluid/emit", defines), drain = device.kernel("fluid/drain"),
-                   forget = device.kernel("fluid/forget");
+    Result<Kernel> emit = device.kernel("fluid/sources/emit", defines), drain = device.kernel("fluid/sources/drain"),
+                   forget = device.kernel("fluid/sources/forget");
     for (const Result<Kernel>* k : {&emit, &drain, &forget})
         if (!*k) return k->error();
     s.emit_ = *emit;

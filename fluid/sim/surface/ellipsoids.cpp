@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
-#include "shaders/fluid/anisotropy_params.h"
+#include "shaders/fluid/surface/anisotropy_params.h"
 
 namespace rivulet {
 
 Status Ellipsoids::prepare(Device& device, const PairTraits& traits, uint32_t count) {
     if (prepared_) return ok();
-    Result<PairKernel> kernel = PairKernel::find(device, "fluid/ellipsoids", traits);
+    Result<PairKernel> kernel = PairKernel::find(device, "fluid/surface/ellipsoids", traits);
     if (!kernel) return kernel.error();
     kernel_ = *kernel;
     for (Buffer& buffer : of_) {

@@ -20,7 +20,7 @@ class Ellipsoids {
     void find(Device& device, const StepParams& params, NeighborGrid& grid, const Particles& particles);
     // There is no state that they belong to.
     void forget() { found_ = false; }
-    // vec4 each, in the particles' order, as shaders/fluid/ellipsoids.kernel writes them: centre, spread, slant. Null: not found.
+    // vec4 each, in the particles' order, as shaders/fluid/surface/ellipsoids.kernel writes them: centre, spread, slant. Null: not found.
     std::array<const Buffer*, 3> buffers() const {
         return found_ ? std::array<const Buffer*, 3>{&of_[0], &of_[1], &of_[2]} : std::array<const Buffer*, 3>{};
     }

@@ -45,13 +45,13 @@ Result<FoamPasses> FoamPasses::create(Device& device, const FluidParams& params,
     f.hat_ = static_cast<float>(1 / sums.hat);
     f.flat_ = static_cast<float>(-1 / (sums.flat * std::pow(double{params.spacing}, 4)));
     f.fullness_ = static_cast<float>(21.0 / (2.0 * std::numbers::pi * support * support * support) / wendlandLatticeSum(support));
-    for (auto [kernel, path] : {std::pair(&f.air_, "fluid/foam_air"), std::pair(&f.crest_, "fluid/foam_crest")}) {
+    for (auto [kernel, path] : {std::pair(&f.air_, "fluid/surface/foam_air"), std::pair(&f.crest_, "fluid/surface/foam_crest")}) {
         Result<PairKernel> found = PairKernel::find(device, path, traits);
         if (!found) return found.error();
         *kernel = *found;
     }
-    for (auto [kernel, path] : {std::pair(&f.move_, "fluid/foam_move"), std::pair(&f.wanted_, "fluid/foam_wanted"),
-                                std::pair(&f.born_, "fluid/foam_born"), std::pair(&f.back_, "fluid/foam_drawn")}) {
+    for (auto [kernel, path] : {std::pair(&f.move_, "fluid/surface/foam_move"), std::pair(&f.wanted_, "fluid/surface/foam_wanted"),
+                                std::pair(&f.born_, "fluid/surface/foam_born"), std::pair(&f.back_, "fluid/surface/foam_drawn")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;

@@ -9,7 +9,7 @@
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/step_context.h"
 #include "fluid/sim/world/world_state.h"
-#include "shaders/fluid/foam_params.h"
+#include "shaders/fluid/surface/foam_params.h"
 
 namespace rivulet {
 
@@ -38,7 +38,7 @@ class FoamPasses {
     void restore(const Saved& saved);
 
     uint32_t slots() const { return slots_; }
-    const Buffer& foam() const { return foam_; }  // see shaders/fluid/foam_params.h
+    const Buffer& foam() const { return foam_; }  // see shaders/fluid/surface/foam_params.h
     const Buffer& drawn() const { return earlier_ ? drawn_ : foam_; }
     const Buffer& velocity() const { return velocity_; }  // as it says
     uint32_t alive() const { return told_->alive; }       // on a GPU some frames ago

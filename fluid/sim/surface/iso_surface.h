@@ -3,10 +3,11 @@
 //     value(p) = sum of spacing^3 |G| W(|G (p - c)|), Wendland C2: about 1 amid water at rest, 0 in the air; the surface is where it is
 //     0.5.
 //
-// Each particle brings the volume spacing^3, however its kernel is stretched. Centres c are smoothed (shaders/fluid/anisotropy_params.h has
-// the constants), then put back by what the neighbours' centres moved, too (Vollmer et al. 1999): noise goes, the level stays. A
-// lattice that fills a half space has its surface half a spacing beyond the outermost centres, within 0.03 spacings (jittered by a quarter
-// spacing, too: measured 0.47 to 0.49); a particle by itself is a ball of 0.51 spacings, half its volume.
+// Each particle brings the volume spacing^3, however its kernel is stretched. Centres c are smoothed
+// (shaders/fluid/surface/anisotropy_params.h has the constants), then put back by what the neighbours' centres moved, too (Vollmer et al.
+// 1999): noise goes, the level stays. A lattice that fills a half space has its surface half a spacing beyond the outermost centres, within
+// 0.03 spacings (jittered by a quarter spacing, too: measured 0.47 to 0.49); a particle by itself is a ball of 0.51 spacings, half its
+// volume.
 #pragma once
 
 #include <span>
@@ -14,7 +15,7 @@
 
 #include "engine/core/result.h"
 #include "fluid/sim/grid/sparse_cells.h"
-#include "shaders/fluid/anisotropy_params.h"
+#include "shaders/fluid/surface/anisotropy_params.h"
 
 namespace rivulet {
 

@@ -1,12 +1,12 @@
 #include "fluid/sim/world/drawn_positions.h"
 
-#include "shaders/fluid/blend_params.h"
+#include "shaders/fluid/world/blend_params.h"
 
 namespace rivulet {
 
 Status DrawnPositions::prepare(Device& device, uint32_t count) {
     if (prepared_) return ok();
-    for (auto [kernel, path] : {std::pair(&remember_, "fluid/remember"), std::pair(&blend_, "fluid/blend")}) {
+    for (auto [kernel, path] : {std::pair(&remember_, "fluid/world/remember"), std::pair(&blend_, "fluid/world/blend")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;

@@ -9,7 +9,7 @@
 #include "engine/core/param_check.h"
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
-#include "shaders/fluid/stats_row.h"
+#include "shaders/fluid/world/stats_row.h"
 
 namespace rivulet {
 

@@ -7,7 +7,7 @@
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
-#include "shaders/fluid/stats_row.h"
+#include "shaders/fluid/world/stats_row.h"
 
 namespace rivulet {
 
@@ -43,15 +43,15 @@ Status FluidWorld::Impl::prepare() {
     traits.walls = !glm::all(traits.periodic) || solids.any();
     traits.samples = bodies.sampleCount();
     traits.matter = traits.matter || bodies.any();
-    for (const Wanted& w : {Wanted{&stats, "fluid/stats",
+    for (const Wanted& w : {Wanted{&stats, "fluid/world/stats",
                                    traits.matter   ? std::vector<Define>{{"MATTER", "1"}}
                                    : traits.linked ? std::vector<Define>{{"LINKED_LIST", "1"}}
                                                    : std::vector<Define>{},
                                    true},
-                            Wanted{&wrap, "fluid/wrap", {}, glm::any(traits.periodic)},
-                            Wanted{&wrapFromPositions, "fluid/wrap", {fromPositions}, glm::any(traits.periodic)},
-                            Wanted{&gatherMatter, "fluid/gather_matter", {}, traits.matter},
-                            Wanted{&gatherAbsorption, "fluid/gather_absorption", {}, coloured}}) {
+                            Wanted{&wrap, "fluid/world/wrap", {}, glm::any(traits.periodic)},
+                            Wanted{&wrapFromPositions, "fluid/world/wrap", {fromPositions}, glm::any(traits.periodic)},
+                            Wanted{&gatherMatter, "fluid/world/gather_matter", {}, traits.matter},
+                            Wanted{&gatherAbsorption, "fluid/world/gather_absorption", {}, coloured}}) {
         if (!w.wanted) continue;
         Result<Kernel> found = device->kernel(w.path, w.defines);
         if (!found) return found.error();

@@ -11,7 +11,7 @@
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/particles.h"
-#include "shaders/fluid/step_params.h"
+#include "shaders/fluid/world/step_params.h"
 
 namespace rivulet {
 
@@ -30,7 +30,7 @@ struct StepContext {
     Particles& particles;
     SolveFigures& solve;
     double fastest = 0;   // m/s, as last known; on a GPU that is some frames ago
-    const Buffer& stats;  // rows of fluid/stats as they were last measured: where a kernel asks, they are not late
+    const Buffer& stats;  // rows of fluid/world/stats as they were last measured: where a kernel asks, they are not late
     // Sorts the newest state into position and velocity, and moves solids and bodies on. false: it could not, and the substep ends here.
     // `fromPositions`: velocityNext holds where particles come from, m.
     std::function<bool(bool fromPositions)> build;
@@ -48,7 +48,8 @@ struct StepContext {
     // What no-slip walls do at these positions (in sorted order): w sum of k (1/m^2), xyz sum of k times the wall's velocity; the
     // acceleration is nu (xyz - w v). Empty: there are none.
     std::function<void(const Buffer& position, Buffer& friction)> wallFriction = {};
-    // Adds what walls at rest pull at particles by adhesion to particles.acceleration; `params`.force.w as fluid/wall_adhesion wants it.
+    // Adds what walls at rest pull at particles by adhesion to particles.acceleration; `params`.force.w as fluid/forces/wall_adhesion wants
+    // it.
     std::function<void(const StepParams& params)> wallAdhesion = {};
 
     // The params of a world where nothing weighs anything.

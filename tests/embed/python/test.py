@@ -42,7 +42,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         fallen = start.positions.mean(axis=0) - now.positions.mean(axis=0)
         assert np.allclose(fallen, [0, 0.5 * 9.81 * 0.25**2, 0], atol=0.015), fallen
         times = context.times()
-        assert times["fluid/stats"][1] >= 15 and all(ms >= 0 and calls > 0 for ms, calls in times.values()), times
+        assert times["fluid/world/stats"][1] >= 15 and all(ms >= 0 and calls > 0 for ms, calls in times.values()), times
         assert not context.times(), "what was told is not told again"
         stats = world.stats()
         assert stats.particles == 512 and stats.lost == 0 and abs(stats.time - 0.25) < 1e-9

@@ -1,0 +1,81 @@
+// The neighbours of a particle on a GPU: the nine rows of cells around its own, each row's three cells contiguous in memory; with MATTER
+// the same rows of body samples; with PERIODIC cell by cell, so that rows may wrap round; with LINKED_LIST the list of each of the 27
+// cells. (On the CPU lang_lanes.h defines the same macros over a list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1,
+// Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart, or the lists. `home`: where the particle was when the grid was built.
+// j includes the particle itself.
+#include "shaders/fluid/grid/linked_list.h"
+#if !defined(FOR_NEIGHBORS)
+#define SELF(i)         \
+    uint i = THREAD_ID; \
+    if (STANDS_BY(neighbors, PARAMS.cellCount, i)) return
+#define SELF_SAMPLE(i)                                \
+    uint i = neighbors[PARAMS.cellCount] + THREAD_ID; \
+    if (i >= neighbors[PARAMS.totalCells]) return /* a thread a sample */
+#define END_NEIGHBORS \
+    }                 \
+    }                 \
+    }
+// In a step's first sweep: KEEP says which neighbours later sweeps need; a GPU keeps no list.
+#define FOR_ALL_NEIGHBORS(i, home, j) FOR_NEIGHBORS(i, home, j)
+#define KEEP(condition)
+#define END_ALL_NEIGHBORS(i) END_NEIGHBORS
+#endif
+#if !defined(__cplusplus)
+#undef FOR_NEIGHBORS
+#undef SETS_
+#if defined(MATTER)
+#define SETS_ (PARAMS.totalCells > PARAMS.cellCount ? 2 : 1)
+#else
+#define SETS_ 1
+#endif
+#define HOME_CELL(home)                                              \
+    vec3 g_ = (home - PARAMS.gridOrigin.xyz) * PARAMS.gridScale.xyz; \
+    int cx_ = TO_INT(g_.x);                                          \
+    int cy_ = TO_INT(g_.y);                                          \
+    int cz_ = TO_INT(g_.z);
+#if defined(LINKED_LIST)
+#define FOR_NEIGHBORS(i, home, j)                                                                                       \
+    {                                                                                                                   \
+        HOME_CELL(home)                                                                                                 \
+        for (int k_ = 0; k_ < 27; ++k_) {                                                                               \
+            int cell_ = ((cz_ + k_ / 9 - 1) * PARAMS.cellsY + cy_ + k_ / 3 % 3 - 1) * PARAMS.cellsX + cx_ + k_ % 3 - 1; \
+            for (uint j = neighbors[cell_]; j != LIST_END; j = neighbors[NEXT_OF(PARAMS.cellCount, j)]) {
+#elif defined(PERIODIC)
+// On a periodic axis cells 1 .. n - 2 wrap round; where there are two of them, the one below and the one above are the same.
+FN int wrapped_(int c, int n, float period) { return period > 0.0f ? (c < 1 ? n - 2 : c > n - 2 ? 1 : c) : c; }
+FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 3; }
+#define FOR_NEIGHBORS(i, home, j)                                                                                           \
+    {                                                                                                                       \
+        HOME_CELL(home)                                                                                                     \
+        int nx_ = cellsAround_(PARAMS.cellsX, PARAMS.period.x);                                                             \
+        int ny_ = cellsAround_(PARAMS.cellsY, PARAMS.period.y);                                                             \
+        int nz_ = cellsAround_(PARAMS.cellsZ, PARAMS.period.z);                                                             \
+        for (int k_ = 0; k_ < nx_ * ny_ * nz_ * SETS_; ++k_) {                                                              \
+            int x_ = wrapped_(cx_ + k_ % nx_ - 1, PARAMS.cellsX, PARAMS.period.x);                                          \
+            int y_ = wrapped_(cy_ + k_ / nx_ % ny_ - 1, PARAMS.cellsY, PARAMS.period.y);                                    \
+            int z_ = wrapped_(cz_ + k_ / (nx_ * ny_) % nz_ - 1, PARAMS.cellsZ, PARAMS.period.z);                            \
+            int cell_ = (z_ * PARAMS.cellsY + y_) * PARAMS.cellsX + x_ + k_ / (nx_ * ny_ * nz_) * TO_INT(PARAMS.cellCount); \
+            uint end_ = neighbors[cell_ + 1];                                                                               \
+            for (uint j = neighbors[cell_]; j < end_; ++j) {
+#else
+#define FOR_NEIGHBORS(i, home, j)                                                                               \
+    {                                                                                                           \
+        HOME_CELL(home)                                                                                         \
+        for (int row_ = 0; row_ < 9 * SETS_; ++row_) {                                                          \
+            int cell_ = ((cz_ + row_ / 3 % 3 - 1) * PARAMS.cellsY + cy_ + row_ % 3 - 1) * PARAMS.cellsX + cx_ + \
+                        row_ / 9 * TO_INT(PARAMS.cellCount);                                                    \
+            uint end_ = neighbors[cell_ + 2];                                                                   \
+            for (uint j = neighbors[cell_ - 1]; j < end_; ++j) {
+#endif
+#endif
+// The vector from b to a, with PERIODIC the shortest of its images.
+#undef APART
+#if defined(PERIODIC)
+FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {
+    return real3(d.x - floor(d.x * inv.x + 0.5f) * period.x, d.y - floor(d.y * inv.y + 0.5f) * period.y,
+                 d.z - floor(d.z * inv.z + 0.5f) * period.z);
+}
+#define APART(a, b) wrapApart((a) - (b), PARAMS.period.xyz, PARAMS.invPeriod.xyz)
+#else
+#define APART(a, b) ((a) - (b))
+#endif

@@ -1,0 +1,115 @@
+// The walls of a static field at a point: which way they face, how far they are, how they answer. Include after voxel/field.h.
+#include "shaders/fluid/solids/respond.h"
+
+// The walls at a point: one; or, where walls face each other, up to three. A zero normal is no wall.
+STRUCT(Walls) {
+    vec3 normalA;
+    vec3 normalB;
+    vec3 normalC;
+    float distanceA;  // m, from the point
+    float distanceB;
+    float distanceC;
+    vec2 surfaceA;  // friction, restitution
+    vec2 surfaceB;
+    vec2 surfaceC;
+    bool corner;
+};
+
+// Response to all of them, bouncing where `bounces` is 1; what the answer to one pushes into another goes next time round.
+FN vec3 respondToAll(vec3 u, Walls w, float bounces) {
+    vec3 v = respond(u, w.normalA, w.surfaceA.x, w.surfaceA.y * bounces);
+    v = respond(v, w.normalB, w.surfaceB.x, w.surfaceB.y * bounces);
+    v = respond(v, w.normalC, w.surfaceC.x, w.surfaceC.y * bounces);
+    if (w.corner)
+        for (int k = 0; k < 4; ++k) v = respond(respond(respond(v, w.normalA, 0.0f, 0.0f), w.normalB, 0.0f, 0.0f), w.normalC, 0.0f, 0.0f);
+    return v;
+}
+
+// See packNormal in fluid/voxel/distance_band.h.
+FN vec3 unpackNormal(uint code) {
+    float x = (TO_FLOAT(code & 16383u) - 8191.0f) * (1.0f / 8191.0f);
+    float y = (TO_FLOAT((code >> 14u) & 16383u) - 8191.0f) * (1.0f / 8191.0f);
+    float z = 1.0f - max(x, -x) - max(y, -y);
+    float fold = max(-z, 0.0f);
+    vec3 n = vec3(x + (x < 0.0f ? fold : -fold), y + (y < 0.0f ? fold : -fold), z);
+    return n * (1.0f / length(n));
+}
+
+// Which collider's wall it is, 0..15: the `surfaces` of VoxelFieldOptions.
+FN uint wallSurface(uint code) { return code >> 28u; }
+
+// The index of the grid point nearest to `g`, cell coordinates; of the grid's border where `g` is beyond it.
+FN uint nearestPoint(FieldParams f, vec3 g) {
+    uint x = TO_UINT(clamp(g.x + 0.5f, 0.0f, TO_FLOAT(f.sizeX)));
+    uint y = TO_UINT(clamp(g.y + 0.5f, 0.0f, TO_FLOAT(f.sizeY)));
+    uint z = TO_UINT(clamp(g.z + 0.5f, 0.0f, TO_FLOAT(f.sizeZ)));
+    return (z * (TO_UINT(f.sizeY) + 1u) + y) * (TO_UINT(f.sizeX) + 1u) + x;
+}
+
+// What lies behind the distances of the surface that a grid point's normal names: friction and restitution.
+FN vec2 surfaceOf(GLOBAL(uint, bandNormal) FieldParams f, uint code) {
+    uint at = f.surfacesAt + 2u * wallSurface(code);
+    return vec2(BITS_FLOAT(bandNormal[at]), BITS_FLOAT(bandNormal[at + 1u]));
+}
+
+// Near where walls face each other the interpolated distance blends them: its gradient points between them, and a particle would be
+// led round the corner as in a bowl. The cell's own grid points tell the walls apart: each knows the direction to its nearest
+// triangle. From there the wall is extended as a plane. Round an outer edge such planes come nearer to the point than the mesh
+// is, and are not walls.
+FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 p, FieldSample here) {
+    Walls w;
+    w.normalA = vec3(0.0f, 0.0f, 0.0f);
+    w.normalB = w.normalA;
+    w.normalC = w.normalA;
+    w.distanceA = f.band;
+    w.distanceB = f.band;
+    w.distanceC = f.band;
+    w.surfaceA = vec2(0.0f, 0.0f);
+    w.surfaceB = w.surfaceA;
+    w.surfaceC = w.surfaceA;
+    vec3 g = toCells(f, p);
+    if (!loneWall(here)) {
+        int cx = clamp(TO_INT(floor(g.x)), 0, f.sizeX - 1);
+        int cy = clamp(TO_INT(floor(g.y)), 0, f.sizeY - 1);
+        int cz = clamp(TO_INT(floor(g.z)), 0, f.sizeZ - 1);
+        for (int k = 0; k < 8; ++k) {
+            int x = cx + (k & 1);
+            int y = cy + ((k >> 1) & 1);
+            int z = cz + (k >> 2);
+            uint at = (TO_UINT(z) * (TO_UINT(f.sizeY) + 1u) + TO_UINT(y)) * (TO_UINT(f.sizeX) + 1u) + TO_UINT(x);
+            float there = abs(bandDistance[at]);
+            uint code = bandNormal[at];
+            vec3 n = unpackNormal(code);
+            float distance_ = there + dot(n, g - vec3(TO_FLOAT(x), TO_FLOAT(y), TO_FLOAT(z))) * f.voxel;
+            if (there >= f.band || distance_ < here.distance - 0.02f * f.voxel) continue;
+            // The nearest of each direction, in the order they come.
+            if (dot(w.normalA, w.normalA) == 0.0f || dot(w.normalA, n) > 0.9f) {
+                if (distance_ < w.distanceA) {
+                    w.normalA = n;
+                    w.distanceA = distance_;
+                    w.surfaceA = surfaceOf(PASS(bandNormal) f, code);
+                }
+            } else if (dot(w.normalB, w.normalB) == 0.0f || dot(w.normalB, n) > 0.9f) {
+                if (distance_ < w.distanceB) {
+                    w.normalB = n;
+                    w.distanceB = distance_;
+                    w.surfaceB = surfaceOf(PASS(bandNormal) f, code);
+                }
+            } else if (distance_ < w.distanceC) {
+                w.normalC = n;
+                w.distanceC = distance_;
+                w.surfaceC = surfaceOf(PASS(bandNormal) f, code);
+            }
+        }
+    }
+    // Blending takes less than half a voxel off the distance of the nearest; if more is missing, there is a wall that was not found.
+    w.corner = dot(w.normalB, w.normalB) > 0.0f && min(min(w.distanceA, w.distanceB), w.distanceC) < here.distance + 0.5f * f.voxel;
+    if (!w.corner) {
+        w.normalB = vec3(0.0f, 0.0f, 0.0f);
+        w.normalC = w.normalB;
+        w.normalA = fieldNormal(here);
+        w.distanceA = here.distance;
+        w.surfaceA = surfaceOf(PASS(bandNormal) f, bandNormal[nearestPoint(f, g)]);
+    }
+    return w;
+}

@@ -35,7 +35,7 @@ for scene in "${scenes[@]}"; do
     stills=()
     for moment in ${moments[$scene]}; do stills+=(--still "$moment"); done
     draw "$folder/$scene" "$scene" "${stills[@]}"
-    draw "$folder/${scene}_truth" "$scene" "${stills[@]}" --set look.renderer=truth
+    draw "$folder/${scene}_truth" "$scene" "${stills[@]}" --set look.renderer=reference
     inputs=() filter="" names="" layout="" k=0
     for picture in "$folder/$scene"/*.png "$folder/${scene}_truth"/*.png; do
         inputs+=(-i "$picture")

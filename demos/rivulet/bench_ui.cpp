@@ -69,11 +69,11 @@ Status benchUi(const BenchContext& context) {
         input.framebuffer = ivec2(0);
         for (int k = 0; water && k < kFilled; ++k) frame(kStep);  // graphs have all of their samples
         input.framebuffer = ivec2(kWidth, kHeight);
-        constexpr std::pair<WatchWindow::Tab, const char*> kTabs[] = {{WatchWindow::Tab::times, "times"},
-                                                                      {WatchWindow::Tab::graphs, "graphs"},
-                                                                      {WatchWindow::Tab::chart, "chart"},
-                                                                      {WatchWindow::Tab::frameGraph, "frame graph"},
-                                                                      {WatchWindow::Tab::voxels, "voxels"}};
+        constexpr std::pair<Inspector::Tab, const char*> kTabs[] = {{Inspector::Tab::times, "times"},
+                                                                    {Inspector::Tab::graphs, "graphs"},
+                                                                    {Inspector::Tab::chart, "chart"},
+                                                                    {Inspector::Tab::frameGraph, "frame graph"},
+                                                                    {Inspector::Tab::voxels, "voxels"}};
         for (const auto& [tab, name] : kTabs) {
             viewer.watch().show(tab);
             for (int k = 0; k < 8; ++k) frame(0);

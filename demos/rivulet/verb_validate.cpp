@@ -93,7 +93,7 @@ int validateVerb(const Arguments& arguments) {
         list);
     reader.positional("CASE", "which cases; all of them when none is named", request.names);
     reader.flag("--quick", "each at about 8,000 particles", request.quick);
-    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter, truth",
+    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter, reference",
                   request.method);
     reader.option("--backend", "B", "cpu, gl or cl", request.backend);
     reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);

@@ -11,14 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/words.h"
+#include "engine/core/extension_list.h"
 #include "engine/gpu/device_gl.h"
 
 namespace rivulet {
 namespace {
 
 // `list` is null where EGL has none.
-bool offers(const char* list, std::string_view extension) { return hasWord(list ? list : "", extension); }
+bool offers(const char* list, std::string_view extension) { return hasExtension(list ? list : "", extension); }
 
 template <class Function>
 Function entryPoint(const char* name) {

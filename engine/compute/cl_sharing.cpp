@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/core/assert.h"
-#include "engine/core/words.h"
+#include "engine/core/extension_list.h"
 
 namespace rivulet {
 
@@ -121,7 +121,7 @@ ClGlCalls driversGlCalls() {
 
 Result<cl::Context> makeSharedContext(const ClCandidate& chosen, const GlContext& gl, const ClGlCalls& calls) {
     if (!gl.context) return failed("no OpenGL context is current");
-    if (!hasWord(calls.extensions(chosen.device), kExtension))
+    if (!hasExtension(calls.extensions(chosen.device), kExtension))
         return failed(fmt::format("{} offers no {}", chosen.platformName, kExtension));
     const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM,
                                                 reinterpret_cast<cl_context_properties>(chosen.platform),

@@ -24,7 +24,7 @@ Result<ColourBy> colourByName(const std::string& name) {
 }  // namespace
 
 void FluidLookParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> renderers = {"points", "screen_space", "truth"};
+    static const std::vector<std::string> renderers = {"points", "screen_space", "reference"};
     static const std::vector<std::string> colourings = {"speed", "density", "id", "dye", "normal", "surface"};
     v.choice({.name = "renderer",
               .doc = "particles as points, a water surface found on the screen, or their iso-surface at full precision, seconds a frame"},

@@ -11,7 +11,7 @@ namespace rivulet {
 
 // How the fluid is drawn.
 struct FluidLookParams {
-    std::string renderer = "screen_space";  // a row of renderers(): points | screen_space | truth
+    std::string renderer = "screen_space";  // a row of renderers(): points | screen_space | reference
     std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
     std::string splats = "ellipsoids";      // what a particle is drawn as: spheres | ellipsoids
     std::string view = "water";             // a row of waterViews()

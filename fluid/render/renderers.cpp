@@ -10,7 +10,7 @@ namespace {
 constexpr RendererRow kRows[] = {
     {"points", "every particle as a lit sphere, coloured by speed, density, id, dye, normal or surface", true, addPoints},
     {"screen_space", "a water surface from the particles' smoothed depth: refraction, absorption, reflection", false, addScreenSpace},
-    {"truth", "the same shading of the particles' iso-surface, ray-marched at full precision: seconds a frame", false, addTruth},
+    {"reference", "the same shading of the particles' iso-surface, ray-marched at full precision: seconds a frame", false, addReference},
 };
 constexpr Table<RendererRow> kRenderers{kRows};
 constexpr ViewRow kViewRows[] = {

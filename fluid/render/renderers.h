@@ -34,7 +34,7 @@ struct QuadRows {
     GLenum format = GL_RGBA32F;
 };
 
-struct MarchedTruth;
+struct MarchedReference;
 
 // The programs of all renderers. Whose particles are drawn is set anew each frame.
 struct FluidPrograms {
@@ -48,8 +48,8 @@ struct FluidPrograms {
     gpu::VertexArray quads, none;
     gpu::Buffer quadIndices;
     std::array<gpu::TextureName, 7> rowTextures;
-    std::shared_ptr<MarchedTruth> marched;  // by the row `truth`, the last time
-    uint32_t mostTexels = 0;                // of a buffer that shaders read as a texture, as this GPU has it
+    std::shared_ptr<MarchedReference> marched;  // by the row `reference`, the last time
+    uint32_t mostTexels = 0;                    // of a buffer that shaders read as a texture, as this GPU has it
     static Result<FluidPrograms> create(const ShaderFiles& files);
     std::vector<gpu::Program*> all();
     // They were made in another context, with which the one that is current now shares its objects.
@@ -123,7 +123,7 @@ FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const Flui
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 // Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds, where anything has changed.
-FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
 // Spray, foam and bubbles, into layers.colour. `side`: glazed is what something clear stands before where there is no water; it is to be
 // drawn before the glass, and the rest after the water. All, where layers.fluidDepth is empty.

@@ -11,12 +11,12 @@ constexpr double kRoom = 0.25;                         // of kMost
 
 }  // namespace
 
-void Haste::begin(bool software) {
+void AdaptiveQuality::begin(bool software) {
     *this = {};
     fast_ = software;
 }
 
-void Haste::frame(double ms) {
+void AdaptiveQuality::frame(double ms) {
     if (!fast_) {
         slow_ = ms > kMost ? slow_ + 1 : 0;
         if (slow_ < kSlowFrames) return;

@@ -1,9 +1,10 @@
-// Haste: whether look.quality auto is fast or fine, by what frames cost to draw: the picture gives way before the frame rate does.
+// AdaptiveQuality: whether look.quality auto is fast or fine, by what frames cost to draw: the picture gives way before the frame rate
+// does.
 #pragma once
 
 namespace rivulet {
 
-class Haste {
+class AdaptiveQuality {
   public:
     static constexpr double kMost = 12;  // ms: what is left of a 60th of a second beside the simulation
     // A frame has cost `ms` to draw, >= 0. Frames in a row that cost more make it fast; many that would leave room for the fine picture,

@@ -26,10 +26,10 @@ std::string nameOf(const PlanTried& tried) {
     return tried.plan == Plan::alone ? tried.backend : fmt::format("{}, {}", tried.backend, rowOf(tried.plan));
 }
 
-Result<PlanTrial> PlanTrial::create(const SceneFile& scene, Device& device, Plan plan, const Log& log) {
+Result<Autotune> Autotune::create(const SceneFile& scene, Device& device, Plan plan, const Log& log) {
     auto session = Session::create(scene, device, {});
     if (!session) return session.error();
-    PlanTrial trial;
+    Autotune trial;
     trial.tried_.backend = backendName(device.backend());
     trial.tried_.plan = plan;
     trial.session_ = std::move(*session);
@@ -38,7 +38,7 @@ Result<PlanTrial> PlanTrial::create(const SceneFile& scene, Device& device, Plan
     return trial;
 }
 
-Status PlanTrial::run(const DrawFrame& draw, int frames) {
+Status Autotune::run(const DrawFrame& draw, int frames) {
     Session& session = *session_;
     Device& device = session.world().device();
     double whole = 0, stepping = 0, drawing = 0;
@@ -78,18 +78,18 @@ Status PlanTrial::run(const DrawFrame& draw, int frames) {
     return ok();
 }
 
-void PlanTrial::forget() {
+void Autotune::forget() {
     for (std::vector<double>* ms : {&frame_, &step_, &draw_}) ms->clear();
     tried_.passes.clear();
     tried_.drawing.clear();
     frames_ = 0;
 }
 
-bool PlanTrial::couldHelp() const { return work_->plan() == tried_.plan && (tried_.plan != Plan::thesis || work_->helped()); }
+bool Autotune::couldHelp() const { return work_->plan() == tried_.plan && (tried_.plan != Plan::thesis || work_->helped()); }
 
-double PlanTrial::lastMs() const { return lastMs_; }
+double Autotune::lastMs() const { return lastMs_; }
 
-PlanTried PlanTrial::told() const {
+PlanTried Autotune::told() const {
     PlanTried all = tried_;
     all.frameMs = spreadOf(frame_);
     all.turns = frame_;
@@ -106,7 +106,7 @@ namespace {
 struct Contest {
     const PlanRequest& request;
     std::vector<std::unique_ptr<Device>> devices = {};
-    std::vector<PlanTrial> trials = {};
+    std::vector<Autotune> trials = {};
     std::optional<Error> why = {};  // the first device cannot
 
     void leaveOut(std::string_view backend, const std::string& sentence) const {
@@ -120,7 +120,7 @@ struct Contest {
             if (std::string_view(backend) != backendName(device.backend())) continue;  // there is none
             const bool cpu = device.backend() == Backend::cpu;
             for (const Plan plan : {Plan::alone, cpu ? Plan::behind : Plan::thesis}) {
-                Result<PlanTrial> made = PlanTrial::create(request.scene, device, plan, {});
+                Result<Autotune> made = Autotune::create(request.scene, device, plan, {});
                 if (!made) {
                     leaveOut(nameOf({.backend = backend, .plan = plan}), made.error().message);
                     if (plan != Plan::alone) device.forgiveFull();  // what is there already fits
@@ -138,7 +138,7 @@ struct Contest {
         double best = std::numeric_limits<double>::max();
         for (size_t k = 0; k < trials.size(); ++k) {
             const size_t who = (k + static_cast<size_t>(at)) % trials.size();  // nobody always comes first
-            PlanTrial& trial = trials[who];
+            Autotune& trial = trials[who];
             request.progress((at + static_cast<double>(k) / static_cast<double>(trials.size())) / (kTurns + 1), nameOf(trial.told()));
             Device& device = trial.session().world().device();
             if (device.health().state == DeviceHealth::works) {
@@ -150,7 +150,7 @@ struct Contest {
             best = std::min(best, ms[who]);
         }
         size_t k = 0;
-        std::erase_if(trials, [&](const PlanTrial&) { return !(ms[k++] <= far * best); });
+        std::erase_if(trials, [&](const Autotune&) { return !(ms[k++] <= far * best); });
         return ok();
     }
 };
@@ -166,12 +166,12 @@ Result<std::vector<PlanTried>> tryPlans(const PlanRequest& request) {
     const double start = hostSeconds();
     // Kernels are compiled, caches filled: that turn counts for nobody.
     if (Status done = contest.turn(0, 2, kFarBehindFirst); !done) return done.error();
-    for (PlanTrial& trial : contest.trials) trial.forget();
+    for (Autotune& trial : contest.trials) trial.forget();
     for (int at = 1; at <= kTurns && (at == 1 || hostSeconds() - start < request.seconds); ++at)
         if (Status done = contest.turn(at, kFramesATurn, kFarBehind); !done) return done.error();
     if (contest.trials.empty()) return contest.why.value_or(failed("no device could try the scene"));
     std::vector<PlanTried> all;
-    for (const PlanTrial& trial : contest.trials) all.push_back(trial.told());
+    for (const Autotune& trial : contest.trials) all.push_back(trial.told());
     std::stable_sort(all.begin(), all.end(), [](const PlanTried& a, const PlanTried& b) { return a.frameMs.median < b.frameMs.median; });
     return all;
 }

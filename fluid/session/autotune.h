@@ -1,4 +1,4 @@
-// PlanTrial: plans of cooperation, tried on a scene, in turns, to find the fastest here. `--cooperate auto` and chapter 2's bench share it.
+// Autotune: plans of cooperation, tried on a scene, in turns, to find the fastest here. `--cooperate auto` and chapter 2's bench share it.
 #pragma once
 
 #include <functional>
@@ -33,10 +33,10 @@ std::string nameOf(const PlanTried& tried);  // "cpu", "gl, thesis", "cpu, behin
 // Draws the session as it is, until it is drawn; calls `uploaded` once nothing more is read of its world. `passes`: what it took.
 using DrawFrame = std::function<Status(Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes)>;
 
-class PlanTrial {
+class Autotune {
   public:
     // From the scene's start. Error: as Session::create.
-    static Result<PlanTrial> create(const SceneFile& scene, Device& device, Plan plan, const Log& log);
+    static Result<Autotune> create(const SceneFile& scene, Device& device, Plan plan, const Log& log);
     // One turn: `frames` frames, each stepped and drawn, after one that is not counted. Error: it cannot be drawn; (failed) the device has
     // failed.
     Status run(const DrawFrame& draw, int frames);
@@ -47,7 +47,7 @@ class PlanTrial {
     PlanTried told() const;
 
   private:
-    PlanTrial() = default;
+    Autotune() = default;
 
     PlanTried tried_;
     std::unique_ptr<Session> session_;

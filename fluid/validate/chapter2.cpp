@@ -64,10 +64,10 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
     for (const int times : request.times) {
         Result<SceneFile> scene = sceneOf(request.particles, times);
         if (!scene) return scene.error();
-        std::vector<PlanTrial> all;
+        std::vector<Autotune> all;
         for (const std::unique_ptr<Device>& device : devices)
             for (const Plan plan : {Plan::alone, device->backend() == Backend::cpu ? Plan::behind : Plan::thesis}) {
-                Result<PlanTrial> made = PlanTrial::create(*scene, *device, plan, request.log);
+                Result<Autotune> made = Autotune::create(*scene, *device, plan, request.log);
                 if (!made) return made.error();
                 all.push_back(std::move(*made));
             }
@@ -75,11 +75,11 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
             for (size_t turn = 0; turn < all.size(); ++turn) {
                 chapter.stopped = chapter.stopped || !request.goOn();
                 if (chapter.stopped) return chapter;
-                PlanTrial& trial = all[(turn + static_cast<size_t>(run)) % all.size()];  // nobody always comes first
+                Autotune& trial = all[(turn + static_cast<size_t>(run)) % all.size()];  // nobody always comes first
                 if (Status done = trial.run(draw, kFrames); !done) return done.error();
             }
         const size_t first = chapter.rows.size();
-        for (const PlanTrial& trial : all) {
+        for (const Autotune& trial : all) {
             chapter.rows.push_back({static_cast<int>(trial.session().world().stats().particles), trial.told()});
             request.report(chapter.rows.back());
         }

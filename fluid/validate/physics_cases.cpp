@@ -31,7 +31,7 @@ constexpr PhysicsCase kCases[] = {
      runTension},
     {"flow", "drops and films on skins: Nusselt 1916, Furmidge 1962, Le Grand et al. 2005, one path whatever the layout, the ledger", "",
      runFlow, "flow"},
-    {"surface", "the drawn surface against a sphere, a level and the ray-marched truth, and how still a still pool's picture is", "",
+    {"surface", "the drawn surface against a sphere, a level and the ray-marched reference, and how still a still pool's picture is", "",
      runSurface, "narrow_range"},
 };
 

@@ -1,4 +1,4 @@
-// The water's surface as it is drawn, against spheres and planes and against the ray-marched truth (fluid/render/raymarch.h).
+// The water's surface as it is drawn, against spheres and planes and against the ray-marched reference (fluid/render/raymarch.h).
 #include "fluid/validate/surface.h"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ std::vector<std::string> surfaceMethods() {
     std::vector<std::string> names;
     for (const FilterRow& row : filters().rows)
         if (std::string_view(row.name) != "none") names.emplace_back(row.name);
-    names.emplace_back(kSurfaceTruth);
+    names.emplace_back(kSurfaceReference);
     return names;
 }
 
@@ -54,7 +54,7 @@ Result<Outcome> runSurface(const CaseSettings& settings) {
         u.found(s.shape->name, s.errors, s.shape->whole, s.shape->judged ? std::optional(kMostDegrees) : std::nullopt);
         u.outcome.particles = std::max(u.outcome.particles, static_cast<uint32_t>(s.shape->splats.at.size()));
     }
-    if (settings.method != kSurfaceTruth) {
+    if (settings.method != kSurfaceReference) {
         const Result<MomentErrors> moment = trial->moment(look);
         if (!moment) return moment.error();
         if (trial->stopped()) return u.outcome;

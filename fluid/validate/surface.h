@@ -8,7 +8,7 @@
 
 namespace rivulet {
 
-// The filters, the default first, and "truth": the ray-marched iso-surface itself, against analytic shapes alone.
+// The filters, the default first, and "reference": the ray-marched iso-surface itself, against analytic shapes alone.
 std::vector<std::string> surfaceMethods();
 
 // Normals' errors in deg, depths' in radii of a drawn particle, flicker in 255ths. Error (failed): there is no OpenGL.

@@ -18,12 +18,12 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
     SurfaceChart chart;
     chart.width = trial->width();
     chart.height = trial->height();
-    chart.stillFrames = 30;  // the truth takes seconds for each
+    chart.stillFrames = 30;  // the reference takes seconds for each
     chart.drawnBy = trial->drawnBy();
     std::vector<SurfaceLook> looks;
     for (const std::string& filter : surfaceMethods()) {
         looks.push_back({filter, "fine"});
-        if (filter == kSurfaceTruth) continue;
+        if (filter == kSurfaceReference) continue;
         looks.push_back({filter, "fine", kShortReach});
         looks.push_back({filter, "fast"});
     }
@@ -37,7 +37,7 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
         if (!shapes) return shapes.error();
         for (const ShapeErrors& s : *shapes)
             if (s.shape->judged) (s.shape->whole ? row.sphere : row.slab) = s.errors;
-        if (look.filter != kSurfaceTruth) {
+        if (look.filter != kSurfaceReference) {
             const Result<MomentErrors> moment = trial->moment(look);
             if (!moment) return moment.error();
             row.moment = *moment;

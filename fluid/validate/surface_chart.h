@@ -17,12 +17,12 @@ struct SurfaceChartRow {
     SurfaceLook look;
     DrawTimes times;                     // of the dam break's moment
     SurfaceErrors sphere, slab;          // of the shapes that are judged
-    std::optional<MomentErrors> moment;  // against the truth: not of itself
+    std::optional<MomentErrors> moment;  // against the reference: not of itself
     double flicker = 0;                  // of 255
 };
 
 struct SurfaceChart {
-    std::vector<SurfaceChartRow> rows;  // the default filter first, the truth last
+    std::vector<SurfaceChartRow> rows;  // the default filter first, the reference last
     int width = 0, height = 0;          // pixels
     size_t particles = 0;               // of the dam break
     int stillFrames = 0;

@@ -110,7 +110,7 @@ std::string csvOf(const SurfaceChart& chart, const std::string& machine) {
 }
 
 Plot plotOf(const SurfaceChart& chart) {
-    Plot plot{"The drawn dam break against the truth", "ms for the water", "normals off, median, deg", {}};
+    Plot plot{"The drawn dam break against the reference", "ms for the water", "normals off, median, deg", {}};
     for (const SurfaceChartRow& r : chart.rows)
         if (r.moment)
             plot.curves.push_back(
@@ -125,7 +125,8 @@ std::string msText(const Spread& ms) {
 std::string pageOf(const SurfaceChart& chart, const std::string& machine, const std::string& command, bool picture) {
     std::string text = fmt::format(
         "# The drawn surface: quality against time\n\n"
-        "Written by `{}` on: {}, drawn by {}, at {}x{} pixels, from [surface.csv](surface.csv). The truth is the iso-surface of the same "
+        "Written by `{}` on: {}, drawn by {}, at {}x{} pixels, from [surface.csv](surface.csv). The reference is the iso-surface of the "
+        "same "
         "particles, ray-marched in double; how figures are taken is what `rivulet validate surface` does.\n\n",
         command, machine, chart.drawnBy, chart.width, chart.height);
     if (picture) text += "![normals' error against ms](surface.svg)\n\n";
@@ -152,7 +153,7 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
     text += fmt::format(
         "\n## What is known exactly, and what should not move\n\nA drop that has settled against a sphere, and a pool's level; then a "
         "pool at rest that goes on being simulated, {} frames of it: flicker is what its pixels differ from their mean by, rms. The "
-        "truth's "
+        "reference's "
         "own is how far the water does move.\n\n"
         "| filter | quality | sphere: normals, mean, deg | depth, rms, radii | slab: normals | depth | flicker, of 255 |\n"
         "| --- | --- | --- | --- | --- | --- | --- |\n",

@@ -16,21 +16,21 @@ namespace {
 constexpr double kMoment = 0.6;          // s, of the dam break
 constexpr int kBefore = 3, kDraws = 15;  // of a picture that is timed
 // Frames, of the pool: what tension, walls and the lattice have set in motion dies until then, and the largest speed is 6 mm/s. After half
-// as many it is 130 mm/s, and the truth's picture changes more than the drawn one (1.55 and 1.11 of 255).
+// as many it is 130 mm/s, and the reference's picture changes more than the drawn one (1.55 and 1.11 of 255).
 constexpr int kSettling = 240;
 
 // `spacing`: m, of what is drawn.
 SceneFile sceneOf(const SceneFile& scene, const SurfaceLook& look, float spacing) {
     SceneFile out = scene;
-    const bool truth = look.filter == kSurfaceTruth;
-    out.look.renderer = truth ? "truth" : "screen_space";
-    if (!truth) out.look.filter = look.filter;
+    const bool reference = look.filter == kSurfaceReference;
+    out.look.renderer = reference ? "reference" : "screen_space";
+    if (!reference) out.look.filter = look.filter;
     if (!look.quality.empty()) out.look.quality = look.quality;
     if (look.reach > 0) out.look.smoothing = look.reach * spacing;
     return out;
 }
 
-SurfaceMap truthMap(const SplatSet& splats, const FrameView& view) {
+SurfaceMap referenceMap(const SplatSet& splats, const FrameView& view) {
     const Result<IsoSurface> surface = IsoSurface::create(splats.at, splats.spacing);
     ASSERT(surface, "particles have a spacing of more than 0");
     RaymarchPicture picture = raymarch(*surface, view, {.box = splats.box, .until = {}});
@@ -86,8 +86,8 @@ Result<SurfaceMap> SurfaceTrial::drawn(const SplatSet& splats, const FrameView& 
 Result<std::vector<ShapeErrors>> SurfaceTrial::shapes(const SurfaceLook& look) {
     std::vector<ShapeErrors> all;
     for (const SurfaceShape& shape : shapes_) {
-        Result<SurfaceMap> map = look.filter == kSurfaceTruth
-                                     ? truthMap(shape.splats, shape.view)
+        Result<SurfaceMap> map = look.filter == kSurfaceReference
+                                     ? referenceMap(shape.splats, shape.view)
                                      : drawn(shape.splats, shape.view, sceneOf(scene_, look, shape.splats.spacing));
         if (!map) return map.error();
         all.push_back({&shape, compareSurfaces(*map, shape.reference, scene_.look.radiusSpacings * shape.splats.spacing)});
@@ -120,10 +120,10 @@ Status SurfaceTrial::reachMoment() {
     now_.box.add(world.params().box.min);
     now_.box.add(world.params().box.max);
     view_ = viewOf(scene_, *session_);
-    truth_ = truthMap(now_, view_);
-    Result<std::vector<uint8_t>> picture = pictureOf(sceneOf(scene_, {kSurfaceTruth}, now_.spacing));
+    reference_ = referenceMap(now_, view_);
+    Result<std::vector<uint8_t>> picture = pictureOf(sceneOf(scene_, {kSurfaceReference}, now_.spacing));
     if (!picture) return picture.error();
-    truthPicture_ = std::move(*picture);
+    referencePicture_ = std::move(*picture);
     return ok();
 }
 
@@ -135,8 +135,8 @@ Result<MomentErrors> SurfaceTrial::moment(const SurfaceLook& look) {
     if (!map) return map.error();
     const Result<std::vector<uint8_t>> picture = pictureOf(scene);
     if (!picture) return picture.error();
-    return MomentErrors{compareSurfaces(*map, truth_, scene.look.radiusSpacings * now_.spacing),
-                        flipMean(truthPicture_, *picture, width(), height())};
+    return MomentErrors{compareSurfaces(*map, reference_, scene.look.radiusSpacings * now_.spacing),
+                        flipMean(referencePicture_, *picture, width(), height())};
 }
 
 Result<std::vector<double>> SurfaceTrial::drawMs(const FrameView& view, const SceneFile& scene, const FluidView& fluid, int before,
@@ -157,13 +157,13 @@ Result<DrawTimes> SurfaceTrial::times(const SurfaceLook& look) {
     const SceneFile scene = sceneOf(scene_, look, now_.spacing);
     const Result<FluidView> fluid = upload_.view(session_->world(), scene.look);
     if (!fluid) return fluid.error();
-    const bool truth = look.filter == kSurfaceTruth;
+    const bool reference = look.filter == kSurfaceReference;
     // What was marched for a picture is not marched again: from a hair aside it is.
     FrameView view = view_;
-    if (truth) view.view[3].x += 1.0e-5F;
+    if (reference) view.view[3].x += 1.0e-5F;
     const Result<std::vector<double>> dry = drawMs(view, scene, FluidView{}, kBefore, kDraws);
     if (!dry) return dry.error();
-    Result<std::vector<double>> wet = drawMs(view, scene, *fluid, truth ? 0 : kBefore, truth ? 1 : kDraws);
+    Result<std::vector<double>> wet = drawMs(view, scene, *fluid, reference ? 0 : kBefore, reference ? 1 : kDraws);
     if (!wet) return wet.error();
     DrawTimes times{spreadOf(*wet), {}};
     const double without = spreadOf(*dry).median;
@@ -195,7 +195,7 @@ Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks, int 
         if (f == kSettling) {
             const HostParticles now = readParticles(world);
             for (const vec4& v : now.velocity) pool.fastest = std::max(pool.fastest, 1000 * double{glm::length(vec3(v))});
-            const SurfaceMap map = truthMap({now.position, scene->fluid.spacing, {}}, view);
+            const SurfaceMap map = referenceMap({now.position, scene->fluid.spacing, {}}, view);
             std::vector<bool> water(map.depth.size());  // pictures have their top row first
             const auto row = static_cast<size_t>(width()), rows = static_cast<size_t>(height());
             for (size_t i = 0; i < water.size(); ++i) water[i] = map.there((rows - 1 - i / row) * row + i % row);

@@ -19,11 +19,11 @@ namespace rivulet {
 
 // A way to draw.
 struct SurfaceLook {
-    std::string filter;        // a row of filters(), or kSurfaceTruth: the ray-marched iso-surface itself
+    std::string filter;        // a row of filters(), or kSurfaceReference: the ray-marched iso-surface itself
     std::string quality = {};  // of look.quality; "" = as the scene says
     float reach = 0;           // spacings, of the smoothing; 0 = as the scene says
 };
-inline constexpr const char* kSurfaceTruth = "truth";
+inline constexpr const char* kSurfaceReference = "reference";
 constexpr double kMomentShare = 0.3;  // of the whole, when the moment is reached
 
 struct ShapeErrors {
@@ -49,9 +49,9 @@ class SurfaceTrial {
     static Result<SurfaceTrial> create(const CaseSettings& settings);
 
     Result<std::vector<ShapeErrors>> shapes(const SurfaceLook& look);
-    // A dam that breaks, at a moment: the surface and the picture against the truth's, which is no look here.
+    // A dam that breaks, at a moment: the surface and the picture against the reference's, which is no look here.
     Result<MomentErrors> moment(const SurfaceLook& look);
-    // What a picture of that moment takes; the truth's is drawn once.
+    // What a picture of that moment takes; the reference's is drawn once.
     Result<DrawTimes> times(const SurfaceLook& look);
     // A pool that has come to rest goes on being simulated: what moves in its picture should not.
     Result<StillPool> flicker(std::span<const SurfaceLook> looks, int stillFrames);
@@ -84,8 +84,8 @@ class SurfaceTrial {
     FluidUpload upload_;
     SplatSet now_;
     FrameView view_;
-    SurfaceMap truth_;
-    std::vector<uint8_t> truthPicture_;
+    SurfaceMap reference_;
+    std::vector<uint8_t> referencePicture_;
     bool stopped_ = false;
 };
 

@@ -1,10 +1,10 @@
 // Drops where nothing weighs anything: the pressure in them is 2 sigma / R (Laplace), and pulled long they swing at
 // w^2 = n (n - 1) (n + 2) sigma / (rho R^3), n = 2 (Lamb 1932).
 //
-// The force of the surface (fluid/forces/cohesion) acts at the surface alone: inside a drop at rest the method's own pressure is all there is, and
-// a gauge there reads what the surface presses with. Particles are strewn: a ball cut out of a lattice stays a crystal, which carries loads
-// of its own (its pressures are a fifth higher). What stays in a packing at rest still differs from start to start by a tenth, so a
-// pressure is the mean of three.
+// The force of the surface (fluid/forces/cohesion) acts at the surface alone: inside a drop at rest the method's own pressure is all there
+// is, and a gauge there reads what the surface presses with. Particles are strewn: a ball cut out of a lattice stays a crystal, which
+// carries loads of its own (its pressures are a fifth higher). What stays in a packing at rest still differs from start to start by a
+// tenth, so a pressure is the mean of three.
 #include <fmt/format.h>
 
 #include <cmath>

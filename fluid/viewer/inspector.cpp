@@ -9,7 +9,7 @@ namespace rivulet {
 
 namespace {
 
-// In the order of WatchWindow::Tab. `wide`: of the window, in heights of its letters.
+// In the order of Inspector::Tab. `wide`: of the window, in heights of its letters.
 constexpr struct {
     const char* name;
     float wide;
@@ -68,9 +68,9 @@ std::vector<GraphPanel::Graph> graphsOfARun() {
 
 }  // namespace
 
-WatchWindow::WatchWindow() : graphs_(graphsOfARun()) {}
+Inspector::Inspector() : graphs_(graphsOfARun()) {}
 
-void WatchWindow::clear() {
+void Inspector::clear() {
     graphs_.clear();
     chart_.clear();
     voxels_.clear();
@@ -80,7 +80,7 @@ void WatchWindow::clear() {
     time_ = 0;
 }
 
-void WatchWindow::stepped(const Session& session, double ms) {
+void Inspector::stepped(const Session& session, double ms) {
     const FluidWorld& world = session.world();
     const FluidStats& late = world.stats();
     const bool water = world.particles().count > 0;  // or drops on skins alone
@@ -128,7 +128,7 @@ void WatchWindow::stepped(const Session& session, double ms) {
 
 // Ten times a second, and only while somebody looks. On a GPU the world's figures are of another frame than those of the skins: they do
 // not add up to the last drop, and the error is left out.
-void WatchWindow::askLedger(const Session& session) {
+void Inspector::askLedger(const Session& session) {
     constexpr int kEvery = 6, kGiveUp = 60;  // steps: a device that is lost tells nothing
     if (shown_ != Tab::graphs) ledgers_->last.reset();
     if (shown_ != Tab::graphs || ++sinceAsked_ < (ledgers_->asked ? kGiveUp : kEvery)) return;
@@ -147,13 +147,13 @@ void WatchWindow::askLedger(const Session& session) {
     });
 }
 
-void WatchWindow::hide(SceneRenderer& renderer) {
+void Inspector::hide(SceneRenderer& renderer) {
     shown_ = Tab::none;
     renderer.describe(false);
 }
 
 // A tab that needs another width leaves the right edge where it is, and so does a display that changes its size.
-void WatchWindow::anchor(float margin, float room) {
+void Inspector::anchor(float margin, float room) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     if (width_ == 0) corner_ = vec2(display.x - margin, margin);
     if (display_ > 0) corner_.x += display.x - display_;
@@ -169,8 +169,8 @@ void WatchWindow::anchor(float margin, float room) {
     display_ = display.x;
 }
 
-bool WatchWindow::draw(const Session& session, SceneRenderer& renderer, const Timeline& timeline, const ProfilerPanel& profiler,
-                       SceneFile& draft, float margin, float room) {
+bool Inspector::draw(const Session& session, SceneRenderer& renderer, const Timeline& timeline, const ProfilerPanel& profiler,
+                     SceneFile& draft, float margin, float room) {
     if (asked_ != Tab::none) open_ = asked_;
     anchor(margin, room);
     constexpr float kNarrow = 850;  // there the picture comes first
@@ -206,8 +206,8 @@ bool WatchWindow::draw(const Session& session, SceneRenderer& renderer, const Ti
     return recreate;
 }
 
-bool WatchWindow::drawTab(const Session& session, SceneRenderer& renderer, const Timeline& timeline, const ProfilerPanel& profiler,
-                          SceneFile& draft, float height) {
+bool Inspector::drawTab(const Session& session, SceneRenderer& renderer, const Timeline& timeline, const ProfilerPanel& profiler,
+                        SceneFile& draft, float height) {
     const float across = std::min(width_ - 2 * ImGui::GetStyle().WindowPadding.x, ImGui::GetContentRegionAvail().x);
     switch (shown_) {
         case Tab::times:

@@ -1,4 +1,4 @@
-// WatchWindow: what a run is doing, at the right of the window, a tab each: times, graphs, chart, frame graph, voxels. What is not shown
+// Inspector: what a run is doing, at the right of the window, a tab each: times, graphs, chart, frame graph, voxels. What is not shown
 // costs nothing but a few figures kept of each step.
 #pragma once
 
@@ -14,11 +14,11 @@
 
 namespace rivulet {
 
-class WatchWindow {
+class Inspector {
   public:
     enum class Tab { times, graphs, chart, frameGraph, voxels, none };
 
-    WatchWindow();
+    Inspector();
     // After a step that took `ms` on the wall.
     void stepped(const Session& session, double ms);
     void clear();  // a new session begins

@@ -75,8 +75,8 @@ struct Place {
 };
 
 template <class V, class S>
-Place<V> placeIn(const SceneHand::Thing& thing, S& scene) {
-    using Kind = SceneHand::Thing::Kind;
+Place<V> placeIn(const Manipulator::Thing& thing, S& scene) {
+    using Kind = Manipulator::Thing::Kind;
     const size_t k = thing.index;
     switch (thing.kind) {
         case Kind::collider:
@@ -96,8 +96,8 @@ Place<V> placeIn(const SceneHand::Thing& thing, S& scene) {
     }
     return {};
 }
-Place<vec3> placeOf(const SceneHand::Thing& thing, SceneFile& scene) { return placeIn<vec3>(thing, scene); }
-Place<const vec3> placeOf(const SceneHand::Thing& thing, const SceneFile& scene) { return placeIn<const vec3>(thing, scene); }
+Place<vec3> placeOf(const Manipulator::Thing& thing, SceneFile& scene) { return placeIn<vec3>(thing, scene); }
+Place<const vec3> placeOf(const Manipulator::Thing& thing, const SceneFile& scene) { return placeIn<const vec3>(thing, scene); }
 
 }  // namespace
 
@@ -115,7 +115,7 @@ std::optional<vec2> seenAt(const Camera& camera, const vec3& p, const vec2& size
 }
 
 // They stand in the middle of what is drawn, moved as far as the draft already says.
-std::optional<SceneHand::Handles> SceneHand::handles(const Camera& camera, const Session& session, const SceneFile& draft) const {
+std::optional<Manipulator::Handles> Manipulator::handles(const Camera& camera, const Session& session, const SceneFile& draft) const {
     // A body that floats is thrown; where it was at the start is a number in the panel.
     if (chosen_.kind == Thing::Kind::body && (chosen_.index >= draft.bodies.size() || !draft.bodies[chosen_.index].fixed))
         return std::nullopt;
@@ -127,7 +127,7 @@ std::optional<SceneHand::Handles> SceneHand::handles(const Camera& camera, const
     return Handles{centre, kReach * glm::distance(camera.position, centre)};
 }
 
-SceneHand::Part SceneHand::partAt(const Handles& h, const Camera& camera, const vec2& mouse, const vec2& size, bool turns) const {
+Manipulator::Part Manipulator::partAt(const Handles& h, const Camera& camera, const vec2& mouse, const vec2& size, bool turns) const {
     Part nearest = Part::none;
     float most = kNear;
     const auto middle = seenAt(camera, h.centre, size);
@@ -149,7 +149,7 @@ SceneHand::Part SceneHand::partAt(const Handles& h, const Camera& camera, const 
     return nearest;
 }
 
-void SceneHand::grab(const ViewRay& ray, const Camera& camera, Session& session) {
+void Manipulator::grab(const ViewRay& ray, const Camera& camera, Session& session) {
     const auto met = session.meet(ray.origin, ray.direction);
     if (!met || met->thing.kind != Thing::Kind::body || session.replaying() != nullptr) return;
     const BodyParams& body = session.scene().bodies[met->thing.index];
@@ -161,7 +161,7 @@ void SceneHand::grab(const ViewRay& ray, const Camera& camera, Session& session)
     chosen_ = met->thing;
 }
 
-SceneHand::Asks SceneHand::take(const InputEvents& input, const Camera& camera, Session& session, SceneFile& draft) {
+Manipulator::Asks Manipulator::take(const InputEvents& input, const Camera& camera, Session& session, SceneFile& draft) {
     Asks asks;
     const vec2 size(glm::max(input.size, ivec2(1)));
     const ViewRay ray = rayThrough(camera, input.mouse, size);
@@ -218,7 +218,7 @@ SceneHand::Asks SceneHand::take(const InputEvents& input, const Camera& camera, 
     return asks;
 }
 
-bool SceneHand::undo(SceneFile& draft, Asks& asks) {
+bool Manipulator::undo(SceneFile& draft, Asks& asks) {
     if (!before_) return false;
     const Place<vec3> place = placeOf(before_->thing, draft);
     if (place.position == nullptr || *place.position != before_->movedTo) return false;
@@ -230,9 +230,9 @@ bool SceneHand::undo(SceneFile& draft, Asks& asks) {
     return true;
 }
 
-void SceneHand::letGo() { held_.reset(); }
+void Manipulator::letGo() { held_.reset(); }
 
-void SceneHand::draw(const InputEvents& input, const Camera& camera, const Session& session, const SceneFile& draft) const {
+void Manipulator::draw(const InputEvents& input, const Camera& camera, const Session& session, const SceneFile& draft) const {
     const vec2 size(glm::max(input.size, ivec2(1)));
     const float scale = size.x / std::max(ImGui::GetIO().DisplaySize.x, 1.0F);  // window coordinates in one of ImGui's
     ImDrawList& list = *ImGui::GetBackgroundDrawList();

@@ -1,4 +1,4 @@
-// SceneHand: what a person takes hold of in the picture. Bodies are grabbed and thrown while water flows; meshes, emitters and sinks are
+// Manipulator: what a person takes hold of in the picture. Bodies are grabbed and thrown while water flows; meshes, emitters and sinks are
 // chosen by a click or in the tree, and moved and turned by the handles that then stand on them.
 #pragma once
 
@@ -19,7 +19,7 @@ ViewRay rayThrough(const Camera& camera, const vec2& mouse, const vec2& size);
 // The place in the window where `p` is seen; nothing: behind the camera.
 std::optional<vec2> seenAt(const Camera& camera, const vec3& p, const vec2& size);
 
-class SceneHand {
+class Manipulator {
   public:
     using Thing = Session::Thing;
     // What an edit of the scene needs.

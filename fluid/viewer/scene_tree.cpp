@@ -15,7 +15,7 @@ using Thing = Session::Thing;
 
 class Tree {
   public:
-    Tree(const Session& session, SceneFile& draft, SceneHand& hand) : session_(session), draft_(draft), hand_(hand) {}
+    Tree(const Session& session, SceneFile& draft, Manipulator& hand) : session_(session), draft_(draft), hand_(hand) {}
 
     void meshes() {
         const std::vector<Node>& nodes = session_.solids().nodes();
@@ -91,12 +91,12 @@ class Tree {
 
     const Session& session_;
     SceneFile& draft_;
-    SceneHand& hand_;
+    Manipulator& hand_;
 };
 
 }  // namespace
 
-TreeAsks drawSceneTree(const Session& session, SceneFile& draft, SceneHand& hand) {
+TreeAsks drawSceneTree(const Session& session, SceneFile& draft, Manipulator& hand) {
     // As high as it was the frame before; its own window, so that it ends where those of the parameters do.
     ImGuiStorage& kept = *ImGui::GetStateStorage();
     const ImGuiID id = ImGui::GetID("things");

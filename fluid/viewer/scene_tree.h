@@ -13,6 +13,6 @@ struct TreeAsks {
 };
 
 // Inside an ImGui window. A click chooses; a box says whether a thing is drawn.
-TreeAsks drawSceneTree(const Session& session, SceneFile& draft, SceneHand& hand);
+TreeAsks drawSceneTree(const Session& session, SceneFile& draft, Manipulator& hand);
 
 }  // namespace rivulet

@@ -74,7 +74,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
         if (level >= LogLevel::notice) kept->add(text);
     };
     v.gl_ = currentGlFacts();
-    v.firstStart_ = FirstStart(options.seen);
+    v.welcomeScreen_ = WelcomeScreen(options.seen);
     v.share_ = options.share;
     v.clDevice_ = options.device;
     v.longestStep_ = options.longestStep;
@@ -134,8 +134,8 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     v.begin();
     v.draft_ = v.session_->scene();
     v.rememberOpened(false);
-    v.haste_.begin(v.gl_.software);
-    v.renderer_->hurry(v.haste_.fast());
+    v.adaptiveQuality_.begin(v.gl_.software);
+    v.renderer_->hurry(v.adaptiveQuality_.fast());
     v.reload_.follow(scene);
     return viewer;
 }
@@ -151,7 +151,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     InputEvents scaled = input;
     scaled.scale *= zoom_;
     ui_.begin(scaled, seconds);
-    const bool greets = firstStart_.shown();  // the key that ends it does nothing else
+    const bool greets = welcomeScreen_.shown();  // the key that ends it does nothing else
     if (!greets && input.pressed(key::kEscape) && (saving_ || browser_.shown() || showHelp_)) closeTopmost();
     if (!greets && !ui_.wantsKeyboard()) takeKeys(input);
     if (!greets) takeKeysAlways(input);
@@ -165,7 +165,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     reload_.draw();
     if (saving_) drawSaving();
     if (browser_.shown()) chooseScene();
-    firstStart_.draw(input);
+    welcomeScreen_.draw(input);
     panelCost_.made = 1000 * (threadSeconds() - began);
     takeDropped(input);
     const Camera camera = cameraOf(draft_.camera, session_->bounds());
@@ -205,7 +205,7 @@ void Viewer::takeKeys(const InputEvents& input) {
         brush_.turn(false);
     }
     if (control && input.pressed('Z')) {
-        if (SceneHand::Asks asks; hand_.undo(draft_, asks)) {
+        if (Manipulator::Asks asks; hand_.undo(draft_, asks)) {
             edited_ = true;
             anew_ = asks.recreate;
         } else if (left_) {
@@ -233,7 +233,7 @@ void Viewer::takeKeysAlways(const InputEvents& input) {
 
 bool Viewer::handle(const InputEvents& input, bool& recreate) {
     if (input.size.x <= 0 || input.size.y <= 0) return false;
-    const SceneHand::Asks asks = hand_.take(input, cameraOf(draft_.camera, session_->bounds()), *session_, draft_);
+    const Manipulator::Asks asks = hand_.take(input, cameraOf(draft_.camera, session_->bounds()), *session_, draft_);
     edited_ = edited_ || asks.edited;
     recreate = recreate || asks.recreate;
     return asks.mouse;
@@ -529,8 +529,8 @@ Status Viewer::draw(const InputEvents& input, GLuint framebuffer) {
     if (scene.look.split.empty() && scene.look.quality == "auto") {  // a half that is ray-marched says nothing of the other
         double ms = 0;
         for (const PassTime& pass : renderer_->times()) ms += pass.ms;
-        haste_.frame(ms);
-        renderer_->hurry(haste_.fast());
+        adaptiveQuality_.frame(ms);
+        renderer_->hurry(adaptiveQuality_.fast());
     }
     return ok();
 }

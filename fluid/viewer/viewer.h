@@ -55,10 +55,10 @@ class Viewer {
     void stepAtMost(uint64_t steps) { mostSteps_ = steps; }  // a plan that steps ahead of the picture begins none beyond
     const SceneFile& scene() const { return session_->scene(); }
     Session& session() { return *session_; }
-    WatchWindow& watch() { return watch_; }
-    const SceneHand& hand() const { return hand_; }
+    Inspector& watch() { return watch_; }
+    const Manipulator& hand() const { return hand_; }
     const PourBrush& brush() const { return brush_; }
-    void chooseThing(const SceneHand::Thing& thing) { hand_.choose(thing); }
+    void chooseThing(const Manipulator::Thing& thing) { hand_.choose(thing); }
     const SceneRenderer& renderer() const { return *renderer_; }
     // ms on the CPU for the last frame's panels: making them, and telling OpenGL of them.
     struct PanelCost {
@@ -67,7 +67,7 @@ class Viewer {
     const PanelCost& panelCost() const { return panelCost_; }
     const std::string& message() const { return message_; }  // what the last edit was refused for; "" = nothing
     const HotReload& reload() const { return reload_; }
-    bool greets() const { return firstStart_.shown(); }
+    bool greets() const { return welcomeScreen_.shown(); }
 
     // Shows another scene, this one until that is ready; a mistake in it is a message.
     void open(SceneFile scene) { startOpening(std::move(scene), true); }
@@ -142,9 +142,9 @@ class Viewer {
     FluidUpload upload_;
     UiLayer ui_;
     ProfilerPanel profiler_;
-    WatchWindow watch_;
+    Inspector watch_;
     gpu::Timer uiTimer_;
-    Haste haste_;
+    AdaptiveQuality adaptiveQuality_;
     GlFacts gl_;
     SceneFile draft_;    // what the panel edits; becomes the session's when it makes sense
     SceneFile settled_;  // as it was before the edit that is under way
@@ -163,10 +163,10 @@ class Viewer {
     uint64_t steps_ = 0, mostSteps_ = UINT64_MAX;
     std::function<Status(const Session&)> told_;
     SceneBrowser browser_;
-    SceneHand hand_;
+    Manipulator hand_;
     PourBrush brush_;
     bool anew_ = false;  // a key has asked for what needs a new world
-    FirstStart firstStart_;
+    WelcomeScreen welcomeScreen_;
     std::optional<VideoWriter> video_;
     ivec2 videoSize_{0};
     std::string videoPath_;

@@ -17,7 +17,7 @@ struct ViewerOptions {
     std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
     void* clipboard = nullptr;       // as UiLayer
     int width = 1280, height = 720;  // pixels, of what auto tries
-    std::string seen = {};           // as FirstStart
+    std::string seen = {};           // as WelcomeScreen
     double longestStep = 20;         // s: an edit after which a picture would take longer is refused
     // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
     std::function<Result<SharedGl>()> share = {};

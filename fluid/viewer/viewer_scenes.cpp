@@ -220,7 +220,7 @@ void Viewer::adopt(OpenedScene opened, bool other) {
     if (opened.renderer) {
         renderer_ = std::move(opened.renderer);
         renderer_->onSpan(timeline_.lane(kDrawingLane));
-        renderer_->hurry(haste_.fast());
+        renderer_->hurry(adaptiveQuality_.fast());
     }
     begin();
     const CameraParams camera = draft_.camera;

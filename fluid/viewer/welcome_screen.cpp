@@ -1,4 +1,4 @@
-// FirstStart: a quiet sheet over the picture; a file that can hold nothing but one line.
+// WelcomeScreen: a quiet sheet over the picture; a file that can hold nothing but one line.
 #include "fluid/viewer/welcome_screen.h"
 
 #include <imgui.h>
@@ -48,12 +48,12 @@ std::string seenFile() {
     return {};
 }
 
-FirstStart::FirstStart(std::string seen) : seen_(std::move(seen)) {
+WelcomeScreen::WelcomeScreen(std::string seen) : seen_(std::move(seen)) {
     std::error_code error;
     shown_ = !seen_.empty() && !fs::exists(seen_, error);
 }
 
-void FirstStart::draw(const InputEvents& input) {
+void WelcomeScreen::draw(const InputEvents& input) {
     if (!shown_) return;
     if (anyPressed(input)) {
         shown_ = false;

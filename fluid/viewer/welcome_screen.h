@@ -1,4 +1,4 @@
-// FirstStart: one screen that says what this is and what to try, for who opens the window for the first time.
+// WelcomeScreen: one screen that says what this is and what to try, for who opens the window for the first time.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace rivulet {
 // The file that says that somebody has seen it, $XDG_CONFIG_HOME/rivulet/seen, else ~/.config/rivulet/seen. "": there is no place for one.
 std::string seenFile();
 
-class FirstStart {
+class WelcomeScreen {
   public:
-    FirstStart() = default;
+    WelcomeScreen() = default;
     // Shown where no such file is; "": not at all.
-    explicit FirstStart(std::string seen);
+    explicit WelcomeScreen(std::string seen);
     bool shown() const { return shown_; }
     // Over all else, until any key or click: then it is never shown again. Between UiLayer's begin and draw.
     void draw(const InputEvents& input);

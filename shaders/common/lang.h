@@ -5,40 +5,47 @@
 #if defined(__cplusplus)
 #include "shaders/common/lang_cpp.h"
 #elif defined(__OPENCL_C_VERSION__)
-typedef float2 vec2; typedef float3 vec3; typedef float4 vec4; typedef int3 ivec3; typedef uint4 uvec4;
-typedef float real; typedef float3 real3;
+typedef float2 vec2;
+typedef float3 vec3;
+typedef float4 vec4;
+typedef int3 ivec3;
+typedef uint4 uvec4;
+typedef float real;
+typedef float3 real3;
 #define vec2(...) ((float2)(__VA_ARGS__))
 #define vec3(...) ((float3)(__VA_ARGS__))
 #define real3(...) ((float3)(__VA_ARGS__))
 #define vec4(...) ((float4)(__VA_ARGS__))
 #define ivec3(...) ((int3)(__VA_ARGS__))
 #undef abs
-#define abs(x) fabs(x)  /* of floats only, in every kernel */
+#define abs(x) fabs(x) /* of floats only, in every kernel */
 #define TO_IVEC3(v) convert_int3(v)
 #define TO_VEC3(v) convert_float3(v)
 #define TO_INT(x) ((int)(x))
 #define TO_UINT(x) ((uint)(x))
 #define TO_FLOAT(x) ((float)(x))
 #define TO_DOUBLE(x) ((double)(x))
-#define EXACT  /* before a declaration: its value is as written, nothing contracted; OpenCL says so by a pragma, see voxel/crossing.h */
+#define EXACT /* before a declaration: its value is as written, nothing contracted; OpenCL says so by a pragma, see voxel/crossing.h */
 #define FLOAT_BITS(f) as_uint(f)
 #define BITS_FLOAT(u) as_float(u)
 #define ATOMIC_ADD(x, v) atomic_add(&(x), v)
 #define ATOMIC_MIN(x, v) atomic_min(&(x), v)
 #define ATOMIC_MAX(x, v) atomic_max(&(x), v)
 #define ATOMIC_OR(x, v) atomic_or(&(x), v)
-#define ATOMIC_EXCHANGE(x, v) atomic_xchg(&(x), v)  /* of GPUs alone */
+#define ATOMIC_EXCHANGE(x, v) atomic_xchg(&(x), v) /* of GPUs alone */
 #define ATOMIC_READ(x) atomic_add(&(x), 0u)
-#define PREFETCH(x)  /* of memory that is soon asked for: a CPU's threads are few, and each waits */
+#define PREFETCH(x) /* of memory that is soon asked for: a CPU's threads are few, and each waits */
 #define FN static inline
-#define STRUCT(n) typedef struct n n; struct n
-#define GLOBAL(T, n) __global const T* n,
+#define STRUCT(n)       \
+    typedef struct n n; \
+    struct n
+#define GLOBAL(T, n) __global const T *n,
 #define PASS(n) n,
 #define RO(b, N, T, n) , __global const T* restrict n
 #define RW(b, N, T, n) , __global T* restrict n
 #define BUFFERS(P)
-#define SHARED_OUT(T, n, count)                      /* GLSL declares work-group memory outside the kernel ... */
-#define SHARED_IN(T, n, count) __local T n[count];   /* ... OpenCL inside it */
+#define SHARED_OUT(T, n, count)                    /* GLSL declares work-group memory outside the kernel ... */
+#define SHARED_IN(T, n, count) __local T n[count]; /* ... OpenCL inside it */
 #define KERNEL(name, P) __kernel __attribute__((reqd_work_group_size(LOCAL_SIZE, 1, 1))) void name(__constant P* params_ ARGS(RO, RW))
 #define PARAMS (*params_)
 #define THREAD_ID ((uint)get_global_id(0))
@@ -68,17 +75,27 @@ typedef float real; typedef float3 real3;
 #define STRUCT(n) struct n
 #define GLOBAL(T, n)
 #define PASS(n)
-#define RO(b, N, T, n) layout(std430, binding = b) readonly buffer N { T n[]; };
-#define RW(b, N, T, n) layout(std430, binding = b) buffer N { T n[]; };
-#define BUFFERS(P) layout(local_size_x = LOCAL_SIZE) in; layout(std140, binding = 0) uniform ParamBlock { P params_; }; uniform uint groupBase_; ARGS(RO, RW)
+#define RO(b, N, T, n) \
+    layout(std430, binding = b) readonly buffer N { T n[]; };
+#define RW(b, N, T, n) \
+    layout(std430, binding = b) buffer N { T n[]; };
+#define BUFFERS(P)                                                 \
+    layout(local_size_x = LOCAL_SIZE) in;                          \
+    layout(std140, binding = 0) uniform ParamBlock { P params_; }; \
+    uniform uint groupBase_;                                       \
+    ARGS(RO, RW)
 #define SHARED_OUT(T, n, count) shared T n[count];
 #define SHARED_IN(T, n, count)
 #define KERNEL(name, P) void main()
 #define PARAMS params_
-#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE)  /* a dispatch has 65535 groups at most: device gl makes several */
+#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE) /* a dispatch has 65535 groups at most: device gl makes several */
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID (gl_WorkGroupID.x + groupBase_)
-#define BARRIER { memoryBarrierShared(); barrier(); }
+#define BARRIER                \
+    {                          \
+        memoryBarrierShared(); \
+        barrier();             \
+    }
 #endif
 #if !defined(__cplusplus)  // what a lane is on a GPU: the particle itself
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))

@@ -6,13 +6,15 @@
 #include "engine/core/math.h"
 #define FN inline
 #define STRUCT(n) struct n
-#define GLOBAL(T, n) const T* n,
+#define GLOBAL(T, n) const T *n,
 #define PASS(n) n,
 #define EXACT
 #define TO_INT(x) static_cast<int>(x)
 #define TO_UINT(x) static_cast<unsigned>(x)
 #define TO_DOUBLE(x) static_cast<double>(x)
-namespace rivulet { using uint = unsigned; }
+namespace rivulet {
+using uint = unsigned;
+}
 
 #else
 
@@ -41,14 +43,27 @@ struct vec3 {
     INLINE vec3(float ax, float ay, float az) : x(ax), y(ay), z(az) {}
 };
 struct alignas(16) vec4 {
-    union { struct { float x, y, z, w; }; vec3 xyz; };
+    union {
+        struct {
+            float x, y, z, w;
+        };
+        vec3 xyz;
+    };
     vec4() = default;
     INLINE vec4(float ax, float ay, float az, float aw) : x(ax), y(ay), z(az), w(aw) {}
     INLINE vec4(const vec3& v, float aw) : x(v.x), y(v.y), z(v.z), w(aw) {}
 };
 typedef float Four __attribute__((vector_size(16)));  // four at once, where the compiler would take one after the other
-INLINE Four fourOf(const vec4& a) { Four v; memcpy(&v, &a, 16); return v; }
-INLINE vec4 vec4Of(Four v) { vec4 a; memcpy(&a, &v, 16); return a; }
+INLINE Four fourOf(const vec4& a) {
+    Four v;
+    memcpy(&v, &a, 16);
+    return v;
+}
+INLINE vec4 vec4Of(Four v) {
+    vec4 a;
+    memcpy(&a, &v, 16);
+    return a;
+}
 INLINE vec4 operator+(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) + fourOf(b)); }
 INLINE vec4 operator-(const vec4& a, const vec4& b) { return vec4Of(fourOf(a) - fourOf(b)); }
 INLINE vec4 operator*(const vec4& a, float b) { return vec4Of(fourOf(a) * b); }
@@ -60,13 +75,17 @@ struct ivec3 {
     INLINE explicit ivec3(int s) : x(s), y(s), z(s) {}
     INLINE ivec3(int ax, int ay, int az) : x(ax), y(ay), z(az) {}
 };
-#define RIVULET_VEC_OP(op)                                                                                       \
-    INLINE vec3 operator op(const vec3& a, const vec3& b) { return vec3(a.x op b.x, a.y op b.y, a.z op b.z); }   \
-    INLINE vec3 operator op(const vec3& a, float b) { return vec3(a.x op b, a.y op b, a.z op b); }               \
+#define RIVULET_VEC_OP(op)                                                                                     \
+    INLINE vec3 operator op(const vec3& a, const vec3& b) { return vec3(a.x op b.x, a.y op b.y, a.z op b.z); } \
+    INLINE vec3 operator op(const vec3& a, float b) { return vec3(a.x op b, a.y op b, a.z op b); }             \
     INLINE vec3 operator op(float a, const vec3& b) { return vec3(a op b.x, a op b.y, a op b.z); }
-RIVULET_VEC_OP(+) RIVULET_VEC_OP(-) RIVULET_VEC_OP(*) RIVULET_VEC_OP(/)
+RIVULET_VEC_OP(+)
+RIVULET_VEC_OP(-) RIVULET_VEC_OP(*) RIVULET_VEC_OP(/)
 #undef RIVULET_VEC_OP
-INLINE vec3 operator-(const vec3& a) { return vec3(-a.x, -a.y, -a.z); }
+    INLINE vec3
+    operator-(const vec3& a) {
+    return vec3(-a.x, -a.y, -a.z);
+}
 INLINE vec3& operator+=(vec3& a, const vec3& b) { return a = a + b; }
 INLINE vec3& operator-=(vec3& a, const vec3& b) { return a = a - b; }
 INLINE vec3& operator*=(vec3& a, float b) { return a = a * b; }
@@ -94,15 +113,25 @@ INLINE vec3 abs(const vec3& a) { return vec3(abs(a.x), abs(a.y), abs(a.z)); }
 INLINE float mix(float a, float b, float t) { return a + (b - a) * t; }
 INLINE ivec3 TO_IVEC3(const vec3& v) { return ivec3(static_cast<int>(v.x), static_cast<int>(v.y), static_cast<int>(v.z)); }
 INLINE vec3 TO_VEC3(const ivec3& v) { return vec3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)); }
-INLINE uint FLOAT_BITS(float f) { uint u; memcpy(&u, &f, 4); return u; }
-INLINE float BITS_FLOAT(uint u) { float f; memcpy(&f, &u, 4); return f; }
+INLINE uint FLOAT_BITS(float f) {
+    uint u;
+    memcpy(&u, &f, 4);
+    return u;
+}
+INLINE float BITS_FLOAT(uint u) {
+    float f;
+    memcpy(&f, &u, 4);
+    return f;
+}
 INLINE void atomicMin(uint* x, uint v) {
     uint had = __atomic_load_n(x, __ATOMIC_RELAXED);
-    while (v < had && !__atomic_compare_exchange_n(x, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+    while (v < had && !__atomic_compare_exchange_n(x, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+    }
 }
 INLINE void atomicMax(uint* p, uint v) {
     uint had = __atomic_load_n(p, __ATOMIC_RELAXED);
-    while (had < v && !__atomic_compare_exchange_n(p, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+    while (had < v && !__atomic_compare_exchange_n(p, &had, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+    }
 }
 #define TO_INT(x) static_cast<int>(x)
 #define TO_UINT(x) static_cast<unsigned>(x)
@@ -114,12 +143,12 @@ INLINE void atomicMax(uint* p, uint v) {
 
 #define FN INLINE
 #define STRUCT(n) struct n
-#define GLOBAL(T, n) [[maybe_unused]] const T* n,
+#define GLOBAL(T, n) [[maybe_unused]] const T *n,
 #define PASS(n) n,
 #define RO(b, N, T, n) , [[maybe_unused]] const T* __restrict n
 #define RW(b, N, T, n) , T* __restrict n
-#define RO_CAST(b, N, T, n) , static_cast<const T*>(buffers_[(b) - 1])
-#define RW_CAST(b, N, T, n) , static_cast<T*>(buffers_[(b) - 1])
+#define RO_CAST(b, N, T, n) , static_cast<const T*>(buffers_[(b)-1])
+#define RW_CAST(b, N, T, n) , static_cast<T*>(buffers_[(b)-1])
 #define BUFFERS(P)
 #define ATOMIC_ADD(x, v) __atomic_fetch_add(&(x), v, __ATOMIC_RELAXED)
 #define ATOMIC_OR(x, v) __atomic_fetch_or(&(x), v, __ATOMIC_RELAXED)
@@ -127,12 +156,12 @@ INLINE void atomicMax(uint* p, uint v) {
 #define PREFETCH(x) __builtin_prefetch(&(x))
 #define ATOMIC_MIN(x, v) atomicMin(&(x), v)
 #define ATOMIC_MAX(x, v) atomicMax(&(x), v)
-#define KERNEL(name, P)                                                                                            \
-    static INLINE void name##_one(const uint tid_, [[maybe_unused]] const P& params_ ARGS(RO, RW));                                 \
-    void name(uint32_t begin_, uint32_t end_, const void* p_, void* const* buffers_) {                             \
-        const P& params_ = *static_cast<const P*>(p_);                                                             \
-        for (uint32_t t_ = begin_; t_ < end_; ++t_) name##_one(t_, params_ ARGS(RO_CAST, RW_CAST));                \
-    }                                                                                                              \
+#define KERNEL(name, P)                                                                             \
+    static INLINE void name##_one(const uint tid_, [[maybe_unused]] const P& params_ ARGS(RO, RW)); \
+    void name(uint32_t begin_, uint32_t end_, const void* p_, void* const* buffers_) {              \
+        const P& params_ = *static_cast<const P*>(p_);                                              \
+        for (uint32_t t_ = begin_; t_ < end_; ++t_) name##_one(t_, params_ ARGS(RO_CAST, RW_CAST)); \
+    }                                                                                               \
     static INLINE void name##_one(const uint tid_, [[maybe_unused]] const P& params_ ARGS(RO, RW))
 #define PARAMS params_
 #define THREAD_ID tid_

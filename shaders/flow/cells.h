@@ -1,9 +1,9 @@
-// Cells of space: those of the flow's grid, and coarser ones of which one bit says whether a drop reaches into them. The bits are found by a hash
-// (Teschner et al. 2003): one may be set for another cell's sake.
+// Cells of space: those of the flow's grid, and coarser ones of which one bit says whether a drop reaches into them. The bits are found by
+// a hash (Teschner et al. 2003): one may be set for another cell's sake.
 #if !defined(RIVULET_CELLS_H)
 #define RIVULET_CELLS_H
 #define REACHED_WORDS 4096u
-#define REACHED_PARTS 10.0f  /* bit k of the word behind them: some drop reaches as far as k to k + 1 of these parts of a cell */
+#define REACHED_PARTS 10.0f /* bit k of the word behind them: some drop reaches as far as k to k + 1 of these parts of a cell */
 #if !defined(__cplusplus) || defined(RIVULET_KERNEL_UNIT)
 // The grid's cell, along one axis, of `x`: one of those that there are.
 FN int cellAlong(float x, float origin, float scale, int cells) {

@@ -1,10 +1,10 @@
 // A triangle as a map shows it: where its places lie depends on UV by an affine map.
 STRUCT(MapSheet) {
-    vec3  middle;  // m
-    vec3  alongU;  // m a unit of u
-    vec3  alongV;
-    vec3  n;       // unit normal
-    float u;       // of its middle, where the map's own go from 0 to 1
+    vec3 middle;  // m
+    vec3 alongU;  // m a unit of u
+    vec3 alongV;
+    vec3 n;   // unit normal
+    float u;  // of its middle, where the map's own go from 0 to 1
     float v;
 };
 // `word`: a texel's, see map_step.h.

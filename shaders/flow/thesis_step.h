@@ -6,9 +6,9 @@
 namespace rivulet {
 #endif
 STRUCT(ThesisStep) {
-    vec4  pull;           // xyz m/s^2, gravity and what the wind does, in the skin's frame
-    uint  count;          // slots of particles
-    uint  triangles;
+    vec4 pull;   // xyz m/s^2, gravity and what the wind does, in the skin's frame
+    uint count;  // slots of particles
+    uint triangles;
     float dt;             // s
     float density;        // kg/m^3
     float contactRadius;  // of a drop, over the cube root of its volume
@@ -16,9 +16,9 @@ STRUCT(ThesisStep) {
     float adhesive;       // N, F_adhesive of (20)
     float curvature;      // N kg/UV^3, k of (20)
     float curvatureMost;  // N, what k / |grad rho| is at most
-    uint  spare0;
-    uint  spare1;
-    uint  spare2;
+    uint spare0;
+    uint spare1;
+    uint spare2;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(ThesisStep) % 16 == 0);

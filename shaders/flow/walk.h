@@ -1,15 +1,16 @@
-// A straight walk over a skin: on a triangle along a line, over an edge unfolded into the next one's plane. And the film's lattice in a triangle.
+// A straight walk over a skin: on a triangle along a line, over an edge unfolded into the next one's plane. And the film's lattice in a
+// triangle.
 #if !defined(RIVULET_WALK_H)
 #define RIVULET_WALK_H
-#define MOST_EDGES 4096  /* in a step: an end for ways that are no number */
+#define MOST_EDGES 4096 /* in a step: an end for ways that are no number */
 #define TRIANGLE_NORMAL(t) vec3(basis[5u * (t) + 1u].w, basis[5u * (t) + 2u].w, basis[5u * (t) + 3u].w)
 STRUCT(SkinWalk) {
-    vec3  n;         // the triangle's normal
-    vec3  v;         // what is carried along and turned with the skin
-    uint  triangle;
-    float b1;        // barycentric, of corners 1 and 2
+    vec3 n;  // the triangle's normal
+    vec3 v;  // what is carried along and turned with the skin
+    uint triangle;
+    float b1;  // barycentric, of corners 1 and 2
     float b2;
-    uint  gone;      // 1: over an open edge
+    uint gone;  // 1: over an open edge
 };
 
 // v, seen from a triangle with normal `from`, turned about the edge along unit `u` into one with normal `to`.
@@ -29,9 +30,18 @@ FN SkinWalk walked(GLOBAL(uint, skin) GLOBAL(vec4, basis) SkinWalk w, vec3 way) 
         float b0 = 1.0f - w.b1 - w.b2;
         float go = rest;
         uint edge = 3u;
-        if (r2 < 0.0f && w.b2 <= go * -r2) { go = max(w.b2, 0.0f) / -r2; edge = 0u; }
-        if (r0 < 0.0f && b0 <= go * -r0) { go = max(b0, 0.0f) / -r0; edge = 1u; }
-        if (r1 < 0.0f && w.b1 <= go * -r1) { go = max(w.b1, 0.0f) / -r1; edge = 2u; }
+        if (r2 < 0.0f && w.b2 <= go * -r2) {
+            go = max(w.b2, 0.0f) / -r2;
+            edge = 0u;
+        }
+        if (r0 < 0.0f && b0 <= go * -r0) {
+            go = max(b0, 0.0f) / -r0;
+            edge = 1u;
+        }
+        if (r1 < 0.0f && w.b1 <= go * -r1) {
+            go = max(w.b1, 0.0f) / -r1;
+            edge = 2u;
+        }
         w.b1 = w.b1 + r1 * go;
         w.b2 = w.b2 + r2 * go;
         rest = rest - go;

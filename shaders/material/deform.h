@@ -5,10 +5,10 @@
 namespace rivulet {
 #endif
 STRUCT(DeformParams) {
-    uint  vertices;
-    uint  bones;  // 0: nothing is turned
-    uint  unused0;
-    uint  unused1;
+    uint vertices;
+    uint bones;  // 0: nothing is turned
+    uint unused0;
+    uint unused1;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(DeformParams) % 16 == 0);

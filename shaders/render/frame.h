@@ -7,27 +7,27 @@
 namespace rivulet {
 #endif
 STRUCT(FrameParams) {
-    mat4 view;             // world -> view
-    mat4 projection;       // view -> clip
-    mat4 viewProjection;   // world -> clip
-    mat4 inverseView;      // view -> world
-    mat4 shadowProjection; // world -> clip of the meshes' shadow map
-    mat4 waterProjection;  // world -> clip of the light's map of the water
-    vec4 cameraPos;        // m, world; w = time, s
-    vec4 viewport;         // width, height (pixels), 1/width, 1/height
-    vec4 ray;              // view direction (z = -1) of pixel p: p * ray.xy + ray.zw
-    vec4 planes;           // near, far (m), projection[2][2], projection[3][2]
-    vec4 lightDir;         // unit, world, towards the light
-    vec4 lightColour;      // linear radiance
-    vec4 horizon;          // linear radiance of the sky at the horizon
-    vec4 zenith;           // and overhead
-    vec4 floorColour;      // reflectance; w = height, m
-    vec4 floorFade;        // x, z of the centre (m), radius where the floor begins to fade into the horizon (m), 1 if there is a floor
-    vec4 boxTowards[3];    // softboxes: unit direction, world; w = half width / distance
-    vec4 boxSide[3];       // unit; w = half height / distance
+    mat4 view;              // world -> view
+    mat4 projection;        // view -> clip
+    mat4 viewProjection;    // world -> clip
+    mat4 inverseView;       // view -> world
+    mat4 shadowProjection;  // world -> clip of the meshes' shadow map
+    mat4 waterProjection;   // world -> clip of the light's map of the water
+    vec4 cameraPos;         // m, world; w = time, s
+    vec4 viewport;          // width, height (pixels), 1/width, 1/height
+    vec4 ray;               // view direction (z = -1) of pixel p: p * ray.xy + ray.zw
+    vec4 planes;            // near, far (m), projection[2][2], projection[3][2]
+    vec4 lightDir;          // unit, world, towards the light
+    vec4 lightColour;       // linear radiance
+    vec4 horizon;           // linear radiance of the sky at the horizon
+    vec4 zenith;            // and overhead
+    vec4 floorColour;       // reflectance; w = height, m
+    vec4 floorFade;         // x, z of the centre (m), radius where the floor begins to fade into the horizon (m), 1 if there is a floor
+    vec4 boxTowards[3];     // softboxes: unit direction, world; w = half width / distance
+    vec4 boxSide[3];        // unit; w = half height / distance
     vec4 boxRadiance[3];
-    vec4 matteLight[9];    // of an environment map, see environment_map.h
-    vec4 shadow;           // 1 if the meshes' map was drawn, 1 if the water's was, metres a unit of the first map's depth, of the second's
+    vec4 matteLight[9];  // of an environment map, see environment_map.h
+    vec4 shadow;         // 1 if the meshes' map was drawn, 1 if the water's was, metres a unit of the first map's depth, of the second's
 };
 #if defined(__cplusplus)
 static_assert(sizeof(FrameParams) % 16 == 0);

@@ -13,13 +13,13 @@ namespace rivulet {
 #endif
 // What a row of columns sees of a triangle.
 STRUCT(CrossingRow) {
-    double lowX;   // the cut's bounds along x
+    double lowX;  // the cut's bounds along x
     double highX;
-    double x;      // the plane at y = 0, z = the row's: x = plane + slope * y
+    double x;  // the plane at y = 0, z = the row's: x = plane + slope * y
     double slope;
-    int first;     // columns first <= y < end
+    int first;  // columns first <= y < end
     int end;
-    int sense;     // +1: the triangle is entered along +x; -1: left
+    int sense;  // +1: the triangle is entered along +x; -1: left
 };
 
 // The number of centres k + 1/2 below x, at most `most`.

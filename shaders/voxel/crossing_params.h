@@ -20,7 +20,7 @@ namespace rivulet {
 #define CROSSING_DEEPEST 150u
 
 STRUCT(CrossingParams) {
-    int sizeX;       // voxels
+    int sizeX;  // voxels
     int sizeY;
     int sizeZ;
     uint items;

@@ -2,14 +2,12 @@
 // Where the mesh is closed that is negative inside; here only the distance counts, whichever side one is on (fluid/voxel/README.md).
 // Points are in metres, cell coordinates in voxels from the grid's low corner.
 STRUCT(FieldSample) {
-    vec3  gradient;  // of the trilinear interpolant: away from the mesh; length 1 by a lone wall
+    vec3 gradient;   // of the trilinear interpolant: away from the mesh; length 1 by a lone wall
     float distance;  // m, at most the band
     float bend;      // how far the cell's samples are from lying on a plane; 0 by a lone flat wall, about 1 voxel / radius by a round one
 };
 
-FN vec3 toCells(FieldParams f, vec3 p) {
-    return (p - f.origin.xyz) * f.origin.w;
-}
+FN vec3 toCells(FieldParams f, vec3 p) { return (p - f.origin.xyz) * f.origin.w; }
 
 // Beyond the grid the border's value holds, which is the band's: the grid is padded by at least that much.
 FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
@@ -41,9 +39,12 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     float alongX0 = (d100 - d000) + ((d110 - d010) - (d100 - d000)) * y;
     float alongX1 = (d101 - d001) + ((d111 - d011) - (d101 - d001)) * y;
     // What the distance gains along an axis differs from one edge of the cell to the next by:
-    float bendXY = max(max((d110 - d010) - (d100 - d000), (d111 - d011) - (d101 - d001)), max((d100 - d000) - (d110 - d010), (d101 - d001) - (d111 - d011)));
-    float bendXZ = max(max((d101 - d001) - (d100 - d000), (d111 - d011) - (d110 - d010)), max((d100 - d000) - (d101 - d001), (d110 - d010) - (d111 - d011)));
-    float bendYZ = max(max((d011 - d001) - (d010 - d000), (d111 - d101) - (d110 - d100)), max((d010 - d000) - (d011 - d001), (d110 - d100) - (d111 - d101)));
+    float bendXY = max(max((d110 - d010) - (d100 - d000), (d111 - d011) - (d101 - d001)),
+                       max((d100 - d000) - (d110 - d010), (d101 - d001) - (d111 - d011)));
+    float bendXZ = max(max((d101 - d001) - (d100 - d000), (d111 - d011) - (d110 - d010)),
+                       max((d100 - d000) - (d101 - d001), (d110 - d010) - (d111 - d011)));
+    float bendYZ = max(max((d011 - d001) - (d010 - d000), (d111 - d101) - (d110 - d100)),
+                       max((d010 - d000) - (d011 - d001), (d110 - d100) - (d111 - d101)));
     FieldSample s;
     s.bend = max(max(bendXY, bendXZ), bendYZ) * f.origin.w;
     s.distance = low + (high - low) * z;

@@ -5,17 +5,17 @@
 namespace rivulet {
 #endif
 STRUCT(FieldParams) {
-    vec4  origin;        // m, the low corner of voxel (0,0,0); w = 1 / voxel (1/m)
-    int   sizeX;         // voxels along each axis; the distance band has one more point an axis
-    int   sizeY;
-    int   sizeZ;
-    uint  countIndex;    // cellStart[countIndex] is the number of active particles
-    float voxel;         // m, edge
-    float band;          // m, distances are exact below it and equal to it beyond
-    float contact;       // m, centres keep this far from the mesh: max(spacing / 2, kContactVoxels * voxel)
-    float restSpeed;     // m/s, a slower approach does not bounce: what lies still stays still
-    float nudge;         // voxels, rounding's reach: a voxel nearer than this to a point counts as touched
-    uint  surfacesAt;    // bandNormal[surfacesAt + 2 s], [.. + 1]: float bits of surface s's Coulomb friction (>= 0) and restitution (0..1)
+    vec4 origin;  // m, the low corner of voxel (0,0,0); w = 1 / voxel (1/m)
+    int sizeX;    // voxels along each axis; the distance band has one more point an axis
+    int sizeY;
+    int sizeZ;
+    uint countIndex;  // cellStart[countIndex] is the number of active particles
+    float voxel;      // m, edge
+    float band;       // m, distances are exact below it and equal to it beyond
+    float contact;    // m, centres keep this far from the mesh: max(spacing / 2, kContactVoxels * voxel)
+    float restSpeed;  // m/s, a slower approach does not bounce: what lies still stays still
+    float nudge;      // voxels, rounding's reach: a voxel nearer than this to a point counts as touched
+    uint surfacesAt;  // bandNormal[surfacesAt + 2 s], [.. + 1]: float bits of surface s's Coulomb friction (>= 0) and restitution (0..1)
     float unused0;
     float unused1;
 };

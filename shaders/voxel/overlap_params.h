@@ -12,7 +12,8 @@ namespace rivulet {
 #define OVERLAP_SLAB 5u
 #define OVERLAP_SLABS 10u
 #define OVERLAP_DOUBLES 53u
-// A triangle's integers: first and last voxel that its bounds touch, x y z each; then how many of the slabs are level, and how many there are.
+// A triangle's integers: first and last voxel that its bounds touch, x y z each; then how many of the slabs are level, and how many there
+// are.
 #define OVERLAP_INTS 8u
 // A work item: triangle, first row, the row after its last. Row r of a triangle whose bounds are n voxels wide along y is r % n, r / n.
 #define OVERLAP_ITEM 3u

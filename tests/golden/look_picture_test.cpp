@@ -52,7 +52,7 @@ class LookPicture : public LookTest {
 
 TEST_F(LookPicture, withoutWaterTheSceneIsDrawn) {
     addSpot();
-    for (const char* renderer : {"points", "screen_space", "truth"}) {
+    for (const char* renderer : {"points", "screen_space", "reference"}) {
         settings.look.renderer = renderer;
         const std::vector<uint8_t> rgba = shot({});
         ASSERT_EQ(rgba.size(), size_t{kWidth} * kHeight * 4);
@@ -82,7 +82,7 @@ TEST_F(LookPicture, waterChangesThePictureOnlyWhereItIs) {
         high = glm::max(high, pixel);
     }
     const std::vector<uint8_t> dry = shot({});
-    for (const char* renderer : {"points", "screen_space", "truth"}) {
+    for (const char* renderer : {"points", "screen_space", "reference"}) {
         settings.look.renderer = renderer;
         const std::vector<uint8_t> wet = shot(upload(cube));  // without bounds: it throws no shadow
         int inside = 0;
@@ -101,7 +101,7 @@ TEST_F(LookPicture, waterChangesThePictureOnlyWhereItIs) {
 
 TEST_F(LookPicture, particlesThatAreNotNumbersAreLeftOut) {
     TestParticles water = pool();
-    for (const char* renderer : {"points", "screen_space", "truth"}) {
+    for (const char* renderer : {"points", "screen_space", "reference"}) {
         settings.look.renderer = renderer;
         FluidView view = upload(water);
         view.bounds = Bounds{vec3(0.0F), vec3(1.0F)};

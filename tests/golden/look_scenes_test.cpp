@@ -133,7 +133,8 @@ TEST_F(LookScenes, aPaneIsBeforeTheWaterOrBehindIt) {
         const uint8_t* p = at(rgba, kWidth / 2 + 20, kHeight / 2 + 8);
         return std::array<int, 3>{p[0], p[1], p[2]};
     };
-    for (const auto& [name, quality] : {std::pair("screen_space", "fine"), std::pair("screen_space", "fast"), std::pair("truth", "fine")})
+    for (const auto& [name, quality] :
+         {std::pair("screen_space", "fine"), std::pair("screen_space", "fast"), std::pair("reference", "fine")})
         for (const bool milk : {true, false}) {
             settings.look.renderer = name;
             settings.look.quality = quality;
@@ -163,7 +164,7 @@ TEST_F(LookScenes, foamBehindAPaneIsSeenThroughIt) {
     settings.light.intensity = 2.0F;
     settings.background.horizon = settings.background.zenith = vec3(0.05F);
     scene.add(pane({0.5F, 0.5F, 0.5F}, 0.4F, vec3(0.1F, 1.0F, 0.1F), 0.0F));
-    for (const char* name : {"screen_space", "truth"})
+    for (const char* name : {"screen_space", "reference"})
         for (const char* quality : {"fine", "fast"}) {
             settings.look.renderer = name;
             settings.look.quality = quality;

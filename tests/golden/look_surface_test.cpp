@@ -114,8 +114,8 @@ TEST_F(LookSurface, aDropIsAnExactSphereAlsoAtThePicturesEdge) {
 }
 
 // As the iso-surface has it: 0.51 spacings, see IsoSurface.ASheetIsFlatAndADropIsASmallBall; wherever in the picture it is.
-TEST_F(LookSurface, theTruthOfADropIsAnExactSphere) {
-    add = addTruth;
+TEST_F(LookSurface, theReferenceOfADropIsAnExactSphere) {
+    add = addReference;
     for (const vec3& centre : {vec3(0.0F), vec3(0.9F, 0.5F, 0.2F), vec3(-1.0F, -0.4F, -0.3F)}) {
         TestParticles drop;
         drop.spacing = 0.2F;

@@ -168,10 +168,10 @@ TEST_F(LookWater, aSplitsHalvesAreThoseOfTheTwoRenderers) {
     EXPECT_FALSE(renderer().draw(frameViewOf(camera, settings.light, 8, 8, 0), {}, scene, settings));
 }
 
-// The truth takes seconds, and is found once for what does not change.
+// The reference takes seconds, and is found once for what does not change.
 TEST_F(LookWater, theTruthIsMarchedOnceForWaterAtRest) {
     const FluidView water = bounded(pool(0.3F, 0.05F));
-    settings.look.renderer = "truth";
+    settings.look.renderer = "reference";
     int told = 0;
     bool on = true;
     renderer().onProgress([&](double) {
@@ -238,7 +238,7 @@ TEST_F(LookWater, fastAtOddSizesIsStillTheSamePicture) {
 // Flecks need no particle to be seen, and a slot without one shows nothing.
 TEST_F(LookWater, foamIsDrawnWithoutParticles) {
     const std::vector<uint8_t> dry = shot({});
-    for (const char* name : {"screen_space", "points", "truth"}) {
+    for (const char* name : {"screen_space", "points", "reference"}) {
         settings.look.renderer = name;
         for (const float life : {0.0F, 1.0F}) {
             const std::vector<vec4> flecks(5, vec4(0.5F, 0.3F, 0.5F, life)), velocities(5, vec4(0.0F, 0.0F, 0.0F, 1.9F));

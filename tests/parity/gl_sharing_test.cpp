@@ -10,7 +10,7 @@
 #include <map>
 #include <thread>
 
-#include "engine/core/words.h"
+#include "engine/core/extension_list.h"
 #include "engine/gpu/current_context.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/cpu_fallback.h"
@@ -200,14 +200,14 @@ TEST_F(GlSharingTest, TheContextThatIsCurrentIsTheOneThatWasMade) {
 TEST_F(GlSharingTest, AnExtensionIsAWholeWord) {
     for (const char* words : {"", " ", "cl_khr_gl_sharing_more", "my_cl_khr_gl_sharing", "cl_khr_gl_sharin", "cl_khr_gl",
                               "CL_KHR_GL_SHARING", "cl_khr_gl_sharing_more x_cl_khr_gl_sharing cl_khr_gl_event"}) {
-        EXPECT_FALSE(hasWord(words, "cl_khr_gl_sharing")) << words;
+        EXPECT_FALSE(hasExtension(words, "cl_khr_gl_sharing")) << words;
         played = {};
         played.extensions = words;
         EXPECT_EQ(playing()->glShare().by, nullptr) << words;
         EXPECT_EQ(played.calls, 0) << words;
     }
     for (const char* words : {"cl_khr_gl_sharing", "a cl_khr_gl_sharing", "cl_khr_gl_sharing ", "cl_khr_gl_sharing_more cl_khr_gl_sharing"})
-        EXPECT_TRUE(hasWord(words, "cl_khr_gl_sharing")) << words;
+        EXPECT_TRUE(hasExtension(words, "cl_khr_gl_sharing")) << words;
 }
 
 TEST_F(GlSharingTest, ADriverThatLiesIsNotTrusted) {

@@ -66,7 +66,8 @@ class TwinDevice final : public Device {
 };
 
 // Whose threads take a place in a list as they come: which is first is another in every run, what stands there is not.
-const std::set<std::string> kAsTheyCome = {"fluid/surface/foam_born", "fluid/surface/foam_move", "flow/leave", "flow/brim", "flow/map_touch"};
+const std::set<std::string> kAsTheyCome = {"fluid/surface/foam_born", "fluid/surface/foam_move", "flow/leave", "flow/brim",
+                                           "flow/map_touch"};
 
 // A buffer's words in order of what they are worth as floats, so that those that stand in another order are next to each other.
 std::vector<std::byte> sortedWords(std::span<const std::byte> bytes) {
@@ -157,8 +158,9 @@ void TwinDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std:
 
 // Cells are filled in an order that is another in every run until they are sorted (SortTest); a solver's progress is a GPU's alone, as the
 // cpu reads its sums at once (SolverStops).
-const std::set<std::string> kElsewhere = {"fluid/grid/cell_count", "fluid/grid/cell_scatter", "fluid/grid/cell_sort",   "fluid/grid/reorder",
-                                          "fluid/grid/scan_apply", "fluid/grid/scan_blocks",  "fluid/grid/scan_reduce", "fluid/methods/solver_progress"};
+const std::set<std::string> kElsewhere = {"fluid/grid/cell_count",  "fluid/grid/cell_scatter",      "fluid/grid/cell_sort",
+                                          "fluid/grid/reorder",     "fluid/grid/scan_apply",        "fluid/grid/scan_blocks",
+                                          "fluid/grid/scan_reduce", "fluid/methods/solver_progress"};
 
 class KernelsOfCl : public testing::Test {
   protected:

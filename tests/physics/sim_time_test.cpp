@@ -269,29 +269,29 @@ TEST(Drawn, SolidsKeepStepWithFixedSteps) {
 }
 
 // On a GPU the budget is kept from what is known late.
-TEST(Pace, PlansFromWhatEarlierFramesTook) {
-    Pace pace;
-    (void)pace.begin(1.0 / 60, 0, 8);
-    EXPECT_TRUE(pace.mayPlan(1000)) << "nothing is known yet";
-    for (int k = 0; k < 50; ++k) pace.know(k % 2 == 0 ? 24 : 0, 6);  // 24 ms that come every second frame: 2 ms a substep
-    (void)pace.begin(1.0 / 60, 0, 8);
-    EXPECT_TRUE(pace.mayPlan(2));
-    EXPECT_TRUE(pace.mayPlan(3));
-    EXPECT_FALSE(pace.mayPlan(4)) << "five of 2 ms are more than 8";
-    for (int k = 0; k < 50; ++k) pace.know(3, 6);
-    EXPECT_TRUE(pace.mayPlan(14)) << "recovers";
-    (void)pace.begin(1.0 / 60, 0, 0);
-    EXPECT_TRUE(pace.mayPlan(100000)) << "no budget";
+TEST(FrameStepper, PlansFromWhatEarlierFramesTook) {
+    FrameStepper stepper;
+    (void)stepper.begin(1.0 / 60, 0, 8);
+    EXPECT_TRUE(stepper.mayPlan(1000)) << "nothing is known yet";
+    for (int k = 0; k < 50; ++k) stepper.know(k % 2 == 0 ? 24 : 0, 6);  // 24 ms that come every second frame: 2 ms a substep
+    (void)stepper.begin(1.0 / 60, 0, 8);
+    EXPECT_TRUE(stepper.mayPlan(2));
+    EXPECT_TRUE(stepper.mayPlan(3));
+    EXPECT_FALSE(stepper.mayPlan(4)) << "five of 2 ms are more than 8";
+    for (int k = 0; k < 50; ++k) stepper.know(3, 6);
+    EXPECT_TRUE(stepper.mayPlan(14)) << "recovers";
+    (void)stepper.begin(1.0 / 60, 0, 0);
+    EXPECT_TRUE(stepper.mayPlan(100000)) << "no budget";
 }
 
-TEST(Pace, WholeStepsThatWereNotMadeAreDropped) {
-    Pace pace;
-    EXPECT_EQ(pace.begin(0.055, 0.01, 0).pieces, 5);
-    EXPECT_NEAR(pace.end(0.02), 0.03, 1e-12);
-    EXPECT_NEAR(pace.pending(), 0.005, 1e-12);
-    EXPECT_NEAR(double{pace.share()}, 0.5, 1e-6);
-    EXPECT_EQ(pace.begin(0.005, 0.01, 0).pieces, 1) << "rounding does not cost a step";
-    EXPECT_NEAR(pace.end(0.01), 0, 1e-12);
+TEST(FrameStepper, WholeStepsThatWereNotMadeAreDropped) {
+    FrameStepper stepper;
+    EXPECT_EQ(stepper.begin(0.055, 0.01, 0).pieces, 5);
+    EXPECT_NEAR(stepper.end(0.02), 0.03, 1e-12);
+    EXPECT_NEAR(stepper.pending(), 0.005, 1e-12);
+    EXPECT_NEAR(double{stepper.share()}, 0.5, 1e-6);
+    EXPECT_EQ(stepper.begin(0.005, 0.01, 0).pieces, 1) << "rounding does not cost a step";
+    EXPECT_NEAR(stepper.end(0.01), 0, 1e-12);
 }
 
 // ---- origin ----

@@ -24,7 +24,7 @@ Chapter2Row row(int particles, const char* backend, Plan plan, double stepMs, do
     r.way.stepMs = stepMs;
     r.way.drawMs = drawMs;
     r.way.overlapMs = overlapMs;
-    r.way.passes = {{"fluid/grid/cell_count", 1},    {"fluid/grid/scan_apply", 1},    {"fluid/grid/reorder", 2},
+    r.way.passes = {{"fluid/grid/cell_count", 1},       {"fluid/grid/scan_apply", 1},       {"fluid/grid/reorder", 2},
                     {"fluid/methods/wcsph_density", 4}, {"fluid/methods/wcsph_forces", 10}, {"fluid/solids/walls", 2}};
     return r;
 }

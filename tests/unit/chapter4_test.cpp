@@ -25,7 +25,9 @@ Chapter4Row row(int particles, const char* grid, const char* walk, double stepMs
             .frameMs = ms,
             .stepMs = stepMs,
             .drawMs = drawMs,
-            .passes = *walk != '\0' ? std::map<std::string, double>{{"fluid/solids/collide", 2}, {"fluid/solids/walls", 1}, {"fluid/methods/wcsph_density", 9}}
+            .passes = *walk != '\0' ? std::map<std::string, double>{{"fluid/solids/collide", 2},
+                                                                    {"fluid/solids/walls", 1},
+                                                                    {"fluid/methods/wcsph_density", 9}}
                                     : std::map<std::string, double>{{"fluid/methods/wcsph_density", 9}}};
 }
 

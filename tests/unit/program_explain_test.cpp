@@ -53,14 +53,14 @@ TEST(ProgramExplain, AWorldWithoutWallsBodiesOrTensionCompilesNoneOfTheirCode) {
             for (const char* part : {"walls", "floating bodies", "surface tension"}) EXPECT_TRUE(anyBegins(left, part)) << part << out;
             ASSERT_GT(made.size(), 5U);
             for (const std::string& kernel : made) {
-                for (const char* path : {"fluid/solids/boundary", "fluid/wall", "fluid/solids/collide", "fluid/solids/place_samples", "fluid/solids/push_samples",
-                                         "fluid/forces/cohesion", "fluid/sources/emit"})
+                for (const char* path : {"fluid/solids/boundary", "fluid/wall", "fluid/solids/collide", "fluid/solids/place_samples",
+                                         "fluid/solids/push_samples", "fluid/forces/cohesion", "fluid/sources/emit"})
                     EXPECT_FALSE(kernel.starts_with(path)) << kernel;
                 EXPECT_EQ(kernel.find("MATTER"), std::string::npos) << kernel;
             }
             // What would read walls has been made without.
-            for (const char* path :
-                 {"fluid/methods/dfsph_density", "fluid/methods/dfsph_rate", "fluid/methods/dfsph_push", "fluid/pbf_", "fluid/wcsph_", "fluid/methods/integrate"})
+            for (const char* path : {"fluid/methods/dfsph_density", "fluid/methods/dfsph_rate", "fluid/methods/dfsph_push", "fluid/pbf_",
+                                     "fluid/wcsph_", "fluid/methods/integrate"})
                 for (const std::string& kernel : made)
                     if (kernel.starts_with(path)) EXPECT_NE(kernel.find("OPEN"), std::string::npos) << kernel;
         }
@@ -73,7 +73,8 @@ TEST(ProgramExplain, WhatASceneNeedsIsThereAndHasItsCost) {
                                       "dfsph", "cpu");
     const std::vector<std::string> left = under(out, "left out"), made = under(out, "made"), costs = under(out, "costs");
     for (const char* part : {"walls", "floating bodies", "surface tension"}) EXPECT_FALSE(anyBegins(left, part)) << part << out;
-    for (const char* kernel : {"fluid/solids/boundary", "fluid/solids/place_samples", "fluid/forces/cohesion", "fluid/methods/dfsph_push MATTER"})
+    for (const char* kernel :
+         {"fluid/solids/boundary", "fluid/solids/place_samples", "fluid/forces/cohesion", "fluid/methods/dfsph_push MATTER"})
         EXPECT_TRUE(anyBegins(made, kernel)) << kernel << out;
     EXPECT_TRUE(anyBegins(left, "emitters"));
     ASSERT_GT(costs.size(), 5U);

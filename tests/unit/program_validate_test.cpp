@@ -63,8 +63,8 @@ TEST(ProgramValidate, AMissedAimIsAFailureOfTheQualityMethodOnly) {
     }
 }
 
-// The default filter holds its bounds, and what is drawn is near the truth: further off, or equal to it, and something is not measured.
-TEST(ProgramValidate, TheSurfaceIsNearTheTruth) {
+// The default filter holds its bounds, and what is drawn is near the reference: further off, or equal to it, and something is not measured.
+TEST(ProgramValidate, TheSurfaceIsNearTheReference) {
     Scratch scratch;
     RunOptions in;
     in.folder = scratch.path();

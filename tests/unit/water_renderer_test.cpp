@@ -125,7 +125,7 @@ TEST_F(WaterInAHostsPicture, FormatsAndConventionsMakeNoDifference) {
         const HostScene host(kWidth, kHeight, row.options);
         const Status drawn = draw(host);
         ASSERT_TRUE(drawn) << drawn.error().message;
-        EXPECT_LT(meanDifference(host.pixels(), truth), row.tolerance);
+        EXPECT_LT(meanDifference(host.pixels(), reference), row.tolerance);
         const std::vector<float> depths = host.depths();
         size_t off = 0;
         for (size_t k = 0; k < depth.size(); ++k) off += depth[k] < 5 && std::abs(depths[k] - depth[k]) > 0.01F ? 1 : 0;

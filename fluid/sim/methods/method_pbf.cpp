@@ -113,7 +113,8 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
     const std::vector<Define> walls = setup.traits.wallDefines();
     for (auto [kernel, path, defines] :
          {std::tuple(&m->predict, "fluid/methods/pbf_predict", walls), std::tuple(&m->finish, "fluid/methods/pbf_finish", walls),
-          std::tuple(&m->kick, "fluid/methods/kick", std::vector<Define>()), std::tuple(&m->weigh, "fluid/forces/weigh", std::vector<Define>()),
+          std::tuple(&m->kick, "fluid/methods/kick", std::vector<Define>()),
+          std::tuple(&m->weigh, "fluid/forces/weigh", std::vector<Define>()),
           std::tuple(&m->setRatio, "fluid/world/set_ratio", std::vector<Define>())}) {
         Result<Kernel> found = device.kernel(path, defines);
         if (!found) return found.error();

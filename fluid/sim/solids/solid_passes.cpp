@@ -154,8 +154,10 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
     };
     for (const Wanted& w :
          {Wanted{&s.boundary_, "fluid/solids/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
-          Wanted{&s.friction_, "fluid/forces/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
-          Wanted{&s.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.friction_, "fluid/forces/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
+                 s.walled_},
+          Wanted{&s.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
+                 s.walled_},
           Wanted{&s.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.walls_, "fluid/solids/walls", {threads.begin(), threads.end()}, s.walled_},
           Wanted{&s.boundaryMoving_, "fluid/solids/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},

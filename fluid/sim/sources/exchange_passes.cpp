@@ -15,8 +15,8 @@ constexpr uint32_t kMostFound = 16384;
 Result<ExchangePasses> ExchangePasses::create(Device& device) {
     ExchangePasses e;
     e.device_ = &device;
-    for (auto [kernel, path] :
-         {std::pair(&e.within_, "fluid/sources/within"), std::pair(&e.take_, "fluid/sources/take"), std::pair(&e.forget_, "fluid/sources/forget")}) {
+    for (auto [kernel, path] : {std::pair(&e.within_, "fluid/sources/within"), std::pair(&e.take_, "fluid/sources/take"),
+                                std::pair(&e.forget_, "fluid/sources/forget")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;

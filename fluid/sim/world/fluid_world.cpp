@@ -27,7 +27,7 @@ std::vector<float> FluidWorld::pressures() const { return impl_->method->pressur
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 float FluidWorld::fastestFall() const { return impl_->fastestFall(); }
 double FluidWorld::time() const { return impl_->time; }
-double FluidWorld::pending() const { return impl_->pace.pending(); }
+double FluidWorld::pending() const { return impl_->stepper.pending(); }
 double FluidWorld::dropped() const { return impl_->dropped; }
 const dvec3& FluidWorld::origin() const { return impl_->params.origin; }
 void FluidWorld::setOrigin(const dvec3& origin) { impl_->params.origin = origin; }
@@ -231,8 +231,8 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
     const FluidParams& p = w.params;
     const bool cpu = w.device->backend() == Backend::cpu;
-    if (!cpu) w.pace.know(inputs.deviceMs, w.lastSubsteps);
-    const Pace::Frame frame = w.pace.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
+    if (!cpu) w.stepper.know(inputs.deviceMs, w.lastSubsteps);
+    const FrameStepper::Frame frame = w.stepper.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
     w.warn();
     const double span = frame.before + seconds;  // until the solids are where they are to be
     w.frameLength = span;
@@ -259,9 +259,9 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         ++done;
         if (done == frame.pieces || stop) break;
         if (p.fixedStep > 0)
-            stop = !(cpu ? w.pace.mayGoOn(done) : w.pace.mayPlan(substeps + w.lastPiece - 1));
+            stop = !(cpu ? w.stepper.mayGoOn(done) : w.stepper.mayPlan(substeps + w.lastPiece - 1));
         else
-            stop = !(cpu ? w.pace.mayGoOn(substeps) : w.pace.mayPlan(substeps));
+            stop = !(cpu ? w.stepper.mayGoOn(substeps) : w.stepper.mayPlan(substeps));
     }
     w.lastSubsteps = substeps;
     w.time += stepped;
@@ -273,7 +273,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
     if (!p.ellipsoids) w.ellipsoids.forget();
     if (w.foam && stepped > 0) w.foam->run(p, w.step, *w.grid, w.particles, w.solids, stepped);
-    const double lost = w.pace.end(stepped);
+    const double lost = w.stepper.end(stepped);
     // What rounding leaves of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
         w.dropped += lost;
@@ -286,9 +286,10 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         }
     }
     if (p.fixedStep > 0) {
-        w.drawn.draw(*w.device, w.particles, w.pace.share(), static_cast<float>(std::max(w.lastPiece, 1) + 1) * p.spacing);
+        w.drawn.draw(*w.device, w.particles, w.stepper.share(), static_cast<float>(std::max(w.lastPiece, 1) + 1) * p.spacing);
         if (w.foam)
-            if (Status back = w.foam->drawEarlier((1.0 - double{w.pace.share()}) * double{p.fixedStep}); !back) w.say(back.error().message);
+            if (Status back = w.foam->drawEarlier((1.0 - double{w.stepper.share()}) * double{p.fixedStep}); !back)
+                w.say(back.error().message);
     } else {
         w.drawn.forget();
         if (w.foam) w.foam->drawNewest();
@@ -351,7 +352,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         ++done;
         ++substeps;
         // A fixed step is not left half done.
-        if (!(params.fixedStep > 0) && done < count && !(cpu ? pace.mayGoOn(substeps) : pace.mayPlan(substeps))) {
+        if (!(params.fixedStep > 0) && done < count && !(cpu ? stepper.mayGoOn(substeps) : stepper.mayPlan(substeps))) {
             stop = true;
             break;
         }
@@ -528,7 +529,7 @@ std::vector<Pose> FluidWorld::drawnPoses() const {
     const Impl& w = *impl_;
     std::vector<Pose> poses = w.solids.poses();
     if (w.params.fixedStep > 0 && w.posesBefore.size() == poses.size())
-        for (size_t k = 0; k < poses.size(); ++k) poses[k] = between(w.posesBefore[k], poses[k], double{w.pace.share()});
+        for (size_t k = 0; k < poses.size(); ++k) poses[k] = between(w.posesBefore[k], poses[k], double{w.stepper.share()});
     return poses;
 }
 

@@ -74,9 +74,9 @@ class FluidWorld {
     // What step would simulate of a frame, s: what is beyond fluid.longestFrame is dropped, and said. For hosts that cut frames.
     double taken(double seconds);
     // The next step's first work is to find each particle's cell. Who does that elsewhere while this device does something else (the
-    // thesis's cooperation, 2.3) runs the kernel fluid/grid/cell_of with this, and gives what it found before the next step. Nothing: before
-    // the first step, and where no step's cells are known before it: on the cpu, with bodies, periodic axes, linked lists, or a method
-    // that moves particles before it sorts them.
+    // thesis's cooperation, 2.3) runs the kernel fluid/grid/cell_of with this, and gives what it found before the next step. Nothing:
+    // before the first step, and where no step's cells are known before it: on the cpu, with bodies, periodic axes, linked lists, or a
+    // method that moves particles before it sorts them.
     struct CellWork {
         StepParams step;
         const Buffer *position, *id;  // vec4, uint: as they lie until the next step; step.count of them

@@ -68,7 +68,7 @@ struct FluidWorld::Impl {
     std::vector<ForceState> forcePasses;
     SolveFigures solve;
     double iterations = 0;  // of this frame's substeps, all of them
-    Pace pace;
+    FrameStepper stepper;
     DrawnPositions drawn;
     Ellipsoids ellipsoids;
     std::vector<Pose> posesBefore;                                         // the rigid solids', before the last fixed step

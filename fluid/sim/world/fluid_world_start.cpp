@@ -267,7 +267,7 @@ void FluidWorld::Impl::writeStart() {
     dtMin = dtMax = 0;
     fastestEver = fastestStart = 0;
     budgetSaid = false;
-    pace.reset();
+    stepper.reset();
     drawn.forget();
     ellipsoids.forget();
     posesBefore.clear();

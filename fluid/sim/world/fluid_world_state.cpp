@@ -21,18 +21,9 @@ void FluidWorld::save(WorldState& state) {
     w.device->poll();
     state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
     const FluidStats& f = *w.figures;
-    const double numbers[] = {w.time,
-                              w.pace.pending(),
-                              w.dropped,
-                              w.dtMin,
-                              w.dtMax,
-                              f.maxSpeed,
-                              w.fastestWall,
-                              w.fastestEver,
-                              static_cast<double>(w.frame),
-                              w.params.origin.x,
-                              w.params.origin.y,
-                              w.params.origin.z};
+    const double numbers[] = {
+        w.time,        w.stepper.pending(),          w.dropped,         w.dtMin,           w.dtMax,          f.maxSpeed, w.fastestWall,
+        w.fastestEver, static_cast<double>(w.frame), w.params.origin.x, w.params.origin.y, w.params.origin.z};
     state.put<double>("world.numbers", numbers);
     if (w.begun != w.start.size()) state.put<uint32_t>("world.begun", std::span(&w.begun, 1));
     state.putText("world.limited", fmt::format("{}", fmt::join(f.limited, "\n")));
@@ -109,7 +100,7 @@ Status FluidWorld::restore(WorldState& state) {
     if (w.foam) w.foam->restore(foam);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
     w.time = n[0];
-    w.pace.reset(n[1]);
+    w.stepper.reset(n[1]);
     w.dropped = n[2];
     w.dtMin = n[3];
     w.dtMax = n[4];
@@ -206,7 +197,7 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
     }
     w.begun = static_cast<uint32_t>(kept.size());
     w.time = o.time;
-    w.pace.reset(o.pace.pending());
+    w.stepper.reset(o.stepper.pending());
     w.dropped = o.dropped;
     w.frame = o.frame;
     w.params.origin = o.params.origin;

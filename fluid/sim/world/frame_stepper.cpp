@@ -5,7 +5,7 @@
 
 namespace rivulet {
 
-Pace::Frame Pace::begin(double seconds, double fixedStep, double budgetMs, bool whole) {
+FrameStepper::Frame FrameStepper::begin(double seconds, double fixedStep, double budgetMs, bool whole) {
     budgetMs_ = budgetMs;
     if (budgetMs > 0) start_ = Clock::now();
     seconds_ = seconds;
@@ -22,14 +22,14 @@ Pace::Frame Pace::begin(double seconds, double fixedStep, double budgetMs, bool 
     return {static_cast<int>(pieces), (before + seconds) / pieces, before};
 }
 
-void Pace::know(double ms, int substeps) {
+void FrameStepper::know(double ms, int substeps) {
     if (!(ms >= 0)) return;  // none in a frame, two frames' in the next: that is how they come
     constexpr double kKept = 0.9;
     workMs_ = kKept * workMs_ + ms;
     workSubsteps_ = kKept * workSubsteps_ + substeps;
 }
 
-double Pace::end(double stepped) {
+double FrameStepper::end(double stepped) {
     const double left = std::max(pending_ + seconds_ - stepped, 0.0);
     pending_ = 0;
     if (fixedStep_ > 0) {

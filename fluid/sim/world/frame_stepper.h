@@ -5,7 +5,7 @@
 
 namespace rivulet {
 
-class Pace {
+class FrameStepper {
   public:
     // A frame as it is stepped: so many pieces of the same length, each with a step limit of its own.
     struct Frame {

@@ -3,9 +3,9 @@
 // samples outside the grid (+ 0), lost particles (+ 1: outside, NaN or infinite), free slots (+ 2), and at + 3 the count of all.
 #if !defined(RIVULET_GRID_H)
 #define RIVULET_GRID_H
-// The cell of `x` (m), x fastest, or cellCount where x is outside the unpadded cells, NaN or infinite. (The cpu's sort has finer cells of its
-// own: there only whether it is cellCount means anything.)
-// The conditions are true for what is inside, so that a NaN, of which every comparison is false, is outside.
+// The cell of `x` (m), x fastest, or cellCount where x is outside the unpadded cells, NaN or infinite. (The cpu's sort has finer cells of
+// its own: there only whether it is cellCount means anything.) The conditions are true for what is inside, so that a NaN, of which every
+// comparison is false, is outside.
 FN uint cellOf(vec3 x, StepParams p) {
     float gx = (x.x - p.gridOrigin.x) * p.gridScale.x;
     float gy = (x.y - p.gridOrigin.y) * p.gridScale.y;

@@ -9,6 +9,6 @@
 #if defined(LINKED_LIST)
 #define STANDS_BY(start, cells, i) (i >= start[cells] || start[NEXT_OF(cells, i)] == LIST_NONE)
 #else
-#define STANDS_BY(start, cells, i) (i >= start[cells])  /* those are sorted to the end */
+#define STANDS_BY(start, cells, i) (i >= start[cells]) /* those are sorted to the end */
 #endif
 #endif

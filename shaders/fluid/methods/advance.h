@@ -1,6 +1,5 @@
-// How a particle moves on: no faster than it may, and not through the box or a plane. Include after fluid/solids/walls.h; the buffers are `density`
-// (over the rest density), positionNext and velocityNext.
-// xyz v, w 1 where it was slowed.
+// How a particle moves on: no faster than it may, and not through the box or a plane. Include after fluid/solids/walls.h; the buffers are
+// `density` (over the rest density), positionNext and velocityNext. xyz v, w 1 where it was slowed.
 FN vec4 slowedTo(vec3 v, float most) {
     float speed2 = dot(v, v);
     if (speed2 > most * most) return vec4(v * (most / sqrt(speed2)), 1.0f);
@@ -8,10 +7,10 @@ FN vec4 slowedTo(vec3 v, float most) {
 }
 // From x with the new velocity v, both as of now.
 #undef ADVANCE
-#define ADVANCE(i, x, v)                                                             \
-    {                                                                                \
-        vec4 slowed_ = slowedTo(v, PARAMS.maxSpeed);                                 \
-        Walled walled_ = WITHIN_WALLS((x) + slowed_.xyz * PARAMS.dt, slowed_.xyz);   \
-        positionNext[i] = vec4(walled_.position, density[i]);                        \
-        velocityNext[i] = vec4(walled_.velocity, slowed_.w);                         \
+#define ADVANCE(i, x, v)                                                           \
+    {                                                                              \
+        vec4 slowed_ = slowedTo(v, PARAMS.maxSpeed);                               \
+        Walled walled_ = WITHIN_WALLS((x) + slowed_.xyz * PARAMS.dt, slowed_.xyz); \
+        positionNext[i] = vec4(walled_.position, density[i]);                      \
+        velocityNext[i] = vec4(walled_.velocity, slowed_.w);                       \
     }

@@ -1,9 +1,9 @@
-// The smoothing kernel without its factor: Wendland C2 (Wendland 1995), or with CUBIC the cubic spline (Monaghan 1992) as a sum of truncated
-// powers, both zero from h on. W = kernelK * shape(r / h); grad W = gradientK * slope(r) * d.
+// The smoothing kernel without its factor: Wendland C2 (Wendland 1995), or with CUBIC the cubic spline (Monaghan 1992) as a sum of
+// truncated powers, both zero from h on. W = kernelK * shape(r / h); grad W = gradientK * slope(r) * d.
 #undef VISCOUS_WEIGHT
 #undef SHAPE_AND_SLOPE
 #if defined(CUBIC)
-#define VISCOUS_WEIGHT 2.66666667f  /* h^2 times what 1 / r^2 in a viscous pair term is replaced by: the same fourth moment */
+#define VISCOUS_WEIGHT 2.66666667f /* h^2 times what 1 / r^2 in a viscous pair term is replaced by: the same fourth moment */
 FN real shape(real q) {
     real a = max0(1.0f - q);
     real b = max0(0.5f - q);
@@ -28,8 +28,8 @@ FN real slope(real r, float h) {
 }
 #endif
 // Both at once, of Wendland C2: slope(r) is h^3 times the second.
-#define SHAPE_AND_SLOPE(r, invH, w, g)          \
-    real q_ = (r) * (invH);                     \
-    real a_ = max0(1.0f - q_);                  \
-    real g = a_ * a_ * a_;                      \
+#define SHAPE_AND_SLOPE(r, invH, w, g) \
+    real q_ = (r) * (invH);            \
+    real a_ = max0(1.0f - q_);         \
+    real g = a_ * a_ * a_;             \
     real w = g * a_ * (4.0f * q_ + 1.0f);

@@ -1,4 +1,5 @@
-// When a pressure solver may stop: asked by the host on the cpu (fluid/sim/methods/solver_residual.cpp), by fluid/methods/solver_progress on a GPU.
+// When a pressure solver may stop: asked by the host on the cpu (fluid/sim/methods/solver_residual.cpp), by fluid/methods/solver_progress
+// on a GPU.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include <algorithm>

@@ -2,9 +2,9 @@
 #if !defined(RIVULET_WATER_H)
 #define RIVULET_WATER_H
 STRUCT(Water) {
-    float ratio;     // 0 in the air
-    vec3  velocity;  // m/s, times the ratio
-    vec3  gradient;  // 1/m, of the ratio: into the water
+    float ratio;    // 0 in the air
+    vec3 velocity;  // m/s, times the ratio
+    vec3 gradient;  // 1/m, of the ratio: into the water
 };
 FN Water waterAt(GLOBAL(uint, cellStart) GLOBAL(vec4, position) GLOBAL(vec4, velocity) vec3 at, StepParams s, float weight) {
     Water w;

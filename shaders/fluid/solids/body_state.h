@@ -4,20 +4,20 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-#define LOAD_THREADS 64u  /* a body */
+#define LOAD_THREADS 64u /* a body */
 STRUCT(DeviceBody) {
-    vec4  position;     // m, of the centre of mass
-    vec4  rotation;     // unit quaternion, w last
-    vec4  velocity;     // m/s
-    vec4  spin;         // rad/s
-    uint  firstSample;  // of all samples
-    uint  endSample;
-    uint  bodyCount;    // of all
-    uint  padding;
+    vec4 position;     // m, of the centre of mass
+    vec4 rotation;     // unit quaternion, w last
+    vec4 velocity;     // m/s
+    vec4 spin;         // rad/s
+    uint firstSample;  // of all samples
+    uint endSample;
+    uint bodyCount;  // of all
+    uint padding;
 };
 STRUCT(LoadRow) {
-    vec4  force;   // N, w: wet share of the surface, summed over samples
-    vec4  torque;  // N m, about the centre of mass
+    vec4 force;   // N, w: wet share of the surface, summed over samples
+    vec4 torque;  // N m, about the centre of mass
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(DeviceBody) == 80 && sizeof(LoadRow) == 32);

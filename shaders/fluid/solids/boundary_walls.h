@@ -4,7 +4,11 @@
 STRUCT(WallShare) {
     vec4 open;  // w = prod(1 - f_k); xyz = sum of n_k f'_k / (1 - f_k), so that the share's gradient is xyz * w (1/m)
 };
-FN WallShare noWall() { WallShare s; s.open = vec4(0.0f, 0.0f, 0.0f, 1.0f); return s; }
+FN WallShare noWall() {
+    WallShare s;
+    s.open = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    return s;
+}
 // `n`: unit normal into the fluid; `d` m; beyond h nothing changes, behind the wall the share stays one half.
 FN WallShare addWall(WallShare sum, vec3 n, float d, float invH) {
     float s = min(1.0f - d * invH, 1.0f);

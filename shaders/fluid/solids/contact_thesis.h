@@ -1,8 +1,8 @@
 // The thesis's collision with voxels [4.3], kept as the baseline: one rounded sample a step of the longest axis, which slips through walls
-// at their corners; normals from smoothed voxels (24)(25), which are as jagged as the voxels; the velocity into the wall removed (26); back along
-// the way by a voxel. Include after fluid/solids/contact.h.
-#define THESIS_BACK 1.0f   // voxels
-#define THESIS_REACH 3     // voxels, h of the spiky kernel
+// at their corners; normals from smoothed voxels (24)(25), which are as jagged as the voxels; the velocity into the wall removed (26); back
+// along the way by a voxel. Include after fluid/solids/contact.h.
+#define THESIS_BACK 1.0f  // voxels
+#define THESIS_REACH 3    // voxels, h of the spiky kernel
 
 // As walkVoxels, but asks what the thesis asks.
 FN float walkThesis(GLOBAL(uint, surfaceBits) FieldParams f, vec3 a, vec3 b) {
@@ -36,7 +36,8 @@ FN vec3 thesisNormal(GLOBAL(uint, surfaceBits) FieldParams f, vec3 p) {
     return size > 0.0f ? n * (1.0f / size) : n;
 }
 
-FN Slid meetThesis(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 start, vec3 end, vec3 velocity) {
+FN Slid meetThesis(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 start, vec3 end,
+                   vec3 velocity) {
     Slid s;
     s.position = end;
     s.velocity = velocity;

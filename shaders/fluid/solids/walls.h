@@ -1,5 +1,6 @@
 // The box and the planes: a particle's centre stays `contact` away from them; the velocity into a wall answers to it (respond.h).
-// In a world without walls (OPEN) there is nothing to answer to. Include after BUFFERS and fluid/solids/respond.h; the buffer is `planes`, two vec4 a plane: unit normal, w m; friction, restitution.
+// In a world without walls (OPEN) there is nothing to answer to. Include after BUFFERS and fluid/solids/respond.h; the buffer is `planes`,
+// two vec4 a plane: unit normal, w m; friction, restitution.
 STRUCT(Walled) {
     vec3 position;  // m
     vec3 velocity;  // m/s
@@ -16,12 +17,30 @@ FN Walled withinWalls_(GLOBAL(vec4, planes) StepParams p, vec3 x, vec3 v) {
     float e = p.restitution;
     float mu = p.friction;
     // A comparison with NaN is false: a NaN passes through to be counted by the next grid build, never turned into a wall's coordinate.
-    if (x.x < lo.x) { x.x = lo.x; v = respond(v, vec3(1.0f, 0.0f, 0.0f), mu, e); }
-    if (x.y < lo.y) { x.y = lo.y; v = respond(v, vec3(0.0f, 1.0f, 0.0f), mu, e); }
-    if (x.z < lo.z) { x.z = lo.z; v = respond(v, vec3(0.0f, 0.0f, 1.0f), mu, e); }
-    if (x.x > hi.x) { x.x = hi.x; v = respond(v, vec3(-1.0f, 0.0f, 0.0f), mu, e); }
-    if (x.y > hi.y) { x.y = hi.y; v = respond(v, vec3(0.0f, -1.0f, 0.0f), mu, e); }
-    if (x.z > hi.z) { x.z = hi.z; v = respond(v, vec3(0.0f, 0.0f, -1.0f), mu, e); }
+    if (x.x < lo.x) {
+        x.x = lo.x;
+        v = respond(v, vec3(1.0f, 0.0f, 0.0f), mu, e);
+    }
+    if (x.y < lo.y) {
+        x.y = lo.y;
+        v = respond(v, vec3(0.0f, 1.0f, 0.0f), mu, e);
+    }
+    if (x.z < lo.z) {
+        x.z = lo.z;
+        v = respond(v, vec3(0.0f, 0.0f, 1.0f), mu, e);
+    }
+    if (x.x > hi.x) {
+        x.x = hi.x;
+        v = respond(v, vec3(-1.0f, 0.0f, 0.0f), mu, e);
+    }
+    if (x.y > hi.y) {
+        x.y = hi.y;
+        v = respond(v, vec3(0.0f, -1.0f, 0.0f), mu, e);
+    }
+    if (x.z > hi.z) {
+        x.z = hi.z;
+        v = respond(v, vec3(0.0f, 0.0f, -1.0f), mu, e);
+    }
     for (uint k = 0u; k < p.planeCount; ++k) {
         vec4 plane = planes[2u * k];
         vec4 surface = planes[2u * k + 1u];

@@ -7,8 +7,8 @@ namespace rivulet {
 STRUCT(BlendParams) {
     float share;   // 0: the earlier state, 1: the newest
     float reach2;  // m^2: what has come further between the two has not gone that way
-    uint  count;
-    uint  padding0;
+    uint count;
+    uint padding0;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(BlendParams) % 16 == 0);

@@ -6,7 +6,7 @@ namespace rivulet {
 #endif
 #define STATS_THREADS 1024u
 STRUCT(StatsRow) {
-    vec4  centre;       // sums of positions (m) times masses, w = of masses; in particles of the reference liquid
+    vec4 centre;        // sums of positions (m) times masses, w = of masses; in particles of the reference liquid
     float compression;  // sum of max(rho / rho0 - 1, 0)
     float worst;        // its maximum
     float speed2Sum;    // m^2/s^2, times masses

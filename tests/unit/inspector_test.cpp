@@ -64,7 +64,7 @@ class Watching : public testing::ViewerFixture {
 TEST_F(Watching, GraphsShowWhatTheSessionSays) {
     begin(damBreak(), kWindow, kPixels);
     openTab("graphs");
-    EXPECT_EQ(viewer_->watch().shown(), WatchWindow::Tab::graphs);
+    EXPECT_EQ(viewer_->watch().shown(), Inspector::Tab::graphs);
     viewer_->session().reset();
     struct Said {
         FluidStats stats;
@@ -270,7 +270,7 @@ TEST_F(Watching, TheFrameGraphIsWhatWasDrawnAndTimed) {
     frame();
     EXPECT_FALSE(viewer_->renderer().description());
     key(GLFW_KEY_TAB);
-    EXPECT_EQ(viewer_->watch().shown(), WatchWindow::Tab::none);
+    EXPECT_EQ(viewer_->watch().shown(), Inspector::Tab::none);
 }
 
 // Whatever is open lies within the window, beside the scene's panel; the right edge stays where it is when another tab is wider.

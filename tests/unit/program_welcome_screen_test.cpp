@@ -11,7 +11,7 @@
 namespace rivulet {
 namespace {
 
-class FirstStartTest : public testing::ViewerFixture {
+class WelcomeScreenTest : public testing::ViewerFixture {
   protected:
     void SetUp() override { usual_ = 1.0 / 60; }
     void start() {
@@ -25,7 +25,7 @@ class FirstStartTest : public testing::ViewerFixture {
     std::string seen_ = (scratch_.path() / "config/rivulet/seen").string();
 };
 
-TEST_F(FirstStartTest, AKeyEndsItForGood) {
+TEST_F(WelcomeScreenTest, AKeyEndsItForGood) {
     start();
     EXPECT_TRUE(viewer_->greets());
     for (int k = 0; k < 3; ++k) frame();
@@ -43,7 +43,7 @@ TEST_F(FirstStartTest, AKeyEndsItForGood) {
     EXPECT_FALSE(viewer_->greets());
 }
 
-TEST_F(FirstStartTest, AClickEndsItAndMovesNothing) {
+TEST_F(WelcomeScreenTest, AClickEndsItAndMovesNothing) {
     start();
     const vec3 eye = viewer_->scene().camera.position;
     input_.mouse = vec2(450, 650);
@@ -55,7 +55,7 @@ TEST_F(FirstStartTest, AClickEndsItAndMovesNothing) {
     EXPECT_EQ(viewer_->scene().camera.position, eye);
 }
 
-TEST_F(FirstStartTest, WhereNothingCanBeKeptItIsNoError) {
+TEST_F(WelcomeScreenTest, WhereNothingCanBeKeptItIsNoError) {
     seen_ = scratch_.file("a file", "x") + "/seen";
     start();
     EXPECT_TRUE(viewer_->greets());

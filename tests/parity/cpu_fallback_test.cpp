@@ -99,7 +99,7 @@ std::vector<vec4> byId(const FluidWorld& world, const Buffer& buffer) {
     return sorted;
 }
 
-class Takeover : public testing::Test {
+class CpuFallback : public testing::Test {
   protected:
     void SetUp() override {
         if (const Result<TestGpu> gpu = makeTestGpu("cl"); !gpu) GTEST_SKIP() << gpu.error().message;
@@ -107,7 +107,7 @@ class Takeover : public testing::Test {
     Said said_;
 };
 
-TEST_F(Takeover, NoMemoryWhenASceneIsOpened) {
+TEST_F(CpuFallback, NoMemoryWhenASceneIsOpened) {
     const SceneFile scene = dam("wcsph");
     const std::unique_ptr<Device> small = clWith({.memoryLimit = size_t{100} << 10U});
     auto opened = openSession(scene, *small, said_.log());
@@ -122,7 +122,7 @@ TEST_F(Takeover, NoMemoryWhenASceneIsOpened) {
     EXPECT_EQ(waterOf(opened->session->world()).particles, 8192U);
 }
 
-TEST_F(Takeover, ADeviceThatWorksIsLeftAlone) {
+TEST_F(CpuFallback, ADeviceThatWorksIsLeftAlone) {
     std::unique_ptr<Device> device = clWith({});
     const Device* was = device.get();
     auto opened = openSession(dam("wcsph"), *device, said_.log());
@@ -137,7 +137,7 @@ TEST_F(Takeover, ADeviceThatWorksIsLeftAlone) {
 }
 
 // A scene that makes no sense is no fault of the device.
-TEST_F(Takeover, WhatIsWrongWithASceneIsSaidAsEver) {
+TEST_F(CpuFallback, WhatIsWrongWithASceneIsSaidAsEver) {
     SceneFile scene = dam("wcsph");
     scene.fluid.method = "none";
     const std::unique_ptr<Device> device = clWith({});
@@ -147,7 +147,7 @@ TEST_F(Takeover, WhatIsWrongWithASceneIsSaidAsEver) {
     EXPECT_TRUE(said_.notices.empty());
 }
 
-TEST_F(Takeover, NoMemoryMidway) {
+TEST_F(CpuFallback, NoMemoryMidway) {
     const SceneFile scene = dam("wcsph");
     size_t needed = 0;
     {
@@ -192,9 +192,9 @@ TEST_F(Takeover, NoMemoryMidway) {
     expectAlike(waterOf(session.world()), undisturbed(scene, 200));
 }
 
-class TakeoverOf : public Takeover, public testing::WithParamInterface<const char*> {};
+class CpuFallbackOf : public CpuFallback, public testing::WithParamInterface<const char*> {};
 
-TEST_P(TakeoverOf, LostMidway) {
+TEST_P(CpuFallbackOf, LostMidway) {
     const SceneFile scene = dam(GetParam());
     // Lost in the middle of a step, after some eighty of them.
     std::unique_ptr<Device> device = clWith({.failAfter = 1501});
@@ -231,10 +231,10 @@ TEST_P(TakeoverOf, LostMidway) {
     RecordProperty("back", std::to_string((lostAt - from) / kFrame));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, TakeoverOf, testing::Values("wcsph", "pbf", "dfsph"),
+INSTANTIATE_TEST_SUITE_P(Methods, CpuFallbackOf, testing::Values("wcsph", "pbf", "dfsph"),
                          [](const auto& row) { return std::string(row.param); });
 
-TEST_F(Takeover, LostBeforeAnythingWasKept) {
+TEST_F(CpuFallback, LostBeforeAnythingWasKept) {
     const SceneFile scene = dam("wcsph");
     std::unique_ptr<Device> device = clWith({.failAfter = 3});
     auto opened = openSession(scene, *device, said_.log());
@@ -257,7 +257,7 @@ SceneFile linked() {
     return scene;
 }
 
-TEST_F(Takeover, LinkedListsGoOnSorted) {
+TEST_F(CpuFallback, LinkedListsGoOnSorted) {
     SceneFile sorted = linked();
     sorted.fluid.grid = "sorted";
     const Water calm = undisturbed(sorted, 200);
@@ -300,7 +300,7 @@ TEST_F(Takeover, LinkedListsGoOnSorted) {
     EXPECT_EQ(byId(session.world(), *session.world().particles().velocity), v);
 }
 
-TEST_F(Takeover, LinkedListsWithoutMemoryAreSorted) {
+TEST_F(CpuFallback, LinkedListsWithoutMemoryAreSorted) {
     const std::unique_ptr<Device> small = clWith({.memoryLimit = size_t{100} << 10U});
     auto opened = openSession(linked(), *small, said_.log(), "cl");
     ASSERT_TRUE(opened) << opened.error().message;
@@ -330,7 +330,7 @@ TEST(TakeoverOfNothing, AnAbsentGpuLeavesLinkedListsSorted) {
 }
 
 // A budget tries settings, and one of them may be too large for the device: it is left out, and the device goes on with another.
-TEST_F(Takeover, ABudgetsTrialThatIsTooLargeIsNoFaultOfTheDevice) {
+TEST_F(CpuFallback, ABudgetsTrialThatIsTooLargeIsNoFaultOfTheDevice) {
     const auto needs = [&](const char* method, float spacing) {
         SceneFile scene = dam(method);
         scene.fluid.spacing = spacing;
@@ -371,7 +371,7 @@ TEST_F(Takeover, ABudgetsTrialThatIsTooLargeIsNoFaultOfTheDevice) {
 }
 
 // What a failed device has found is no figure.
-TEST_F(Takeover, ACaseOnADeviceThatFailsIsAnError) {
+TEST_F(CpuFallback, ACaseOnADeviceThatFailsIsAnError) {
     const std::unique_ptr<Device> cpu = makeTestCpu();
     CaseSettings settings;
     settings.quick = true;
@@ -391,7 +391,7 @@ TEST_F(Takeover, ACaseOnADeviceThatFailsIsAnError) {
 }
 
 // A headless run as a whole: stepped, drawn and recorded frame by frame, the CPU finding cells meanwhile, on a device that fails midway.
-TEST_F(Takeover, ARunGoesToItsEndWhateverFails) {
+TEST_F(CpuFallback, ARunGoesToItsEndWhateverFails) {
     const SceneFile scene = dam("wcsph");
     const Water calm = undisturbed(scene, 120);
     for (const ClOptions& fault : {ClOptions{.failAfter = 901}, ClOptions{.eventFailsAfter = 901}}) {
@@ -446,7 +446,7 @@ TEST_F(Takeover, ARunGoesToItsEndWhateverFails) {
 }
 
 // All that a scene can have beside water: what was thrown, what turns and bends, what comes in and goes out.
-TEST_F(Takeover, SolidsBodiesAndSourcesGoOnWhereTheyWere) {
+TEST_F(CpuFallback, SolidsBodiesAndSourcesGoOnWhereTheyWere) {
     const auto lively = [](const std::vector<std::string>& more) {
         std::vector<std::string> set = {"fluid.spacing=0.025",       "colliders.0.resolution=32",       "fluid.foam.most=500",
                                         "bodies.0.size=0.1,0.1,0.1", "bodies.0.position=0.15,0.25,0.2", "emitters.0.position=0.8,0.6,0.2",
@@ -505,7 +505,7 @@ TEST_F(Takeover, SolidsBodiesAndSourcesGoOnWhereTheyWere) {
 }
 
 // Drops on a skin, in its brims and in the air: none is lost or made, and each is where it was.
-TEST_F(Takeover, FlowsOnSkinsGoOnWhereTheyWere) {
+TEST_F(CpuFallback, FlowsOnSkinsGoOnWhereTheyWere) {
     auto scene = loadScene(
         "window_rain",
         std::vector<std::string>{"flow.0.mapSize=64", "flow.0.liquid.capacity=2048", "flow.0.liquid.filmCell=0.003",
@@ -563,7 +563,7 @@ TEST_F(Takeover, FlowsOnSkinsGoOnWhereTheyWere) {
 }
 
 // A device that is lost under a skin: back to a snapshot, and no picolitre is missing.
-TEST_F(Takeover, FlowsOnSkinsWhenADeviceIsLost) {
+TEST_F(CpuFallback, FlowsOnSkinsWhenADeviceIsLost) {
     auto scene = loadScene("window_rain",
                            std::vector<std::string>{"flow.0.mapSize=64", "flow.0.liquid.capacity=2048", "flow.0.liquid.filmCell=0.003"});
     ASSERT_TRUE(scene) << scene.error().message;

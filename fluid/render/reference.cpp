@@ -1,4 +1,4 @@
-// The truth as a renderer: the iso-surface of the particles (Yu & Turk 2013), ray-marched on the host, in the light of the others.
+// The reference as a renderer: the iso-surface of the particles (Yu & Turk 2013), ray-marched on the host, in the light of the others.
 #include <cstddef>
 #include <cstring>
 
@@ -9,7 +9,7 @@
 namespace rivulet {
 
 // What the last picture was marched from, and what came of it.
-struct MarchedTruth {
+struct MarchedReference {
     std::vector<vec4> particles;
     std::vector<float> until;
     FrameView view;
@@ -46,7 +46,7 @@ bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 // A window that shows water at rest marches it once.
-const RaymarchPicture& march(std::shared_ptr<MarchedTruth>& last, MarchedTruth now, const std::function<bool(double)>& progress) {
+const RaymarchPicture& march(std::shared_ptr<MarchedReference>& last, MarchedReference now, const std::function<bool(double)>& progress) {
     const bool same = last && sameBytes(last->particles, now.particles) && sameBytes(last->until, now.until) &&
                       last->view.view == now.view.view && last->view.projection == now.view.projection &&
                       last->view.width == now.view.width && last->view.height == now.view.height && last->box.min == now.box.min &&
@@ -61,24 +61,24 @@ const RaymarchPicture& march(std::shared_ptr<MarchedTruth>& last, MarchedTruth n
         return on;
     };
     now.picture = raymarch(*surface, now.view, {.box = now.box, .until = now.until, .progress = told});
-    last = std::make_shared<MarchedTruth>(std::move(now));
+    last = std::make_shared<MarchedReference>(std::move(now));
     if (!whole) last->particles.clear();  // marched anew the next time
     return last->picture;
 }
 
 }  // namespace
 
-FluidLayers addTruth(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
+FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
     gpu::TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
     // Spray and dye are matters of particles, not of their surface.
     WaterSurface water = addThickness(graph, programs, d, addTiles(graph, programs, d));
-    water.depth = graph.texture("truth depth", size);
+    water.depth = graph.texture("reference depth", size);
     size.format = Format::rgba32f;
-    water.normals = graph.texture("truth normals", size);
+    water.normals = graph.texture("reference normals", size);
     water.tiles = graph.texture("all tiles", {.width = 1, .height = 1, .format = Format::r8});
     graph.pass("all tiles", {}, {water.tiles}, [=](PassContext& c) { c.drawTo({water.tiles}).clearColour(vec4(1.0F)); });
-    graph.pass("truth", {{d.position, Usage::copy}, {d.depth, Usage::copy}}, {{water.depth, Usage::copy}, {water.normals, Usage::copy}},
+    graph.pass("reference", {{d.position, Usage::copy}, {d.depth, Usage::copy}}, {{water.depth, Usage::copy}, {water.normals, Usage::copy}},
                [=, &programs](PassContext& c) {
                    std::vector<vec4> particles(d.fluid.count);
                    glGetNamedBufferSubData(c.buffer(d.position), 0, static_cast<GLsizeiptr>(particles.size() * sizeof(vec4)),

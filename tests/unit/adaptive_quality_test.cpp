@@ -1,0 +1,50 @@
+// The picture gives way before the frame rate does, comes back when there is room, and does not swing to and fro.
+#include <gtest/gtest.h>
+
+#include "fluid/session/adaptive_quality.h"
+
+namespace rivulet {
+namespace {
+
+void frames(AdaptiveQuality& quality, int count, double ms) {
+    for (int k = 0; k < count; ++k) quality.frame(ms);
+}
+
+TEST(AdaptiveQuality, SlowFramesMakeItFastAndOneDoesNot) {
+    AdaptiveQuality quality;
+    EXPECT_FALSE(quality.fast());
+    for (int k = 0; k < 20; ++k) {
+        quality.frame(100);  // a hitch
+        frames(quality, 10, 5);
+    }
+    EXPECT_FALSE(quality.fast());
+    frames(quality, 30, 13);
+    EXPECT_TRUE(quality.fast());
+}
+
+TEST(AdaptiveQuality, RoomMakesItFineAgain) {
+    AdaptiveQuality quality;
+    quality.begin(true);
+    EXPECT_TRUE(quality.fast());
+    frames(quality, 1000, 6);  // in time, but the fine picture would not be
+    EXPECT_TRUE(quality.fast());
+    frames(quality, 1000, 1);
+    EXPECT_FALSE(quality.fast());
+}
+
+// A machine on which fast has room and fine has none: the longer it lasts, the rarer the changes.
+TEST(AdaptiveQuality, ItDoesNotSwing) {
+    AdaptiveQuality quality;
+    int changes[4] = {};
+    for (int part = 0; part < 4; ++part)
+        for (int k = 0; k < 3600; ++k) {
+            const bool before = quality.fast();
+            quality.frame(before ? 2 : 20);
+            changes[part] += quality.fast() != before ? 1 : 0;
+        }
+    EXPECT_LE(changes[0], 12);
+    EXPECT_LE(changes[3], 2);
+}
+
+}  // namespace
+}  // namespace rivulet

@@ -37,7 +37,7 @@ Result<Outcome> runParts(Under& u, std::span<const FlowPart> parts) {
 }
 
 double furmidgeVolume(const SurfaceFlowParams& p) {
-    // rho g V = k w gamma (cos receding - cos advancing), w the foot of a cap with the mean angle.
+    // rho g V = k w gamma (cos receding - cos advancing), w the width of a cap with the mean contact angle.
     const double rad = std::numbers::pi / 180, advancing = double{p.advancing} * rad, receding = double{p.receding} * rad;
     const double h = std::tan(0.25 * (advancing + receding));
     const double w = 2 * std::cbrt(6 / (std::numbers::pi * h * (3 + h * h)));  // over V^(1/3)
@@ -46,7 +46,7 @@ double furmidgeVolume(const SurfaceFlowParams& p) {
 }
 
 std::vector<PathCase> pathCases() {
-    // Bumps of a tenth, so that there is a way to miss.
+    // Bumps of a tenth of the radius, so that paths can differ.
     Shape ball = ballShape(0.05F, 48);
     for (vec3& x : ball.positions) x *= 1.0F + 0.06F * std::sin(90 * x.x + 1.0F) * std::sin(110 * x.y) * std::sin(80 * x.z + 2.0F);
     return {{"bumpy ball", ball, vec3(0.012F, 0.06F, 0.014F), -0.02F},

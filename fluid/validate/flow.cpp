@@ -65,11 +65,11 @@ Status heldDrop(Under& u, double advancing, double receding, uint32_t quads, Lay
     if (!flow) return flow.error();
     const double expected = furmidgeVolume(p);
     std::mt19937 random(7);
-    std::uniform_real_distribution<float> strewn(-2.0e-4F, 2.0e-4F);
+    std::uniform_real_distribution<float> offset(-2.0e-4F, 2.0e-4F);
     double grown = 0, first = 0;
     const auto birth = static_cast<uint32_t>(expected * 1.0e15 / 50);
     for (int k = 0; k < 70 && first == 0; ++k) {
-        flow->add(nearestPoint(flow->mesh(), vec3(0.05F + strewn(random), 0.05F + strewn(random), 0)), birth);
+        flow->add(nearestPoint(flow->mesh(), vec3(0.05F + offset(random), 0.05F + offset(random), 0)), birth);
         for (int step = 0; step < 6; ++step)
             if (!u.step(*flow, {})) return ok();
         grown += birth * 1.0e-15;

@@ -12,7 +12,7 @@ namespace {
 constexpr ChartSetting kSettings[] = {
     {"pbf 1", "1 correction a step", "pbf", "fluid.pbf.iterations=1", false},
     {"pbf 2", "2 corrections a step", "pbf", "fluid.pbf.iterations=2", true},
-    {"pbf", "3 corrections a step, as it comes", "pbf", "", true},
+    {"pbf", "3 corrections a step, the default", "pbf", "", true},
     {"pbf 6", "6 corrections a step", "pbf", "fluid.pbf.iterations=6", true},
     {"pbf 3, short steps", "3 corrections in steps half as long", "pbf", "fluid.pbf.reach=0.3; fluid.pbf.minSubsteps=8", true},
     {"pbf 10, short steps", "10 corrections in steps half as long", "pbf",
@@ -22,7 +22,7 @@ constexpr ChartSetting kSettings[] = {
     {"dfsph 3e-3, long steps", "tolerance 0.3 %, steps twice as long", "dfsph",
      "fluid.dfsph.tolerance=3e-3; fluid.dfsph.reach=0.6; fluid.dfsph.minSubsteps=4", true},
     {"dfsph 1e-3", "tolerance 0.1 %", "dfsph", "fluid.dfsph.tolerance=1e-3", true},
-    {"dfsph", "tolerance 0.03 %, as it comes", "dfsph", "", true},
+    {"dfsph", "tolerance 0.03 %, the default", "dfsph", "", true},
     {"dfsph 1e-4", "tolerance 0.01 %", "dfsph", "fluid.dfsph.tolerance=1e-4", true},
     {"dfsph 1e-4, short steps", "tolerance 0.01 %, steps half as long", "dfsph",
      "fluid.dfsph.tolerance=1e-4; fluid.dfsph.reach=0.15; fluid.dfsph.minSubsteps=16", false},

@@ -1,4 +1,4 @@
-// Flow between plates from rest, pulled along or dragged by one of them, against the series solutions (Morris, Fox and Zhu 1997).
+// Poiseuille and Couette flow started from rest, against the series solutions (Morris, Fox and Zhu 1997).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace rivulet {
 
 namespace {
 
-// u(y, t), m/s, between plates at rest at 0 and `length`, pulled along by `force` (m/s^2) from t = 0.
+// u(y, t) in m/s between plates at rest at 0 and `length`, accelerated by `force` (m/s^2) from t = 0.
 double poiseuille(double y, double t, double length, double nu, double force) {
     constexpr double pi = std::numbers::pi;
     double u = force / (2 * nu) * y * (length - y);
@@ -21,7 +21,7 @@ double poiseuille(double y, double t, double length, double nu, double force) {
     return u;
 }
 
-// u(y, t), m/s, between a plate at rest at 0 and one at `length` that moves at `speed` (m/s) from t = 0.
+// u(y, t) in m/s between a plate at rest at 0 and one at `length` that moves at `speed` (m/s) from t = 0.
 double couette(double y, double t, double length, double nu, double speed) {
     constexpr double pi = std::numbers::pi;
     double u = speed * y / length;
@@ -31,7 +31,7 @@ double couette(double y, double t, double length, double nu, double speed) {
     return u;
 }
 
-// The velocity along x of a scene at 0.1 and 1 s against exact(y, t), m/s, y from the lower plate.
+// Compares the velocity along x of a scene at 0.1 and 1 s with exact(y, t) in m/s; y from the lower plate.
 Outcome channel(Trial& trial, const char* title, double length, double fastest, const std::function<double(double, double)>& exact) {
     const double floor = trial.params().box.min.y;
     std::vector<Finding> findings;
@@ -76,7 +76,7 @@ Result<Outcome> runCouette(const CaseSettings& settings) {
     if (!trial) return trial.error();
     const FluidParams& p = trial->params();
     const ColliderParams& plate = trial->scene().colliders[0];
-    // The plate swings so slowly that it moves evenly: its speed falls by 2e-5 in a second.
+    // The plate oscillates so slowly that its speed is nearly constant: it falls by 2e-5 in a second.
     const double speed = double{plate.motion.shake.x} * 2 * std::numbers::pi * double{plate.motion.shakeFrequency};
     const double length = double{p.blocks[0].max.y - p.blocks[0].min.y}, nu = p.viscosity;
     return channel(*trial, "Couette flow from rest", length, speed, [=](double y, double t) { return couette(y, t, length, nu, speed); });

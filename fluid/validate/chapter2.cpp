@@ -12,10 +12,10 @@ namespace rivulet {
 
 namespace {
 
-constexpr int kWidth = 640, kHeight = 480;  // pixels; half of them a side where a CPU draws
-constexpr int kFrames = 6;                  // of a run; one before them is not counted
+constexpr int kWidth = 640, kHeight = 480;  // pixels; half as many per side where a CPU draws
+constexpr int kFrames = 6;                  // per run, after one frame that is not counted
 
-// Water in free fall in a box of 1 m: half a cube, and so many of them on top of each other.
+// Water in free fall in a box of 1 m: `times` half cubes on top of each other.
 Result<SceneFile> sceneOf(int particles, int times) {
     Result<SceneFile> scene = loadScene("scenes/falling_cube.json", {});
     if (!scene) return scene.error();
@@ -23,7 +23,7 @@ Result<SceneFile> sceneOf(int particles, int times) {
     f.method = "wcsph_thesis";
     const float wide = std::round(std::cbrt(2 * static_cast<float>(particles)));
     f.spacing = 0.5F / std::cbrt(static_cast<float>(particles * times));
-    f.maxSubsteps = 1;  // a frame is a step, as long as is stable
+    f.maxSubsteps = 1;  // a frame is one step of the stable length
     const vec3 size = f.spacing * vec3(wide, 0.5F * wide * static_cast<float>(times), wide);
     const vec3 low(0.5F - 0.5F * size.x, 0.2F, 0.5F - 0.5F * size.z);
     f.blocks = {{.min = low, .max = low + size, .velocity = vec3(0.0F)}};
@@ -45,7 +45,7 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
     std::vector<std::unique_ptr<Device>> devices;
     for (const char* backend : {"cpu", "gl", "cl"}) {
         std::unique_ptr<Device> device = makeDevice(backend, request.gl, request.log);
-        if (std::string_view(backend) != backendName(device->backend())) continue;  // and the log has said so
+        if (std::string_view(backend) != backendName(device->backend())) continue;  // the log has reported it
         chapter.devices.push_back(fmt::format("{}: {}", backend, device->info().name));
         devices.push_back(std::move(device));
     }
@@ -75,7 +75,7 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
             for (size_t turn = 0; turn < all.size(); ++turn) {
                 chapter.stopped = chapter.stopped || !request.goOn();
                 if (chapter.stopped) return chapter;
-                Autotune& trial = all[(turn + static_cast<size_t>(run)) % all.size()];  // nobody always comes first
+                Autotune& trial = all[(turn + static_cast<size_t>(run)) % all.size()];  // no variant is always the first
                 if (Status done = trial.run(draw, kFrames); !done) return done.error();
             }
         const size_t first = chapter.rows.size();
@@ -84,7 +84,7 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
             request.report(chapter.rows.back());
         }
         all.clear();
-        // What auto picks of these, by its own short look.
+        // The choice of auto, by its own short measurement.
         const Result<std::vector<PlanTried>> tried = tryPlans({*scene, request.gl, draw});
         if (!tried) return tried.error();
         Chapter2::Picked picked{chapter.rows.back().particles, nameOf(tried->front()), 0};

@@ -1,4 +1,4 @@
-// What chapter 2's chart leaves behind: a table, a picture, and a page that reads them aloud.
+// Writes the results of chapter 2: a table, a plot, and a page that explains them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -37,7 +37,7 @@ std::vector<std::string> ways(const Chapter2& chapter) {
     return distinct(chapter, [](const Chapter2Row& r) { return nameOf(r.way); });
 }
 
-// The thesis's steps [fig. 2.1]; a GPU finds neighbours while it sweeps, so that what is left of step 2 is the sort.
+// The steps of the thesis (fig. 2.1). A GPU finds neighbours within its sweeps, so only the sort remains of step 2.
 const char* stepOf(const std::string& pass) {
     if (pass == "fluid/grid/cell_count") return "1, cells";
     for (const char* sort : {"scan_", "cell_", "reorder", "cpu_sort", "cpu_neighbor"})
@@ -58,7 +58,7 @@ std::string csvOf(const Chapter2& chapter, const std::string& machine) {
 }
 
 Plot plotOf(const Chapter2& chapter) {
-    Plot plot{"A column of water falls (the thesis's fig. 2.9)", "particles", "ms a frame", {}};
+    Plot plot{"A falling column of water (thesis, fig. 2.9)", "particles", "ms per frame", {}};
     for (const std::string& way : ways(chapter)) {
         Curve curve{way, true, {}};
         for (const int particles : counts(chapter))
@@ -69,7 +69,7 @@ Plot plotOf(const Chapter2& chapter) {
     return plot;
 }
 
-// Beside the thesis's two figures.
+// Compared with the two figures of the thesis.
 std::string verdict(const Chapter2& chapter) {
     const auto fastest = [&](int particles) {
         const Chapter2Row* best = nullptr;
@@ -78,7 +78,7 @@ std::string verdict(const Chapter2& chapter) {
         return best;
     };
     std::string text = "| the thesis, on a Quadro FX 5800 | here |\n| --- | --- |\n";
-    const Chapter2Row* alone = nullptr;  // of one device: who steps aside hides it in the drawing
+    const Chapter2Row* alone = nullptr;  // one device: plan `behind` hides the step within the drawing
     for (const Chapter2Row& r : chapter.rows)
         if (r.particles == kThesisAt && r.way.plan == Plan::alone && (alone == nullptr || r.way.frameMs.median < alone->way.frameMs.median))
             alone = &r;
@@ -99,10 +99,9 @@ std::string verdict(const Chapter2& chapter) {
 
 std::string sharesOf(const Chapter2& chapter) {
     std::string text =
-        "\n## The share of each step (the thesis's fig. 2.4)\n\nOf the device's kernels, %, one device alone, by its own clock; drawing in "
-        "ms beside. "
-        "Neighbours are found by sorting into cells; a GPU walks the cells inside steps 3 and 4; the cpu finds cells while it sorts, in "
-        "step 2, and keeps lists.\n\n| particles | "
+        "\n## The share of each step (thesis, fig. 2.4)\n\nShare of the kernels' time in %, one device alone, by the device's clock; the "
+        "last column is drawing in ms. Neighbours are found by sorting particles into cells. A GPU walks the cells within steps 3 and 4. "
+        "The cpu computes cells during the sort, in step 2, and keeps neighbour lists.\n\n| particles | "
         "device |";
     for (const char* step : kSteps) text += fmt::format(" {} |", step);
     text += " kernels, ms | drawing, ms |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
@@ -125,23 +124,22 @@ std::string sharesOf(const Chapter2& chapter) {
 std::string pickedOf(const Chapter2& chapter) {
     constexpr double kAim = 0.05;
     std::string text =
-        "`--cooperate auto`, which looks for itself and for a few seconds, picks:\n\n| particles | plan | its frame beyond the best "
-        "plan's, "
-        "median of the runs |\n| --- | --- | --- |\n";
+        "`--cooperate auto` measures all plans for a few seconds and chooses:\n\n| particles | plan | its frame time above the best "
+        "plan's, median of the runs |\n| --- | --- | --- |\n";
     size_t within = 0;
     for (const Chapter2::Picked& p : chapter.picked) {
         text += fmt::format("| {} | {} | {:.1f} % |\n", p.particles, p.name, 100 * p.behind);
         within += p.behind <= kAim ? 1 : 0;
     }
-    text += fmt::format("\nThe aim is 5 %: {} of {} hold it.", within, chapter.picked.size());
+    text += fmt::format("\nThe aim is 5 %: {} of {} meet it.", within, chapter.picked.size());
     if (within < chapter.picked.size())
-        text += " Beyond it two plans lie closer together than the runs of either: see least and most below.";
+        text += " Where it is missed, two plans differ by less than the spread of their runs: see minimum and maximum below.";
     return text + "\n\n";
 }
 
-// What can be told of a gain.
+// The gain of each plan over its device alone.
 std::string gainOf(const Chapter2& chapter) {
-    std::string text = "\nA plan beside its device alone, run by run, % of a frame (less is a gain):\n\n| particles |";
+    std::string text = "\nA plan compared with its device alone, run by run, in % of a frame (negative is faster):\n\n| particles |";
     std::vector<std::string> names;
     for (const std::string& way : ways(chapter))
         if (way.find(',') != way.npos) names.push_back(way);
@@ -158,24 +156,22 @@ std::string gainOf(const Chapter2& chapter) {
         text += '\n';
     }
     return text +
-           "\nWhere the device that draws runs on the same cores as the one that simulates, as llvmpipe, PoCL and the cpu do, what "
-           "overlaps is "
-           "shared and not won: a gain can be shown on a GPU alone.\n";
+           "\nllvmpipe, PoCL and the cpu run on the same cores. There, overlapping work shares these cores and saves no time; only a GPU "
+           "can show a gain.\n";
 }
 
 std::string pageOf(const Chapter2& chapter, const std::string& machine, const std::string& command, bool picture) {
     std::string text = fmt::format(
-        "# Chapter 2 of the thesis, measured as it measured\n\n"
-        "Written by `{}` on: {}, pictures by {}, from [chapter2.csv](chapter2.csv); devices: {}. A column of water falls; a frame is one "
-        "step of method "
-        "wcsph_thesis and one picture of {}x{} pixels. `thesis`: the CPU finds the next step's cells while the GPU draws (2.3); `behind`: "
-        "the cpu steps "
-        "on while OpenGL draws the frame before. All of one number of particles take turns; median, least and most of the runs.\n\n",
+        "# Chapter 2 of the thesis: measurements repeated\n\nWritten by `{}` on: {}, pictures by {}, from [chapter2.csv](chapter2.csv); "
+        "devices: {}. Scene: a column of water in free fall. A frame is one step of method wcsph_thesis and one picture of {}x{} pixels. "
+        "Plan `thesis`: the CPU computes the cells of the next step while the GPU draws (thesis 2.3). Plan `behind`: the cpu simulates "
+        "while OpenGL draws the frame before. Variants with the same number of particles run in turn. Figures are the median (minimum to "
+        "maximum) of the runs. [references.md](references.md) says what the thesis is.\n\n",
         command, machine, chapter.drawnBy, fmt::join(chapter.devices, "; "), chapter.width, chapter.height);
     text += verdict(chapter);
     text += pickedOf(chapter);
     if (picture) text += "![ms a frame against particles](chapter2.svg)\n\n";
-    text += "## One device, and both (the thesis's fig. 2.9)\n\nms a frame.\n\n| particles |";
+    text += "## One device against CPU and GPU together (thesis, fig. 2.9)\n\nMilliseconds per frame.\n\n| particles |";
     const std::vector<std::string> names = ways(chapter);
     for (const std::string& way : names) text += fmt::format(" {} |", way);
     text += "\n| --- |";
@@ -191,7 +187,7 @@ std::string pageOf(const Chapter2& chapter, const std::string& machine, const st
         }
         text += '\n';
     }
-    text += "\nms a frame in which the main thread draws and another works:\n\n| particles |";
+    text += "\nMilliseconds per frame in which the main thread draws while another thread simulates:\n\n| particles |";
     for (const std::string& way : names)
         if (way.find(',') != way.npos) text += fmt::format(" {} |", way);
     text += "\n| --- |";

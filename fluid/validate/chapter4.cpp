@@ -15,17 +15,17 @@ namespace rivulet {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kWidth = 640, kHeight = 480;  // pixels; half of them a side where a CPU draws, and would do little else
+constexpr int kWidth = 640, kHeight = 480;  // pixels; half as many per side where a CPU draws, else drawing dominates
 constexpr int kVoxels = 128;
-constexpr double kFall = 0.2;            // s: the column has met the mesh, and water lies on it
-constexpr int kBefore = 4, kFrames = 8;  // not measured; of a run
+constexpr double kFall = 0.2;            // s: the column has hit the mesh, and water lies on it
+constexpr int kBefore = 4, kFrames = 8;  // frames not measured; frames per run
 constexpr float kSpacing = 0.0125F;      // m
 constexpr float kTop = 0.51F;            // m: above the mesh
 constexpr const char* kMesh = "spot.obj";
 
 double msSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
-// A column of so many particles, a power of two, as high as it is wide, twice or four times that.
+// A column of `particles`, a power of two; its height is one, two or four times its width.
 BlockParams column(int particles) {
     int wide = 1;
     while (8 * wide * wide * wide <= particles) wide *= 2;
@@ -46,7 +46,7 @@ Result<SceneFile> sceneOf(const Chapter4Row& row) {
     f.workGroup = row.workGroup;
     f.spacing = kSpacing;
     f.viscosity = 5.0e-3F;
-    f.maxSubsteps = 1;  // a frame is a step, as long as is stable
+    f.maxSubsteps = 1;  // a frame is one step of the stable length
     f.blocks = {column(row.particles)};
     f.box.max.y = std::max(f.box.max.y, f.blocks[0].max.y + 0.1F);
     if (!row.walk.empty()) f.collision.walk = row.walk;
@@ -56,8 +56,8 @@ Result<SceneFile> sceneOf(const Chapter4Row& row) {
     return scene;
 }
 
-// The moment at which frames are measured, reached on the cpu, and kept out of the mesh by the exact walk: all that is compared starts
-// from the same water.
+// The moment at which frames are measured. It is reached on the cpu with the exact walk, so that all variants start from the same water
+// outside the mesh.
 struct Moment {
     std::unique_ptr<Device> cpu;
     std::unique_ptr<Session> session;
@@ -79,12 +79,12 @@ Result<Moment> reach(int particles) {
     return moment;
 }
 
-// One of what takes turns.
+// One variant of those that run in turn.
 struct Contender {
     Chapter4Row row;
     std::unique_ptr<Session> session;
     FluidUpload upload;
-    std::vector<double> step, draw;  // ms a frame, of each run
+    std::vector<double> step, draw;  // ms per frame of each run
 
     // The water of `moment` in a world of its own.
     static Result<Contender> create(const Chapter4Row& row, Device& device, const Moment& moment) {
@@ -104,7 +104,7 @@ struct Contender {
         if (Status taken = c.session->world().restore(state); !taken) return taken.error();
         return c;
     }
-    // `scenery`: what is drawn beside the water, the same for all.
+    // `scenery`: everything drawn besides the water, the same for all variants.
     Status run(SceneRenderer& renderer, const Session& scenery, const Chapter4& chapter, int frames) {
         double stepping = 0, drawing = 0;
         Device& device = session->world().device();
@@ -146,7 +146,7 @@ struct Contender {
     }
 };
 
-// One after the other, run by run, all of the same number of particles.
+// Runs all variants of one number of particles in turn.
 Status compare(std::vector<Chapter4Row> wanted, const Chapter4Request& request, SceneRenderer& renderer, Chapter4& chapter) {
     Result<Moment> moment = reach(wanted.front().particles);
     if (!moment) return moment.error();
@@ -160,7 +160,7 @@ Status compare(std::vector<Chapter4Row> wanted, const Chapter4Request& request, 
     }
     for (int run = 0; run < request.runs; ++run)
         for (size_t turn = 0; turn < all.size(); ++turn) {
-            Contender& c = all[(turn + static_cast<size_t>(run)) % all.size()];  // nobody always comes first
+            Contender& c = all[(turn + static_cast<size_t>(run)) % all.size()];  // no variant is always the first
             chapter.stopped = chapter.stopped || !request.goOn();
             if (chapter.stopped) return ok();
             if (Status done = c.run(renderer, *moment->session, chapter, kFrames); !done) return done;

@@ -1,5 +1,5 @@
-// Chapter 4 of the thesis, measured as it measured [4.4]: frames a second with and without collision against the number of particles
-// (fig. 4.8), and the size of work groups.
+// Repeats the measurements of the thesis, chapter 4 (thesis 4.4): frames per second with and without collision against the number of
+// particles (fig. 4.8), and the size of work groups.
 #pragma once
 
 #include <functional>
@@ -15,45 +15,45 @@
 namespace rivulet {
 
 constexpr int kThesisParticles = 16384, kThesisWorkGroup = 128;  // of the thesis's headline figure
-constexpr double kThesisFrames = 15;                             // a second, more than that, with collision, on a GTX 650
-constexpr int kThesisHalf = 4000;                                // particles, above which collision costs about half the frame
+constexpr double kThesisFrames = 15;                             // frames per second at least, with collision, on a GTX 650
+constexpr int kThesisHalf = 4000;                                // above this number of particles collision costs about half the frame
 
 struct Chapter4Row {
     int particles = 0;
     std::string grid = {};  // fluid.grid
     std::string walk = {};  // fluid.collision.walk; "" = without collision
     int workGroup = 0;
-    bool sizes = false;                         // it belongs to the comparison of work groups
-    Spread frames = {};                         // a second, over the runs
-    std::vector<double> runMs = {};             // of a frame, run by run: runs of what takes turns are pairs
+    bool sizes = false;                         // a row of the comparison of work groups
+    Spread frames = {};                         // frames per second, over the runs
+    std::vector<double> runMs = {};             // ms per frame of each run; run k of two rows can be compared
     double frameMs = 0;                         // medians
-    double stepMs = 0, drawMs = 0;              // of that
-    std::map<std::string, double> passes = {};  // ms a frame, the kernels of a step; means
+    double stepMs = 0, drawMs = 0;              // its parts
+    std::map<std::string, double> passes = {};  // ms per frame of each kernel of a step; means
 };
 
 struct Chapter4 {
     std::vector<Chapter4Row> rows;
     std::string drawnBy;
     int width = 0, height = 0;  // pixels
-    std::string mesh;           // what the water falls onto
+    std::string mesh;           // the collider
     int voxels = 0;             // along its longest side
     bool stopped = false;
 };
 
 struct Chapter4Request {
-    Device* device = nullptr;  // gl, in a context that is current
+    Device* device = nullptr;  // gl, its context current
     Log log = {};
     int runs = 5;
     std::vector<int> particles = {1024, 2048, 4096, 8192, 16384, 32768};  // powers of two
-    std::vector<int> workGroups = {32, 64, 128, 256, 512};                // compared at the last but one of them, or the only one
+    std::vector<int> workGroups = {32, 64, 128, 256, 512};  // compared at the last but one number of particles, or the only one
     std::function<void(const Chapter4Row&)> report = [](const Chapter4Row&) {};
     std::function<bool()> goOn = [] { return true; };
 };
-// What is compared takes turns in one run. Error (failed): a shader does not compile, out of memory.
+// Rows that are compared run in turn. Error (failed): a shader does not compile, or memory is exhausted.
 Result<Chapter4> runChapter4(const Chapter4Request& request);
 
-// FOLDER/chapter4.csv, chapter4.svg and chapter4.md, which reads them aloud beside the thesis's figures. `machine` and `command` say where
-// they come from. Error (failed): a file cannot be written; or gnuplot is missing: the table and the page are there all the same.
+// Writes FOLDER/chapter4.csv, chapter4.svg and chapter4.md, which compares the results with the thesis; `machine` and `command` are named
+// in it. Error (failed): a file cannot be written; or gnuplot is missing: the table and the page are written nevertheless.
 Status writeChapter4(const Chapter4& chapter, const std::string& folder, const std::string& machine, const std::string& command);
 
 }  // namespace rivulet

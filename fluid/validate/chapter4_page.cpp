@@ -1,4 +1,4 @@
-// What chapter 4's chart leaves behind: a table, a picture, and a page that reads them aloud.
+// Writes the results of chapter 4: a table, a plot, and a page that explains them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace rivulet {
 
 namespace {
 
-// What takes turns at each number of particles, in the order of the table.
+// The variants that run in turn at each number of particles, in the order of the table.
 struct Way {
     const char *grid, *walk, *name;
 };
@@ -47,7 +47,7 @@ std::string csvOf(const Chapter4& chapter, const std::string& machine) {
 }
 
 Plot plotOf(const Chapter4& chapter) {
-    Plot plot{"A column of water onto a hollow mesh (the thesis's fig. 4.8)", "particles", "frames a second", {}, true, true};
+    Plot plot{"A column of water on a hollow mesh (thesis, fig. 4.8)", "particles", "frames a second", {}, true, true};
     for (const Way& way : kWays) {
         Curve curve{way.name, true, {}};
         for (const int particles : counts(chapter))
@@ -62,7 +62,7 @@ std::string perSecond(const Chapter4Row* row) {
     return row == nullptr ? "" : fmt::format("{:.3g} ({:.3g} to {:.3g})", row->frames.median, row->frames.min, row->frames.max);
 }
 
-// What collision takes of a frame, %, each run with the one beside it.
+// Collision's share of a frame, %: each run against the run without collision beside it.
 Spread shareOfFrame(const Chapter4Row& with, const Chapter4Row& without) {
     std::vector<double> shares;
     for (size_t k = 0; k < std::min(with.runMs.size(), without.runMs.size()); ++k)
@@ -70,7 +70,7 @@ Spread shareOfFrame(const Chapter4Row& with, const Chapter4Row& without) {
     return spreadOf(shares);
 }
 
-// What its kernels take of all kernels of a step, %, by the device's own clock.
+// The share of collision's kernels in all kernels of a step, %, by the device's clock.
 double shareOfStep(const Chapter4Row& row) {
     double all = 0, collision = 0;
     for (const auto& [name, ms] : row.passes) {
@@ -80,15 +80,14 @@ double shareOfStep(const Chapter4Row& row) {
     return all > 0 ? 100 * collision / all : 0;
 }
 
-// Beside the thesis's two figures.
+// Compared with the two figures of the thesis.
 std::string verdict(const Chapter4& chapter) {
     std::string text = "| the thesis, on a GTX 650 | here |\n| --- | --- |\n";
     const Chapter4Row *with = find(chapter, kThesisParticles, kWays[1]), *exact = find(chapter, kThesisParticles, kWays[4]);
     if (with != nullptr && exact != nullptr)
         text += fmt::format(
-            "| {} particles with collision: above {} frames a second | {:.3g} with its lists and its walk, of {:.3g} ms a step and {:.3g} "
-            "ms "
-            "of drawing; {:.3g} with the sorted grid and the exact walk |\n",
+            "| {} particles with collision: above {} frames a second | {:.3g} with lists and the thesis's walk ({:.3g} ms per step, {:.3g} "
+            "ms of drawing); {:.3g} with the sorted grid and the exact walk |\n",
             kThesisParticles, kThesisFrames, with->frames.median, with->stepMs, with->drawMs, exact->frames.median);
     std::vector<double> frames, steps;
     for (const int particles : counts(chapter)) {
@@ -103,17 +102,17 @@ std::string verdict(const Chapter4& chapter) {
     };
     if (!frames.empty())
         text += fmt::format(
-            "| above {} particles collision costs about half the frame | its lists and its walk, above as many: {} of the frame, "
-            "{} of the step |\n",
+            "| above {} particles collision costs about half the frame | lists and the thesis's walk, above as many particles: {} of the "
+            "frame, {} of the step |\n",
             kThesisHalf, range(frames), range(steps));
     return text + '\n';
 }
 
 std::string sharesOf(const Chapter4& chapter) {
     std::string text =
-        "\n## Collision's share\n\nOf the frame: a run with collision against the one without beside it, median, least and most; below 0 "
-        "where "
-        "the machine is less steady than collision is dear. Of the step: its kernels among all of the step's, by the device's clock.\n\n"
+        "\n## The share of collision\n\nFrame: a run with collision against the run without it beside it, median (minimum to maximum); "
+        "negative where the times of this machine vary by more than collision costs. Step: the share of collision's kernels in all kernels "
+        "of the step, by the device's clock.\n\n"
         "| particles | lists, the thesis's walk: frame | step | lists, the exact walk: frame | step | sorted, the exact walk: frame | step "
         "|\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const int particles : counts(chapter)) {
@@ -139,7 +138,7 @@ std::string groupsOf(const Chapter4& chapter) {
     }
     if (best == nullptr) return {};
     return fmt::format(
-               "## Work groups\n\nAt {} particles, lists and the thesis's walk; a step is shortest with {} threads (the thesis used "
+               "## Work groups\n\nWith {} particles, lists and the thesis's walk. A step is shortest with {} threads (the thesis used "
                "{}).\n\n"
                "| threads | frames a second | step, ms | drawing, ms |\n| --- | --- | --- | --- |\n",
                best->particles, best->workGroup, kThesisWorkGroup) +
@@ -148,11 +147,12 @@ std::string groupsOf(const Chapter4& chapter) {
 
 std::string pageOf(const Chapter4& chapter, const std::string& machine, const std::string& command, bool picture) {
     std::string text = fmt::format(
-        "# Chapter 4 of the thesis, measured as it measured\n\n"
-        "Written by `{}` on: {}, backend gl and pictures by {}, from [chapter4.csv](chapter4.csv). A column of water has fallen onto {}, "
-        "hollow, voxelised at {}. A frame is one step of method wcsph_thesis and one picture of {}x{} pixels with the mesh, particles "
-        "drawn as points, each waited for; work groups of {}. `fluid.grid: \"linked_list\"` is the thesis's four dispatches [4.2], sorted "
-        "the grid that Rivulet comes with. All start from the same water and take turns; median, least and most of the runs.\n\n",
+        "# Chapter 4 of the thesis: measurements repeated\n\nWritten by `{}` on: {}, backend gl and pictures by {}, from "
+        "[chapter4.csv](chapter4.csv). Scene: a column of water has fallen onto {}, hollow, voxelised at {}. A frame is one step of method "
+        "wcsph_thesis and one picture of {}x{} pixels with the mesh and particles as points; each step and picture is waited for. Work "
+        "groups have {} threads. \"Lists\" is `fluid.grid: \"linked_list\"`, the four dispatches of the thesis (4.2); \"sorted\" is the "
+        "default grid. All variants start from the same water and run in turn. Figures are the median (minimum to maximum) of the runs. "
+        "[references.md](references.md) says what the thesis is.\n\n",
         command, machine, chapter.drawnBy, chapter.mesh, chapter.voxels, chapter.width, chapter.height, kThesisWorkGroup);
     text += verdict(chapter);
     if (picture) text += "![frames a second against particles](chapter4.svg)\n\n";
@@ -164,7 +164,7 @@ std::string pageOf(const Chapter4& chapter, const std::string& machine, const st
         for (const Way& way : kWays) text += fmt::format(" {} |", perSecond(find(chapter, particles, way)));
         text += '\n';
     }
-    text += "\n## Of a frame, ms\n\nThe step alone, without drawing.\n\n| particles |";
+    text += "\n## Time of a step, ms\n\nThe step alone; drawing is the last column.\n\n| particles |";
     for (const Way& way : kWays) text += fmt::format(" {} |", way.name);
     text += " drawing |\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const int particles : counts(chapter)) {

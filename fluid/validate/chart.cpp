@@ -10,7 +10,7 @@ namespace rivulet {
 
 namespace {
 
-// A case of the chart: coarser and finer than `validate --quick` has it.
+// A case of the chart: assignments for a coarser and a finer size than that of `validate --quick`.
 struct ChartCase {
     const char* name;
     bool quick;
@@ -40,7 +40,7 @@ struct Run {
     Size size;
 };
 
-// Settings as they come at all sizes, the others at the middle one. Quick: some settings, two sizes.
+// Default settings at all sizes, the others at the middle size. Quick: some settings, two sizes.
 std::vector<Run> plannedRuns(const ChartRequest& request) {
     std::vector<Run> runs;
     for (const ChartCase& c : kCases) {
@@ -54,13 +54,13 @@ std::vector<Run> plannedRuns(const ChartRequest& request) {
     return runs;
 }
 
-// The figure that is judged, or nothing: the run gave none.
+// The judged figure; null if the run gave none.
 const Finding* judgedOf(const Outcome& outcome) {
     const auto found = std::find_if(outcome.findings.begin(), outcome.findings.end(), [](const Finding& f) { return f.tolerance; });
     return found == outcome.findings.end() ? nullptr : &*found;
 }
 
-// Of the corrections the ends are left out when it is to be quick.
+// Quick: without the extreme numbers of corrections.
 constexpr int kIterations[] = {1, 2, 4, 8, 16}, kSteps[] = {4, 8, 16};
 std::span<const int> iterationsOf(const ChartRequest& request) {
     const std::span<const int> all(kIterations);
@@ -92,7 +92,7 @@ Result<Chart> runChart(const ChartRequest& request) {
     size_t done = 0;
     CaseSettings settings;
     settings.device = request.device;
-    // Hundreds of runs: what they notice would be read by nobody.
+    // Hundreds of runs: their notices are dropped.
     const auto onWay = [&](const std::string& what) {
         settings.goOn = [&request, done, whole, what](double share) {
             return request.goOn((static_cast<double>(done) + share) / static_cast<double>(whole), what);
@@ -118,7 +118,7 @@ Result<Chart> runChart(const ChartRequest& request) {
         }
         const Finding* f = judgedOf(*outcome);
         if (f == nullptr || !std::isfinite(f->error)) {
-            chart.refused.push_back(fmt::format("{}: it gave no figure", what));
+            chart.refused.push_back(fmt::format("{}: the run gave no figure", what));
             continue;
         }
         chart.rows.push_back({run.of->name, f->what, run.setting->name, outcome->spacing, outcome->particles, f->error,

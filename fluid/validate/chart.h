@@ -1,4 +1,4 @@
-// Speed against accuracy: every setting of every method, run on the physics cases at several resolutions, with what it cost.
+// Speed against accuracy: every setting of every method, run on the physics cases at several resolutions, with its cost.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace rivulet {
 
-// What pressure solved in so many corrections, and steps so long, adds to viscosity: of the standing wave, method pbf.
+// Numerical viscosity of pbf, measured on the standing wave, by corrections per step and steps per frame.
 struct ViscosityRow {
     int iterations = 0, stepsPerFrame = 0;
     double viscosity = 0, periodError = 0, wallPerSecond = 0;  // m^2/s, a fraction, s
@@ -19,7 +19,7 @@ struct ViscosityRow {
 struct Chart {
     std::vector<ChartRow> rows;
     std::vector<ViscosityRow> viscosity;
-    std::vector<std::string> refused;  // "CASE, SETTING: why" of what could not be run
+    std::vector<std::string> refused;  // "CASE, SETTING: reason" of each combination that could not be run
     bool stopped = false;
 };
 
@@ -34,8 +34,8 @@ std::vector<std::string> chartCases();  // names
 
 void markFront(std::vector<ChartRow>& rows);
 
-// Into `folder`: speed_accuracy.csv, speed_accuracy_CASE.svg, pbf_viscosity.csv and .svg, and speed_accuracy.md, which reads them aloud.
-// `machine` and `command` say where they come from. Error (failed): gnuplot is not installed, or a file cannot be written.
+// Writes into `folder`: speed_accuracy.csv, speed_accuracy_CASE.svg, pbf_viscosity.csv and .svg, and speed_accuracy.md, which explains them
+// and names `machine` and `command`. Error (failed): gnuplot is not installed, or a file cannot be written.
 Status writeChart(const Chart& chart, const std::string& folder, const std::string& machine, const std::string& command);
 
 }  // namespace rivulet

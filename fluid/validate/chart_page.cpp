@@ -1,4 +1,4 @@
-// What a chart leaves behind: a table, pictures, and a page that reads them aloud.
+// Writes a chart: a table, plots, and a page that explains them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,10 +31,10 @@ std::vector<ChartRow> rowsOf(const Chart& chart, const std::string& name) {
 std::string methodOf(const ChartRow& row) { return chartSettings().find(row.setting)->method; }
 
 Plot plotOf(const std::vector<ChartRow>& rows) {
-    Plot plot{rows.front().name + ": " + rows.front().what, "s on the wall per simulated second", "error", {}, true, true};
-    constexpr double kLeast = 1e-5;  // an axis of logarithms has no 0
+    Plot plot{rows.front().name + ": " + rows.front().what, "wall seconds per simulated second", "error", {}, true, true};
+    constexpr double kLeast = 1e-5;  // a logarithmic axis has no 0
     std::map<std::string, Curve> methods;
-    Curve front{"nothing is both cheaper and better", true, {}};
+    Curve front{"Pareto front", true, {}};
     for (const ChartRow& row : rows) {
         const glm::dvec2 at(row.wallPerSecond, std::max(row.error, kLeast));
         Curve& curve = methods[methodOf(row)];
@@ -48,22 +48,22 @@ Plot plotOf(const std::vector<ChartRow>& rows) {
     return plot;
 }
 
-// The cheapest that is as accurate as that, by rows from the cheapest on.
+// The cheapest row with at most this error; `rows` are sorted by cost.
 const ChartRow* cheapest(const std::vector<ChartRow>& rows, double error) {
     const auto found = std::find_if(rows.begin(), rows.end(), [&](const ChartRow& r) { return r.error <= error; });
     return found == rows.end() ? nullptr : &*found;
 }
 
-std::string readAloud(const std::vector<ChartRow>& rows) {
+std::string bestOf(const std::vector<ChartRow>& rows) {
     const ChartRow& best =
         *std::min_element(rows.begin(), rows.end(), [](const ChartRow& a, const ChartRow& b) { return a.error < b.error; });
-    std::string text = fmt::format("Best: **{}** with {} particles, {} off, {} a simulated second.", best.setting, best.particles,
+    std::string text = fmt::format("Best: **{}** with {} particles, error {}, {} per simulated second.", best.setting, best.particles,
                                    percentText(best.error), cost(best.wallPerSecond));
     const ChartRow* last = nullptr;
     for (const double within : {0.2, 0.1, 0.05, 0.02, 0.01}) {
         const ChartRow* row = cheapest(rows, within);
         if (row == nullptr) {
-            text += fmt::format(" Nothing here comes within {}.", percentText(within));
+            text += fmt::format(" No setting comes within {}.", percentText(within));
             break;
         }
         if (row != last)
@@ -74,12 +74,13 @@ std::string readAloud(const std::vector<ChartRow>& rows) {
     return text;
 }
 
-// As methods come, at the middle size: what each costs and how far it is off, case by case.
+// Methods with default settings at the middle size: cost and error of each, case by case.
 std::string needs(const Chart& chart) {
     std::string text =
-        "## Which method for which need\n\n| method | on the front | error over the best's, median | cost over the cheapest's, median | "
-        "compressed |\n| --- | --- | --- | --- | --- |\n";
-    std::map<std::string, std::vector<double>> worse, dearer, squeezed;
+        "## Choosing a method\n\nThe Pareto front of a case is the set of rows for which no other row is both cheaper and more "
+        "accurate.\n\n| method | rows on the front | error over the best, median | cost over the cheapest, median | compression |\n| --- | "
+        "--- | --- | --- | --- |\n";
+    std::map<std::string, std::vector<double>> errorRatios, costRatios, compressions;
     std::map<std::string, int> front;
     for (const std::string& name : caseNames(chart)) {
         const std::vector<ChartRow> rows = rowsOf(chart, name);
@@ -97,9 +98,9 @@ std::string needs(const Chart& chart) {
             fastest = std::min(fastest, r->wallPerSecond);
         }
         for (const ChartRow* r : own) {
-            worse[methodOf(*r)].push_back(r->error / least);
-            dearer[methodOf(*r)].push_back(r->wallPerSecond / fastest);
-            squeezed[methodOf(*r)].push_back(r->compression);
+            errorRatios[methodOf(*r)].push_back(r->error / least);
+            costRatios[methodOf(*r)].push_back(r->wallPerSecond / fastest);
+            compressions[methodOf(*r)].push_back(r->compression);
         }
     }
     const auto median = [](std::vector<double> of) {
@@ -107,23 +108,24 @@ std::string needs(const Chart& chart) {
         return of.empty() ? 0 : of[of.size() / 2];
     };
     std::string accurate, cheap, stiff;
-    double leastWorse = 1e300, leastDear = 1e300, leastSqueezed = 1e300;
-    for (const auto& [method, all] : worse) {
-        const double w = median(all), d = median(dearer[method]), c = median(squeezed[method]);
-        text += fmt::format("| {} | {} times | {:.2g} | {:.2g} | {} |\n", method, front[method], w, d, percentText(c));
-        if (w < leastWorse) leastWorse = w, accurate = method;
-        if (d < leastDear) leastDear = d, cheap = method;
-        if (c < leastSqueezed) leastSqueezed = c, stiff = method;
+    double leastError = 1e300, leastCost = 1e300, leastCompression = 1e300;
+    for (const auto& [method, all] : errorRatios) {
+        const double w = median(all), d = median(costRatios[method]), c = median(compressions[method]);
+        text += fmt::format("| {} | {} | {:.2g} | {:.2g} | {} |\n", method, front[method], w, d, percentText(c));
+        if (w < leastError) leastError = w, accurate = method;
+        if (d < leastCost) leastCost = d, cheap = method;
+        if (c < leastCompression) leastCompression = c, stiff = method;
     }
     return text + fmt::format(
-                      "\n- Figures that must be right: **{}**.\n- The most particles in a frame: **{}**.\n- Water that keeps its "
-                      "volume: **{}**.\n",
+                      "\n- For accurate figures: **{}**.\n- For the most particles per frame: **{}**.\n- For the least change of volume: "
+                      "**{}**.\n",
                       accurate, cheap, stiff);
 }
 
 std::string tableOf(const std::vector<ChartRow>& rows) {
     std::string text =
-        "| setting | particles | error | s a second | sweeps a second | steps a second | compressed | |\n| --- | --- | --- | --- "
+        "| setting | particles | error | s per simulated s | sweeps per simulated s | steps per simulated s | compression | |\n| --- | --- "
+        "| --- | --- "
         "| --- | --- | --- | --- |\n";
     for (const ChartRow& r : rows)
         text += fmt::format("| {} | {} | {} | {:.3g} | {:.4g} | {:.4g} | {} | {} |\n", r.setting, r.particles, percentText(r.error),
@@ -136,11 +138,10 @@ std::string viscosityPage(const Chart& chart) {
     const auto [least, most] = std::minmax_element(chart.viscosity.begin(), chart.viscosity.end(),
                                                    [](const auto& a, const auto& b) { return a.viscosity < b.viscosity; });
     std::string text = fmt::format(
-        "## What pbf adds to viscosity\n\nThe standing wave dies as if the water had this viscosity; its own is 1e-6 m^2/s. "
-        "More corrections a step and more steps a frame: least with {} corrections and {} steps at least ({:.2g} m^2/s), most with {} and "
-        "{} ({:.2g}).\n\n![viscosity against corrections](pbf_viscosity.svg)\n\n| corrections | steps a frame, at least | viscosity, m^2/s "
-        "| "
-        "period off | s a second |\n| --- | --- | --- | --- | --- |\n",
+        "## Numerical viscosity of pbf\n\nThe standing wave decays as if the water had this viscosity; the viscosity set is 1e-6 m^2/s. "
+        "Over the numbers of corrections per step and of steps per frame it is least with {} corrections and {} steps at least ({:.2g} "
+        "m^2/s), most with {} and {} ({:.2g}).\n\n![viscosity against corrections](pbf_viscosity.svg)\n\n| corrections | least steps per "
+        "frame | viscosity, m^2/s | error of the period | s per simulated s |\n| --- | --- | --- | --- | --- |\n",
         least->iterations, least->stepsPerFrame, least->viscosity, most->iterations, most->stepsPerFrame, most->viscosity);
     for (const ViscosityRow& r : chart.viscosity)
         text += fmt::format("| {} | {} | {:.3g} | {} | {:.3g} |\n", r.iterations, r.stepsPerFrame, r.viscosity, percentText(r.periodError),
@@ -181,11 +182,11 @@ std::string csvOf(const Chart& chart, const std::string& machine) {
 Status writeChart(const Chart& chart, const std::string& folder, const std::string& machine, const std::string& command) {
     const std::filesystem::path to(folder);
     std::string page = fmt::format(
-        "# Speed against accuracy\n\nWritten by `{}` on: {}. All rows come from one run. Cost is what steps take on the wall for a "
-        "simulated "
-        "second; a sweep is one look at all neighbours, the same on any machine. An error is a fraction of what `rivulet validate` says "
-        "for "
-        "the case; the table is `speed_accuracy.csv`, and a scene's `budget` picks from it.\n\n| setting | what it is |\n| --- | --- |\n",
+        "# Speed against accuracy\n\nWritten by `{}` on: {}. All rows come from one run. Cost is the wall time of the steps per simulated "
+        "second. A sweep is one pass over all neighbours; its count does not depend on the machine. Errors are the fractions that `rivulet "
+        "validate` reports for the case. The table is `speed_accuracy.csv`; its copy in `assets/reference` is the one that the `budget` of "
+        "a scene uses.\n\n| setting | "
+        "meaning |\n| --- | --- |\n",
         command, machine);
     const auto wasRun = [&](const ChartSetting& s) {
         return std::any_of(chart.rows.begin(), chart.rows.end(), [&](const ChartRow& row) { return row.setting == s.name; });
@@ -198,10 +199,10 @@ Status writeChart(const Chart& chart, const std::string& folder, const std::stri
         const std::string picture = fmt::format("speed_accuracy_{}.svg", name);
         if (Status drawn = drawPlot(plotOf(rows), (to / picture).string()); !drawn) return drawn;
         page += fmt::format("\n## {}\n\n{}.\n\n![error against cost]({})\n\n{}\n\n{}", name, physicsCases().find(name)->doc, picture,
-                            readAloud(rows), tableOf(rows));
+                            bestOf(rows), tableOf(rows));
     }
     if (!chart.refused.empty()) {
-        page += "\n## What could not be run\n\n";
+        page += "\n## Combinations that could not be run\n\n";
         for (const std::string& line : chart.refused) page += "- " + line + '\n';
     }
     if (!chart.viscosity.empty()) {

@@ -1,7 +1,7 @@
-// A dam breaks: front and height of the column against Martin and Moyce 1952 (Tables 2 and 6), and Koshizuka and Oka 1996. Their axes
-// differ: T = t sqrt(2 g / a) for the front, tau = t sqrt(g / a) for the height. The film's front starts late, by 0.3 in T, whatever held
-// it (gate, wetting, friction): inviscid flow by boundary elements is 13.6 % ahead of it, too, and is what equations without them can be
-// judged by.
+// Dam break: front and height of the column against Martin and Moyce 1952 (Tables 2 and 6) and Koshizuka and Oka 1996. Their time axes
+// differ: T = t sqrt(2 g / a) for the front, tau = t sqrt(g / a) for the height. The measured front starts late by 0.3 in T, because of
+// gate, wetting or friction: inviscid flow computed by boundary elements is also 13.6 % ahead of it. A method without these effects is
+// therefore judged by the inviscid solution.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace rivulet {
 
 namespace {
 
-// Where so large a share of the particles near the floor is nearer than, m.
+// The position (m) behind which `share` of the particles near the floor lie.
 double frontOfShare(std::span<const vec4> positions, const FluidParams& p, double share) {
     std::vector<float> x;
     for (const vec4& at : positions)
@@ -23,7 +23,7 @@ double frontOfShare(std::span<const vec4> positions, const FluidParams& p, doubl
     return double{*which} + 0.5 * double{p.spacing};
 }
 
-// The height of the water along the wall at x = min, m: the volume there over the floor it stands on.
+// The height of the water along the wall at x = min, m: volume over floor area.
 double heightAtWall(std::span<const vec4> positions, const FluidParams& p) {
     const double reach = double{p.blocks[0].max.x - p.blocks[0].min.x} / 8, s = p.spacing;
     const auto count =

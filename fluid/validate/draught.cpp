@@ -18,7 +18,7 @@ double waterVolume(std::span<const vec4> positions, double spacing) {
 }
 
 double waterLevel(double water, double area, std::span<const Floater> floaters) {
-    // What is under grows with the level, by less than the level does: bodies cover less than the tank's floor.
+    // The submerged volume grows more slowly than level * area, because bodies cover less than the floor: the iteration converges.
     double low = water / area, high = low;
     for (const Floater& f : floaters) high += f.volume / area;
     for (int k = 0; k < 60; ++k) {

@@ -1,10 +1,10 @@
-// Draught: how deep floating bodies lie, by the level that the water itself says.
+// Draught of floating bodies, from the water level of the tank.
 //
-// Particles' centres lie within the water and a body's samples within the body, both by half a spacing: neither shows a surface. So the
-// level is found from the tank: particles stand for spacing^3 each, less what they are compressed by, and
-//     level * area = water + what is under the level of the bodies,
-// which knows nothing of how particles lie at the top or beside a body. If the fluid kept too far off a body, or crept under its skin, it
-// would stand higher or lower there, and the body float elsewhere than this level says.
+// Centres of particles lie half a spacing inside the water, samples of a body half a spacing inside the body, so neither marks a surface.
+// The level is therefore computed from the tank. A particle stands for spacing^3, reduced by its compression, and
+//     level * area = volume of water + volume of the bodies below the level,
+// which does not depend on the arrangement of particles at the surface or beside a body. If the fluid kept too far from a body, or entered
+// its surface layer, the body would float at a depth that disagrees with this level.
 #pragma once
 
 #include <span>
@@ -13,20 +13,20 @@
 
 namespace rivulet {
 
-// A box, or a ball, that floats upright. SI units.
+// A box or a ball that floats upright. SI units.
 struct Floater {
     double height = 0, volume = 0;
-    double keel = 0;  // of its lowest point, from the tank's floor
+    double keel = 0;  // height of its lowest point above the floor of the tank
     bool ball = false;
 
-    // The share of its volume that is under, its lowest point `deep` m below the level.
+    // The share of its volume below the level if its lowest point is `deep` m below the level.
     double shareUnder(double deep) const;
 };
 
-// m^3; `positions` as ParticleView::position, free slots among them or not.
+// m^3; `positions` as ParticleView::position; free slots are skipped.
 double waterVolume(std::span<const vec4> positions, double spacing);
 
-// m, above the floor of a tank with upright walls. `water` m^3, `area` m^2 of the floor.
+// m above the floor of a tank with vertical walls; `water` in m^3, `area` of the floor in m^2.
 double waterLevel(double water, double area, std::span<const Floater> floaters);
 
 }  // namespace rivulet

@@ -1,5 +1,5 @@
-// The stability envelope: where each method fails once the program's limits are off (fluid.limits), beside where the literature says it
-// does, and what the limits make of the same scene.
+// The stability envelope: the value at which each method fails with the limits off (fluid.limits), the value that the literature predicts,
+// and the same scene with the limits on.
 #pragma once
 
 #include <functional>
@@ -18,25 +18,25 @@ namespace rivulet {
 struct EnvelopeSettings {
     Device* device = nullptr;
     Log log = {};
-    std::function<bool()> goOn = [] { return true; };  // asked each frame; false: stop
+    std::function<bool()> goOn = [] { return true; };  // called in each frame; false: stop
 };
 
-// One method in one scene, something swept until it fails.
+// One method in one scene; one parameter is increased until the scene fails.
 struct EnvelopeFinding {
     std::string row, method;
-    std::string what;                // is swept, and under which circumstances: "step, nu = 5 m^2/s"
-    std::string unit;                // of the figures below; "" = none
-    double predicted = 0;            // where the predictor's promise ends
-    std::optional<double> measured;  // where it first failed, limits off; nothing: nowhere
-    double reached = 0;              // how far was looked
-    std::string criterion;           // what failure was taken as
+    std::string what;                // the parameter and its conditions: "step, nu = 5 m^2/s"
+    std::string unit;                // of the values below; "" = none
+    double predicted = 0;            // the limit of the predictor
+    std::optional<double> measured;  // the first value that failed, limits off; empty: none
+    double reached = 0;              // the greatest value tried
+    std::string criterion;           // the definition of failure
 
-    // With the limits on: asked for what had failed, or for the most that was looked at.
+    // The run with the limits on, with twice the value that failed or the greatest value tried.
     struct Limited {
         double asked = 0;  // in `unit`
         bool finite = false, bounded = false, nothingLost = false;
         uint64_t steps = 0;
-        std::string notice;  // what the program said of it
+        std::string notice;  // the notices of the program
         bool holds() const { return finite && bounded && nothingLost; }
     } limited;
 
@@ -45,16 +45,16 @@ struct EnvelopeFinding {
 
 struct EnvelopeRow {
     const char* name;       // and of its scene: stability/NAME.json among the assets
-    const char* doc;        // what fails, and why
-    const char* predictor;  // the formula, and whose it is
-    const char* remark;     // a sentence on what was found; "" = none
-    // Error: the scene is missing or cannot be run; failed("...stopped") where goOn said so.
+    const char* doc;        // the failure and its cause
+    const char* predictor;  // the formula and its source
+    const char* remark;     // a remark on the result; "" = none
+    // Error: the scene is missing or cannot be run; failed("...stopped") after goOn returned false.
     Result<std::vector<EnvelopeFinding>> (*run)(const EnvelopeSettings& settings);
 };
 Table<EnvelopeRow> envelope();
 
-// FOLDER/stability.csv, stability.svg (predicted against measured) and stability.md, which reads them aloud. `machine`: as machineName().
-// Error (failed): a file cannot be written; or gnuplot is missing: the table and the page are there all the same.
+// Writes FOLDER/stability.csv, stability.svg (predicted against measured) and stability.md, which explains them. `machine`: as
+// machineName(). Error (failed): a file cannot be written; or gnuplot is missing: the table and the page are written nevertheless.
 Status writeEnvelope(const std::string& folder, std::span<const EnvelopeFinding> findings, const std::string& machine);
 
 Result<std::vector<EnvelopeFinding>> envelopeOfSound(const EnvelopeSettings& settings);

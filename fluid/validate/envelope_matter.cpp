@@ -1,5 +1,5 @@
-// Rows of the stability envelope that are not a matter of the step alone: neighbours in pairs and clumps, places far from zero, thin walls,
-// particles born in each other, light bodies.
+// Rows of the stability envelope that do not depend on the step alone: pairing and clumping, coordinates far from zero, thin walls,
+// overlapping particles, light bodies.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
 
-// Mean distance to the nearest neighbour, m; over borders where the box has no walls.
+// Mean distance to the nearest neighbour, m; periodic where the box has no walls.
 double nearestNeighbour(const FluidWorld& world) {
     const HostParticles all = readParticles(world);
     const BoxParams& box = world.params().box;
@@ -38,7 +38,7 @@ double nearestNeighbour(const FluidWorld& world) {
     return sum / static_cast<double>(all.position.size());
 }
 
-// Puts particles elsewhere.
+// Moves particles.
 Status moveParticles(FluidWorld& world, const std::function<dvec3(const dvec3&)>& to) {
     return changeParticles(world, [&to](vec4& x, vec4&) { x = vec4(vec3(to(dvec3(x))), x.w); });
 }
@@ -51,7 +51,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfPairing(const EnvelopeSettings& s
     const double spacing = scene->fluid.spacing, edge = double{scene->fluid.box.max.x - scene->fluid.box.min.x};
     double particles = 0;
     for (const BlockParams& b : scene->fluid.blocks) particles += blockCount(b, scene->fluid.spacing);
-    const double crowd = particles * std::pow(spacing / edge, 3);  // where one should be
+    const double crowd = particles * std::pow(spacing / edge, 3);  // particles per volume of one
     std::vector<Sweep> sweeps;
     for (const char* kernel : {"cubic_spline", "wendland"})
         sweeps.push_back({.row = "pairing",
@@ -61,7 +61,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfPairing(const EnvelopeSettings& s
                           .predicted = 55,
                           .least = 15,
                           .most = 267,
-                          .criterion = "nearest neighbours on average nearer than 0.7 spacings",
+                          .criterion = "mean distance to the nearest neighbour below 0.7 spacings",
                           .run = [=](double at, bool) {
                               const double support = std::cbrt(at / crowd * 3 / (4 * kHalfTurn));
                               return StabilityRun{
@@ -82,12 +82,12 @@ Result<std::vector<EnvelopeFinding>> envelopeOfClumping(const EnvelopeSettings& 
         sweeps.push_back(
             {.row = "clumping",
              .method = method,
-             .what = "volume over that at rest",
+             .what = "volume over the volume at rest",
              .unit = "",
              .predicted = 1,
              .least = 1,
              .most = 2,
-             .criterion = "nearest neighbours on average nearer than 0.8 spacings",
+             .criterion = "mean distance to the nearest neighbour below 0.8 spacings",
              .run = [=](double at, bool) {
                  return StabilityRun{
                      .scene = "clumping",
@@ -100,19 +100,19 @@ Result<std::vector<EnvelopeFinding>> envelopeOfClumping(const EnvelopeSettings& 
 }
 
 Result<std::vector<EnvelopeFinding>> envelopeOfDistance(const EnvelopeSettings& settings) {
-    constexpr double kSpeed = 0.1, kStep = 0.004, kDigits = 8388608;  // floats from a power of two to the next
+    constexpr double kSpeed = 0.1, kStep = 0.004, kDigits = 8388608;  // number of floats from a power of two to the next
     std::vector<Sweep> sweeps;
     for (const char* method : {"wcsph", "pbf", "dfsph"})
         sweeps.push_back({.row = "far_origin",
                           .method = method,
-                          .what = "distance, 0.4 mm a step",
+                          .what = "distance, 0.4 mm per step",
                           .unit = "m",
                           .predicted = 2 * kSpeed * kStep * kDigits,
                           .least = 100,
                           .most = 65536,
-                          .criterion = "a hundredth of the way is gone, or less",
+                          .criterion = "a hundredth of the path is covered, or less",
                           .run = [=](double at, bool limits) {
-                              // With the limits on it is the same place, given as the world's origin.
+                              // With the limits on the same position is given as the world's origin.
                               const double away = std::floor(at), low = limits ? 0 : away;
                               std::vector<std::string> assignments = {fmt::format("fluid.method={}", method)};
                               if (limits) assignments.push_back(fmt::format("fluid.origin={},0,0", away));
@@ -148,7 +148,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfTunnelling(const EnvelopeSettings
         const char* const walk = row.second;
         sweeps.push_back({.row = "tunnelling",
                           .method = method,
-                          .what = fmt::format("way in a step, walk {}", walk),
+                          .what = fmt::format("path per step, walk {}", walk),
                           .unit = "walls",
                           .predicted = 1,
                           .least = 0.25,
@@ -169,7 +169,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfTunnelling(const EnvelopeSettings
     return sweepAll(settings, sweeps);
 }
 
-// Blocks in one place, drawn together until so many particles are where one should be.
+// Blocks in one place, compressed until `at` particles share the volume of one.
 Result<std::vector<EnvelopeFinding>> envelopeOfSpawning(const EnvelopeSettings& settings) {
     const Result<SceneFile> scene = stabilityScene("spawning", {});
     if (!scene) return scene.error();
@@ -181,12 +181,12 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSpawning(const EnvelopeSettings& 
         const double step = row.second;
         sweeps.push_back({.row = "spawning",
                           .method = method,
-                          .what = fmt::format("density at birth, steps of {:.3g} ms", 1000 * step),
+                          .what = fmt::format("density when spawned, steps of {:.3g} ms", 1000 * step),
                           .unit = "",
                           .predicted = 2,
                           .least = 2,
                           .most = 16,
-                          .criterion = "not finite, or lost",
+                          .criterion = "a value not finite, or a particle lost",
                           .run = [=](double at, bool) {
                               return StabilityRun{.scene = "spawning",
                                                   .assignments = {fmt::format("fluid.method={}", method)},
@@ -209,12 +209,12 @@ Result<std::vector<EnvelopeFinding>> envelopeOfCoupling(const EnvelopeSettings& 
         sweeps.push_back(
             {.row = "coupling",
              .method = method,
-             .what = fmt::format("water's density over the ball's, steps of {:.3g} ms", 1000 * step),
+             .what = fmt::format("density of water over that of the ball, steps of {:.3g} ms", 1000 * step),
              .unit = "",
              .predicted = 2,
              .least = 0.01,
              .most = 100,
-             .criterion = "the ball faster than 3 m/s, or not finite, or lost",
+             .criterion = "the ball faster than 3 m/s, or a value not finite, or a particle lost",
              .run = [method, step](double at, bool) {
                  auto fast = std::make_shared<double>(0);
                  return StabilityRun{

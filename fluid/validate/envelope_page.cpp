@@ -1,4 +1,4 @@
-// What the stability envelope writes into docs/: a table, a picture, and a page that reads both aloud.
+// Writes the stability envelope into docs/: a table, a plot, and a page that explains them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ std::string inCsv(const std::string& text) {
 
 std::string csvOf(std::span<const EnvelopeFinding> findings, const std::string& machine) {
     std::string text = fmt::format(
-        "# Where methods fail: predicted and measured with fluid.limits off; what the limits make of it. {}\n"
-        "# An empty measured: nothing failed up to reached.\n"
+        "# Where methods fail: predicted and measured with fluid.limits off; the same with the limits on. {}\n# An empty measured: no "
+        "failure up to reached.\n"
         "row,method,swept,unit,predicted,measured,reached,ratio,criterion,asked,finite,bounded,nothingLost,steps,notice\n",
         machine);
     for (const EnvelopeFinding& f : findings)
@@ -37,7 +37,7 @@ std::string csvOf(std::span<const EnvelopeFinding> findings, const std::string& 
     return text;
 }
 
-// Rows beside each other, methods by colour: how far from where it was predicted each fails.
+// One tick per row, one colour per method: the measured over the predicted limit.
 Plot plotOf(std::span<const EnvelopeFinding> findings) {
     Plot plot{.title = "Where methods fail, limits off", .x = "", .y = "measured over predicted", .curves = {}, .logY = true};
     Curve none{"no failure up to here", false, {}};
@@ -65,10 +65,10 @@ std::string withUnit(double value, const std::string& unit) {
     return unit.empty() ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
 }
 
-// How far from the predictor, in words.
+// The measured limit and its ratio to the predicted one, in words.
 std::string verdictOf(const EnvelopeFinding& f) {
     if (!f.measured) return fmt::format("never, up to {}", withUnit(f.reached, f.unit));
-    return fmt::format("{}, {:.2g} times that", withUnit(*f.measured, f.unit), f.ratio());
+    return fmt::format("{}, {:.2g} times the prediction", withUnit(*f.measured, f.unit), f.ratio());
 }
 
 std::string limitsOf(const EnvelopeFinding::Limited& l) {
@@ -85,12 +85,11 @@ std::string limitsOf(const EnvelopeFinding::Limited& l) {
 std::string pageOf(std::span<const EnvelopeFinding> findings, const std::string& machine, bool picture) {
     std::string text = fmt::format(
         "# Where methods fail\n\n"
-        "Written by the program ({}), from [stability.csv](stability.csv). Each row is a scene under `assets/stability`. With "
-        "`fluid.limits` "
-        "off a step is as long as asked for and no speed is limited; something is swept until the scene fails, and where it does stands "
-        "beside "
-        "where the literature says that its promise ends. Those are sufficient conditions: to hold a few times longer is usual, to fail "
-        "sooner has a reason, which is given. Then the limits are on, and the same scene is asked for twice what it failed at.\n\n",
+        "Written by the program ({}), from [stability.csv](stability.csv). Each section is a scene in `assets/stability`. With "
+        "`fluid.limits` off a step is as long as requested and no speed is limited. One parameter is increased until the scene fails; the "
+        "table compares this value with the limit that the literature predicts. Predicted limits are sufficient conditions: a scene "
+        "usually holds up to a few times the limit, and where one fails sooner the reason is given. Then the limits are switched on, and "
+        "the same scene runs with twice the value at which it failed.\n\n",
         machine);
     if (picture) text += "![predicted and measured](stability.svg)\n\n";
     size_t failed = 0, early = 0, hold = 0;
@@ -99,8 +98,8 @@ std::string pageOf(std::span<const EnvelopeFinding> findings, const std::string&
         early += f.measured && f.ratio() < 1 ? 1 : 0;
         hold += f.limited.holds() ? 1 : 0;
     }
-    text += fmt::format("Of {} sweeps {} found a failure, {} of them before it was predicted; with the limits on {} of {} hold.\n\n",
-                        findings.size(), failed, early, hold, findings.size());
+    text += fmt::format("{} of {} sweeps failed, {} of them below the predicted limit; with the limits on {} of {} hold.\n\n", failed,
+                        findings.size(), early, hold, findings.size());
     for (const EnvelopeRow& row : envelope().rows) {
         const auto of = [&row](const EnvelopeFinding& f) { return f.row == row.name; };
         const auto first = std::find_if(findings.begin(), findings.end(), of);
@@ -110,7 +109,7 @@ std::string pageOf(std::span<const EnvelopeFinding> findings, const std::string&
         text += fmt::format("## {}\n\n{}. Predictor: {}. Failure: {}.\n\n", row.name, doc, row.predictor, first->criterion);
         if (row.remark[0] != '\0') text += fmt::format("{}\n\n", row.remark);
         text +=
-            "| method | swept | predicted | failed, limits off | limits on | asked for | steps | it says |\n"
+            "| method | swept | predicted | failed, limits off | limits on | requested | steps | notices |\n"
             "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
         for (const EnvelopeFinding& f : findings)
             if (of(f))
@@ -128,7 +127,7 @@ std::string pageOf(std::span<const EnvelopeFinding> findings, const std::string&
 Status writeEnvelope(const std::string& folder, std::span<const EnvelopeFinding> findings, const std::string& machine) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) return failed(fmt::format("the folder {} cannot be made: {}", folder, error.message()));
+    if (error) return failed(fmt::format("the folder {} cannot be created: {}", folder, error.message()));
     if (Status wrote = writeFileAtomic(folder + "/stability.csv", csvOf(findings, machine)); !wrote) return wrote;
     const Status drawn = drawPlot(plotOf(findings), folder + "/stability.svg");
     if (Status wrote = writeFileAtomic(folder + "/stability.md", pageOf(findings, machine, static_cast<bool>(drawn))); !wrote) return wrote;

@@ -1,5 +1,5 @@
-// Rows of the stability envelope that a longer step crosses: sound, viscosity, capillary waves, what is flown past in a step, frames that
-// hang, the iterations of PBF and the warm start of DFSPH.
+// Rows of the stability envelope whose limit is a step length: sound, viscosity, capillary waves, distance per step, long frames, the
+// iterations of PBF and the warm start of DFSPH.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 double smoothing(const FluidParams& p) { return 0.5 * double{p.supportSpacings} * double{p.spacing}; }
 
-// The speed of what falls from the highest block's top to the floor.
+// The speed at the floor after a fall from the top of the highest block.
 double fallSpeed(const FluidParams& p) {
     double high = 0;
     for (const BlockParams& b : p.blocks) high = std::max(high, double{b.max.y - p.box.min.y});
@@ -33,7 +33,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSound(const EnvelopeSettings& set
                                     .assignments = {fmt::format("fluid.soundSpeed={}", c0)},
                                     .seconds = c0 > 100 ? 0.1 : 0,
                                     .fails = gainsEnergy()}));
-    // The thesis's lattice is born up to a half too dense, and that is energy: k (ln r + 1 / r - 1) a kilogram.
+    // The thesis's lattice starts up to a half too dense, which stores energy: k (ln r + 1 / r - 1) per kilogram.
     const BlockParams& block = scene->fluid.blocks[0];
     const vec3 size = block.max - block.min;
     const double mass = double{scene->fluid.restDensity} * double{size.x} * double{size.y} * double{size.z};
@@ -69,7 +69,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfTension(const EnvelopeSettings& s
         const FluidParams& p = scene->fluid;
         const double edge = double{p.blocks[0].max.x - p.blocks[0].min.x};
         sweeps.push_back(stepSweep("tension", method, fmt::format("step, sigma = {} N/m", tension), capillaryLimit(p),
-                                   "as much kinetic energy as the whole surface has, or not finite, or lost",
+                                   "as much kinetic energy as the whole surface holds, or a value not finite, or a particle lost",
                                    {.scene = "tension",
                                     .assignments = assignments,
                                     .seconds = double{scene->duration} * std::sqrt(10 / tension),
@@ -85,7 +85,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfLargeSteps(const EnvelopeSettings
         const Result<SceneFile> scene = stabilityScene("large_steps", assignments);
         if (!scene) return scene.error();
         const double speed = double{scene->fluid.blocks[0].velocity.x - scene->fluid.blocks[1].velocity.x}, spacing = scene->fluid.spacing;
-        sweeps.push_back(stepSweep("large_steps", method, fmt::format("step, {} m/s towards each other", speed), spacing / speed,
+        sweeps.push_back(stepSweep("large_steps", method, fmt::format("step, blocks meet at {} m/s", speed), spacing / speed,
                                    kGainsEnergyOrIsSqueezed,
                                    {.scene = "large_steps", .assignments = assignments, .fails = gainsEnergyOrIsSqueezed()}));
     }
@@ -96,7 +96,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSpikes(const EnvelopeSettings& se
     std::vector<Sweep> sweeps;
     const Result<SceneFile> scene = stabilityScene("frame_spike", {});
     if (!scene) return scene.error();
-    // When it comes, the column has fallen for so long; in one step, (v + g dt) dt, it is to fall a diameter.
+    // The column has fallen for kBefore when the long frame begins; in this step it falls (v + g dt) dt, which is set to a diameter.
     constexpr double kBefore = 0.04;
     const double g = glm::length(scene->fluid.gravity), v = g * kBefore;
     const double predicted = (std::sqrt(v * v + 4 * g * double{scene->fluid.spacing}) - v) / (2 * g);
@@ -104,7 +104,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSpikes(const EnvelopeSettings& se
     for (const char* method : {"pbf", "dfsph"})
         sweeps.push_back({.row = "frame_spike",
                           .method = method,
-                          .what = fmt::format("a frame after {} of {} ms", kFrames, 1000 * kBefore / kFrames),
+                          .what = fmt::format("one frame after {} frames of {} ms", kFrames, 1000 * kBefore / kFrames),
                           .unit = "s",
                           .predicted = predicted,
                           .least = kBefore / kFrames,
@@ -121,8 +121,8 @@ Result<std::vector<EnvelopeFinding>> envelopeOfSpikes(const EnvelopeSettings& se
     return sweepAll(settings, sweeps);
 }
 
-// The weight of a column H high asks of k corrections a step, each r of what would do alone, that its floor be a g H dt^2 / (k r h^2) too
-// dense; a, the diagonal of the lattice over h^2, is counted out.
+// With k corrections per step and relaxation r, the weight of a column of height H compresses its floor by a g H dt^2 / (k r h^2); a, the
+// diagonal of the lattice times h^2, is summed over the lattice.
 Result<std::vector<EnvelopeFinding>> envelopeOfPbf(const EnvelopeSettings& settings) {
     const Result<SceneFile> scene = stabilityScene("pbf", {});
     if (!scene) return scene.error();
@@ -139,7 +139,7 @@ Result<std::vector<EnvelopeFinding>> envelopeOfPbf(const EnvelopeSettings& setti
                 shape += std::pow(1 - q, 4) * (1 + 4 * q);
                 squares += std::pow(20 * q * std::pow(1 - q, 3), 2);
             }
-    const double diagonal = squares / (shape * shape);  // the lattice is to have density 1
+    const double diagonal = squares / (shape * shape);  // scaled to a lattice of density 1
     std::vector<Sweep> sweeps;
     for (const auto& [iterations, relaxation] : {std::pair(1, 0.5), std::pair(1, 1.0), std::pair(3, 1.0), std::pair(8, 1.0)}) {
         constexpr double kTooDense = 0.1;

@@ -1,4 +1,4 @@
-// Boxes float as deep as they weigh (Archimedes), a heavy one sinks to the floor, and what the water gives them it loses itself.
+// Floating boxes displace their weight (Archimedes), a heavy one sinks to the floor, and water and boxes exchange equal impulses.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ Result<Outcome> runFloating(const CaseSettings& settings) {
     const std::vector<BodyParams>& bodies = trial->scene().bodies;
     const double area = double{box.max.x - box.min.x} * double{box.max.z - box.min.z};
     const auto massOf = [](const BodyParams& b) { return double{b.density} * double{b.size.x} * double{b.size.y} * double{b.size.z}; };
-    // Along x and z nothing but water and bodies act on each other: no walls there, no friction on the floor.
+    // Along x and z only water and bodies interact: there are no walls, and the floor has no friction.
     const auto level = [](const dvec3& v) { return dvec3(v.x, 0.0, v.z); };
     const auto momentumOfBody = [&](size_t k) {
         return level(massOf(bodies[k]) * dvec3(trial->world().bodies()[k].velocity) + trial->world().bodyLoads()[k].impulseOwed);
@@ -38,7 +38,7 @@ Result<Outcome> runFloating(const CaseSettings& settings) {
         measured.push_back({fmt::format("box {:.3g} times as dense as water", ratio), true, {}});
         reference.push_back({fmt::format("Archimedes, {:.3g}", ratio), true, {{0, ratio}, {double{trial->scene().duration}, ratio}}});
     }
-    // The second half of the run is at rest, but for a little bobbing.
+    // In the second half of the run the boxes are at rest except for small oscillations.
     const double settled = 0.5 * double{trial->scene().duration};
     std::vector<double> under(measured.size());
     double frames = 0, drift = 0, given = 0, sunk = 0;

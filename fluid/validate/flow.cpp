@@ -1,4 +1,4 @@
-// Flow on skins: films, drops that are held and slide, the same way whatever the mesh's layout, and a ledger that closes.
+// Flow on skins: films, held and sliding drops, the same path for every layout of the mesh, and a ledger that closes.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -19,13 +19,13 @@ Result<SurfaceFlow> flowOn(const Under& u, const Shape& shape, const SurfaceFlow
     return SurfaceFlow::create(*u.settings.device, std::move(*mesh), params);
 }
 
-// A film of strewn particles on an upright wall: rho g h^2 / (3 mu).
+// A film of jittered particles on a vertical wall: speed rho g h^2 / (3 mu).
 Status film(Under& u) {
     for (const Layout layout : kLayouts) {
         SurfaceFlowParams p;
         p.viscosity = 1.0e-3F;
         p.density = 1000;
-        p.advancing = p.receding = 1;  // it wets: a film as thin as that tears else
+        p.advancing = p.receding = 1;  // a wetting liquid: otherwise so thin a film breaks up
         p.trail = 0;
         p.capacity = 1 << 14;
         const Shape wall = laidOut(sheetShape(vec3(0, 0.2F, 0), vec3(0, -0.2F, 0), vec3(0.08F, 0, 0), 40, 16), layout);
@@ -55,7 +55,7 @@ Status film(Under& u) {
     return ok();
 }
 
-// Grown by fifty others on an upright wall until it lets go.
+// A drop on a vertical wall that grows by fifty merges until it slides.
 Status heldDrop(Under& u, double advancing, double receding, uint32_t quads, Layout layout) {
     SurfaceFlowParams p;
     p.advancing = static_cast<float>(advancing);
@@ -65,11 +65,11 @@ Status heldDrop(Under& u, double advancing, double receding, uint32_t quads, Lay
     if (!flow) return flow.error();
     const double expected = furmidgeVolume(p);
     std::mt19937 random(7);
-    std::uniform_real_distribution<float> strewn(-2.0e-4F, 2.0e-4F);
+    std::uniform_real_distribution<float> offset(-2.0e-4F, 2.0e-4F);
     double grown = 0, first = 0;
     const auto birth = static_cast<uint32_t>(expected * 1.0e15 / 50);
     for (int k = 0; k < 70 && first == 0; ++k) {
-        flow->add(nearestPoint(flow->mesh(), vec3(0.05F + strewn(random), 0.05F + strewn(random), 0)), birth);
+        flow->add(nearestPoint(flow->mesh(), vec3(0.05F + offset(random), 0.05F + offset(random), 0)), birth);
         for (int step = 0; step < 6; ++step)
             if (!u.step(*flow, {})) return ok();
         grown += birth * 1.0e-15;
@@ -81,7 +81,7 @@ Status heldDrop(Under& u, double advancing, double receding, uint32_t quads, Lay
     return ok();
 }
 
-// The speed of a drop of 6 microlitres down a slope of which Bo = V^(2/3) rho g sin(a) / gamma. Nothing: stopped.
+// The speed of a drop of 6 microlitres down a slope with Bo = V^(2/3) rho g sin(a) / gamma. Empty: stopped.
 Result<double> slidingSpeed(Under& u, const SurfaceFlowParams& p, double bond) {
     const double volume = 6.0e-9, sine = bond * double{p.surfaceTension} / (std::pow(volume, 2.0 / 3) * double{p.density} * kGravity);
     const double a = std::asin(std::min(sine, 1.0));
@@ -98,7 +98,7 @@ Result<double> slidingSpeed(Under& u, const SurfaceFlowParams& p, double bond) {
     return speed;
 }
 
-// Le Grand, Daerr and Limat 2005: calibrated at 104 cP, what does the law say of 10 and 1040 cP, and of each when it is its own row?
+// Le Grand, Daerr and Limat 2005: the law calibrated at 104 cP, applied to 10 and 1040 cP, and each oil with its own calibration.
 Status slidingDrops(Under& u) {
     struct Oil {
         double eta, advancing, receding, slope, critical;
@@ -108,7 +108,7 @@ Status slidingDrops(Under& u) {
     for (size_t k = 0; k < column(1).size(); ++k)
         oils.push_back({1.0e-3 * column(1)[k].x, column(1)[k].y, column(2)[k].y, column(3)[k].y, column(4)[k].y});
     const double rad = kPiD / 180;
-    // Ca = (Bo - 2 c k (cos r - cos a)) / (2 c beta), c the foot's radius over V^(1/3).
+    // Ca = (Bo - 2 c k (cos r - cos a)) / (2 c beta), c the radius of the contact area over V^(1/3).
     const auto calibrated = [&](const Oil& oil) {
         const double h = std::tan(0.25 * (oil.advancing + oil.receding) * rad), c = std::cbrt(6 / (kPiD * h * (3 + h * h)));
         SurfaceFlowParams p;
@@ -122,7 +122,7 @@ Status slidingDrops(Under& u) {
     Curve measured{"Le Grand et al. 2005", true, {}}, predicted{"predicted from 104 cP", true, {}};
     for (const bool own : {false, true})
         for (const Oil& oil : oils) {
-            if (own && oil.eta == oils[1].eta) continue;  // the same as predicted
+            if (own && oil.eta == oils[1].eta) continue;  // equal to the prediction
             SurfaceFlowParams p = calibrated(own ? oil : oils[1]);
             p.viscosity = static_cast<float>(oil.eta);
             p.advancing = static_cast<float>(oil.advancing);
@@ -147,10 +147,10 @@ Status slidingDrops(Under& u) {
 
 struct Way {
     std::vector<vec3> places;
-    double arrival = 0;  // s, when it had gone as far as the first of the ways was to
+    double arrival = 0;  // s, at which it had covered the length of the first path
 };
 
-// A tear that runs down a shape of 5 cm, from `from` until it is below `level`.
+// A tear runs down a shape of 5 cm from `from` until it is below `level`.
 Result<Way> wayDown(Under& u, const Shape& shape, const vec3& from, float level) {
     SurfaceFlowParams p;
     p.trail = 5.0e-6F;
@@ -165,7 +165,7 @@ Result<Way> wayDown(Under& u, const Shape& shape, const vec3& from, float level)
         way.places.push_back(drops[0].position);
         way.arrival = k * kStep;
         if (drops[0].position.y < level) {
-            // Between two steps.
+            // Interpolated between two steps.
             const float before = way.places[way.places.size() - 2].y, now = drops[0].position.y;
             way.arrival -= kStep * double{(level - now) / std::max(before - now, 1.0e-9F)};
             break;
@@ -197,7 +197,7 @@ Status samePath(Under& u) {
     return ok();
 }
 
-// A minute of crying down a ball that breathes, with gusts: what was shed is somewhere, to a picolitre.
+// A minute of tears on a ball that expands and contracts, with gusts: all emitted volume is accounted for, to a picolitre.
 Status ledger(Under& u) {
     const Shape rest = ballShape(0.06F, 64);
     SurfaceFlowParams p;
@@ -205,7 +205,7 @@ Status ledger(Under& u) {
     p.evaporation = 1.0e-7F;
     Result<SurfaceFlow> flow = flowOn(u, rest, p);
     if (!flow) return flow.error();
-    breathe(u, *flow, rest, 50000, 1.0e-5);  // 30 microlitres a minute, an eye
+    breathe(u, *flow, rest, 50000, 1.0e-5);  // 30 microlitres per minute and eye
     return ok();
 }
 

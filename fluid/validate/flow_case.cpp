@@ -37,7 +37,7 @@ Result<Outcome> runParts(Under& u, std::span<const FlowPart> parts) {
 }
 
 double furmidgeVolume(const SurfaceFlowParams& p) {
-    // rho g V = k w gamma (cos receding - cos advancing), w the foot of a cap with the mean angle.
+    // rho g V = k w gamma (cos receding - cos advancing), w the width of a cap with the mean contact angle.
     const double rad = std::numbers::pi / 180, advancing = double{p.advancing} * rad, receding = double{p.receding} * rad;
     const double h = std::tan(0.25 * (advancing + receding));
     const double w = 2 * std::cbrt(6 / (std::numbers::pi * h * (3 + h * h)));  // over V^(1/3)
@@ -46,7 +46,7 @@ double furmidgeVolume(const SurfaceFlowParams& p) {
 }
 
 std::vector<PathCase> pathCases() {
-    // Bumps of a tenth, so that there is a way to miss.
+    // Bumps of a tenth of the radius, so that paths can differ.
     Shape ball = ballShape(0.05F, 48);
     for (vec3& x : ball.positions) x *= 1.0F + 0.06F * std::sin(90 * x.x + 1.0F) * std::sin(110 * x.y) * std::sin(80 * x.z + 2.0F);
     return {{"bumpy ball", ball, vec3(0.012F, 0.06F, 0.014F), -0.02F},
@@ -57,7 +57,7 @@ std::vector<PathCase> pathCases() {
 void breathe(Under& u, SurfaceFlow& flow, const Shape& rest, uint32_t picolitres, std::optional<double> tolerance) {
     std::vector<vec3> shape = rest.positions;
     const double duration = u.settings.quick ? 10 : 60;
-    uint64_t told = 0;
+    uint64_t released = 0;
     for (int k = 0; k < static_cast<int>(duration / kStep); ++k) {
         const double t = k * kStep;
         for (const float side : {-1.0F, 1.0F})
@@ -66,12 +66,12 @@ void breathe(Under& u, SurfaceFlow& flow, const Shape& rest, uint32_t picolitres
             shape[i] = rest.positions[i] * (1.0F + 0.05F * static_cast<float>(std::sin(3 * t + 40 * double{rest.positions[i].x})));
         const vec3 wind(static_cast<float>(std::fmod(t, 10) > 8 ? 6 : 0), 0, 0);
         if (!u.step(flow, {.wind = wind, .positions = shape})) return;
-        for (const LeftDrop& d : flow.takeLeft()) told += d.picolitres;
+        for (const LeftDrop& d : flow.takeLeft()) released += d.picolitres;
     }
     const SurfaceFlow::Ledger l = flow.ledger();
-    const auto there = static_cast<double>(l.drops + l.film + told + l.evaporated + l.refused), added = static_cast<double>(l.added);
+    const auto there = static_cast<double>(l.drops + l.film + released + l.evaporated + l.refused), added = static_cast<double>(l.added);
     u.found(fmt::format("ledger after {:.0f} s: {} merges, {:.0f} % let go or ran over an edge, {:.0f} % dried", duration, l.merges,
-                        100.0 * static_cast<double>(told) / added, 100.0 * static_cast<double>(l.evaporated) / added),
+                        100.0 * static_cast<double>(released) / added, 100.0 * static_cast<double>(l.evaporated) / added),
             "pl", there, added, std::abs(there - added) / added, tolerance);
 }
 

@@ -1,4 +1,4 @@
-// What the cases of flow on skins share: a run that is timed and can be stopped, and shapes that drops run down.
+// Shared by the cases of flow on skins: a timed run that can be stopped, and shapes that drops run down.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ struct Under {
     const CaseSettings& settings;
     Outcome outcome = {};
     double wall = 0, simulated = 0;  // s
-    double share = 0;                // of the case that is done
+    double share = 0;                // of the case that is finished
     bool stopped = false;
 
     // One step. false: stop.
@@ -30,14 +30,14 @@ struct Under {
     void found(std::string what, const char* unit, double measured, double reference, double error, std::optional<double> tolerance);
 };
 
-// One after the other, each with the share of the case that is done behind it.
+// Parts of a case in order, each with the share of the case that is finished after it.
 using FlowPart = std::pair<double, std::function<Status()>>;
 Result<Outcome> runParts(Under& u, std::span<const FlowPart> parts);
 
-// m^3, of the drop that an upright wall just holds (Furmidge 1962).
+// m^3, the largest drop that a vertical wall holds (Furmidge 1962).
 double furmidgeVolume(const SurfaceFlowParams& params);
 
-// A way down: from `from`, until it is below `level` (m).
+// A path down a shape: from `from` until the drop is below `level` (m).
 struct PathCase {
     const char* name;
     Shape shape;
@@ -46,11 +46,11 @@ struct PathCase {
 };
 std::vector<PathCase> pathCases();
 
-// The ledger of a minute (quick: ten seconds) on a ball that breathes, with gusts: so many picolitres shed ten times a second and eye, and
-// what is on it, has left it and has dried, against what was shed.
+// The ledger of a minute (quick: ten seconds) on a ball that expands and contracts, with gusts. Each of two sources emits `picolitres` ten
+// times a second; the volumes on the skin, released and dried are compared with the volume emitted.
 void breathe(Under& u, SurfaceFlow& flow, const Shape& rest, uint32_t picolitres, std::optional<double> tolerance);
 
-// The same figures of thesis mode, where they mean something. Only reported.
+// The figures of thesis mode, as far as they are meaningful. Only reported.
 Result<Outcome> runFlowThesis(const CaseSettings& settings);
 
 }  // namespace rivulet

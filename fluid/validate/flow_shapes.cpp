@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 
-// Quads (k, i) of a grid of (n + 1) x (m + 1) vertices, cut one way and the other.
+// Quads (k, i) of a grid of (n + 1) x (m + 1) vertices, split along alternating diagonals.
 void addQuads(Shape& s, uint32_t n, uint32_t m) {
     for (uint32_t k = 0; k < m; ++k)
         for (uint32_t i = 0; i < n; ++i) {
@@ -49,7 +49,7 @@ Shape ballShape(float radius, uint32_t rows) {
     for (uint32_t k = 0; k < rows; ++k)
         for (uint32_t i = 0; i < around; ++i) {
             const uint32_t a = k * (around + 1) + i, b = a + 1, c = a + around + 1, d = c + 1;
-            s.indices.insert(s.indices.end(), {a, c, d, a, d, b});  // two of a pole's have no area
+            s.indices.insert(s.indices.end(), {a, c, d, a, d, b});  // at a pole one of the two has no area
         }
     return s;
 }
@@ -79,7 +79,7 @@ Shape laidOut(const Shape& shape, Layout layout) {
     if (layout == Layout::turned) {
         const float c = std::cos(0.7F), n = std::sin(0.7F);
         for (vec2& uv : s.uvs) uv = vec2(0.5F) + 0.65F * vec2(c * (uv.x - 0.5F) - n * (uv.y - 0.5F), n * (uv.x - 0.5F) + c * (uv.y - 0.5F));
-        // Every third triangle first; corners begin elsewhere.
+        // Every third triangle first, with rotated corners.
         std::vector<uint32_t> order;
         const size_t triangles = shape.indices.size() / 3;
         for (size_t first = 0; first < 3; ++first)
@@ -93,7 +93,7 @@ Shape laidOut(const Shape& shape, Layout layout) {
         for (size_t t = 0; t < shape.indices.size(); t += 3) {
             vec2 middle(0.0F);
             for (size_t k = 0; k < 3; ++k) middle += shape.uvs[shape.indices[t + k]] / 3.0F;
-            // Which square it is in, as a whole; square (x, y) goes to (3 - y, x), turned by a quarter, a little smaller.
+            // The square of the whole triangle; square (x, y) moves to (3 - y, x), turned by 90 degrees and slightly smaller.
             const vec2 square = glm::min(glm::floor(middle * kAcross), vec2(kAcross - 1));
             for (size_t k = 0; k < 3; ++k) {
                 const uint32_t from = shape.indices[t + k];

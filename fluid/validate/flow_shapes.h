@@ -1,4 +1,4 @@
-// Shapes for flow to be measured on, and ways to lay out the same shape: what UVs and importers do to a mesh.
+// Shapes on which flow is measured, and layouts of one shape that differ as UVs and importers make meshes differ.
 #pragma once
 
 #include <string>
@@ -23,12 +23,12 @@ Shape ballShape(float radius, uint32_t rows);
 // About the y axis, from y = 0 up to `height`, open above and below, with a seam; the radius goes from `low` to `high`.
 Shape coneShape(float low, float high, float height, uint32_t around, uint32_t rows);
 
-// The same surface, laid out otherwise.
+// The same surface with another layout.
 enum class Layout {
-    own,        // as it is
-    stretched,  // UVs four times as long one way, and more so towards one side
+    own,        // unchanged
+    stretched,  // UVs four times as long along one axis, increasingly towards one side
     turned,     // UVs turned by 40 degrees; corners and triangles in another order
-    pieces      // every triangle has vertices of its own; squares of UVs are turned and put elsewhere
+    pieces      // no shared vertices; squares of UVs are turned and moved
 };
 Shape laidOut(const Shape& shape, Layout layout);
 const char* layoutName(Layout layout);

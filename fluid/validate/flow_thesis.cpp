@@ -1,5 +1,5 @@
-// Thesis mode of flow on skins, measured as the default is: what depends on the layout, what has no terminal speed, and its ledger. Nothing
-// here is judged.
+// Thesis mode of flow on skins, measured as the default mode: dependence on the layout, missing terminal speed, and the ledger. Only
+// reported, not judged.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Result<SurfaceFlow> thesisOn(const Under& u, const Shape& shape, const ThesisPar
     return SurfaceFlow::createThesis(*u.settings.device, std::move(*mesh), uvs, liquid, params);
 }
 
-// How far the force along the skin is turned by (12)-(18), over all triangles.
+// The angle by which (12)-(18) turn the force along the skin, over all triangles.
 Status turnedForce(Under& u, const PathCase& kind, Layout layout) {
     const Shape shape = laidOut(kind.shape, layout);
     Result<FlowMesh> made = makeFlowMesh(shape.view());
@@ -45,7 +45,7 @@ Status turnedForce(Under& u, const PathCase& kind, Layout layout) {
         dvec3 n(0.0);
         for (size_t k = t; k < t + 3; ++k) n += glm::normalize(normal[mesh.corner[k]]);
         printed.push_back(turnedBy(m0, printedFrame(m0, n), force) * 180 / kPiD);
-        mended.push_back(turnedBy(m0, mendedFrame(m0, n), force) * 180 / kPiD);
+        mended.push_back(turnedBy(m0, correctedFrame(m0, n), force) * 180 / kPiD);
     }
     for (auto& [name, all] : {std::pair("printed", &printed), std::pair("mended", &mended)}) {
         std::sort(all->begin(), all->end());
@@ -56,7 +56,7 @@ Status turnedForce(Under& u, const PathCase& kind, Layout layout) {
     return ok();
 }
 
-// The largest lone drop that stays on an upright wall.
+// The largest single drop that stays on a vertical wall.
 Status heldDrop(Under& u, Layout layout) {
     constexpr int kRow = 7;
     Shape wall = laidOut(sheetShape(vec3(0, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), 60, 60), layout);
@@ -95,7 +95,7 @@ Status terminalSpeed(Under& u) {
 
 struct Way {
     std::vector<vec3> places;
-    double arrival = -1;  // s; -1: it drained, or stays
+    double arrival = -1;  // s; -1: the drop drained or stays
 };
 
 Result<Way> wayDown(Under& u, const PathCase& kind, Layout layout) {
@@ -116,7 +116,7 @@ Result<Way> wayDown(Under& u, const PathCase& kind, Layout layout) {
     return way;
 }
 
-// By place, for they do not arrive at the same time: from each place of one way to the nearest of the other.
+// Distance by position, because arrival times differ: from each point of one path to the nearest point of the other.
 Status samePath(Under& u, const PathCase& kind) {
     Way own;
     double apart = 0, late = 0, length = 0, arrived = 0;

@@ -1,4 +1,4 @@
-// A pool at rest: its pressure is the weight above, and it is still.
+// A pool at rest: pressure equals the weight above, and nothing moves.
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -21,7 +21,7 @@ Result<Outcome> runHydrostatic(const CaseSettings& settings) {
     const std::vector<vec4> x = trial->world().device().readAll<vec4>(*view.position, view.count);
     const std::vector<float> own = trial->world().pressures();
     const std::vector<double> virial = virialPressures(x, own, p);
-    // Gauges: cubes as wide as a support radius, all that lie one from the walls and the surface.
+    // Gauges: cubes as wide as a support radius, at least a support radius from walls and surface.
     const float h = p.spacing * p.supportSpacings;
     struct Gauge {
         double pressure = 0, height = 0, count = 0;

@@ -46,11 +46,11 @@ dvec3 xyzOf(const dvec3& c) {
             (1425312.0 * c.x + 8788810.0 * c.y + 70074185.0 * c.z) / 73733382.0};
 }
 dvec3 rgbOf(const dvec3& xyz) {
-    // The columns are what red, green and blue are made of.
+    // The columns are the XYZ values of red, green and blue.
     static const dmat3 back = glm::inverse(dmat3(xyzOf({1, 0, 0}), xyzOf({0, 1, 0}), xyzOf({0, 0, 1})));
     return back * xyz;
 }
-dvec3 opponentOf(const dvec3& rgb) {  // YCxCz: linear, what the eye filters
+dvec3 opponentOf(const dvec3& rgb) {  // YCxCz: a linear space, in which contrast is filtered
     const dvec3 r = xyzOf(rgb) / kWhite;
     return {116 * r.y - 16, 500 * (r.x - r.y), 200 * (r.y - r.z)};
 }
@@ -58,7 +58,7 @@ dvec3 rgbOfOpponent(const dvec3& o) {
     const double y = (o.x + 16) / 116;
     return rgbOf(dvec3(o.y / 500 + y, y, y - o.z / 200) * kWhite);
 }
-dvec3 labOf(const dvec3& rgb) {  // CIELab, colours weaker where it is dark (Hunt)
+dvec3 labOf(const dvec3& rgb) {  // CIELab, with chroma reduced in dark areas (Hunt effect)
     const dvec3 r = xyzOf(rgb) / kWhite;
     const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : t * 841 / 108 + 4.0 / 29; };
     const double l = 116 * f(r.y) - 16;
@@ -66,7 +66,7 @@ dvec3 labOf(const dvec3& rgb) {  // CIELab, colours weaker where it is dark (Hun
 }
 double hyab(const dvec3& a, const dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-// Weights at -reach .. reach along x and y, one after the other; the border goes on beyond the edge.
+// A separable filter with weights at -reach .. reach; border pixels are repeated.
 Image filtered(const Image& image, const std::vector<dvec3>& alongX, const std::vector<dvec3>& alongY) {
     Image half = image, whole = image;
     const int reachX = static_cast<int>(alongX.size() / 2), reachY = static_cast<int>(alongY.size() / 2);
@@ -87,7 +87,7 @@ Image filtered(const Image& image, const std::vector<dvec3>& alongX, const std::
     return whole;
 }
 
-// What the eye sees of opponent colours at this resolution.
+// Opponent colours after the contrast sensitivity of the eye at this resolution.
 Image seen(const Image& opponent, double ppd) {
     const int reach = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * glm::pi<double>() * glm::pi<double>())) * ppd));
     std::vector<dvec3> terms[2];
@@ -109,7 +109,7 @@ Image seen(const Image& opponent, double ppd) {
     return all;
 }
 
-// How much of an edge and of a point there is at each pixel, of the luminance.
+// The strength of edges and points of the luminance at each pixel.
 struct Features {
     std::vector<double> edge, point;
 };
@@ -159,7 +159,7 @@ Prepared prepare(std::span<const uint8_t> rgba, int width, int height, double pp
     return {std::move(lab), std::move(features)};
 }
 
-// A colour difference on a scale of 0 to 1, the small ones spread.
+// A colour difference mapped to 0 to 1, with small differences expanded.
 double spread(double difference) {
     static const double most = std::pow(hyab(labOf({0, 1, 0}), labOf({0, 0, 1})), kColourExponent);
     const double d = std::pow(difference, kColourExponent), knee = kColourKnee * most;

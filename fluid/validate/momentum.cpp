@@ -1,4 +1,4 @@
-// Two unequal drops glance off each other where nothing weighs anything: pair forces are equal and opposite, and along the line between.
+// Two unequal drops collide off-centre without gravity: pair forces are equal, opposite and along the line between the particles.
 #include <cmath>
 
 #include "fluid/validate/trial.h"

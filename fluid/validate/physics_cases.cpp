@@ -11,31 +11,30 @@ namespace rivulet {
 namespace {
 
 constexpr PhysicsCase kCases[] = {
-    {"hydrostatic", "a pool at rest: pressure at gauges a support radius wide against rho g (H - z); the speed left after 2 s",
+    {"hydrostatic", "a pool at rest: pressure at gauges a support radius wide against rho g (H - z); the residual speed after 2 s",
      "fluid.spacing=0.025", runHydrostatic},
-    {"dam_break", "front and height of a column that breaks: inviscid flow, Martin and Moyce 1952, Koshizuka and Oka 1996",
+    {"dam_break", "front and height of a collapsing column: inviscid flow, Martin and Moyce 1952, Koshizuka and Oka 1996",
      "fluid.spacing=0.0017859375; fluid.box.max=0.3429,0.15,0.00714375; fluid.blocks.0.max=0.05715,0.1143,0.00714375", runDamBreak},
-    {"poiseuille", "flow between plates from rest: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runPoiseuille},
-    {"couette", "flow under a plate that starts to slide: the series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runCouette},
-    {"taylor_green", "whirls without walls, Re = 100: how fast they die away",
+    {"poiseuille", "flow between plates, started from rest: series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runPoiseuille},
+    {"couette", "flow under a plate that starts to slide: series solution at 0.1 and 1 s", "fluid.spacing=2.5e-5", runCouette},
+    {"taylor_green", "decay rate of vortices in a periodic box, Re = 100",
      "fluid.spacing=0.025; fluid.box.max=1,1,0.2; fluid.blocks.0.max=1,1,0.2", runTaylorGreen},
     {"standing_wave", "period of the lowest mode, w^2 = g k tanh(k H), and the viscosity of its decay",
      "fluid.spacing=0.0166666667; fluid.box.max=1,0.8,0.0666666667; fluid.blocks.0.max=1,0.5,0.0666666667", runStandingWave},
-    {"momentum", "two drops collide where nothing weighs anything: drift of momentum and angular momentum", "fluid.spacing=0.035",
-     runMomentum},
-    {"floating", "boxes that float and sink: draught against Archimedes, impulse between water and boxes", "fluid.spacing=0.0125",
+    {"momentum", "two drops collide without gravity: drift of momentum and angular momentum", "fluid.spacing=0.035", runMomentum},
+    {"floating", "floating and sinking boxes: draught against Archimedes, impulse between water and boxes", "fluid.spacing=0.0125",
      runFloating},
-    {"spheric2", "a dam breaks over a box: pressures and heights against the record of Kleefsman et al. 2005",
+    {"spheric2", "a dam break against a box: pressures and heights against the measurements of Kleefsman et al. 2005",
      "fluid.spacing=0.0454545455; duration=2", runSpheric2},
-    {"tension", "drops that hang: pressure inside against 2 sigma / R, and how they swing against Lamb 1932", "fluid.spacing=0.0025",
+    {"tension", "drops without gravity: pressure against 2 sigma / R, frequency of oscillation against Lamb 1932", "fluid.spacing=0.0025",
      runTension},
-    {"flow", "drops and films on skins: Nusselt 1916, Furmidge 1962, Le Grand et al. 2005, one path whatever the layout, the ledger", "",
+    {"flow", "drops and films on skins: Nusselt 1916, Furmidge 1962, Le Grand et al. 2005, one path for every UV layout, the ledger", "",
      runFlow, "flow"},
-    {"surface", "the drawn surface against a sphere, a level and the ray-marched reference, and how still a still pool's picture is", "",
+    {"surface", "the drawn surface against a sphere, a plane and the ray-marched reference, and the flicker of a pool at rest", "",
      runSurface, "narrow_range"},
 };
 
-// Not run as a scene of particles on a device.
+// Cases that are not run as a scene of particles on a device.
 bool ownMethods(const PhysicsCase& row) { return row.run == runFlow || row.run == runSurface; }
 
 struct Half {
@@ -52,7 +51,7 @@ double kineticOf(const HostParticles& all) {
     return sum;
 }
 
-// Half a second of a case at its quick size; what it is compared by is read from the particles, not from late sums.
+// Half a second of a case at its quick size. Figures are computed from the particles, not from delayed statistics.
 Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& device) {
     settings.device = &device;
     settings.quick = true;
@@ -99,7 +98,7 @@ Result<Outcome> runCase(const PhysicsCase& row, const CaseSettings& settings, De
     if (outcome)
         if (Status sound = stillWorks(*settings.device); !sound) return sound.error();
     if (outcome || ownMethods(row) || outcome.error().fault != Fault::badInput || settings.method == "dfsph") return outcome;
-    // What the method refuses, dfsph takes; what is wrong with the scene or the assignments, nobody does.
+    // If dfsph accepts the case, the method has refused it; if not, the scene or the assignments are wrong.
     CaseSettings other = settings;
     other.method = "dfsph";
     if (!Trial::open(row.name, other)) return outcome;

@@ -1,4 +1,4 @@
-// Pictures of curves, as SVG, by gnuplot.
+// Plots of curves as SVG, by gnuplot.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,7 +14,7 @@ namespace rivulet {
 
 namespace {
 
-// In a gnuplot string: no quotes, nothing that enhanced text reads.
+// Text safe for a gnuplot string: without quotes and markup of enhanced text.
 std::string inQuotes(std::string_view text) {
     std::string safe;
     for (const char c : text) safe += c == '"' || c == '\\' || c == '\n' ? ' ' : c;
@@ -54,7 +54,7 @@ Status drawPlot(const Plot& plot, const std::string& path) {
     const std::string script = scriptOf(plot);
     if (script.empty()) return ok();
     std::string name = (std::filesystem::temp_directory_path() / "rivulet-plot-XXXXXX").string();
-    const int file = ::mkstemp(name.data());  // inherited by gnuplot, which reads it under its number
+    const int file = ::mkstemp(name.data());  // inherited by gnuplot, which reads it by its descriptor
     if (file < 0) return failed("the folder for temporary files cannot be written");
     ::unlink(name.c_str());
     const bool whole = ::write(file, script.data(), script.size()) == static_cast<ssize_t>(script.size());
@@ -68,7 +68,7 @@ Status drawPlot(const Plot& plot, const std::string& path) {
         status = ::pclose(from);
     }
     ::close(file);
-    if (status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127) return failed("gnuplot is not installed: there are no pictures");
+    if (status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127) return failed("gnuplot is not installed: no plots are written");
     if (status != 0 || svg.empty()) return failed(fmt::format("gnuplot could not draw {}", path));
     return writeFileAtomic(path, svg);
 }

@@ -1,9 +1,9 @@
-// A dam breaks over a box (SPHERIC benchmark 2; Kleefsman et al. 2005): pressures on the box and heights of the water against the record.
+// A dam break against a box (SPHERIC benchmark 2; Kleefsman et al. 2005): pressures on the box and heights of the water.
 //
-// A pressure gauge is the mean pressure of the particles that lie against the box: within a spacing and a half of its face, a spacing up
-// and down, and along the middle half of the face, which the flow meets evenly. These are what pairs press with, 5 % more than they pass on
-// (see FluidWorld::pressures). Peaks do not converge and are no aim: when the water arrives, what it gives in the first second, and how
-// high it stands are.
+// A pressure gauge is the mean pressure of the particles at the box: within 1.5 spacings of its face, a spacing above and below, and along
+// the middle half of the face, where the flow is uniform. These pressures are 5 % higher than the transmitted stress (see
+// FluidWorld::pressures). Peaks do not converge and are not judged; the time of arrival, the impulse of the first second and the heights
+// are compared.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace rivulet {
 
 namespace {
 
-// Of the box, m: the face that the water meets, and its middle.
+// Of the box, m: the face that the water hits, and its middle.
 constexpr double kFace = 0.8245, kMiddle = 0.497, kQuarter = 0.1;
 constexpr double kDepth = 0.55;                                // m, of the water at first
-constexpr double kArrived = 2800;                              // Pa: a quarter of the peak of the whole 1 kHz record
+constexpr double kArrived = 2800;                              // Pa: a quarter of the peak of the complete 1 kHz record
 constexpr double kOnFace[] = {0.021, 0.061, 0.101, 0.141};     // m, heights of P1 to P4
 constexpr double kOnTop[] = {0.8035, 0.7635, 0.7235, 0.6835};  // m along x, of P5 to P8
 constexpr double kTop = 0.161;                                 // m
@@ -39,7 +39,8 @@ double pressureAt(std::span<const vec4> x, std::span<const float> pressure, size
     return count > 0 ? sum / count : 0;
 }
 
-// The volume over a patch of the floor three spacings long, over its area. A particle counts as the square of a spacing that it covers.
+// The height of the water: volume over a patch of the floor three spacings long, divided by its area. A particle covers one spacing
+// squared.
 double heightAt(std::span<const vec4> x, size_t gauge, double spacing) {
     const auto covered = [spacing](double off, double half) {
         return std::max(std::min(off + 0.5 * spacing, half) - std::max(off - 0.5 * spacing, -half), 0.0);
@@ -58,7 +59,7 @@ double impulse(std::span<const glm::dvec2> curve, double until) {
     return sum;
 }
 
-// When a curve first reaches a value; its end if it never does.
+// The time at which a curve first reaches a value; its end if it never does.
 double firstAt(std::span<const glm::dvec2> curve, double value) {
     for (size_t k = 1; k < curve.size(); ++k)
         if (curve[k].y >= value)
@@ -83,8 +84,8 @@ Result<Outcome> runSpheric2(const CaseSettings& settings) {
         for (size_t k = 0; k < pressures.size(); ++k) pressures[k].points.emplace_back(trial->time(), pressureAt(x, p, k, spacing));
         for (size_t k = 0; k < heights.size(); ++k) heights[k].points.emplace_back(trial->time(), heightAt(x, k, spacing));
     };
-    // What the water's first particles press with is three times as much one millisecond as the next: while it arrives, the gauges are read
-    // as often as the record's were (1 kHz).
+    // The pressure of the first particles changes threefold from one millisecond to the next, so gauges are read at 1 kHz, as in the
+    // experiment, while the water arrives.
     if (!trial->run(0.001, look, 0.5) || !trial->run(0.005, look)) return trial->outcome({}, {});
 
     const auto record = [](size_t column) { return referenceCurve("kleefsman_2005", 0, column); };
@@ -92,7 +93,8 @@ Result<Outcome> runSpheric2(const CaseSettings& settings) {
     const double arrived = firstAt(pressures[0].points, kArrived), expected = firstAt(record(1), kArrived);
     findings.push_back({"P1 reaches 2.8 kPa", "s", arrived, expected, std::abs(arrived / expected - 1), 0.03});
     const double last = pressures[0].points.back().x;
-    // Inviscid flow by boundary elements, let go at once, has its tip at the box then (two grids: 0.4052 and 0.4065 s).
+    // The time at which the tip of inviscid flow (boundary elements, instantaneous release) reaches the box; two grids: 0.4052 and 0.4065
+    // s.
     constexpr double kIdeal = 0.4052;  // s
     std::vector<Finding> reported = {{"the same against inviscid flow", "s", arrived, kIdeal, std::abs(arrived / kIdeal - 1), {}}};
     for (size_t k = 0; k < pressures.size(); ++k) {

@@ -1,4 +1,4 @@
-// Water swings in its lowest mode: w^2 = g k tanh(k H), and its energy dies as exp(-4 nu k^2 t) (Lamb 1932).
+// A standing wave in the lowest mode: w^2 = g k tanh(k H), and its energy decays as exp(-4 nu k^2 t) (Lamb 1932).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,11 +9,11 @@
 namespace rivulet {
 
 Result<Outcome> runStandingWave(const CaseSettings& settings) {
-    // On a lattice the water would be a crystal, and swing a tenth faster. An equation of state makes a blast of every place that strewing
-    // has made too dense: the wave was gone in 50 ms. A little does there.
-    CaseSettings strewn = settings;
-    if (settings.method.starts_with("wcsph")) strewn.assignments.insert(strewn.assignments.begin(), "fluid.blocks.0.jitter=0.05");
-    Result<Trial> trial = Trial::open("standing_wave", strewn);
+    // A lattice resists shear and oscillates a tenth faster, so positions are jittered. An equation of state turns every overdense place
+    // into a pressure pulse, and with full jitter the wave was gone in 50 ms: a small jitter is enough there.
+    CaseSettings jittered = settings;
+    if (settings.method.starts_with("wcsph")) jittered.assignments.insert(jittered.assignments.begin(), "fluid.blocks.0.jitter=0.05");
+    Result<Trial> trial = Trial::open("standing_wave", jittered);
     if (!trial) return trial.error();
     const FluidParams p = trial->params();
     constexpr double pi = std::numbers::pi, amplitude = 0.02;  // m, of the surface
@@ -30,7 +30,7 @@ Result<Outcome> runStandingWave(const CaseSettings& settings) {
         reference.points.emplace_back(t, std::cos(w * t) * std::exp(-2 * double{p.viscosity} * k * k * t));
     });
     if (!done) return trial->outcome({}, {});
-    // Periods from where it passes zero, viscosity from how the crests between sink.
+    // The period from the zeros, the viscosity from the decay of the crests.
     const std::vector<double> zeros = zerosOf(measured.points);
     std::vector<glm::dvec2> crests;
     for (size_t n = 1; n < zeros.size(); ++n) {

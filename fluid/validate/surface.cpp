@@ -1,4 +1,4 @@
-// The water's surface as it is drawn, against spheres and planes and against the ray-marched reference (fluid/render/raymarch.h).
+// The drawn water surface against spheres and planes and against the ray-marched reference (fluid/render/raymarch.h).
 #include "fluid/validate/surface.h"
 
 #include <fmt/format.h>

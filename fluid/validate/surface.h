@@ -1,4 +1,4 @@
-// The case surface: what `rivulet validate surface` measures of each filter.
+// The case `surface`: the measurements of `rivulet validate surface` for each filter.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace rivulet {
 
-// The filters, the default first, and "reference": the ray-marched iso-surface itself, against analytic shapes alone.
+// The filters, the default first, and "reference": the ray-marched iso-surface, compared only with analytic shapes.
 std::vector<std::string> surfaceMethods();
 
-// Normals' errors in deg, depths' in radii of a drawn particle, flicker in 255ths. Error (failed): there is no OpenGL.
+// Errors of normals in degrees, of depth in radii of a drawn particle, flicker in 255ths. Error (failed): there is no OpenGL.
 Result<Outcome> runSurface(const CaseSettings& settings);
 
 }  // namespace rivulet

@@ -11,14 +11,14 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
     settings.device = request.device;
     settings.log = request.log;
     settings.quick = request.quick;
-    std::string what = "a dam breaks";
+    std::string what = "dam break";
     settings.goOn = [&](double share) { return request.goOn(share, what); };
     Result<SurfaceTrial> trial = SurfaceTrial::create(settings);
     if (!trial) return trial.error();
     SurfaceChart chart;
     chart.width = trial->width();
     chart.height = trial->height();
-    chart.stillFrames = 30;  // the reference takes seconds for each
+    chart.stillFrames = 30;  // the reference takes seconds per frame
     chart.drawnBy = trial->drawnBy();
     std::vector<SurfaceLook> looks;
     for (const std::string& filter : surfaceMethods()) {
@@ -43,7 +43,7 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
             row.moment = *moment;
         }
         chart.rows.push_back(std::move(row));
-        what = "each way to draw it";
+        what = "each look";
         if (!trial->goOn(kMomentShare)) break;
     }
     what = "a pool at rest";

@@ -1,4 +1,4 @@
-// The drawn surface's quality against what it costs: every filter at every quality, on the trials of the case surface.
+// Quality of the drawn surface against its cost: every filter at every quality, on the trials of the case `surface`.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,14 @@
 
 namespace rivulet {
 
-// Spacings: all filters are charted with this reach, too, to tell how they smooth from how far.
+// Spacings. All filters are also charted with this reach, to separate the kind of a filter from its reach.
 constexpr float kShortReach = 1.0F;
 
 struct SurfaceChartRow {
     SurfaceLook look;
-    DrawTimes times;                     // of the dam break's moment
-    SurfaceErrors sphere, slab;          // of the shapes that are judged
-    std::optional<MomentErrors> moment;  // against the reference: not of itself
+    DrawTimes times;                     // of the moment of the dam break
+    SurfaceErrors sphere, slab;          // of the judged shapes
+    std::optional<MomentErrors> moment;  // against the reference; empty for the reference itself
     double flicker = 0;                  // of 255
 };
 
@@ -39,8 +39,8 @@ struct SurfaceChartRequest {
 // Error (failed): there is no OpenGL.
 Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request);
 
-// FOLDER/surface.csv, surface.svg and surface.md, which reads them aloud. `machine` and `command` say where they come from. Error (failed):
-// a file cannot be written; or gnuplot is missing: the table and the page are there all the same.
+// Writes FOLDER/surface.csv, surface.svg and surface.md, which explains them and names `machine` and `command`. Error (failed): a file
+// cannot be written; or gnuplot is missing: the table and the page are written nevertheless.
 Status writeSurfaceChart(const SurfaceChart& chart, const std::string& folder, const std::string& machine, const std::string& command);
 
 }  // namespace rivulet

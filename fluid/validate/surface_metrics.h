@@ -1,4 +1,4 @@
-// How far a drawn surface is from another: pixel by pixel, in degrees, particle radii and 255ths.
+// The difference of two drawn surfaces, pixel by pixel, in degrees, particle radii and 255ths.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,29 @@
 
 namespace rivulet {
 
-// A surface as a camera sees it, a pixel each, the bottom row first.
+// A surface seen by a camera: one value per pixel, bottom row first.
 struct SurfaceMap {
     int width = 0, height = 0;
-    std::vector<float> depth;  // m along the view axis; 1e6: there is none
-    std::vector<vec3> normal;  // view space, unit; where there is depth
+    std::vector<float> depth;  // m along the view axis; 1e6: no surface
+    std::vector<vec3> normal;  // view space, unit length; valid where there is depth
     bool there(size_t i) const { return depth[i] < 1.0e5F; }
 };
 
-// The normals that the shade pass sees in depths: the central difference where the surface runs on to both sides, else the side whose depth
-// changes less. `radius`: m, of a drawn particle.
+// Normals from depths as the shade pass computes them: the central difference where the surface continues on both sides, else the side
+// whose depth changes less. `radius`: m, of a drawn particle.
 void fillNormals(SurfaceMap& map, const FrameView& view, float radius);
 
 struct SurfaceErrors {
-    // deg, over pixels where both have a surface. Spray and edges are few and far off: the mean and the rms are theirs, the median is not.
+    // Degrees, over pixels where both have a surface. Spray and edges are few but far off: they dominate the mean and the rms, not the
+    // median.
     double normalMean = 0, normalMedian = 0, normal95 = 0;
     double depthRms = 0, depthMedian = 0;  // radii, there
-    double overlap = 0;                    // of the silhouettes: pixels in both over pixels in either; 1 if there are none
+    double overlap = 0;                    // of the silhouettes: pixels in both over pixels in either; 1 if there are no pixels
     size_t pixels = 0;                     // where both have a surface
 };
 SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& reference, float radius);
 
-// What frames of one size differ by from their own mean in time, rms over the pixels of `where` and their channels, of 255.
+// The rms difference of frames from their mean over time, over the pixels of `where` and their channels, of 255.
 class Flicker {
   public:
     explicit Flicker(std::vector<bool> where) : where_(std::move(where)), sum_(3 * where_.size()), squares_(sum_.size()) {}

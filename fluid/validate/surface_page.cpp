@@ -1,4 +1,4 @@
-// What the surface's chart leaves behind: a table, a picture, and a page that reads them aloud.
+// Writes the chart of the drawn surface: a table, a plot, and a page that explains them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,23 +14,23 @@ namespace rivulet {
 
 namespace {
 
-// What filters are compared by: the less the better.
+// The measures by which filters are compared; smaller is better.
 struct Figure {
     const char* name;
     double (*of)(const SurfaceChartRow& row);
 };
 constexpr Figure kFigures[] = {
     {"the dam break's normals (median)", [](const SurfaceChartRow& r) { return r.moment->errors.normalMedian; }},
-    {"its depth (median)", [](const SurfaceChartRow& r) { return r.moment->errors.depthMedian; }},
-    {"its silhouette", [](const SurfaceChartRow& r) { return 1 - r.moment->errors.overlap; }},
-    {"its picture (FLIP)", [](const SurfaceChartRow& r) { return r.moment->flip; }},
+    {"the dam break's depth (median)", [](const SurfaceChartRow& r) { return r.moment->errors.depthMedian; }},
+    {"the dam break's silhouette", [](const SurfaceChartRow& r) { return 1 - r.moment->errors.overlap; }},
+    {"the dam break's picture (FLIP)", [](const SurfaceChartRow& r) { return r.moment->flip; }},
     {"the sphere's normals", [](const SurfaceChartRow& r) { return r.sphere.normalMean; }},
     {"the slab's normals", [](const SurfaceChartRow& r) { return r.slab.normalMean; }},
-    {"stillness", [](const SurfaceChartRow& r) { return r.flicker; }},
+    {"flicker", [](const SurfaceChartRow& r) { return r.flicker; }},
     {"time", [](const SurfaceChartRow& r) { return r.times.water.median; }},
 };
 
-constexpr double kAlike = 0.03;  // a fraction: what is nearer to the best is as good
+constexpr double kAlike = 0.03;  // a fraction: values this near to the best count as equal to it
 
 std::string joined(const std::vector<std::string>& words) {
     std::string text;
@@ -42,7 +42,7 @@ std::string nameOf(const SurfaceLook& look) {
     return look.reach > 0 ? fmt::format("{}, reach {:.1f} spacings", look.filter, look.reach) : look.filter;
 }
 
-// What the default becomes when it smooths less far.
+// How the default filter changes with the shorter reach.
 std::string reachText(const SurfaceChart& chart) {
     const auto shorter = std::find_if(chart.rows.begin(), chart.rows.end(), [](const SurfaceChartRow& r) { return r.look.reach > 0; });
     if (shorter == chart.rows.end()) return {};
@@ -53,10 +53,9 @@ std::string reachText(const SurfaceChart& chart) {
             (now < own ? better : worse).push_back(fmt::format("{} ({:.3g} to {:.3g})", f.name, own, now));
     }
     return fmt::format(
-        "How far a filter smooths matters beside how: the default with a reach of {:.1f} spacings is better at {} and worse at {}. It "
-        "stays at "
-        "{:.1f} because the iso-surface's bumps are the particles' and not the water's: with the shorter reach milk, honey and waves look "
-        "lumpy.",
+        "The reach of a filter matters as well as its kind. With a reach of {:.1f} spacings the default is better at {} and worse at {}. "
+        "The default reach stays at {:.1f}, because bumps of the iso-surface come from particles and not from the water: with the shorter "
+        "reach milk, honey and waves look lumpy.",
         shorter->look.reach, better.empty() ? "nothing" : joined(better), worse.empty() ? "nothing" : joined(worse),
         filterReach({}, 1.0F).reach);
 }
@@ -71,7 +70,7 @@ std::string verdict(const SurfaceChart& chart, const std::string& quality, float
     for (const Figure& f : kFigures) {
         const auto least = std::min_element(rows.begin(), rows.end(), [&](const auto* a, const auto* b) { return f.of(*a) < f.of(*b); });
         const double alike = (1 + kAlike) * f.of(**least);
-        // Who is as good as the best is not beaten by it.
+        // A filter as good as the best counts as the best.
         const size_t winner = f.of(standard) <= alike ? 0 : static_cast<size_t>(least - rows.begin());
         best[winner].emplace_back(f.name);
         if (winner != 0)
@@ -83,9 +82,10 @@ std::string verdict(const SurfaceChart& chart, const std::string& quality, float
     for (size_t k = 0; k < rows.size(); ++k)
         parts.push_back(fmt::format("**{}** is best at {}", rows[k]->look.filter, best[k].empty() ? "nothing" : joined(best[k])));
     for (size_t k = 0; k < parts.size(); ++k) text += (k > 0 ? "; " : "") + parts[k];
-    text += fmt::format(" (what is within {:.0f} % of the best counts as the default's). ", 100 * kAlike);
-    return text + (beaten.empty() ? fmt::format("The default, {}, is beaten nowhere.", standard.look.filter)
-                                  : fmt::format("The default, {}, is beaten at {}.", standard.look.filter, joined(beaten)));
+    text += fmt::format(" (values within {:.0f} % of the best count for the default). ", 100 * kAlike);
+    return text + (beaten.empty()
+                       ? fmt::format("The default, {}, is nowhere worse than another filter.", standard.look.filter)
+                       : fmt::format("The default, {}, is worse than another filter at {}.", standard.look.filter, joined(beaten)));
 }
 
 std::string csvOf(const SurfaceChart& chart, const std::string& machine) {
@@ -126,20 +126,20 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
     std::string text = fmt::format(
         "# The drawn surface: quality against time\n\n"
         "Written by `{}` on: {}, drawn by {}, at {}x{} pixels, from [surface.csv](surface.csv). The reference is the iso-surface of the "
-        "same "
-        "particles, ray-marched in double; how figures are taken is what `rivulet validate surface` does.\n\n",
+        "same particles, ray-marched in double precision. All figures are measured as in `rivulet validate surface`.\n\n",
         command, machine, chart.drawnBy, chart.width, chart.height);
     if (picture) text += "![normals' error against ms](surface.svg)\n\n";
     text += verdict(chart, "fine") + "\n\n" + reachText(chart) + " " + verdict(chart, "fine", kShortReach) + "\n\n" +
             verdict(chart, "fast") + "\n\n";
-    text += "| filter | what it is |\n| --- | --- |\n";
+    text += "| filter | method |\n| --- | --- |\n";
     for (const SurfaceChartRow& r : chart.rows)
         if (const FilterRow* filter = filters().find(r.look.filter); filter != nullptr && r.look.quality == "fine" && r.look.reach == 0)
             text += fmt::format("| {} | {} |\n", filter->name, filter->doc);
     text += fmt::format(
-        "\n## A dam that breaks, {} particles\n\nms on the wall of a whole picture, and of what the water adds to it: median, least and "
-        "most. Normals and depth (in radii of a drawn particle) where both have a surface; spray and edges are the means, not the medians. "
-        "Overlap: of the silhouettes, 1 is best. FLIP: of the pictures, 0 to 1.\n\n"
+        "\n## Dam break, {} particles\n\nTimes are wall milliseconds of a whole picture and of the share that water adds: median (minimum "
+        "to maximum). Normals and depth (in radii of a drawn particle) are compared where both pictures show a surface; spray and edges "
+        "dominate the means, not the medians. Overlap is that of the silhouettes (1 is best), FLIP the difference of the pictures (0 to "
+        "1).\n\n"
         "| filter | quality | frame, ms | water, ms | normals, mean, deg | median | depth, median, radii | rms | overlap | FLIP |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
         chart.particles);
@@ -151,10 +151,9 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
                          : " | | | | | |\n";
     }
     text += fmt::format(
-        "\n## What is known exactly, and what should not move\n\nA drop that has settled against a sphere, and a pool's level; then a "
-        "pool at rest that goes on being simulated, {} frames of it: flicker is what its pixels differ from their mean by, rms. The "
-        "reference's "
-        "own is how far the water does move.\n\n"
+        "\n## Exact shapes, and flicker\n\nA settled drop is compared with a sphere, a pool with a plane. Flicker is measured on a pool at "
+        "rest over {} simulated frames: the rms difference of its pixels from their mean. The flicker of the reference shows how far the "
+        "water does move.\n\n"
         "| filter | quality | sphere: normals, mean, deg | depth, rms, radii | slab: normals | depth | flicker, of 255 |\n"
         "| --- | --- | --- | --- | --- | --- | --- |\n",
         chart.stillFrames);

@@ -14,7 +14,7 @@ constexpr float kBall = 0.2F;      // m, radius
 constexpr float kPool = 0.3F;      // m, half its side
 constexpr float kDepth = 0.1F;     // m, of the pool
 
-// The same numbers on every machine, -1 .. 1.
+// Pseudo-random numbers in -1 .. 1, the same on every machine.
 class Jitter {
   public:
     explicit Jitter(double spacings) : size_(spacings) {}
@@ -29,7 +29,7 @@ class Jitter {
     uint64_t state_ = 1;
 };
 
-// A cubic lattice, jittered by so many spacings, where `in` (m) says so.
+// A cubic lattice, jittered by `jitter` spacings, within `in` (m).
 template <class In>
 SplatSet lattice(double jitter, const In& in) {
     Jitter off(jitter);
@@ -44,7 +44,7 @@ SplatSet lattice(double jitter, const In& in) {
     return p;
 }
 
-// As tension leaves a drop: shells one spacing apart, particles evenly on each (Swinbank & Purser 2006), then jittered.
+// A drop as surface tension arranges it: shells one spacing apart, evenly covered (Swinbank & Purser 2006), then jittered.
 SplatSet settledBall(double jitter) {
     Jitter off(jitter);
     SplatSet p{{}, kSpacing, {}};
@@ -76,7 +76,7 @@ FrameView viewOf(const vec3& from, const vec3& target, int width, int height) {
     return frameViewOf(camera, LightParams{}, width, height, 0);
 }
 
-// What `depth` (along a world ray whose view depth is 1, from the camera) says a surface is; normals by `normal` (world).
+// A surface from `depth` (along a world ray from the camera whose view depth is 1) and `normal` (world space).
 template <class Depth, class Normal>
 SurfaceMap analytic(const FrameView& view, const Depth& depth, const Normal& normal) {
     SurfaceMap map{view.width, view.height, {}, {}};
@@ -104,7 +104,7 @@ SurfaceMap sphereMap(const FrameView& view, double radius) {
         [](const dvec3& p) { return glm::normalize(p); });
 }
 
-// The pool's level, away from its walls.
+// The level of the pool, away from its walls.
 SurfaceMap levelMap(const FrameView& view) {
     return analytic(
         view,

@@ -1,4 +1,4 @@
-// Shapes whose surface a formula knows, filled with particles: what a drawn surface is measured on without a simulation.
+// Shapes with an analytic surface, filled with particles, on which a drawn surface is measured without a simulation.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace rivulet {
 
-// What is drawn: particles that need no world.
+// Particles to draw, without a world.
 struct SplatSet {
     std::vector<vec4> at;  // m; w: density ratio
     float spacing = 0;     // m
-    Bounds box;            // m, that cuts the water; empty: none does
+    Bounds box;            // m, clips the water; empty: no clipping
     HostEllipsoids ellipsoids = {};
 };
 
@@ -22,12 +22,12 @@ struct SurfaceShape {
     SplatSet splats;
     FrameView view;
     SurfaceMap reference;
-    bool whole;   // its silhouette is seen
-    bool judged;  // its particles lie as water leaves them
+    bool whole;   // its whole silhouette is visible
+    bool judged;  // its particles are arranged as in simulated water
 };
 
-// A sphere and a level. The sphere that is judged is a drop that has settled: one that is cut from a lattice has real terraces, and its
-// true surface, ray-marched, is off the sphere's normals by 5.7 deg itself. In pixels.
+// Spheres and a plane; size in pixels. The judged sphere is a settled drop: a sphere cut from a lattice has terraces, and even its
+// ray-marched surface differs from the normals of the sphere by 5.7 degrees.
 std::vector<SurfaceShape> surfaceShapes(int width, int height);
 
 }  // namespace rivulet

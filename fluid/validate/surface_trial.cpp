@@ -14,12 +14,12 @@ namespace rivulet {
 namespace {
 
 constexpr double kMoment = 0.6;          // s, of the dam break
-constexpr int kBefore = 3, kDraws = 15;  // of a picture that is timed
-// Frames, of the pool: what tension, walls and the lattice have set in motion dies until then, and the largest speed is 6 mm/s. After half
-// as many it is 130 mm/s, and the reference's picture changes more than the drawn one (1.55 and 1.11 of 255).
+constexpr int kBefore = 3, kDraws = 15;  // draws of a timed picture: before counting, and counted
+// Frames until the pool is at rest: motion started by tension, walls and the lattice has decayed, and the largest speed is 6 mm/s. After
+// half as many frames it is 130 mm/s, and the picture of the reference changes more than the drawn one (1.55 and 1.11 of 255).
 constexpr int kSettling = 240;
 
-// `spacing`: m, of what is drawn.
+// `spacing`: of the drawn particles, m.
 SceneFile sceneOf(const SceneFile& scene, const SurfaceLook& look, float spacing) {
     SceneFile out = scene;
     const bool reference = look.filter == kSurfaceReference;
@@ -42,9 +42,9 @@ SurfaceMap referenceMap(const SplatSet& splats, const FrameView& view) {
 }  // namespace
 
 Result<SurfaceTrial> SurfaceTrial::create(const CaseSettings& settings) {
-    // A gl device has a context that is current.
+    // A gl device has a current context.
     Result<SurfaceProbe> probe = SurfaceProbe::create(settings.device->backend() != Backend::gl);
-    if (!probe) return failed(fmt::format("the case surface draws what it measures, and that needs OpenGL: {}", probe.error().message));
+    if (!probe) return failed(fmt::format("the case surface needs OpenGL to draw: {}", probe.error().message));
     SurfaceTrial trial(settings, std::move(*probe));
     Result<SceneFile> scene = loadScene("dam_break.json", settings.assignments);
     if (!scene) return scene.error();
@@ -158,7 +158,7 @@ Result<DrawTimes> SurfaceTrial::times(const SurfaceLook& look) {
     const Result<FluidView> fluid = upload_.view(session_->world(), scene.look);
     if (!fluid) return fluid.error();
     const bool reference = look.filter == kSurfaceReference;
-    // What was marched for a picture is not marched again: from a hair aside it is.
+    // The ray-marcher caches its picture; a slightly moved camera forces a new one.
     FrameView view = view_;
     if (reference) view.view[3].x += 1.0e-5F;
     const Result<std::vector<double>> dry = drawMs(view, scene, FluidView{}, kBefore, kDraws);
@@ -196,7 +196,7 @@ Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks, int 
             const HostParticles now = readParticles(world);
             for (const vec4& v : now.velocity) pool.fastest = std::max(pool.fastest, 1000 * double{glm::length(vec3(v))});
             const SurfaceMap map = referenceMap({now.position, scene->fluid.spacing, {}}, view);
-            std::vector<bool> water(map.depth.size());  // pictures have their top row first
+            std::vector<bool> water(map.depth.size());  // pictures store the top row first
             const auto row = static_cast<size_t>(width()), rows = static_cast<size_t>(height());
             for (size_t i = 0; i < water.size(); ++i) water[i] = map.there((rows - 1 - i / row) * row + i % row);
             all.assign(looks.size(), Flicker(std::move(water)));

@@ -1,5 +1,5 @@
-// SurfaceTrial: what the case surface and its chart look at: spheres and levels, a dam break's moment and a pool at rest, each drawn in as
-// many looks as are asked for.
+// SurfaceTrial: the scenes of the case `surface` and its chart: spheres and planes, one moment of a dam break and a pool at rest, each
+// drawn with every requested look.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,17 @@
 
 namespace rivulet {
 
-// A way to draw.
+// A way to draw the water.
 struct SurfaceLook {
-    std::string filter;        // a row of filters(), or kSurfaceReference: the ray-marched iso-surface itself
-    std::string quality = {};  // of look.quality; "" = as the scene says
-    float reach = 0;           // spacings, of the smoothing; 0 = as the scene says
+    std::string filter;        // a row of filters(), or kSurfaceReference: the ray-marched iso-surface
+    std::string quality = {};  // look.quality; "" = that of the scene
+    float reach = 0;           // of the smoothing, in spacings; 0 = that of the scene
 };
 inline constexpr const char* kSurfaceReference = "reference";
-constexpr double kMomentShare = 0.3;  // of the whole, when the moment is reached
+constexpr double kMomentShare = 0.3;  // finished share of the case when the moment is reached
 
 struct ShapeErrors {
-    const SurfaceShape* shape;  // the trial's
+    const SurfaceShape* shape;  // owned by the trial
     SurfaceErrors errors;
 };
 struct MomentErrors {
@@ -36,33 +36,33 @@ struct MomentErrors {
 };
 
 struct DrawTimes {
-    Spread frame, water;  // ms on the wall until it is drawn: all of it, and what it takes beyond the scene without water
+    Spread frame, water;  // wall ms until a picture is drawn: in total, and beyond the scene without water
 };
 struct StillPool {
-    std::vector<double> flicker;  // of 255, a look each
-    double fastest = 0;           // mm/s, of its particles when it is first drawn
+    std::vector<double> flicker;  // of 255, one per look
+    double fastest = 0;           // mm/s, of its particles in the first picture
 };
 
 class SurfaceTrial {
   public:
-    // Error: there is no OpenGL (failed); an assignment makes no sense.
+    // Error: there is no OpenGL (failed); an assignment is invalid (badInput).
     static Result<SurfaceTrial> create(const CaseSettings& settings);
 
     Result<std::vector<ShapeErrors>> shapes(const SurfaceLook& look);
-    // A dam that breaks, at a moment: the surface and the picture against the reference's, which is no look here.
+    // One moment of a dam break: the surface and the picture compared with the reference. `look` must not be the reference.
     Result<MomentErrors> moment(const SurfaceLook& look);
-    // What a picture of that moment takes; the reference's is drawn once.
+    // The time of a picture of that moment; the reference is drawn only once.
     Result<DrawTimes> times(const SurfaceLook& look);
-    // A pool that has come to rest goes on being simulated: what moves in its picture should not.
+    // The change of the picture of a pool at rest while the simulation continues.
     Result<StillPool> flicker(std::span<const SurfaceLook> looks, int stillFrames);
 
     // Pixels.
     int width() const { return settings_.quick ? 320 : 640; }
     int height() const { return width() * 9 / 16; }
     size_t momentParticles() const { return now_.at.size(); }
-    std::string drawnBy() const;               // OpenGL's name of the renderer
-    bool goOn(double share);                   // tells how much is done; false: CaseSettings::goOn said that it is enough
-    bool stopped() const { return stopped_; }  // by CaseSettings::goOn: what was found last is not whole
+    std::string drawnBy() const;               // the renderer's name from OpenGL
+    bool goOn(double share);                   // reports the finished share; false: CaseSettings::goOn asked to stop
+    bool stopped() const { return stopped_; }  // by CaseSettings::goOn: the last result is incomplete
 
   private:
     SurfaceTrial(const CaseSettings& settings, SurfaceProbe probe) : settings_(settings), probe_(std::move(probe)) {}
@@ -70,16 +70,16 @@ class SurfaceTrial {
     Result<SurfaceMap> drawn(const SplatSet& splats, const FrameView& view, const SceneFile& scene);
     Result<std::vector<uint8_t>> pictureOf(const SceneFile& scene);
     Status reachMoment();
-    // ms of each of `count` draws of the moment, after `before` that do not count.
+    // ms of each of `count` draws of the moment, after `before` draws that are not counted.
     Result<std::vector<double>> drawMs(const FrameView& view, const SceneFile& scene, const FluidView& fluid, int before, int count);
 
     CaseSettings settings_;
-    SurfaceProbe probe_;  // before what lives in its context
-    SceneFile scene_;     // the dam break; shapes have its look
+    SurfaceProbe probe_;  // declared first: the members below use its context
+    SceneFile scene_;     // the dam break; shapes use its look
     std::vector<SurfaceShape> shapes_;
     std::unique_ptr<SceneRenderer> renderer_;
 
-    // At the moment; null: not there yet.
+    // The moment; null: not reached yet.
     std::unique_ptr<Session> session_;
     FluidUpload upload_;
     SplatSet now_;

@@ -1,4 +1,4 @@
-// Whirls in a periodic box die away as viscosity asks (Taylor and Green 1937): u = -U e^(bt) cos(2 pi x) sin(2 pi y), b = -8 pi^2 nu / L^2.
+// Vortices in a periodic box decay by viscosity (Taylor and Green 1937): u = -U e^(bt) cos(2 pi x) sin(2 pi y), b = -8 pi^2 nu / L^2.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ Result<Outcome> runTaylorGreen(const CaseSettings& settings) {
     };
     if (Status set = trial->setVelocities([&](const dvec3& x) { return flow(x, 0); }); !set) return set.error();
     Curve measured{"measured", true, {}}, reference{"e^(bt)", true, {}};
-    // Root mean square speed, and how fast it falls: a line through its logarithm.
+    // Root mean square speed; its decay rate from a line through the logarithm.
     double n = 0, st = 0, sy = 0, stt = 0, sty = 0;
     const bool done = trial->run(1.0 / 120, [&] {
         const HostParticles all = trial->particles();
@@ -44,7 +44,7 @@ Result<Outcome> runTaylorGreen(const CaseSettings& settings) {
     }
     return trial->outcome({{"decay rate", "1/s", rate, b, std::abs(rate / b - 1), 0.05},
                            {fmt::format("speed at {:.1f} s, relative L1", trial->time()), "", off / whole, 0, off / whole, {}}},
-                          {"Taylor-Green whirls, Re = 100", "time, s", "speed over that at the start", {measured, reference}});
+                          {"Taylor-Green vortices, Re = 100", "time, s", "speed over that at the start", {measured, reference}});
 }
 
 }  // namespace rivulet

@@ -1,10 +1,10 @@
-// Drops where nothing weighs anything: the pressure in them is 2 sigma / R (Laplace), and pulled long they swing at
+// Drops without gravity: the pressure inside is 2 sigma / R (Laplace), and an elongated drop oscillates with
 // w^2 = n (n - 1) (n + 2) sigma / (rho R^3), n = 2 (Lamb 1932).
 //
-// The force of the surface (fluid/forces/cohesion) acts at the surface alone: inside a drop at rest the method's own pressure is all there
-// is, and a gauge there reads what the surface presses with. Particles are strewn: a ball cut out of a lattice stays a crystal, which
-// carries loads of its own (its pressures are a fifth higher). What stays in a packing at rest still differs from start to start by a
-// tenth, so a pressure is the mean of three.
+// The force of the surface (fluid/forces/cohesion) acts only at the surface: inside a drop at rest there is only the pressure of the
+// method, and a gauge there measures the pressure of the surface. Start positions are jittered, because a ball cut from a lattice stays a
+// crystal that carries loads (its pressures are a fifth higher). The stress of a packing at rest still differs by a tenth between starts,
+// so each pressure is the mean of three.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,14 +18,14 @@ namespace rivulet {
 namespace {
 
 struct Drop {
-    double radius = 0;  // m, of a ball of its volume
+    double radius = 0;  // m, of a ball of the same volume
     double spacing = 0;
 };
 
-// The block of the scene, which is a cube about the origin, becomes the ball in it. `start`: the block is so many spacings larger on all
-// sides, and other particles of it, each off its place in another way, are the ball.
+// Reduces the block of the scene, a cube around the origin, to the ball in it. With `start` the block is larger by that many spacings on
+// all sides, so that other particles with other jitter form the ball.
 Result<Trial> openDrop(const CaseSettings& settings, const Drop& wanted, int start, std::vector<std::string> assignments, Drop& drop) {
-    // Steps of a quarter of what is stable: the pressure answers to a surface that has moved.
+    // Steps of a quarter of the stable length, because pressure responds to the surface of the last step.
     const double substeps = 32 * std::pow(0.0025 / wanted.spacing, 1.5);
     assignments.push_back(fmt::format("fluid.spacing={:.9g}", wanted.spacing));
     const double half = wanted.radius + start * wanted.spacing;
@@ -44,7 +44,7 @@ Result<Trial> openDrop(const CaseSettings& settings, const Drop& wanted, int sta
     return trial;
 }
 
-// Mean of the virial pressure within half the radius, Pa, over the second half of the run.
+// Mean virial pressure within half the radius, Pa, over the second half of the run.
 std::optional<double> pressureInside(Trial& trial, const Drop& drop, Curve& curve) {
     double sum = 0, count = 0;
     const double late = 0.5 * double{trial.scene().duration};
@@ -71,9 +71,9 @@ std::optional<double> pressureInside(Trial& trial, const Drop& drop, Curve& curv
 Result<Outcome> runTension(const CaseSettings& settings) {
     struct Run {
         double radius;  // m
-        int across;     // spacings in it
+        int across;     // its radius in spacings
     };
-    // Three radii, and the middle one at two spacings. The quick size leaves out what is large.
+    // Three radii, the middle one at two resolutions. The quick size omits the large ones.
     const std::vector<Run> runs = settings.quick ? std::vector<Run>{{0.02, 8}, {0.02, 10}, {0.025, 10}}
                                                  : std::vector<Run>{{0.015, 9}, {0.02, 8}, {0.02, 12}, {0.03, 12}};
     std::vector<Finding> findings;
@@ -83,7 +83,7 @@ Result<Outcome> runTension(const CaseSettings& settings) {
         Drop drop;
         double inside = 0, expected = 0;
         for (int start = 0; start < kStarts; ++start) {
-            // As long and as viscous for each as it swings (one Ohnesorge number).
+            // Duration and viscosity scale with the period of oscillation (one Ohnesorge number).
             const double larger = run.radius / 0.02;
             const std::vector<std::string> alike = {fmt::format("duration={:.6g}", 0.8 * std::pow(larger, 1.5)),
                                                     fmt::format("fluid.viscosity={:.6g}", 2e-4 * std::sqrt(larger))};
@@ -98,19 +98,19 @@ Result<Outcome> runTension(const CaseSettings& settings) {
             plot.curves.push_back(curve);
             plot.curves.push_back({"2 sigma / R", true, {{0, expected * kStarts}, {trial->time(), expected * kStarts}}});
         }
-        // The strength of the force was taken of 20 mm at 10 spacings (fluid/sim/forces/force_surface.cpp); the others are predictions.
+        // The force is calibrated at 20 mm with 10 spacings (fluid/sim/forces/force_surface.cpp); the others are predictions.
         findings.push_back(
             {fmt::format("pressure in a drop, R = {:.3g} mm = {:.3g} spacings", 1000 * drop.radius, drop.radius / drop.spacing), "Pa",
              inside, expected, std::abs(inside / expected - 1), 0.1});
     }
-    // Pulled long and let go.
+    // Elongated and released.
     Drop drop;
     Result<Trial> trial = openDrop(settings, {0.02, 0.0025}, 0, {"fluid.viscosity=3e-5", "duration=1.1"}, drop);
     if (!trial) return trial.error();
     const FluidParams& p = trial->params();
     const double w = std::sqrt(8 * double{p.forces.tension} / (double{p.restDensity} * std::pow(drop.radius, 3)));
     const auto mode = [](const dvec3& x) { return dvec3(-0.5 * x.x, -0.5 * x.y, x.z); };
-    // A tenth of its radius longer at the first turn.
+    // Elongated by a tenth of the radius at the first maximum.
     if (Status set = trial->setVelocities([&](const dvec3& x) { return 0.1 * w * mode(x); }); !set) return set.error();
     std::vector<glm::dvec2> swing;
     const bool done = trial->run(1.0 / 120, [&] { swing.emplace_back(trial->time(), amplitudeOf(trial->particles(), mode) / (0.1 * w)); });

@@ -17,7 +17,7 @@ dmat3 printedFrame(const dmat3& m0, const dvec3& normal) {
     return {m0[0], glm::cross(m0[0], n), n};
 }
 
-dmat3 mendedFrame(const dmat3& m0, const dvec3& normal) { return {m0[0], m0[1], glm::normalize(normal)}; }
+dmat3 correctedFrame(const dmat3& m0, const dvec3& normal) { return {m0[0], m0[1], glm::normalize(normal)}; }
 
 double turnedBy(const dmat3& m0, const dmat3& m, const dvec3& force) {
     const dvec3 n = glm::normalize(m0[2]), along = force - n * glm::dot(force, n), f = glm::inverse(m) * force;
@@ -28,7 +28,7 @@ double turnedBy(const dmat3& m0, const dmat3& m, const dvec3& force) {
 
 double printedHold(double outward, double adhesive, double curvature, double slope) { return outward + adhesive + curvature / slope; }
 
-double mendedHold(double outward, double adhesive, double curvature, double slope, double most) {
+double correctedHold(double outward, double adhesive, double curvature, double slope, double most) {
     return -outward + adhesive + std::min(curvature / slope, most);
 }
 

@@ -77,7 +77,7 @@ bool Trial::run(double frame, const std::function<void()>& each, double until) {
     const double duration = scene().duration, end = std::min(duration, until);
     while (time() < end - 1e-3 * frame) {
         if (!goOn_(time() / duration)) return false;
-        if (world().device().health().state != DeviceHealth::works) return false;  // and runCase() says so
+        if (world().device().health().state != DeviceHealth::works) return false;  // runCase() reports it
         const double before = time();
         wall_ += 1e-3 * session_->step(std::min(frame, end - time()), true);
         steps_ += world().lastSubsteps();

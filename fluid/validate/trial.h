@@ -1,4 +1,4 @@
-// Trial: a physics case's scene under way, with an eye on what it costs.
+// Trial: the running scene of a physics case, with its cost.
 #pragma once
 
 #include <memory>
@@ -9,18 +9,18 @@
 
 namespace rivulet {
 
-// Changes the particles of a world where they stand (position: xyz m, w < 0 takes one away; velocity: m/s). Error: as FluidWorld::savable.
+// Changes particles of a world in place (position: xyz m, w < 0 removes the particle; velocity: m/s). Error: as FluidWorld::savable.
 Status changeParticles(FluidWorld& world, const std::function<void(vec4& position, vec4& velocity)>& each);
 
-// How much of a field of velocities is in those of particles: least squares.
+// The amplitude of a velocity field `mode` in the velocities of particles, by least squares.
 double amplitudeOf(const HostParticles& particles, const std::function<dvec3(const dvec3&)>& mode);
 
-// Where a curve passes zero, by straight lines between its points.
+// The zeros of a curve, by linear interpolation between its points.
 std::vector<double> zerosOf(std::span<const glm::dvec2> curve);
 
 class Trial {
   public:
-    // cases/`name`.json with the method and assignments that were asked for. Error: as loadScene and Session::create.
+    // Opens cases/`name`.json with the requested method and assignments. Error: as loadScene and Session::create.
     static Result<Trial> open(const char* name, const CaseSettings& settings);
 
     const FluidParams& params() const { return session_->world().params(); }
@@ -28,16 +28,16 @@ class Trial {
     const SceneFile& scene() const { return session_->scene(); }
     double time() const { return session_->world().time(); }
 
-    // Gives each particle the velocity (m/s) of its place.
+    // Sets the velocity (m/s) of each particle by its position.
     Status setVelocities(const std::function<dvec3(const dvec3&)>& at);
-    // Leaves out the particles of other places.
+    // Removes particles at positions where `where` is false.
     Status keep(const std::function<bool(const dvec3&)>& where);
-    // Frames of `frame` s until the scene's duration, or until then (s), `each` after every one. false: it was stopped, or its device has
-    // failed.
+    // Runs frames of `frame` s until the duration of the scene or `until` (s) and calls `each` after every frame. false: the run was
+    // stopped, or its device has failed.
     bool run(double frame, const std::function<void()>& each, double until = 3600);
     HostParticles particles() const { return readParticles(session_->world()); }
 
-    // What was found, with the cost of the way there.
+    // The findings with the cost of the run.
     Outcome outcome(std::vector<Finding> findings, Plot plot) const;
 
   private:

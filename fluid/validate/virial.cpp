@@ -17,7 +17,7 @@ std::vector<double> virialPressures(std::span<const vec4> positions, std::span<c
     const double factor = std::pow(spacing, 3) * 210 / (std::numbers::pi * std::pow(h, 8)) / wendlandLatticeSum(p.supportSpacings);
     const auto cellOf = [h](const vec4& x) { return glm::i64vec3(glm::floor(glm::dvec3(x) / h)); };
     const auto keyOf = [](const glm::i64vec3& c) { return static_cast<uint64_t>(c.x * 73856093 ^ c.y * 19349663 ^ c.z * 83492791); };
-    std::unordered_map<uint64_t, std::vector<size_t>> cells;  // who shares a key with strangers is told apart by distance
+    std::unordered_map<uint64_t, std::vector<size_t>> cells;  // keys may collide; distances decide
     for (size_t i = 0; i < positions.size(); ++i)
         if (!(positions[i].w < 0)) cells[keyOf(cellOf(positions[i]))].push_back(i);
     std::vector<double> virial(positions.size());

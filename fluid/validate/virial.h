@@ -1,5 +1,5 @@
-// Virial pressure (Irving and Kirkwood 1950): what the pair forces about a particle pass on, which is what a gauge there feels. A
-// particle's own pressure is what the pairs press with: near it, more than it passes on, and noisier.
+// Virial pressure (Irving and Kirkwood 1950): the stress that pair forces around a particle transmit, which is what a gauge there measures.
+// The pressure stored with a particle is close to it, but higher and noisier.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 namespace rivulet {
 
 // Pa, of each particle: a third of the sum over neighbours of V (p_i + p_j) / 2 r |W'(r)|, with Wendland's kernel as the methods have it.
-// Walls are no neighbours: it holds a support radius away from them and from the surface. `pressures`: FluidWorld::pressures().
+// Walls are not neighbours: the value is valid a support radius away from walls and surface. `pressures`: FluidWorld::pressures().
 std::vector<double> virialPressures(std::span<const vec4> positions, std::span<const float> pressures, const FluidParams& params);
 
 }  // namespace rivulet

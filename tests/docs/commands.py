@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""commands.py PROGRAM ROOT: what README.md and docs/ tell a reader to type works. Every command of a block without a language, or of sh, and
-every `rivulet ...`, `bash ...` and `--option` in a line is looked at. A run is cut to one frame; what would take minutes, or has a FILE for
-the reader to name, is held against --help: the verb, its options, its cases. A bare `--set ...` belongs to the scene of its page or of its
-table row. Links must lead to files. docs/embedding.md has a test of its own (tests/embed/guide.py); docs/api.md and parameters.md hold no
+"""commands.py PROGRAM ROOT: checks what README.md, CONTRIBUTING.md and docs/ tell a reader to type. It looks at every command in a block
+without a language or of sh, and at every `rivulet ...`, `bash ...` and `--option` in a line. A run is shortened to one frame. A command that
+takes minutes, or that has a FILE for the reader to name, is compared with --help: the verb, its options, its cases. A bare `--set ...`
+belongs to the scene of its page or of its table row. On these pages and on those of all folders, links must lead to files and headings,
+and files that are named must exist. docs/embedding.md has a test of its own (tests/embed/guide.py); docs/api.md and parameters.md hold no
 commands."""
 import concurrent.futures
+import fnmatch
 import os
 import pathlib
 import re
@@ -14,7 +16,8 @@ import sys
 import tempfile
 
 program, root = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
+pages = [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").rglob("*.md"))]
+linked = [*pages, root / "CHANGELOG.md", *(page for top in ("engine", "fluid", "assets", "third_party") for page in sorted((root / top).rglob("*.md")))]
 pages = [page for page in pages if page.name not in ("embedding.md", "api.md", "parameters.md")]
 scenes = {path.stem for path in (root / "assets/scenes").glob("*.json")}
 LONG = ("validate", "bench", "chart")  # minutes each
@@ -125,12 +128,36 @@ def look_at(text, where):
             runs.setdefault(tuple(words), where)
 
 
+def headings(page):
+    """The anchors that GitHub gives to a page's headings."""
+    lines = re.findall(r"^#+ (.*)$", page.read_text(), re.M)
+    return {re.sub(r"[^\w -]", "", line.lower()).replace(" ", "-") for line in lines}
+
+
+TOPS = ("engine", "fluid", "shaders", "tests", "demos", "assets", "docs", "third_party")
+files = {path.name for top in TOPS for path in (root / top).rglob("*") if path.is_file()} | {path.name for path in root.iterdir()}
+for page in linked:
+    name, text = page.relative_to(root), re.sub(r"^```.*?^```", "", page.read_text(), flags=re.M | re.S)
+    for link, anchor in re.findall(r"\]\(([^)#\s]*)(#[^)\s]*)?\)", re.sub(r"`[^`\n]*`", "", text)):
+        target = page.parent / link if link else page
+        if "://" in link:
+            continue
+        if not target.exists():
+            wrong.append(f"{name}: the link {link} leads to no file")
+        elif anchor and target.suffix == ".md" and anchor[1:] not in headings(target):
+            wrong.append(f"{name}: the link {link}{anchor} leads to no heading")
+    if page.name in ("CHANGELOG.md", "parameters.md"):
+        continue  # old names; keys that look like files
+    for code in re.findall(r"`([^`\n]+)`", text):
+        is_path = re.fullmatch(rf"({'|'.join(TOPS)})/[\w./*-]+", code) and re.search(r"/$|\*|\.\w+$", code)
+        if is_path and not re.search("[A-Z]{4}", code) and not any(root.glob(code.rstrip("/"))):
+            wrong.append(f"{name}: there is no file {code}")
+        elif re.fullmatch(r"[\w*]+\.(h|cpp|kernel|cmake|glsl|frag|vert)", code) and not fnmatch.filter(files, code):
+            wrong.append(f"{name}: there is no file called {code}")
+
 for page in pages:
     name, scene = page.relative_to(root), page.stem if page.parent.name == "scenes" and page.stem in scenes else None
     text = page.read_text()
-    for link in re.findall(r"\]\(([^)#\s]+)[^)]*\)", text):
-        if "://" not in link and not (page.parent / link).exists():
-            wrong.append(f"{name}: the link {link} leads nowhere")
     language = None  # of the block that this line is in
     joined = ""
     for line in text.splitlines():

@@ -72,11 +72,11 @@ TEST(ThesisForms, ThePrintedFrameTurnsVRoundAndDropsClimb) {
     const std::array<dvec3, 3> x = {dvec3(0), dvec3(0.2, 0, 0), dvec3(0, 0.2, 0)};
     const dmat3 m0 = thesisFrame(x, {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)});
     const dvec3 down(0, -kGravity, 0), out(0, 0, 3);
-    const dvec3 mended = glm::inverse(mendedFrame(m0, out)) * down, printed = glm::inverse(printedFrame(m0, out)) * down;
+    const dvec3 mended = glm::inverse(correctedFrame(m0, out)) * down, printed = glm::inverse(printedFrame(m0, out)) * down;
     EXPECT_NEAR(mended.y, -kGravity / 0.2, 1e-9);
     EXPECT_NEAR(mended.x, 0, 1e-9);
     EXPECT_GT(printed.y, 0);  // up
-    EXPECT_NEAR(turnedBy(m0, mendedFrame(m0, out), down), 0, 1e-6);
+    EXPECT_NEAR(turnedBy(m0, correctedFrame(m0, out), down), 0, 1e-6);
     EXPECT_NEAR(turnedBy(m0, printedFrame(m0, out), down), kPiD, 1e-6);
     // T x (T x B) = -|T|^2 B: too weak or too strong by |T|^2 as well, here 1 / 25.
     EXPECT_NEAR(printed.y, -mended.y * 25, 1e-6);
@@ -86,7 +86,7 @@ TEST(ThesisForms, ThePrintedNormalPutsAnAreaIntoTheForceAwayFromTheSkin) {
     const dvec3 pull(1, -3, 2), out(0, 0, 1);
     for (const double size : {0.1, 0.2, 2.0}) {
         const dmat3 m0 = thesisFrame({dvec3(0), dvec3(size, 0, 0), dvec3(0, size, 0)}, {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)});
-        EXPECT_NEAR((glm::inverse(mendedFrame(m0, out)) * pull).z, 2, 1e-9) << size;
+        EXPECT_NEAR((glm::inverse(correctedFrame(m0, out)) * pull).z, 2, 1e-9) << size;
         EXPECT_NEAR((glm::inverse(printedFrame(m0, out)) * pull).z * size * size, 2, 1e-9) << size;
     }
 }
@@ -95,12 +95,12 @@ TEST(ThesisForms, ThePrintedSignThrowsOffWhatLiesAndTheLoneDropIsHeldForEver) {
     const double weight = 1.0e-5;
     // Lying on a floor its weight is away from the skin by -weight.
     EXPECT_LT(printedHold(-weight, 1.0e-6, 0, 1), 0);
-    EXPECT_GT(mendedHold(-weight, 1.0e-6, 0, 1, 0), 0);
+    EXPECT_GT(correctedHold(-weight, 1.0e-6, 0, 1, 0), 0);
     // Hanging from a ceiling: the other way.
     EXPECT_GT(printedHold(weight, 1.0e-6, 0, 1), 0);
-    EXPECT_LT(mendedHold(weight, 1.0e-6, 0, 1, 0), 0);
+    EXPECT_LT(correctedHold(weight, 1.0e-6, 0, 1, 0), 0);
     EXPECT_TRUE(std::isinf(printedHold(0, 0, 1.0e-8, 0)));
-    EXPECT_DOUBLE_EQ(mendedHold(0, 0, 1.0e-8, 0, 1.0e-6), 1.0e-6);
+    EXPECT_DOUBLE_EQ(correctedHold(0, 0, 1.0e-8, 0, 1.0e-6), 1.0e-6);
 }
 
 TEST(FlowThesis, AStepsVelocityIsGravityAlongTheSkinWhateverTheLayout) {

@@ -31,7 +31,7 @@ Chapter4Row row(int particles, const char* grid, const char* walk, double stepMs
                                     : std::map<std::string, double>{{"fluid/methods/wcsph_density", 9}}};
 }
 
-TEST(Chapter4, ThePageReadsTheTableAloudBesideTheThesis) {
+TEST(Chapter4, ThePageComparesTheTableWithTheThesis) {
     Chapter4 chapter;
     chapter.drawnBy = "a tested GPU";
     chapter.width = 640;
@@ -61,11 +61,11 @@ TEST(Chapter4, ThePageReadsTheTableAloudBesideTheThesis) {
     EXPECT_NE(csv->find("16384,linked_list,thesis,128,31.25,28.12,37.5,32,28,4\n"), std::string::npos) << *csv;
     EXPECT_NE(csv->find("2048,sorted,none,128,200,180,240,5,1,4\n"), std::string::npos) << *csv;
     for (const char* said :
-         {"above 15 frames a second | 31.2 with its lists and its walk, of 28 ms a step and 4 ms of drawing; 62.5 with the "
+         {"above 15 frames a second | 31.2 with lists and the thesis's walk (28 ms per step, 4 ms of drawing); 62.5 with the "
           "sorted grid",
           // (32 - 20) / 32, and 3 of 12; of 2,048 particles the thesis said nothing.
-          "above as many: 38 % of the frame, 25 % of the step", "| 16384 | 38 % (38 to 38) | 25.0 % |",
-          "a step is shortest with 64 threads (the thesis used 128)", "onto spot.obj, hollow, voxelised at 128",
+          "above as many particles: 38 % of the frame, 25 % of the step", "| 16384 | 38 % (38 to 38) | 25.0 % |",
+          "A step is shortest with 64 threads (the thesis used 128)", "onto spot.obj, hollow, voxelised at 128",
           "a machine, backend gl and pictures by a tested GPU", "| 2048 | 167 (150 to 200) | 133 (120 to 160) |"})
         EXPECT_NE(page->find(said), std::string::npos) << said << "\n" << *page;
     EXPECT_EQ(page->find("(chapter4.svg)") != std::string::npos, static_cast<bool>(written));

@@ -2,6 +2,10 @@
 // `real`, `real3` hold what belongs to the particle at hand: a float on a GPU, 8 floats, one lane a particle, on the CPU.
 // ARGS(RO, RW) is a kernel's interface, a row RO|RW(binding, BlockName, type, name) a buffer, unit and meaning in a comment;
 // bindings count from 1. BUFFERS follows it; functions that read a buffer come after BUFFERS and take GLOBAL(type, name).
+// The line above KERNEL gives the forms that the build compiles for the cpu (engine/compute/compile_kernels.cmake registers them):
+//   // cpu 1024                                one; a task of the thread pool runs 1024 threads
+//   // cpu 64: MATTER? PERIODIC? | THESIS      five: with and without each of two defines; or with a third alone
+//   // gpu only                                none
 #if defined(__cplusplus)
 #include "shaders/common/lang_cpp.h"
 #elif defined(__OPENCL_C_VERSION__)

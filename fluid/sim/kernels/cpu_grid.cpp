@@ -1,6 +1,5 @@
 #include "fluid/sim/kernels/cpu_grid.h"
 
-#include "fluid/sim/kernels/kernel_rows.h"
 #include "shaders/common/lang.h"
 
 namespace rivulet::RIVULET_KERNEL_UNIT {
@@ -303,16 +302,6 @@ void neighborListPeriodic(uint32_t begin, uint32_t end, const void* params, void
 
 }  // namespace
 
-std::span<const CpuKernelRow> gridRows() {
-    static const CpuKernelRow rows[] = {
-        {"fluid/grid/cpu_sort_count", "", RIVULET_UNIT_ISA, sortCount, 1},
-        {"fluid/grid/cpu_sort_segments", "", RIVULET_UNIT_ISA, sortSegmentSums, 1},
-        {"fluid/grid/cpu_sort_offsets", "", RIVULET_UNIT_ISA, sortOffsets, 1},
-        {"fluid/grid/cpu_sort_scatter", "", RIVULET_UNIT_ISA, sortScatter, 1},
-        {"fluid/grid/cpu_neighbor_list", "", RIVULET_UNIT_ISA, neighborList, 64},
-        {"fluid/grid/cpu_neighbor_list", "PERIODIC=1", RIVULET_UNIT_ISA, neighborListPeriodic, 64},
-    };
-    return rows;
-}
+CpuGridKernels gridKernels() { return {sortCount, sortSegmentSums, sortOffsets, sortScatter, neighborList, neighborListPeriodic}; }
 
 }  // namespace rivulet::RIVULET_KERNEL_UNIT

@@ -54,4 +54,18 @@ struct CpuGridJob {
 inline constexpr uint32_t kScanSegments = 16;
 inline constexpr uint32_t kListRegion = 8192;  // entries a chunk of groups takes from the list at once
 
+// The passes, in their order. Each is a CpuKernelFn (engine/compute/device_cpu.h) whose `params` is a CpuGridJob.
+struct CpuGridKernels {
+    using Pass = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
+    Pass sortCount, sortSegments, sortOffsets, sortScatter, neighborList, neighborListPeriodic;
+};
+
 }  // namespace rivulet
+
+#define RIVULET_GRID_UNIT(isa)    \
+    namespace rivulet::isa {      \
+    CpuGridKernels gridKernels(); \
+    }
+#if defined(RIVULET_KERNEL_UNIT)
+RIVULET_GRID_UNIT(RIVULET_KERNEL_UNIT)
+#endif

@@ -29,6 +29,7 @@ typedef float3 real3;
 #define TO_UINT(x) ((uint)(x))
 #define TO_FLOAT(x) ((float)(x))
 #define TO_DOUBLE(x) ((double)(x))
+#define CONSTANT(T, n, v) __constant T n = v
 #define EXACT /* before a declaration: its value is as written, nothing contracted; OpenCL says so by a pragma, see voxel/crossing.h */
 #define FLOAT_BITS(f) as_uint(f)
 #define BITS_FLOAT(u) as_float(u)
@@ -65,6 +66,7 @@ typedef float3 real3;
 #define TO_UINT(x) uint(x)
 #define TO_FLOAT(x) float(x)
 #define TO_DOUBLE(x) double(x)
+#define CONSTANT(T, n, v) const T n = v
 #define EXACT precise
 #define FLOAT_BITS(f) floatBitsToUint(f)
 #define BITS_FLOAT(u) uintBitsToFloat(u)

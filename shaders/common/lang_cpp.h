@@ -2,10 +2,11 @@
 // kernel unit (RIVULET_KERNEL_UNIT), compiled once an instruction set inside its own namespace, where `real` is 8 lanes.
 #if !defined(RIVULET_KERNEL_UNIT)
 
-#pragma once
+// No #pragma once: each shared header includes lang.h anew, and lang_end.h last, so that a host sees none of these macros.
 #include "engine/core/math.h"
 #define FN inline
 #define STRUCT(n) struct n
+#define CONSTANT(T, n, v) inline constexpr T n = v
 #define GLOBAL(T, n) const T *n,
 #define PASS(n) n,
 #define EXACT
@@ -143,6 +144,7 @@ INLINE void atomicMax(uint* p, uint v) {
 
 #define FN INLINE
 #define STRUCT(n) struct n
+#define CONSTANT(T, n, v) constexpr T n = v
 #define GLOBAL(T, n) [[maybe_unused]] const T *n,
 #define PASS(n) n,
 #define RO(b, N, T, n) , [[maybe_unused]] const T* __restrict n

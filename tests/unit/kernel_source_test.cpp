@@ -1,4 +1,4 @@
-// A kernel's text, flattened: what is inlined, what is refused, and that a log's lines lead back to the file they come from.
+// Flattened kernel texts: inlined files, refused texts, and log lines that name the file they come from. The units written for the cpu.
 #include "engine/compute/kernel_source.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A folder of shader files that lives as long as a test.
-class KernelSourceTest : public testing::Test {
+class KernelSourceTest : public ::testing::Test {
   protected:
     KernelSourceTest() {
         root_ = fs::temp_directory_path() / ("rivulet_kernel_source_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +

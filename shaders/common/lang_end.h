@@ -1,4 +1,4 @@
-// The end of a header that kernels and the host share: takes the macros of lang.h from the host again.
+// Included last by each header that kernels and the host share: undefines the macros of lang.h for the host.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #undef FN
 #undef STRUCT

@@ -120,7 +120,9 @@ Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> 
         if (path == row.path && wanted == inOrder(row.defines) && row.isa <= isa_ && (best == nullptr || row.isa > best->isa)) best = &row;
     if (best == nullptr)
         return failed(
-            fmt::format("the kernel {} with defines '{}' was not compiled for the CPU: add it to fluid/sim/kernels", path, wanted));
+            fmt::format("the kernel {} with defines '{}' was not compiled for the cpu: the \"// cpu\" line in shaders/{}.kernel "
+                        "lists the forms that are",
+                        path, wanted, path));
     for (uint32_t i = 0; i < impl_->kernels.size(); ++i)
         if (impl_->kernels[i].run == best->run) return Kernel{i};
     impl_->kernels.push_back(*best);

@@ -6,7 +6,6 @@
 
 #include "engine/core/mesh_view.h"
 #include "fluid/voxel/voxel_grid.h"
-#include "shaders/common/lang.h"
 #include "shaders/voxel/depth.h"
 
 namespace rivulet {

@@ -266,7 +266,7 @@ struct Bake {
             for (size_t n = 0; n < kBrickPoints; ++n) {
                 const auto i = static_cast<int>(n);
                 const dvec3 point(first + ivec3(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge)));
-                const dvec3 direction = nearest[n] == kNobody ? dvec3(1.0) : away(targets[nearest[n]], point);
+                const dvec3 direction = nearest[n] == kNoTarget ? dvec3(1.0) : away(targets[nearest[n]], point);
                 x[n] = direction.x;
                 y[n] = direction.y;
                 z[n] = direction.z;
@@ -286,7 +286,7 @@ struct Bake {
     }
 
     void store(size_t at, double squared, uint32_t place, uint32_t code, const std::vector<uint32_t>& listed) const {
-        const bool none = place == kNobody;
+        const bool none = place == kNoTarget;
         const uint32_t k = none || listed.empty() ? place : listed[place];
         out.distance[at] = none ? metres : std::min(static_cast<float>(std::sqrt(squared)) * voxel, metres);
         out.normal[at] = none ? 0 : (code | (surfaces.empty() ? 0U : uint32_t{surfaces[triangles.owner(k)]} << 28U));

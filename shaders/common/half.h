@@ -1,5 +1,5 @@
-// Half floats from floats and back, as bits, the same on every compiler: for textures of 16-bit floats that a kernel writes.
-// Rounded to the nearest, at most 65504; what is no number becomes 0. No branches: the CPU's compiler makes vectors of it.
+// Conversion between floats and the bits of half floats, equal on every compiler: for textures of 16-bit floats that a kernel writes.
+// Rounded to the nearest, at most 65504; a NaN becomes 0. There are no branches, so that the CPU's compiler can vectorize it.
 FN uint halfBits(float x) {
     float a = x < 0.0f ? -x : x;
     a = a < 65504.0f ? a : a >= 65504.0f ? 65504.0f : 0.0f;

@@ -1,7 +1,11 @@
-// lang.h: the only file that knows which compiler reads a kernel: C++ (8 particles in 8 lanes), OpenCL C 1.2 or GLSL 4.5.
-// `real`, `real3` hold what belongs to the particle at hand: a float on a GPU, 8 floats, one lane a particle, on the CPU.
-// ARGS(RO, RW) is a kernel's interface, a row RO|RW(binding, BlockName, type, name) a buffer, unit and meaning in a comment;
-// bindings count from 1. BUFFERS follows it; functions that read a buffer come after BUFFERS and take GLOBAL(type, name).
+// The only file that depends on which compiler reads a kernel: C++ (8 particles in 8 lanes), OpenCL C 1.2 or GLSL 4.5.
+// `real` and `real3` hold values of the current particle: one float on a GPU, 8 floats (one lane for each particle) on the CPU.
+// ARGS(RO, RW) is a kernel's interface. Each row RO|RW(binding, BlockName, type, name) is a buffer; a comment gives its unit and meaning.
+// Bindings count from 1. BUFFERS follows it; functions that read a buffer come after BUFFERS and take GLOBAL(type, name).
+// The line above KERNEL gives the forms that the build compiles for the cpu (engine/compute/compile_kernels.cmake registers them):
+//   // cpu 1024                                one; a task of the thread pool runs 1024 threads
+//   // cpu 64: MATTER? PERIODIC? | THESIS      five: with and without each of two defines; or with a third alone
+//   // gpu only                                none
 #if defined(__cplusplus)
 #include "shaders/common/lang_cpp.h"
 #elif defined(__OPENCL_C_VERSION__)
@@ -25,16 +29,17 @@ typedef float3 real3;
 #define TO_UINT(x) ((uint)(x))
 #define TO_FLOAT(x) ((float)(x))
 #define TO_DOUBLE(x) ((double)(x))
-#define EXACT /* before a declaration: its value is as written, nothing contracted; OpenCL says so by a pragma, see voxel/crossing.h */
+#define CONSTANT(T, n, v) __constant T n = v
+#define EXACT /* before a declaration: its value is computed as written, without contraction; in OpenCL a pragma does this, see voxel/crossing.h */
 #define FLOAT_BITS(f) as_uint(f)
 #define BITS_FLOAT(u) as_float(u)
 #define ATOMIC_ADD(x, v) atomic_add(&(x), v)
 #define ATOMIC_MIN(x, v) atomic_min(&(x), v)
 #define ATOMIC_MAX(x, v) atomic_max(&(x), v)
 #define ATOMIC_OR(x, v) atomic_or(&(x), v)
-#define ATOMIC_EXCHANGE(x, v) atomic_xchg(&(x), v) /* of GPUs alone */
+#define ATOMIC_EXCHANGE(x, v) atomic_xchg(&(x), v) /* on GPUs only */
 #define ATOMIC_READ(x) atomic_add(&(x), 0u)
-#define PREFETCH(x) /* of memory that is soon asked for: a CPU's threads are few, and each waits */
+#define PREFETCH(x) /* of memory that is read soon; for a CPU, whose few threads wait for it */
 #define FN static inline
 #define STRUCT(n)       \
     typedef struct n n; \
@@ -61,6 +66,7 @@ typedef float3 real3;
 #define TO_UINT(x) uint(x)
 #define TO_FLOAT(x) float(x)
 #define TO_DOUBLE(x) double(x)
+#define CONSTANT(T, n, v) const T n = v
 #define EXACT precise
 #define FLOAT_BITS(f) floatBitsToUint(f)
 #define BITS_FLOAT(u) uintBitsToFloat(u)
@@ -88,7 +94,7 @@ typedef float3 real3;
 #define SHARED_IN(T, n, count)
 #define KERNEL(name, P) void main()
 #define PARAMS params_
-#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE) /* a dispatch has 65535 groups at most: device gl makes several */
+#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE) /* a dispatch has at most 65535 groups: device gl splits larger ones */
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID (gl_WorkGroupID.x + groupBase_)
 #define BARRIER                \
@@ -97,7 +103,7 @@ typedef float3 real3;
         barrier();             \
     }
 #endif
-#if !defined(__cplusplus)  // what a lane is on a GPU: the particle itself
+#if !defined(__cplusplus)  // on a GPU a lane is the particle itself
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))
 #define NEIGHBOR_TYPE uint  // see fluid/grid/neighbors.h
 #define LOAD(b, i) b[i]

@@ -1,11 +1,12 @@
-// lang_cpp.h: what lang.h means to a C++ compiler. Two readers: the host, which wants the layout of shared structs (glm vectors), and a
-// kernel unit (RIVULET_KERNEL_UNIT), compiled once an instruction set inside its own namespace, where `real` is 8 lanes.
+// lang.h for a C++ compiler. It has two users: the host, which needs the layout of shared structs (glm vectors), and a kernel unit
+// (RIVULET_KERNEL_UNIT), which is compiled once for each instruction set inside a namespace of its own; there `real` is 8 lanes.
 #if !defined(RIVULET_KERNEL_UNIT)
 
-#pragma once
+// No #pragma once: each shared header includes lang.h anew, and lang_end.h last, so that a host sees none of these macros.
 #include "engine/core/math.h"
 #define FN inline
 #define STRUCT(n) struct n
+#define CONSTANT(T, n, v) inline constexpr T n = v
 #define GLOBAL(T, n) const T *n,
 #define PASS(n) n,
 #define EXACT
@@ -53,7 +54,7 @@ struct alignas(16) vec4 {
     INLINE vec4(float ax, float ay, float az, float aw) : x(ax), y(ay), z(az), w(aw) {}
     INLINE vec4(const vec3& v, float aw) : x(v.x), y(v.y), z(v.z), w(aw) {}
 };
-typedef float Four __attribute__((vector_size(16)));  // four at once, where the compiler would take one after the other
+typedef float Four __attribute__((vector_size(16)));  // four at once; the compiler would otherwise compute one after the other
 INLINE Four fourOf(const vec4& a) {
     Four v;
     memcpy(&v, &a, 16);
@@ -143,6 +144,7 @@ INLINE void atomicMax(uint* p, uint v) {
 
 #define FN INLINE
 #define STRUCT(n) struct n
+#define CONSTANT(T, n, v) constexpr T n = v
 #define GLOBAL(T, n) [[maybe_unused]] const T *n,
 #define PASS(n) n,
 #define RO(b, N, T, n) , [[maybe_unused]] const T* __restrict n

@@ -1,5 +1,5 @@
-// What `real` is in a kernel unit: eight lanes, a particle each; how groups of particles are loaded and stored, and met by their
-// neighbours. Part of lang_cpp.h, which includes it.
+// `real` in a kernel unit: eight lanes, one for each particle; loads and stores of groups of particles, and loops over their neighbours.
+// Part of lang_cpp.h, which includes it.
 #pragma once
 
 namespace rivulet::RIVULET_KERNEL_UNIT {
@@ -191,7 +191,7 @@ INLINE void STORE(T* b, uint i, const T& v) {
 #define END_NEIGHBORS \
     }                 \
     }
-// As FOR_NEIGHBORS in a step's first sweep: only the entries with a lane for which KEEP's condition held stay in the list.
+// FOR_NEIGHBORS in a step's first sweep: the list keeps only the entries for which KEEP's condition holds in some lane.
 #define FOR_ALL_NEIGHBORS(i, home, j)                \
     {                                                \
         uint* list_ = neighbors->list + i.listBegin; \

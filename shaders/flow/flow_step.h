@@ -5,23 +5,22 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-#define PICOLITRE 1.0e-15f /* m^3 */
+CONSTANT(float, PICOLITRE, 1.0e-15f);  // m^3
 // A drop, by id: five uints. Its volume is a whole number, so that none is lost to rounding; 0 is a free slot.
-#define DROP_TRIANGLE 0u /* its number, and flags */
-#define DROP_B1 1u       /* float bits: barycentric coordinates of corners 1 and 2 */
-#define DROP_B2 2u
-#define DROP_VOLUME 3u /* picolitres */
-#define DROP_SHARE 4u  /* float bits, 0 a drop, 1 part of a film */
-#define DROP_UINTS 5u
-#define DROP_LEFT 0x80000000u /* has let go, or run over an edge: the triangle is the last one */
-#define DROP_FILM 0x40000000u /* part of a film: runs into nobody */
-#define DROP_BRIM \
-    0x20000000u              /* part of a brim: stays where it is. In a birth: the number is a brim's place, which the volume is added to */
-#define DROP_NEW 0x10000000u /* born in this step: its velocity is as it was given */
-#define DROP_NUMBER 0x0FFFFFFFu
-#define SKIN_OPEN 0xFFFFFFFFu
-#define SKIN_UINTS 8u
-#define DRY_EVERY 16u /* triangles: one in so many has its turn each step */
+CONSTANT(uint, DROP_TRIANGLE, 0u);  // its number, and flags
+CONSTANT(uint, DROP_B1, 1u);  // float bits: barycentric coordinates of corners 1 and 2
+CONSTANT(uint, DROP_B2, 2u);
+CONSTANT(uint, DROP_VOLUME, 3u);  // picolitres
+CONSTANT(uint, DROP_SHARE, 4u);  // float bits, 0 a drop, 1 part of a film
+CONSTANT(uint, DROP_UINTS, 5u);
+CONSTANT(uint, DROP_LEFT, 0x80000000u);  // has let go, or run over an edge: the triangle is the last one
+CONSTANT(uint, DROP_FILM, 0x40000000u);  // part of a film: runs into nobody
+CONSTANT(uint, DROP_BRIM, 0x20000000u);  // part of a brim: stays where it is. In a birth: the number is a brim's place, which the volume is added to
+CONSTANT(uint, DROP_NEW, 0x10000000u);  // born in this step: its velocity is as it was given
+CONSTANT(uint, DROP_NUMBER, 0x0FFFFFFFu);
+CONSTANT(uint, SKIN_OPEN, 0xFFFFFFFFu);
+CONSTANT(uint, SKIN_UINTS, 8u);
+CONSTANT(uint, DRY_EVERY, 16u);  // triangles: one in so many has its turn each step
 STRUCT(FlowStep) {
     vec4 pull;   // xyz m/s^2, what acts on all mass alike, in the skin's frame as all that follows
     vec4 wind;   // xyz m/s, of the air
@@ -83,8 +82,8 @@ STRUCT(FlowLeft) {
     uint spare0;
     uint spare1;
 };
-#define MOST_LEFT 256u   /* in a step; the others wait for the next */
-#define FLOW_COUNTERS 8u /* see born, merge, leave, dry */
+CONSTANT(uint, MOST_LEFT, 256u);  // in a step; the others wait for the next
+CONSTANT(uint, FLOW_COUNTERS, 8u);  // see born, merge, leave, dry
 // Not of the language: a positive number's cube root, to rounding (Newton, from a guess by its bits).
 #if !defined(__cplusplus) || defined(RIVULET_KERNEL_UNIT)
 FN float cubeRoot(float v) {
@@ -97,4 +96,5 @@ FN float cubeRoot(float v) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FlowStep) % 16 == 0 && sizeof(FlowBirth) == 32 && sizeof(FlowLeft) == 48);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

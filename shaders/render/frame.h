@@ -32,4 +32,5 @@ STRUCT(FrameParams) {
 #if defined(__cplusplus)
 static_assert(sizeof(FrameParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -9,6 +9,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/voxel/crossing_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 // What a row of columns sees of a triangle.
@@ -71,4 +72,5 @@ FN int crossingVoxel(CrossingRow r, int y, int sizeX) {
 
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

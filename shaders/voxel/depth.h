@@ -3,6 +3,7 @@
 // any line a closed mesh is met an even number of times and no line slips between two triangles.
 #if defined(__cplusplus)
 #pragma once
+#include "shaders/common/lang.h"
 namespace rivulet {
 #elif defined(__OPENCL_C_VERSION__)
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -86,4 +87,5 @@ FN uint pixelOf(DepthBox box, int axis, int x, int y, int z) {
 }
 #if defined(__cplusplus)
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -22,4 +22,5 @@ STRUCT(FieldParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FieldParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -4,6 +4,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/voxel/field_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(MotionParams) {
@@ -25,4 +26,5 @@ STRUCT(MotionParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(MotionParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

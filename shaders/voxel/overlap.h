@@ -8,6 +8,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/voxel/overlap_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 // Voxels first <= x <= last of a row.
@@ -59,4 +60,5 @@ FN OverlapRun overlapRow(GLOBAL(double, numbers) GLOBAL(int, bounds) uint triang
 
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

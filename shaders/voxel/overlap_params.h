@@ -28,4 +28,5 @@ STRUCT(OverlapParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(OverlapParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -1,4 +1,4 @@
-// The cpu's half of host_force_test.cpp: the host's kernel compiled as C++, for whatever processor.
+// The cpu's part of host_force_test.cpp: the host's kernel compiled as C++, for any processor.
 #define RIVULET_KERNEL_UNIT host_force_unit
 #include "tests/parity/host_force_kernels.h"
 

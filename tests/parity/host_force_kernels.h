@@ -1,4 +1,4 @@
-// A kernel that Rivulet does not know, as a host compiles it for the cpu.
+// A kernel outside Rivulet, compiled for the cpu by a host.
 #pragma once
 
 #include "engine/compute/device_cpu.h"

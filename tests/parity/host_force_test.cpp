@@ -1,4 +1,4 @@
-// A force of the host's own, registered without a fork, on cpu, cl and gl: what it does is what mechanics says.
+// A force of the host's own, registered without a fork, on cpu, cl and gl: the motion follows from mechanics.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace rivulet {
 namespace {
 
-// What a host writes: its Params, and the four functions.
+// The host's part: its Params and four functions.
 struct Swirl {
     vec3 push{0.0F}, axis{0.0F};
     float turn = 0;
@@ -62,7 +62,7 @@ Result<TestGpu> makeDevice(const std::string& name) {
     std::ifstream file(RIVULET_SOURCE_DIR "/tests/parity/host_swirl.kernel", std::ios::binary);
     ShaderFiles files = ShaderFiles::developer();
     files.add("shaders/host/host_swirl.kernel", std::string(std::istreambuf_iterator<char>(file), {}));
-    Result<TestGpu> there = makeTestGpu(name);  // whether there is such a device, with its context
+    Result<TestGpu> there = makeTestGpu(name);  // the device, if there is one, and its context
     if (!there) return there;
     made.context = there->context;
     if (name == "gl") {
@@ -87,8 +87,8 @@ FluidParams weightless() {
 
 class HostForces : public testing::TestWithParam<const char*> {};
 
-// A block in free fall under the host's own gravity: each particle is where Galileo has it, less what the steps' rule loses.
-TEST_P(HostForces, ABlockFallsAsTheHostWantsIt) {
+// A block in free fall under the host's own gravity: each particle follows Galileo's law, within the error of the time integration.
+TEST_P(HostForces, ABlockFallsWithTheHostsAcceleration) {
     Result<TestGpu> there = makeDevice(GetParam());
     if (!there) GTEST_SKIP() << there.error().message;
     Swirl swirl;
@@ -113,7 +113,7 @@ TEST_P(HostForces, ABlockFallsAsTheHostWantsIt) {
     EXPECT_GT(glm::length(now - middle), 0.2);
     EXPECT_EQ(world.stats().speedLimited, 0U);
 
-    // Off, it goes straight on.
+    // Without the force it moves on in a straight line.
     swirl.on = false;
     const dvec3 v = dvec3(0.1, 0, 0) + a * t;
     world.step({.gravity = p.gravity}, 1.0 / 60);
@@ -122,7 +122,7 @@ TEST_P(HostForces, ABlockFallsAsTheHostWantsIt) {
     EXPECT_LT(glm::length(then - now - v / 60.0), 1e-4);
 }
 
-// Torque about an axis: a body of water begins to turn as a whole, and on every device alike.
+// Torque about an axis: a body of water begins to rotate as a whole, equally on every device.
 TEST_P(HostForces, ASwirlTurnsWaterAboutItsAxis) {
     Result<TestGpu> there = makeDevice(GetParam());
     if (!there) GTEST_SKIP() << there.error().message;
@@ -146,14 +146,14 @@ TEST_P(HostForces, ASwirlTurnsWaterAboutItsAxis) {
         spin += glm::cross(d, dvec3(v[i]));
         inertia += d.x * d.x + d.z * d.z;
     }
-    // dL/dt = turn * inertia, which hardly grows meanwhile.
+    // dL/dt = turn * inertia, which is nearly constant in this time.
     EXPECT_NEAR(spin.y / inertia, 4.0 * 0.1, 0.02 * 0.4);
     EXPECT_LT(std::abs(spin.x) + std::abs(spin.z), 1e-3 * spin.y);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, HostForces, testing::Values("cpu", "cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
-TEST(HostForceRows, TheirParamsAreVisibleAndTheirNamesTheirOwn) {
+TEST(HostForceRows, ParamsAreVisibleAndNamesUnique) {
     Result<TestGpu> there = makeDevice("cpu");
     ASSERT_TRUE(there);
     Swirl swirl;
@@ -174,7 +174,7 @@ TEST(HostForceRows, TheirParamsAreVisibleAndTheirNamesTheirOwn) {
     EXPECT_NE(writeJson(visit).find("\"turn\""), std::string::npos);
     ASSERT_TRUE(setParam("swirl.turn=2.5", visit));
     EXPECT_EQ(swirl.turn, 2.5F);
-    // A kernel that the device does not have is said, and the world goes on without.
+    // A kernel that the device lacks is reported, and the world runs without the force.
     const std::vector<CpuKernelRow> known = cpuKernels();
     auto plain = makeCpuDevice(known);
     auto without = FluidWorld::create(*plain, p, {}, {}, {}, std::span(rows, 1));

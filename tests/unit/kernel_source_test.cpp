@@ -1,15 +1,18 @@
-// A kernel's text, flattened: what is inlined, what is refused, and that a log's lines lead back to the file they come from.
+// Flattened kernel texts: inlined files, refused texts, and log lines that name the file they come from. The units written for the cpu.
 #include "engine/compute/kernel_source.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 
 #include "engine/compute/embedded_shaders.h"
+#include "tests/unit/program_runner.h"
 
 namespace rivulet {
 namespace {
@@ -17,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A folder of shader files that lives as long as a test.
-class KernelSourceTest : public testing::Test {
+class KernelSourceTest : public ::testing::Test {
   protected:
     KernelSourceTest() {
         root_ = fs::temp_directory_path() / ("rivulet_kernel_source_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
@@ -244,6 +247,69 @@ TEST(ShaderFilesTest, everyKernelFlattensWithoutTheCppSide) {
             for (const std::string& file : source->files) EXPECT_NE(file, "shaders/common/lang_cpp.h") << row.path;
         }
     }
+}
+
+// What engine/compute/compile_kernels.cmake writes for the cpu from the line above KERNEL.
+class CompileKernelsTest : public KernelSourceTest {
+  protected:
+    testing::Outcome write() {
+        return testing::runCommand({"cmake", "-DROOT=" + root_.string(), "-DOUT=" + (root_ / "out").string(), "-DISAS=generic,avx2", "-P",
+                                    RIVULET_SOURCE_DIR "/engine/compute/compile_kernels.cmake"});
+    }
+    std::string written(const std::string& name) const {
+        std::ifstream in(root_ / "out" / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::vector<std::string> rows() const {
+        std::vector<std::string> found;
+        std::istringstream lines(written("kernel_table.cpp"));
+        for (std::string line; std::getline(lines, line);)
+            if (line.find("Isa::avx2") != std::string::npos) found.push_back(line.substr(5, line.find(", Isa") - 5));
+        return found;
+    }
+};
+
+TEST_F(CompileKernelsTest, ATextsOwnLineGivesTheFormsThatAreCompiled) {
+    file("shaders/fluid/one.kernel", "// One.\n// cpu 1024\nKERNEL(one, P)\n{\n}\n");
+    file("shaders/fluid/pair.kernel", "#define ARGS(RO, RW) \\\n    RO(1, A, uint, a)\n// cpu 64: B? A? | C A\nKERNEL(pair, P)\n{\n}\n");
+    file("shaders/fluid/sort.kernel", "// gpu only\nKERNEL(sort, P)\n{\n}\n");
+    file("shaders/fluid/shared.h", "// Shared.\n#define LENGTH 3\n#define WIDTH(x) \\\n    (x)\n");
+    const testing::Outcome run = write();
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(rows(), (std::vector<std::string>{R"("fluid/one", "")", R"("fluid/pair", "")", R"("fluid/pair", "B=1")",
+                                                R"("fluid/pair", "A=1")", R"("fluid/pair", "A=1;B=1")", R"("fluid/pair", "A=1;C=1")"}));
+    EXPECT_NE(written("kernel_table.cpp").find("Isa::generic, kernels_generic::fluid_pair_A_C::pair, 64}"), std::string::npos);
+    EXPECT_EQ(written("undefine.h"), "#undef LENGTH\n#undef WIDTH\n");
+    const std::string unit = written("fluid.cpp");
+    EXPECT_NE(unit.find("#define A 1\n#define C 1\nnamespace fluid_pair_A_C {\n#include \"shaders/fluid/pair.kernel\"\n}\n"
+                        "#undef A\n#undef C\n#undef ARGS\n"),
+              std::string::npos)
+        << unit;
+}
+
+TEST_F(CompileKernelsTest, AChangedTextLeavesTheWrittenFilesAlone) {
+    file("shaders/fluid/one.kernel", "// One.\n// cpu 1024\nKERNEL(one, P)\n{\n}\n");
+    ASSERT_EQ(write().code, 0);
+    const fs::path unit = root_ / "out/fluid.cpp";
+    fs::last_write_time(unit, fs::last_write_time(unit) - std::chrono::hours(1));
+    const auto before = fs::last_write_time(unit);
+    file("shaders/fluid/one.kernel", "// One, better.\n// cpu 1024\nKERNEL(one, P)\n{\n}\n");
+    ASSERT_EQ(write().code, 0);
+    EXPECT_EQ(fs::last_write_time(unit), before);
+    file("shaders/fluid/one.kernel", "// One.\n// cpu 1024: A?\nKERNEL(one, P)\n{\n}\n");
+    ASSERT_EQ(write().code, 0);
+    EXPECT_NE(fs::last_write_time(unit), before);
+}
+
+TEST_F(CompileKernelsTest, ATextWithoutALineOrWithAWrongOneIsRefused) {
+    for (const char* line : {"", "// cpu\n", "// cpu 0\n", "// cpu 64 A?\n", "// cpu 64: a\n", "// cpus 64\n", "// gpu\n"}) {
+        file("shaders/fluid/one.kernel", std::string("// One.\n") + line + "KERNEL(one, P)\n{\n}\n");
+        const testing::Outcome run = write();
+        EXPECT_NE(run.code, 0) << line;
+        EXPECT_NE(run.err.find("shaders/fluid/one.kernel"), std::string::npos) << run.err;
+    }
+    file("shaders/fluid/one.kernel", "// cpu 64\nKERNEL(two, P)\n{\n}\n");
+    EXPECT_NE(write().code, 0) << "a kernel is named as its file is";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The kernel-language functions of shaders/voxel as the tests call them: params is a FieldParams, points are three floats.
+// Functions of shaders/voxel in the kernel language, for tests: `params` is a FieldParams, points are three floats.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,5 @@
 #include "fluid/sim/kernels/cpu_grid.h"
 
-#include "fluid/sim/kernels/kernel_rows.h"
 #include "shaders/common/lang.h"
 
 namespace rivulet::RIVULET_KERNEL_UNIT {
@@ -15,7 +14,7 @@ INLINE Range part(uint32_t count, uint32_t parts, uint32_t k) {
     return {static_cast<uint32_t>(uint64_t{count} * k / parts), static_cast<uint32_t>(uint64_t{count} * (k + 1) / parts)};
 }
 
-// One thread a chunk of particles: their cells and the chunk's histogram.
+// A thread for each chunk of particles: their cells and the histogram of the chunk.
 void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
     const uint32_t cells = job.cells(), total = job.totalCells;
@@ -44,7 +43,7 @@ void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
     }
 }
 
-// One thread a segment of cells: how many particles it holds, over all chunks.
+// A thread for each segment of cells: the number of its particles in all chunks.
 void sortSegmentSums(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
     const uint32_t cells = job.totalCells;
@@ -59,13 +58,13 @@ void sortSegmentSums(uint32_t begin, uint32_t end, const void* params, void* con
     }
 }
 
-// One thread a segment: turns histograms into where each chunk's particles of a cell go, and writes cellStart.
+// A thread for each segment: turns histograms into destinations (of each chunk's particles in a cell), and writes cellStart.
 void sortOffsets(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
     const uint32_t cells = job.totalCells;
     for (uint32_t s = begin; s < end; ++s) {
         Range r = part(cells, kScanSegments, s);
-        if (s + 1 == kScanSegments) r.end = cells + 3;  // what is in no cell, last
+        if (s + 1 == kScanSegments) r.end = cells + 3;  // particles in no cell come last
         uint32_t sum = 0;
         for (uint32_t k = 0; k < s; ++k) sum += job.segmentSum[k];
         for (uint32_t cell = r.begin; cell < r.end; ++cell) {
@@ -81,7 +80,7 @@ void sortOffsets(uint32_t begin, uint32_t end, const void* params, void* const*)
     }
 }
 
-// One thread a chunk: a stable scatter, so that the order does not depend on how many chunks there are.
+// A thread for each chunk: a stable scatter, so that the order does not depend on the number of chunks.
 void sortScatter(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
     for (uint32_t c = begin; c < end; ++c) {
@@ -108,7 +107,7 @@ INLINE uint32_t appendLanes(uint32_t* to, uint32_t first, LaneMask keep) {
     return static_cast<uint32_t>(__builtin_popcount(mask));
 }
 #elif defined(__AVX2__) && defined(__BMI2__)
-// The kept lanes' numbers as bytes, packed by pext, widened to a vector.
+// The indices of the kept lanes as bytes, packed by pext and widened to a vector.
 INLINE uint32_t appendLanes(uint32_t* to, uint32_t first, LaneMask keep) {
     const uint32_t mask = static_cast<uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(keep)));
     const uint64_t bytes = _pext_u64(0x0706050403020100ULL, _pdep_u64(mask, 0x0101010101010101ULL) * 0xFFU);
@@ -164,7 +163,7 @@ INLINE GroupBox boxOf(const Job& job, const CpuGroup& group) {
             static_cast<int>((pz.v[0] - job.originZ) * job.scaleZ)};
 }
 
-// Up to this many stretches of sorted particles hold a group's candidates: nine rows, each in two pieces where it wraps, fluid and samples.
+// Largest number of stretches of sorted particles with a group's candidates: nine rows, two pieces where a row wraps, fluid and samples.
 constexpr uint32_t kMostStretches = 36;
 struct Stretches {
     uint32_t from[kMostStretches], to[kMostStretches], count = 0, atMost = 0;
@@ -186,14 +185,14 @@ INLINE void findStretches(const Job& job, const GroupBox& b, uint32_t firstCell,
     const float h2 = job.reach * job.reach, edgeY = 1.0F / job.scaleY, edgeZ = 1.0F / job.scaleZ;
     for (int dz = -1; dz <= 1; ++dz)
         for (int dy = -1; dy <= 1; ++dy) {
-            // The row's distance from the group's box narrows the stretch of x that can hold neighbours.
+            // The row's distance from the group's box limits the stretch of x in which neighbours can lie.
             const float rowY = job.originY + static_cast<float>(b.cy + dy) * edgeY,
                         rowZ = job.originZ + static_cast<float>(b.cz + dz) * edgeZ;
             const float gapY = dy < 0 ? b.loY - (rowY + edgeY) : dy > 0 ? rowY - b.hiY : 0.0F;
             const float gapZ = dz < 0 ? b.loZ - (rowZ + edgeZ) : dz > 0 ? rowZ - b.hiZ : 0.0F;
             const float gap2 = max0(gapY) * max0(gapY) + max0(gapZ) * max0(gapZ);
             if (gap2 >= h2) continue;
-            // A hair wider than exact: rounding of the cell index must not lose a neighbour.
+            // Slightly wider than exact: rounding of the cell index must not lose a neighbour.
             const float reach = sqrt(h2 - gap2) + 1.0e-4F * job.reach;
             const int x0 = max(static_cast<int>((b.loX - reach - job.originX) * 2.0F * job.scaleX), 0);
             const int x1 = min(static_cast<int>((b.hiX + reach - job.originX) * 2.0F * job.scaleX), rowLength - 1);
@@ -201,7 +200,7 @@ INLINE void findStretches(const Job& job, const GroupBox& b, uint32_t firstCell,
         }
 }
 
-// As findStretches where an axis is periodic: rows and their ends wrap round, and no cell comes twice.
+// findStretches for periodic axes: rows and their ends wrap round, and no cell occurs twice.
 INLINE void findWrapped(const Job& job, const GroupBox& b, uint32_t firstCell, Stretches& to) {
     const auto around = [](int c, int n, bool periodic, int cells[3]) {
         int count = 0;
@@ -235,14 +234,14 @@ INLINE void findWrapped(const Job& job, const GroupBox& b, uint32_t firstCell, S
         }
 }
 
-// How far (m) `x` is outside of [lo, hi], by the shortest way round where the axis is periodic.
+// Distance (m) of `x` from [lo, hi], by the shortest way round where the axis is periodic.
 INLINE real outside(real x, float lo, float hi, float period, float invPeriod) {
     const real d = x - real(0.5F * (lo + hi));
     const real near = d - floor(d * real(invPeriod) + real(0.5F)) * real(period);
     return max0(max(near, -near) - real(0.5F * (hi - lo)));
 }
 
-// One thread a group: every particle within reach of the box around the group's particles. The first sweep drops what no lane needs.
+// A thread for each group: lists every particle within reach of the box around the group. The first sweep drops entries that no lane needs.
 template <bool periodic>
 INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
     const float h2 = periodic ? job.reach * job.reach * 1.0001F : job.reach * job.reach;
@@ -256,7 +255,7 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
         Stretches s;
         const bool ofFluid = group.first < job.cellStart[cells];
         for (uint32_t firstCell = 0; firstCell < job.totalCells; firstCell += cells) {
-            if (firstCell > 0 && !ofFluid) break;  // samples do not push each other
+            if (firstCell > 0 && !ofFluid) break;  // samples do not interact
             if (periodic)
                 findWrapped(job, b, firstCell, s);
             else
@@ -269,7 +268,7 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
         }
         group.listBegin = at;
         group.listCount = 0;
-        if (regionEnd > job.listCapacity || regionEnd < at) continue;  // the host sees the cursor beyond the capacity, and builds again
+        if (regionEnd > job.listCapacity || regionEnd < at) continue;  // the host sees the cursor above the capacity and rebuilds
         for (uint32_t r = 0; r < s.count; ++r)
             for (uint32_t j = s.from[r]; j < s.to[r]; j += 8) {
                 const real x = load8(job.x + j), y = load8(job.y + j), z = load8(job.z + j);
@@ -303,16 +302,6 @@ void neighborListPeriodic(uint32_t begin, uint32_t end, const void* params, void
 
 }  // namespace
 
-std::span<const CpuKernelRow> gridRows() {
-    static const CpuKernelRow rows[] = {
-        {"fluid/grid/cpu_sort_count", "", RIVULET_UNIT_ISA, sortCount, 1},
-        {"fluid/grid/cpu_sort_segments", "", RIVULET_UNIT_ISA, sortSegmentSums, 1},
-        {"fluid/grid/cpu_sort_offsets", "", RIVULET_UNIT_ISA, sortOffsets, 1},
-        {"fluid/grid/cpu_sort_scatter", "", RIVULET_UNIT_ISA, sortScatter, 1},
-        {"fluid/grid/cpu_neighbor_list", "", RIVULET_UNIT_ISA, neighborList, 64},
-        {"fluid/grid/cpu_neighbor_list", "PERIODIC=1", RIVULET_UNIT_ISA, neighborListPeriodic, 64},
-    };
-    return rows;
-}
+CpuGridKernels gridKernels() { return {sortCount, sortSegmentSums, sortOffsets, sortScatter, neighborList, neighborListPeriodic}; }
 
 }  // namespace rivulet::RIVULET_KERNEL_UNIT

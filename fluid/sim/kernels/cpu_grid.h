@@ -1,8 +1,8 @@
-// The CPU's own neighbour structures: a stable counting sort, groups of 8 particles, a neighbour list for each group.
-// These passes have no GPU twin (a GPU sorts by atomics and sweeps rows), so they are plain C++, compiled once an instruction set.
+// Neighbour structures of the CPU: a stable counting sort, groups of 8 particles, a neighbour list for each group.
+// GPUs have other passes (they sort by atomics and sweep rows), so these are plain C++, compiled once for each instruction set.
 //
 // Cells are h wide in y and z and h / 2 in x: the sort along a row is then fine enough that 8 consecutive particles lie close together.
-// Where bodies have samples, theirs are a second set of cells behind the fluid's; see shaders/fluid/grid/grid.h for what follows.
+// Samples on bodies have a second set of cells behind those of the fluid; see shaders/fluid/grid/grid.h for the rest.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct Float4 {
 struct CpuGroup {
     uint32_t first, lanes, listBegin, listCount;
 };
-// What binding 1 of a pair kernel points to. Same layout as NeighborLists in lang_lanes.h.
+// Binding 1 of a pair kernel. Same layout as NeighborLists in lang_lanes.h.
 struct CpuNeighborLists {
     const CpuGroup* groups;
     uint32_t* list;
@@ -28,7 +28,7 @@ struct CpuGridJob {
     float originX, originY, originZ;
     float scaleX, scaleY, scaleZ;     // 1/m, as StepParams.gridScale
     float periodX, periodY, periodZ;  // m; 0 = not periodic
-    float reach;                      // m, of the lists: h, or more where positions change before they are built anew
+    float reach;                      // m, of the lists: h, or more where positions change before the next build
     int cellsX, cellsY, cellsZ;       // padded cells, as in StepParams; the sort has 2 * cellsX along x
     uint32_t totalCells;              // cells(), or twice that with body samples
     uint32_t firstSample;             // ids from here on are samples
@@ -41,17 +41,31 @@ struct CpuGridJob {
     const uint32_t* id;
     Float4 *positionOut, *velocityOut;
     uint32_t* idOut;
-    float *x, *y, *z;      // sorted positions again, one array each; 8 beyond the end may be read
+    float *x, *y, *z;      // sorted positions again, one array for each axis; 8 entries beyond the end may be read
     uint32_t* cell;        // of each unsorted particle
     uint32_t* histogram;   // chunks * (totalCells + 3)
     uint32_t* segmentSum;  // kScanSegments
     uint32_t* cellStart;   // totalCells + 4, see shaders/fluid/grid/grid.h
     CpuGroup* groups;
     uint32_t* list;
-    uint32_t* listCursor;  // entries taken; above listCapacity: the lists did not fit
+    uint32_t* listCursor;  // entries in use; above listCapacity the lists do not fit
     uint32_t cells() const { return static_cast<uint32_t>(2 * cellsX) * static_cast<uint32_t>(cellsY) * static_cast<uint32_t>(cellsZ); }
 };
 inline constexpr uint32_t kScanSegments = 16;
-inline constexpr uint32_t kListRegion = 8192;  // entries a chunk of groups takes from the list at once
+inline constexpr uint32_t kListRegion = 8192;  // entries that a chunk of groups reserves at once
+
+// The passes, in their order. Each is a CpuKernelFn (engine/compute/device_cpu.h) whose `params` is a CpuGridJob.
+struct CpuGridKernels {
+    using Pass = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
+    Pass sortCount, sortSegments, sortOffsets, sortScatter, neighborList, neighborListPeriodic;
+};
 
 }  // namespace rivulet
+
+#define RIVULET_GRID_UNIT(isa)    \
+    namespace rivulet::isa {      \
+    CpuGridKernels gridKernels(); \
+    }
+#if defined(RIVULET_KERNEL_UNIT)
+RIVULET_GRID_UNIT(RIVULET_KERNEL_UNIT)
+#endif

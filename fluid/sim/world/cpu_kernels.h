@@ -1,4 +1,4 @@
-// Every kernel that was compiled as C++, for every instruction set: what makeCpuDevice is given.
+// Every kernel compiled as C++, for every instruction set: the rows for makeCpuDevice.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Nearest triangles for a brick of points. Floats sieve, eight lanes at a time, and err only by keeping too many; what they keep is
-// measured in doubles, operation by operation the same on every instruction set. So are the results.
+// Nearest triangles for a brick of points. A sieve in floats, eight lanes at a time, may keep too many triangles but never drops one that
+// counts. The distances to those kept are computed in doubles by the same operations on every instruction set, so the results are equal.
 #include "fluid/voxel/kernels/band_brick.h"
 
 #include "shaders/common/lang.h"
@@ -32,7 +32,7 @@ INLINE Wide square(const Wide3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 INLINE Wide3 less(const Wide3& q, const double* e, Wide t) { return {q.x - e[0] * t, q.y - e[1] * t, q.z - e[2] * t}; }
 INLINE Wide within01(Wide t) { return smaller(Wide{} + 1.0, larger(Wide{}, t)); }
 
-// To the plane where the point projects inside, else to the nearest edge.
+// Squared distance to the plane if the projection of the point lies inside the triangle, else to the nearest edge.
 INLINE Wide squaredDistance(const BandTarget& t, const Wide3& point) {
     const Wide3 q{point.x - t.a[0], point.y - t.a[1], point.z - t.a[2]};
     const Wide3 fromB{q.x - t.ab[0], q.y - t.ab[1], q.z - t.ab[2]};
@@ -59,7 +59,7 @@ INLINE uint32_t bitsOf(LaneMask m) {
 }
 
 struct Sieved {
-    real lower, upper;  // of the squared distance from the target: never more, seldom less
+    real lower, upper;  // bounds of the squared distance from the target
 };
 INLINE Sieved sieve(const BandDisc& d, real x, real y, real z) {
     const real3 q(x - d.centre[0], y - d.centre[1], z - d.centre[2]);
@@ -70,12 +70,12 @@ INLINE Sieved sieve(const BandDisc& d, real x, real y, real z) {
     return {flat + along * along - d.slack, square};
 }
 
-// The eight points of a cube and the nearest to each so far.
+// The eight points of a cube, and the target nearest to each so far.
 struct Cube {
     Wide3 point[8 / kWide];
     Wide best[8 / kWide];
-    WideMask who[8 / kWide];
-    Lanes bound;    // no less than `best`
+    WideMask nearest[8 / kWide];
+    Lanes bound;    // at least `best`
     float x, y, z;  // the first point
     uint32_t guess;
 
@@ -83,9 +83,9 @@ struct Cube {
         for (int h = 0; h < 8 / kWide; ++h) {
             const Wide s = squaredDistance(t, point[h]);
             const WideMask number = WideMask{} + static_cast<int64_t>(k);
-            const WideMask better = (s < best[h]) | ((s == best[h]) & (number < who[h]));
+            const WideMask better = (s < best[h]) | ((s == best[h]) & (number < nearest[h]));
             best[h] = better ? s : best[h];
-            who[h] = better ? number : who[h];
+            nearest[h] = better ? number : nearest[h];
             const Narrow n = __builtin_convertvector(best[h], Narrow) * 1.000001F;
             memcpy(reinterpret_cast<char*>(&bound) + sizeof(n) * static_cast<unsigned>(h), &n, sizeof(n));
         }
@@ -112,16 +112,16 @@ INLINE void start(Cube& cube, int c, const BandBrick& job) {
         memcpy(&cube.point[h].y, y, sizeof(y));
         memcpy(&cube.point[h].z, z, sizeof(z));
         cube.best[h] = Wide{} + job.width * job.width;
-        cube.who[h] = WideMask{} + static_cast<int64_t>(kNobody);
+        cube.nearest[h] = WideMask{} + static_cast<int64_t>(kNoTarget);
     }
 }
 
 void brick(const BandBrick& job) {
     if (job.count == 0) {
-        for (int k = 0; k < 64; ++k) job.nearest[k] = kNobody;
+        for (int k = 0; k < 64; ++k) job.nearest[k] = kNoTarget;
         return;
     }
-    // Each entry against the middles of the eight cubes.
+    // Sieves each entry by its distance from the centres of the eight cubes.
     LaneMask guess = {};
     real least(1e30F);
     const real middleX = real(kX * 2.0F + 0.5F) + static_cast<float>(job.first[0]),
@@ -134,7 +134,7 @@ void brick(const BandBrick& job) {
         least = select(nearer, s.upper, least);
         guess = nearer ? (LaneMask{} + static_cast<int>(n)) : guess;
     }
-    // A likely one first, for each cube: it bounds the rest.
+    // A likely nearest entry comes first for each cube; its distance bounds the others.
     int guesses[8];
     memcpy(guesses, &guess, 32);
     Cube cubes[8];
@@ -168,7 +168,7 @@ void brick(const BandBrick& job) {
         for (int at = 0; at < 8; ++at) {
             const int to = first + (at >> 2) * 16 + ((at >> 1) & 1) * 4 + (at & 1);
             job.square[to] = cube.best[at / kWide][at % kWide];
-            job.nearest[to] = static_cast<uint32_t>(cube.who[at / kWide][at % kWide]);
+            job.nearest[to] = static_cast<uint32_t>(cube.nearest[at / kWide][at % kWide]);
         }
     }
 }
@@ -193,7 +193,7 @@ void pack(const BandPack& job) {
         const Wide foldX = 1.0 - magnitude(d.y), foldY = 1.0 - magnitude(d.x);
         const Wide x = d.z < 0.0 ? (d.x < 0.0 ? -foldX : foldX) : d.x;
         const Wide y = d.z < 0.0 ? (d.y < 0.0 ? -foldY : foldY) : d.y;
-        // Of the four codes around, the one whose direction has the largest cosine, which is positive for all: u, v from -8191 to 8191.
+        // Of the four neighbouring codes, the one whose direction has the largest cosine (positive for all four). u, v: -8191 to 8191.
         typedef int32_t Codes __attribute__((vector_size(4 * kWide)));
         const Wide lowX =
             smaller(__builtin_convertvector(__builtin_convertvector(x * 8191.0 + 8191.0, Codes), Wide), Wide{} + 16381.0) - 8191.0;

@@ -16,4 +16,5 @@ STRUCT(ScanParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(ScanParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

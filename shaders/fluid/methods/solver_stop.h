@@ -32,4 +32,5 @@ FN
 }
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -2,6 +2,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 // Of a ray: it comes into the grid from outside; it goes on beyond it.
@@ -17,4 +18,5 @@ STRUCT(QueryParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(QueryParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

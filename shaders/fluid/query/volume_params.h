@@ -3,6 +3,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(VolumeParams) {
@@ -15,4 +16,5 @@ STRUCT(VolumeParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(VolumeParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -4,7 +4,7 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-#define LOAD_THREADS 64u /* a body */
+CONSTANT(uint, LOAD_THREADS, 64u);  // a body
 STRUCT(DeviceBody) {
     vec4 position;     // m, of the centre of mass
     vec4 rotation;     // unit quaternion, w last
@@ -22,4 +22,5 @@ STRUCT(LoadRow) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(DeviceBody) == 80 && sizeof(LoadRow) == 32);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -3,6 +3,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(EmitParams) {
@@ -27,8 +28,9 @@ STRUCT(SinkVolume) {  // of a sink, or of a volume that a host watches
     vec4 high;        // xyz m: a box's high corner; x m: a sphere's radius
 };
 // Counters of an emitter, behind each other: given; refused where it was too crowded; refused because no slot was free.
-#define EMITTER_COUNTERS 3u
+CONSTANT(uint, EMITTER_COUNTERS, 3u);
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(EmitParams) % 16 == 0 && sizeof(Candidate) == 64 && sizeof(SinkVolume) == 32);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -2,6 +2,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(ExchangeParams) {
@@ -16,4 +17,5 @@ STRUCT(ExchangeParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(ExchangeParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

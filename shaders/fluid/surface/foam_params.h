@@ -2,6 +2,7 @@
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(FoamStep) {
@@ -24,8 +25,9 @@ STRUCT(FoamStep) {
 // whole numbers: 1 spray, 2 foam, 3 a bubble.
 // Lists: [0] alive, [1] free ones listed, [2] that would be born, [3] that were, or for which chance left no
 // slot; then the free ones.
-#define FOAM_LISTS 4u
+CONSTANT(uint, FOAM_LISTS, 4u);
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FoamStep) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

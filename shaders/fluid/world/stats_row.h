@@ -19,4 +19,5 @@ STRUCT(StatsRow) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StatsRow) == 48);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

@@ -49,4 +49,5 @@ STRUCT(StepParams) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StepParams) % 16 == 0);
 }  // namespace rivulet
+#include "shaders/common/lang_end.h"
 #endif

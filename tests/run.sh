@@ -6,6 +6,6 @@ set -u
 sections=(run test)
 [ "${RIVULET_HOSTS:-}" = 1 ] && sections+=(hosts)  # other engines, and what reads their files and pictures; without them their tests are skipped
 install_packages "${sections[@]}" || exit 1
-build -DRIVULET_TESTS=ON
+build all -DRIVULET_TESTS=ON
 export RIVULET_TEST_DEVICES=1  # those packages bring OpenGL and OpenCL: a test that finds none fails, it is not skipped
 exec ctest --test-dir "$root/build/release" --parallel 2 --output-on-failure "$@"

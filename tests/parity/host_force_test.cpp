@@ -12,7 +12,7 @@
 #include "tests/parity/devices.h"
 #include "tests/parity/host_force_kernels.h"
 
-namespace rivulet {
+namespace rivulet::host_force_test::host_force_test {
 namespace {
 
 // What a host writes: its Params, and the four functions.
@@ -185,4 +185,4 @@ TEST(HostForceRows, TheirParamsAreVisibleAndTheirNamesTheirOwn) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::host_force_test::host_force_test

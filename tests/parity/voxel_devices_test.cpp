@@ -6,7 +6,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_devices_test {
 namespace {
 
 struct Voxels {
@@ -121,4 +121,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, VoxelDevices, ::testing::Values("cpu1", "cpu2"
                          [](const auto& p) { return std::string(p.param); });
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_devices_test

@@ -13,7 +13,7 @@
 #include "tests/physics/charted_skins.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::unwrap_test {
 namespace {
 
 using test::Skin;
@@ -179,4 +179,4 @@ TEST(Unwrap, BadUvsAreFoundAndReplaced) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::unwrap_test

@@ -11,13 +11,13 @@
 
 #include "engine/compute/embedded_shaders.h"
 
-namespace rivulet {
+namespace rivulet::kernel_source_test::kernel_source_test {
 namespace {
 
 namespace fs = std::filesystem;
 
 // A folder of shader files that lives as long as a test.
-class KernelSourceTest : public testing::Test {
+class KernelSourceTest : public ::testing::Test {
   protected:
     KernelSourceTest() {
         root_ = fs::temp_directory_path() / ("rivulet_kernel_source_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
@@ -247,4 +247,4 @@ TEST(ShaderFilesTest, everyKernelFlattensWithoutTheCppSide) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::kernel_source_test::kernel_source_test

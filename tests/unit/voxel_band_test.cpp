@@ -10,7 +10,7 @@
 #include "tests/unit/voxel_kernels.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_band_test {
 namespace {
 
 using test::Mesh;
@@ -329,4 +329,4 @@ TEST(VoxelBand, WallNormals) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_band_test

@@ -7,7 +7,7 @@
 #include "fluid/voxel/mesh_defects.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_defects_test {
 namespace {
 
 using test::cleaned;
@@ -169,4 +169,4 @@ TEST(VoxelDefects, SharedMeshesAsExpected) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_defects_test

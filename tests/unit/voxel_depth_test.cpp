@@ -10,7 +10,7 @@
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_depth_test {
 namespace {
 
 using test::Mesh;
@@ -292,4 +292,4 @@ TEST(VoxelDepth, TheOpenBunnyIsOutsideTheClosedOneIsNot) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_depth_test

@@ -6,7 +6,7 @@
 
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_field_test {
 namespace {
 
 using test::Mesh;
@@ -300,4 +300,4 @@ TEST(VoxelField, FlatMeshesAndStrayVertices) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_field_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_solid_test {
 namespace {
 
 using test::cleaned;
@@ -298,4 +298,4 @@ TEST(VoxelSolid, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_solid_test

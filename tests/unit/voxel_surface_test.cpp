@@ -5,7 +5,7 @@
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_surface_test {
 namespace {
 
 using test::gridAround;
@@ -177,4 +177,4 @@ TEST(VoxelOverlap, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_surface_test

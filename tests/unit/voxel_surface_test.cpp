@@ -152,10 +152,9 @@ TEST(VoxelOverlap, CornersExactlyOnTheGrid) {
     }
 }
 
-TEST(VoxelOverlap, SharedMeshes) {
-    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
+TEST(VoxelOverlap, TestMeshes) {
     for (const char* folder : {"generated", "classic"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(test::sharedMesh(folder))) {
+        for (const auto& entry : std::filesystem::directory_iterator(test::testMesh(folder))) {
             if (entry.path().extension() != ".obj") continue;
             const Mesh mesh = test::readObj(entry.path());
             const bool large = mesh.indices.size() > 60000;

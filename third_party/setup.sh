@@ -55,14 +55,15 @@ quietly() {
     fail "$what failed; the whole log is $log."
 }
 
-# build [CMAKE OPTION...]: preset release, all targets. A build folder that was moved or copied here is configured anew.
+# build TARGET [CMAKE OPTION...]: preset release. A build folder that was moved or copied here is configured anew.
 build() {
-    local folder="$root/build/release" fresh=()
+    local folder="$root/build/release" target="$1" fresh=()
+    shift
     mkdir -p "$folder" || fail "the build folder $folder cannot be made."
     if [ -f "$folder/CMakeCache.txt" ] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then fresh=(--fresh); fi
     [ -f "$folder/bin/rivulet" ] || say "building; the first time takes some minutes."
     if [ ${#fresh[@]} -gt 0 ] || [ ! -f "$folder/build.ninja" ] || [ $# -gt 0 ]; then
         (cd "$root" && quietly configuring cmake --preset release "${fresh[@]}" "$@") || exit 1
     fi
-    quietly building cmake --build "$folder"
+    quietly building cmake --build "$folder" --target "$target"
 }

@@ -15,6 +15,15 @@ stamps = os.path.join(build, "clang_stamps")
 os.makedirs(stamps, exist_ok=True)
 
 
+def files_of(entry):
+    """The entry itself, or one for each file of the batch that it compiles (rivulet_batches of CMakeLists.txt): each file must stand alone."""
+    if not entry["file"].startswith(os.path.join(build, "batches") + "/"):
+        return [entry]
+    with open(entry["file"]) as stream:
+        files = [os.path.join(root, line.split('"')[1]) for line in stream]
+    return [{"directory": entry["directory"], "file": file, "command": entry["command"].replace(entry["file"], file)} for file in files]
+
+
 def clang_command(entry):
     """The file's own compile command, with clang++ in the compiler's place and nothing written."""
     words = shlex.split(entry["command"])
@@ -67,7 +76,8 @@ def check(entry):
 
 
 with open(os.path.join(build, "compile_commands.json")) as stream:
-    entries = [e for e in json.load(stream) if e["file"].startswith(root + "/") and not e["file"].startswith(build) and e["file"].endswith(".cpp")]
+    entries = [e for e in json.load(stream) if e["file"].endswith(".cpp")]
+entries = [each for e in entries for each in files_of(e) if each["file"].startswith(root + "/") and not each["file"].startswith(build)]
 # A kernel is compiled once an instruction set; tidy reads it once, and leaves the tests alone.
 tidied = list({e["file"]: e for e in entries if not e["file"].startswith(root + "/tests/")}.values())
 entries = tidied if mode == "tidy" else [e for e in entries if e not in tidied]

@@ -115,7 +115,7 @@ std::vector<std::string> combinations(const std::string& method, size_t count) {
     return names;
 }
 
-class SliderFuzz : public testing::TestWithParam<std::string> {
+class SliderFuzz : public ::testing::TestWithParam<std::string> {
   protected:
     // A part of the full list, or a sample of another.
     void runThese(const std::vector<std::string>& full, const std::vector<std::string>& sample, size_t count) {
@@ -137,12 +137,12 @@ TEST_P(SliderFuzz, PairsOfParamsAtTheirEnds) { runThese(pairs(GetParam(), false)
 TEST_P(SliderFuzz, RandomCombinations) { runThese(combinations(GetParam(), 2000), combinations(GetParam(), 2000), 12); }
 
 // Where one case is asked for, there are no others.
-INSTANTIATE_TEST_SUITE_P(Every, SliderFuzz, testing::ValuesIn(mode().one.empty() ? methods().names() : std::vector<std::string>()),
-                         [](const testing::TestParamInfo<std::string>& method) { return method.param; });
+INSTANTIATE_TEST_SUITE_P(Every, SliderFuzz, ::testing::ValuesIn(mode().one.empty() ? methods().names() : std::vector<std::string>()),
+                         [](const ::testing::TestParamInfo<std::string>& method) { return method.param; });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SliderFuzz);
 
 // By its name alone a case is there again: the one that was asked for, else such as were found to fail once.
-class NamedCase : public testing::TestWithParam<std::string> {};
+class NamedCase : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(NamedCase, IsRepeatedByItsName) {
     const Result<Case> c = caseOf(GetParam());
@@ -156,7 +156,7 @@ TEST_P(NamedCase, IsRepeatedByItsName) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, NamedCase,
-                         testing::ValuesIn(mode().one.empty()
+                         ::testing::ValuesIn(mode().one.empty()
                                                ? std::vector<std::string>{
                                                      // Pressures of an iteration that diverges were no number.
                                                      "dfsph pair tank fluid.dfsph.relaxation=1 fluid.dfsph.maxIterations=1000",

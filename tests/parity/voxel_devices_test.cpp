@@ -6,7 +6,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_devices_test {
 namespace {
 
 struct Voxels {
@@ -94,10 +94,9 @@ TEST_P(VoxelDevices, ManyLayersOfOneColumn) {
     expectSame(device(), nested, test::gridAround(nested, 20), "nested boxes");
 }
 
-TEST_P(VoxelDevices, SharedMeshes) {
-    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
+TEST_P(VoxelDevices, TestMeshes) {
     for (const char* folder : {"generated", "classic"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(test::sharedMesh(folder))) {
+        for (const auto& entry : std::filesystem::directory_iterator(test::testMesh(folder))) {
             if (entry.path().extension() != ".obj") continue;
             const test::Mesh mesh = test::readObj(entry.path());
             expectSame(device(), mesh, test::gridAround(mesh, 37), entry.path().stem());
@@ -121,4 +120,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, VoxelDevices, ::testing::Values("cpu1", "cpu2"
                          [](const auto& p) { return std::string(p.param); });
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_devices_test

@@ -9,7 +9,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::bad_input_test::bad_input_test {
 namespace {
 
 FluidParams sound() {
@@ -135,4 +135,4 @@ TEST(BadInput, BodiesAndTheirHostAreNamed) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::bad_input_test::bad_input_test

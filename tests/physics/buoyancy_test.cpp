@@ -8,7 +8,7 @@
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet {
+namespace rivulet::buoyancy_test::buoyancy_test {
 namespace {
 
 constexpr float kSpacing = 0.025F;
@@ -135,4 +135,4 @@ TEST(Buoyancy, ACubeOfHalfTheDensityFloatsHalfUnder) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::buoyancy_test::buoyancy_test

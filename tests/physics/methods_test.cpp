@@ -10,7 +10,7 @@
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 
-namespace rivulet {
+namespace rivulet::methods_test::methods_test {
 namespace {
 
 class Methods : public testing::TestWithParam<const char*> {
@@ -347,4 +347,4 @@ TEST(Pbf, CorrectsDownToItsTolerance) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::methods_test::methods_test

@@ -9,7 +9,7 @@
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet {
+namespace rivulet::sim_state_bodies_test::sim_state_bodies_test {
 namespace {
 
 constexpr float kSpacing = 0.03F;
@@ -298,4 +298,4 @@ TEST(StateOfAHost, IsKeptWhereItSaysWhatItRemembers) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::sim_state_bodies_test::sim_state_bodies_test

@@ -13,7 +13,7 @@
 #include "tests/physics/charted_skins.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::unwrap_test {
 namespace {
 
 using test::Skin;
@@ -99,8 +99,7 @@ TEST(Unwrap, ShapesAreCutAndLaidFlat) {
 TEST(Unwrap, EveryTestMeshIsLaidFlat) {
     std::vector<std::string> paths;
     for (const char* folder : {"generated", "classic"}) {
-        const std::filesystem::path in = test::sharedMesh(folder);
-        if (!std::filesystem::exists(in)) continue;
+        const std::filesystem::path in = test::testMesh(folder);
         for (const auto& entry : std::filesystem::directory_iterator(in))
             if (entry.path().extension() == ".obj") paths.push_back(entry.path().string());
     }
@@ -179,4 +178,4 @@ TEST(Unwrap, BadUvsAreFoundAndReplaced) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::unwrap_test

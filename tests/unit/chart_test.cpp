@@ -6,7 +6,7 @@
 #include "engine/core/json.h"
 #include "fluid/validate/chart.h"
 
-namespace rivulet {
+namespace rivulet::chart_test::chart_test {
 namespace {
 
 ChartRow row(const char* name, const char* setting, double error, double cost) {
@@ -40,7 +40,7 @@ TEST(Chart, IsReadAsItWasWritten) {
     markFront(chart.rows);
     chart.viscosity = {{1, 2, 0.01, 0.02, 0.5}, {8, 2, 0.002, 0.01, 2}};
     chart.refused = {"taylor_green, wcsph_thesis: no"};
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "chart";
+    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "chart";
     std::filesystem::create_directories(folder);
     const Status written = writeChart(chart, folder.string(), "a machine", "a command");
     ASSERT_TRUE(written) << written.error().message;
@@ -67,4 +67,4 @@ TEST(Chart, IsReadAsItWasWritten) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::chart_test::chart_test

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A folder of the test's own, gone afterwards.
-class FileTest : public testing::Test {
+class FileTest : public ::testing::Test {
   protected:
     FileTest() { fs::create_directories(folder_); }
     ~FileTest() override { fs::remove_all(folder_); }

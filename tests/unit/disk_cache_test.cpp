@@ -13,7 +13,7 @@
 
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::disk_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,4 +133,4 @@ TEST(DiskCacheTest, WhatWasUsedLongestAgoGoesFirst) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::disk_cache_test

@@ -10,7 +10,7 @@
 #include "engine/render/made_sky.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::environment_cache_test {
 namespace {
 
 HdrImage sky(float clouds) {
@@ -77,4 +77,4 @@ TEST(EnvironmentCache, ADamagedFileIsMadeAnew) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::environment_cache_test

@@ -16,7 +16,7 @@
 #include "fluid/session/session.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::export_particles_test {
 namespace {
 
 // A block of water beside one of an oil, some metres or some thousand kilometres away.
@@ -266,4 +266,4 @@ TEST(ExportParticles, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::export_particles_test

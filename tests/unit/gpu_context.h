@@ -15,7 +15,7 @@
 
 namespace rivulet {
 
-class GpuTest : public testing::Test {
+class GpuTest : public ::testing::Test {
   protected:
     void SetUp() override {
         GTEST_FLAG_SET(death_test_style, "threadsafe");  // the driver has threads: no fork in the middle

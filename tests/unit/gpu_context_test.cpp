@@ -16,7 +16,7 @@
 #include "engine/gpu/buffer.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet {
+namespace rivulet::gpu_context_test::gpu_context_test {
 namespace {
 
 TEST(GpuContext, IsCoreAtLeast45AndCurrent) {
@@ -61,9 +61,9 @@ TEST(GpuContextDeathTest, WithoutADriverIsASentence) {
         std::fprintf(stderr, "%s", context ? "a context" : context.error().message.c_str());
         std::exit(context ? 0 : 3);
     };
-    EXPECT_EXIT(tryWithout("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent"), testing::ExitedWithCode(3),
+    EXPECT_EXIT(tryWithout("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent"), ::testing::ExitedWithCode(3),
                 "no OpenGL 4.5 without a window.*apt-get");
-    EXPECT_EXIT(tryWithout("MESA_GL_VERSION_OVERRIDE", "3.3"), testing::ExitedWithCode(3), "no OpenGL 4.5");
+    EXPECT_EXIT(tryWithout("MESA_GL_VERSION_OVERRIDE", "3.3"), ::testing::ExitedWithCode(3), "no OpenGL 4.5");
 }
 
 // An X server for one test. 0: none is installed.
@@ -192,4 +192,4 @@ TEST(GpuWindow, HasItsSizeItsPixelsAndItsEvents) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::gpu_context_test::gpu_context_test

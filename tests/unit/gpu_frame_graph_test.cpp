@@ -5,7 +5,7 @@
 #include "engine/gpu/program.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::gpu {
+namespace rivulet::gpu::gpu_frame_graph_test {
 namespace {
 
 class GpuFrameGraph : public GpuTest {
@@ -333,4 +333,4 @@ TEST_F(GpuFrameGraph, ATextureThatCannotBeMadeIsASentence) {
 }
 
 }  // namespace
-}  // namespace rivulet::gpu
+}  // namespace rivulet::gpu::gpu_frame_graph_test

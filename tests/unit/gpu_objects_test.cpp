@@ -12,7 +12,7 @@
 #include "engine/gpu/vertex_array.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::gpu {
+namespace rivulet::gpu::gpu_objects_test {
 namespace {
 
 using GpuObjects = GpuTest;
@@ -249,4 +249,4 @@ TEST_F(GpuObjects, ATimerMeasuresWorkLaterAndInOrder) {
 }
 
 }  // namespace
-}  // namespace rivulet::gpu
+}  // namespace rivulet::gpu::gpu_objects_test

@@ -4,7 +4,7 @@
 #include "engine/gpu/vertex_array.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::gpu {
+namespace rivulet::gpu::gpu_program_test {
 namespace {
 
 constexpr const char* kCover = "void main() { gl_Position = vec4(vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1), 0, 1); }\n";
@@ -153,4 +153,4 @@ TEST_F(GpuProgram, AComputeProgramCoversAsManyInvocationsAsAskedFor) {
 }
 
 }  // namespace
-}  // namespace rivulet::gpu
+}  // namespace rivulet::gpu::gpu_program_test

@@ -19,7 +19,7 @@
 #include "engine/core/math.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::make_head_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -319,4 +319,4 @@ TEST_F(Head, NamesEyesTearsAndMarginsWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::make_head_test

@@ -6,7 +6,7 @@
 
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_bad_scene_test {
 namespace {
 
 constexpr const char* kTriangle = "v 0 0 0\nv 0.2 0 0\nv 0 0.2 0\nf 1 2 3\n";
@@ -113,4 +113,4 @@ TEST(ProgramBadScene, Meshes) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_bad_scene_test

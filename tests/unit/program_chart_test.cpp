@@ -5,7 +5,7 @@
 
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_chart_test {
 namespace {
 
 TEST(ProgramChart, WhatMakesNoSenseIsSaidInASentence) {
@@ -43,4 +43,4 @@ TEST(ProgramBudget, IsPickedSaidAndReported) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_chart_test

@@ -3,7 +3,7 @@
 
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_cli_test {
 namespace {
 
 TEST(ProgramCli, HelpSaysWhatEveryVerbTakes) {
@@ -82,4 +82,4 @@ TEST(ProgramCli, OutputThatCannotBeWrittenIsAFailure) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_cli_test

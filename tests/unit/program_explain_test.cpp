@@ -4,7 +4,7 @@
 
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_explain_test {
 namespace {
 
 // The lines under a heading that begins so, without the blanks before them.
@@ -83,4 +83,4 @@ TEST(ProgramExplain, WhatASceneNeedsIsThereAndHasItsCost) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_explain_test

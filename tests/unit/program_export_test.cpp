@@ -7,7 +7,7 @@
 #include "tests/unit/mesh_volume.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_export_test {
 namespace {
 
 RunOptions in(const Scratch& scratch) {
@@ -61,4 +61,4 @@ TEST(ProgramExport, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_export_test

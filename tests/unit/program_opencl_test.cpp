@@ -7,7 +7,7 @@
 #include "engine/compute/device_cl.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_opencl_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,4 +188,4 @@ TEST(ProgramWithoutOpenCl, EverythingElseWorks) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_opencl_test

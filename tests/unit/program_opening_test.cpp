@@ -14,7 +14,7 @@
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet {
+namespace rivulet::program_opening_test::program_opening_test {
 namespace {
 
 class Opening : public testing::ViewerFixture, public ::testing::WithParamInterface<const char*> {
@@ -402,4 +402,4 @@ TEST_P(Opening, APictureIsTakenOfWhatIsShown) {
 INSTANTIATE_TEST_SUITE_P(Devices, Opening, ::testing::Values("cpu", "gl", "cl"), [](const auto& each) { return std::string(each.param); });
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::program_opening_test::program_opening_test

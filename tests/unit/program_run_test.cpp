@@ -11,7 +11,7 @@
 #include "engine/core/json.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -414,4 +414,4 @@ TEST(ProgramRun, SetChangesAParameter) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_run_test

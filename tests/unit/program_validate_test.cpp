@@ -8,7 +8,7 @@
 
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_validate_test {
 namespace {
 
 Json::Value readJson(const std::filesystem::path& path) {
@@ -134,4 +134,4 @@ TEST(ProgramValidate, WhatMakesNoSenseIsSaidInASentence) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_validate_test

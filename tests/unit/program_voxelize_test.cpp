@@ -10,7 +10,7 @@
 #include "tests/unit/program_runner.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::program_voxelize_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ TEST(ProgramVoxelize, TwoRunsShareTheCacheOfFields) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::program_voxelize_test

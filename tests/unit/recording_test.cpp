@@ -11,7 +11,7 @@
 #include "fluid/voxel/packed_array.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::recording_test {
 namespace {
 
 constexpr size_t kFrames = 5, kHead = 48;
@@ -230,4 +230,4 @@ TEST(Recording, AFullDiskIsSaid) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::recording_test

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path kRoot = RIVULET_SOURCE_DIR;
 
-class SceneTest : public testing::Test {
+class SceneTest : public ::testing::Test {
   protected:
     SceneTest() { fs::create_directories(folder_ / "scenes"); }
     ~SceneTest() override {

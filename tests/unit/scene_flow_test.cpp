@@ -11,7 +11,7 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
-namespace rivulet {
+namespace rivulet::scene_flow_test::scene_flow_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu() {
@@ -294,4 +294,4 @@ TEST(SceneFlow, ASpotIsRound) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::scene_flow_test::scene_flow_test

@@ -11,7 +11,7 @@
 #include "fluid/sim/world/world_state.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::testing {
+namespace rivulet::testing::state_file_test {
 namespace {
 
 WorldState sample() {
@@ -213,4 +213,4 @@ TEST(ProgramState, RefusalsArePlain) {
 }
 
 }  // namespace
-}  // namespace rivulet::testing
+}  // namespace rivulet::testing::state_file_test

@@ -10,7 +10,7 @@
 #include "tests/unit/voxel_kernels.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_band_test {
 namespace {
 
 using test::Mesh;
@@ -200,8 +200,7 @@ TEST(VoxelBand, NegativeInsideClosedMeshes) {
     const Mesh box = inverted(test::makeBox(vec3(0.2F, -0.3F, -0.2F), vec3(0.9F, 0.3F, 0.4F)));
     expectSigns({ball, box}, 20, "ball and box",
                 [&](const dvec3& p) { return std::abs(winding(ball, p)) > 0.5 || std::abs(winding(box, p)) > 0.5; });
-    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
-    const Mesh cup = test::readObj(test::sharedMesh("generated/thin_wall_cup.obj"));
+    const Mesh cup = test::readObj(test::testMesh("generated/thin_wall_cup.obj"));
     expectSigns({cup}, 24, "cup", windsRound(cup));
 }
 
@@ -329,4 +328,4 @@ TEST(VoxelBand, WallNormals) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_band_test

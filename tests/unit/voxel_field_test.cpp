@@ -6,7 +6,7 @@
 
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_field_test {
 namespace {
 
 using test::Mesh;
@@ -111,11 +111,10 @@ TEST(VoxelSurface, CoversGeneratedMeshes) {
         expectCovered(test::makeSheet(vec3(0), normal, 1.0F), 24, "sheet");
 }
 
-TEST(VoxelSurface, CoversSharedMeshes) {
-    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
+TEST(VoxelSurface, CoversTestMeshes) {
     for (const char* name : {"generated/cube_with_fin.obj", "generated/thin_wall_cup.obj", "generated/sphere_degenerate.obj",
                              "generated/mobius.obj", "generated/huge_sphere.obj", "classic/spot.obj"})
-        expectCovered(test::readObj(test::sharedMesh(name)), 32, name);
+        expectCovered(test::readObj(test::testMesh(name)), 32, name);
 }
 
 // Corners on exact voxel boundaries, where doubles are exact: a triangle in a plane between voxels sets both sides of it.
@@ -300,4 +299,4 @@ TEST(VoxelField, FlatMeshesAndStrayVertices) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_field_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_solid_test {
 namespace {
 
 using test::cleaned;
@@ -258,10 +258,9 @@ TEST(VoxelSolid, GridsThatCutTheMesh) {
     }
 }
 
-TEST(VoxelSolid, SharedMeshes) {
-    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
+TEST(VoxelSolid, TestMeshes) {
     for (const char* folder : {"generated", "classic"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(test::sharedMesh(folder))) {
+        for (const auto& entry : std::filesystem::directory_iterator(test::testMesh(folder))) {
             if (entry.path().extension() != ".obj") continue;
             const Mesh mesh = test::readObj(entry.path());
             expectRight(mesh, gridAround(mesh, 40), entry.path().stem(), 1.5e6);
@@ -298,4 +297,4 @@ TEST(VoxelSolid, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_solid_test

@@ -5,7 +5,7 @@
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::voxel_surface_test {
 namespace {
 
 using test::gridAround;
@@ -152,10 +152,9 @@ TEST(VoxelOverlap, CornersExactlyOnTheGrid) {
     }
 }
 
-TEST(VoxelOverlap, SharedMeshes) {
-    if (!std::filesystem::exists(test::sharedMesh(""))) GTEST_SKIP() << "no shared/assets/test_meshes beside the source tree";
+TEST(VoxelOverlap, TestMeshes) {
     for (const char* folder : {"generated", "classic"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(test::sharedMesh(folder))) {
+        for (const auto& entry : std::filesystem::directory_iterator(test::testMesh(folder))) {
             if (entry.path().extension() != ".obj") continue;
             const Mesh mesh = test::readObj(entry.path());
             const bool large = mesh.indices.size() > 60000;
@@ -177,4 +176,4 @@ TEST(VoxelOverlap, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::voxel_surface_test

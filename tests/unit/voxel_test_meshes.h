@@ -1,4 +1,4 @@
-// Meshes that tests of voxels and collision make themselves, and a plain OBJ reader for ../shared/assets/test_meshes.
+// Meshes that tests of voxels and collision make themselves, and a plain OBJ reader for those of tests/meshes.
 #pragma once
 
 #include <cmath>
@@ -127,9 +127,7 @@ inline VoxelGrid gridAround(const Mesh& mesh, int resolution, float margin = 0.0
     return gridOf(glm::max(ivec3(glm::ceil(size / voxel + 2.0F * margin)), ivec3(1)), bounds.min - margin * voxel, voxel);
 }
 
-inline std::filesystem::path sharedMesh(const std::string& name) {
-    return std::filesystem::path(RIVULET_SOURCE_DIR).parent_path() / "shared/assets/test_meshes" / name;
-}
+inline std::filesystem::path testMesh(const std::string& name) { return std::filesystem::path(RIVULET_SOURCE_DIR) / "tests/meshes" / name; }
 
 // `v` and `f` lines only; polygons as fans.
 inline Mesh readObj(const std::filesystem::path& path) {

@@ -95,12 +95,9 @@ TEST_P(VoxelDevices, ManyLayersOfOneColumn) {
 }
 
 TEST_P(VoxelDevices, TestMeshes) {
-    for (const char* folder : {"generated", "classic"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(test::testMesh(folder))) {
-            if (entry.path().extension() != ".obj") continue;
-            const test::Mesh mesh = test::readObj(entry.path());
-            expectSame(device(), mesh, test::gridAround(mesh, 37), entry.path().stem());
-        }
+    for (const std::filesystem::path& path : test::testMeshes()) {
+        const test::Mesh mesh = test::readObj(path);
+        expectSame(device(), mesh, test::gridAround(mesh, 37), path.stem());
     }
 }
 

@@ -98,12 +98,8 @@ TEST(Unwrap, ShapesAreCutAndLaidFlat) {
 
 TEST(Unwrap, EveryTestMeshIsLaidFlat) {
     std::vector<std::string> paths;
-    for (const char* folder : {"generated", "classic"}) {
-        const std::filesystem::path in = test::testMesh(folder);
-        for (const auto& entry : std::filesystem::directory_iterator(in))
-            if (entry.path().extension() == ".obj") paths.push_back(entry.path().string());
-    }
-    for (const char* own : {"duck", "hourglass", "thin_cup", "spot", "shell", "sheet", "canonical_face_model"})
+    for (const std::filesystem::path& path : test::testMeshes()) paths.push_back(path.string());
+    for (const char* own : {"duck", "hourglass", "thin_cup", "shell", "sheet", "canonical_face_model"})
         paths.push_back(std::string(RIVULET_SOURCE_DIR "/assets/meshes/") + own + ".obj");
     std::sort(paths.begin(), paths.end());
     for (const std::string& path : paths) {

@@ -164,7 +164,7 @@ TEST(VoxelDefects, TestMeshesAsExpected) {
         ++seen;
     }
     EXPECT_GE(seen, 16U);
-    Mesh torn = test::readObj(test::testMesh("classic/spot.obj"));
+    Mesh torn = test::readObj(test::spotMesh());
     torn.indices.resize(torn.indices.size() - 3);
     EXPECT_EQ(cleaned(torn).defects.sentence(), "The mesh has 3 boundary edges (holes): inside is decided by winding number.");
 }

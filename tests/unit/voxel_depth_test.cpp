@@ -173,7 +173,7 @@ TEST(VoxelDepth, SeesWhatLinesMeetAndJoinsTheRest) {
 
 TEST(VoxelDepth, TestMeshes) {
     for (const char* name : {"generated/cube_with_fin.obj", "generated/thin_wall_cup.obj", "generated/sphere_degenerate.obj",
-                             "generated/mobius.obj", "generated/huge_sphere.obj", "classic/spot.obj"}) {
+                             "generated/mobius.obj", "generated/huge_sphere.obj", "../../assets/meshes/spot.obj"}) {
         SCOPED_TRACE(name);
         const Mesh mesh = test::readObj(test::testMesh(name));
         expectRight(mesh, 30);
@@ -283,7 +283,7 @@ TEST(VoxelDepth, WhatHasAHoleIsOutsideWhatIsClosedIsNot) {
         for (const VoxelMaterial& m : made.labels.materials) most = std::max(most, m.voxels);
         return static_cast<double>(most) / static_cast<double>(made.surface.count());
     };
-    const Mesh whole = test::readObj(test::testMesh("classic/spot.obj"));
+    const Mesh whole = test::readObj(test::spotMesh());
     float lowest = whole.positions[0].y;
     for (const vec3& p : whole.positions) lowest = std::min(lowest, p.y);
     Mesh open = whole;

@@ -113,7 +113,7 @@ TEST(VoxelSurface, CoversGeneratedMeshes) {
 
 TEST(VoxelSurface, CoversTestMeshes) {
     for (const char* name : {"generated/cube_with_fin.obj", "generated/thin_wall_cup.obj", "generated/sphere_degenerate.obj",
-                             "generated/mobius.obj", "generated/huge_sphere.obj", "classic/spot.obj"})
+                             "generated/mobius.obj", "generated/huge_sphere.obj", "../../assets/meshes/spot.obj"})
         expectCovered(test::readObj(test::testMesh(name)), 32, name);
 }
 

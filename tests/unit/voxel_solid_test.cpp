@@ -259,13 +259,10 @@ TEST(VoxelSolid, GridsThatCutTheMesh) {
 }
 
 TEST(VoxelSolid, TestMeshes) {
-    for (const char* folder : {"generated", "classic"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(test::testMesh(folder))) {
-            if (entry.path().extension() != ".obj") continue;
-            const Mesh mesh = test::readObj(entry.path());
-            expectRight(mesh, gridAround(mesh, 40), entry.path().stem(), 1.5e6);
-            expectRight(mesh, gridAround(mesh, 23, 1.5F), entry.path().stem(), 1e6);
-        }
+    for (const std::filesystem::path& path : test::testMeshes()) {
+        const Mesh mesh = test::readObj(path);
+        expectRight(mesh, gridAround(mesh, 40), path.stem(), 1.5e6);
+        expectRight(mesh, gridAround(mesh, 23, 1.5F), path.stem(), 1e6);
     }
 }
 

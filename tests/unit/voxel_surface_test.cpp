@@ -153,14 +153,11 @@ TEST(VoxelOverlap, CornersExactlyOnTheGrid) {
 }
 
 TEST(VoxelOverlap, TestMeshes) {
-    for (const char* folder : {"generated", "classic"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(test::testMesh(folder))) {
-            if (entry.path().extension() != ".obj") continue;
-            const Mesh mesh = test::readObj(entry.path());
-            const bool large = mesh.indices.size() > 60000;
-            expectCovered(mesh, gridAround(mesh, large ? 72 : 29), entry.path().stem());
-            if (!large) expectCovered(mesh, gridAround(mesh, 64, 0.3F), entry.path().stem());
-        }
+    for (const std::filesystem::path& path : test::testMeshes()) {
+        const Mesh mesh = test::readObj(path);
+        const bool large = mesh.indices.size() > 60000;
+        expectCovered(mesh, gridAround(mesh, large ? 72 : 29), path.stem());
+        if (!large) expectCovered(mesh, gridAround(mesh, 64, 0.3F), path.stem());
     }
 }
 

@@ -1,6 +1,7 @@
 // Meshes that tests of voxels and collision make themselves, and a plain OBJ reader for those of tests/meshes.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -128,6 +129,17 @@ inline VoxelGrid gridAround(const Mesh& mesh, int resolution, float margin = 0.0
 }
 
 inline std::filesystem::path testMesh(const std::string& name) { return std::filesystem::path(RIVULET_SOURCE_DIR) / "tests/meshes" / name; }
+inline std::filesystem::path spotMesh() { return std::filesystem::path(RIVULET_SOURCE_DIR) / "assets/meshes/spot.obj"; }
+
+// Every mesh of tests/meshes, and Spot.
+inline std::vector<std::filesystem::path> testMeshes() {
+    std::vector<std::filesystem::path> paths = {spotMesh()};
+    for (const char* folder : {"generated", "classic"})
+        for (const auto& entry : std::filesystem::directory_iterator(testMesh(folder)))
+            if (entry.path().extension() == ".obj") paths.push_back(entry.path());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
 
 // `v` and `f` lines only; polygons as fans.
 inline Mesh readObj(const std::filesystem::path& path) {

@@ -1,5 +1,5 @@
-# cmake -DROOT=... -DOUT=... -P baker_version.cmake: a hash of every source that has a say in what a baked field holds. Part of the cache's
-# keys, so that a program never reads what another version of it would have baked differently.
+# cmake -DROOT=... -DOUT=... -P baker_version.cmake: a hash of every source that can change a baked field. It is part of the cache's keys,
+# so a program never reads a field that another version baked differently.
 file(GLOB sources ${ROOT}/fluid/voxel/*.cpp ${ROOT}/fluid/voxel/*.h ${ROOT}/shaders/voxel/*)
 list(SORT sources)
 set(all "")

@@ -1,4 +1,4 @@
-// What the columns of a voxel grid cross, and the bits that follow: the host's own way, and the same by a device's kernels.
+// Crossings of triangles with the columns of a voxel grid, and the bits that follow from them: on the host, and by kernels of a device.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace rivulet {
 
 using Corners = std::array<dvec3, 3>;  // of a triangle, in voxels from the grid's low corner
 
-// A mesh by its places, and loose triangles after it. Refers to somebody else's memory.
+// An indexed mesh, followed by loose triangles. Refers to the caller's memory.
 struct CrossedTriangles {
     std::span<const dvec3> places;
     std::span<const uint32_t> indices;  // 3 a triangle, into places
@@ -25,20 +25,20 @@ struct CrossedTriangles {
     }
 };
 
-// What each column of voxels along x crosses. Columns are (y, z), y fastest.
+// The crossings of each column of voxels along x. Columns are (y, z), y fastest.
 struct ColumnCrossings {
     std::vector<uint32_t> start;  // into items; one more than columns
     std::vector<uint32_t> items;  // voxel << 1 | (1 if the winding number's change is +1, 0 if -1), sorted within a column
     std::span<const uint32_t> column(size_t k) const { return std::span(items).subspan(start[k], start[k + 1] - start[k]); }
 };
-// The first voxel whose centre lies beyond, and the winding number's change there.
+// The first voxel whose centre lies beyond the crossing, and the change of the winding number there.
 inline int crossedVoxel(uint32_t crossing) { return static_cast<int>(crossing >> 1U); }
 inline int crossedChange(uint32_t crossing) { return (crossing & 1U) != 0 ? 1 : -1; }
 
-// Sets the bits of `grid` (clear before) where the crossings of the triangles count to other than 0. Throws std::bad_alloc.
+// Sets the bits of `grid` (clear before) where the sum of the crossings is not 0. Throws std::bad_alloc.
 ColumnCrossings crossColumns(const CrossedTriangles& triangles, VoxelGrid& grid);
 
-// The same by the kernels of a gl or cl device, for grids of fewer than 2^32 voxels. Fetches the crossings only if `wanted`.
+// The same by kernels of a gl or cl device, for grids of fewer than 2^32 voxels. Downloads the crossings only if `wanted`.
 Result<ColumnCrossings> crossColumnsOn(Device& device, const CrossedTriangles& triangles, VoxelGrid& grid, bool wanted);
 
 }  // namespace rivulet

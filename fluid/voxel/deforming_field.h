@@ -1,4 +1,4 @@
-// The field of a mesh that bends: after each change only the bricks in reach of a moved triangle are baked again.
+// The field of a deforming mesh: after each change only the bricks in reach of a moved triangle are baked again.
 #pragma once
 
 #include <vector>
@@ -11,27 +11,28 @@ class DistanceBand;
 
 class DeformingField {
   public:
-    // One mesh as it is at first, m. `reach`: a box that holds it at all times (m); the grid covers that, padded as a static field's is,
-    // and options.resolution counts voxels along the box's longest side. Errors as bakeVoxelField; more or fewer meshes than one; a vertex
-    // outside `reach`. Beside the field 20 bytes a grid point, and 13 a vertex and triangle.
+    // `restMesh`: one mesh at its first places, m. `reach`: a box that contains it at all times (m). The grid covers the box with the
+    // padding of a static field; options.resolution counts voxels along the longest side of the box. Errors: those of bakeVoxelField;
+    // more or fewer meshes than one; a vertex outside `reach`. Memory in addition to the field: 20 bytes a grid point, 13 a vertex and a
+    // triangle.
     static Result<DeformingField> create(std::span<const MeshView> restMesh, const Bounds& reach, const VoxelFieldOptions& options);
 
     struct Change {
         int firstLayer = 0,
-            endLayer = 0;   // z layers of grid points [first, end), and voxels with the same z: others are as they were before
-        size_t voxels = 0;  // that were voxelised again, with as many grid points
+            endLayer = 0;   // z layers [first, end) of grid points, and of voxels with the same z; the others are unchanged
+        size_t voxels = 0;  // voxelised again, with the same number of grid points
     };
-    // New places of all vertices (m), as many and in the same order; what they were is what the last update was given. Bits, distance
-    // and normals are then bit for bit those of a bake from nothing. Error: another number of vertices, a vertex of a triangle
-    // that is NaN or outside `reach` (nothing has changed then); out of memory (the next update makes good what is half done).
+    // Sets the places of all vertices (m), in the same number and order as before. Bits, distance and normals are then bit for bit those
+    // of a complete bake. The last update's places are the previous ones. Errors: another number of vertices, or a vertex of a triangle
+    // that is NaN or outside `reach` (the field is unchanged); out of memory (the next update bakes everything).
     Result<Change> update(std::span<const vec3> positions);
-    // What update would refuse them for.
+    // The error that update would return for these places.
     Status checkPlaces(std::span<const vec3> positions) const;
 
-    // At the latest places. Unsigned.
+    // The field at the latest places. Unsigned.
     const VoxelField& field() const { return field_; }
-    // At every grid point within the band: how far (m) the nearest triangle's nearest point was moved by the last update: xyz, w 0. Zero
-    // elsewhere, and after create. Over the update's time step it is the wall's velocity.
+    // At every grid point within the band: the displacement (m) of the nearest triangle's nearest point by the last update: xyz, w 0. Zero
+    // elsewhere, and after create. Divided by the time step of the update it is the velocity of the wall.
     std::span<const vec4> displacement() const { return displacement_; }
     std::span<const vec3> positions() const { return positions_; }  // the latest, m
 
@@ -46,17 +47,17 @@ class DeformingField {
 
     VoxelField field_;
     Bounds reach_;
-    std::vector<uint8_t> surfaces_;  // of the one mesh; or none
+    std::vector<uint8_t> surfaces_;  // of the mesh; may be empty
     std::vector<uint32_t> indices_;
     std::vector<vec3> positions_;
-    std::vector<uint8_t> used_;      // vertices that a triangle has
+    std::vector<uint8_t> used_;      // vertices of triangles
     std::vector<uint8_t> moved_;     // triangles, in this update
-    std::vector<uint32_t> nearest_;  // to each grid point
+    std::vector<uint32_t> nearest_;  // triangle, of each grid point
     std::vector<vec4> displacement_;
     std::vector<uint8_t> occupied_;   // bricks that a triangle reaches
-    std::vector<uint8_t> dirty_;      // bricks done in this update
+    std::vector<uint8_t> dirty_;      // bricks baked in this update
     std::vector<uint8_t> displaced_;  // bricks with a displacement
-    bool stale_ = true;               // something was left half done: bake all
+    bool stale_ = true;               // the last update did not finish: bake everything
 };
 
 }  // namespace rivulet

@@ -10,13 +10,13 @@
 
 namespace rivulet {
 
-static_assert(sizeof(DepthJob) == 104 && sizeof(DepthBox) == 32 && sizeof(DepthParams) == 32, "as the GPUs lay them out");
+static_assert(sizeof(DepthJob) == 104 && sizeof(DepthBox) == 32 && sizeof(DepthParams) == 32, "the layout of the GPUs");
 
-// Of all triangles along all three axes, those that a line through voxels' centres may meet; few enough pixels each for a thread.
-// The same list for any number of threads.
+// The triangles, along all three axes, that a line through voxel centres may meet. Each job has few enough pixels for one thread.
+// The list does not depend on the number of threads.
 std::vector<DepthJob> depthJobs(std::span<const MeshView> meshes, const VoxelGrid& grid);
 
-// Draws them on the host, as shaders/voxel/voxelize_depth.kernel does.
+// Draws the jobs on the host, as shaders/voxel/voxelize_depth.kernel does.
 void drawDepthJobs(std::span<const DepthJob> jobs, const DepthParams& params, std::span<const DepthBox> boxes, std::span<uint32_t> images);
 
 }  // namespace rivulet

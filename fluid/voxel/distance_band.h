@@ -10,16 +10,15 @@ namespace rivulet {
 
 inline constexpr uint32_t kNoTriangle = std::numeric_limits<uint32_t>::max();
 
-// Where the results go: at the (size + 1) points an axis of a grid, x fastest.
+// The results, at the (size + 1) points per axis of a grid, x fastest.
 struct BandPoints {
-    std::span<float> distance;    // m, to the nearest triangle; `band` where that is further
-    std::span<uint32_t> normal;   // from there to the point, see packNormal; of no meaning beyond the band
-    std::span<uint32_t> nearest;  // that triangle's number in the list, kNoTriangle beyond the band; empty if nobody wants it
+    std::span<float> distance;    // m, to the nearest triangle, at most `band`
+    std::span<uint32_t> normal;   // from the nearest triangle to the point, see packNormal; undefined beyond the band
+    std::span<uint32_t> nearest;  // number of that triangle in the list, kNoTriangle beyond the band; empty if not needed
 };
 
-// Works in bricks of kBrick^3 points, so that a part can be done again. Unsigned; computed in double. Of triangles equally near the first
-// in the list counts, so that the result depends on the triangles within the band alone: the same for any number of threads, and for any
-// part.
+// Works in bricks of kBrick^3 points, so that a part can be baked again. Unsigned; computed in double. Of equally near triangles the first
+// in the list counts, so the result depends on the triangles within the band alone, not on the number of threads or on the part baked.
 class DistanceBand {
   public:
     static constexpr int kBrick = 4;
@@ -29,14 +28,14 @@ class DistanceBand {
         return (static_cast<size_t>(b.z) * static_cast<size_t>(bricks_.y) + static_cast<size_t>(b.y)) * static_cast<size_t>(bricks_.x) +
                static_cast<size_t>(b.x);
     }
-    // Sets the flags of all bricks (by brickIndex) with a point to which this triangle may be the nearest, and of all that hold a voxel it
-    // touches (voxel v is of brick v / kBrick).
+    // Sets the flags (by brickIndex) of all bricks with a point to which this triangle may be the nearest, and of all bricks with a voxel
+    // that it touches (voxel v belongs to brick v / kBrick).
     void markReach(const GridTriangle& triangle, std::span<uint8_t> flags) const;
     // Bricks, first and last along each axis, that a triangle in this box (grid coordinates) may reach. May be empty.
     void reach(const dvec3& low, const dvec3& high, ivec3& first, ivec3& last) const;
-    // Writes all points of the bricks whose flag is set; with no flags, the bricks that a triangle reaches. `surfaces`: of each mesh, for
-    // packNormal; empty: 0. `numbers`: of each triangle of the list, increasing, for `nearest`; empty: its place in the list.
-    // `reached`, if not empty: set to 1 for the bricks done that a triangle reaches, to 0 for the others done.
+    // Writes all points of the bricks whose flag is set; without flags, of the bricks that a triangle reaches. `surfaces`: one per mesh,
+    // for packNormal; empty: 0. `numbers`: one per triangle of the list, increasing, for `nearest`; empty: the index in the list.
+    // `reached`, if not empty: set to 1 for each baked brick that a triangle reaches, to 0 for the other baked bricks.
     void bake(const GridTriangles& triangles, std::span<const uint8_t> surfaces, std::span<const uint32_t> numbers,
               std::span<const uint8_t> flags, std::span<uint8_t> reached, const BandPoints& out) const;
 
@@ -47,9 +46,10 @@ class DistanceBand {
     Isa isa_;
 };
 
-// A direction on an octahedron (Meyer et al. 2010), x and y of its unfolded square as 14 bits each, x low: 1 is 8191 above the middle. The
-// nearest of the four codes around (Cigolle et al. 2014), within 1.73e-4 rad of the direction; axes are exact. Any length but 0. Above them
-// 4 bits: `surface`, 0..15, whose wall it is. Unpacked by unpackNormal and wallSurface of shaders/fluid/solids/contact_walls.h.
+// Encodes a direction of any length above 0 on an octahedron (Meyer et al. 2010): x and y of its unfolded square, 14 bits each, x low; 1 is
+// 8191 above the middle. Of the four neighbouring codes the nearest is taken (Cigolle et al. 2014): within 1.73e-4 rad of the direction;
+// axes are exact. The 4 bits above are `surface`, 0..15, the wall's set of friction and restitution. Unpacked by unpackNormal and
+// wallSurface of shaders/fluid/solids/contact_walls.h.
 uint32_t packNormal(const dvec3& direction, uint32_t surface);
 
 }  // namespace rivulet

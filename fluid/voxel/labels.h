@@ -1,4 +1,4 @@
-// Connected regions of what is not surface, as runs along x: which voxel is outside, which is surface, which belongs to which material.
+// Connected regions of the voxels that are not surface, stored as runs along x. Each voxel is outside, surface, or of one material.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace rivulet {
 
-// What a voxel is. MATERIAL_i of the thesis is kFirstMaterial + i.
+// Labels of a voxel. MATERIAL_i of the thesis is kFirstMaterial + i.
 inline constexpr uint32_t kOutside = 0, kInsideSurface = 1, kFirstMaterial = 2;
 
 // A connected region (through faces of voxels) that does not reach the grid's border, or that the mesh encloses.
 struct VoxelMaterial {
     size_t voxels = 0;  // without surface voxels
-    double volume = 0;  // m^3, of those
+    double volume = 0;  // m^3, of these voxels
     ivec3 low{0};       // the first voxel on each axis
     ivec3 high{0};      // the last
-    bool solid = true;  // false: a cavity, enclosed but outside the mesh by its winding number (mode solid alone tells)
+    bool solid = true;  // false: a cavity, enclosed but outside the mesh by its winding number (mode solid only)
 };
 
-// A linear colour for material `index` (0, 1, ...): of even lightness, neighbours in the list easy to tell apart; the same at every call.
+// A linear colour for material `index` (0, 1, ...): equal lightness, hues of successive indices far apart; the same at every call.
 vec3 materialColour(uint32_t index);
 
 // Voxels [x, next run's x) of a row. A row's first run starts at 0; neighbours differ in label.
@@ -30,7 +30,7 @@ struct LabelRun {
     uint32_t label = kOutside;
 };
 
-// One label a voxel, kept as runs: 512^3 voxels of a bunny are 8 MB. Rows are (y, z), y fastest.
+// One label per voxel, stored as runs: 512^3 voxels of a bunny take 8 MB. Rows are (y, z), y fastest.
 struct VoxelLabels {
     ivec3 size{0};
     std::vector<uint32_t> rowStart;  // into runs; size.y * size.z + 1
@@ -45,21 +45,21 @@ struct VoxelLabels {
     }
 };
 
-// Regions of voxels that are neither `surface` nor separated by it. Mode solid hands in `inside`, the voxels within the mesh by winding
-// number (of the same size; what is surface there does not matter): no region spans both kinds. null: connectivity alone (the
-// thesis's rule), and every enclosed region counts as solid. A region is kOutside if it touches the grid's border and is not inside.
-// The same for any number of threads. Throws std::bad_alloc, also if there were 2^32 runs or more (over 48 GB of them).
+// Labels the connected regions of voxels that are not `surface`. `inside` (mode solid): the voxels within the mesh by winding number, of
+// the same size; its bits at surface voxels are ignored; no region contains both kinds. null: connectivity alone (the thesis's rule), and
+// every enclosed region counts as solid. A region is kOutside if it touches the grid's border and is not inside. The result does not depend
+// on the number of threads. Throws std::bad_alloc, also for 2^32 runs or more (over 48 GB).
 VoxelLabels labelRegions(const VoxelGrid& surface, const VoxelGrid* inside);
 
-// The thesis's storage [4.1.4]: 0 where kOutside, 1 elsewhere. Origin and voxel as `like`'s.
+// The thesis's storage [4.1.4]: 0 where kOutside, 1 elsewhere. Origin and voxel are those of `like`.
 VoxelGrid solidBits(const VoxelLabels& labels, const VoxelGrid& like);
 
-// One byte a voxel, in the grid's order: 1 where the voxel is not set and can be reached from the grid's border through faces of voxels
-// that are not set; 0 for the surface and for what it encloses.
+// One byte per voxel, in the grid's order: 1 if the voxel is not set and is connected to the grid's border through faces of voxels that are
+// not set; 0 for the surface and for voxels that it encloses.
 std::vector<uint8_t> reachableFromBorder(const VoxelGrid& surface);
 
-// Labels of regions that were found in another way. `region` of each voxel, in the grid's order: 0 is kOutside, else any number below
-// `regions`, one for each material; where a voxel is surface it does not matter. No two regions touch.
+// Makes labels from known regions. `region`: one per voxel, in the grid's order: 0 is kOutside, else any number below `regions`, one for
+// each material; ignored at surface voxels. No two regions may touch.
 VoxelLabels labelsOf(const VoxelGrid& surface, std::span<const uint32_t> region, uint32_t regions);
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// What a mesh must be before it is made into voxels, and the sentences that say so.
+// Checks of meshes before they are voxelised, and their error messages.
 #pragma once
 
 #include <optional>
@@ -10,17 +10,17 @@
 
 namespace rivulet {
 
-// Where the triangles are, and how long the longest side is (m). Vertices that no triangle uses do not count.
+// Bounds of the triangles and their longest side (m). Vertices that no triangle uses do not count.
 struct MeshExtent {
     Bounds bounds;
     double longest = 0;
 };
 MeshExtent extentOf(std::span<const MeshView> meshes);
 
-// Indices in threes and in range, finite vertices, at least one triangle and fewer than 2^32.
+// Returns an error unless indices come in threes and are in range, vertices are finite, and triangles number 1 to 2^32 - 1.
 std::optional<Error> checkMeshes(std::span<const MeshView> meshes);
 
-// An extent, and voxels that 32-bit floats can tell apart that far from the origin. `voxel`: m.
+// Returns an error if the mesh has no extent, or if 32-bit floats cannot distinguish voxels that far from the origin. `voxel`: m.
 std::optional<Error> checkVoxel(const MeshExtent& extent, float voxel);
 
 }  // namespace rivulet

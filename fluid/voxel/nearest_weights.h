@@ -1,4 +1,4 @@
-// The point of a triangle that is nearest to another (Ericson 2005, 5.1.5).
+// The point of a triangle that is nearest to a given point (Ericson 2005, 5.1.5).
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace rivulet {
 
-// The weights of the corners in it, 0 to 1, their sum 1: by Voronoi regions, but a triangle without area goes by its edges.
+// Barycentric weights of the nearest point, 0 to 1, sum 1: by Voronoi regions; of a triangle without area, by its edges.
 inline std::array<double, 3> nearestWeights(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c) {
     const dvec3 ab = b - a, ac = c - a, bc = c - b, q = p - a;
     const double abab = glm::dot(ab, ab), acac = glm::dot(ac, ac), abac = glm::dot(ab, ac);

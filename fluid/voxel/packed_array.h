@@ -1,4 +1,4 @@
-// Arrays of plain numbers to compressed bytes (zstd) and back. Unpacking trusts nothing: memory grows with what the bytes have yielded.
+// Arrays of plain numbers to compressed bytes (zstd) and back. Unpacking checks everything: memory grows with the bytes unpacked so far.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace rivulet {
 
-// XXH3, of 64 bits. `seed`: what was summed before.
+// XXH3, 64 bits. `seed`: the checksum of the bytes before.
 uint64_t checksum(std::span<const std::byte> bytes, uint64_t seed = 0);
 
 // The most bytes that `packed` bytes of one zstd frame can hold: a block of at most 128 KiB takes at least 4.
@@ -41,7 +41,7 @@ class ArrayPacker {
     std::string& out_;
 };
 
-// The same arrays, in the same order and of the same types, out of one frame. Throws std::bad_alloc.
+// Reads the same arrays, in the same order and of the same types, from one frame. Throws std::bad_alloc.
 class ArrayUnpacker {
   public:
     explicit ArrayUnpacker(std::span<const std::byte> packed);
@@ -49,7 +49,7 @@ class ArrayUnpacker {
     ArrayUnpacker(const ArrayUnpacker&) = delete;
     ArrayUnpacker& operator=(const ArrayUnpacker&) = delete;
 
-    // False: the bytes are no such array; why() says what is wrong with them. `to` has then at most twice as many items as there were.
+    // False: the bytes are not such an array, and why() gives the reason. `to` then has at most twice as many items as the bytes held.
     template <class T>
     bool take(size_t count, std::vector<T>& to) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -61,7 +61,7 @@ class ArrayUnpacker {
         }
         return true;
     }
-    bool finish();  // false: there is more than was taken
+    bool finish();  // false: bytes are left over
     const char* why() const { return why_; }
 
   private:

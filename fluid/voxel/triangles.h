@@ -11,7 +11,7 @@
 
 namespace rivulet {
 
-// Corner a, and the way from it to the others. The ways are differences of the mesh's own floats, so a needle stays the needle it is.
+// Corner a, and the vectors to the other corners. The vectors are differences of the mesh's own floats, so a needle keeps its shape.
 struct GridTriangle {
     dvec3 a{0.0}, ab{0.0}, ac{0.0};
     dvec3 low() const { return a + glm::min(dvec3(0.0), glm::min(ab, ac)); }
@@ -25,13 +25,13 @@ class GridTriangles {
         for (const MeshView& mesh : meshes_) ends_.push_back(size() + mesh.triangleCount());
     }
     size_t size() const { return ends_.empty() ? 0 : ends_.back(); }
-    // Which mesh triangle k is of.
+    // The mesh of triangle k.
     size_t owner(size_t k) const { return static_cast<size_t>(std::upper_bound(ends_.begin(), ends_.end(), k) - ends_.begin()); }
     GridTriangle operator[](size_t k) const {
         const auto [a, b, c] = corners(k);
         return {inVoxels(a), (b - a) / voxel_, (c - a) / voxel_};
     }
-    // Its corners in the mesh's own coordinates, and one of those in the grid's.
+    // Corners of triangle k in the mesh's own coordinates; inVoxels converts one to the grid's.
     std::array<dvec3, 3> corners(size_t k) const {
         const size_t mine = owner(k);
         const MeshView& mesh = meshes_[mine];

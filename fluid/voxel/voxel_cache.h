@@ -1,4 +1,4 @@
-// Baked fields kept on the disk: the second start of a scene reads what the first one made.
+// Baked fields on the disk: the second start of a scene reads the field that the first one baked.
 #pragma once
 
 #include <span>
@@ -10,15 +10,15 @@
 
 namespace rivulet {
 
-// $XDG_CACHE_HOME/rivulet/voxels, else ~/.cache/rivulet/voxels; "" where neither variable holds an absolute path: nothing is kept then.
+// $XDG_CACHE_HOME/rivulet/voxels, else ~/.cache/rivulet/voxels; "" if neither variable is an absolute path: then nothing is stored.
 std::string voxelCacheFolder();
 
-// As much as the folder keeps; who was used longest ago goes first.
+// Limit of the folder; the least recently used file is removed first.
 inline constexpr size_t kVoxelCacheBytes = size_t{1} << 30U;
 
-// bakeVoxelField(meshes, options), bit for bit, from the disk where it is there and intact. Known by the content of the meshes, the options
-// and the sources of the bakers. Errors are bakeVoxelField's alone: a cache that is broken, full or not writable is a notice at most.
-// Any number of programs may do so at once.
+// Returns bakeVoxelField(meshes, options), bit for bit, from the disk if an intact file exists. The key is a hash of the meshes, the
+// options and the sources of the bakers. Errors are those of bakeVoxelField: a cache that is broken, full or not writable causes at most a
+// notice. Any number of programs may use the folder at once.
 Result<VoxelField> cachedVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options, const Log& log);
 
 }  // namespace rivulet

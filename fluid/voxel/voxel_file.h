@@ -1,8 +1,8 @@
-// .rvox: voxels in a file. Bits always; labels and the distance band where there are any.
+// .rvox: voxels in a file: bits, and optionally labels and the distance band.
 //
-// Numbers are in the byte order of the machine that wrote them, which is named in the header; 80 bytes of header, 40 a section, then the
-// sections one after the other with no gap, each one zstd frame of its arrays (packed_array.h). XXH3 checks the header with the table of
-// sections, and each section. Layout: voxel_file.cpp.
+// Numbers have the byte order of the machine that wrote them, given in the header. The header has 80 bytes, the table 40 bytes per section.
+// The sections follow without gaps, each one zstd frame of its arrays (packed_array.h). XXH3 checks the header with the table, and each
+// section. Layout: voxel_file.cpp.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@
 
 namespace rivulet {
 
-// At the grid's (size + 1) points an axis, x fastest: as VoxelField holds it.
+// At the grid's (size + 1) points per axis, x fastest, as in VoxelField.
 struct VoxelBand {
     float band = 0;                // m, > 0
-    bool closed = false;           // negative distances are inside; else there are none
+    bool closed = false;           // true: negative distances are inside; false: there are none
     std::vector<float> distance;   // m, |distance| <= band
     std::vector<uint32_t> normal;  // packNormal of distance_band.h
 };
@@ -37,12 +37,13 @@ struct VoxelFile {
 // The whole file as bytes. Error (failed): out of memory.
 Result<std::string> packVoxelFile(const VoxelFile& file);
 
-// Exactly what was packed. `name` is what errors call the file. Whatever the bytes are, the answer is a VoxelFile that keeps every
-// promise of its types, or an Error (badInput: what is wrong, at which byte or section, and what to do; failed: out of memory).
-// No more than `memoryLimit` bytes are taken for the result, and nothing large before the bytes that fill it were seen.
+// Returns exactly what was packed. `name`: the file's name in errors. For any bytes the result is a VoxelFile that satisfies every
+// invariant of its types, or an Error (badInput: the fault, its byte or section, and the remedy; failed: out of memory). The result takes
+// at most `memoryLimit` bytes, and large arrays are allocated only as their bytes are read.
 Result<VoxelFile> unpackVoxelFile(std::span<const std::byte> bytes, std::string_view name, size_t memoryLimit = size_t{4} << 30U);
 
-// As above, to and from a file; appears whole under its name or not at all. The bytes written. Error also: not writable, not readable.
+// The same, to and from a file. A file appears complete under its name or not at all. Writing returns the number of bytes. Further errors:
+// not writable, not readable.
 Result<size_t> writeVoxelFile(const std::string& path, const VoxelFile& file);
 Result<VoxelFile> readVoxelFile(const std::string& path, size_t memoryLimit = size_t{4} << 30U);
 

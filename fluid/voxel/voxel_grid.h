@@ -1,4 +1,4 @@
-// A grid of bits over a mesh: any w x h x d, x fastest, eight voxels a byte (bit k of byte b is voxel 8 b + k of its row-major order).
+// A grid of bits over a mesh: any w x h x d, x fastest, eight voxels per byte (bit k of byte b is voxel 8 b + k in row-major order).
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct VoxelGrid {
         size_t i = index(c);
         bits[i >> 3U] = static_cast<uint8_t>(bits[i >> 3U] | (1U << (i & 7U)));
     }
-    // Outside the grid gives a cell outside it.
+    // A point outside the grid gives a cell outside it.
     ivec3 cellOf(const vec3& p) const {
         vec3 c = glm::floor((p - origin) / voxel);
         return ivec3(static_cast<int>(c.x), static_cast<int>(c.y), static_cast<int>(c.z));

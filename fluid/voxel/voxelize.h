@@ -1,4 +1,4 @@
-// A mesh as voxels: one entry for the three ways of doing it.
+// Voxelises meshes: one entry for the three modes.
 #pragma once
 
 #include <functional>
@@ -28,36 +28,34 @@ inline constexpr int kMinVoxelResolution = 2, kMaxVoxelResolution = 4096;
 
 struct VoxelizeOptions {
     VoxelMode mode = VoxelMode::solid;
-    int resolution = 128;      // voxels along the longest side of the meshes' bounds, 2..4096
-    bool thesisOrder = false;  // mode depth: the thesis's order of work boxes instead of the short one; the result is the same
-    size_t memoryLimit =
-        size_t{4} << 30U;  // bytes of bits, labels and what the mode needs on the way; what the triangles take is not counted
-    std::function<bool(double)> progress;  // called now and then with 0..1 from the calling thread; false cancels. May be empty
+    int resolution = 128;                   // voxels along the longest side of the meshes' bounds, 2..4096
+    bool thesisOrder = false;               // mode depth: the thesis's order of work boxes instead of the shorter one; same result
+    size_t memoryLimit = size_t{4} << 30U;  // bytes of bits, labels and temporary data of the mode; triangles are not counted
+    std::function<bool(double)> progress;   // called repeatedly with 0..1 from the calling thread; false cancels. May be empty
 };
 
 struct VoxelModel {
     VoxelMode mode = VoxelMode::solid;
-    VoxelGrid surface;   // INSIDE_SURFACE: voxels that a triangle overlaps, touching counts (depth: as its pixels see it)
+    VoxelGrid surface;   // INSIDE_SURFACE: voxels that a triangle overlaps, touching counts (depth: as its pixels show it)
     VoxelGrid bits;      // mode surface: the same; else 1 where not OUTSIDE (the thesis's storage)
     VoxelLabels labels;  // mode surface: by connectivity alone
     MeshDefects defects;
-    double milliseconds =
-        0;  // mesh in memory to bits (solid: surface and inside bits, cleaning included); without labels but in mode depth
+    double milliseconds = 0;  // from the mesh in memory to bits (solid: surface and inside bits, with cleaning); labels only in mode depth
 };
 
-// The grid of `resolution` voxels around the meshes' bounds, bits clear: the thesis's work box, without padding: exactly so many along the
-// longest side, as many whole ones as are needed along the others, at least 1, the mesh in the middle. Every triangle is within the
-// closed grid, also as floats are rounded. `memoryLimit` bounds the bits. Errors as voxelizeMesh.
+// The grid around the meshes' bounds, bits clear, without padding (the thesis's work box): exactly `resolution` voxels along the longest
+// side, the smallest sufficient number along the others, at least 1, with the mesh in the middle. Every triangle is within the closed grid,
+// also after rounding to floats. `memoryLimit` limits the bits. Errors: those of voxelizeMesh.
 Result<VoxelGrid> layoutGrid(std::span<const MeshView> meshes, int resolution, size_t memoryLimit);
 
-// `meshes` in any unit. On every Device the same bits. Error (badInput): no triangle, an index out of range, NaN or infinite vertices
-// (with how many), no extent, a resolution outside its range or beyond the memory (with how much it needs and what fits), voxels too
-// small for 32-bit floats so far from the origin. Error (failed): cancelled, out of memory, a device without 64-bit floats.
+// `meshes` in any unit. Every Device gives the same bits. Error (badInput): no triangle, an index out of range, NaN or infinite vertices
+// (with their number), no extent, a resolution outside its range or beyond the memory (with the amount and what fits), voxels too
+// small for 32-bit floats at that distance from the origin. Error (failed): cancelled, out of memory, a device without 64-bit floats.
 Result<VoxelModel> voxelizeMesh(Device& device, std::span<const MeshView> meshes, const VoxelizeOptions& options);
 
-// A sentence if the mesh has features that this voxel cannot show (with the resolution and memory they would need); else "".
-// Features are guessed from edges: the length that 5 % of them (of a sample of a million) are shorter than. Smooth meshes have edges
-// shorter than a voxel too, and nothing is lost; so it says something only where a voxel is as long as 32 of them.
+// A sentence if the mesh has features that voxels of this size cannot show (with the resolution and memory they would need); else "".
+// The feature size is estimated from edges: 5 % of them (of a sample of a million) are shorter. Smooth meshes also have edges shorter than
+// a voxel, and lose nothing; so a sentence is returned only if a voxel is as long as 32 such edges.
 std::string lostFeatures(std::span<const MeshView> meshes, const VoxelGrid& grid);
 
 }  // namespace rivulet

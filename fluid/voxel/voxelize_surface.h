@@ -8,8 +8,8 @@
 namespace rivulet {
 
 // Sets the bits of all voxels of `grid` that a triangle overlaps, and leaves the others; touching counts (within 1e-9 voxels, far below
-// what floats can tell). A triangle without area counts as the segment or the point it is. The same bits on every Device and for any
-// number of threads. Error (failed): a device without 64-bit floats, or out of its memory; `grid` is then as before.
+// the resolution of floats). A triangle without area counts as the segment or the point that it is. The same bits on every Device and for
+// any number of threads. Error (failed): a device without 64-bit floats, or without enough memory; `grid` is then unchanged.
 Status voxelizeSurface(Device& device, const GridTriangles& triangles, VoxelGrid& grid);
 
 // The same on the host.

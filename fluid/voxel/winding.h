@@ -1,5 +1,5 @@
-// Open meshes: caps that close their boundary loops, so that crossings count to integers, and the caps' own part of the generalized
-// winding number (Jacobson et al. 2013), to be taken off again.
+// Open meshes: caps that close their boundary loops, so that crossings sum to integers, and the caps' own part of the generalized
+// winding number (Jacobson et al. 2013), which is subtracted again.
 #pragma once
 
 #include <functional>
@@ -12,31 +12,31 @@
 
 namespace rivulet {
 
-// Fans of triangles over the loops that a mesh's unmatched edges form. Mesh and caps together close.
+// Fans of triangles over the loops of a mesh's unmatched edges. Mesh and caps together are closed.
 class BoundaryCaps {
   public:
     // `places`: the mesh's positions in voxels from the grid's low corner.
     BoundaryCaps(const CleanMesh& mesh, std::span<const dvec3> places);
-    // Caps to be crossed; of the mesh, `crossed` if there are any, else all. Where loose triangles are many, each is its own cap the other
-    // way round: neither is crossed, as the two cancel.
+    // Caps whose crossings count. Of the mesh, the triangles of crossed() count, or all if it is null. If there are many loose triangles,
+    // each has its own reverse as cap: neither is counted, because the two cancel.
     std::span<const Corners> triangles() const { return std::span(triangles_).first(triangles_.size() - loose_); }
     const std::vector<uint32_t>* crossed() const { return loose_ > 0 ? &crossed_ : nullptr; }
     // The caps' part of the winding number at `p` (van Oosterom and Strackee 1983).
     double winding(const dvec3& p) const;
 
-    // `grid` has the bit of each voxel where the crossings of mesh and caps count to other than 0. Afterwards: where they count to more
-    // than 1/2 off the caps' part. The same for any number of threads. With many pieces (kFew and more) it asks goOn(share done) now and
-    // then, on the calling thread; false ends it, and the result is false. Beyond WindingTree::kExact pieces to that class's accuracy, else
-    // exact.
+    // On entry `grid` has the bits of voxels where the crossings of mesh and caps do not sum to 0; on return, where the sum differs by more
+    // than 1/2 from the caps' part. The result does not depend on the number of threads. With kFew pieces or more, goOn(share done) is
+    // called repeatedly on the calling thread; if it returns false, the work ends and the result is false. Exact up to WindingTree::kExact
+    // pieces; above, to the accuracy of that class.
     bool correct(const CleanMesh& mesh, const ColumnCrossings& crossings, VoxelGrid& grid,
                  const std::function<bool(double)>& goOn = {}) const;
 
   private:
-    // Some consecutive triangles of one fan.
+    // Consecutive triangles of one fan.
     struct Piece {
         uint32_t first = 0, end = 0;      // triangles
         uint32_t previous = 0, next = 0;  // pieces of the same fan, in a ring
-        dvec3 centre{0.0};                // of a ball that holds them
+        dvec3 centre{0.0};                // of a ball that contains them
         double radius = 0, area = 0, outline = 0;
     };
     struct Cell;

@@ -1,5 +1,5 @@
-// The part of very many caps in the winding number: a tree over them, its nodes as dipoles with two further moments (Barill et al. 2018),
-// and cubes of voxels that share one second-order model of all that is far.
+// The part of many caps in the winding number: a tree over the caps, its nodes as dipoles with two further moments (Barill et al. 2018).
+// Cubes of voxels share one second-order model of all far nodes.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace rivulet {
 
 using dmat3 = glm::dmat3;
 
-// The second order of a field about a point, and what it may be wrong by within the ball it was made for.
+// Second-order expansion of a field about a point, and the bound of its error (`slack`) within the ball it was made for.
 struct LocalField {
     double value = 0, slack = 0;
     dvec3 slope{0.0};
@@ -26,21 +26,22 @@ struct LocalField {
 
 class WindingTree {
   public:
-    // Up to so many patches a voxel that the model leaves open is decided by all of them, which is exact. Beyond, the model's word counts:
-    // nobody's part is wrong by more than kTolerance / sqrt(patches). What that adds up to has been about kAccuracy, as the signs differ
-    // (20,000 patches, settings beside this one: 0.008 strewn about, 0.023 along a sphere); it is no bound.
+    // Up to kExact patches, a voxel that the model leaves open is decided by all of them, which is exact. Above, the model decides: the
+    // part of each patch has an error of at most kTolerance / sqrt(patches). Because signs differ, the measured sum is about kAccuracy
+    // (20,000 patches, settings close to this one: 0.008 for jittered patches, 0.023 along a sphere); this is no bound.
     static constexpr size_t kExact = 1024;
     static constexpr double kTolerance = 0.15, kAccuracy = 0.02;  // turns
 
     // Patches are triangles [ends[k - 1], ends[k]). Refers to the caller's memory. Throws std::bad_alloc.
     WindingTree(std::span<const Corners> triangles, std::span<const uint32_t> ends);
 
-    // As BoundaryCaps::correct. `goOn(share done)` is asked now and then on the calling thread; false ends it, and the result is false.
+    // See BoundaryCaps::correct. `goOn(share done)` is called repeatedly on the calling thread; false ends the work, and the result is
+    // false.
     bool correct(const ColumnCrossings& crossings, VoxelGrid& grid, const std::function<bool(double)>& goOn) const;
-    double winding(const dvec3& p) const;  // of all, by every triangle
+    double winding(const dvec3& p) const;  // of all patches, exact
 
   private:
-    // Some patches, consecutive in order_.
+    // Consecutive patches of patches_.
     struct Node {
         uint32_t first = 0, end = 0, children = 0;  // the first of two, or 0
         dvec3 centre{0.0};

@@ -149,8 +149,8 @@ struct Taker {
         if (!status) return {};
         Result<Kernel> made = device.kernel(path, defines);
         if (made) return *made;
-        status = failed(
-            fmt::format("{} cannot voxelise (are its 64-bit floats missing?): {}; use the cpu.", device.info().name, made.error().message));
+        status = failed(fmt::format("{} cannot voxelise, possibly because it has no 64-bit floats: {}; use the cpu.", device.info().name,
+                                    made.error().message));
         return {};
     }
 };

@@ -53,7 +53,8 @@ void clearBits(const ivec3& brick, VoxelGrid& grid) {
 Result<DeformingField> DeformingField::create(std::span<const MeshView> restMesh, const Bounds& reach, const VoxelFieldOptions& options) {
     if (restMesh.size() != 1) return badInput(fmt::format("A deforming field takes one mesh, not {}; join them.", restMesh.size()));
     if (reach.empty() || !isFinite(reach.min) || !isFinite(reach.max))
-        return badInput(fmt::format("The reach of a deforming mesh is no box: {} to {}.", named(reach.min), named(reach.max)));
+        return badInput(fmt::format("The reach of a deforming mesh is not a box: {} to {}; each minimum must be below its maximum.",
+                                    named(reach.min), named(reach.max)));
     try {
         Result<VoxelField> field = emptyVoxelField(restMesh, &reach, options, sizeof(uint32_t) + sizeof(vec4));
         if (!field) return field.error();
@@ -84,7 +85,7 @@ Result<DeformingField> DeformingField::create(std::span<const MeshView> restMesh
 Status DeformingField::checkPlaces(std::span<const vec3> positions) const {
     if (positions.size() != used_.size())
         return badInput(
-            fmt::format("A deforming mesh of {} vertices was given {} places; give one a vertex.", used_.size(), positions.size()));
+            fmt::format("A deforming mesh of {} vertices was given {} places; give one place per vertex.", used_.size(), positions.size()));
     for (size_t k = 0; k < positions.size(); ++k) {
         if (used_[k] != 0 && !within(reach_, positions[k]))
             return badInput(

@@ -246,7 +246,7 @@ std::span<const LabelRun> VoxelLabels::row(int y, int z) const {
 }
 
 VoxelLabels labelRegions(const VoxelGrid& surface, const VoxelGrid* inside) {
-    ASSERT(inside == nullptr || inside->size == surface.size, "label with an inside of the surface's size");
+    ASSERT(inside == nullptr || inside->size == surface.size, "`inside` must have the size of the surface");
     VoxelLabels labels;
     labels.size = surface.size;
     findRuns(surface, inside, labels);
@@ -263,7 +263,7 @@ VoxelLabels labelRegions(const VoxelGrid& surface, const VoxelGrid* inside) {
 }
 
 VoxelLabels labelsOf(const VoxelGrid& surface, std::span<const uint32_t> region, uint32_t regions) {
-    ASSERT(region.size() == surface.count(), "give each voxel a region");
+    ASSERT(region.size() == surface.count(), "give one region per voxel");
     VoxelLabels labels;
     labels.size = surface.size;
     findRuns(surface, nullptr, labels);
@@ -272,7 +272,7 @@ VoxelLabels labelsOf(const VoxelGrid& surface, std::span<const uint32_t> region,
     forAllRuns(labels, [&](uint32_t k, int y, int z, int first, int) {
         if (labels.runs[k].label == kInsideSurface) return;
         const uint32_t of = region[surface.index({first, y, z})];
-        ASSERT(of < regions, "number regions below their count");
+        ASSERT(of < regions, "a region's number must be below their count");
         if (firstRun[of] == kNone) firstRun[of] = k;
         root[k] = firstRun[of];
         outside[k] = of == 0 ? 1 : 0;
@@ -282,7 +282,7 @@ VoxelLabels labelsOf(const VoxelGrid& surface, std::span<const uint32_t> region,
 }
 
 VoxelGrid solidBits(const VoxelLabels& labels, const VoxelGrid& like) {
-    ASSERT(labels.size == like.size, "make bits of labels like the grid they came from");
+    ASSERT(labels.size == like.size, "labels and grid must have the same size");
     VoxelGrid solid{like.size, like.origin, like.voxel, {}};
     solid.bits.assign((like.count() + 31) / 32 * 4, 0);
     forVoxels(labels, [&](size_t first, size_t last, uint32_t label) {

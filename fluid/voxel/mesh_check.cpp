@@ -1,4 +1,4 @@
-// Checks of meshes, in plain sentences.
+// Checks of meshes and their error messages.
 #include "fluid/voxel/mesh_check.h"
 
 #include <fmt/format.h>
@@ -8,12 +8,12 @@
 namespace rivulet {
 namespace {
 
-// "mesh 2 of 3" where there are several.
+// "Mesh 2 of 3" if there are several.
 std::string which(size_t mesh, size_t count) { return count == 1 ? "The mesh" : fmt::format("Mesh {} of {}", mesh + 1, count); }
 
 std::optional<Error> checkMesh(const MeshView& mesh, const std::string& name) {
     if (mesh.indices.size() % 3 != 0)
-        return badInput(fmt::format("{} has {} indices, which is not three for each triangle; triangulate it.", name, mesh.indices.size()));
+        return badInput(fmt::format("{} has {} indices, not a multiple of three; triangulate it.", name, mesh.indices.size()));
     const auto inside = [&](uint32_t index) { return index < mesh.positions.size(); };
     const auto stray = std::find_if_not(mesh.indices.begin(), mesh.indices.end(), inside);
     if (stray != mesh.indices.end())
@@ -45,19 +45,19 @@ std::optional<Error> checkMeshes(std::span<const MeshView> meshes) {
     }
     if (triangles == 0) return badInput("There is no triangle to voxelise; the mesh is empty or holds only points and lines.");
     if (triangles > std::numeric_limits<uint32_t>::max())
-        return badInput(fmt::format("{} triangles are more than can be voxelised; thin the mesh.", triangles));
+        return badInput(fmt::format("{} triangles are too many to voxelise; simplify the mesh.", triangles));
     return std::nullopt;
 }
 
 std::optional<Error> checkVoxel(const MeshExtent& extent, float voxel) {
-    if (!(extent.longest > 0.0)) return badInput("All triangles lie in one point: the mesh has no extent; check its scale.");
+    if (!(extent.longest > 0.0)) return badInput("The mesh has no extent: all triangles are at one point; check its scale.");
     const dvec3 furthest = glm::max(glm::abs(dvec3(extent.bounds.min)), glm::abs(dvec3(extent.bounds.max)));
     const double away = std::max(furthest.x, std::max(furthest.y, furthest.z));
     // A float near `away` is exact to 2^-24 of it; a voxel must span several of those steps.
     if (!(voxel > 16.0 * away / 16777216.0) || !std::isnormal(voxel))
         return badInput(
-            fmt::format("Voxels of {:.3g} m cannot be told apart {:.3g} m from the origin in 32-bit floats; "
-                        "move the mesh nearer to the origin, scale it or lower the resolution.",
+            fmt::format("32-bit floats cannot distinguish voxels of {:.3g} m at {:.3g} m from the origin; "
+                        "move the mesh closer to the origin, scale it or lower the resolution.",
                         voxel, away));
     return std::nullopt;
 }

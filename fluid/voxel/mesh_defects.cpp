@@ -284,16 +284,15 @@ std::string MeshDefects::sentence() const {
     std::vector<std::string> wrong, done;
     if (boundaryEdges > 0) wrong.push_back(plural(boundaryEdges, "boundary edge (a hole)", "boundary edges (holes)"));
     if (nonManifoldEdges > 0) wrong.push_back(plural(nonManifoldEdges, "edge", "edges") + " of three or more faces");
-    if (unorientable > 0)
-        wrong.push_back(plural(unorientable, "part", "parts") + " with no inner and outer side, as a Moebius strip has none");
-    if (flippedFaces > 0) wrong.push_back(plural(flippedFaces, "face", "faces") + " turned against the others");
+    if (unorientable > 0) wrong.push_back(plural(unorientable, "part", "parts") + " that cannot be oriented (as a Moebius strip)");
+    if (flippedFaces > 0) wrong.push_back(plural(flippedFaces, "face", "faces") + " facing the wrong way");
     if (duplicateFaces > 0) wrong.push_back(plural(duplicateFaces, "repeated face", "repeated faces"));
     if (degenerateFaces > 0) wrong.push_back(plural(degenerateFaces, "face", "faces") + " with two corners at one place");
     if (wrong.empty()) return "";
     if (!watertight) done.emplace_back("inside is decided by winding number");
-    if (flippedFaces > 0) done.emplace_back("turned faces were turned back");
-    if (duplicateFaces + degenerateFaces > 0) done.emplace_back("repeated and degenerate faces were left out");
-    if (done.empty()) done.emplace_back("it encloses its inside all the same");
+    if (flippedFaces > 0) done.emplace_back("these faces were reversed");
+    if (duplicateFaces + degenerateFaces > 0) done.emplace_back("repeated and degenerate faces were removed");
+    if (done.empty()) done.emplace_back("it is closed all the same");
     return "The mesh has " + listed(wrong) + ": " + listed(done) + ".";
 }
 

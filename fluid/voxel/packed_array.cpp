@@ -91,11 +91,11 @@ bool ArrayUnpacker::finish() {
         const size_t left = ZSTD_decompressStream(impl_->context.get(), &out, &impl_->in);
         impl_->ended = left == 0;
         if (ZSTD_isError(left) != 0 || out.pos > 0 || (!impl_->ended && impl_->in.pos == before)) {
-            why_ = "it does not end where it should";
+            why_ = "it has extra bytes at its end";
             return false;
         }
     }
-    if (impl_->in.pos != impl_->in.size) why_ = "it does not end where it should";
+    if (impl_->in.pos != impl_->in.size) why_ = "it has extra bytes at its end";
     return impl_->in.pos == impl_->in.size;
 }
 

@@ -66,11 +66,11 @@ std::optional<VoxelField> readField(const fs::path& path, const VoxelFieldOption
     if (!fs::exists(path, ignored)) return std::nullopt;
     Result<VoxelFile> file = readVoxelFile(path.string(), options.memoryLimit);
     if (!file) {
-        log.notice(fmt::format("the cached voxels are made anew: {}", file.error().message));
+        log.notice(fmt::format("the cached voxels are baked again: {}", file.error().message));
         return std::nullopt;
     }
     if (!isFieldFor(*file, options)) {
-        log.notice(fmt::format("the cached voxels are made anew: {} is not what its name says", path.string()));
+        log.notice(fmt::format("the cached voxels are baked again: the content of {} does not match its name", path.string()));
         return std::nullopt;
     }
     fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trimCache keeps it longer
@@ -83,7 +83,8 @@ VoxelField writeField(const fs::path& path, VoxelField field, const Log& log) {
     fs::create_directories(path.parent_path(), error);
     VoxelFile file = fileOf(std::move(field));
     const Result<size_t> written = writeVoxelFile(path.string(), file);
-    if (!written) log.notice(fmt::format("the voxels of the scene's meshes are not kept for the next start: {}", written.error().message));
+    if (!written)
+        log.notice(fmt::format("the voxels of the scene's meshes are not stored for the next start: {}", written.error().message));
     if (written) trimCache(path.parent_path().string(), kEnding, SIZE_MAX, kVoxelCacheBytes);
     return fieldOf(std::move(file));
 }

@@ -24,11 +24,11 @@ constexpr int kMinResolution = 2, kMaxResolution = 2048;
 std::optional<Error> checkSurfaces(size_t meshes, std::span<const uint8_t> surfaces) {
     if (!surfaces.empty() && surfaces.size() != meshes)
         return badInput(
-            fmt::format("A voxel field was given {} surfaces for {} meshes; give one a mesh, or none.", surfaces.size(), meshes));
+            fmt::format("A voxel field was given {} surfaces for {} meshes; give one per mesh, or none.", surfaces.size(), meshes));
     const auto wrong = std::find_if(surfaces.begin(), surfaces.end(), [](uint8_t s) { return s > kMaxSurface; });
     if (wrong != surfaces.end())
-        return badInput(fmt::format("Surface {} of mesh {} is above {}: a voxel field tells {} surfaces apart; let meshes share one.",
-                                    *wrong, wrong - surfaces.begin() + 1, kMaxSurface, kMaxSurface + 1));
+        return badInput(fmt::format("Surface {} of mesh {} is above {}: a voxel field has {} surfaces; let meshes share one.", *wrong,
+                                    wrong - surfaces.begin() + 1, kMaxSurface, kMaxSurface + 1));
     return std::nullopt;
 }
 
@@ -61,10 +61,9 @@ Layout layoutFor(const Place& place, const VoxelFieldOptions& options, int resol
 Error tooMuchMemory(const Place& place, const VoxelFieldOptions& options, double needed, double limit) {
     int fits = options.resolution;
     while (fits >= kMinResolution && layoutFor(place, options, fits).bytes > limit) --fits;
-    const std::string remedy = fits >= kMinResolution
-                                   ? fmt::format("a resolution of {} fits", fits)
-                                   : fmt::format("the band of {} m and padding of {} m are too wide for meshes {} m long", options.band,
-                                                 options.padding, place.extent.longest);
+    const std::string remedy = fits >= kMinResolution ? fmt::format("a resolution of {} fits", fits)
+                                                      : fmt::format("the band of {} m and padding of {} m are too wide for meshes of {} m",
+                                                                    options.band, options.padding, place.extent.longest);
     return badInput(fmt::format("A voxel field of resolution {} needs {}, more than the {} allowed; {}.", options.resolution,
                                 readableBytes(needed), readableBytes(limit), remedy));
 }
@@ -119,9 +118,10 @@ bool VoxelField::inside(const vec3& p) const {
 
 Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bounds* reach, const VoxelFieldOptions& options, size_t extra) {
     if (options.resolution < kMinResolution || options.resolution > kMaxResolution)
-        return badInput(fmt::format("A voxel field's resolution is {}..{}, not {}.", kMinResolution, kMaxResolution, options.resolution));
+        return badInput(
+            fmt::format("The resolution of a voxel field must be {}..{}, not {}.", kMinResolution, kMaxResolution, options.resolution));
     if (!(options.band >= 0.0F && options.padding >= 0.0F) || !std::isfinite(options.band) || !std::isfinite(options.padding))
-        return badInput(fmt::format("A voxel field's band ({}) and padding ({}) must be finite lengths of 0 m or more.", options.band,
+        return badInput(fmt::format("The band ({}) and the padding ({}) of a voxel field must be finite and at least 0 m.", options.band,
                                     options.padding));
     if (auto error = checkMeshes(meshes)) return *error;
 
@@ -178,7 +178,7 @@ Result<VoxelField> bakeVoxelField(std::span<const MeshView> meshes, const VoxelF
 
 FieldParams fieldParams(const VoxelField& field, const FieldContact& contact) {
     const VoxelGrid& grid = field.surface;
-    ASSERT(!field.empty(), "bake a field before asking for its parameters");
+    ASSERT(!field.empty(), "bake a field before its parameters are read");
     FieldParams p{};
     p.origin = vec4(grid.origin, 1.0F / grid.voxel);
     p.sizeX = grid.size.x;

@@ -119,13 +119,13 @@ class Writer {
   private:
     static void check(const VoxelFile& file) {
         const VoxelGrid& grid = file.bits;
-        ASSERT(grid.count() > 0 && grid.bits.size() == bitBytesOf(grid), "a file takes a grid whose bits are as many as its size says");
+        ASSERT(grid.count() > 0 && grid.bits.size() == bitBytesOf(grid), "the number of bits must match the size of the grid");
         ASSERT(!file.labels || (file.labels->size == grid.size && file.labels->rowStart.size() == rowsOf(grid.size) + 1),
-               "labels must be of the grid they are written with");
+               "labels must have the size of the grid");
         if (!file.band) return;
-        ASSERT(file.band->band > 0, "a band has a width");
+        ASSERT(file.band->band > 0, "the width of a band must be above 0");
         eachColumn(*file.band, [&grid](Kind, const auto& items) {
-            ASSERT(items.size() == pointsOf(grid.size), "a band has a value at each of the grid's points");
+            ASSERT(items.size() == pointsOf(grid.size), "a band needs one value per grid point");
         });
     }
 
@@ -180,7 +180,7 @@ class Reader {
                 return std::move(file_);
             return *error_;
         } catch (const std::bad_alloc&) {
-            return failed(fmt::format("{}: there is not enough memory for what it holds", name_));
+            return failed(fmt::format("{}: not enough memory for its content", name_));
         }
     }
 
@@ -206,43 +206,43 @@ class Reader {
         if (bytes_.size() < sizeof(Header)) return refuse(fmt::format("it is cut off after {} bytes; {}", bytes_.size(), kRemedy));
         std::memcpy(&header_, bytes_.data(), sizeof(Header));
         if (header_.byteOrder == kOtherByteOrder)
-            return damaged(offsetof(Header, byteOrder), "it was written on a machine of the other byte order");
-        if (header_.byteOrder != kByteOrder) return damaged(offsetof(Header, byteOrder), "the mark of the byte order is damaged");
+            return damaged(offsetof(Header, byteOrder), "it was written on a machine with the other byte order");
+        if (header_.byteOrder != kByteOrder) return damaged(offsetof(Header, byteOrder), "the byte order mark is damaged");
         if (header_.version != kVersion)
             return damaged(offsetof(Header, version),
                            fmt::format("its version is {}, this program reads version {}", header_.version, kVersion));
         if (header_.fileBytes > bytes_.size())
-            return refuse(fmt::format("it is cut off: {} of its {} bytes are there; {}", bytes_.size(), header_.fileBytes, kRemedy));
-        if (header_.fileBytes < bytes_.size()) return damaged(header_.fileBytes, "there is more after the file's end");
+            return refuse(fmt::format("it is cut off: it has {} of {} bytes; {}", bytes_.size(), header_.fileBytes, kRemedy));
+        if (header_.fileBytes < bytes_.size()) return damaged(header_.fileBytes, "there are bytes after the file's end");
         if (header_.sections == 0 || header_.sections >= static_cast<uint32_t>(Kind::end) ||
             bytes_.size() < sizeof(Header) + header_.sections * sizeof(Section))
-            return damaged(offsetof(Header, sections), fmt::format("{} sections cannot be", header_.sections));
+            return damaged(offsetof(Header, sections), fmt::format("{} is not a possible number of sections", header_.sections));
         if (Writer::checksumOfHead(bytes_, header_.sections * sizeof(Section)) != header_.checksum)
-            return damaged(offsetof(Header, checksum), "the header's checksum is wrong: it was damaged");
+            return damaged(offsetof(Header, checksum), "the header's checksum is wrong: the file is damaged");
         return true;
     }
 
     bool readFrame() {
         VoxelGrid& grid = file_.bits;
         if (header_.mode > static_cast<uint32_t>(VoxelMode::surface))
-            return damaged(offsetof(Header, mode), fmt::format("there is no mode {}", header_.mode));
+            return damaged(offsetof(Header, mode), fmt::format("{} is not a mode", header_.mode));
         file_.mode = static_cast<VoxelMode>(header_.mode);
         const auto& s = header_.size;
         grid.size = {s[0], s[1], s[2]};
         for (int32_t side : s) {
             if (side < 1 || side > kLongestSide)
-                return damaged(offsetof(Header, size),
-                               fmt::format("a grid of {} x {} x {} voxels cannot be (1 to {} a side)", s[0], s[1], s[2], kLongestSide));
+                return damaged(offsetof(Header, size), fmt::format("a grid of {} x {} x {} voxels is not possible (1 to {} per side)", s[0],
+                                                                   s[1], s[2], kLongestSide));
         }
         grid.origin = {header_.origin[0], header_.origin[1], header_.origin[2]};
         if (!isFinite(grid.origin)) return damaged(offsetof(Header, origin), "the origin is not finite");
         grid.voxel = header_.voxel;
         if (!std::isnormal(grid.voxel) || grid.voxel < 0)
-            return damaged(offsetof(Header, voxel), fmt::format("a voxel's edge cannot be {}", grid.voxel));
+            return damaged(offsetof(Header, voxel), fmt::format("{} is not a possible edge of a voxel", grid.voxel));
         if (!std::isfinite(header_.band) || header_.band < 0)
-            return damaged(offsetof(Header, band), fmt::format("a band's width cannot be {}", header_.band));
+            return damaged(offsetof(Header, band), fmt::format("{} is not a possible width of the band", header_.band));
         if (header_.closed > 1 || header_.zero != 0)
-            return damaged(offsetof(Header, closed), fmt::format("whether the band has signs cannot be {}", header_.closed));
+            return damaged(offsetof(Header, closed), fmt::format("the flag of signed distances is {}, not 0 or 1", header_.closed));
         return true;
     }
 
@@ -255,16 +255,16 @@ class Reader {
             const Section& s = table_[k];
             const size_t place = sizeof(Header) + k * sizeof(Section);
             if (s.kind <= before || s.kind >= Kind::end || s.zero != 0)
-                return damaged(place, fmt::format("no section of kind {} can stand here", static_cast<uint32_t>(s.kind)));
+                return damaged(place, fmt::format("a section of kind {} is not possible here", static_cast<uint32_t>(s.kind)));
             before = s.kind;
-            if (s.offset != at || s.packedBytes > bytes_.size() - at) return damaged(place, "the section does not lie where it must");
+            if (s.offset != at || s.packedBytes > bytes_.size() - at) return damaged(place, "the section has a wrong offset or size");
             at += s.packedBytes;
             if (s.bytes / kMostBytesPerPackedByte > s.packedBytes)
                 return damaged(place, fmt::format("{} bytes cannot be packed into {}", s.bytes, s.packedBytes));
             if (XXH3_64bits(bytes_.data() + s.offset, s.packedBytes) != s.checksum)
-                return damaged(s, "its checksum is wrong: it was damaged");
+                return damaged(s, "its checksum is wrong: the section is damaged");
         }
-        if (at != bytes_.size()) return damaged(at, "no section says what this is");
+        if (at != bytes_.size()) return damaged(at, "these bytes belong to no section");
         return true;
     }
 
@@ -279,9 +279,9 @@ class Reader {
             const Section* section = find(kind);
             const char* name = kNames[static_cast<size_t>(kind)];
             if (wanted != (section != nullptr))
-                return refuse(fmt::format("the section {} is {}; {}", name, wanted ? "missing" : "not wanted here", kRemedy));
+                return refuse(fmt::format("the section {} is {}; {}", name, wanted ? "missing" : "not expected here", kRemedy));
             return section == nullptr || section->bytes == bytes ||
-                   damaged(*section, fmt::format("it holds {} bytes where the grid's size asks for {}", section->bytes, bytes));
+                   damaged(*section, fmt::format("it holds {} bytes; the size of the grid requires {}", section->bytes, bytes));
         };
         const VoxelGrid& grid = file_.bits;
         if (!needs(Kind::bits, true, bitBytesOf(grid))) return false;
@@ -293,7 +293,8 @@ class Reader {
         if (!columns) return false;
         const Section* labels = find(Kind::labels);
         const Section* materials = find(Kind::materials);
-        if ((labels == nullptr) != (materials == nullptr)) return refuse(fmt::format("labels and materials go together; {}", kRemedy));
+        if ((labels == nullptr) != (materials == nullptr))
+            return refuse(fmt::format("labels and materials must both be present; {}", kRemedy));
         double bytes = 0;
         for (const Section& s : table_) bytes += static_cast<double>(s.bytes);
         if (bytes > static_cast<double>(memoryLimit_))
@@ -303,9 +304,9 @@ class Reader {
         const size_t rows = rowsOf(grid.size), each = sizeof(uint32_t);
         const size_t runs = (labels->bytes - std::min<size_t>(labels->bytes, rows * each)) / (2 * each);
         if (labels->bytes != rows * each + runs * 2 * each || runs < rows || runs > grid.count() || runs > UINT32_MAX)
-            return damaged(*labels, fmt::format("{} bytes cannot be the runs of {} rows", labels->bytes, rows));
+            return damaged(*labels, fmt::format("{} bytes do not match the runs of {} rows", labels->bytes, rows));
         if (materials->bytes % sizeof(MaterialRecord) != 0 || materials->bytes / sizeof(MaterialRecord) > runs)
-            return damaged(*materials, fmt::format("{} bytes cannot be a list of materials", materials->bytes));
+            return damaged(*materials, fmt::format("{} bytes do not match a list of materials", materials->bytes));
         return true;
     }
 
@@ -344,11 +345,11 @@ class Reader {
         size_t sum = 0;
         labels.rowStart.reserve(rows + 1);
         for (uint32_t count : runs) {
-            if (count < 1 || count > total - sum) return damaged(*section, "the rows' runs are not as many as there are");
+            if (count < 1 || count > total - sum) return damaged(*section, "the numbers of runs of the rows do not match the runs");
             labels.rowStart.push_back(static_cast<uint32_t>(sum));
             sum += count;
         }
-        if (sum != total) return damaged(*section, "the rows' runs are not as many as there are");
+        if (sum != total) return damaged(*section, "the numbers of runs of the rows do not match the runs");
         labels.rowStart.push_back(static_cast<uint32_t>(sum));
         labels.runs.reserve(total);
         for (size_t k = 0; k < total; ++k) labels.runs.push_back({x[k], label[k]});
@@ -372,7 +373,7 @@ class Reader {
                     if ((first && run.x != 0) || run.x >= end || end > static_cast<uint32_t>(labels.size.x) ||
                         (!first && run.label == labels.runs[k - 1].label) ||
                         (run.label >= kFirstMaterial && run.label - kFirstMaterial >= labels.materials.size()))
-                        return damaged(section, fmt::format("run {} makes no sense", k));
+                        return damaged(section, fmt::format("run {} is not valid", k));
                     const size_t voxels = end - run.x;
                     if (run.label == kOutside) labels.outside += voxels;
                     if (run.label == kInsideSurface) labels.surface += voxels;
@@ -396,7 +397,7 @@ class Reader {
             if (m.voxels == 0 || r.voxels != m.voxels || ivec3(r.low[0], r.low[1], r.low[2]) != m.low ||
                 ivec3(r.high[0], r.high[1], r.high[2]) != m.high || !(std::abs(r.volume - volume) <= 1e-6 * volume) || r.solid > 1 ||
                 r.zero != 0)
-                return damaged(*find(Kind::materials), fmt::format("material {} is not what the labels say", k));
+                return damaged(*find(Kind::materials), fmt::format("material {} does not match the labels", k));
             m.volume = r.volume;
             m.solid = r.solid != 0;
         }
@@ -433,7 +434,7 @@ Result<std::string> packVoxelFile(const VoxelFile& file) {
     try {
         return Writer().write(file);
     } catch (const std::bad_alloc&) {
-        return failed("There is not enough memory to pack the voxels; lower the resolution.");
+        return failed("Not enough memory to pack the voxels; lower the resolution.");
     }
 }
 
@@ -454,7 +455,7 @@ Result<VoxelFile> readVoxelFile(const std::string& path, size_t memoryLimit) {
         if (!bytes) return bytes.error();
         return unpackVoxelFile(std::as_bytes(std::span(*bytes)), path, memoryLimit);
     } catch (const std::bad_alloc&) {
-        return failed(fmt::format("{}: there is not enough memory to read it", path));
+        return failed(fmt::format("{}: not enough memory to read it", path));
     }
 }
 

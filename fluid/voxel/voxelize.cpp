@@ -18,9 +18,10 @@ namespace rivulet {
 namespace {
 
 constexpr std::array<VoxelModeRow, 3> kModes{{
-    {"depth", "the thesis's depth images: what lines of sight reach; materials are what is connected, whatever the mesh", VoxelMode::depth},
-    {"solid", "inside where the winding number says so, open meshes too; and every voxel that a triangle touches", VoxelMode::solid},
-    {"surface", "every voxel that a triangle touches, and no other", VoxelMode::surface},
+    {"depth", "the thesis's depth images: surface where lines of sight end; materials are connected regions, for any mesh",
+     VoxelMode::depth},
+    {"solid", "inside by winding number, also of open meshes, and every voxel that a triangle touches", VoxelMode::solid},
+    {"surface", "only voxels that a triangle touches", VoxelMode::surface},
 }};
 
 constexpr const char* kCancelled = "Voxelising was cancelled.";
@@ -68,10 +69,10 @@ Result<VoxelGrid> layoutWithin(std::span<const MeshView> meshes, int resolution,
                                            : fmt::format("no resolution fits the {} allowed", readableBytes(limit));
     };
     if (extent.longest > 0.0 && resolution > kMaxVoxelResolution)
-        return badInput(fmt::format("The resolution is {}..{} voxels along the longest side, not {}, which would need {}; {}.",
+        return badInput(fmt::format("The resolution must be {}..{} voxels along the longest side, not {}, which would need {}; {}.",
                                     kMinVoxelResolution, kMaxVoxelResolution, resolution, readableBytes(needed(resolution)), fitting()));
     if (resolution < kMinVoxelResolution || resolution > kMaxVoxelResolution)
-        return badInput(fmt::format("The resolution is {}..{} voxels along the longest side, not {}.", kMinVoxelResolution,
+        return badInput(fmt::format("The resolution must be {}..{} voxels along the longest side, not {}.", kMinVoxelResolution,
                                     kMaxVoxelResolution, resolution));
     const Layout layout = extent.longest > 0.0 ? layoutFor(extent, resolution) : Layout{};
     if (auto error = checkVoxel(extent, layout.voxel)) return *error;
@@ -90,7 +91,7 @@ Result<VoxelGrid> layoutWithin(std::span<const MeshView> meshes, int resolution,
 }
 
 Error outOfMemory(int resolution) {
-    return failed(fmt::format("There is not enough memory to voxelise at a resolution of {}; lower it.", resolution));
+    return failed(fmt::format("Not enough memory to voxelise at a resolution of {}; lower it.", resolution));
 }
 
 double millisecondsSince(std::chrono::steady_clock::time_point start) {
@@ -188,7 +189,7 @@ std::string lostFeatures(std::span<const MeshView> meshes, const VoxelGrid& grid
     const MeshExtent extent = extentOf(meshes);
     const double resolution = kVoxelsAcross * extent.longest / (*fifth * voxel);
     return fmt::format(
-        "The mesh is {:.3g} wide and has features of {:.3g}: a voxel of {:.4g} cannot show them; that would take a resolution of {:.3g} "
+        "The mesh is {:.3g} wide and has features of {:.3g}: a voxel of {:.4g} cannot show them; they need a resolution of {:.3g} "
         "({}).",
         extent.longest, *fifth * voxel, voxel, resolution, readableBytes(bitsBytes(layoutFor(extent, resolution).voxels)));
 }

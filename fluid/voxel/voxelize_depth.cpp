@@ -29,7 +29,7 @@ class BoxPainter {
         if (device_.backend() == Backend::cpu) return ok();
         Result<Kernel> kernel = device_.kernel("voxel/voxelize_depth");
         if (!kernel)
-            return failed(fmt::format("Mode depth cannot run on this device, perhaps for want of 64-bit floats ({}); use the cpu.",
+            return failed(fmt::format("Mode depth cannot run on this device, possibly because it has no 64-bit floats ({}); use the cpu.",
                                       kernel.error().message));
         kernel_ = *kernel;
         const size_t most = kJobsBytes / sizeof(DepthJob);

@@ -163,7 +163,7 @@ Batch batchOf(const GridTriangles& triangles, size_t first, size_t end, const Vo
 Status onDevice(Device& device, const GridTriangles& triangles, VoxelGrid& grid) {
     const Result<Kernel> kernel = device.kernel("voxel/voxelize_surface");
     if (!kernel)
-        return failed(fmt::format("{} cannot voxelise (are its 64-bit floats missing?): {}; use the cpu.", device.info().name,
+        return failed(fmt::format("{} cannot voxelise, possibly because it has no 64-bit floats: {}; use the cpu.", device.info().name,
                                   kernel.error().message));
     Result<Buffer> bits = device.allocate(grid.bits.size());
     if (!bits) return bits.error();

@@ -58,7 +58,7 @@ TEST(VoxelDefects, TurnedFacesAreTurnedBack) {
     EXPECT_EQ(mesh.defects.flippedFaces, turned - mesh.defects.degenerateFaces);
     EXPECT_TRUE(mesh.defects.watertight);
     EXPECT_DOUBLE_EQ(signedVolume(mesh), volume);
-    EXPECT_NE(mesh.defects.sentence().find("turned against the others"), std::string::npos) << mesh.defects.sentence();
+    EXPECT_NE(mesh.defects.sentence().find("facing the wrong way"), std::string::npos) << mesh.defects.sentence();
 }
 
 TEST(VoxelDefects, ACavityKeepsItsSense) {

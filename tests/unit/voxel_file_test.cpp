@@ -407,7 +407,7 @@ TEST(VoxelFile, ForgedFramesAndSectionsAreRefused) {
         f.add(5, Words(45, 0));
         EXPECT_TRUE(unpack(f.bytes())) << errorOf(unpack(f.bytes()));
         f.band = 0;
-        refused(f, "distance is not wanted");
+        refused(f, "distance is not expected");
         f.band = 0.25F;
         refused(f, "outside the band");
     }
@@ -438,7 +438,7 @@ TEST(VoxelFile, ForgedFramesAndSectionsAreRefused) {
         f.add(1, Bytes{1, 2, 0, 0, 0});
         refused(f, "5 bytes");
         f.parts[0].bytes = 4;
-        refused(f, "does not end where it should");
+        refused(f, "extra bytes at its end");
         Forgery shorter;
         shorter.add(1, Bytes{1, 2, 0});
         shorter.parts[0].bytes = 4;
@@ -447,12 +447,12 @@ TEST(VoxelFile, ForgedFramesAndSectionsAreRefused) {
         refused(shorter, "cannot be unpacked");
         shorter = plain;
         shorter.parts[0].packed += plain.parts[0].packed;
-        refused(shorter, "does not end where it should");
+        refused(shorter, "extra bytes at its end");
     }
     {
         Forgery f = plain;
         f.add(2, Words{1, 1, 1, 1}, Words(4, 0), Words(4, 0));
-        refused(f, "labels and materials go together");
+        refused(f, "labels and materials must both be present");
     }
     EXPECT_NE(errorOf(unpack("")).find("empty"), std::string::npos);
     EXPECT_NE(errorOf(unpack("# a scene\n")).find("not the beginning of a voxel file"), std::string::npos);

@@ -16,10 +16,10 @@
 namespace rivulet {
 namespace {
 
-constexpr size_t kChunk = 2048;         // triangles a task
+constexpr size_t kChunk = 2048;         // triangles per task
 constexpr size_t kUpload = 256 * 1024;  // triangles at a time on a device: 28 MB
 
-// A triangle as shaders/voxel/crossing.h wants it.
+// A triangle in the layout of shaders/voxel/crossing.h.
 struct Prepared {
     std::array<double, CROSSING_DOUBLES> numbers;
     int sense;
@@ -88,7 +88,7 @@ void setRun(VoxelGrid& grid, size_t first, size_t end) {
 }
 
 void sortAndSet(ColumnCrossings& crossings, VoxelGrid& grid) {
-    // 32 columns fill whole words: tasks share none.
+    // 32 columns fill whole words, so tasks share no word.
     const size_t columns = columnsOf(grid), blocks = (columns + 31) / 32, across = static_cast<size_t>(grid.size.x);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, blocks, 8), [&](const tbb::blocked_range<size_t>& range) {
         for (size_t k = 32 * range.begin(); k < std::min(32 * range.end(), columns); ++k) {
@@ -134,7 +134,7 @@ ColumnCrossings crossColumns(const CrossedTriangles& triangles, VoxelGrid& grid)
 
 namespace {
 
-// Takes the first Error of several allocations and kernels.
+// Keeps the first Error of several allocations and kernels.
 struct Taker {
     Device& device;
     Status status = ok();
@@ -155,7 +155,7 @@ struct Taker {
     }
 };
 
-// Some triangles as the kernels want them, with their work items.
+// Some triangles in the layout of the kernels, with their work items.
 struct Batch {
     std::vector<double> numbers;
     std::vector<uint32_t> items;
@@ -179,7 +179,7 @@ Batch batchOf(const CrossedTriangles& triangles, size_t first, size_t last, cons
     return batch;
 }
 
-// Crossings at most, by the triangles' bounds.
+// Upper bound of the number of crossings, by the triangles' bounds.
 double mostCrossings(const CrossedTriangles& triangles, const VoxelGrid& grid) {
     double most = 0;
     for (size_t k = 0; k < triangles.size(); ++k) {
@@ -211,7 +211,7 @@ Result<ColumnCrossings> crossColumnsOn(Device& device, const CrossedTriangles& t
     if (!take.status) return take.status.error();
 
     CrossingParams params{grid.size.x, grid.size.y, grid.size.z, 0, static_cast<uint32_t>(grid.bits.size() / 4), 0, 0, 0};
-    // All triangles, kUpload at a time; what fits in one go is uploaded once.
+    // All triangles, kUpload at a time; a list that fits is uploaded once.
     Buffer numbers, items;
     const auto eachBatch = [&](auto run) {
         for (size_t first = 0; first < triangles.size() && take.status; first += kUpload) {

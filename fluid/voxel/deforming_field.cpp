@@ -1,4 +1,4 @@
-// Which bricks a change of places can have touched, and the wall's motion at their points.
+// Finds the bricks that a change of places can affect, and the wall's motion at their points.
 #include "fluid/voxel/deforming_field.h"
 
 #include <fmt/format.h>
@@ -118,7 +118,7 @@ Result<DeformingField::Change> DeformingField::update(std::span<const vec3> posi
     }
 }
 
-// Sets moved_ and counts.
+// Sets moved_ and returns the number of moved triangles.
 size_t DeformingField::findMoved(std::span<const vec3> positions) {
     size_t count = 0;
     for (size_t k = 0; k < moved_.size(); ++k) {
@@ -138,7 +138,7 @@ void DeformingField::bakeAll() {
     const DistanceBand band(grid, field_.band);
     std::fill(grid.bits.begin(), grid.bits.end(), uint8_t{0});
     voxelizeSurface(list, grid);
-    // What nothing reaches any more is cleared, the rest baked.
+    // Bricks that no triangle reaches any more are cleared; the others are baked.
     std::swap(occupied_, dirty_);
     std::fill(occupied_.begin(), occupied_.end(), uint8_t{0});
     band.bake(list, surfaces_, {}, {}, occupied_, {field_.distance, field_.normal, nearest_});
@@ -161,7 +161,7 @@ void DeformingField::bakeAll() {
     });
 }
 
-// Flags the bricks of `band` that the moved triangles reach from where they were or are, and widens [low, high] to hold them.
+// Flags the bricks of `band` that the moved triangles reach from their old or new places, and extends [low, high] to contain them.
 void DeformingField::markMoved(const DistanceBand& band, const std::vector<vec3>& before, std::span<uint8_t> flags, ivec3& low,
                                ivec3& high) const {
     const MeshView oldMesh{before, indices_, {}, {}}, newMesh{positions_, indices_, {}, {}};
@@ -179,7 +179,7 @@ void DeformingField::markMoved(const DistanceBand& band, const std::vector<vec3>
     }
 }
 
-// The triangles whose box comes within `margin` (m) of the bricks [low, high], in their old order: numbers, and corners.
+// Finds the triangles whose box is within `margin` (m) of the bricks [low, high], in their original order: numbers and corners.
 void DeformingField::findNear(const ivec3& low, const ivec3& high, float margin, std::vector<uint32_t>& numbers,
                               std::vector<uint32_t>& corners) const {
     const VoxelGrid& grid = field_.surface;
@@ -229,7 +229,7 @@ void DeformingField::bakePart(const std::vector<vec3>& before) {
               {field_.distance, field_.normal, nearest_});
 }
 
-// At the points of bricks done anew; and where the last update left a displacement, none.
+// Sets displacements at the points of bricks baked in this update, and clears those of the last update elsewhere.
 DeformingField::Change DeformingField::displace(const std::vector<vec3>& before) {
     const VoxelGrid& grid = field_.surface;
     const DistanceBand band(grid, field_.band);

@@ -11,15 +11,15 @@
 namespace rivulet {
 namespace {
 
-constexpr size_t kTriangles = 4096;  // a task's
-constexpr double kRounding = 1e-6;   // voxels: what an edge may be off; a column that one triangle leaves its neighbour must take
-constexpr int kMostPixels = 4096;    // of a job's bounds; a loop of a shader may end at 65,535
+constexpr size_t kTriangles = 4096;  // per task
+constexpr double kRounding = 1e-6;   // voxels: error of an edge; a column that one triangle leaves out its neighbour must include
+constexpr int kMostPixels = 4096;    // of a job's bounds; some shader loops are limited to 65,535
 
 struct Corner {
     double u = 0, v = 0, depth = 0;
 };
 
-// du / dv; 0 where no row can lie between, so that no infinity gets about.
+// du / dv; 0 if no row can lie between, to avoid infinity.
 double slopeOf(const Corner& from, const Corner& to) {
     const double slope = (to.u - from.u) / (to.v - from.v);
     return std::isfinite(slope) ? slope : 0.0;
@@ -49,7 +49,7 @@ void addJobs(const std::array<dvec3, 3>& triangle, int axis, const ivec3& size, 
     const auto [near, far] = std::minmax({c[0].depth, c[1].depth, c[2].depth});
     job.nearest = std::clamp(floorOf(near), 0, size[axis] - 1);
     job.furthest = std::clamp(floorOf(far), 0, size[axis] - 1);
-    // The plane through the corners: two ways along it, and their product across.
+    // The plane through the corners: two vectors in it, and their cross product.
     const double u1 = c[1].u - c[0].u, v1 = c[1].v - c[0].v, d1 = c[1].depth - c[0].depth;
     const double u2 = c[2].u - c[0].u, v2 = c[2].v - c[0].v, d2 = c[2].depth - c[0].depth;
     const double area = u1 * v2 - u2 * v1;

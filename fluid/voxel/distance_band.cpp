@@ -1,5 +1,5 @@
 // Bricks of 4^3 points in layers, each brick with the triangles that could be nearest to one of its points;
-// fluid/voxel/kernels/band_brick.cpp does a brick.
+// fluid/voxel/kernels/band_brick.cpp bakes one brick.
 #include "fluid/voxel/distance_band.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -22,8 +22,8 @@ namespace {
 constexpr int kEdge = DistanceBand::kBrick;
 constexpr size_t kBrickPoints = size_t{kEdge} * kEdge * kEdge;
 constexpr double kMiddle = 0.5 * (kEdge - 1);        // of a brick, from its first point
-constexpr double kBrickRadius = 2.5980762113533160;  // sqrt(3) kMiddle: from there to its corners
-constexpr size_t kTargetsAtOnce = size_t{1} << 20U;  // above that many each layer works its own out: memory
+constexpr double kBrickRadius = 2.5980762113533160;  // sqrt(3) kMiddle: from the middle to the corners
+constexpr size_t kTargetsAtOnce = size_t{1} << 20U;  // above this number each layer computes its own, to save memory
 
 double square(const dvec3& v) { return glm::dot(v, v); }
 dvec3 from(const double* v) { return {v[0], v[1], v[2]}; }
@@ -74,14 +74,14 @@ Target targetOf(const GridTriangle& t, double width, double furthest) {
         disc.normal[k] = static_cast<float>(unit[k]);
     }
     disc.radius = static_cast<float>(radius * 1.000001);
-    // Who is in reach has its centre within `span`; it is off by a rounding of `furthest` at most along each axis, and sums of products
-    // of such floats by 3e-6 of their square.
+    // A brick in reach has its centre within `span`. The centre's error is at most one rounding of `furthest` along each axis; sums of
+    // products of such floats have an error of 3e-6 of their square.
     const double span = radius + width + 3.0;
     disc.slack = static_cast<float>(4e-6 * span * span + 3e-7 * span * (furthest + radius));
     return target;
 }
 
-// From the triangle's nearest point to `point`, any length but 0: at the triangle itself its normal.
+// Direction from the triangle's nearest point to `point`, of any length above 0; at the triangle itself, its normal.
 dvec3 away(const BandTarget& t, const dvec3& point) {
     const dvec3 ab = from(t.ab), ac = from(t.ac), bc = from(t.bc);
     const dvec3 q = point - from(t.a);
@@ -100,7 +100,7 @@ dvec3 away(const BandTarget& t, const dvec3& point) {
     return way == dvec3(0.0) ? (t.area < 0.0 ? dvec3(0.0, 0.0, 1.0) : from(t.unit)) : way;
 }
 
-// In 0 or 1: whether a brick is to be done.
+// 0 or 1: whether a brick is to be baked.
 bool flagged(std::span<const uint8_t> flags, size_t brick) { return flags.empty() || flags[brick] != 0; }
 
 // Bricks along each axis.
@@ -119,7 +119,7 @@ Reach reachOf(const DistanceBand& band, const GridTriangle& triangle) {
     return r;
 }
 
-// Calls body(brick) for those of layer z that the triangle may reach. `bits`: room.
+// Calls body(brick) for the bricks of layer z that the triangle may reach. `bits`: scratch memory.
 template <class Body>
 void forReached(const BandKernels& kernels, double width, const Reach& reach, const BandDisc& disc, int z, std::vector<uint32_t>& bits,
                 const Body& body) {
@@ -141,9 +141,9 @@ void forReached(const BandKernels& kernels, double width, const Reach& reach, co
     }
 }
 
-// Memory a thread keeps from layer to layer.
+// Memory that a thread reuses from layer to layer.
 struct Workspace {
-    std::vector<BandTarget> targets;  // that reach the layer, if they are not worked out once for all
+    std::vector<BandTarget> targets;  // that reach the layer, unless all are computed once
     std::vector<BandDisc> discs;      // of each of these
     std::vector<uint32_t> bits;
     std::vector<uint32_t> listed;  // of each of these: its place in the list

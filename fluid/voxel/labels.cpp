@@ -1,4 +1,4 @@
-// Runs of equal kind along x, found 64 voxels at a time; then union-find over runs, a stack of layers a task.
+// Finds runs of equal kind along x, 64 voxels at a time; then union-find over runs, one stack of layers per task.
 #include "fluid/voxel/labels.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -14,8 +14,8 @@ namespace rivulet {
 namespace {
 
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-constexpr int kLayers = 16;        // a task's, of z
-constexpr size_t kRowChunk = 512;  // a task's rows; a multiple of 8, so that no two tasks write the same byte of bits
+constexpr int kLayers = 16;        // z layers per task
+constexpr size_t kRowChunk = 512;  // rows per task; a multiple of 8, so that no two tasks write the same byte of bits
 
 // Kinds of runs, before they have labels.
 constexpr uint32_t kOpen = 0, kWithin = 2, kCavity = 3;
@@ -38,7 +38,7 @@ uint64_t wordAt(const std::vector<uint8_t>& bits, size_t first) {
     return word;
 }
 
-// Calls body(x, kind) for each run of a row. A word differs from itself moved by one where runs start.
+// Calls body(x, kind) for each run of a row. Runs start where a word differs from itself shifted by one bit.
 template <class Body>
 void forRuns(const VoxelGrid& surface, const VoxelGrid* inside, size_t row, const Body& body) {
     const auto width = static_cast<size_t>(surface.size.x);
@@ -89,7 +89,7 @@ void findRuns(const VoxelGrid& surface, const VoxelGrid* inside, VoxelLabels& la
     });
 }
 
-// Roots are a region's lowest run, hence the same in whatever order runs are joined.
+// The root of a region is its lowest run, so it does not depend on the order of joins.
 class RunJoiner {
   public:
     explicit RunJoiner(const VoxelLabels& labels) : labels_(labels), parent_(labels.runs.size()) {}
@@ -161,7 +161,7 @@ void forAllRuns(const VoxelLabels& labels, const Body& body) {
     }
 }
 
-// From kinds to labels. Of each run `root` is its region's first run; `outside` of that: whether the region is kOutside.
+// Replaces kinds by labels. `root`: of each run, the first run of its region. `outside`: of each root, whether the region is kOutside.
 void numberRegions(VoxelLabels& labels, const std::vector<uint32_t>& root, const std::vector<uint8_t>& outside, float voxel) {
     std::vector<uint32_t> number(labels.runs.size(), kOutside);  // of roots
     forAllRuns(labels, [&](uint32_t k, int y, int z, int first, int last) {
@@ -219,7 +219,7 @@ void forVoxels(const VoxelLabels& labels, const Body& body) {
 
 }  // namespace
 
-// Hues a golden angle apart in OKLab (Ottosson 2020), lightness 0.75, chroma 0.11: as colourful as every hue can be.
+// Hues a golden angle apart in OKLab (Ottosson 2020), lightness 0.75, chroma 0.11: the largest chroma that every hue can have.
 vec3 materialColour(uint32_t index) {
     const double turn = 0.61803398874989485 * static_cast<double>(index) + 0.08;
     const double hue = 6.283185307179586 * (turn - std::floor(turn));

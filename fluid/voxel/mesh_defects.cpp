@@ -45,7 +45,7 @@ template <class T>
 struct Buckets {
     std::vector<uint32_t> start;
     std::vector<T> items;
-    // each(put) calls put(bucket, item) for every item, twice over.
+    // each(put) is called twice and calls put(bucket, item) for every item.
     template <class Each>
     Buckets(size_t buckets, Each each) : start(buckets + 2, 0) {
         each([&](uint32_t bucket, const T&) { ++start[bucket + 2]; });
@@ -57,7 +57,7 @@ struct Buckets {
     std::span<T> operator[](size_t b) { return std::span(items).subspan(start[b], start[b + 1] - start[b]); }
 };
 
-// Sets of faces joined by edges (Tarjan 1975), each face with its sense against its set's first: 1 if they disagree.
+// Sets of faces joined by edges (Tarjan 1975), each face with its orientation relative to the first of its set: 1 if they disagree.
 class Faces {
   public:
     explicit Faces(size_t count) : parent_(count), turned_(count, 0), twisted_(count, 0) {
@@ -83,7 +83,7 @@ class Faces {
         }
         return {face, turned};
     }
-    // `apart`: 1 if one of them must be turned for both to agree. The root of a set is its lowest face.
+    // `apart`: 1 if one of them must be reversed for both to agree. The root of a set is its lowest face.
     void join(uint32_t a, uint32_t b, uint8_t apart) {
         const Root ra = find(a), rb = find(b);
         const auto between = static_cast<uint8_t>(ra.turned ^ rb.turned ^ apart);
@@ -101,7 +101,7 @@ class Faces {
   private:
     std::vector<uint32_t> parent_;
     std::vector<uint8_t> turned_;   // against the parent
-    std::vector<uint8_t> twisted_;  // of a root: the set cannot be made consistent
+    std::vector<uint8_t> twisted_;  // of a root: the set cannot be oriented
 };
 
 // A face's edge in the bucket of its lower place.
@@ -112,14 +112,14 @@ struct HalfEdge {
     uint8_t down() const { return faceDown & 1U; }
 };
 
-// Faces of three different places, in the meshes' order; counts the others.
+// Lists the faces of three different places, in the meshes' order; counts the others.
 void weld(std::span<const MeshView> meshes, CleanMesh& mesh) {
     size_t corners = 0, most = 0;
     for (const MeshView& m : meshes) {
         corners += m.indices.size();
         most += std::min(m.positions.size(), m.indices.size());
     }
-    ASSERT(corners < size_t{1} << 31U, "hand over fewer than 2^31 corners of triangles");
+    ASSERT(corners < size_t{1} << 31U, "a mesh may have fewer than 2^31 corners of triangles");
     mesh.indices.reserve(corners);
     mesh.source.reserve(corners / 3);
     mesh.positions.reserve(most);
@@ -145,7 +145,7 @@ void weld(std::span<const MeshView> meshes, CleanMesh& mesh) {
     }
 }
 
-// Of faces alike, keeps the first.
+// Keeps the first of equal faces.
 void dropDuplicates(CleanMesh& mesh) {
     struct Rest {
         uint32_t second, third, face;
@@ -189,7 +189,7 @@ void dropDuplicates(CleanMesh& mesh) {
 
 using Edges = Buckets<HalfEdge>;
 
-// Half-edges by their lower place, those of an edge side by side, in the order of their faces.
+// Half-edges by their lower place; those of one edge are adjacent, in the order of their faces.
 Edges edgesOf(const CleanMesh& mesh) {
     Edges edges(mesh.positions.size(), [&](auto put) {
         for (uint32_t f = 0; f < mesh.source.size(); ++f) {
@@ -224,7 +224,7 @@ double areaOf(const CleanMesh& mesh, size_t face) {
     return 0.5 * glm::length(glm::cross(b - a, c - a));
 }
 
-// Numbers the components and turns what is in the minority. Returns which faces were turned.
+// Numbers the components and reverses the faces in the minority. Returns a flag per face: 1 if reversed.
 std::vector<uint8_t> makeConsistent(CleanMesh& mesh, Faces& faces) {
     MeshDefects& defects = mesh.defects;
     const size_t count = mesh.source.size();

@@ -9,12 +9,12 @@
 namespace rivulet {
 namespace {
 
-// Of a 256^3 band, level 3 takes twice the time for 3 % less; bytes sorted into planes made 25 % more.
+// For a 256^3 band, level 3 takes twice the time for 3 % fewer bytes; bytes sorted into planes gave 25 % more.
 constexpr int kLevel = 1;
-constexpr int kMostWindowLog = 23;  // 8 MiB: what a frame may make the reader keep; our level asks for 512 KiB
+constexpr int kMostWindowLog = 23;  // 8 MiB: the largest window that the reader accepts; the level used needs 512 KiB
 
 void require(size_t code) {
-    if (ZSTD_isError(code) != 0) throw std::bad_alloc();  // nothing else can go wrong with bytes that are to be compressed
+    if (ZSTD_isError(code) != 0) throw std::bad_alloc();  // compression of valid bytes has no other error
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ void ArrayPacker::feed(std::span<const std::byte> bytes, bool last) {
 struct ArrayUnpacker::Impl {
     std::unique_ptr<ZSTD_DCtx, size_t (*)(ZSTD_DCtx*)> context{ZSTD_createDCtx(), ZSTD_freeDCtx};
     ZSTD_inBuffer in{nullptr, 0, 0};
-    bool ended = false;  // the frame has
+    bool ended = false;  // the frame has ended
 };
 
 ArrayUnpacker::ArrayUnpacker(std::span<const std::byte> packed) : impl_(std::make_unique<Impl>()) {

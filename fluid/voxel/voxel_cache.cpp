@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kEnding = ".rvox";
 
-// 32 hexadecimal digits of everything that makes one field differ from another.
+// 32 hexadecimal digits: a hash of everything that can change a field.
 std::string keyOf(std::span<const MeshView> meshes, const VoxelFieldOptions& options) {
     const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(), XXH3_freeState);
     if (!state) throw std::bad_alloc();
@@ -55,12 +55,12 @@ VoxelField fieldOf(VoxelFile file) {
     return {std::move(file.bits), std::move(file.band->distance), std::move(file.band->normal), file.band->band, file.band->closed};
 }
 
-// What may be asked of a field although the file it comes from may be anybody's.
+// True if the file has a band as wide as the options and the kernels require; the file may come from anywhere.
 bool isFieldFor(const VoxelFile& file, const VoxelFieldOptions& options) {
     return file.band && file.band->band >= options.band && file.band->band >= 0.999F * kBandVoxels * file.bits.voxel;
 }
 
-// The field at `path`, if there is one that may be believed.
+// The field at `path`; empty if there is no valid file.
 std::optional<VoxelField> readField(const fs::path& path, const VoxelFieldOptions& options, const Log& log) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) return std::nullopt;
@@ -73,11 +73,11 @@ std::optional<VoxelField> readField(const fs::path& path, const VoxelFieldOption
         log.notice(fmt::format("the cached voxels are baked again: the content of {} does not match its name", path.string()));
         return std::nullopt;
     }
-    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trimCache keeps it longer
+    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // marks it as used, so trimCache keeps it longer
     return fieldOf(std::move(*file));
 }
 
-// The field as it was, once it is on the disk or not.
+// Writes the field to the disk if possible, and returns it unchanged.
 VoxelField writeField(const fs::path& path, VoxelField field, const Log& log) {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);

@@ -1,4 +1,4 @@
-// The static field: checks what it is given, lays the grid out, bakes bits and band.
+// The static field: checks its input, lays out the grid, bakes bits and band.
 #include "fluid/voxel/voxel_field.h"
 
 #include <fmt/format.h>
@@ -32,15 +32,15 @@ std::optional<Error> checkSurfaces(size_t meshes, std::span<const uint8_t> surfa
     return std::nullopt;
 }
 
-// Where the grid is to be.
+// The place of the grid.
 struct Place {
     MeshExtent extent;
-    size_t pointBytes = sizeof(float) + sizeof(uint32_t);  // a grid point's
+    size_t pointBytes = sizeof(float) + sizeof(uint32_t);  // per grid point
 };
 
 struct Layout {
     float voxel = 0, band = 0;
-    dvec3 voxels{0.0};  // along each axis; may be absurdly many
+    dvec3 voxels{0.0};  // along each axis; may be very large
     double bytes = 0;
 };
 
@@ -51,7 +51,8 @@ Layout layoutFor(const Place& place, const VoxelFieldOptions& options, int resol
     l.band = std::max(options.band, kBandVoxels * l.voxel);
     const double padding = std::max(options.padding, l.band);
     const dvec3 size = dvec3(extent.bounds.max) - dvec3(extent.bounds.min);
-    // One more than needed, so that half a voxel is left on each side for rounding, and faces of boxes lie amid voxels, not between.
+    // One more than needed: half a voxel remains on each side for rounding, and faces of boxes lie at centres of voxels, not between
+    // voxels.
     l.voxels = glm::ceil((size + 2.0 * padding) / static_cast<double>(l.voxel)) + 1.0;
     const dvec3 points = l.voxels + 1.0;
     l.bytes = points.x * points.y * points.z * static_cast<double>(place.pointBytes) + l.voxels.x * l.voxels.y * l.voxels.z / 8.0;
@@ -68,7 +69,7 @@ Error tooMuchMemory(const Place& place, const VoxelFieldOptions& options, double
                                 readableBytes(needed), readableBytes(limit), remedy));
 }
 
-// Where all meshes are watertight, makes distances inside negative.
+// If all meshes are watertight, makes distances inside negative.
 void signInside(std::span<const MeshView> meshes, VoxelField& field) {
     std::vector<CleanMesh> cleaned;
     for (const MeshView& mesh : meshes) {
@@ -76,7 +77,7 @@ void signInside(std::span<const MeshView> meshes, VoxelField& field) {
         cleaned.push_back(cleanMesh(std::span(&mesh, 1)));
         if (!cleaned.back().defects.watertight) return;
     }
-    // Voxels about the grid points: half a voxel off, one more each way.
+    // Voxels centred at the grid points: shifted by half a voxel, one more along each axis.
     VoxelGrid inside;
     inside.size = field.surface.size + 1;
     inside.voxel = field.surface.voxel;

@@ -1,4 +1,4 @@
-// The layout of .rvox, and everything that must hold of a file before it is believed.
+// The layout of .rvox, and all checks of a file.
 #include "fluid/voxel/voxel_file.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace rivulet {
 namespace {
 
-// The first byte is no letter and a line's end follows, so that a transfer as text shows.
+// The first byte is not ASCII and a line end follows, so a transfer as text is detected.
 constexpr std::array<uint8_t, 8> kMagic = {0x89, 'R', 'V', 'O', 'X', '\r', '\n', 0x1A};
 constexpr uint32_t kByteOrder = 0x01020304, kOtherByteOrder = 0x04030201;
 constexpr uint32_t kVersion = 1;
@@ -26,19 +26,19 @@ struct Header {
     std::array<uint8_t, 8> magic;
     uint32_t byteOrder, version;
     uint32_t mode;      // VoxelMode
-    uint32_t sections;  // how many
+    uint32_t sections;  // number of them
     std::array<int32_t, 3> size;
     std::array<float, 3> origin;
     float voxel;
-    float band;       // 0: the file has none
+    float band;       // m; 0: the file has no band
     uint32_t closed;  // 0 or 1: the band's distances have signs
     uint32_t zero;
-    uint64_t fileBytes;  // all of it
+    uint64_t fileBytes;  // size of the file
     uint64_t checksum;   // XXH3 of all above and of the table of sections below
 };
 static_assert(sizeof(Header) == 80 && std::is_trivially_copyable_v<Header>);
 
-// In the order of the file. What is in each, as arrays one after the other: see write() and read().
+// In the order of the file. For the arrays in each see write() and read().
 enum class Kind : uint32_t { bits = 1, labels, materials, distance, normal, end };
 constexpr const char* kNames[] = {"", "bits", "labels", "materials", "distance", "normal"};
 static_assert(std::size(kNames) == static_cast<size_t>(Kind::end));
@@ -60,7 +60,7 @@ struct MaterialRecord {
 };
 static_assert(sizeof(MaterialRecord) == 48 && std::is_trivially_copyable_v<MaterialRecord>);
 
-// The band's arrays, one item a grid point: another one is another line here, and a Kind.
+// The arrays of the band, one item per grid point. A new array needs one line here and a Kind.
 template <class Band, class Fn>
 void eachColumn(Band& band, const Fn& fn) {
     fn(Kind::distance, band.distance);
@@ -168,7 +168,7 @@ class Writer {
     std::vector<Section> table_;
 };
 
-// Each step believes only what those before it have proven; the first that fails leaves its sentence in error_.
+// Each step relies only on the checks before it; the first failure stores its message in error_.
 class Reader {
   public:
     Reader(std::span<const std::byte> bytes, std::string_view name, size_t memoryLimit)
@@ -191,7 +191,7 @@ class Reader {
         error_ = badInput(fmt::format("{}: {}", name_, what));
         return false;
     }
-    // `at`: the byte, `what`: what is wrong there.
+    // `at`: the byte; `what`: the fault.
     bool damaged(size_t at, const std::string& what) { return refuse(fmt::format("byte {}: {}; {}", at, what, kRemedy)); }
     bool damaged(const Section& section, const std::string& what) {
         return refuse(
@@ -273,7 +273,7 @@ class Reader {
         return found == table_.end() ? nullptr : &*found;
     }
 
-    // The sections that must be are there, as large as the grid says, and together they fit.
+    // Checks that all required sections exist, have the sizes of the grid, and fit into memory together.
     bool checkMemory() {
         const auto needs = [this](Kind kind, bool wanted, size_t bytes) {
             const Section* section = find(kind);
@@ -357,7 +357,7 @@ class Reader {
         return countVoxels(*section, labels) && checkMaterials(records, labels);
     }
 
-    // Checks the runs, and finds what they say of each material.
+    // Checks the runs, and computes voxels, volume and bounds of each material from them.
     bool countVoxels(const Section& section, VoxelLabels& labels) {
         for (VoxelMaterial& m : labels.materials) {
             m.low = labels.size;
@@ -451,7 +451,7 @@ Result<size_t> writeVoxelFile(const std::string& path, const VoxelFile& file) {
 
 Result<VoxelFile> readVoxelFile(const std::string& path, size_t memoryLimit) {
     try {
-        Result<std::string> bytes = readFile(path, memoryLimit);  // packed is smaller
+        Result<std::string> bytes = readFile(path, memoryLimit);  // a packed file is smaller
         if (!bytes) return bytes.error();
         return unpackVoxelFile(std::as_bytes(std::span(*bytes)), path, memoryLimit);
     } catch (const std::bad_alloc&) {

@@ -1,4 +1,4 @@
-// Slices: a plane of labels or distances, sampled a few times a pixel.
+// Slices: a plane of labels or distances, with several samples per pixel.
 #include "fluid/voxel/voxel_picture.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -98,8 +98,7 @@ class DistancePlane {
     ivec2 axes_;
 };
 
-// How much of a pixel, `pixel` voxels wide, the nearest line of equal distance covers, 0..1. The surface itself and the band's end are
-// none.
+// Share of a pixel, `pixel` voxels wide, that the nearest iso-line covers, 0..1. The surface and the end of the band have no line.
 float lineAt(const DistancePlane& plane, float u, float v, float band, float pixel) {
     const float distance = plane(u, v), step = band / kLinesInBand;
     const float nearest = std::round(distance / step) * step;
@@ -129,7 +128,7 @@ std::vector<vec3> coloursOf(const VoxelLabels& labels) {
     return colours;
 }
 
-// Where a sheet's tiles lie, in pixels.
+// Places of the tiles of a sheet, in pixels.
 struct SheetLayout {
     static constexpr int kMargin = 36, kGap = 20, kTrackBelow = 9, kTrackHeight = 3, kLongest = 340;
     int columns, rows, tileWidth, tileHeight;

@@ -1,5 +1,5 @@
-// The view from outside: rays through the grid, voxel by voxel where there is something near (Amanatides and Woo 1987), a brick of 16^3 at
-// a time where there is nothing. Light from a whole sky and one soft sun, by rays too: a few a pixel, shared among pixels of one face
+// The view from outside: rays through the grid, voxel by voxel near solid voxels (Amanatides and Woo 1987), one brick of 16^3
+// at a time in empty space. Light from the whole sky and one soft sun, also by rays: a few per pixel, shared among pixels of one face
 // (interleaved sampling, Keller and Heidrich 2001).
 #include <oneapi/tbb/blocked_range2d.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -15,19 +15,19 @@ namespace rivulet {
 namespace {
 
 constexpr int kMostCells = 512;
-constexpr int kBrick = 16;  // cells; of 4, 8 and 16 the fastest
+constexpr int kBrick = 16;  // cells; the fastest of 4, 8 and 16
 
 constexpr uint8_t kAir = 0, kShell = 1, kFirstColour = 2, kColours = 126;
-constexpr uint8_t kCutAway = 128;  // added to what was there
+constexpr uint8_t kCutAway = 128;  // added to the previous value
 
 struct Hit {
     ivec3 cell{0};
     vec3 place{0.0F};
-    int axis = -1;   // of the face; -1: none was met
-    float side = 0;  // where its normal points along it
+    int axis = -1;   // of the face; -1: no hit
+    float side = 0;  // direction of its normal along the axis
 };
 
-// What is drawn: one byte a cell, of one voxel or of a block of several.
+// The drawn cells, one byte each: one voxel, or a block of several.
 class Cells {
   public:
     Cells(const VoxelLabels& labels, bool cutOpen) {
@@ -57,16 +57,16 @@ class Cells {
         });
     }
 
-    ivec3 low{0}, high{0};  // of what is not air
+    ivec3 low{0}, high{0};  // of the cells that are not air
 
-    // What is there, or was before the cut.
+    // The content of a cell, also before the cut.
     uint8_t at(const ivec3& c) const { return inside(c) ? cells_[index(size_, c)] & (kCutAway - 1) : kAir; }
     bool cutAway(const ivec3& c) const { return inside(c) && cells_[index(size_, c)] > kCutAway; }
 
-    // The first cell on the way, in cells; axis -1: none. Cells are stepped as whole numbers, so rounding can neither skip nor repeat one.
+    // The first cell that the ray hits; axis -1: none. Steps between cells are integers, so rounding can neither skip nor repeat a cell.
     Hit trace(const vec3& from, const vec3& way) const {
         Hit hit;
-        vec3 per;  // t a cell
+        vec3 per;  // t per cell
         ivec3 step;
         float t = 0, end = std::numeric_limits<float>::max();
         for (int k = 0; k < 3; ++k) {
@@ -111,7 +111,7 @@ class Cells {
                 if (static_cast<uint8_t>(cells_[at] - 1) < kCutAway - 1) {
                     hit.cell = cell;
                     hit.place = from + way * t;
-                    if (hit.axis < 0) hit.axis = 1;  // it began inside
+                    if (hit.axis < 0) hit.axis = 1;  // the ray began inside
                     hit.side = static_cast<float>(-step[hit.axis]);
                     return hit;
                 }
@@ -127,7 +127,7 @@ class Cells {
         return Hit{};
     }
 
-    // From the solid to the air around a cell, over the two next cells each way; zero amid a plane cloud.
+    // Direction from solid to air around a cell, over two cells each way; zero inside a uniform region.
     vec3 smoothNormal(const ivec3& c) const {
         vec3 sum(0.0F);
         for (int z = -2; z <= 2; ++z) {
@@ -156,7 +156,7 @@ class Cells {
         }
     }
     static ivec3 cellAt(const vec3& p, const ivec3& least, const ivec3& most) { return glm::clamp(ivec3(glm::floor(p)), least, most); }
-    // Layer `z` of the voxels into the cells: of a block's voxels the surface wins, then any material.
+    // Copies layer `z` of the voxels into the cells: in a block the surface has priority, then any material.
     void fill(const VoxelLabels& labels, int z, int block) {
         for (int y = 0; y < labels.size.y; ++y) {
             const std::span<const LabelRun> runs = labels.row(y, z);
@@ -179,7 +179,7 @@ class Cells {
 };
 
 // Numbers in 0..1 for one sample of one pixel. A tile of kNear x kNear pixels and their samples share one even sequence (Roberts 2018), so
-// that what is averaged over a pixel's neighbours is as smooth as if each pixel had sent all of its tile's rays.
+// that the average over a pixel's neighbours is as smooth as if each pixel had sent all rays of its tile.
 constexpr int kNear = 6;
 constexpr int kMostSamples = 64;
 class Numbers {
@@ -200,7 +200,7 @@ class Numbers {
     double number_, offset_ = 0;
 };
 
-// A direction about unit `n`: denser towards it, as light falls on a wall.
+// A cosine-weighted direction about unit `n`.
 vec3 aboutNormal(const vec3& n, const vec2& random) {
     const float angle = 2 * kPi * random.x, z = 2 * random.y - 1, r = std::sqrt(std::max(0.0F, 1 - z * z));
     const vec3 sum = n + 0.999F * vec3(r * std::cos(angle), r * std::sin(angle), z);
@@ -217,14 +217,14 @@ class View {
         forward_ = -glm::normalize(vec3(0.62F, 0.50F, 0.78F));
         right_ = glm::normalize(glm::cross(forward_, vec3(0, 1, 0)));
         up_ = glm::cross(right_, forward_);
-        // As near as the box's corners allow: each must lie inside the picture less its margin, which is a plane for each of four sides.
+        // The camera is as near as the box's corners allow: each must lie inside the picture without its margin (four planes).
         const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
         tall_ = std::tan(0.5F * 26 * kPi / 180);
         wide_ = tall_ * aspect;
         constexpr float kFill = 0.90F;
         vec2 shift(0.0F);
         float distance = 0;
-        for (int round = 0; round < 8; ++round) {  // the margins become equal by and by
+        for (int round = 0; round < 8; ++round) {  // the margins converge to equal values
             const vec3 aim = target + shift.x * right_ + shift.y * up_;
             distance = 0;
             for (int k = 0; k < 8; ++k) {
@@ -245,7 +245,7 @@ class View {
         }
     }
 
-    // First what each pixel sees, with little light; then the light of neighbours on the same face is shared.
+    // First pass: hits of each pixel, with few light samples. Second pass: neighbours on the same face share their light.
     VoxelPicture draw() const {
         std::vector<Pixel> pixels(static_cast<size_t>(options_.width) * static_cast<size_t>(options_.height));
         const float unit = 2 * tall_ / static_cast<float>(options_.height);
@@ -269,21 +269,21 @@ class View {
     }
 
   private:
-    static constexpr int kMixed = -2, kOpen = -1, kFloor = 0;  // more: what voxels, and whether they are cut
+    static constexpr int kMixed = -2, kOpen = -1, kFloor = 0;  // above 0: the kind of voxel, and whether it is cut
 
     struct Seen {
         vec3 colour{0.0F}, light{0.0F}, normal{0.0F}, place{0.0F};
         int kind = kOpen;
     };
-    using Pixel = Seen;  // the mean of its samples; of kind kMixed: `colour` is the outcome
+    using Pixel = Seen;  // the mean of its samples; for kind kMixed, `colour` is the result
 
-    // The smooth normal of the cell met last.
+    // The smooth normal of the cell hit last.
     struct Kept {
         ivec3 cell{-1};
         vec3 smooth{0.0F};
     };
 
-    // How much of the work is done.
+    // Share of the work done.
     class Steps {
       public:
         explicit Steps(const VoxelViewOptions& options) : options_(options) {}
@@ -322,7 +322,7 @@ class View {
     Pixel look(int x, int y, Kept& kept, float unit) const {
         std::array<Seen, kMostSamples> seen;
         const int few = std::clamp(options_.samples, 1, kMostSamples), many = std::min(5 * few / 2, kMostSamples);
-        const int lit = (few + 1) / 2;  // of the first few the light of so many is enough, since neighbours share it
+        const int lit = (few + 1) / 2;  // rays of the first few that also sample light; neighbours share their light
         int taken = 0;
         const auto take = [&](int to) {
             for (; taken < to; ++taken) {
@@ -349,7 +349,7 @@ class View {
             const auto n = static_cast<float>(few);
             return {mean.colour / n, mean.light / static_cast<float>(lit), mean.normal / n, mean.place / n, seen[0].kind};
         }
-        // An edge: more rays, and none of its neighbours' light.
+        // An edge: more rays, without light of neighbours.
         take(many);
         vec3 sum(0.0F);
         Seen floor;
@@ -372,12 +372,12 @@ class View {
         return mean;
     }
 
-    // Whether two places are on one face, as far as light goes; `size`: of what may lie between, in cells.
+    // True if two places are on one face for the purpose of light; `size`: allowed distance, in cells.
     static bool alike(const Seen& a, const Seen& b, float size) {
         if (a.kind != b.kind) return false;
         if (a.kind <= kFloor) return true;
         const vec3 turn = a.normal - b.normal;
-        const float closeness = size > 1.0F ? 0.3F : 0.04F;  // where voxels are smaller than pixels their faces are not told apart
+        const float closeness = size > 1.0F ? 0.3F : 0.04F;  // faces of voxels smaller than pixels are not distinguished
         return glm::dot(turn, turn) < closeness && std::abs(glm::dot(a.place - b.place, a.normal)) < std::max(0.4F, 2 * size);
     }
 
@@ -403,7 +403,7 @@ class View {
     vec3 shaded(const Seen& s, const vec3& light) const {
         if (s.kind == kOpen) return s.colour;
         if (s.kind != kFloor) return s.colour * light;
-        // The ground is as pale as the backdrop but where something keeps the light from it.
+        // The ground is as pale as the backdrop, except in shadow.
         return s.colour * mix3(vec3(1.0F), glm::min(light / kOpenLight, vec3(1.0F)), nearness(s.place));
     }
 
@@ -433,7 +433,7 @@ class View {
         return {backdrop, lit ? light(place + 0.02F * up, up, up, numbers) : vec3(0.0F), up, place, kFloor};
     }
 
-    // 1 on the ground near the voxels, 0 so far away that little light is kept from it there.
+    // 1 on the ground near the voxels, 0 far away, where occlusion is negligible.
     float nearness(const vec3& place) const {
         const vec3 low(cells_.low), high(cells_.high), size = high - low;
         const vec3 beside = glm::max(vec3(0.0F), glm::max(low - place, place - high));

@@ -1,4 +1,4 @@
-// Checks what it is given, lays the grid out, and hands over to the mode.
+// Checks the input, lays out the grid, and runs the mode.
 #include "fluid/voxel/voxelize.h"
 
 #include <fmt/format.h>
@@ -28,13 +28,13 @@ constexpr const char* kCancelled = "Voxelising was cancelled.";
 
 struct Layout {
     float voxel = 0;
-    dvec3 voxels{0.0};  // along each axis; may be absurdly many
+    dvec3 voxels{0.0};  // along each axis; may be very large
 };
 
 Layout layoutFor(const MeshExtent& extent, double resolution) {
     Layout l;
     l.voxel = static_cast<float>(extent.longest / resolution);
-    // Not a float too short: the far side would be outside.
+    // Rounded up: otherwise the far side would be outside.
     while (static_cast<double>(l.voxel) * resolution < extent.longest) l.voxel = std::nextafter(l.voxel, std::numeric_limits<float>::max());
     const dvec3 size = dvec3(extent.bounds.max) - dvec3(extent.bounds.min);
     const auto voxel = static_cast<double>(l.voxel);
@@ -48,14 +48,14 @@ Layout layoutFor(const MeshExtent& extent, double resolution) {
 
 double bitsBytes(const dvec3& voxels) { return voxels.x * voxels.y * voxels.z / 8.0; }
 
-// A guess where labels are concerned: meshes cut rows into few runs.
+// An estimate for labels: meshes cut rows into few runs.
 double modelBytes(VoxelMode mode, const dvec3& voxels) {
     const double labels = voxels.y * voxels.z * 64.0;
     const double grids = mode == VoxelMode::solid ? 3.0 : 2.0;
     return grids * bitsBytes(voxels) + labels + (mode == VoxelMode::depth ? depthBytes(voxels) : 0.0);
 }
 
-// `bytesOf`: of a grid of so many voxels along each axis.
+// `bytesOf`: bytes of a grid with this number of voxels along each axis.
 template <class BytesOf>
 Result<VoxelGrid> layoutWithin(std::span<const MeshView> meshes, int resolution, size_t memoryLimit, const BytesOf& bytesOf) {
     if (auto error = checkMeshes(meshes)) return *error;
@@ -84,7 +84,8 @@ Result<VoxelGrid> layoutWithin(std::span<const MeshView> meshes, int resolution,
     grid.voxel = layout.voxel;
     const dvec3 low(extent.bounds.min), high(extent.bounds.max);
     const dvec3 side = layout.voxels * static_cast<double>(layout.voxel);
-    // The low corner is a float itself: the nearest to half the spare room below it is that corner, or no more than all that room below.
+    // The low corner is itself a float, so the float nearest to half the spare room below it is that corner, or below it by at most all
+    // that room.
     grid.origin = vec3(0.5 * (low + high) - 0.5 * side);
     grid.bits.assign((grid.count() + 31) / 32 * 4, 0);
     return grid;
@@ -134,7 +135,7 @@ Status voxelizeInto(VoxelModel& model, Device& device, std::span<const MeshView>
     std::function<bool(double)> progress;
     if (options.progress) progress = [&](double done) { return options.progress(0.4 + 0.4 * done); };
     if (Status status = voxelizeSolid(device, clean, inside, progress); !status) return status;
-    // The two grids of bits that everything else follows from; labels are counted by those who want them.
+    // The two grids of bits from which all else follows; the callers compute labels.
     model.milliseconds = millisecondsSince(start);
     if (!goOn(0.8)) return failed(kCancelled);
     model.labels = labelRegions(model.surface, &inside);

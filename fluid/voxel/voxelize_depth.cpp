@@ -17,10 +17,10 @@ namespace {
 constexpr size_t kGroupPixels = size_t{1} << 22U;  // of boxes drawn at once, unless one box has more; 32 MiB of images
 constexpr size_t kJobsBytes = size_t{1} << 26U;    // of a buffer on a GPU
 
-// What is known of a voxel: which lines through it were seen to pass it, along x, y, z; that one hits; that it has a label.
+// State of a voxel: lines along x, y, z have passed it; a line hits in it; it has a label.
 constexpr uint8_t kPassed = 7, kHit = 8, kLabelled = 16;
 
-// Draws boxes, wherever the device may be.
+// Draws boxes on any device.
 class BoxPainter {
   public:
     BoxPainter(Device& device, std::vector<DepthJob> jobs) : device_(device), jobs_(std::move(jobs)) {}
@@ -99,7 +99,7 @@ class Filler {
         label_.assign(count, kNone);
     }
 
-    // The unknown voxels' bounds in each slab.
+    // Bounds of the unknown voxels in each slab.
     std::vector<DepthBox> unknownBoxes(int axis, int thickness) const {
         std::vector<DepthBox> boxes(static_cast<size_t>((size_[axis] + thickness - 1) / thickness),
                                     {size_.x, size_.y, size_.z, -1, -1, -1, 0, 0});
@@ -135,7 +135,7 @@ class Filler {
         return boxes;
     }
 
-    // What the images of a box tell of each of its voxels.
+    // Updates the voxels of a box from its images.
     void see(const DepthBox& box, std::span<const uint32_t> images) {
         const auto width = static_cast<uint32_t>(box.highX - box.lowX + 1), height = static_cast<uint32_t>(box.highY - box.lowY + 1),
                    depth = static_cast<uint32_t>(box.highZ - box.lowZ + 1);
@@ -159,7 +159,7 @@ class Filler {
         });
     }
 
-    // Labels what is free in a box: its six faces, then its inside, plane by plane. `thin`: the axis that comes last, of a slab.
+    // Labels the free voxels of a box: its six faces, then its inside, plane by plane. `thin`: the axis that comes last, of a slab.
     void fill(const DepthBox& box, std::optional<int> thin) {
         const ivec3 low(box.lowX, box.lowY, box.lowZ), high(box.highX, box.highY, box.highZ);
         for (int axis = 0; axis < 3; ++axis) {
@@ -177,7 +177,7 @@ class Filler {
         }
     }
 
-    // Every line of layer z, along x, y and z: labels of neighbours are one, and so is what touches the grid's border and the outside.
+    // Every line of layer z, along x, y and z: joins labels of neighbours, and joins voxels at the grid's border with the outside.
     void joinLayer(int z) {
         for (int y = 0; y < size_.y; ++y) {
             const size_t row = at({0, y, z});
@@ -225,7 +225,7 @@ class Filler {
         return label;
     }
 
-    // Also of no label, which changes nothing.
+    // Without effect for kNone.
     uint32_t unite(uint32_t a, uint32_t b) {
         if (a == b || b == kNone) return a;
         if (a == kNone) return b;
@@ -235,12 +235,12 @@ class Filler {
         return parent_[b] = a;
     }
 
-    // What lies at `k` of the line along an axis that starts at voxel `line`.
+    // The voxel at `k` of the line along an axis that starts at voxel `line`.
     uint32_t labelAt(int axis, size_t line, int k) const {
         return k < 0 || k >= size_[axis] ? kOut : label_[line + stride_[idx(axis)] * idx(k)];
     }
 
-    // A segment takes the label of what it touches at its ends, or a new one.
+    // A segment takes the label of a voxel at one of its ends, or a new label.
     void fillSegment(int axis, size_t line, int first, int last) {
         uint32_t label = unite(labelAt(axis, line, first - 1), labelAt(axis, line, last + 1));
         if (label == kNone) {
@@ -335,8 +335,8 @@ class DepthVoxelizer {
     }
 
   private:
-    // Draws and fills what is unknown in each slab. As many slabs are drawn at once as memory is meant for: filling one makes nothing
-    // known in another.
+    // Draws and fills the unknown voxels of each slab. Several slabs are drawn at once, as memory allows, because filling one makes no
+    // voxel of another known.
     Status divide(int axis, int thickness, bool whole) {
         std::vector<DepthBox> boxes = filler_.unknownBoxes(axis, thickness);
         unknown_ = std::any_of(boxes.begin(), boxes.end(), [](const DepthBox& box) { return box.highX >= 0; });
@@ -376,7 +376,7 @@ class DepthVoxelizer {
     const DepthOptions& options_;
     DepthVoxels& result_;
     Filler filler_;
-    bool unknown_ = true;  // whether anything was, before the last division
+    bool unknown_ = true;  // whether a voxel was unknown before the last division
 };
 
 }  // namespace

@@ -49,7 +49,7 @@ Status voxelizeSolid(Device& device, const CleanMesh& mesh, VoxelGrid& inside, c
     try {
         if (device.backend() == Backend::cpu) {
             bool done = false;
-            // Where the caller finds no room in the arena, somebody else does its work, and may not call back.
+            // If the arena has no slot for the caller, another thread does its work and must not call back.
             const auto mine = [&, caller = std::this_thread::get_id()](double share) {
                 return !progress || std::this_thread::get_id() != caller || progress(share);
             };

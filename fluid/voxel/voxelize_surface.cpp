@@ -16,26 +16,26 @@ namespace rivulet {
 namespace {
 
 constexpr double kTouch = 1e-9;        // voxels
-constexpr double kLevel = 1e-11;       // of an axis: what x may add to it before it counts as sloped
-constexpr double kRounding = 4e-16;    // of a double's operation, with something to spare
+constexpr double kLevel = 1e-11;       // of an axis: largest part of x before the axis counts as sloped
+constexpr double kRounding = 4e-16;    // error of one operation in double, with a margin
 constexpr size_t kUpload = 64 * 1024;  // triangles at a time on a device: 29 MB
 
-// A triangle as shaders/voxel/overlap.h wants it.
+// A triangle in the layout of shaders/voxel/overlap.h.
 struct Prepared {
     std::array<double, OVERLAP_DOUBLES> numbers{};
-    std::array<int, OVERLAP_INTS> bounds{};  // of which 0, 1, 2: first voxel; 3, 4, 5: last; 6: level slabs; 7: slabs
+    std::array<int, OVERLAP_INTS> bounds{};  // 0, 1, 2: first voxel; 3, 4, 5: last; 6: level slabs; 7: slabs
     bool empty = false;                      // beyond the grid
     int wide() const { return bounds[4] - bounds[1] + 1; }
     int rows() const { return wide() * (bounds[5] - bounds[2] + 1); }
 };
 
-// a b - c d to an ulp or two (Kahan's way).
+// a b - c d with an error of one or two ulp (Kahan's method).
 double differenceOfProducts(double a, double b, double c, double d) {
     const double cd = c * d;
     return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-// Whether b - a is what the subtraction gives, without rounding (Knuth 1969).
+// True if the subtraction b - a has no rounding error (Knuth 1969).
 bool exact(const dvec3& a, const dvec3& b) {
     const dvec3 d = b - a, back = d - b, lost = (b - (d - back)) - (a + back);
     return lost.x == 0.0 && lost.y == 0.0 && lost.z == 0.0;
@@ -44,7 +44,7 @@ bool exact(const dvec3& a, const dvec3& b) {
 class Slabs {
   public:
     Slabs(Prepared& p, double across) : p_(p), across_(across) {}
-    // The triangle spans 0 to `extent` on the axis, give or take `slack`.
+    // The triangle spans 0 to `extent` on the axis, with an error of `slack`.
     void add(const dvec3& axis, double extent, double slack) {
         const double half = 0.5 * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
         if (half == 0.0) return;
@@ -79,7 +79,7 @@ class Slabs {
 
 void prepare(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, Prepared& p) {
     const auto [a, b, c] = triangles.corners(k);
-    const dvec3 ab = b - a, ac = c - a, bc = c - b;  // in the mesh's unit: mostly exact
+    const dvec3 ab = b - a, ac = c - a, bc = c - b;  // in the mesh's unit: usually exact
     const GridTriangle t{triangles.inVoxels(a), ab / triangles.voxel(), ac / triangles.voxel()};
     const dvec3 low = t.low(), high = t.high();
     ivec3 several(0);
@@ -100,13 +100,13 @@ void prepare(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, Pr
         if (axes == 3) {
             const dvec3 normal(differenceOfProducts(ab.y, ac.z, ab.z, ac.y), differenceOfProducts(ab.z, ac.x, ab.x, ac.z),
                                differenceOfProducts(ab.x, ac.y, ab.y, ac.x));
-            // Where the ways are rounded, the normal of a triangle almost without area is rounding's, and may separate by no more than
-            // that.
+            // If the edge vectors are rounded, the normal of a triangle with almost no area is noise and may separate by no more than the
+            // rounding error.
             const bool sure = exact(a, b) && exact(a, c);
             const double reach = glm::length(t.ab) + glm::length(t.ac) + 1.0;
             slabs.add(normal, 0.0, sure ? 0.0 : kRounding * glm::length(ab) * glm::length(ac) * reach);
         }
-        // Edges across the box's edges. Within a single layer of voxels only those across the layer's normal can tell them apart.
+        // Edges across the box's edges. Within a single layer of voxels only those across the layer's normal can separate.
         for (const auto& [e, other] : {std::pair{ab, t.ac}, std::pair{ac, t.ab}, std::pair{bc, t.ab}}) {
             if (axes == 3 || several.x == 0) slabs.add(dvec3(0.0, e.z, -e.y), e.z * other.y - e.y * other.z, 0.0);
             if (axes == 3 || several.y == 0) slabs.add(dvec3(-e.z, 0.0, e.x), e.x * other.z - e.z * other.x, 0.0);
@@ -116,7 +116,7 @@ void prepare(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, Pr
     slabs.write();
 }
 
-// Sets bits [first, last] of the row-major order. Other threads may be setting their neighbours.
+// Sets bits [first, last] of the row-major order. Other threads may set adjacent bits at the same time.
 void setRun(VoxelGrid& grid, size_t first, size_t last) {
     for (size_t byte = first >> 3U; byte <= last >> 3U; ++byte) {
         unsigned mask = 0xFFU;
@@ -138,7 +138,7 @@ void setTriangle(const Prepared& p, VoxelGrid& grid) {
     }
 }
 
-// Some triangles as the kernel wants them, with their work items.
+// Some triangles in the layout of the kernel, with their work items.
 struct Batch {
     std::vector<double> numbers;
     std::vector<int> bounds;

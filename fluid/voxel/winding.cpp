@@ -14,14 +14,14 @@
 namespace rivulet {
 namespace {
 
-constexpr uint32_t kPiece = 16;     // triangles of a fan looked at together
-constexpr double kModel = 0.1;      // turns that the first-order model of all pieces may be wrong by
-constexpr double kBend = 0.05;      // turns that it may be wrong by in a cell that is decided voxel by voxel
+constexpr uint32_t kPiece = 16;     // triangles of a fan treated together
+constexpr double kModel = 0.1;      // turns: largest error of the first-order model of all pieces
+constexpr double kBend = 0.05;      // turns: its largest error in a cell that is decided voxel by voxel
 constexpr double kRounding = 1e-9;  // turns
 constexpr double kSphere = 4.0 * std::numbers::pi;
-constexpr int kBrick = 4;  // voxels along the smallest cell that is asked for surface
-constexpr int kTask = 16;  // voxels along a cell that is one task
-constexpr int kFine = 8;   // voxels along a cell that looks at a piece's own edges
+constexpr int kBrick = 4;  // voxels along the smallest cell that is tested for surface
+constexpr int kTask = 16;  // voxels along the cell of one task
+constexpr int kFine = 8;   // voxels along a cell that uses a piece's own edges
 constexpr int kSmall = 2;  // voxels along a cell that is decided voxel by voxel
 
 // From the origin.
@@ -31,7 +31,7 @@ double distanceToSegment(const dvec3& a, const dvec3& b) {
     return glm::length(a + ab * (all > 0.0 ? std::clamp(along / all, 0.0, 1.0) : 0.0));
 }
 
-// Closed loops that the directed edges (pairs of places) form; no place twice in one. loop(places) for each.
+// Calls loop(places) for each closed loop of the directed edges (pairs of places); a loop contains no place twice.
 template <class Loop>
 void eachLoop(std::span<const uint32_t> edges, size_t places, Loop loop) {
     std::vector<uint32_t> next(places + 1, 0), target(edges.size() / 2);
@@ -45,7 +45,7 @@ void eachLoop(std::span<const uint32_t> edges, size_t places, Loop loop) {
         while (next[here] < end[here] || !path.empty()) {
             at[here] = static_cast<uint32_t>(path.size());
             path.push_back(here);
-            ASSERT(next[here] < end[here], "as many unmatched edges end at a place as begin there");
+            ASSERT(next[here] < end[here], "equally many unmatched edges must begin and end at a place");
             here = target[next[here]++];
             if (at[here] == UINT32_MAX) continue;
             const size_t first = at[here];
@@ -56,7 +56,7 @@ void eachLoop(std::span<const uint32_t> edges, size_t places, Loop loop) {
     }
 }
 
-// Sets or clears bits [first, end) of the row-major order. Other threads may be at their neighbours.
+// Sets or clears bits [first, end) of the row-major order. Other threads may write adjacent bits at the same time.
 void assignRun(VoxelGrid& grid, size_t first, size_t end, bool value) {
     for (size_t byte = first >> 3U; first < end && byte <= (end - 1) >> 3U; ++byte) {
         unsigned mask = 0xFFU;
@@ -70,7 +70,7 @@ void assignRun(VoxelGrid& grid, size_t first, size_t end, bool value) {
     }
 }
 
-// Which cubes of kBrick, 2 kBrick, 4 kBrick ... voxels a mesh passes through; touching counts.
+// The cubes of kBrick, 2 kBrick, 4 kBrick ... voxels that a mesh passes through; touching counts.
 class Occupied {
   public:
     Occupied(const CleanMesh& mesh, const VoxelGrid& grid) {
@@ -109,7 +109,7 @@ class Occupied {
 }  // namespace
 
 BoundaryCaps::BoundaryCaps(const CleanMesh& mesh, std::span<const dvec3> places) {
-    // Triangles that are a component each, by their lowest place.
+    // Triangles that are each one component, by their lowest place.
     std::vector<uint32_t> faces(mesh.defects.components, 0);
     for (uint32_t component : mesh.component) ++faces[component];
     struct Alone {
@@ -142,7 +142,7 @@ BoundaryCaps::BoundaryCaps(const CleanMesh& mesh, std::span<const dvec3> places)
     if (!loose.empty()) addLoose(mesh, places, loose);
 }
 
-// Each of these faces of the mesh is capped by its reverse.
+// Caps each of these faces of the mesh with its reverse.
 void BoundaryCaps::addLoose(const CleanMesh& mesh, std::span<const dvec3> places, std::span<const uint32_t> faces) {
     std::vector<uint8_t> gone(mesh.source.size(), 0);
     for (uint32_t f : faces) {
@@ -167,7 +167,7 @@ void BoundaryCaps::addFan(std::span<const uint32_t> loop, std::span<const dvec3>
         low = glm::min(low, places[place]);
         high = glm::max(high, places[place]);
     }
-    // Off the middle by a little in no special direction: a fan in the plane of voxel centres would leave their side of it to rounding.
+    // Slightly off the middle in an arbitrary direction: for a fan in a plane of voxel centres, rounding would decide their side.
     const dvec3 tip = sum / static_cast<double>(loop.size()) + glm::length(high - low) * dvec3(3.1e-5, -4.7e-5, 5.9e-5);
     const auto ringFirst = static_cast<uint32_t>(pieces_.size());
     for (size_t first = 0; first < loop.size(); first += kPiece) {
@@ -195,8 +195,8 @@ void BoundaryCaps::addFan(std::span<const uint32_t> loop, std::span<const dvec3>
 }
 
 double BoundaryCaps::winding(const Piece& piece, const dvec3& p) const {
-    // Half a triangle's solid angle is the argument of a complex number: the product of all has the sum as its argument, but for whole
-    // turns, which are counted.
+    // Half a triangle's solid angle is the argument of a complex number: the argument of the product of all is the sum,
+    // except for whole turns, which are counted.
     double re = 1, im = 0;
     int turns = 0;
     const dvec3 c = triangles_[piece.first][2] - p;
@@ -213,7 +213,7 @@ double BoundaryCaps::winding(const Piece& piece, const dvec3& p) const {
         turns -= im < 0.0 && y < 0.0 && turnedIm >= 0.0 ? 1 : 0;
         re = turnedRe;
         im = turnedIm;
-        if ((k & 3U) == 3U) {  // before it outgrows a double, or vanishes
+        if ((k & 3U) == 3U) {  // prevents overflow and underflow
             const double size = std::abs(re) + std::abs(im), shrink = size > 0.0 ? 1.0 / size : 1.0;
             re *= shrink;
             im *= shrink;
@@ -231,20 +231,20 @@ double BoundaryCaps::winding(const dvec3& p) const {
     return sum;
 }
 
-// A cube of voxels from the whole grid down, and what is known of the pieces there.
+// A cube of voxels (the whole grid, then halves), and the model of the pieces there.
 struct BoundaryCaps::Cell {
     ivec3 low{0};
     int size = 0;                // a power of two
     std::vector<uint32_t> near;  // pieces, ascending, that are not in the first-order model of the others:
-    double far = 0, slack = 0;   // their part at a point p is far + slope . p, give or take slack
+    double far = 0, slack = 0;   // their part at a point p is far + slope . p, with an error of slack
     dvec3 slope{0.0};
     double model(const dvec3& p) const { return far + glm::dot(slope, p); }
 };
 
 // Decides cells as a whole where bounds allow it, and halves the others. With r the integer nearest to the caps' part, a voxel is inside
-// iff its crossings count to other than r. r is constant where the caps' part stays between two halves, which takes a cell that no cap
-// passes through; the winding number itself is smooth across caps, and settles cells that the mesh does not pass through. The smallest
-// cells are decided voxel by voxel.
+// if and only if its crossings do not sum to r. r is constant where the caps' part stays between two half-integers, which requires a cell
+// that no cap passes through. The winding number itself is smooth across caps and decides cells that the mesh does not pass through. The
+// smallest cells are decided voxel by voxel.
 class BoundaryCaps::Descent {
   public:
     Descent(const BoundaryCaps& caps, const CleanMesh& mesh, const ColumnCrossings& crossings, VoxelGrid& grid)
@@ -268,7 +268,7 @@ class BoundaryCaps::Descent {
         double reach = 0;
     };
 
-    // What is smooth in a cell, to the first order: the caps' part, or, where a cap passes through, that less the crossings.
+    // First-order model of the smooth quantity in a cell: the caps' part, or, if a cap passes through, that part minus the crossings.
     struct Smooth {
         double value = 0;  // at the grid's corner
         dvec3 slope{0.0};
@@ -282,7 +282,7 @@ class BoundaryCaps::Descent {
         if (cell.low.x >= end.x || cell.low.y >= end.y || cell.low.z >= end.z) return;
         const ivec3 middle = glm::min(cell.low + cell.size / 2, end - 1);
         const Ball ball{dvec3(middle) + 0.5, glm::length(dvec3(glm::max(middle - cell.low, end - 1 - middle)))};
-        if (partBelowHalf(cell, ball)) return;  // what the crossings say holds
+        if (partBelowHalf(cell, ball)) return;  // the crossings decide
         Cell inner = cell;
         inner.near.clear();
         double part = 0;
@@ -296,7 +296,7 @@ class BoundaryCaps::Descent {
             capped = capped || passes;
         }
         part += inner.model(ball.middle);
-        // Over the ball the part is within `change` of that, and within `bend` of what the gradient makes of it, but for the caps' steps.
+        // Over the ball the part is within `change` of the value, and within `bend` of the linear model, except for the caps' steps.
         const Wires wires = outline(inner.near, ball);
         const dvec3 slope = inner.slope + wires.slope / kSphere;
         const double bend = inner.slack + 0.5 * ball.reach * ball.reach * wires.bend / kSphere + kRounding;
@@ -340,8 +340,8 @@ class BoundaryCaps::Descent {
         return true;
     }
 
-    // Adds a piece whose part at the middle is `value` to the first-order model if that is good enough all over the ball; else says whether
-    // the piece may pass through the ball.
+    // Adds a piece whose part at the middle is `value` to the first-order model if its error is small enough all over the ball; else
+    // returns whether the piece may pass through the ball.
     bool moveToModel(const Piece& piece, double value, const Ball& ball, Cell& cell, bool& passes) const {
         const double apart = glm::length(piece.centre - ball.middle) - piece.radius - ball.reach, second = 0.5 * ball.reach * ball.reach;
         // By its outline as a wire (Biot and Savart), or by its area as dipoles.
@@ -365,7 +365,7 @@ class BoundaryCaps::Descent {
     // Currents along edges: their field at the ball's middle is the solid angle's gradient (Biot and Savart).
     struct Wires {
         dvec3 slope{0.0};
-        double steepest = 0, bend = 0;  // bounds all over the ball, on the first and the second derivative
+        double steepest = 0, bend = 0;  // bounds of the first and the second derivative over the ball
         void add(const dvec3& from, const dvec3& to, const Ball& ball) {
             const dvec3 a = from - ball.middle, b = to - ball.middle;
             const double apart = distanceToSegment(a, b) - ball.reach;
@@ -384,12 +384,12 @@ class BoundaryCaps::Descent {
     template <class Wire>
     void eachWire(const Piece& piece, Wire wire) const {
         for (uint32_t t = piece.first; t < piece.end; ++t) wire(caps_.triangles_[t][0], caps_.triangles_[t][1]);
-        if (piece.next == static_cast<uint32_t>(&piece - caps_.pieces_.data())) return;  // a fan by itself: its ends meet
+        if (piece.next == static_cast<uint32_t>(&piece - caps_.pieces_.data())) return;  // the piece is a whole fan: its ends meet
         wire(caps_.triangles_[piece.first][1], caps_.triangles_[piece.first][2]);
         wire(caps_.triangles_[piece.end - 1][2], caps_.triangles_[piece.end - 1][0]);
     }
 
-    // Of several pieces: where they meet their outlines cancel.
+    // For several pieces: their outlines cancel where they meet.
     Wires outline(const std::vector<uint32_t>& near, const Ball& ball) const {
         Wires wires;
         for (uint32_t k : near) {
@@ -403,7 +403,7 @@ class BoundaryCaps::Descent {
         return wires;
     }
 
-    // False is certain.
+    // If false, certain.
     bool passesThrough(const Piece& piece, const Ball& ball) const {
         for (uint32_t k = piece.first; k < piece.end; ++k) {
             const Corners& t = caps_.triangles_[k];
@@ -416,7 +416,7 @@ class BoundaryCaps::Descent {
         return false;
     }
 
-    // By the smooth model; where that cannot tell, by the pieces; where theirs cannot, by all of them.
+    // By the smooth model; if that is undecided, by the near pieces; if these are undecided, by all pieces.
     void decideEach(const ivec3& low, const ivec3& end, const Cell& cell, const Smooth& smooth) {
         for (int z = low.z; z < end.z; ++z) {
             for (int y = low.y; y < end.y; ++y) {
@@ -453,7 +453,7 @@ class BoundaryCaps::Descent {
                 assignRun(grid_, grid_.index({low.x, y, z}), grid_.index({low.x, y, z}) + across(low, end), value);
     }
 
-    // Sets what the crossings count to other than `nearest`, and clears the rest.
+    // Sets the voxels whose crossings do not sum to `nearest`, and clears the others.
     void compare(const ivec3& low, const ivec3& end, int nearest) {
         if (nearest == 0) return;
         for (int z = low.z; z < end.z; ++z) {

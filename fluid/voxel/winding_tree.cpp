@@ -1,6 +1,6 @@
 // A field of dipoles n(y) over patches is, at p with R = p - centre and y = centre + s, the sum over k of (-1)^k / k! times the k-th moment
-// of n in s with the derivatives of 1 / |R|. The k-th term of a Taylor series in s and in the way within a ball together is at most (k + 1)
-// t^k A / (4 pi R^2), A the area and t the share of R that both radii are: that bounds what is left off.
+// of n in s with the derivatives of 1 / |R|. The k-th term of a Taylor series in s and in the offset within a ball together is at most (k +
+// 1) t^k A / (4 pi R^2), A the area and t the sum of both radii over R: this bounds the remainder.
 #include "fluid/voxel/winding_tree.h"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -18,11 +18,11 @@ namespace {
 constexpr double kSphere = 4.0 * std::numbers::pi;
 constexpr double kRounding = 1e-9;  // turns
 constexpr uint32_t kLeaf = 8;       // patches
-constexpr int kFine = 8;            // voxels along a cell that looks at single patches
+constexpr int kFine = 8;            // voxels along a cell that uses single patches
 constexpr int kLast = 4;            // voxels along a cell that is decided, or halved once more where many patches are near
-constexpr size_t kCrowd = 12;       // of those many
+constexpr size_t kCrowd = 12;       // patches that count as many
 
-// Of solid angles: half of one is the argument of this.
+// Half the solid angle is the argument of this complex number.
 struct Turned {
     double y, x;
 };
@@ -38,10 +38,10 @@ double distanceToSegment(const dvec3& a, const dvec3& b) {  // from the origin
     return glm::length(a + ab * (all > 0.0 ? std::clamp(along / all, 0.0, 1.0) : 0.0));
 }
 
-// What terms beyond the second order come to, over area / (4 pi R^2).
+// Bound of the terms above the second order, relative to area / (4 pi R^2).
 double beyondSecond(double t) { return t * t * t * (4.0 - 3.0 * t) / ((1.0 - t) * (1.0 - t)); }
 
-// The field of a current from a to b at the origin is the slope of a solid angle (Biot and Savart); and the slope's own.
+// The field of a current from a to b at the origin is the gradient of a solid angle (Biot and Savart); also the gradient's derivative.
 void addWire(const dvec3& a, const dvec3& b, dvec3& slope, dmat3& bend) {
     const double la = glm::length(a), lb = glm::length(b);
     const double g = 1.0 / la + 1.0 / lb, h = la * lb + glm::dot(a, b), f = g / h;
@@ -137,7 +137,7 @@ double WindingTree::winding(const Patch& patch, const dvec3& p) const {
     double sum = 0;
     for (uint32_t t = patch.first; t < patch.end; ++t) {
         const Turned turned = halfAngle(triangles_[t], p);
-        // Most are far and small: the series of the arctangent, to 2e-11 of it.
+        // Most are far and small: series of the arctangent, relative error 2e-11.
         const double r = turned.x > 0.0 ? turned.y / turned.x : 1.0, q = r * r;
         sum += q < 1e-2 ? r * (1.0 - q * (1.0 / 3.0 - q * (0.2 - q * (1.0 / 7.0 - q / 9.0)))) : std::atan2(turned.y, turned.x);
     }
@@ -154,7 +154,7 @@ struct WindingTree::Cell {
     ivec3 low{0};
     int size = 0;                          // a power of two
     LocalField far;                        // about the middle
-    std::vector<uint32_t> nodes, patches;  // that are not in it
+    std::vector<uint32_t> nodes, patches;  // that are not in the model
     dvec3 middle() const { return dvec3(low) + 0.5 * size; }
     double reach() const { return 0.5 * std::sqrt(3.0) * (size - 1); }
 };
@@ -209,7 +209,7 @@ class WindingTree::Descent {
             for (int k = 0; k < 8; ++k) half(k);
     }
 
-    // Nobody's part is more than its area over its least distance squared.
+    // The part of a patch is at most its area over its least distance squared.
     bool belowHalf(const Cell& cell) const {
         const double reach = cell.reach();
         double most = std::abs(cell.far.value) + reach * glm::length(cell.far.slope) + cell.far.slack + kRounding;
@@ -223,7 +223,7 @@ class WindingTree::Descent {
                std::all_of(cell.patches.begin(), cell.patches.end(), [&](uint32_t k) { return add(tree_.patches_[k]); });
     }
 
-    // Into the model, or apart into what it holds, or left for smaller cells.
+    // A node is added to the model, replaced by its children, or left for smaller cells.
     void sortNode(uint32_t number, Cell& cell) const {
         const Node& node = tree_.nodes_[number];
         const double reach = cell.reach();
@@ -264,7 +264,7 @@ class WindingTree::Descent {
             ((-15.0 * along * i7) * glm::outerProduct(r, r) + (3.0 * i5) * (cross + glm::transpose(cross) + along * dmat3(1.0))) / kSphere;
     }
 
-    // By its outline, which the sum of its triangles' is.
+    // By its outline, the sum of the outlines of its triangles.
     bool moveToModel(const Patch& patch, Cell& cell) const {
         const dvec3 middle = cell.middle();
         const double reach = cell.reach(), away = glm::length(patch.centre - middle);
@@ -324,7 +324,7 @@ class WindingTree::Descent {
             }
         }
     }
-    // Other threads may be at its neighbours.
+    // Other threads may write adjacent bits at the same time.
     void assign(size_t voxel, bool value) {
         const auto mask = static_cast<uint8_t>(1U << (voxel & 7U));
         std::atomic_ref<uint8_t> bits(grid_.bits[voxel >> 3U]);
@@ -335,7 +335,7 @@ class WindingTree::Descent {
             bits.fetch_and(static_cast<uint8_t>(~mask), std::memory_order_relaxed);
     }
 
-    // Voxels low to end are done.
+    // Voxels low to end are finished.
     void tell(const ivec3& low, const ivec3& end) {
         const ivec3 size = end - low;
         const size_t done = done_ += static_cast<size_t>(size.x) * static_cast<size_t>(size.y) * static_cast<size_t>(size.z);

@@ -19,7 +19,7 @@ DepthVoxels voxelize(Device& device, const Mesh& mesh, const ivec3& size, bool t
     return made ? std::move(*made) : DepthVoxels{};
 }
 
-// The mesh's bounds become the grid's.
+// Scales the mesh so that its bounds are those of the grid.
 Mesh stretched(Mesh mesh, const ivec3& size) {
     Bounds bounds;
     for (const vec3& p : mesh.positions) bounds.add(p);

@@ -83,7 +83,7 @@ TEST_P(VoxelDevices, GeneratedMeshes) {
 }
 
 TEST_P(VoxelDevices, ManyLayersOfOneColumn) {
-    // More crossings than the kernel's counters take: 400 boxes about each other.
+    // More crossings than the kernel's counters can hold: 400 nested boxes.
     test::Mesh nested;
     for (int k = 0; k < 400; ++k) {
         const float edge = 1.0F - 0.002F * static_cast<float>(k);

@@ -1,4 +1,4 @@
-// What the distance band stores beside the distance: the direction to the point, and whose wall is nearest.
+// The distance band stores the direction to the point and the surface number of the nearest wall.
 #include "fluid/voxel/distance_band.h"
 
 #include <gtest/gtest.h>
@@ -21,10 +21,10 @@ vec3 unpack(uint32_t code) {
     return n;
 }
 
-// rad; by the chord, which small angles do not drown in rounding.
+// rad; by the chord, which is accurate for small angles.
 double angle(const dvec3& a, const dvec3& b) { return 2.0 * std::asin(0.5 * glm::length(glm::normalize(a) - glm::normalize(b))); }
 
-TEST(VoxelBand, DirectionsKeepTheirWord) {
+TEST(VoxelBand, PackedDirectionsAreWithinTheStatedAngle) {
     std::mt19937 random(3);
     std::normal_distribution<double> at;
     double worst = 0;
@@ -41,7 +41,7 @@ TEST(VoxelBand, DirectionsKeepTheirWord) {
         worst = std::max(worst, angle(d, dvec3(n)));
     }
     std::printf("worst error of a stored direction: %.3g rad\n", worst);
-    EXPECT_LT(worst, 1.73e-4 + 3e-7);  // what the header says, and unpacking in floats
+    EXPECT_LT(worst, 1.73e-4 + 3e-7);  // the bound of the header, and unpacking in floats
     EXPECT_GT(worst, 1e-4);
     for (int axis = 0; axis < 3; ++axis) {
         for (double side : {-2.0, 1e-3}) {
@@ -54,7 +54,7 @@ TEST(VoxelBand, DirectionsKeepTheirWord) {
     EXPECT_NEAR(glm::length(unpack(packNormal(dvec3(0.0), 9))), 1.0F, 1e-6F);
 }
 
-TEST(VoxelBand, EachPointKnowsWhoseWallIsNearest) {
+TEST(VoxelBand, EachPointStoresTheSurfaceOfTheNearestWall) {
     const Mesh meshes[] = {test::makeSphere(vec3(-0.6F, 0, 0), 0.5F, 12), test::makeBox(vec3(0.1F, -0.4F, -0.4F), vec3(0.9F, 0.4F, 0.4F)),
                            test::makeSheet(vec3(0, 0.7F, 0), vec3(0, 1, 0), 1.5F)};
     const MeshView views[] = {meshes[0].view(), meshes[1].view(), meshes[2].view()};
@@ -68,7 +68,7 @@ TEST(VoxelBand, EachPointKnowsWhoseWallIsNearest) {
             for (int x = 0; x <= all->surface.size.x; ++x, ++k) {
                 if (!(all->distance[k] < all->band)) continue;
                 const vec3 p = all->surface.origin + all->surface.voxel * vec3(x, y, z);
-                // What each solid is said to be by its own formula; the sphere is a polyhedron, a little smaller.
+                // Distances by each solid's formula; the sphere is a polyhedron, slightly smaller.
                 const vec3 q = glm::abs(p - vec3(0.5F, 0, 0)) - 0.4F;
                 const float box = std::abs(glm::length(glm::max(q, vec3(0.0F))) + std::min(0.0F, std::max(q.x, std::max(q.y, q.z))));
                 const vec3 s = glm::max(glm::abs(p - vec3(0, 0.7F, 0)) - vec3(0.75F, 0, 0.75F), vec3(0.0F));
@@ -94,7 +94,7 @@ TEST(VoxelBand, EachPointKnowsWhoseWallIsNearest) {
     EXPECT_EQ(errorOf({}), "no error");
 }
 
-// Floats only sieve; what they may not do is lose the nearest. Distances above are against brute force on this machine's instruction set.
+// The sieve in floats must not lose the nearest triangle. The tests above compare with brute force on this machine's instruction set.
 TEST(VoxelBand, SameForAnyInstructionSet) {
     Mesh mesh = test::makeJumble(21, 140);
     for (const vec3& p : test::makeSphere(vec3(0.3F), 0.6F, 16).positions) mesh.positions.push_back(p);
@@ -126,13 +126,13 @@ TEST(VoxelBand, SameForAnyInstructionSet) {
     }
 }
 
-// Turns every face round.
+// Reverses every face.
 Mesh inverted(Mesh mesh) {
     for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) std::swap(mesh.indices[k + 1], mesh.indices[k + 2]);
     return mesh;
 }
 
-// Vertices that rounding set apart, at seams and poles, at one place.
+// Merges vertices that rounding separated, at seams and poles.
 Mesh welded(Mesh mesh) {
     for (vec3& p : mesh.positions) p = glm::round(p * 16384.0F) / 16384.0F;
     return mesh;
@@ -153,7 +153,7 @@ Mesh joined(const std::vector<Mesh>& meshes) {
     return all;
 }
 
-// How often the mesh's faces wind round p, by their solid angles (van Oosterom and Strackee 1983).
+// The winding number of the mesh at p, by solid angles (van Oosterom and Strackee 1983).
 double winding(const Mesh& mesh, const dvec3& p) {
     double sum = 0;
     for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
@@ -166,7 +166,7 @@ double winding(const Mesh& mesh, const dvec3& p) {
     return sum / (4.0 * 3.14159265358979323846);
 }
 
-// Against `inside`, at every grid point further than `margin` (voxels) from the surface.
+// Compares with `inside` at every grid point further than `margin` (voxels) from the surface.
 void expectSigns(const std::vector<Mesh>& meshes, int resolution, const char* name, const std::function<bool(const dvec3&)>& inside) {
     const std::vector<MeshView> views = viewsOf(meshes);
     const Result<VoxelField> field = bakeVoxelField(views, {.resolution = resolution});
@@ -196,7 +196,7 @@ TEST(VoxelBand, NegativeInsideClosedMeshes) {
     expectSigns({out}, 20, "ball inside out", windsRound(out));
     const Mesh shell = welded(joined({test::makeSphere(vec3(0), 1.0F, 9), inverted(test::makeSphere(vec3(0.1F), 0.6F, 9))}));
     expectSigns({shell}, 20, "shell", windsRound(shell));
-    // Two that overlap, one of them inside out: each has its own inside.
+    // Two overlapping meshes, one of them inverted: each has its own inside.
     const Mesh box = inverted(test::makeBox(vec3(0.2F, -0.3F, -0.2F), vec3(0.9F, 0.3F, 0.4F)));
     expectSigns({ball, box}, 20, "ball and box",
                 [&](const dvec3& p) { return std::abs(winding(ball, p)) > 0.5 || std::abs(winding(box, p)) > 0.5; });
@@ -217,8 +217,8 @@ TEST(VoxelBand, UnsignedUnlessAllMeshesAreClosed) {
     }
 }
 
-// Kernels and clearance ask how far the mesh is, from either side: the sign changes nothing for them.
-TEST(VoxelBand, TheSignIsNotSeenByWhoAsksForTheDistance) {
+// Kernels and clearance read the distance from either side: the sign changes nothing for them.
+TEST(VoxelBand, TheSignDoesNotChangeTheDistanceOfKernelsAndClearance) {
     const Mesh ball = welded(test::makeSphere(vec3(0), 0.5F, 12));
     const MeshView view = ball.view();
     const Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 30});
@@ -286,8 +286,8 @@ std::array<Angles, 2> normalErrors(const Mesh& mesh, int resolution, const Surfa
     return out;
 }
 
-// accuracy.md, wall normals: the gradient of the interpolated distance where particles rest, against the true surfaces that the meshes
-// stand for. The facets' own error is in it: 0.5 degrees at most for the ball, 0.35 for the tube.
+// accuracy.md, wall normals: the gradient of the interpolated distance where particles rest, compared with the true surfaces that the
+// meshes approximate. The error of the facets is included: 0.5 degrees at most for the ball, 0.35 for the tube.
 TEST(VoxelBand, WallNormals) {
     std::normal_distribution<float> bell;
     std::uniform_real_distribution<float> even(-0.5F, 0.5F);
@@ -322,7 +322,7 @@ TEST(VoxelBand, WallNormals) {
                 EXPECT_TRUE(resolution < 64 || a.mean < 1.0) << resolution;
                 EXPECT_TRUE(resolution < 64 || a.p95 < 3.0) << resolution;
             }
-            EXPECT_LT(p[side].p95, 0.01) << "a plane is not blended with anything";
+            EXPECT_LT(p[side].p95, 0.01) << "a plane has no second wall to blend with";
         }
     }
 }

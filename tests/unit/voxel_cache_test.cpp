@@ -1,4 +1,4 @@
-// The cache of baked fields: the same bits as without it, whatever state it is in.
+// The cache of baked fields: it returns the same bits as the baker, in any state of the folder.
 #include "fluid/voxel/voxel_cache.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sets a variable, or takes it away, as long as it lives.
+// Sets or removes a variable for the lifetime of the object.
 class Variable {
   public:
     Variable(const char* name, const std::optional<std::string>& value) : name_(name) {
@@ -58,7 +58,7 @@ class VoxelCache : public ::testing::Test {
         const MeshView view = mesh.view();
         return bakeVoxelField({&view, 1}, options_);
     }
-    // Got with so many notices; as baked.
+    // Reads the field, expects this number of notices and the baked result.
     void expectRight(size_t notices) {
         const Result<VoxelField> got = get(mesh_), baked = bake(mesh_);
         ASSERT_TRUE(got) << got.error().message;
@@ -89,7 +89,7 @@ TEST_F(VoxelCache, TheSecondTimeIsReadFromTheDisk) {
     expectRight(0);
     EXPECT_EQ(onlyFile(), path);
 
-    // What is on the disk is what is got: another value there is another value here.
+    // The file is read: another value there gives another value here.
     Result<VoxelFile> file = readVoxelFile(path.string());
     ASSERT_TRUE(file) << file.error().message;
     ASSERT_NE(file->band->distance[5], 0.0F);
@@ -100,7 +100,7 @@ TEST_F(VoxelCache, TheSecondTimeIsReadFromTheDisk) {
     EXPECT_EQ(got->distance[5], 0.0F);
 }
 
-TEST_F(VoxelCache, WhateverMakesAnotherFieldIsAnotherFile) {
+TEST_F(VoxelCache, AnyInputThatChangesTheFieldChangesTheFile) {
     size_t expected = 1;
     expectRight(0);
     const auto isNew = [&](const char* what) {
@@ -131,7 +131,7 @@ TEST_F(VoxelCache, WhateverMakesAnotherFieldIsAnotherFile) {
     isNew("in the other order");
 }
 
-TEST_F(VoxelCache, AFileThatCannotBeBelievedIsMadeAnew) {
+TEST_F(VoxelCache, ADamagedFileIsBakedAgain) {
     expectRight(0);
     const fs::path path = onlyFile();
     const auto size = fs::file_size(path);
@@ -188,10 +188,10 @@ TEST_F(VoxelCache, AFullDiskIsANotice) {
     std::signal(SIGXFSZ, handler);
     ASSERT_TRUE(got) << got.error().message;
     EXPECT_EQ(notices_.size(), 1U);
-    EXPECT_TRUE(files().empty()) << "nothing half-written stays";
+    EXPECT_TRUE(files().empty()) << "no partial file remains";
 }
 
-TEST_F(VoxelCache, TheFolderIsWhereTheVariablesSay) {
+TEST_F(VoxelCache, TheVariablesChooseTheFolder) {
     const Variable userHome("HOME", "/home/somebody");
     EXPECT_EQ(voxelCacheFolder(), folder().string());
     for (const std::optional<std::string>& none :
@@ -205,7 +205,7 @@ TEST_F(VoxelCache, TheFolderIsWhereTheVariablesSay) {
     EXPECT_TRUE(files().empty());
 }
 
-TEST_F(VoxelCache, ErrorsAreTheBakersOwn) {
+TEST_F(VoxelCache, ErrorsAreThoseOfTheBaker) {
     test::Mesh broken = mesh_;
     broken.indices[4] = 99999;
     const Result<VoxelField> got = get(broken), baked = bake(broken);
@@ -221,7 +221,7 @@ TEST_F(VoxelCache, ErrorsAreTheBakersOwn) {
     EXPECT_TRUE(notices_.empty());
 }
 
-TEST_F(VoxelCache, ManyAtOnceDoNotDisturbEachOther) {
+TEST_F(VoxelCache, ConcurrentUseGivesTheSameField) {
     const Result<VoxelField> baked = bake(mesh_);
     std::vector<std::thread> threads;
     std::atomic<int> right = 0;
@@ -242,7 +242,7 @@ TEST_F(VoxelCache, ManyAtOnceDoNotDisturbEachOther) {
     EXPECT_EQ(onlyFile().extension(), ".rvox");
 }
 
-TEST_F(VoxelCache, WhatWasUsedLongestAgoMakesRoom) {
+TEST_F(VoxelCache, TheLeastRecentlyUsedFileIsRemoved) {
     fs::create_directories(folder());
     const auto now = fs::file_time_type::clock::now();
     const auto make = [&](const char* name, size_t bytes, std::chrono::minutes age) {
@@ -261,7 +261,7 @@ TEST_F(VoxelCache, WhatWasUsedLongestAgoMakesRoom) {
     EXPECT_TRUE(fs::exists(folder() / "newer.rvox"));
     EXPECT_FALSE(fs::exists(folder() / "crashed.rvox.1-0.tmp"));
     EXPECT_TRUE(fs::exists(folder() / "at_work.rvox.2-0.tmp"));
-    EXPECT_TRUE(fs::exists(folder() / "notes.txt")) << "not ours";
+    EXPECT_TRUE(fs::exists(folder() / "notes.txt")) << "not a cache file";
     EXPECT_EQ(files().size(), 4U);
 
     // Reading counts as use.
@@ -274,7 +274,7 @@ TEST_F(VoxelCache, WhatWasUsedLongestAgoMakesRoom) {
     expectRight(0);
     EXPECT_FALSE(fs::exists(folder() / "newer.rvox"));
     options_.resolution = 16;
-    EXPECT_EQ(files().size(), 5U) << "both fields, another.rvox and the two that are not ours";
+    EXPECT_EQ(files().size(), 5U) << "both fields, another.rvox and the two foreign files";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What cleanMesh counts, turns and leaves out, against expected.json of the shared test meshes and meshes made wrong on purpose.
+// The counts and corrections of cleanMesh, compared with expected.json of tests/meshes, and on meshes with defects made here.
 #include <gtest/gtest.h>
 #include <json/json.h>
 
@@ -44,7 +44,7 @@ TEST(VoxelDefects, HolesAreCountedAndNamed) {
     EXPECT_EQ(mesh.defects.sentence(), "The mesh has 4 boundary edges (holes): inside is decided by winding number.");
 }
 
-TEST(VoxelDefects, TurnedFacesAreTurnedBack) {
+TEST(VoxelDefects, ReversedFacesAreCorrected) {
     Mesh ball = test::makeSphere(vec3(0), 1.0F, 12);
     const double volume = signedVolume(cleaned(ball));
     std::mt19937 random(3);
@@ -61,11 +61,11 @@ TEST(VoxelDefects, TurnedFacesAreTurnedBack) {
     EXPECT_NE(mesh.defects.sentence().find("facing the wrong way"), std::string::npos) << mesh.defects.sentence();
 }
 
-TEST(VoxelDefects, ACavityKeepsItsSense) {
+TEST(VoxelDefects, ACavityKeepsItsOrientation) {
     Mesh shell = test::makeBox(vec3(-1), vec3(1));
     Mesh hole = test::makeBox(vec3(-0.5F), vec3(0.5F));
     for (size_t t = 0; t < hole.indices.size(); t += 3) std::swap(hole.indices[t + 1], hole.indices[t + 2]);
-    std::swap(hole.indices[1], hole.indices[2]);  // but for one face
+    std::swap(hole.indices[1], hole.indices[2]);  // except one face
     const MeshView views[] = {shell.view(), hole.view()};
     const CleanMesh mesh = cleanMesh(views);
     EXPECT_EQ(mesh.defects.flippedFaces, 1U);
@@ -75,7 +75,7 @@ TEST(VoxelDefects, ACavityKeepsItsSense) {
     EXPECT_EQ(mesh.component.back(), 1U);
 }
 
-TEST(VoxelDefects, RepeatedAndDegenerateFacesGo) {
+TEST(VoxelDefects, RepeatedAndDegenerateFacesAreRemoved) {
     Mesh box = test::makeBox(vec3(-1), vec3(1));
     const std::vector<uint32_t> first(box.indices.begin(), box.indices.begin() + 3);
     box.indices.insert(box.indices.end(), {first[1], first[2], first[0]});  // again, from another corner
@@ -125,16 +125,16 @@ TEST(VoxelDefects, UnmatchedEdgesFormLoops) {
     }
 }
 
-// expected.json counts edges and components before anything is cleaned, by indices, and components share a vertex. Here places count,
-// duplicates and degenerate faces are gone, and a component's faces share edges of two faces. Where that makes a difference:
+// expected.json counts edges and components before anything is cleaned, by indices, and components share a vertex. Here equal places
+// are merged, duplicate and degenerate faces are removed, and the faces of a component share edges of two faces. The differences:
 const std::map<std::string, std::array<size_t, 3>>& differences() {
     static const std::map<std::string, std::array<size_t, 3>> rows{
         // {boundary edges, edges of three and more faces, components}
-        {"sphere_degenerate", {0, 0, 1}},             // its bad edges are those of the faces that go
+        {"sphere_degenerate", {0, 0, 1}},             // its bad edges belong to the removed faces
         {"nonmanifold_edge_two_cubes", {0, 1, 2}},    // two cubes share no edge of two faces
-        {"nonmanifold_vertex_two_cubes", {0, 0, 2}},  // nor do these
-        {"sphere_holes", {736, 0, 6}},                // five islands hang on by a vertex
-        {"coplanar_boxes", {0, 8, 9}},                // the boxes' corners and edges fall together; patches between edges of four faces
+        {"nonmanifold_vertex_two_cubes", {0, 0, 2}},  // the same
+        {"sphere_holes", {736, 0, 6}},                // five islands are connected by a vertex only
+        {"coplanar_boxes", {0, 8, 9}},                // corners and edges of the boxes coincide; patches between edges of four faces
     };
     return rows;
 }
@@ -155,7 +155,7 @@ TEST(VoxelDefects, TestMeshesAsExpected) {
         EXPECT_EQ(mesh.defects.nonManifoldEdges, counts[1]) << name;
         EXPECT_EQ(mesh.defects.components, counts[2]) << name;
         EXPECT_EQ(mesh.defects.unorientable, name == "mobius" ? 1U : 0U) << name;
-        // What closes by indices closes here too; and nothing that is consistent is turned.
+        // A mesh that is closed by indices is closed here too, and consistent faces are not reversed.
         EXPECT_EQ(mesh.defects.flippedFaces, 0U) << name;
         if (mesh.defects.watertight && want["dup_directed"].asUInt() == 0) {
             EXPECT_NEAR(signedVolume(mesh), want["signed_volume"].asDouble(), 1e-5 * std::abs(want["signed_volume"].asDouble()) + 1e-6)

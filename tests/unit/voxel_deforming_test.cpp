@@ -1,4 +1,4 @@
-// A field baked again in parts is the field baked from nothing; and the wall's motion at its points is the mesh's.
+// A field baked again in parts equals a complete bake, and its displacements are the motion of the mesh.
 #include "fluid/voxel/deforming_field.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ DeformingField create(const Mesh& mesh, int resolution, const Bounds& reach = kB
     return std::move(*field);
 }
 
-// Updates and compares with a bake from nothing of the same places, and the layers that are said to be as before with what they were.
+// Updates, compares with a complete bake of the same places, and checks that the layers outside the reported ones are unchanged.
 DeformingField::Change expectAsFresh(DeformingField& field, const Mesh& mesh, const Places& places, const char* name) {
     const VoxelField before = field.field();
     const std::vector<vec4> displacedBefore(field.displacement().begin(), field.displacement().end());
@@ -84,7 +84,7 @@ DeformingField::Change expectAsFresh(DeformingField& field, const Mesh& mesh, co
 // The voxels of the whole grid.
 size_t allVoxels(const DeformingField& field) { return field.field().surface.count(); }
 
-TEST(VoxelDeforming, EqualsABakeFromNothing) {
+TEST(VoxelDeforming, EqualsACompleteBake) {
     const Mesh mesh = makeGrid(12);
     DeformingField field = create(mesh, 45);
     const auto wave = [](float phase) {
@@ -109,7 +109,7 @@ TEST(VoxelDeforming, EqualsABakeFromNothing) {
     expectAsFresh(field, mesh, mesh.positions, "back to rest");
 }
 
-TEST(VoxelDeforming, EqualsABakeFromNothingForAnyTriangles) {
+TEST(VoxelDeforming, EqualsACompleteBakeForAnyTriangles) {
     const Mesh mesh = test::makeJumble(5, 70);
     DeformingField field = create(mesh, 33);
     std::mt19937 random(11);
@@ -124,7 +124,7 @@ TEST(VoxelDeforming, EqualsABakeFromNothingForAnyTriangles) {
     }
 }
 
-// Where the reach is the mesh's own bounds the grid is a static field's, and so is all in it.
+// If the reach equals the mesh's bounds, the grid and its content equal those of a static field.
 TEST(VoxelDeforming, StartsAsTheStaticField) {
     const Mesh mesh = test::makeJumble(8, 70);
     Bounds bounds;
@@ -154,7 +154,7 @@ TEST(VoxelDeforming, SameForAnyNumberOfThreads) {
     EXPECT_TRUE(std::equal(many.displacement().begin(), many.displacement().end(), alone.displacement().begin()));
 }
 
-// A sheet under linear maps: the nearest point is the foot of the perpendicular, and where that came from the inverse map says.
+// A sheet under linear maps: the nearest point is the foot of the perpendicular, and the inverse map gives its old place.
 TEST(VoxelDeforming, DisplacementIsTheMotionOfTheNearestPoint) {
     const float c = std::cos(0.11F), s = std::sin(0.11F);
     const struct {
@@ -198,13 +198,13 @@ TEST(VoxelDeforming, DisplacementIsTheMotionOfTheNearestPoint) {
         EXPECT_GT(checked, 5000U) << motion.name;
         EXPECT_GT(most, 0.05F) << motion.name;
         EXPECT_LT(worst, 2e-6F) << motion.name;
-        // A second update of the same places: nothing moves any more.
+        // A second update with the same places: no motion.
         ASSERT_TRUE(field.update(places));
         for (const vec4& d : field.displacement()) ASSERT_EQ(d, vec4(0.0F)) << motion.name;
     }
 }
 
-// One vertex lifted: what is nearest to the vertices around moves not at all, what is nearest to the tip moves with it.
+// One vertex is lifted: points nearest to the other vertices have no displacement, points nearest to the tip move with it.
 TEST(VoxelDeforming, DisplacementOfATent) {
     const Mesh mesh = makeGrid(6);
     DeformingField field = create(mesh, 64);
@@ -221,8 +221,8 @@ TEST(VoxelDeforming, DisplacementOfATent) {
                                     static_cast<size_t>(c.x)];
     };
     EXPECT_LT(glm::length(vec3(at(places[tip] + vec3(0, 2.0F * grid.voxel, 0))) - lift), 1e-6F) << "above the tip only the tip is near";
-    EXPECT_EQ(at(vec3(-0.8F, 0.05F, 0.8F)), vec4(0.0F)) << "far from what moved";
-    // On a tent's side the displacement falls off in a straight line from tip to rim: halfway up the middle edge it is half.
+    EXPECT_EQ(at(vec3(-0.8F, 0.05F, 0.8F)), vec4(0.0F)) << "far from the moved vertex";
+    // On a tent's side the displacement decreases linearly from tip to rim: halfway up the middle edge it is half.
     const vec3 half = 0.5F * (places[tip] + places[tip + 7]);
     EXPECT_NEAR(glm::length(vec3(at(half))) / glm::length(lift), 0.5F, 0.15F);
 }
@@ -231,7 +231,7 @@ void expectSays(const std::string& message, std::initializer_list<const char*> w
     for (const char* word : words) EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is missing in: " << message;
 }
 
-TEST(VoxelDeforming, SaysWhatIsWrongWithItsInput) {
+TEST(VoxelDeforming, BadInputIsNamed) {
     const Mesh mesh = makeGrid(3);
     const MeshView views[] = {mesh.view(), mesh.view()};
     const auto errorOf = [&](size_t meshes, const Bounds& reach, const VoxelFieldOptions& options) {

@@ -1,4 +1,4 @@
-// Mode depth against an oracle: what lines through voxels' centres meet, and the connected regions of the rest.
+// Mode depth against an oracle: the voxels in which lines through voxel centres meet triangles, and the connected regions of the rest.
 #include "fluid/voxel/voxelize_depth.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using test::Mesh;
 
-// `resolution` voxels on the longest side, the mesh's bounds amid.
+// `resolution` voxels on the longest side, the mesh's bounds centred.
 VoxelGrid gridAmid(const Mesh& mesh, int resolution) {
     Bounds bounds;
     for (uint32_t k : mesh.indices) bounds.add(mesh.positions[k]);
@@ -120,8 +120,8 @@ void expectSameLabels(const VoxelLabels& a, const VoxelLabels& b) {
     EXPECT_EQ(differ, 0U);
 }
 
-// Both orders give the surface that the oracle knows, and as labels the connected regions of the rest (labelRegions is held against a
-// flood fill by a test of its own).
+// Both orders give the surface of the oracle, and as labels the connected regions of the rest (another test compares labelRegions with a
+// flood fill).
 DepthVoxels expectRight(const Mesh& mesh, const VoxelGrid& grid) {
     const Oracle expected = oracle(mesh, grid);
     DepthVoxels own = voxelize(mesh, grid);
@@ -160,7 +160,7 @@ void append(Mesh& to, const Mesh& from) {
     to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
 }
 
-TEST(VoxelDepth, SeesWhatLinesMeetAndJoinsTheRest) {
+TEST(VoxelDepth, FindsTheSurfaceAndJoinsTheRest) {
     expectRight(test::makeBox(vec3(-1), vec3(1.0F, 0.37F, 0.11F)), 21);
     expectRight(test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 1.0F, 12), 24);
     for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -180,7 +180,7 @@ TEST(VoxelDepth, TestMeshes) {
     }
 }
 
-// A closed mesh parts the voxels: no way through faces of voxels leads from inside to outside, at any tilt and resolution.
+// A closed mesh separates the voxels: no path through faces of voxels leads from inside to outside, at any tilt and resolution.
 TEST(VoxelDepth, ClosedMeshesAreClosed) {
     for (int resolution : {5, 16, 33, 64, 81}) {
         for (int turn = 0; turn < 5; ++turn) {
@@ -199,7 +199,7 @@ TEST(VoxelDepth, ClosedMeshesAreClosed) {
     }
 }
 
-TEST(VoxelDepth, NestedShellsAreMaterialsOfTheirOwn) {
+TEST(VoxelDepth, NestedShellsAreSeparateMaterials) {
     Mesh mesh;
     for (const float radius : {1.0F, 0.7F, 0.4F}) append(mesh, test::makeSphere(vec3(0), radius));
     append(mesh, test::makeBox(vec3(-0.1F), vec3(0.1F)));
@@ -211,7 +211,7 @@ TEST(VoxelDepth, NestedShellsAreMaterialsOfTheirOwn) {
     EXPECT_EQ(made.labels.at(made.surface.size / 2), kFirstMaterial + 3);
 }
 
-// What the six images of the whole box cannot see is found in slabs: a maze of walls, and ways round them.
+// Slabs find voxels that are hidden in the six images of the whole box: a maze of walls and paths round them.
 TEST(VoxelDepth, HiddenChannelsLeadOutside) {
     Mesh mesh = test::makeBox(vec3(0), vec3(8));
     for (int k = 1; k < 8; ++k) {  // shelves, each with a slot at alternating ends
@@ -221,7 +221,7 @@ TEST(VoxelDepth, HiddenChannelsLeadOutside) {
     const DepthVoxels closed = expectRight(mesh, 40);
     size_t largest = 0;
     for (const VoxelMaterial& m : closed.labels.materials) largest = std::max(largest, m.voxels);
-    EXPECT_GT(largest, 40U * 40U * 25U) << "the way between the shelves is one";
+    EXPECT_GT(largest, 40U * 40U * 25U) << "the path between the shelves is one region";
     mesh.indices.erase(mesh.indices.begin() + 6, mesh.indices.begin() + 12);  // the lid of the far side: all shelves open
     const DepthVoxels open = expectRight(mesh, 40);
     largest = 0;
@@ -229,7 +229,7 @@ TEST(VoxelDepth, HiddenChannelsLeadOutside) {
     EXPECT_LT(largest, 40U * 40U);
 }
 
-// Everything the depth images see, the surface mode sees too.
+// Every voxel that mode depth finds, mode surface finds too.
 TEST(VoxelDepth, IsWithinTheSurface) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
         const Mesh mesh = test::makeJumble(seed, 140);
@@ -276,8 +276,8 @@ TEST(VoxelDepth, CanBeCancelled) {
     EXPECT_EQ(calls, 3);
 }
 
-// Spot, and Spot without the soles of its feet: one hole is enough for all that it holds to be outside.
-TEST(VoxelDepth, WhatHasAHoleIsOutsideWhatIsClosedIsNot) {
+// Spot, and Spot without the soles of its feet: one hole makes the whole interior outside.
+TEST(VoxelDepth, OneHoleMakesTheInteriorOutside) {
     const auto largest = [](const DepthVoxels& made) {
         size_t most = 0;
         for (const VoxelMaterial& m : made.labels.materials) most = std::max(most, m.voxels);

@@ -1,4 +1,4 @@
-// Surface voxels and the distance band against brute force, and what the baker says to bad input.
+// Surface voxels and the distance band against brute force, and errors for bad input.
 #include "fluid/voxel/voxel_field.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::array<dvec3, 3> corners(const Mesh& mesh, size_t triangle) {
             dvec3(mesh.positions[mesh.indices[3 * triangle + 2]])};
 }
 
-// Another way than separating axes: what is left of the polygon after cutting it by the box's six half-spaces (Sutherland and Hodgman
+// An algorithm other than separating axes: the polygon clipped by the six half-spaces of the box (Sutherland and Hodgman
 // 1974). `grow` moves the faces out.
 bool overlaps(const std::array<dvec3, 3>& triangle, const dvec3& low, const dvec3& high, double grow) {
     std::vector<dvec3> polygon(triangle.begin(), triangle.end());
@@ -57,7 +57,7 @@ struct Coverage {
     size_t missed = 0, extra = 0, set = 0;
 };
 
-// Every (triangle, voxel) pair of the triangle's bounds, grown by a voxel. What rounding cannot decide (1e-7 voxels) may go either way.
+// Every (triangle, voxel) pair of the triangle's bounds, grown by a voxel. Cases within rounding (1e-7 voxels) may go either way.
 Coverage compare(const Mesh& mesh, const VoxelGrid& grid) {
     const double tiny = 1e-7 * static_cast<double>(grid.voxel);
     std::vector<bool> surely(grid.count()), perhaps(grid.count());
@@ -134,7 +134,7 @@ TEST(VoxelSurface, TouchingCounts) {
     EXPECT_EQ(compare(mesh, field.surface).missed, 0U);
 }
 
-// Point to triangle by what defines it: the nearest of the plane's foot point, if inside, and of the three edges; long double.
+// Distance from point to triangle by its definition: the nearest of the plane's foot point, if inside, and of the three edges; long double.
 double referenceDistance(const std::array<dvec3, 3>& t, const dvec3& p) {
     using Wide = glm::tvec3<long double>;
     const Wide q(p);
@@ -178,7 +178,7 @@ TEST(VoxelBand, DistanceIsExact) {
     for (unsigned seed = 1; seed <= 3; ++seed) expectExactBand(test::makeJumble(seed, 35), 12, 0.6F);
 }
 
-TEST(VoxelBand, ClearanceIsALowerBoundAndNotALooseOne) {
+TEST(VoxelBand, ClearanceIsATightLowerBound) {
     const Mesh mesh = test::makeJumble(7, 35);
     const VoxelField field = bake(mesh, 24, 0.3F);
     std::mt19937 random(1);
@@ -202,7 +202,7 @@ TEST(VoxelField, PaddingHoldsTheBand) {
             for (int x = 0; x <= n.x; ++x) {
                 if (x > 0 && y > 0 && z > 0 && x < n.x && y < n.y && z < n.z) continue;
                 const auto k = static_cast<size_t>((z * (n.y + 1) + y) * (n.x + 1) + x);
-                ASSERT_EQ(field.distance[k], field.band) << "the field's border must be free of the mesh";
+                ASSERT_EQ(field.distance[k], field.band) << "no mesh may reach the border of the field";
             }
         }
     }
@@ -242,7 +242,7 @@ void expectSays(const std::string& message, std::initializer_list<const char*> w
     for (const char* word : words) EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is missing in: " << message;
 }
 
-TEST(VoxelField, SaysWhatIsWrongWithItsInput) {
+TEST(VoxelField, BadInputIsNamed) {
     const Mesh good = test::makeBox(vec3(0), vec3(1));
     expectSays(errorOf(Mesh{}), {"no triangle"});
     EXPECT_FALSE(bakeVoxelField({}, {}));
@@ -280,7 +280,7 @@ TEST(VoxelField, SaysWhatIsWrongWithItsInput) {
     const std::string message = errorOf(good, options);
     expectSays(message, {"needs 3.6 MB", "1.0 MB allowed", "resolution of "});
     options.resolution = std::stoi(message.substr(message.find("resolution of ", 40) + 14));
-    EXPECT_EQ(errorOf(good, options), "no error") << "the resolution that is said to fit must fit";
+    EXPECT_EQ(errorOf(good, options), "no error") << "the reported resolution must fit";
     ++options.resolution;
     expectSays(errorOf(good, options), {"allowed"});
     options.band = 1e6F;
@@ -289,7 +289,7 @@ TEST(VoxelField, SaysWhatIsWrongWithItsInput) {
     expectSays(errorOf(good, options), {"band"});
 }
 
-// A flat mesh has an extent in two directions only; a vertex that no triangle uses counts for nothing.
+// A flat mesh has an extent in two directions only; a vertex that no triangle uses is ignored.
 TEST(VoxelField, FlatMeshesAndStrayVertices) {
     Mesh flat = test::makeSheet(vec3(0), vec3(0, 1, 0), 2.0F);
     flat.positions.push_back(vec3(1e3F));

@@ -1,4 +1,4 @@
-// .rvox files: what is written is what is read, and whatever else is read is an error.
+// .rvox files: a file reads back exactly, and any other bytes give an error.
 #include "fluid/voxel/voxel_file.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr size_t kHeaderBytes = 80, kSectionBytes = 40;
 
-// Labels from a function of the voxel, counted the plain way.
+// Labels from a function of the voxel, counted voxel by voxel.
 template <class Fn>
 VoxelLabels labelsOf(const ivec3& size, float edge, uint32_t materials, const Fn& labelAt) {
     VoxelLabels l;
@@ -144,7 +144,7 @@ void setAt(std::string& bytes, size_t at, T value) {
     std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 
-// Makes all checksums right, as one who knows the format and means harm would: what follows them has to stand on its own.
+// Makes all checksums right, as an attacker would: the checks after them must suffice.
 void seal(std::string& bytes) {
     if (bytes.size() < kHeaderBytes) return;
     const auto sections = std::min<size_t>(valueAt<uint32_t>(bytes, 20), (bytes.size() - kHeaderBytes) / kSectionBytes);
@@ -157,7 +157,7 @@ void seal(std::string& bytes) {
     setAt(bytes, 72, XXH3_64bits(head.data(), head.size()));
 }
 
-// A file of one's own making: sections as they come, everything around them right.
+// A forged file: given sections, with everything around them correct.
 struct Forgery {
     struct Part {
         uint32_t kind;
@@ -219,7 +219,7 @@ Forgery forgedLabels(const Words& counts = {3, 1, 1, 1}, const Words& x = {0, 1,
     return f;
 }
 
-TEST(VoxelFile, WhatIsWrittenIsRead) {
+TEST(VoxelFile, ReadsBackWhatWasWritten) {
     unsigned seed = 0;
     for (const ivec3& size : {ivec3(1, 1, 1), ivec3(7, 5, 3), ivec3(33, 17, 9), ivec3(64, 40, 24)}) {
         for (int which = 0; which < 4; ++which) {
@@ -286,7 +286,7 @@ TEST(VoxelFile, EveryFlippedBitIsAnError) {
     }
 }
 
-// Everything that the types promise, asked of a result the plain way.
+// Checks every invariant of the types on a result.
 void expectSound(const VoxelFile& f) {
     ASSERT_TRUE(f.bits.count() > 0 && f.bits.voxel > 0 && isFinite(f.bits.origin));
     ASSERT_EQ(f.bits.bits.size(), (f.bits.count() + 31) / 32 * 4);
@@ -332,7 +332,7 @@ TEST(VoxelFile, WithRightChecksumsTheResultIsSoundOrAnError) {
             ++(read ? sound : refused);
         }
     }
-    EXPECT_GT(sound, 500U) << "the test must reach what lies behind the checksums";
+    EXPECT_GT(sound, 500U) << "the test must reach the checks after the checksums";
     EXPECT_GT(refused, 5000U);
 }
 
@@ -470,7 +470,7 @@ long peakKiB() {
     return usage.ru_maxrss;
 }
 
-// What a header claims is not taken before the body has come up with it.
+// Memory for claimed sizes is not allocated before the bytes are read.
 TEST(VoxelFile, LargeClaimsTakeNoMemory) {
     const auto claim = [](int side, std::string body, size_t limit) {
         Forgery f;

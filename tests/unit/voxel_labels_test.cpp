@@ -154,7 +154,7 @@ TEST(VoxelLabels, NestedShellsAndCavities) {
     ASSERT_EQ(labels.materials.size(), 4U);
     for (size_t k = 1; k < 4; ++k) EXPECT_LT(labels.materials[k].voxels, labels.materials[k - 1].voxels) << "the outer ones come first";
 
-    // A thick wall with a cavity, and within it a ball: mode solid's sense of inside.
+    // A thick wall with a cavity, and within it a ball: inside as in mode solid.
     VoxelGrid inside = emptyGrid(surface.size);
     forEach(surface.size, [&](const ivec3& c) {
         const double r = glm::length(dvec3(c) + 0.5 - 24.0);
@@ -170,8 +170,8 @@ TEST(VoxelLabels, NestedShellsAndCavities) {
     EXPECT_EQ(kinds.at({3, 3, 48}), kOutside);
 }
 
-// An open hole joins what it connects, however far the way round is; a diagonal gap does not.
-TEST(VoxelLabels, OneOpenVoxelIsEnoughADiagonalIsNot) {
+// An open hole connects regions, however long the path is; a diagonal gap does not.
+TEST(VoxelLabels, OneOpenVoxelConnectsADiagonalDoesNot) {
     VoxelGrid box = emptyGrid(ivec3(20));
     forEach(box.size, [&](const ivec3& c) {
         const ivec3 far = glm::abs(2 * c - ivec3(19));
@@ -198,7 +198,7 @@ TEST(VoxelLabels, SameForAnyNumberOfThreads) {
     EXPECT_EQ(many.materials.size(), alone.materials.size());
 }
 
-TEST(VoxelLabels, ColoursAreOfOneLightnessAndTellNeighboursApart) {
+TEST(VoxelLabels, ColoursHaveOneLightnessAndNeighboursDiffer) {
     std::vector<vec3> colours;
     for (uint32_t k = 0; k < 64; ++k) {
         const vec3 c = materialColour(k);

@@ -1,4 +1,4 @@
-// The voxel panel, driven by InputEvents and drawn into a framebuffer: what it shows is what the field holds.
+// The voxel panel, driven by InputEvents and drawn into a framebuffer: it shows the content of the field.
 #include "fluid/viewer/voxel_panel.h"
 
 #include <gtest/gtest.h>
@@ -92,15 +92,15 @@ class VoxelPanelTest : public testing::FramebufferFixture {
     double time_ = 0;
 };
 
-TEST_F(VoxelPanelTest, ItShowsTheMiddleSlice) {
+TEST_F(VoxelPanelTest, ShowsTheMiddleSlice) {
     frame(&field_, false);
     frame(&field_, false);
     EXPECT_EQ(count(materialColour(0)), 0U);
     for (int k = 0; k < 3; ++k) frame(&field_, true);
-    if (const char* to = std::getenv("RIVULET_TEST_PICTURES"))  // to be looked at
+    if (const char* to = std::getenv("RIVULET_TEST_PICTURES"))  // for inspection
         ASSERT_TRUE(writePng(std::string(to) + "/voxel_panel.png", pixels(), kWindow.x, kWindow.y));
 
-    // The slice amid the grid, counted the plain way, each voxel so many pixels.
+    // The middle slice of the grid, counted voxel by voxel; each voxel has the same number of pixels.
     const VoxelLabels labels = labelRegions(field_.surface, nullptr);
     ASSERT_EQ(labels.materials.size(), 2U);
     const ivec3& size = field_.surface.size;
@@ -115,7 +115,7 @@ TEST_F(VoxelPanelTest, ItShowsTheMiddleSlice) {
 
     const size_t before = count(materialColour(0));
     frame(nullptr, true);
-    EXPECT_EQ(count(materialColour(0)), 0U) << "no field, nothing to see";
+    EXPECT_EQ(count(materialColour(0)), 0U) << "no field, no picture";
     panel_->clear();
     frame(&field_, true);
     frame(&field_, true);
@@ -136,14 +136,14 @@ TEST_F(VoxelPanelTest, AxisSliceAndDistanceMayBeChosen) {
         distance = distance || count(materialColour(0)) < 400;
     }
     EXPECT_TRUE(moved) << "the slider moves the slice";
-    EXPECT_TRUE(distance) << "the band hides the materials but for their place in the list";
+    EXPECT_TRUE(distance) << "the band hides the materials, except in the list";
     EXPECT_NE(first, pixels());
     if (const char* to = std::getenv("RIVULET_TEST_PICTURES"))
         ASSERT_TRUE(writePng(std::string(to) + "/voxel_panel_distance.png", pixels(), kWindow.x, kWindow.y));
 }
 
-// What bends is shown as it is, not as it was when the panel was first shown; but not labelled anew for each picture.
-TEST_F(VoxelPanelTest, WhatBendsIsLookedAtAgain) {
+// A deforming mesh is shown in its present state, but not labelled again for each picture.
+TEST_F(VoxelPanelTest, ADeformingFieldIsUpdated) {
     const test::Mesh box = test::makeBox(vec3(0), vec3(1)), ball = test::makeSphere(vec3(0.5F), 0.25F);
     const MeshView hollow[] = {box.view()}, both[] = {box.view(), ball.view()};
     Result<VoxelField> bending = bakeVoxelField(hollow, {.resolution = 32}), later = bakeVoxelField(both, {.resolution = 32});
@@ -167,7 +167,7 @@ TEST_F(VoxelPanelTest, OneOfSeveralFieldsMayBeChosen) {
     ASSERT_TRUE(moving) << moving.error().message;
     rigid_ = {&*moving};
     for (int k = 0; k < 3; ++k) frame(&field_, true);
-    EXPECT_GT(count(materialColour(1)), 1000U) << "what stands still comes first";
+    EXPECT_GT(count(materialColour(1)), 1000U) << "the static field comes first";
     if (const char* to = std::getenv("RIVULET_TEST_PICTURES"))
         ASSERT_TRUE(writePng(std::string(to) + "/voxel_panel_choice.png", pixels(), kWindow.x, kWindow.y));
     // The list opens under a click on it, and its second row is the mesh that moves, which holds no ball.

@@ -115,7 +115,7 @@ Mesh turnedOver(Mesh m) {
     return m;
 }
 
-// Without the triangles that `gone` names.
+// The mesh without the triangles for which `gone` is true.
 template <class Gone>
 Mesh without(const Mesh& mesh, Gone gone) {
     Mesh m = mesh;
@@ -132,7 +132,7 @@ TEST(VoxelSolid, ClosedMeshesAreFilled) {
     for (int resolution : {1, 2, 7, 16, 33}) expectRight(ball, gridAround(ball, resolution), "ball");
     expectRight(turnedOver(ball), gridAround(ball, 20), "inverted ball");
     const Mesh box = test::makeBox(vec3(0), vec3(1.0F, 0.5F, 0.25F));
-    // Faces amid, on and between the planes of centres.
+    // Faces midway between, on and beside the planes of centres.
     for (float margin : {0.0F, 0.5F, 0.25F, 1.7F}) expectRight(box, gridAround(box, 16, margin), "box");
     const Mesh shells = joined(joined(ball, turnedOver(test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 0.7F, 9))),
                                test::makeSphere(vec3(0.1F, -0.2F, 0.3F), 0.3F, 9));
@@ -171,7 +171,7 @@ TEST(VoxelSolid, OpenMeshesByWindingNumber) {
     expectRight(lone, gridAround(lone, 12, 1.0F), "one triangle");
 }
 
-// Triangles about as long as `size` each, that share no vertex: strewn about, or along a ball.
+// Triangles about as long as `size` each, that share no vertex: jittered in space, or along a ball.
 Mesh strewn(int count, float size, bool ball) {
     std::mt19937 random(17);
     std::uniform_real_distribution<float> at(-1.0F, 1.0F);
@@ -198,7 +198,7 @@ TEST(VoxelSolid, ManyLoosePieces) {
         int resolution;
         double tolerance;
     };
-    // The first three are exact; more than 1,024 pieces are reckoned to an accuracy.
+    // The first three are exact; above 1,024 pieces the result has a limited accuracy.
     for (const Case& c : {Case{400, 0.5F, false, 16, 1e-7}, Case{1000, 0.3F, false, 16, 1e-7}, Case{1000, 0.08F, true, 20, 1e-7},
                           Case{6000, 0.3F, false, 24, 0.02}, Case{20000, 0.018F, true, 32, 0.02}}) {
         const Mesh mesh = strewn(c.count, c.size, c.ball);
@@ -216,7 +216,7 @@ TEST(VoxelSolid, ManyLoosePieces) {
     }
 }
 
-// Holes in one mesh, more of them than are few, beside loose triangles that touch it and each other.
+// One mesh with many holes, and loose triangles that touch it and each other.
 TEST(VoxelSolid, ManyHolesAndLoosePieces) {
     const Mesh ball = test::makeSphere(vec3(0.1F), 1.0F, 16);
     const Mesh holes = without(ball, [](size_t t) { return t % 3 == 0; });
@@ -243,7 +243,7 @@ TEST(VoxelSolid, ManyLoosePiecesCanBeCancelled) {
     EXPECT_GT(calls, 3);
     int left = 2;
     EXPECT_FALSE(voxelizeSolid(cleaned(mesh), grid, [&](double) { return --left > 0; }));
-    EXPECT_EQ(left, 0) << "it asks no more";
+    EXPECT_EQ(left, 0) << "no call after the cancellation";
 }
 
 TEST(VoxelSolid, GridsThatCutTheMesh) {

@@ -1,4 +1,4 @@
-// Surface voxels against an oracle of its own: all thirteen separating axes in long double, at every voxel near every triangle.
+// Surface voxels against an independent oracle: all thirteen separating axes in long double, at every voxel near every triangle.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -21,13 +21,13 @@ Vec cross(const Vec& a, const Vec& b) { return {a.y * b.z - a.z * b.y, a.z * b.x
 Real dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec wide(const vec3& p) { return {p.x, p.y, p.z}; }
 
-// A triangle's axes with the interval it spans on each, all reckoned once. Corners relative to the grid's origin, in the mesh's unit.
+// A triangle's axes with the interval it spans on each, all computed once. Corners relative to the grid's origin, in the mesh's unit.
 class Oracle {
   public:
     Oracle(const Vec& a, const Vec& b, const Vec& c) {
         for (const Vec& axis : {Vec{1, 0, 0}, Vec{0, 1, 0}, Vec{0, 0, 1}}) {
             add(axis, {dot(axis, a), dot(axis, b), dot(axis, c)});
-            // Two of an edge's corners are at one place of the axes across it.
+            // Both corners of an edge have one coordinate on the axes across it.
             for (const auto& [e, from, other] : {std::tuple{b - a, a, c}, std::tuple{c - b, b, a}, std::tuple{a - c, c, b}}) {
                 const Vec over = cross(axis, e);
                 add(over, {dot(over, from), dot(over, from), dot(over, from) + dot(over, other - from)});
@@ -36,7 +36,7 @@ class Oracle {
         const Vec normal = cross(b - a, c - a);
         add(normal, {dot(normal, a), dot(normal, a), dot(normal, a)});
     }
-    // How far triangle and box are apart on the axis that parts them most; 0 or less: on none. Voxels.
+    // Largest gap between triangle and box over all axes, in voxels; 0 or less: none separates them.
     Real gap(const ivec3& c, Real voxel) const {
         Real most = -1e30L;
         for (const Row& r : rows_) {
@@ -65,7 +65,7 @@ void voxelize(const Mesh& mesh, VoxelGrid& grid) {
 }
 
 // Touching counts, so what is not apart must be set; what is more than 1e-9 voxels apart must not. `rounding`, in voxels: of the oracle; 0
-// where corners are so round in the grid that it makes none, so that nothing is in doubt.
+// if the corners are exact in the grid, so that every case is decided.
 void expectCovered(const Mesh& mesh, VoxelGrid grid, const std::string& name, Real rounding = 1e-12L) {
     voxelize(mesh, grid);
     std::vector<Real> gap(grid.count(), 1.0L);
@@ -121,7 +121,7 @@ TEST(VoxelOverlap, NeedlesOfEveryThickness) {
     for (int k = 0; k < 40; ++k) {
         Mesh needle;
         const vec3 a = point(), b = point();
-        const float thick = std::pow(10.0F, -static_cast<float>(k % 8));  // the last are below what floats resolve
+        const float thick = std::pow(10.0F, -static_cast<float>(k % 8));  // the last are below the resolution of floats
         needle.triangle(a, b, a + thick * point());
         needle.triangle(a, b, 0.5F * (a + b) + thick * point());
         expectCovered(needle, gridOf(ivec3(96), vec3(-1.0F), 2.0F / 96.0F), "needle of " + std::to_string(thick));
@@ -138,7 +138,7 @@ TEST(VoxelOverlap, NeedlesOfEveryThickness) {
 }
 
 TEST(VoxelOverlap, CornersExactlyOnTheGrid) {
-    // Multiples of a quarter of a voxel: every touch is exact, and nothing is in doubt.
+    // Multiples of a quarter of a voxel: every touch is exact, and every case is decided.
     std::mt19937 random(9);
     std::uniform_int_distribution<int> quarter(0, 32);
     const auto along = [&](int step) { return 0.25F * static_cast<float>(quarter(random) & -step); };

@@ -1,4 +1,4 @@
-// Meshes that tests of voxels and collision make themselves, and a plain OBJ reader for those of tests/meshes.
+// Meshes made by tests of voxels and collision, and a plain OBJ reader for those of tests/meshes.
 #pragma once
 
 #include <algorithm>
@@ -92,7 +92,7 @@ inline Mesh makeJumble(unsigned seed, int count) {
                 break;  // edge-on to four faces
             case 4:
                 m.triangle(a, b, 0.5F * (a + b));
-                break;  // as good as no area
+                break;  // almost no area
             case 5:
                 m.triangle(a, a, b);
                 break;  // a segment
@@ -109,7 +109,7 @@ inline CleanMesh cleaned(const Mesh& mesh) {
     return cleanMesh(std::span(&view, 1));
 }
 
-// No voxel set.
+// A grid with no voxel set.
 inline VoxelGrid gridOf(const ivec3& size, const vec3& low, float voxel) {
     VoxelGrid grid;
     grid.size = size;

@@ -1,4 +1,4 @@
-// The one entry to the three modes: the grid it lays out, what its modes have in common, and what it says to bad input.
+// The one entry to the three modes: its grid, the common results of its modes, and errors for bad input.
 #include "fluid/voxel/voxelize.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ VoxelGrid layout(const Mesh& mesh, int resolution) {
     return grid ? std::move(*grid) : VoxelGrid{};
 }
 
-TEST(VoxelLayout, HoldsEveryVertexAndNoMoreThanNeeded) {
+TEST(VoxelLayout, ContainsEveryVertexAndIsAsSmallAsPossible) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
     for (int k = 0; k < 3000; ++k) {
@@ -61,7 +61,7 @@ TEST(VoxelLayout, HoldsEveryVertexAndNoMoreThanNeeded) {
         for (int a = 0; a < 3; ++a) {
             ASSERT_GE(low[a], 0.0) << k;
             ASSERT_LE(high[a], grid.size[a]) << k;
-            ASSERT_LE(grid.size[a], std::max(1.0, high[a] - low[a] + 1.0 + rounding)) << k << ": fewer would do";
+            ASSERT_LE(grid.size[a], std::max(1.0, high[a] - low[a] + 1.0 + rounding)) << k << ": fewer voxels suffice";
             ASSERT_NEAR(low[a], grid.size[a] - high[a], rounding) << k << ": the mesh is in the middle";
         }
         ASSERT_EQ(grid.bits.size(), (grid.count() + 31) / 32 * 4);
@@ -92,13 +92,13 @@ size_t ones(const VoxelGrid& grid) {
     return n;
 }
 
-TEST(VoxelizeMesh, ModesAgreeOnWhatTheyShare) {
+TEST(VoxelizeMesh, ModesAgreeOnCommonResults) {
     ASSERT_EQ(voxelModes().names(), (std::vector<std::string>{"depth", "solid", "surface"}));
     for (const VoxelModeRow& row : voxelModes().rows) EXPECT_EQ(voxelModes().find(row.name)->mode, row.mode);
     Mesh mesh = test::makeSphere(vec3(1, 2, 3), 0.5F);
     const Mesh inner = test::makeSphere(vec3(1, 2, 3), 0.3F);
     const auto base = static_cast<uint32_t>(mesh.positions.size());
-    for (size_t k = 0; k < inner.indices.size(); k += 3) {  // turned: the wall of a cavity
+    for (size_t k = 0; k < inner.indices.size(); k += 3) {  // reversed: the wall of a cavity
         for (size_t corner : {k, k + 2, k + 1}) mesh.indices.push_back(base + inner.indices[corner]);
     }
     mesh.positions.insert(mesh.positions.end(), inner.positions.begin(), inner.positions.end());
@@ -127,7 +127,7 @@ TEST(VoxelizeMesh, ModesAgreeOnWhatTheyShare) {
     EXPECT_NEAR(solid.labels.materials[1].volume, ball(0.3), 0.2 * ball(0.3));
 }
 
-// The same cup in two senses: to connectivity its inside is outside; to the winding number too, but its wall is solid.
+// By connectivity the inside of an open cup is outside; by winding number too, but its wall is solid.
 TEST(VoxelizeMesh, OpenMeshesAreInsideByWindingOnly) {
     Mesh bowl = test::makeBox(vec3(0), vec3(1));
     bowl.indices.erase(bowl.indices.begin() + 18, bowl.indices.begin() + 24);  // no lid
@@ -152,7 +152,7 @@ void expectSays(const std::string& message, std::initializer_list<const char*> w
     for (const char* word : words) EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is missing in: " << message;
 }
 
-TEST(VoxelizeMesh, SaysWhatIsWrongWithItsInput) {
+TEST(VoxelizeMesh, BadInputIsNamed) {
     const Mesh good = test::makeBox(vec3(0), vec3(1));
     for (VoxelMode mode : kAllModes) {
         VoxelizeOptions options = optionsOf(mode, 16);
@@ -176,7 +176,7 @@ TEST(VoxelizeMesh, SaysWhatIsWrongWithItsInput) {
         options.resolution = 5000;
         const std::string tooMany = errorOf(good, options);
         expectSays(tooMany, {"2..4096", "5000", "would need", "GB", "a resolution of"});
-        // Two grids of bits at least; mode depth has five bytes a voxel besides.
+        // Two grids of bits at least; mode depth needs five more bytes per voxel.
         const double gigabytes = std::stod(tooMany.substr(tooMany.find("would need ") + 11)), voxels = 5000.0 * 5000.0 * 5000.0 / 1e9;
         EXPECT_GE(gigabytes, voxels * (2.0 / 8.0 + (mode == VoxelMode::depth ? 5.0 : 0.0)));
         EXPECT_LE(gigabytes, 1.1 * voxels * (3.0 / 8.0 + (mode == VoxelMode::depth ? 5.0 : 0.0)));
@@ -190,7 +190,7 @@ TEST(VoxelizeMesh, SaysWhatIsWrongWithItsInput) {
         }
         expectSays(message, {"of 100 needs", "0.5 MB allowed"});
         options.resolution = std::stoi(message.substr(message.rfind("resolution of ") + 14));
-        EXPECT_EQ(errorOf(good, options), "no error") << "the resolution that is said to fit must fit";
+        EXPECT_EQ(errorOf(good, options), "no error") << "the reported resolution must fit";
         ++options.resolution;
         expectSays(errorOf(good, options), {"allowed"});
     }
@@ -238,7 +238,7 @@ TEST(VoxelizeMesh, CanBeCancelledAtAnyTime) {
     }
 }
 
-TEST(VoxelizeMesh, SaysWhichFeaturesAreLost) {
+TEST(VoxelizeMesh, LostFeaturesAreReported) {
     const auto sentence = [](const Mesh& mesh, int resolution) {
         const MeshView view = mesh.view();
         return lostFeatures(std::span(&view, 1), layout(mesh, resolution));
@@ -250,7 +250,7 @@ TEST(VoxelizeMesh, SaysWhichFeaturesAreLost) {
     plain.positions.insert(plain.positions.end(), small.positions.begin(), small.positions.end());
     expectSays(sentence(plain, 256), {"1e+06 wide", "features of 0.001:", "a voxel of 3906", "a resolution of 2e+09", "over 1000 TB"});
     VoxelizeOptions options = optionsOf(VoxelMode::surface, 64);
-    EXPECT_EQ(errorOf(plain, options), "no error") << "it is voxelised all the same";
+    EXPECT_EQ(errorOf(plain, options), "no error") << "it is voxelised nevertheless";
     EXPECT_EQ(sentence(test::makeSphere(vec3(0), 1.0F, 200), 64), "") << "a smooth mesh loses nothing";
 }
 

@@ -12,7 +12,7 @@
 namespace rivulet::voxel_walk_test::voxel_walk_test {
 namespace {
 
-// Fraction of the way at which a + d t enters the box low..high grown by `grow`, all in double; 2 if it misses.
+// The fraction t of the path at which a + d t enters the box low..high grown by `grow`, all in double; 2 if it misses.
 double entry(const dvec3& a, const dvec3& d, const dvec3& low, double grow) {
     double from = 0, to = 1;
     for (int k = 0; k < 3; ++k) {
@@ -61,8 +61,8 @@ struct Tally {
     size_t segments = 0, hits = 0, crossed = 0, imagined = 0, late = 0;
 };
 
-// A crossing: the exact segment touches a set voxel and the walk does not say so, or says so only further on.
-// Imagined: the walk reports one that is further than the rounding allowance from the segment.
+// Crossed: the exact segment touches a set voxel and the walk does not report it, or reports it only further on.
+// Imagined: the walk reports a voxel that is further than the rounding allowance from the segment.
 void tally(const Grid& grid, const vec3& a, const vec3& b, Tally& t) {
     const dvec3 from(a), way = dvec3(b) - from;
     const auto nudge = static_cast<double>(grid.params.nudge);
@@ -79,7 +79,7 @@ void tally(const Grid& grid, const vec3& a, const vec3& b, Tally& t) {
     ++t.segments;
     t.hits += touched <= 1 ? 1 : 0;
     t.crossed += touched <= 1 && walked > 1 ? 1 : 0;
-    // Past the entry by no more than rounding, which a grazing segment stretches to at most its voxel.
+    // Beyond the entry by at most the rounding error, which for a grazing segment is at most one voxel.
     t.late += touched <= 1 && walked <= 1 && (walked - touched) * glm::length(way) > 1.8 ? 1 : 0;
     t.imagined += walked <= 1 && nearly > 1 ? 1 : 0;
 }
@@ -144,9 +144,9 @@ Passed throughWall(int tilt, int segments) {
     return p;
 }
 
-// Nothing passes walls one voxel thick: 1e7 segments, 40 tilts, on both cores. The thesis's walk, which takes one rounded sample a step of
-// the longest axis, slips through their corners.
-TEST(VoxelWalk, NothingPassesWallsAtAnyTilt) {
+// No segment passes walls one voxel thick: 1e7 segments, 40 tilts, on both cores. The thesis's walk, which takes one rounded sample per
+// step of the longest axis, passes through their corners.
+TEST(VoxelWalk, NoSegmentPassesAWallAtAnyTilt) {
     constexpr int kTilts = 40, kSegments = 250000;
     std::array<Passed, kTilts> tilts;
     const auto half = [&](int first) {
@@ -212,7 +212,7 @@ TEST(VoxelWalk, AgreesWithBruteForce) {
                 case 5:
                     a = target + vec3(1.5F * at(random)) - 0.25F;
                     b = a + 1e-3F * (vec3(at(random), at(random), at(random)) - 0.5F);
-                    break;  // hardly any motion
+                    break;  // almost no motion
                 case 6:
                     a = target - vec3(8) * at(random);
                     b = a + vec3(16) * at(random);
@@ -229,8 +229,8 @@ TEST(VoxelWalk, AgreesWithBruteForce) {
     expectTight(t);
 }
 
-// No motion samples the one voxel, or those that meet at the point.
-TEST(VoxelWalk, NoMotionSamplesWhereItIs) {
+// Without motion the walk samples the voxel of the point, or the voxels that meet there.
+TEST(VoxelWalk, WithoutMotionSamplesItsOwnVoxel) {
     Grid g(ivec3(8));
     g.add({3, 4, 5});
     EXPECT_EQ(g.walk(vec3(3.5F, 4.5F, 5.5F), vec3(3.5F, 4.5F, 5.5F)), 0.0F);
@@ -287,7 +287,7 @@ TEST(VoxelBand, NormalsAreSmooth) {
     }
 }
 
-// Who keeps kContactVoxels by the interpolated distance is in no set voxel, whatever the mesh.
+// A point at kContactVoxels by the interpolated distance is in no set voxel, for any mesh.
 TEST(VoxelBand, ContactIsOutsideEverySetVoxel) {
     const Baked b = bake(test::makeJumble(11, 35), 20, 0.0F);
     std::mt19937 random(5);
@@ -302,7 +302,7 @@ TEST(VoxelBand, ContactIsOutsideEverySetVoxel) {
     EXPECT_EQ(inside, 0U);
 }
 
-// The cheap way out may only be taken where nothing comes within contact.
+// The shortcut may be taken only where no wall is within contact.
 TEST(VoxelBand, FarMeansFar) {
     const test::Mesh mesh = test::makeJumble(12, 21);
     const Baked b = bake(mesh, 24, 0.5F);

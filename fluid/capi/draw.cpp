@@ -64,7 +64,8 @@ rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buff
     return with(world, why, Needs::drawing, [&]() -> Status {
         if (Status there = drawable(*world->context); !there) return there;
         FluidLookParams plain = world->params.look;
-        plain.quality = "fine";  // all of them, in one order
+        plain.quality = "fine";    // all of them, in one order
+        plain.colourBy = "speed";  // velocities, not normals
         Result<FluidView> fluid = world->upload.view(*world->world, plain);
         if (!fluid) return fluid.error();
         const rivulet_buffers full{.size = 0,

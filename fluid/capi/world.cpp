@@ -37,10 +37,7 @@ Result<Sources> sourcesOf(const WorldParams& params) {
 }
 
 FluidParams simulated(const rivulet_world& w) {
-    FluidParams fluid = w.params.fluid;
-    fluid.ellipsoids =
-        fluid.ellipsoids || (w.context->gl.present() && w.params.look.splats == "ellipsoids" && w.params.look.quality != "fast");
-    return fluid;
+    return w.context->gl.present() ? fluidForLook(w.params.fluid, w.params.look) : w.params.fluid;
 }
 
 Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, std::span<const uint8_t> surfaces, int resolution,

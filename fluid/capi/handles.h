@@ -184,7 +184,7 @@ struct rivulet_world {
     rivulet_context* context = nullptr;
     rivulet::capi::WorldParams params;
     std::vector<std::unique_ptr<rivulet::VoxelField>> fields;
-    std::vector<rivulet::Pose> poses;
+    std::vector<rivulet::Pose> poses;  // of the walls that move, as last asked for
     std::unique_ptr<rivulet::capi::BodyCallbacks> callbacks;
     std::unique_ptr<rivulet::FreeBodies> free;
     std::unique_ptr<rivulet::FluidWorld> world;

@@ -109,6 +109,11 @@ RIVULET_API rivulet_status rivulet_context_times(rivulet_context* context, rivul
 
 /* ---- Worlds ---- */
 
+typedef struct rivulet_pose {
+    float position[3]; /* m */
+    float rotation[4]; /* unit quaternion, x y z w; all 0: none */
+} rivulet_pose;
+
 typedef struct rivulet_mesh {
     size_t size;
     const float* positions; /* m, 3 a vertex */
@@ -120,12 +125,8 @@ typedef struct rivulet_mesh {
     float restitution;  /* 0..1; negative: as fluid.collision says */
     uint32_t moves;     /* of walls: 1: it follows rivulet_inputs.poses as a whole, its own origin is what it turns about */
     int32_t resolution; /* voxels along its longest side; 0: a quarter of the fluid's spacing each */
+    rivulet_pose pose;  /* of walls that move: at t = 0 */
 } rivulet_mesh;
-
-typedef struct rivulet_pose {
-    float position[3]; /* m */
-    float rotation[4]; /* unit quaternion, x y z w; all 0: none */
-} rivulet_pose;
 
 /* A body that floats: the fluid pushes it, and it the fluid. Its own frame has its origin at the centre of mass, its axes are the principal
    ones. */
@@ -169,7 +170,8 @@ typedef struct rivulet_world_options {
 typedef struct rivulet_inputs {
     size_t size;
     const float* gravity;      /* m/s^2; NULL: as fluid.gravity says */
-    const rivulet_pose* poses; /* of the walls that move, in their order, at the frame's end; NULL: they stay */
+    const rivulet_pose* poses; /* of the walls that move, in their order, at the frame's end; NULL: as given before, at first and after a
+                                  reset those of t = 0, after a restore those that were saved */
     size_t poses_count;
 } rivulet_inputs;
 

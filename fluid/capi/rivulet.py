@@ -50,7 +50,8 @@ class _ContextOptions(Structure):
 
 class _Mesh(Structure):
     _fields_ = [("size", c_size_t), ("positions", c_void_p), ("vertices", c_size_t), ("indices", c_void_p), ("indices_count", c_size_t),
-                ("uvs", c_void_p), ("friction", c_float), ("restitution", c_float), ("moves", c_uint32), ("resolution", c_int32)]
+                ("uvs", c_void_p), ("friction", c_float), ("restitution", c_float), ("moves", c_uint32), ("resolution", c_int32),
+                ("position", c_float * 3), ("rotation", c_float * 4)]
 
 
 class _Body(Structure):
@@ -283,9 +284,11 @@ class Context(_Handle):
 
 class Mesh:
     """positions (m, n x 3), indices (of triangles, k x 3), uvs (n x 2; of skins). Of walls: friction and restitution (negative: as
-    fluid.collision says), moves (it follows World.step's poses as a whole), resolution (voxels along its longest side; 0: from the spacing)."""
+    fluid.collision says), moves (it follows World.step's poses as a whole), resolution (voxels along its longest side; 0: from the spacing);
+    of walls that move, where they are at t = 0: position (m), rotation (x y z w)."""
 
-    def __init__(self, positions, indices, uvs=None, friction=-1.0, restitution=-1.0, moves=False, resolution=0):
+    def __init__(self, positions, indices, uvs=None, friction=-1.0, restitution=-1.0, moves=False, resolution=0, position=(0, 0, 0),
+                 rotation=(0, 0, 0, 1)):
         self.positions, self.uvs = _array(positions, (-1, 3), "positions"), _array(uvs, (-1, 2), "uvs")
         if not (np.mod(indices, 1) == 0).all() or np.min(indices, initial=0) < 0 or np.max(indices, initial=0) >= 2**32:
             raise BadInput("indices are whole numbers from 0 on: some are not")
@@ -294,7 +297,8 @@ class Mesh:
             raise BadInput(f"{len(self.uvs)} uvs were given for {len(self.positions)} positions: give one for each")
         self._c = _made(_Mesh, positions=_at(self.positions), vertices=len(self.positions), indices=_at(self.indices),
                         indices_count=self.indices.size, uvs=_at(self.uvs), friction=friction, restitution=restitution, moves=int(moves),
-                        resolution=_whole(resolution, 0, 2**31 - 1, "resolution"))
+                        resolution=_whole(resolution, 0, 2**31 - 1, "resolution"), position=tuple(_array(position, (3,), "position")),
+                        rotation=tuple(_array(rotation, (4,), "rotation")))
 
 
 class Body:
@@ -354,7 +358,7 @@ class World(_Handle):
 
     def step(self, seconds, gravity=None, poses=None):
         """A frame of `seconds`, in as many substeps as are stable. gravity: m/s^2; poses: (n, 7), where the walls that move are at its end:
-        position (m) and rotation (x y z w)."""
+        position (m) and rotation (x y z w); None: as given before, at first and after a reset those of t = 0."""
         gravity, poses = _array(gravity, (3,), "gravity"), _array(poses, (-1, 7), "poses")
         inputs = _made(_Inputs, gravity=_at(gravity), poses=_at(poses), poses_count=0 if poses is None else len(poses))
         self._asked("world_step", self._pointer, inputs, seconds)

@@ -60,6 +60,15 @@ Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, st
     return std::make_unique<VoxelField>(std::move(*field));
 }
 
+// Error (badInput): it is not finite, or turns by no unit quaternion.
+Result<Pose> soundPose(const rivulet_pose& given, const std::string& name) {
+    Pose pose = poseOf(given);
+    if (!isFinite(pose.position) || !(std::abs(glm::length(pose.rotation) - 1) < 0.01F))
+        return badInput(fmt::format("{} is not finite, or its rotation has no unit length", name));
+    pose.rotation = glm::normalize(pose.rotation);  // a host's own turns lose precision
+    return pose;
+}
+
 Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids) {
     std::vector<HostMesh> still;
     std::vector<uint8_t> stillSurfaces;
@@ -90,10 +99,12 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
             finest = std::max(finest, wall.resolution);
             continue;
         }
+        const Result<Pose> pose = soundPose(wall.pose, fmt::format("walls[{}].pose", k));
+        if (!pose) return pose.error();
         auto field = fieldOf(std::span(&*mesh, 1), std::span(&surfaceNumber, 1), wall.resolution, spacing, w.context->memoryLimit);
         if (!field) return Error{fmt::format("walls[{}]: {}", k, field.error().message), field.error().fault};
-        solids.rigid.push_back({field->get(), {}});
-        w.poses.emplace_back();
+        solids.rigid.push_back({field->get(), *pose});
+        w.poses.push_back(*pose);
         w.fields.push_back(std::move(*field));
     }
     if (still.empty()) return ok();
@@ -217,15 +228,15 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (!std::isfinite(seconds)) return badInput("seconds is not finite");
         if (in.poses != nullptr && in.poses_count != world->poses.size())
             return badInput(fmt::format("{} poses were given, and {} walls move", in.poses_count, world->poses.size()));
+        const vec3 gravity = in.gravity != nullptr ? vectorOf(in.gravity) : world->params.fluid.gravity;
+        if (!isFinite(gravity)) return badInput("inputs.gravity is not finite");
         FluidInputs to;
-        to.gravity = in.gravity != nullptr ? vectorOf(in.gravity) : world->params.fluid.gravity;
-        if (!isFinite(to.gravity)) return badInput("inputs.gravity is not finite");
+        to.gravity = gravity;
         std::vector<Pose> poses;
         for (size_t k = 0; in.poses != nullptr && k < in.poses_count; ++k) {
-            poses.push_back(poseOf(in.poses[k]));
-            if (!isFinite(poses[k].position) || !(std::abs(glm::length(poses[k].rotation) - 1) < 0.01F))
-                return badInput(fmt::format("inputs.poses[{}] is not finite, or its rotation has no unit length", k));
-            poses[k].rotation = glm::normalize(poses[k].rotation);  // a host's own turns wear off
+            const Result<Pose> pose = soundPose(in.poses[k], fmt::format("inputs.poses[{}]", k));
+            if (!pose) return pose.error();
+            poses.push_back(*pose);
         }
         if (in.poses != nullptr) world->poses = std::move(poses);
         to.poses = world->poses;
@@ -243,6 +254,7 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
 rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         world->world->reset();
+        world->poses = world->world->poses();
         return ok();
     });
 }
@@ -329,6 +341,8 @@ rivulet_status rivulet_world_restore(rivulet_world* world, const char* path, riv
         if (path == nullptr) return badInput("path is NULL");
         Result<WorldState> state = readState(path);
         if (!state) return state.error();
-        return world->world->restore(*state);
+        Status restored = world->world->restore(*state);
+        if (restored) world->poses = world->world->poses();
+        return restored;
     });
 }

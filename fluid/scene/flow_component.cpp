@@ -137,7 +137,6 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     const Bounds all = boundsOf(*model, world);
     const Transform asked{params.position, params.rotation, params.scale};
     mat4 to = params.fitSize > 0 ? Transform::fitted(all, params.fitSize, params.position, params.rotation) : asked.matrix();
-    c.toWorld_ = c.worldAt(0);
     to = glm::translate(mat4(1.0F), -params.position) * to;
     for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
     if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
@@ -271,7 +270,7 @@ Status FlowComponent::prepareFlow(const Mesh& skin) {
                                         : SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
     if (!flow) return badInput(fmt::format("{}: {}", params_.mesh, flow.error().message));
     flow_.emplace(std::move(*flow));
-    search_.emplace(flow_->mesh());
+    placed_.emplace(*flow_, [this](double time) { return worldAt(time); });
     if (thesis()) return ok();  // its picture wants the UVs
     Result<FlowMaps> maps = FlowMaps::create(*flow_, std::exchange(uvs_, {}), params_.mapSize);
     if (!maps) return badInput(fmt::format("{}: {}", params_.mesh, maps.error().message));
@@ -420,7 +419,7 @@ void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint3
         const vec3 way = glm::length(source.along) > 0 ? glm::normalize(source.along) : vec3(0, -1, 0);
         const auto [a, b] = across(way);
         const float reach = 0.5F * glm::length(around_.size());
-        const vec3 middle = source.radius > 0 ? vec3(toWorld_ * glm::dvec4(dvec3(source.position), 1)) : around_.centre();
+        const vec3 middle = source.radius > 0 ? vec3(placed_->toWorld() * glm::dvec4(dvec3(source.position), 1)) : around_.centre();
         const vec2 off = source.radius > 0 ? disc() : vec2(any(state.random), any(state.random)) * reach;
         air.push_back({dvec3(middle + a * off.x + b * off.y - way * (reach * (1.2F + 0.2F * any(state.random)))), dvec3(way * source.speed),
                        picolitres});
@@ -446,13 +445,13 @@ SkinPoint FlowComponent::besideSpot(const FlowSourceParams& source, Source& stat
     }
     if (source.radius == 0) return *state.spot;
     const uint32_t* c = &mesh.corner[3 * size_t{state.spot->triangle}];
-    const std::vector<vec3>& x = search_->places();
+    const std::vector<vec3>& x = placed_->search().places();
     const vec3 n = glm::normalize(glm::cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]));
     if (!isFinite(n)) return *state.spot;
     const auto [a, b] = across(n);
     const vec3 at =
         (1 - state.spot->b1 - state.spot->b2) * x[c[0]] + state.spot->b1 * x[c[1]] + state.spot->b2 * x[c[2]] + a * off.x + b * off.y;
-    const std::optional<SkinSearch::Hit> hit = search_->first(at + n * source.radius, at - n * source.radius);
+    const std::optional<SkinSearch::Hit> hit = placed_->search().first(at + n * source.radius, at - n * source.radius);
     return hit ? hit->at : nearestPoint(mesh, at);
 }
 
@@ -493,13 +492,12 @@ void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air)
 
 Status FlowComponent::step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air) {
     const double then = time + seconds;
-    toWorld_ = worldAt(then);
-    time_ = then;
+    placed_->moveTo(then);
     around_ = {};
     bend(then);
-    seen_ = false;
     emit(time, seconds, air);
-    SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld_};
+    const dmat4& toWorld = placed_->toWorld();
+    SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld};
     if (skinDeformer_) inputs.moved = &skinDeformer_->positions();
     if (Status moved = flow_->step(inputs, seconds); !moved) return moved;
     if (flow_->refused() > 0)
@@ -507,7 +505,7 @@ Status FlowComponent::step(double time, double seconds, const vec3& gravity, std
             "a skin has no room for more drops: what finds none is lost, and counted as drained; flow.liquid.capacity says how many there "
             "may be");
     for (const LeftDrop& d : flow_->takeLeft())
-        air.push_back({dvec3(toWorld_ * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld_) * dvec3(d.velocity), d.picolitres});
+        air.push_back({dvec3(toWorld * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld) * dvec3(d.velocity), d.picolitres});
     return ok();
 }
 
@@ -522,35 +520,9 @@ void FlowComponent::bend(double time) {
     }
 }
 
-void FlowComponent::look() {
-    if (seen_) return;
-    seen_ = true;
-    const FlowView view = flow_->view();
-    search_->follow(device_->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
-}
-
 dmat4 FlowComponent::worldAt(double time) const { return glm::translate(dmat4(1.0), dvec3(params_.position)) * params_.motion.at(time); }
 
-std::optional<SkinSearch::Hit> FlowComponent::meets(const dvec3& from, const dvec3& to, double then) {
-    look();
-    const dmat4 now = glm::inverse(toWorld_), later = then == time_ ? now : glm::inverse(worldAt(then));
-    return search_->first(vec3(now * glm::dvec4(from, 1)), vec3(later * glm::dvec4(to, 1)));
-}
-
-void FlowComponent::land(const SkinSearch::Hit& where, const AirDrop& drop) {
-    // What comes straight at the skin stays there: it keeps the part of its speed that goes along, and no more than runs down by itself.
-    // Against the skin, as it moves as a whole.
-    constexpr double kMoment = 1.0e-4;  // s
-    const glm::dvec4 at(dvec3(where.position), 1);
-    const dvec3 carried = dvec3(worldAt(time_ + kMoment) * at - worldAt(time_) * at) / kMoment;
-    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * (drop.velocity - carried));
-    v -= where.normal * glm::dot(v, where.normal);
-    constexpr float kMost = 0.2F;  // m/s
-    if (const float pace = glm::length(v); pace > kMost) v *= kMost / pace;
-    flow_->add(where.at, drop.picolitres, v);
-}
-
-void FlowComponent::placeNode(Scene& scene) const { scene.nodes()[static_cast<size_t>(group_)].local = mat4(toWorld_); }
+void FlowComponent::placeNode(Scene& scene) const { scene.nodes()[static_cast<size_t>(group_)].local = mat4(placed_->toWorld()); }
 
 Status FlowComponent::draw() {
     if (!texture_) {
@@ -580,12 +552,6 @@ void FlowComponent::drawThesis() {
     const float mass = static_cast<float>(std::max(largest, 1.0e-15) * double{params_.liquid.density});
     picture_ = thesisPicture(particles, params_.mapSize, params_.thesis.disc, mass);
     texture_->update(picture_, capHeight(largest, 0.5 * double{params_.liquid.advancing + params_.liquid.receding}));
-}
-
-Bounds FlowComponent::bounds() const {
-    Bounds own;
-    for (const vec3& p : search_->places()) own.add(p);
-    return transformBounds(mat4(toWorld_), own);
 }
 
 }  // namespace rivulet

@@ -11,7 +11,7 @@
 #include "engine/scene/scene.h"
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
-#include "fluid/flow/skin_search.h"
+#include "fluid/flow/placed_flow.h"
 #include "fluid/scene/face_marks.h"
 #include "fluid/scene/flow_params.h"
 
@@ -29,16 +29,7 @@ class FlowComponent {
 
     // Moves the skin to where it is at `time` + `seconds`, and what flows on it. What leaves goes to `left`, what begins in the air to
     // `air`: in the world. Error (failed): out of memory.
-    struct AirDrop {
-        dvec3 position{0.0}, velocity{0.0};  // m, m/s
-        uint32_t picolitres = 0;
-    };
     Status step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air);
-    // Where a way through the world first meets the skin, as a share of it. Nothing: nowhere. The skin has the shape it has now; as a
-    // whole it is where it is now when the way begins, and where it will be at `then` (s) when it ends.
-    std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
-    // A drop that comes to rest on the skin there.
-    void land(const SkinSearch::Hit& where, const AirDrop& drop);
     void placeNode(Scene& scene) const;
 
     // Brings the layer up to date. Needs a current OpenGL context.
@@ -51,12 +42,12 @@ class FlowComponent {
 
     uint64_t emitted() const { return emitted_; }  // picolitres, by sources; not what has landed
     const SurfaceFlow& flow() const { return *flow_; }
-    double time() const { return time_; }  // s, of where it is
+    PlacedFlow& placed() { return *placed_; }
     const FlowParams& params() const { return params_; }
     const FlowMaps& maps() const { return *maps_; }  // in mode drops
     // As last drawn, in mode thesis; of size 0 else.
     const ThesisPicture& picture() const { return picture_; }
-    Bounds bounds() const;  // m, world
+    Bounds bounds() const { return placed_->bounds(); }  // m, world
 
   private:
     struct Source {
@@ -92,7 +83,6 @@ class FlowComponent {
     std::string faultOf(const FlowSourceParams& source) const;
     SkinPoint besideSpot(const FlowSourceParams& source, Source& state, const vec2& off);
     void sayOnce(const std::string& sentence);
-    void look();  // where the skin is now
 
     FlowParams params_;
     Log log_;
@@ -100,8 +90,6 @@ class FlowComponent {
     Bounds around_;  // bounds(), once a step
     Device* device_ = nullptr;
     int group_ = 0;  // the node that all parts hang from
-    dmat4 toWorld_{1.0};
-    double time_ = 0;  // s, at which toWorld_ is
     std::vector<Deformed> deformed_;
     std::shared_ptr<const Deformer> skinDeformer_;  // null: it keeps its shape
     std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them; of mode thesis for ever
@@ -110,8 +98,7 @@ class FlowComponent {
     ThesisPicture picture_;
     std::optional<FlowLayer> texture_;
     std::shared_ptr<Layer> layer_;
-    std::optional<SkinSearch> search_;
-    bool seen_ = false;  // search_ is as the skin is now
+    std::optional<PlacedFlow> placed_;  // of flow_
     FaceMarks marks_;
     std::vector<Source> sources_;
     std::array<SkinPoint, 2> tears_{};     // of the left and right eye

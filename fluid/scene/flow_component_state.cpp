@@ -13,18 +13,16 @@ struct FlowComponent::Snapshot {
 };
 
 std::shared_ptr<const FlowComponent::Snapshot> FlowComponent::save() const {
-    return std::make_shared<const Snapshot>(Snapshot{time_, toWorld_, sources_, said_, emitted_, flow_->save()});
+    return std::make_shared<const Snapshot>(Snapshot{placed_->time(), placed_->toWorld(), sources_, said_, emitted_, flow_->save()});
 }
 
 Status FlowComponent::restore(const Snapshot& snapshot) {
-    time_ = snapshot.time;
-    toWorld_ = snapshot.toWorld;
+    placed_->restore(snapshot.time, snapshot.toWorld);
     sources_ = snapshot.sources;
     said_ = snapshot.said;
     emitted_ = snapshot.emitted;
     around_ = {};
-    seen_ = false;
-    bend(time_);
+    bend(snapshot.time);
     return flow_->restore(*snapshot.flow);
 }
 

@@ -1,12 +1,11 @@
-// SkinFlows: all skins of a scene, and the drops in the air between them, the world's water and the ground. A drop that comes down on the
-// world's water is poured into it; a particle of the world that comes down on a skin becomes drops. One mass: a ledger in picolitres.
+// SkinFlows: all skins of a scene, and the drops in the air between them, the world's water and the ground (AirDrops). One mass: a ledger.
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <vector>
 
+#include "fluid/flow/air_drops.h"
 #include "fluid/scene/flow_component.h"
 #include "fluid/sim/world/fluid_world.h"
 
@@ -37,8 +36,8 @@ class SkinFlows {
     Ledger ledger() const;
     // The same without waiting: as SurfaceFlow::ledgerLater. Not of no skins.
     void ledgerLater(const std::function<void(const Ledger&)>& then) const;
-    size_t inAir() const { return air_.size(); }
-    std::vector<vec4> airDrops() const;  // as FluidView::drops
+    size_t inAir() const { return air_.drops().size(); }
+    std::vector<vec4> airDrops() const { return air_.drawn(); }  // as FluidView::drops
     // What skins and the world will hand to each other in `seconds`, for Sources::poured, m^3. 0: the scene has no skins, or no water
     // beside.
     static double expectedPoured(const SceneFile& scene, double seconds);
@@ -53,10 +52,6 @@ class SkinFlows {
     bool drip(const dvec3& from, const dvec3& way, uint32_t picolitres);
 
   private:
-    struct First {
-        FlowComponent* skin = nullptr;
-        SkinSearch::Hit where;
-    };
     // Picolitres, in all.
     struct Counted {
         uint64_t emitted = 0, taken = 0, surface = 0, air = 0, evaporated = 0, drained = 0, refused = 0, poured = 0;
@@ -64,19 +59,13 @@ class SkinFlows {
         Ledger ledger() const;
     };
     Counted counted() const;  // all but what SurfaceFlow::Ledger says
-    First firstOn(const dvec3& from, const dvec3& to, double then) const;
-    bool hasRoom(const FlowComponent* skin, uint32_t count = 1);
-    void takeLanding(const SceneFile& scene, FluidWorld& world, double seconds);
-    Status fall(const SceneFile& scene, FluidWorld& world, double seconds);
 
     std::vector<std::unique_ptr<FlowComponent>> skins_;
-    std::vector<FlowComponent::AirDrop> air_;
-    std::map<const FlowComponent*, uint32_t> room_;  // drops, of those that were asked in this step
-    bool pools_ = false;                             // there is water beside
-    uint64_t drained_ = 0, dripped_ = 0;             // picolitres
-    uint64_t poured_ = 0, taken_ = 0;                // picolitres, into the world and out of it
-    uint64_t particles_ = 0;                         // taken
-    size_t firstNode_ = 0;                           // of the scene's, where the skins' begin
+    std::vector<PlacedFlow*> placed_;  // of skins_
+    AirDrops air_;
+    bool pools_ = false;    // there is water beside
+    uint64_t dripped_ = 0;  // picolitres
+    size_t firstNode_ = 0;  // of the scene's, where the skins' begin
     double time_ = 0;
     double floor_ = 0;  // m, below which a drop is gone
 };

@@ -63,7 +63,8 @@ void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
         for (uint32_t k = 0; k < count; ++k) {
             const double r = wide * std::sqrt((k + 0.5) / count), angle = k * (std::numbers::pi * (3 - std::sqrt(5.0)));
             const dvec3 off = (a * std::cos(angle) + b * std::sin(angle)) * r;
-            const AirDrop drop{x + off, v, static_cast<uint32_t>(volume * (k + 1) / count - volume * k / count)};
+            const AirDrop drop{x + off, v, static_cast<uint32_t>(volume * (k + 1) / count - volume * k / count),
+                               static_cast<uint32_t>(first.skin)};
             const FirstMet own = count == 1 ? first : firstMet(inputs.skins, from + off, x + off + n * (2 * spacing), then);
             // The skin that the particle came down on has room for all of them.
             if (own.skin != inputs.skins.size() && (own.skin == first.skin || hasRoom(inputs, own.skin)))
@@ -87,9 +88,9 @@ Status AirDrops::fall(const Inputs& inputs, double seconds) {
     FluidWorld* world = inputs.world;
     const double then = inputs.time + seconds, spacing = world != nullptr ? double{world->particles().spacing} : 0.0;
     for (AirDrop& d : drops_) {
-        const double density = double{inputs.density}, volume = d.picolitres * kPicolitre;
+        const double density = double{inputs.skins[d.skin]->flow().params().density}, volume = d.picolitres * kPicolitre;
         const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
-        const dvec3 against = dvec3(inputs.wind) - d.velocity;
+        const dvec3 against = dvec3(inputs.winds[d.skin]) - d.velocity;
         // Implicit in the drag: no step makes it turn round.
         const double drag = 0.5 * kAirDensity * kBallDrag * std::numbers::pi * radius * radius * glm::length(against) / (density * volume);
         d.velocity += (dvec3(inputs.gravity) + against * drag) * seconds / (1 + drag * seconds);

@@ -17,8 +17,7 @@ class AirDrops {
         // Its water takes drops in, and its particles become drops: it was made with Sources::poured. null: no water is there.
         FluidWorld* world = nullptr;
         vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2
-        vec3 wind{0.0F};                   // m/s
-        float density = 1000;              // kg/m^3
+        std::span<const vec3> winds = {};  // m/s, of each skin
         double floor = 0;                  // m: a drop that falls below it is gone
         double time = 0;                   // s, when the step begins; where the skins are
     };

@@ -99,20 +99,24 @@ double SkinFlows::expectedPoured(const SceneFile& scene, double seconds) {
 
 Status SkinFlows::step(const SceneFile& scene, FluidWorld& world, double seconds, Scene& nodes) {
     if (empty() || !(seconds > 0)) return ok();
+    std::vector<vec3> winds;
+    for (const auto& skin : skins_) winds.push_back(skin->params().wind);
     const AirDrops::Inputs around{.skins = placed_,
                                   .world = pools_ ? &world : nullptr,
                                   .gravity = scene.fluid.gravity,
-                                  .wind = skins_[0]->params().wind,
-                                  .density = skins_[0]->flow().params().density,
+                                  .winds = winds,
                                   .floor = floor_,
                                   .time = time_};
     if (Status fallen = air_.step(around, seconds); !fallen) return fallen;
-    for (const auto& skin : skins_) {
+    for (size_t k = 0; k < skins_.size(); ++k) {
         std::vector<AirDrop> left;
-        Status moved = skin->step(time_, seconds, scene.fluid.gravity, left);
-        for (const AirDrop& drop : left) air_.add(drop);
+        Status moved = skins_[k]->step(time_, seconds, scene.fluid.gravity, left);
+        for (AirDrop& drop : left) {
+            drop.skin = static_cast<uint32_t>(k);
+            air_.add(drop);
+        }
         if (!moved) return moved;
-        skin->placeNode(nodes);
+        skins_[k]->placeNode(nodes);
     }
     time_ += seconds;
     return ok();

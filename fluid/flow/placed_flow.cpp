@@ -6,16 +6,21 @@ namespace rivulet {
 
 PlacedFlow::PlacedFlow(SurfaceFlow& flow, Motion motion) : flow_(&flow), motion_(std::move(motion)), search_(flow.mesh()) { moveTo(0); }
 
+void PlacedFlow::moveTo(double time) {
+    time_ = time;
+    toWorld_ = motion_(time);
+}
+
 void PlacedFlow::restore(double time, const dmat4& toWorld) {
     time_ = time;
     toWorld_ = toWorld;
-    seen_ = false;
+    seen_ = UINT64_MAX;
 }
 
 void PlacedFlow::look() {
-    if (seen_) return;
-    seen_ = true;
     const FlowView view = flow_->view();
+    if (seen_ == view.moved) return;
+    seen_ = view.moved;
     search_.follow(view.device->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
 }
 

@@ -24,12 +24,12 @@ class PlacedFlow {
     // The skin is where `motion` has it at t = 0. `flow` and what `motion` reads must outlive it.
     PlacedFlow(SurfaceFlow& flow, Motion motion);
 
-    // The skin is where its motion has it at `time` (s), and may have another shape.
-    void moveTo(double time) { restore(time, motion_(time)); }
+    void moveTo(double time);  // s: the skin is where its motion has it then
+    // Where a saved one was, of a flow that was restored, too.
     void restore(double time, const dmat4& toWorld);
 
     // Where a path through the world first meets the skin. Nothing: nowhere. The skin has the shape that it has now; as a whole it is where
-    // it is now when the path begins, and where its motion has it at `then` (s) when it ends. Once after each move it reads the skin's
+    // it is now when the path begins, and where its motion has it at `then` (s) when it ends. Once for each shape it reads the skin's
     // vertices back: on a GPU this waits.
     std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
     // A drop that comes to rest on the skin there.
@@ -50,7 +50,7 @@ class PlacedFlow {
     SkinSearch search_;
     dmat4 toWorld_{1.0};
     double time_ = 0;
-    bool seen_ = false;  // search_ is as the skin is now
+    uint64_t seen_ = UINT64_MAX;  // FlowView::moved of the shape that search_ has; UINT64_MAX: not known
 };
 
 // The first of `skins` that a path meets. skin: its index there; skins.size(): none.

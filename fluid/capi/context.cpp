@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include "engine/gpu/load.h"
-#include "fluid/capi/handles.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 
 namespace rivulet::capi {
 
@@ -16,6 +18,16 @@ rivulet_pose poseOf(const Pose& pose) {
     const vec3& p = pose.position;
     const quat& q = pose.rotation;
     return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}};
+}
+
+void hearTimes(rivulet_context& context) {
+    for (const PassTime& heard : context.device->takeTimes()) {
+        PassTime& all = context.passes[heard.name];
+        all.name = heard.name;
+        all.ms += heard.ms;
+        all.calls += heard.calls;
+        context.deviceMs += heard.ms;
+    }
 }
 
 Result<HostMesh> meshOf(const rivulet_mesh& mesh, const std::string& name) {

@@ -1,5 +1,7 @@
 // rivulet.h: drawing.
-#include "fluid/capi/handles.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 #include "fluid/render/host_picture.h"
 #include "fluid/render/renderers.h"
 

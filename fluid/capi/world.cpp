@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "engine/core/json.h"
-#include "fluid/capi/handles.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 #include "fluid/sim/world/host_particles.h"
 #include "fluid/sim/world/world_state.h"
 

@@ -15,7 +15,7 @@
 namespace rivulet::capi {
 
 inline void put(const vec3& v, float* to) { std::copy_n(&v.x, 3, to); }
-inline bool given(const float* v) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
+inline bool isSet(const float* v) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
 inline vec3 vectorOf(const float* v) { return {v[0], v[1], v[2]}; }
 inline mat4 matrixOf(const float* m) {
     mat4 out;
@@ -25,7 +25,7 @@ inline mat4 matrixOf(const float* m) {
 Pose poseOf(const rivulet_pose& pose);
 rivulet_pose poseOf(const Pose& pose);
 
-// Spans over a caller's mesh. Error (badInput): NULL arrays, or counts that make no triangles.
+// A caller's mesh. Error (badInput): NULL arrays, counts that give no triangles, an index without a vertex.
 struct HostMesh {
     std::vector<vec3> positions;
     std::vector<vec2> uvs;

@@ -19,21 +19,21 @@ struct rivulet_context {
     rivulet::Log log;
     rivulet::GlFacts gl;
     std::unique_ptr<rivulet::Device> device;
-    std::unique_ptr<rivulet::WaterRenderer> water;  // null: there is no OpenGL
+    std::unique_ptr<rivulet::WaterRenderer> water;  // null: no OpenGL
     std::string name;
-    std::map<std::string, rivulet::PassTime> passes;  // of the simulation, since rivulet_context_times()
+    std::map<std::string, rivulet::PassTime> passes;  // of the simulation, since rivulet_context_times() was called
     double deviceMs = 0;                              // of the simulation, since the start
     size_t memoryLimit = 0;                           // as rivulet_context_options
     int children = 0;                                 // worlds and skins
-    void* current = nullptr;                          // OpenGL's own context, which it was made in; null: there is none, or nobody knows
-    bool busy = false;                                // a call is under way
+    void* current = nullptr;                          // the OpenGL context that it was created in; null: none, or not known
+    bool busy = false;                                // a call is running
 };
 
 namespace rivulet::capi {
 
-void hearTimes(rivulet_context& context);  // hears of what the device did until now
+void collectTimes(rivulet_context& context);  // adds what the device has reported to `passes` and `deviceMs`
 
-// The part of a scene file that a host's world has.
+// The sections of a scene file that a host's world has.
 struct WorldParams {
     FluidParams fluid;
     std::vector<EmitterParams> emitters;
@@ -55,7 +55,7 @@ struct rivulet_world {
     rivulet_context* context = nullptr;
     rivulet::capi::WorldParams params;
     std::vector<std::unique_ptr<rivulet::VoxelField>> fields;
-    std::vector<rivulet::Pose> poses;  // of the walls that move, as last asked for
+    std::vector<rivulet::Pose> poses;  // of the walls that move: the last requested
     std::unique_ptr<rivulet::capi::BodyCallbacks> callbacks;
     std::unique_ptr<rivulet::FreeBodies> free;
     std::unique_ptr<rivulet::FluidWorld> world;

@@ -12,8 +12,8 @@
 
 namespace rivulet::capi {
 
-// What a caller's struct says of its own size. `type` and `name`: what an error calls it. Error (badInput): no version of it has that size:
-// it was not set, or to the size of a pointer.
+// The size that a caller's struct begins with. `type` and `name` are for the error (badInput): no version of the struct has that size, for
+// example because it was not set or is the size of a pointer.
 inline Result<size_t> sizeOf(const void* given, const char* type, const std::string& name) {
     constexpr size_t kMost = 4096;
     size_t size = 0;
@@ -22,9 +22,10 @@ inline Result<size_t> sizeOf(const void* given, const char* type, const std::str
     return size;
 }
 
-// What a caller filled, of whichever version its header is: what it does not know of is 0. Errors as sizeOf.
+// A struct that the caller filled, of any version: members that its header does not have are 0. Errors as sizeOf; (badInput): it sets
+// members that this library does not have.
 template <class T>
-Result<T> taken(const T* given, const char* type, const std::string& name) {
+Result<T> readStruct(const T* given, const char* type, const std::string& name) {
     T full{};
     if (given == nullptr) return full;
     const Result<size_t> size = sizeOf(given, type, name);
@@ -32,13 +33,15 @@ Result<T> taken(const T* given, const char* type, const std::string& name) {
     std::memcpy(static_cast<void*>(&full), given, std::min(*size, sizeof(T)));
     const auto* bytes = reinterpret_cast<const unsigned char*>(given);
     if (std::any_of(bytes + std::min(*size, sizeof(T)), bytes + *size, [](unsigned char b) { return b != 0; }))
-        return badInput(fmt::format("{} asks for what a later rivulet.h has, and this library is {}", name, rivulet_version()));
+        return badInput(
+            fmt::format("{} sets members of a later rivulet.h, and this library is version {}; set them to 0, or use a later library", name,
+                        rivulet_version()));
     return full;
 }
 
-// Fills a caller's struct, of whichever version its header is: what it does not know of is left out. Errors as sizeOf, or NULL.
+// Fills a caller's struct, of any version: members that its header does not have are left out. Error (badInput): as sizeOf, or NULL.
 template <class T>
-Status handOver(T full, T* to, const char* type, const std::string& name) {
+Status writeStruct(T full, T* to, const char* type, const std::string& name) {
     if (to == nullptr) return badInput(name + " is NULL");
     const Result<size_t> size = sizeOf(to, type, name);
     if (!size) return size.error();

@@ -259,7 +259,7 @@ static void lower(void* user, const rivulet_body_load* loads, const float* gravi
     h->clock += seconds;
     if (h->calls_back != NULL) {
         REFUSED(rivulet_world_step(h->calls_back, NULL, 0.01, &why), "callbacks must not");
-        rivulet_world_destroy(h->calls_back); /* is not done, and the log says so */
+        rivulet_world_destroy(h->calls_back); /* is refused and logged */
     }
     const int under = h->clock > 3;
     states[0].pose.position[1] = under ? 0.25F : 0.75F - 0.5F / 3 * (float)h->clock;
@@ -319,7 +319,7 @@ static void bodies_are_pushed_as_Archimedes_says(rivulet_context* context) {
     host.calls_back = world;
     run(world, 1);
     host.calls_back = NULL;
-    CHECK(said > 0 && strstr(last, "stays") != NULL);
+    CHECK(said > 0 && strstr(last, "not destroyed") != NULL);
     const int before = host.resets;
     DONE(rivulet_world_reset(world, &why));
     CHECK(host.resets == before + 1);
@@ -579,7 +579,7 @@ static void what_makes_no_sense_is_a_sentence(rivulet_context* context) {
     REFUSED(rivulet_world_draw(world, NULL, NULL, &why), "no OpenGL");
     REFUSED(rivulet_world_buffers(NULL, &buffers, &why), "world is NULL");
     REFUSED(rivulet_world_buffers(world, &buffers, &why), "no OpenGL");
-    CHECK(rivulet_world_step(NULL, NULL, 0.01, NULL) == RIVULET_BAD_INPUT); /* nobody asked why */
+    CHECK(rivulet_world_step(NULL, NULL, 0.01, NULL) == RIVULET_BAD_INPUT); /* the sentence is not wanted */
     rivulet_world_destroy(world);
     rivulet_world_destroy(NULL);
     rivulet_context_destroy(NULL);

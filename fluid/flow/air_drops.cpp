@@ -9,14 +9,14 @@ namespace rivulet {
 namespace {
 
 constexpr double kPicolitre = 1.0e-15, kCubicMillimetre = 1.0e-9;  // m^3
-constexpr float kWet = 0.3F;                                       // density ratio from which on a drop has met water
-constexpr float kAlone = 0.5F;                                     // up to which a particle is no part of it
+constexpr float kWet = 0.3F;                                       // density ratio from which a drop counts as in water
+constexpr float kAlone = 0.5F;                                     // density ratio up to which a particle is no part of the water
 constexpr double kAirDensity = 1.2;                                // kg/m^3
-constexpr double kBallDrag = 0.6;                                  // drag coefficient of a drop that falls
+constexpr double kBallDrag = 0.6;                                  // drag coefficient of a falling drop
 
 }  // namespace
 
-// Whether a skin has slots for `count` more drops in this step; they are then taken. What finds none flies on.
+// Whether a skin has free slots for `count` more drops in this step; they are then reserved. A drop without a slot flies on.
 bool AirDrops::hasRoom(const Inputs& inputs, size_t skin, uint32_t count) {
     int64_t& room = room_[skin];
     if (room < 0) room = inputs.skins[skin]->flow().room();
@@ -25,9 +25,9 @@ bool AirDrops::hasRoom(const Inputs& inputs, size_t skin, uint32_t count) {
     return true;
 }
 
-// A particle whose way, and half a spacing beyond, meets a skin becomes drops side by side as wide as it was: those that the skin is in the
-// way of land, the others fly by. A skin that has no room for them lets it pass. Water that stands about a skin, or waves against it, stays
-// where it is: what comes down has fallen further than it is wide, or is alone.
+// A particle whose path, extended by half a spacing, meets a skin becomes drops side by side over its width: those whose own path meets a
+// skin land, the others fly on. If the skin has no free slots the particle passes. Water that stands about a skin or waves against it is
+// left alone: a particle is taken if it is faster than after a fall of its own width, or alone.
 void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
     FluidWorld& world = *inputs.world;
     const double spacing = double{world.particles().spacing};
@@ -47,7 +47,7 @@ void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
         if (!std::isfinite(speed)) continue;
         const FirstMet first = firstMet(inputs.skins, from, x + way * (0.5 * spacing), then);
         if (first.skin == inputs.skins.size()) continue;
-        // Volumes of particles are no whole picolitres: each has what brings the sum nearest.
+        // A particle's volume is not a whole number of picolitres: round so that the sum is nearest.
         const auto upTo = static_cast<uint64_t>(std::llround(static_cast<double>(particles_ + 1) * std::pow(spacing, 3) / kPicolitre));
         const uint64_t volume = upTo - taken_;
         const double most = std::max(double{inputs.skins[first.skin]->flow().params().largestDrop} * kCubicMillimetre / kPicolitre, 1.0);
@@ -56,7 +56,7 @@ void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
         ++particles_;
         taken_ = upTo;
         slots.push_back(p.slot);
-        // Sunflower seeds in the disc that a particle's volume has as a ball.
+        // Placed like sunflower seeds over the disc of a ball of the particle's volume.
         const double wide = std::cbrt(3 / (4 * std::numbers::pi)) * spacing;
         const dvec3 n = speed > 0 ? way : -dvec3(first.where.normal);
         const dvec3 a = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0))), b = glm::cross(n, a);
@@ -66,7 +66,7 @@ void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
             const AirDrop drop{x + off, v, static_cast<uint32_t>(volume * (k + 1) / count - volume * k / count),
                                static_cast<uint32_t>(first.skin)};
             const FirstMet own = count == 1 ? first : firstMet(inputs.skins, from + off, x + off + n * (2 * spacing), then);
-            // The skin that the particle came down on has room for all of them.
+            // The skin that the particle meets has slots reserved for all of them.
             if (own.skin != inputs.skins.size() && (own.skin == first.skin || hasRoom(inputs, own.skin)))
                 inputs.skins[own.skin]->land(own.where, drop);
             else
@@ -76,12 +76,12 @@ void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
     world.take(slots);
 }
 
-// In the air a drop is a ball that falls and drags; it ends on the first skin in its way, in the world's water, or on the ground.
+// A drop in the air is a falling ball with drag; it ends on the first skin in its path, in the world's water, or on the ground.
 Status AirDrops::fall(const Inputs& inputs, double seconds) {
     struct Way {
         dvec3 to;
         FirstMet first;
-        size_t begin = 0, count = 0;  // of the places along it
+        size_t begin = 0, count = 0;  // of the sampled places along it
     };
     std::vector<Way> ways;
     std::vector<vec3> places;
@@ -91,7 +91,7 @@ Status AirDrops::fall(const Inputs& inputs, double seconds) {
         const double density = double{inputs.skins[d.skin]->flow().params().density}, volume = d.picolitres * kPicolitre;
         const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
         const dvec3 against = dvec3(inputs.winds[d.skin]) - d.velocity;
-        // Implicit in the drag: no step makes it turn round.
+        // The drag is implicit: no step length reverses the drop.
         const double drag = 0.5 * kAirDensity * kBallDrag * std::numbers::pi * radius * radius * glm::length(against) / (density * volume);
         d.velocity += (dvec3(inputs.gravity) + against * drag) * seconds / (1 + drag * seconds);
         Way way{.to = d.position + d.velocity * seconds, .first = {}, .begin = places.size()};

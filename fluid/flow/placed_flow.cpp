@@ -31,15 +31,14 @@ std::optional<SkinSearch::Hit> PlacedFlow::meets(const dvec3& from, const dvec3&
 }
 
 void PlacedFlow::land(const SkinSearch::Hit& where, const AirDrop& drop) {
-    // What comes straight at the skin stays there: it keeps the part of its speed that goes along, and no more than runs down by itself.
-    // Against the skin, as it moves as a whole.
+    // The drop keeps its velocity along the skin, relative to the skin's rigid motion, limited to the speed of a drop that runs by itself.
     constexpr double kMoment = 1.0e-4;  // s
     const glm::dvec4 at(dvec3(where.position), 1);
     const dvec3 carried = dvec3(motion_(time_ + kMoment) * at - motion_(time_) * at) / kMoment;
     vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * (drop.velocity - carried));
     v -= where.normal * glm::dot(v, where.normal);
     constexpr float kMost = 0.2F;  // m/s
-    if (const float pace = glm::length(v); pace > kMost) v *= kMost / pace;
+    if (const float speed = glm::length(v); speed > kMost) v *= kMost / speed;
     flow_->add(where.at, drop.picolitres, v);
 }
 

@@ -30,7 +30,7 @@ Status SkinFlows::create(const SceneFile& scene, Device& device, Scene& nodes, c
         all.add(skin->bounds().min);
         all.add(skin->bounds().max);
     }
-    // Where no ground is shown, what has fallen as far below as everything is large is gone.
+    // Without a shown floor, a drop is gone that has fallen below all skins by their overall size.
     floor_ = scene.background.showFloor ? double{scene.background.floorHeight}
              : all.empty()              ? 0.0
                                         : double{all.min.y} - double{glm::length(all.size())};
@@ -72,7 +72,7 @@ std::shared_ptr<const SkinFlows::Snapshot> SkinFlows::save() const {
 }
 
 Status SkinFlows::moveTo(Device& device, SceneFile scene, Scene& nodes, const Log& log, const Snapshot* from) {
-    // An edit may be under way: they stay what they were made as.
+    // An edit may be pending: keep the values that the skins were made with.
     for (size_t k = 0; k < std::min(skins_.size(), scene.flow.size()); ++k) {
         scene.flow[k] = skins_[k]->params();
         scene.flow[k].liquid = skins_[k]->flow().params();
@@ -139,7 +139,7 @@ bool SkinFlows::drip(const dvec3& from, const dvec3& way, uint32_t picolitres) {
 SkinFlows::Counted SkinFlows::counted() const {
     const AirDrops::Counts air = air_.counts();
     Counted c{.emitted = dripped_, .taken = air.taken, .air = air.air, .drained = air.drained, .poured = air.poured};
-    for (const auto& skin : skins_) c.emitted += skin->emitted();  // with what lay in its brims at the start
+    for (const auto& skin : skins_) c.emitted += skin->emitted();  // with the brims' initial content
     return c;
 }
 
@@ -147,7 +147,7 @@ void SkinFlows::Counted::add(const SurfaceFlow::Ledger& own) {
     surface += own.drops + own.film;
     evaporated += own.evaporated;
     refused += own.refused;
-    air += own.left - own.handed;  // a GPU tells of it late: it is taken up with the next step
+    air += own.left - own.handed;  // reported late by a GPU: AirDrops gets it with the next step
 }
 
 SkinFlows::Ledger SkinFlows::Counted::ledger() const {
@@ -158,7 +158,7 @@ SkinFlows::Ledger SkinFlows::Counted::ledger() const {
     l.onSurface = static_cast<double>(surface) * kPicolitre;
     l.inAir = static_cast<double>(air) * kPicolitre;
     l.evaporated = static_cast<double>(evaporated) * kPicolitre;
-    l.drained = static_cast<double>(drained + refused) * kPicolitre;  // where there was no slot nothing was let out
+    l.drained = static_cast<double>(drained + refused) * kPicolitre;  // a drop without a slot was never added
     const uint64_t there = surface + air + evaporated + drained + refused + poured, came = emitted + taken;
     l.error = static_cast<double>(std::max(there, came) - std::min(there, came)) * kPicolitre;
     return l;

@@ -6,6 +6,7 @@
 
 #include "fluid/render/filters.h"
 #include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 
@@ -87,6 +88,14 @@ Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& 
     else if (liquid != nullptr)
         look.scattering = liquid->scattering;
     return look;
+}
+
+FluidParams fluidForLook(FluidParams fluid, const FluidLookParams& look) {
+    const bool normals = look.colourBy == "normal" || look.colourBy == "surface";
+    if (normals && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
+    const bool surface = look.renderer == "screen_space" || look.split == "screen_space";
+    fluid.ellipsoids = fluid.ellipsoids || (surface && look.splats == "ellipsoids" && look.quality != "fast");
+    return fluid;
 }
 
 }  // namespace rivulet

@@ -9,6 +9,8 @@
 
 namespace rivulet {
 
+struct FluidParams;
+
 // How the fluid is drawn.
 struct FluidLookParams {
     std::string renderer = "screen_space";  // a row of renderers(): points | screen_space | reference
@@ -29,5 +31,8 @@ struct FluidLookParams {
 
 // How it looks: what it leaves to the liquid (a row of liquids(), or "") as that says. Error (badInput): an unknown name.
 Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& liquid);
+
+// `fluid` with what drawing it so needs of the simulation: normals of the surface, ellipsoids.
+FluidParams fluidForLook(FluidParams fluid, const FluidLookParams& look);
 
 }  // namespace rivulet

@@ -18,15 +18,7 @@ namespace rivulet {
 
 namespace {
 
-// The scene's fluid, with the normals and the ellipsoids that its look wants to show.
-FluidParams simulated(const SceneFile& scene) {
-    FluidParams fluid = scene.fluid;
-    const bool shown = scene.look.colourBy == "normal" || scene.look.colourBy == "surface";
-    if (shown && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
-    const bool surface = scene.look.renderer == "screen_space" || scene.look.split == "screen_space";
-    fluid.ellipsoids = fluid.ellipsoids || (surface && scene.look.splats == "ellipsoids" && scene.look.quality != "fast");
-    return fluid;
-}
+FluidParams simulated(const SceneFile& scene) { return fluidForLook(scene.fluid, scene.look); }
 
 float longest(const Bounds& bounds) {
     vec3 size = bounds.size();

@@ -347,7 +347,7 @@ TEST(FlowThesis, BadUvsAreRefusedOrLeftOutInPlainWords) {
     ASSERT_TRUE(mesh);
     const auto made = [&](const std::vector<vec2>& uvs) { return SurfaceFlow::createThesis(*device, FlowMesh(*mesh), uvs, {}, {}); };
     std::vector<vec2> uvs = cornerUvs(*mesh, shape.view());
-    EXPECT_EQ(made({}).error().message, "thesis mode was given 0 UVs for 384 corners: give each corner of each triangle its own");
+    EXPECT_EQ(made({}).error().message, "thesis mode has 0 UVs for 384 corners: give one for each corner of each triangle");
     EXPECT_EQ(made(std::vector<vec2>(uvs.size(), vec2(0.5F))).error().message,
               "no triangle of the skin has an area in UV, which thesis mode flows in: give it UVs, or mode drops");
     for (size_t k = 0; k < 30; ++k) uvs[k * 5] = vec2(k % 2 == 0 ? std::nanf("") : 1.0e30F, 0);

@@ -194,6 +194,38 @@ TEST(SceneFlow, ASkinThatMovesMeetsWhatIsInItsWay) {
     EXPECT_EQ((*session)->flows().ledger().error, 0.0);
 }
 
+// Drops that rain on two skins, 2 m apart: each has the wind of its own skin, and a liquid half as dense is blown twice as fast.
+TEST(SceneFlow, DropsInTheAirHaveTheWindAndTheDensityOfTheirOwnSkin) {
+    auto device = cpu();
+    Result<SceneFile> scene =
+        loadScene("rain_on_spot",
+                  std::vector<std::string>{"flow.0.mesh=meshes/sphere.obj", "flow.0.fitSize=0.1", "flow.0.mapSize=256",
+                                           "fluid.gravity=0,0,0", "flow.0.position=0,0,0", "flow.0.wind=5,0,0",
+                                           "flow.0.liquid.density=1000", "flow.0.sources.0.rate=20000", "flow.0.sources.0.drop=4",
+                                           "flow.0.sources.0.speed=0", "flow.0.sources.0.along=0,-1,0", "flow.0.sources.0.stop=0.02"});
+    ASSERT_TRUE(scene) << scene.error().message;
+    scene->flow.push_back(scene->flow[0]);
+    scene->flow[1].position.x = 2;
+    scene->flow[1].wind.x = -5;
+    scene->flow[1].liquid.density = 500;
+    Result<std::unique_ptr<Session>> session = Session::create(*scene, *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    for (int k = 0; k < 3; ++k) (*session)->step(1.0 / 60, true);
+    std::array<double, 2> speed{}, count{};
+    const std::vector<vec4> drops = (*session)->flows().airDrops();
+    for (size_t k = 0; k + 1 < drops.size(); k += 2) {
+        const size_t skin = drops[k].x > 1 ? 1 : 0;
+        speed[skin] += double{drops[k + 1].x};
+        ++count[skin];
+    }
+    ASSERT_GT(std::min(count[0], count[1]), 1);
+    speed[0] /= count[0];
+    speed[1] /= count[1];
+    EXPECT_GT(speed[0], 0.05);
+    EXPECT_LT(speed[1], 0);
+    EXPECT_NEAR(-speed[1] / speed[0], 2, 0.2);
+}
+
 // Each preset does what its name says within a few seconds.
 TEST(SceneFlow, PresetsWetTheFace) {
     auto device = cpu();

@@ -48,7 +48,7 @@ TEST(ProgramExport, SaysWhatIsWrong) {
     scratch.file("file", "not a folder");
     expectRefusal(runProgram({"export", "s.json"}, in(scratch)), 2, "--surface obj or ply");
     expectRefusal(runProgram({"export", "s.json", "--surface", "objj"}, in(scratch)), 2, "did you mean 'obj'");
-    expectRefusal(runProgram({"export", "s.json", "--surface", "stl"}, in(scratch)), 2, "there are: obj, ply");
+    expectRefusal(runProgram({"export", "s.json", "--surface", "stl"}, in(scratch)), 2, "use one of: obj, ply");
     expectRefusal(runProgram({"export", "none.json", "--surface", "obj"}, in(scratch)), 2, "none.json");
     expectRefusal(runProgram({"export", "s.json", "--surface", "obj", "--every", "0"}, in(scratch)), 2, "--every");
     expectRefusal(runProgram({"export", "s.json", "--surface", "obj", "--out", "file/meshes"}, in(scratch)), 1, "file/meshes");

@@ -99,10 +99,10 @@ TEST(ProgramReplay, SaysWhatIsWrong) {
     expectRefusal(runProgram({"run", "other.json", "--headless", "--replay", "s.rrec"}, in(scratch)), 2,
                   "s.rrec: it was recorded with name = small, this scene has name = other");
     expectRefusal(runProgram({"run", kScenes + "crying.json", "--headless", "--record", "c.rrec"}, in(scratch)), 2,
-                  "a recording holds no skins");
+                  "a recording cannot store flow on skins");
 }
 
-// Ctrl-C leaves a file with an end; what is cut off is shown as far as it goes, and said.
+// Ctrl-C leaves a complete file; a truncated file is shown as far as it goes, with a notice.
 TEST(ProgramReplay, ARunThatWasCutIsShown) {
     const Scratch scratch;
     scratch.file("s.json", testing::smallScene());
@@ -178,7 +178,7 @@ TEST_F(ReplayPerson, KeysPauseStepAndReset) {
     EXPECT_NE(viewer_->session().replaying()->sentence().find("frame 6 of 6"), std::string::npos);
 }
 
-// Every row of the panel is pressed and dragged. What was settled when the run was recorded is refused with a sentence.
+// Every row of the panel is pressed and dragged. Changes of recorded settings are refused with a message.
 TEST_F(ReplayPerson, WhatWasSettledIsRefused) {
     input_.framebuffer = ivec2(0);  // the panel alone
     frame(0);

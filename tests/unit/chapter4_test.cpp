@@ -1,4 +1,4 @@
-// The thesis's chapter 4: what its page says is what its table holds, and a short run of it measures what it says it does.
+// The thesis's chapter 4: the page agrees with the table, and a short run measures the documented quantities.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -63,7 +63,7 @@ TEST(Chapter4, ThePageReadsTheTableAloudBesideTheThesis) {
     for (const char* said :
          {"above 15 frames a second | 31.2 with its lists and its walk, of 28 ms a step and 4 ms of drawing; 62.5 with the "
           "sorted grid",
-          // (32 - 20) / 32, and 3 of 12; of 2,048 particles the thesis said nothing.
+          // (32 - 20) / 32, and 3 of 12; the thesis has no value for 2,048 particles.
           "above as many: 38 % of the frame, 25 % of the step", "| 16384 | 38 % (38 to 38) | 25.0 % |",
           "a step is shortest with 64 threads (the thesis used 128)", "onto spot.obj, hollow, voxelised at 128",
           "a machine, backend gl and pictures by a tested GPU", "| 2048 | 167 (150 to 200) | 133 (120 to 160) |"})
@@ -97,7 +97,7 @@ TEST(Chapter4, AShortRunMeasuresAllThatTakesTurns) {
     EXPECT_EQ(chapter->rows[5].workGroup, 32);
     EXPECT_TRUE(chapter->rows[5].sizes);
 
-    // Stopped between runs, it says so.
+    // A stop between runs is reported.
     request.goOn = [] { return false; };
     const Result<Chapter4> none = runChapter4(request);
     ASSERT_TRUE(none) << none.error().message;

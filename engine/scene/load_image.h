@@ -15,8 +15,7 @@ Result<Image> loadImage(const std::string& path);
 // The same from the bytes of a file; errors use `name`.
 Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& name);
 
-// A Radiance .hdr file, or another image converted to linear radiance. Values that are not finite are replaced, others are clamped to
-// 0..1000.
+// A Radiance .hdr file, or another image converted to linear radiance. NaN and infinity become 0, other values are clamped to 0..1000.
 Result<HdrImage> loadHdr(const std::string& path);
 
 }  // namespace rivulet

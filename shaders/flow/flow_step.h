@@ -23,7 +23,7 @@ namespace rivulet {
 #define SKIN_UINTS 8u
 #define DRY_EVERY 16u /* triangles: one in so many has its turn each step */
 STRUCT(FlowStep) {
-    vec4 pull;   // xyz m/s^2, gravity and inertia of the frame, in the skin's frame as all vectors below
+    vec4 pull;   // xyz m/s^2, gravity, in the skin's frame as all vectors below
     vec4 wind;   // xyz m/s, velocity of the air
     vec4 turn0;  // rows of a matrix: a direction in the last step's frame -> in this step's frame
     vec4 turn1;

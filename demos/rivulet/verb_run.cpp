@@ -120,11 +120,8 @@ int runVerb(const Arguments& arguments) {
     reader.option("--video", "FILE.mp4", "video file; default: DIR/NAME.mp4", options.video);
     reader.option("--still", "S", "draw only the frame at this time, s, and no video; may be repeated", stills);
     reader.option("--stats", "FILE.json", "statistics file; default: DIR/stats.json", options.stats);
-    reader.option(
-        "--cooperate", "PLAN",
-        "how CPU and GPU share the work: off, thesis (thesis 2.3), behind (simulate the next frame while this one is drawn) or auto "
-        "(measure them and use the fastest); default: off",
-        options.cooperate);
+    reader.option("--cooperate", "PLAN", "how CPU and GPU share the work: off, thesis, behind, or auto, which measures all; default: off",
+                  options.cooperate);
     reader.option("--trace", "FILE.json", "write a timeline of all passes, for chrome://tracing or Perfetto", options.trace);
     reader.option("--save", "FILE", "write the state at the end of the run, for --resume", options.save);
     reader.option("--resume", "FILE", "continue from a state of the same scene that --save wrote", options.resume);

@@ -115,7 +115,7 @@ Result<const aiScene*> prepareMeshFile(Assimp::Importer& importer, const std::st
     if (scene != nullptr) return scene;
     const std::string why = importer.GetErrorString();
     if (why.empty() || why.find("No output meshes") != std::string::npos) return meshFileError(path, "has no triangles");
-    return meshFileError(path, fmt::format("has no usable triangles ({})", why));
+    return meshFileError(path, fmt::format("has no triangles that can be used ({})", why));
 }
 
 }  // namespace rivulet

@@ -27,7 +27,7 @@ TEST(ProgramCli, HelpListsTheArgumentsOfEveryVerb) {
 TEST(ProgramCli, NothingAskedIsBadUse) {
     Outcome outcome = runProgram({});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_NE(outcome.err.find("usage"), std::string::npos);
+    EXPECT_NE(outcome.err.find("Usage"), std::string::npos);
 }
 
 TEST(ProgramCli, AMistypedNameIsAnsweredWithTheNearest) {

@@ -183,7 +183,7 @@ struct PlanChoice {
 Result<PlanChoice> choosePlan(const RunOptions& options, const GlFacts& gl, Painter& painter) {
     if (!options.render && options.cooperate != "off") {
         options.log.notice(
-            fmt::format("--cooperate {} has no effect: nothing is drawn, so that there is no work to share", options.cooperate));
+            fmt::format("--cooperate {} has no effect: nothing is drawn, so that CPU and GPU have no work to share", options.cooperate));
         return PlanChoice{.backend = options.backend};
     }
     if (options.cooperate != "auto") return PlanChoice{.backend = options.backend, .plan = plans().find(options.cooperate)->plan};

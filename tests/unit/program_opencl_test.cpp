@@ -74,7 +74,7 @@ TEST_F(ProgramOpenCl, IfSeveralDevicesMatchTheFirstIsUsedAndReported) {
     if (list.out.find("cl --device 2") == std::string::npos) GTEST_SKIP() << "one device, whatever is asked for";
     const Outcome run = runProgram(simulate(scene_, scratch_, {"--device", "Portable"}, "0"), two);
     EXPECT_EQ(run.code, 0) << run.err;
-    EXPECT_NE(run.err.find("names 2 OpenCL devices: basic"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("matches 2 OpenCL devices: using basic"), std::string::npos) << run.err;
     EXPECT_NE(statsOf(scratch_).find("\"device\": \"basic"), std::string::npos) << statsOf(scratch_);
     for (const char* text : {"2", "PTHREAD"}) {
         const Outcome second = runProgram(simulate(scene_, scratch_, {"--device", text}, "0"), two);

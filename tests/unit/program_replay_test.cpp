@@ -91,9 +91,9 @@ TEST(ProgramReplay, SaysWhatIsWrong) {
     };
     refused({"--replay", "none.rrec"}, 2, "none.rrec cannot be read");
     refused({"--replay", "foreign.rrec"}, 2, "foreign.rrec: this is not the beginning of a recording");
-    refused({"--replay", "s.rrec", "--stats", "x.json"}, 2, "--stats makes no sense");
-    refused({"--replay", "s.rrec", "--record", "t.rrec"}, 2, "--record makes no sense");
-    refused({"--replay", "s.rrec", "--no-render"}, 2, "--no-render makes no sense");
+    refused({"--replay", "s.rrec", "--stats", "x.json"}, 2, "--stats cannot be used with --replay");
+    refused({"--replay", "s.rrec", "--record", "t.rrec"}, 2, "--record cannot be used with --replay");
+    refused({"--replay", "s.rrec", "--no-render"}, 2, "--no-render cannot be used with --replay");
     refused({"--replay", "s.rrec", "--still", "0.5"}, 2, "s.rrec ends with frame 3, at 0.0667 s");
     refused({"--record", "nowhere/s.rrec"}, 1, "nowhere/s.rrec cannot be written");
     expectRefusal(runProgram({"run", "other.json", "--headless", "--replay", "s.rrec"}, in(scratch)), 2,

@@ -53,9 +53,9 @@ struct LightMaps {
     vec3 absorption{0.0F};  // 1/m, of the water
 };
 
-// Exponential variance shadow maps (Lauritzen and McCool 2008): moments of the depth from the light, with a small blur in `sharp` and a wide one in
-// `soft`, both of shadowMapDesc(). They depend on meshes and light only, so a caller may keep them and skip the pass. `quick`: half the
-// width, for meshes that deform in every frame.
+// Exponential variance shadow maps (Lauritzen and McCool 2008): moments of the depth from the light, with a small blur in `sharp` and a
+// wide one in `soft`, both of shadowMapDesc(). They depend on meshes and light only, so a caller may keep them and skip the pass. `quick`:
+// half the width, for meshes that deform in every frame.
 gpu::TextureDesc shadowMapDesc(bool soft, bool quick);
 void addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection,
                gpu::TextureHandle sharp, gpu::TextureHandle soft, bool quick);

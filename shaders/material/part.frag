@@ -1,4 +1,4 @@
-// A mesh with a full material: textures on the plain surface function (GLOW: emission and occlusion), on SKIN, on an EYE; BLENDED; with a LAYER of liquid.
+// A mesh with a full material: textures on the plain surface function (GLOW: emission, occlusion), on SKIN, on an EYE; BLENDED; with a LAYER of liquid.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"

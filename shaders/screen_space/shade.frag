@@ -52,7 +52,7 @@ vec3 layer(vec3 absorbed, vec3 thrown, out vec3 through) {
     return s * t / rest;
 }
 
-// Screen-space reflection: the colour in the mirror direction, rgb, and its confidence a. View space; step lengths grow with distance. `steps` 0: none.
+// Screen-space reflection: the colour in the mirror direction, rgb, and its confidence a. View space; step lengths grow with distance. 0 steps: none.
 vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     float t = 3.0 * radius, low = 0.0, high = 0.0;
     for (int k = 0; k < steps; ++k) {

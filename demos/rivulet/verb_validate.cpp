@@ -83,23 +83,28 @@ Status checkRequest(ValidateRequest& request) {
 }  // namespace
 
 int validateVerb(const Arguments& arguments) {
-    ArgumentReader reader("validate", "Measures the simulation against nature, papers and formulas.");
+    ArgumentReader reader(
+        "validate",
+        "Compares the simulation with experiments, published data and analytic solutions. The exit status is 1 if an error "
+        "exceeds its tolerance.");
     ValidateRequest request;
     std::string list;
     for (const PhysicsCase& row : physicsCases().rows) list += fmt::format("\n  {:<16}{}", row.name, row.doc);
     reader.footer(
-        "On gl and cl a case runs for half a second at 8,000 particles and is compared with the cpu.\nAims hold for the method dfsph, "
-        "on skins for flow, of surfaces for the first filter; the others are reported beside it.\n\nCases:" +
+        "On the backends gl and cl, a case runs for 0.5 s with 8,000 particles and is compared with the cpu.\nTolerances apply to the "
+        "method "
+        "dfsph, to flow on skins, and to the first filter for surfaces; results of the others are only reported.\n\nCases:" +
         list);
-    reader.positional("CASE", "which cases; all of them when none is named", request.names);
-    reader.flag("--quick", "each at about 8,000 particles", request.quick);
-    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter, reference",
+    reader.positional("CASE", "cases to run; default: all", request.names);
+    reader.flag("--quick", "run each case with about 8,000 particles", request.quick);
+    reader.option("--method", "M",
+                  "run one method only: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter's name or reference; default: all",
                   request.method);
-    reader.option("--backend", "B", "cpu, gl or cl", request.backend);
-    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
-    reader.option("--json", "FILE.json", "also write the figures to a file", request.json);
-    reader.option("--pictures", "DIR", "draw each case, measured against reference, as SVG into this folder", request.pictures);
-    reader.option("--set", "path=value", "change a parameter of the case's scene", request.assignments);
+    reader.option("--backend", "B", "backend of the simulation: cpu, gl or cl; default: cpu", request.backend);
+    reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", request.device);
+    reader.option("--json", "FILE.json", "also write the results as JSON", request.json);
+    reader.option("--pictures", "DIR", "write a chart (SVG) of each case, measured values and reference, to this folder", request.pictures);
+    reader.option("--set", "PATH=VALUE", "set a parameter of the case's scene; may be repeated", request.assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     if (Status sense = checkRequest(request); !sense) return report(sense.error());
 

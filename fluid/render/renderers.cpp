@@ -111,8 +111,8 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
 }
 
 void FluidPrograms::contextChanged() {
-    quads.letGo();
-    none.letGo();
+    quads.release();
+    none.release();
     quads = gpu::VertexArray::create();
     quads.elements(quadIndices.name());
     none = gpu::VertexArray::create();

@@ -155,13 +155,13 @@ void ColliderModel::addNodes(const std::string& name, Scene& nodes) {
 void ColliderModel::dress(const ColliderParams& params, Scene& nodes) const {
     nodes.nodes()[group_].visible = params.visible;
     for (size_t k = 0; k < parts_.size(); ++k) {
-        const bool own = params.materials == "file" && model_.parts[k].dressed;
+        const bool own = params.materials == "file" && model_.parts[k].hasMaterial;
         nodes.nodes()[parts_[k].node].material = own ? model_.parts[k].material : sceneMaterial(params);
     }
 }
 
 bool ColliderModel::dressed() const {
-    return std::any_of(model_.parts.begin(), model_.parts.end(), [](const ModelPart& part) { return part.dressed; });
+    return std::any_of(model_.parts.begin(), model_.parts.end(), [](const ModelPart& part) { return part.hasMaterial; });
 }
 
 double ColliderModel::clipTime(double time) const {

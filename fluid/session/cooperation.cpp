@@ -31,7 +31,7 @@ void traceKernels(Device& device, Timeline& timeline) {
 }
 
 Status writeTrace(const std::string& path, const Timeline& timeline, const Log& log) {
-    if (const double since = timeline.remembersSince(); since > 0)
+    if (const double since = timeline.completeSince(); since > 0)
         log.notice(fmt::format("{}: the run was longer than a trace holds: the last {:.3g} s are in it, what came before is missing", path,
                                hostSeconds() - since));
     return writeFileAtomic(path, timeline.chromeTrace());
@@ -185,7 +185,7 @@ double Cooperation::advance() {
 
 void Cooperation::count() {
     if (timeline_ == nullptr) return;
-    const double since = timeline_->remembersSince();
+    const double since = timeline_->completeSince();
     while (!frames_.empty() && frames_.front() < since) frames_.pop_front();
     frames_.push_back(startedAt_);
 }
@@ -195,7 +195,7 @@ CooperationStats Cooperation::stats() const {
     for (const PlanRow& row : plans().rows)
         if (row.plan == plan_) s.plan = row.name;
     if (timeline_ == nullptr || plan_ == Plan::alone) return s;
-    const double since = timeline_->remembersSince();
+    const double since = timeline_->completeSince();
     const auto first = std::find_if(frames_.begin(), frames_.end(), [&](double began) { return began >= since; });
     if (first == frames_.end()) return s;
     const auto frames = static_cast<double>(frames_.end() - first);

@@ -143,7 +143,7 @@ TEST_F(DeviceGl, CopiesFillsAndWritesInOrder) {
     EXPECT_EQ(device_->readAll<float>(a, 4), (std::vector<float>{0, 0, 0, 0}));
 }
 
-TEST_F(DeviceGl, TooLargeABufferSaysWhatWasAskedForAndWhatIsAllowed) {
+TEST_F(DeviceGl, ATooLargeBufferIsRefusedWithBothSizes) {
     const size_t most = device_->info().maxBufferBytes;
     const Result<Buffer> buffer = device_->allocate(most + 1);
     ASSERT_FALSE(buffer);

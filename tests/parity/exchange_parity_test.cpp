@@ -1,4 +1,4 @@
-// Water that others hold beside the world, on cl and gl: as many taken, as many born of what is poured.
+// Exchange of water with a world on cl and gl: the same numbers of particles are removed and spawned as on the cpu.
 #include <gtest/gtest.h>
 
 #include "fluid/sim/world/fluid_world.h"

@@ -41,7 +41,7 @@ std::vector<vec4> run(Device& device, std::vector<std::vector<vec4>>* layer) {
     std::vector<vec4> texels;
     for (size_t k = 0; k < words.size(); k += 2) texels.emplace_back(glm::unpackHalf2x16(words[k]), glm::unpackHalf2x16(words[k + 1]));
     if (made) {
-        // What a device sends later has come by now; once more asks for the last.
+        // Delayed results have arrived; one more call requests the last ones.
         for (int k = 0; k < 2; ++k) {
             device.finish();
             maps->draw(*flow);

@@ -21,7 +21,7 @@ struct Compared {
     double worst = 0;  // of the largest value in the buffer
 };
 
-// cl, which does on the cpu, too, what it is told to dispatch.
+// Device cl, which repeats each dispatch on the cpu.
 class TwinDevice final : public Device {
   public:
     TwinDevice(Device& cl, Device& cpu) : cl_(cl), cpu_(cpu) {}

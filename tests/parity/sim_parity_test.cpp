@@ -67,7 +67,7 @@ VoxelField ball() {
     return field ? std::move(*field) : VoxelField{};
 }
 
-// What one step leaves, by particle id.
+// The state after one step, by particle id.
 using Fields = std::map<std::string, std::vector<vec4>>;
 
 std::vector<vec4> byId(const std::vector<uint32_t>& id, const std::vector<vec4>& values) {

@@ -178,7 +178,8 @@ TEST_P(SortTest, orderIsThatOfAStableSortByCellAndId) {
 }
 
 TEST_P(SortTest, allParticlesInOneCell) {
-    // llvmpipe ends all loops of a shader after 65,535 rounds in total: there the larger cell stays partly unsorted, but nobody is lost.
+    // llvmpipe ends all loops of a shader after 65,535 rounds in total: there the larger cell stays partly unsorted, but no particle is
+    // lost.
     const bool loopsEnd = device_->backend() == Backend::gl && device_->info().software;
     for (const uint32_t count : {1000U, 65537U}) {
         Particles all = randomParticles(count, count);
@@ -187,7 +188,7 @@ TEST_P(SortTest, allParticlesInOneCell) {
     }
 }
 
-TEST_P(SortTest, whatIsOutsideOrNotANumberGoesToLimbo) {
+TEST_P(SortTest, outsideAndNanParticlesAreSortedBehindTheGrid) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
     Particles all = randomParticles(5000, 4);
     uint32_t lost = 0;

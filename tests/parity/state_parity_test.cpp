@@ -68,7 +68,7 @@ TEST_P(StateParity, SavedOnTheCpuResumedThere) {
     }
 }
 
-// Figures that are still on their way when their world goes come to nobody: neither to it nor to the next world of that device.
+// Results that are pending when their world is destroyed are dropped: neither it nor the next world of that device receives them.
 TEST_P(StateParity, AWorldMayGoBeforeItsFiguresCome) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;

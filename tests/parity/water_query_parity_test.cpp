@@ -1,4 +1,5 @@
-// What cl and gl say of the water at places and along rays is what the cpu says, sorted or in linked lists, at t = 0 and later.
+// Queries of the water at points and along rays give the same results on cl and gl as on the cpu, sorted or in linked lists, at t = 0 and
+// later.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// What a program hands to a world and no file could have said: an error that names it, and never a crash, a hang or a world of nonsense.
+// Invalid input of a host that no file could contain: it is refused with an error that names it, and never causes a crash, a hang or a
+// corrupt world.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +57,7 @@ TEST(BadInput, AParamOutOfItsRangeIsNamed) {
     EXPECT_EQ(refusal(sound()), "");
 }
 
-TEST(BadInput, AWorldKeepsWhatItWasWhenItIsToldNonsense) {
+TEST(BadInput, InvalidInputLeavesAWorldUnchanged) {
     auto device = cpu();
     auto world = make(*device, sound());
     FluidParams p = sound();

@@ -58,7 +58,7 @@ TEST(Exchange, WhatIsTakenIsGoneAndNothingElse) {
         EXPECT_EQ(after.size(), before.size() - slots.size());
         for (const vec3& x : after) EXPECT_EQ(gone.count({x.x, x.y, x.z}), 0U);
     }
-    // It closes over them, and its figures say so.
+    // The water closes the gap, which the stats show.
     for (int k = 0; k < 30; ++k) world->step({}, 1.0 / 60);
     EXPECT_NEAR(world->stats().emitted, static_cast<double>(positions(*world).size()) * kOne + world->stats().taken, 1e-12);
     EXPECT_EQ(world->stats().lost, 0U);
@@ -128,7 +128,7 @@ TEST(Exchange, ASavedWorldKeepsItsDebts) {
     }
     EXPECT_EQ(positions(*a), positions(*b));
     EXPECT_EQ(a->stats().poured, 2 * kOne);
-    // One that knows nobody else is no world for it.
+    // A world without a partner refuses the call.
     auto alone = make(*device, pool(), 0);
     WorldState again;
     a->save(again);

@@ -85,7 +85,7 @@ TEST(GoOn, OnlyWhatIsInTheMovedBallIsTakenAway) {
     EXPECT_EQ(two->world().stats().particles, open(*device, after)->world().stats().particles) << "the scene's own beginning";
 }
 
-// A state that is saved after it can be resumed by a session that knows nothing of the first.
+// A state that is saved after it can be resumed by another session.
 TEST(GoOn, FoamStaysOnTheWater) {
     auto device = cpu();
     SceneFile before = scene();

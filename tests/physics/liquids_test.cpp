@@ -1,4 +1,4 @@
-// Liquids: the table, and two of them in one world against what hydrostatics says.
+// Liquids: the table, and two of them in one world against hydrostatics.
 #include "fluid/sim/sources/liquids.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// A state with bodies, emitters and sinks goes on bit for bit, whoever moves the bodies; and what makes no sense changes nothing.
+// A state with bodies, emitters and sinks continues bit for bit, with bodies moved by the world or by a host; an invalid state changes
+// nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>

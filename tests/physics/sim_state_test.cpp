@@ -1,4 +1,4 @@
-// A state that is saved and resumed goes on as if nothing had happened: bit for bit on the cpu, whatever moves.
+// A run resumed from a saved state equals the uninterrupted run: bit for bit on the cpu, for all moving parts.
 #include <gtest/gtest.h>
 
 #include <cmath>

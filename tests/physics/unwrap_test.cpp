@@ -115,7 +115,7 @@ TEST(Unwrap, EveryTestMeshIsLaidFlat) {
     }
 }
 
-// What can be wrong with UVs is found, by number, and told from what is not.
+// Defects of UVs are found and counted; valid UVs are not reported.
 TEST(Unwrap, BadUvsAreFoundAndReplaced) {
     const Skin good = test::cubeBall(0.04F, 10);
     const auto judged = [&](const Skin& skin) {

@@ -1,4 +1,4 @@
-// Volumes that are watched: what they hold is what lies in them, and what has come less what has gone, whatever happens.
+// Watched volumes: their count equals the particles inside, and those that entered minus those that left, at all times.
 #include "fluid/sim/query/volumes.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +94,7 @@ TEST(Volumes, CountsAreWhatLiesInThemStepByStep) {
     EXPECT_TRUE(world->takeVolumeEvents().empty());
 }
 
-// Emitters, sinks and others who take water: what is born or gone has come or left.
+// Emitters, sinks and exchange: a spawned or removed particle counts as entered or left.
 TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
     auto device = makeTestCpu();
     Sources sources;

@@ -1,4 +1,4 @@
-// What a world says of its water: at places, along rays. Against sums over all particles in double, and against water whose shape is known.
+// Queries of the water at points and along rays. Against sums over all particles in double, and against water whose shape is known.
 #include "fluid/sim/query/water_query.h"
 
 #include <gtest/gtest.h>

@@ -92,7 +92,7 @@ TEST_P(Limits, NoneOneAndTwoAtTheSamePoint) {
         }
 }
 
-// PBF: a metre of water, as it comes, at any spacing. Its corrections bear no more weight than they can: with steps of 4 ms a column of
+// PBF: a metre of water, with default settings, at any spacing. Its corrections support a limited weight: with steps of 4 ms a column of
 // fifty layers boiled (18 m/s).
 TEST(PbfWeight, AMetreOfWaterRestsAtAnySpacing) {
     for (const float spacing : {0.05F, 0.02F}) {

@@ -1,4 +1,4 @@
-// The thesis's chapter 4: what its page says is what its table holds, and a short run of it measures what it says it does.
+// The thesis's chapter 4: the page agrees with the table, and a short run measures the documented quantities.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -97,7 +97,7 @@ TEST(Chapter4, AShortRunMeasuresAllThatTakesTurns) {
     EXPECT_EQ(chapter->rows[5].workGroup, 32);
     EXPECT_TRUE(chapter->rows[5].sizes);
 
-    // Stopped between runs, it says so.
+    // A stop between runs is reported.
     request.goOn = [] { return false; };
     const Result<Chapter4> none = runChapter4(request);
     ASSERT_TRUE(none) << none.error().message;

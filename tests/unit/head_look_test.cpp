@@ -1,4 +1,4 @@
-// What dressHead finds in the head's meshes is what head.json says of them, which make_head wrote from its own formulas.
+// dressHead finds in the head's meshes the values in head.json, which make_head computed from its own formulas.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What we do to a host's OpenGL: nothing that it could tell afterwards, whatever state it was in.
+// HostState restores a host's OpenGL state exactly, for many different states.
 #include "engine/gpu/host_state.h"
 
 #include <EGL/egl.h>
@@ -152,7 +152,7 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
     }
     EXPECT_EQ(difference(before, glSnapshot()), "");
 
-    // Whatever we do in it.
+    // Any changes inside the scope.
     auto renderer = WaterRenderer::create({});
     ASSERT_TRUE(renderer) << renderer.error().message;
     EXPECT_EQ(difference(before, glSnapshot()), "") << "create()";

@@ -1,4 +1,4 @@
-// The include rules of the house: who may include whom. Reads every source of engine/, fluid/ and shaders/.
+// The include rules: which folder may include which. Reads every source of engine/, fluid/ and shaders/.
 #include <gtest/gtest.h>
 
 #include <array>

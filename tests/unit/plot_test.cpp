@@ -1,4 +1,4 @@
-// What graphs share: round axes that hold what they show, figures of three digits, colours apart.
+// Shared by graphs: round axis limits that contain the data, three-digit numbers, distinct colours.
 #include "engine/ui/plot.h"
 
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 namespace rivulet::testing::program_chart_test {
 namespace {
 
-TEST(ProgramChart, WhatMakesNoSenseIsSaidInASentence) {
+TEST(ProgramChart, InvalidArgumentsAreRefusedWithAMessage) {
     expectRefusal(runProgram({"chart", "hydrostatics"}), 2, "did you mean 'hydrostatic'");
     expectRefusal(runProgram({"chart", "stabilty"}), 2, "did you mean 'stability'");
     expectRefusal(runProgram({"chart", "--out", "/proc/nowhere"}), 1, "/proc/nowhere");
@@ -26,7 +26,7 @@ TEST(ProgramChart, StopsWhenItIsAskedTo) {
     EXPECT_EQ(scratch.contents(), std::vector<std::string>{"docs"});
 }
 
-TEST(ProgramBudget, IsPickedSaidAndReported) {
+TEST(ProgramBudget, ChoosesSettingsAndReportsThem) {
     Scratch scratch;
     RunOptions in;
     in.folder = scratch.path();

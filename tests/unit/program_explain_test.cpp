@@ -1,4 +1,4 @@
-// `rivulet run --explain`: what a scene does not need is neither compiled nor run, and what is there is told with its cost.
+// `rivulet run --explain`: unused features are neither compiled nor run, and the others are listed with their cost.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ TEST(ProgramExplain, AWorldWithoutWallsBodiesOrTensionCompilesNoneOfTheirCode) {
                     EXPECT_FALSE(kernel.starts_with(path)) << kernel;
                 EXPECT_EQ(kernel.find("MATTER"), std::string::npos) << kernel;
             }
-            // What would read walls has been made without.
+            // Kernels that would read walls are compiled without them.
             for (const char* path : {"fluid/methods/dfsph_density", "fluid/methods/dfsph_rate", "fluid/methods/dfsph_push", "fluid/pbf_",
                                      "fluid/wcsph_", "fluid/methods/integrate"})
                 for (const std::string& kernel : made)

@@ -1,4 +1,4 @@
-// Skins in scenes: what a file may say, what is refused, and that nothing is lost on the way from an eye to the ground.
+// Skins in scenes: valid and refused files, and conservation of volume from an eye to the ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -139,7 +139,7 @@ TEST(SceneFlow, ASkinWithoutUvsIsLaidOut) {
     EXPECT_GT((*session)->flows().ledger().onSurface, 0.0);
 }
 
-// A jet over a basin: its particles become drops on the cow, what drips from her is poured into the basin, and is born there.
+// A jet over a basin: its particles become drops on the cow, drops that drip from it are deposited in the basin and become particles there.
 TEST(SceneFlow, TheSameWaterIsInBothWorlds) {
     auto device = cpu();
     Result<SceneFile> scene = loadScene("shower", std::vector<std::string>{"flow.0.mapSize=64", "fluid.spacing=0.008",
@@ -161,7 +161,7 @@ TEST(SceneFlow, TheSameWaterIsInBothWorlds) {
     EXPECT_NEAR(l.onSurface + l.inAir + l.inWorld + l.evaporated + l.drained, l.emitted, 1e-14);
     EXPECT_GT(most, 5e-6);
     const double jet = 0.5 * 0.06e-3;  // m^3: a nozzle lets whole layers out
-    // What is born above the water beside her may come down on her again.
+    // Particles spawned above the water beside the cow may land on it again.
     EXPECT_GT(world.stats().taken, 0.75 * jet);
     EXPECT_LT(world.stats().taken, 1.25 * jet + world.stats().poured);
     EXPECT_GT(world.stats().poured, 0.2 * jet);
@@ -248,7 +248,7 @@ TEST(SceneFlow, PresetsWetTheFace) {
     }
 }
 
-// What a panel may write while somebody drags, chooses and adds: nothing ends the program, and what cannot be is said once.
+// All edits that a panel permits: none ends the program, and an invalid one is reported once.
 TEST(SceneFlow, APanelMayWriteAnything) {
     auto device = cpu();
     std::string said;

@@ -1,4 +1,4 @@
-// Transforms, cameras and the scene graph against what geometry says.
+// Transforms, cameras and the scene graph against exact geometry.
 #include <gtest/gtest.h>
 
 #include "engine/scene/camera.h"

@@ -1,4 +1,4 @@
-// What a mesh file may do to importMesh: be right, or be refused in one plain sentence that names it.
+// importMesh: every file is read correctly, or refused with a message that names it.
 #include <gtest/gtest.h>
 
 #include <cstdio>

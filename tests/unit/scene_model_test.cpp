@@ -1,4 +1,4 @@
-// What importModel makes of glTF: parts, materials, textures, morphs and bones, or one plain sentence.
+// importModel of glTF: parts, materials, textures, morphs and bones, or an error message.
 #include <gtest/gtest.h>
 
 #include <unistd.h>

@@ -76,7 +76,7 @@ TEST(VirialPressure, OfALatticeIsWhatItsPairsPassOn) {
     // Of its own pressure it passes on half, of its neighbours' half.
     pressures[middle] = 0;
     EXPECT_NEAR(virialPressures(positions, pressures, p)[middle], 350 * passed / shape, 0.01);
-    // A free slot is nobody.
+    // A free slot does not count.
     positions[middle].w = -1;
     EXPECT_EQ(virialPressures(positions, pressures, p)[middle], 0);
 }
@@ -185,7 +185,7 @@ TEST(PhysicsCases, AFindingWithoutToleranceIsOnlyReported) {
     EXPECT_FALSE((Finding{"x", "", 1, 0, std::nan(""), 0.01}).pass());
 }
 
-TEST(PhysicsCases, APlotBecomesASvgWhateverItsWordsAre) {
+TEST(PhysicsCases, APlotWithAnyTextIsAValidSvg) {
     const std::string path = (fs::temp_directory_path() / "rivulet_plot_test.svg").string();
     fs::remove(path);
     const Plot plot{

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <json/json.h>
 
 #include <algorithm>
@@ -63,16 +64,20 @@ void print(const PhysicsCase& row, const Outcome& o) {
     std::fflush(stdout);
 }
 
+// Of all cases, each once.
+std::vector<std::string> allMethods() {
+    std::vector<std::string> all;
+    for (const PhysicsCase& row : physicsCases().rows)
+        for (const std::string& method : methodsOf(row))
+            if (std::find(all.begin(), all.end(), method) == all.end()) all.push_back(method);
+    return all;
+}
+
 Status checkRequest(ValidateRequest& request) {
     for (const std::string& name : request.names)
         if (Status known = checkWord("case", name, physicsCases().names()); !known) return known;
-    if (!request.method.empty()) {
-        std::vector<std::string> any;
-        for (const PhysicsCase& row : physicsCases().rows)
-            for (const std::string& method : methodsOf(row))
-                if (std::find(any.begin(), any.end(), method) == any.end()) any.push_back(method);
-        if (Status known = checkWord("method", request.method, any); !known) return known;
-    }
+    if (!request.method.empty())
+        if (Status known = checkWord("method", request.method, allMethods()); !known) return known;
     if (Status sense = settleBackend(request.backend, "cpu", request.device); !sense) return sense;
     if (!request.json.empty())
         if (Status writable = checkWritable(request.json); !writable) return writable;
@@ -93,8 +98,7 @@ int validateVerb(const Arguments& arguments) {
         list);
     reader.positional("CASE", "which cases; all of them when none is named", request.names);
     reader.flag("--quick", "each at about 8,000 particles", request.quick);
-    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter, reference",
-                  request.method);
+    reader.option("--method", "M", fmt::format("one method only; else all: {}", fmt::join(allMethods(), ", ")), request.method);
     reader.option("--backend", "B", "cpu, gl or cl", request.backend);
     reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
     reader.option("--json", "FILE.json", "also write the figures to a file", request.json);

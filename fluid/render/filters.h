@@ -12,11 +12,15 @@ namespace rivulet {
 struct FilterRow {
     const char* name;
     const char* doc;
-    // `spheres`: rg32f, depth of the bulk and of the spray, m. The depth of the surface: r32f, m, 1e6 where there is none.
-    gpu::TextureHandle (*add)(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles,
-                              gpu::TextureHandle spheres);
+    const char* shader;  // of its passes, under shaders/; includes filter.glsl and is compiled with LAST defined for the last pass
+    bool smooths;        // false: one pass, which leaves the depth as it is
+    // `own`: this row. `spheres`: rg32f, depth of the bulk and of the spray, m. Returns the depth of the surface: r32f, m, 1e6 where there
+    // is none.
+    gpu::TextureHandle (*add)(const FilterRow& own, gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw,
+                              gpu::TextureHandle tiles, gpu::TextureHandle spheres);
 };
 const Table<FilterRow>& filters();
+const FilterRow& unfiltered();  // the row that does not smooth
 
 // The look's figures, those that are 0 from the spacing; m.
 struct FilterReach {

@@ -8,7 +8,15 @@ namespace rivulet {
 
 struct FilterRow;  // fluid/render/filters.h
 
+// What the colour of a point shows.
 enum class ColourBy { speed, density, id, dye, normal, surface };
+struct ColourRow {
+    const char* name;
+    const char* doc;
+    ColourBy colourBy;
+    bool normals = false;  // shows the surface's normals, which the world then computes
+};
+const Table<ColourRow>& colourings();
 
 // What of the water is shown: the water, or what it is made from.
 enum class WaterView { water, normals, depth, spheres, thickness };

@@ -11,8 +11,8 @@ namespace rivulet {
 
 // How the fluid is drawn.
 struct FluidLookParams {
-    std::string renderer = "screen_space";  // a row of renderers(): points | screen_space | reference
-    std::string colourBy = "speed";         // points: speed | density | id | dye | normal | surface
+    std::string renderer = "screen_space";  // a row of renderers()
+    std::string colourBy = "speed";         // of points: a row of colourings()
     std::string splats = "ellipsoids";      // what a particle is drawn as: spheres | ellipsoids
     std::string view = "water";             // a row of waterViews()
     std::string split;                      // a row of renderers(), for the picture's right half; "" = none
@@ -25,6 +25,8 @@ struct FluidLookParams {
     vec3 scattering{-1.0F};                 // 1/m, reduced, per channel; -1 = as the liquid's
     float refractiveIndex = 0.0F;           // 0 = as the liquid's
     void visit(ParamVisitor& v);
+    bool showsNormals() const;     // FluidView::velocity holds normals instead of velocities
+    bool showsEllipsoids() const;  // particles are drawn as ellipsoids, in the whole picture or in its right half
 };
 
 // How it looks: what it leaves to the liquid (a row of liquids(), or "") as that says. Error (badInput): an unknown name.

@@ -97,4 +97,11 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
     return addShade(graph, programs, d, water);
 }
 
+RendererRow referenceRenderer() {
+    return {.name = "reference",
+            .doc = "the same shading of the particles' iso-surface, ray-marched at full precision: seconds a frame",
+            .opaque = false,
+            .add = addReference};
+}
+
 }  // namespace rivulet

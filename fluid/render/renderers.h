@@ -1,69 +1,18 @@
 // Renderers: the ways to draw a fluid, as passes added to a frame graph after the scene's opaque pass.
 #pragma once
 
-#include <array>
 #include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "engine/compute/kernel_source.h"
 #include "engine/core/table.h"
 #include "engine/gpu/frame_graph.h"
-#include "engine/gpu/program.h"
-#include "engine/gpu/vertex_array.h"
 #include "engine/render/frame_view.h"
 #include "fluid/render/fluid_look.h"
+#include "fluid/render/fluid_programs.h"
 #include "fluid/render/fluid_view.h"
 
 namespace rivulet {
-
-// A filter's passes: each, and the one that ends it.
-struct FilterPrograms {
-    gpu::Program step, last;
-};
-
-// What draws particles' depth and thickness: as spheres, or as ellipsoids. Ink: particles differ in absorption.
-struct SplatPrograms {
-    gpu::Program occluder, markTiles, depth, thickness, thicknessInk;
-};
-
-// What a quad's vertex shader reads of each row.
-struct QuadRows {
-    unsigned buffer = 0;  // GL name; 0: none
-    GLenum format = GL_RGBA32F;
-};
-
-struct MarchedReference;
-
-// The programs of all renderers. Whose particles are drawn is set anew each frame.
-struct FluidPrograms {
-    gpu::Program waterBlocks, waterTiles, refine;
-    gpu::Program points, pointsShade, blur, shade, lightWater, lightWaterFirst, lightWaterLast, shadeInk, showView;
-    gpu::Program shadeNormals, shadeNormalsInk;  // Ink: particles differ in absorption; Normals: they are given
-    SplatPrograms spheres, ellipsoids;
-    SplatPrograms& splats(const FluidView& fluid) { return fluid.ellipsoids[0] != 0 ? ellipsoids : spheres; }
-    gpu::Program drops, dropsOverWater, foam, foamOverWater;
-    FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
-    gpu::VertexArray quads, none;
-    gpu::Buffer quadIndices;
-    std::array<gpu::TextureName, 7> rowTextures;
-    std::shared_ptr<MarchedReference> marched;  // by the row `reference`, the last time
-    uint32_t mostTexels = 0;                    // of a buffer that shaders read as a texture, as this GPU has it
-    static Result<FluidPrograms> create(const ShaderFiles& files);
-    std::vector<gpu::Program*> all();
-    // They were made in another context, with which the one that is current now shares its objects.
-    void contextChanged();
-    // Error (failed): more rows than this GPU can read, and those beyond would lie anywhere.
-    Status fits(const FluidView& fluid) const;
-    // A quad for each of `count` rows, whose vertex shader includes quads.glsl, with the program in use; rows[k] is its ROWS(k, ...).
-    void drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows);
-    // The same for one of `each` particles, whose vertex shader includes particle.glsl. They lie in the order of their cells: one that is
-    // larger by the cube root of `each` stands for the others.
-    void drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t count);
-    // The marked ones, with the program in use, whose vertex shader is tile.vert; the mask is bound to `unit`.
-    void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
-};
 
 // What a renderer works with: the frame, the water, and the scene as drawn so far.
 struct FluidDraw {
@@ -94,6 +43,8 @@ struct RendererRow {
     const char* doc;
     bool opaque;  // draws into the scene's colour and depth
     FluidLayers (*add)(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+    std::span<const ProgramRow> programs = {};  // that add() draws with; of the table's rows FluidPrograms::create makes them
+    bool ellipsoids = false;                    // reads FluidDraw::ellipsoids, which the world then computes
 };
 const Table<RendererRow>& renderers();
 
@@ -120,7 +71,6 @@ struct WaterSurface {
 WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles);
 FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const WaterSurface& water);
 
-FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 // Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds, where anything has changed.
 FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);

@@ -21,10 +21,8 @@ namespace {
 // The scene's fluid, with the normals and the ellipsoids that its look wants to show.
 FluidParams simulated(const SceneFile& scene) {
     FluidParams fluid = scene.fluid;
-    const bool shown = scene.look.colourBy == "normal" || scene.look.colourBy == "surface";
-    if (shown && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
-    const bool surface = scene.look.renderer == "screen_space" || scene.look.split == "screen_space";
-    fluid.ellipsoids = fluid.ellipsoids || (surface && scene.look.splats == "ellipsoids" && scene.look.quality != "fast");
+    if (scene.look.showsNormals() && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
+    fluid.ellipsoids = fluid.ellipsoids || scene.look.showsEllipsoids();
     return fluid;
 }
 

@@ -42,23 +42,23 @@ void simulationFacts(const FluidWorld& world) {
 
 FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState& state) {
     FluidPanelActions actions;
-    float gap = ImGui::GetStyle().ItemSpacing.x;
-    const ImVec2 button((ImGui::GetContentRegionAvail().x - 2 * gap) / 3, 0);
-    actions.togglePause = ImGui::Button(state.paused ? "run###pause" : "pause###pause", button);
-    ImGui::SameLine();
-    actions.step = ImGui::Button("step", button);
-    ImGui::SameLine();
-    actions.reset = ImGui::Button("reset", button);
-    actions.scenes = ImGui::Button("scenes", button);
-    ImGui::SameLine();
-    actions.save = ImGui::Button("save", button);
-    ImGui::SameLine();
-    actions.help = ImGui::Button("keys", button);
-    actions.pour = ImGui::Button(state.pouring ? "stop pouring###pour" : "pour###pour", button);
-    ImGui::SameLine();
-    actions.picture = ImGui::Button("picture", button);
-    ImGui::SameLine();
-    actions.video = ImGui::Button(state.filming ? "stop###video" : "video###video", button);
+    const ImVec2 size((ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3, 0);
+    const struct {
+        const char* label;
+        Command command;
+    } buttons[] = {{state.paused ? "run###pause" : "pause###pause", Command::pause},
+                   {"step", Command::step},
+                   {"reset", Command::restart},
+                   {"scenes", Command::scenes},
+                   {"save", Command::save},
+                   {"keys", Command::help},
+                   {state.pouring ? "stop pouring###pour" : "pour###pour", Command::pour},
+                   {"picture", Command::picture},
+                   {state.filming ? "stop###video" : "video###video", Command::video}};
+    for (size_t k = 0; k < std::size(buttons); ++k) {
+        if (k % 3 != 0) ImGui::SameLine();
+        if (ImGui::Button(buttons[k].label, size)) actions.command = buttons[k].command;
+    }
     ImGui::Spacing();
 
     const bool replays = !state.replay.empty();

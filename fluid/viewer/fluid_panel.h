@@ -1,10 +1,12 @@
 // The panel that says what the water does: pause, step, reset, and figures.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
 #include "fluid/sim/world/fluid_world.h"
+#include "fluid/viewer/commands.h"
 
 namespace rivulet {
 
@@ -21,8 +23,7 @@ struct FluidPanelState {
 };
 
 struct FluidPanelActions {
-    bool togglePause = false, step = false, reset = false, help = false, scenes = false, save = false, picture = false, video = false,
-         pour = false;
+    Command command = Command::none;     // of the button that was pressed
     std::optional<std::string> dismiss;  // a notice that was read
 };
 

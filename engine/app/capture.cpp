@@ -111,7 +111,7 @@ struct VideoWriter::Impl {
         while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
         size_t line = text.find_last_of("\r\n");
         if (line != std::string::npos) text.erase(0, line + 1);
-        return text.empty() ? "ffmpeg ended without saying why" : text;
+        return text.empty() ? "ffmpeg ended without a message" : text;
     }
 
     Error failure() {

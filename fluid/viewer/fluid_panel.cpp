@@ -32,10 +32,11 @@ void simulationFacts(const FluidWorld& world) {
     fact("time", fmt::format("{:.2f} s, {} substeps a frame", world.time(), world.lastSubsteps()));
     fact("particles",
          stats.lost > 0 ? fmt::format("{}, {} of them lost", stats.particles, stats.lost) : fmt::format("{}", stats.particles));
-    fact("compression", fmt::format("{:.2f} % mean, {:.1f} % most", 100 * stats.avgCompression, 100 * stats.maxCompression));
+    fact("compression", fmt::format("{:.2f} % mean, {:.1f} % max", 100 * stats.avgCompression, 100 * stats.maxCompression));
     if (stats.iterations > 0)
-        fact("pressure", stats.residual ? fmt::format("{:.1f} iterations a substep, {:.3f} % left", stats.iterations, 100 * *stats.residual)
-                                        : fmt::format("{:.1f} iterations a substep", stats.iterations));
+        fact("pressure", stats.residual
+                             ? fmt::format("{:.1f} iterations a substep, residual {:.3f} %", stats.iterations, 100 * *stats.residual)
+                             : fmt::format("{:.1f} iterations a substep", stats.iterations));
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     fact("transfer", state.transfer);
     fact("drawn by", state.renderer);
     if (!replays) simulationFacts(world);
-    fact("frame", fmt::format("{:.1f} ms", state.frameMs) + (replays ? "" : fmt::format(", of it simulation {:.1f} ms", state.simulateMs)));
+    fact("frame", fmt::format("{:.1f} ms", state.frameMs) + (replays ? "" : fmt::format(", simulation {:.1f} ms", state.simulateMs)));
 
     const ImVec4 red = refusedColour(), amber(0.95F, 0.78F, 0.45F, 1);
     if (!state.message.empty()) sentence(red, state.message);
@@ -77,7 +78,7 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     for (const std::string& text : state.notices)
         if (std::find(limited.begin(), limited.end(), text) == limited.end()) {
             sentence(amber, text);
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("a click takes it away");
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("click to dismiss");
             if (ImGui::IsItemClicked()) actions.dismiss = text;
         }
     return actions;

@@ -75,10 +75,10 @@ void HotReload::takeShaders(const std::vector<std::string>& written, SceneRender
     constexpr double kShown = 2;  // s
     const size_t programs = *drawn + *simulated;
     if (programs > 0) {
-        done_ = fmt::format("read again: {} shader{}", programs, programs == 1 ? "" : "s");
+        done_ = fmt::format("reloaded {} shader{}", programs, programs == 1 ? "" : "s");
         doneFor_ = kShown;
     } else if (device.backend() == Backend::cpu && std::any_of(written.begin(), written.end(), isKernel)) {
-        done_ = "kernels are compiled into the program for the cpu: build it anew, or run with --backend gl";
+        done_ = "the cpu's kernels are compiled into the program: rebuild it, or run with --backend gl";
         doneFor_ = 2 * kShown;
     }
 }
@@ -120,7 +120,7 @@ void HotReload::draw() const {
     if (wrong.empty()) {
         ImGui::TextUnformatted(done_.c_str());
     } else {
-        ImGui::TextColored(refusedColour(), "what was written is not taken; the last that was right stays");
+        ImGui::TextColored(refusedColour(), "reload failed; the last valid version stays in use");
         ImGui::TextUnformatted(wrong.c_str());
     }
     ImGui::PopTextWrapPos();

@@ -32,12 +32,12 @@ std::optional<std::string> SaveDialog::draw(const SceneFile& scene) {
     if (!path.empty() && std::filesystem::path(path).extension() != ".json") path += ".json";  // by which a scene is known
     std::error_code error;
     const bool there = std::filesystem::exists(path, error);
-    const bool pressed = ImGui::Button(there ? "write over it###write" : "save###write");
+    const bool pressed = ImGui::Button(there ? "overwrite###write" : "save###write");
     ImGui::SameLine();
     if (ImGui::Button("cancel")) shown_ = false;
     if (there) {
         ImGui::SameLine();
-        ImGui::TextDisabled("a file of this name is there");
+        ImGui::TextDisabled("this file exists");
     }
     if (!trouble_.empty()) {
         ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28);

@@ -62,7 +62,7 @@ Result<OpenedScene> SceneOpener::openFirst(const SceneFile& scene, std::unique_p
     SceneOpening work({.scene = scene, .device = std::move(device), .backend = backend, .renderer = true, .gl = context_, .log = log_});
     constexpr double kPicture = 0.05;  // s: the machine has better things to do
     while (!work.ready(kPicture))
-        if (!pump(work)) return failed(fmt::format("opening {} was given up", scene.name));
+        if (!pump(work)) return failed(fmt::format("opening {} was cancelled", scene.name));
     return work.take();
 }
 

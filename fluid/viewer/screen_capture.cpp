@@ -41,7 +41,7 @@ Status ScreenCapture::toggleVideo(const SceneRenderer& renderer, const std::stri
     videoPath_ = *path;
     filmed_ = 0;
     stepShown_ = false;
-    log.notice("a video is made, till F9 again");
+    log.notice("recording a video; press F9 to stop");
     return ok();
 }
 
@@ -50,14 +50,14 @@ Status ScreenCapture::endVideo(const Log& log) {
     VideoWriter done = std::move(*video_);
     video_.reset();
     const Status closed = done.close();
-    if (closed) log.notice(filmed_ > 0 ? "the video is in " + videoPath_ : "nothing moved: no video was written");
+    if (closed) log.notice(filmed_ > 0 ? "video saved: " + videoPath_ : "no step was made: no video was written");
     return closed;
 }
 
 Status ScreenCapture::film(const SceneRenderer& renderer, const Log& log) {
     if (!video_ || !std::exchange(stepShown_, false)) return ok();
     if (ivec2(renderer.width(), renderer.height()) != videoSize_) {
-        log.notice("the window has another size: the video ends here");
+        log.notice("the window was resized: the video ends here");
         return endVideo(log);
     }
     ++filmed_;
@@ -74,7 +74,7 @@ Status ScreenCapture::takePicture(const SceneRenderer& renderer, const std::stri
     if (!path) return path.error();
     written_ = std::async(std::launch::async, [path = *path, pixels = renderer.pixels(), width = renderer.width(),
                                                height = renderer.height()] { return writePng(path, pixels, width, height); });
-    log.notice("a picture is in " + *path);
+    log.notice("picture saved: " + *path);
     return ok();
 }
 

@@ -56,7 +56,7 @@ Status Viewer::start(const SceneFile& scene, const ViewerOptions& options) {
             passes = renderer().times();
             return ok();
         };
-        log_.notice("--cooperate auto tries every plan on every device first: some seconds");
+        log_.notice("--cooperate auto first tries every plan on every device; this takes some seconds");
         Result<std::vector<PlanTried>> tried = tryPlans({.scene = scene, .gl = gl_, .draw = draw, .log = log_, .clDevice = clDevice_});
         if (!tried) return tried.error();
         log_.notice(sentenceOf(*tried, backend));

@@ -79,11 +79,11 @@ void Viewer::undo() {
 void Viewer::turnBrush() {
     const SceneFile& scene = draft_.scene;
     if (!brush_.on() && !scene.flow.empty() && scene.fluid.blocks.empty() && scene.emitters.empty()) {
-        message_ = "this scene's water is on its skin alone: a click on the skin is a drop";
+        message_ = "this scene has water on its skin only: click the skin to add a drop";
         return;
     }
     if (session().replaying() != nullptr) {
-        message_ = "replaying: what was recorded is shown; run the scene without --replay to pour water in";
+        message_ = "replaying a recording: run the scene without --replay to pour water";
         return;
     }
     brush_.turn(!brush_.on());
@@ -105,7 +105,7 @@ void Viewer::takeMouse(const InputEvents& input, bool greets) {
     const bool pours = !greets && brush_.take(input, camera, session(), ui_.wantsMouse());
     brush_.draw(input, camera, session());
     if (brush_.pours() && session().world().stats().particles >= session().world().particles().count)
-        message_ = fmt::format("the {} litres that pour.litres makes room for are poured: raise it to pour more", draft_.scene.pour.litres);
+        message_ = fmt::format("all {} litres of pour.litres are poured; raise pour.litres to pour more", draft_.scene.pour.litres);
     if (!greets && !pours && (!ui_.wantsMouse() || hand_.holds()) && !handle(input)) {
         edited_ = moveCamera(input, session().bounds(), draft_.scene.camera) || edited_;
         skinClick_.take(input, draft_.scene.camera, session());
@@ -117,7 +117,7 @@ void Viewer::takeMouse(const InputEvents& input, bool greets) {
 void Viewer::takeDropped(const InputEvents& input) {
     if (input.dropped.empty()) return;
     if (session().replaying() != nullptr) {
-        message_ = "replaying: what was recorded is shown; run the scene without --replay to change it";
+        message_ = "replaying a recording: run the scene without --replay to change it";
         return;
     }
     const auto kindOf = [](const std::string& path) {
@@ -128,8 +128,7 @@ void Viewer::takeDropped(const InputEvents& input) {
     const auto isScene = [&](const std::string& path) { return kindOf(path) == ".json"; };
     if (const auto at = std::find_if(input.dropped.begin(), input.dropped.end(), isScene); at != input.dropped.end()) {
         if (input.dropped.size() > 1) {
-            message_ =
-                fmt::format("{} is a scene: drop it alone, or the other files alone", std::filesystem::path(*at).filename().string());
+            message_ = fmt::format("{} is a scene: drop it without other files", std::filesystem::path(*at).filename().string());
             return;
         }
         Result<SceneFile> scene = loadScene(*at, {});

@@ -115,13 +115,13 @@ void Viewer::saved(const std::string& path) {
         scene.source = {scene.source.path, {}, {}};
         reload_.follow(scene);
     }
-    log_.notice(fmt::format("the scene is in {}", std::filesystem::absolute(path, error).string()));
+    log_.notice(fmt::format("scene saved: {}", std::filesystem::absolute(path, error).string()));
 }
 
 void Viewer::chooseScene() {
     const std::optional<std::string> path = browser_.draw();
     if (!path) return;
-    if (session().replaying() != nullptr) return browser_.refuse("replaying: what was recorded is shown; run the scene without --replay");
+    if (session().replaying() != nullptr) return browser_.refuse("replaying a recording: run the scene without --replay to open another");
     Result<SceneFile> scene = loadScene(fullPath(*path), {});
     if (!scene) return browser_.refuse(scene.error().message);
     browser_.show(false);

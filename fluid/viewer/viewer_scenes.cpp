@@ -22,7 +22,7 @@ void Viewer::takeEdits(bool recreate) {
     }
     recreate = recreate || (!opener_.edits() && session().needsNew(draft_.scene));
     if (recreate && session().replaying() != nullptr) {
-        message_ = "replaying: this was settled when the run was recorded; run the scene without --replay to change it";
+        message_ = "replaying a recording, which fixes this value: run the scene without --replay to change it";
         session().apply(draft_.settled);
         draft_.scene = scene();
         return;
@@ -47,7 +47,7 @@ void Viewer::takeWritten(double seconds) {
     if (session().budget()) now.fluid = reload_.before().fluid;  // what a budget has picked
     const bool same = fixedValues(visiting(*written)) == fixedValues(visiting(now)) && !session().needsNew(*written);
     if (!same && session().replaying() != nullptr)
-        return reload_.refuse("replaying: what was written needs a new run, and this one shows what was recorded");
+        return reload_.refuse("replaying a recording: the changed file needs a new run, without --replay");
     if (!same) {
         draft_.scene.camera = written->camera;
         return startOpening(std::move(*written), Cause::written);
@@ -130,8 +130,8 @@ Status Viewer::showsSoon(const Session& next) const {
     const double seconds = 1.0e-3 * ms * then / now * std::max(finer, 1.0);
     if (seconds < longestStep_) return ok();
     return failed(
-        fmt::format("{} particles would take some {:.0f} s a picture here, and the window would stand still: it is not done; run "
-                    "the scene with --set for that",
+        fmt::format("{} particles would take about {:.0f} s a frame here: this would freeze the window; change refused; run the scene "
+                    "with --set instead",
                     then, seconds));
 }
 
@@ -152,7 +152,7 @@ void Viewer::adopt(OpenedScene opened, Cause cause) {
     if (other) {
         if (draft_.edited(session().budget().has_value())) {
             left_ = draft_.scene;
-            log_.notice(fmt::format("{} was changed and not saved: control Z brings it back", draft_.scene.name));
+            log_.notice(fmt::format("{} has unsaved changes: Ctrl+Z returns to it", draft_.scene.name));
         }
         save_.forgetPath();  // or it would be offered for the next scene
         run_.pause(false);
@@ -177,7 +177,7 @@ void Viewer::adopt(OpenedScene opened, Cause cause) {
     message_.clear();
     profiler_.clear();
     watch_.clear();
-    if (run_.endOnStepped()) log_.notice("what is recorded ends here: another scene, or an edit that needs new water, is no part of it");
+    if (run_.endOnStepped()) log_.notice("the recording ends here: it cannot go on with another scene or with new water");
 }
 
 Result<OpenedScene> Viewer::openShowing(const SceneFile& scene, const ViewerOptions& options, const std::string& backend,

@@ -99,9 +99,9 @@ const VoxelField* VoxelPanel::choose(const SolidFields& fields, float width) {
     std::vector<std::string> names;
     if (fields.still != nullptr && !fields.still->empty()) {
         all.push_back(fields.still);
-        names.emplace_back("standing still");
+        names.emplace_back("static");
     }
-    for (const auto& [kind, list] : {std::pair("moving", &fields.rigid), std::pair("bending", &fields.deforming)}) {
+    for (const auto& [kind, list] : {std::pair("moving", &fields.rigid), std::pair("deforming", &fields.deforming)}) {
         for (size_t k = 0; k < list->size(); ++k) {
             all.push_back((*list)[k]);
             names.push_back(fmt::format("{} {}", kind, k + 1));

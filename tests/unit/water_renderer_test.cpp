@@ -99,7 +99,7 @@ TEST_F(WaterInAHostsPicture, ChangesOnlyWhereThereIsWater) {
 TEST_F(WaterInAHostsPicture, FormatsAndConventionsMakeNoDifference) {
     const HostScene plain(kWidth, kHeight);
     ASSERT_TRUE(draw(plain));
-    const std::vector<vec4> truth = plain.pixels();
+    const std::vector<vec4> reference = plain.pixels();
     const std::vector<float> depth = plain.depths();
     const struct {
         const char* name;

@@ -313,7 +313,7 @@ void ChartPanel::drawLegend(const Session& session, float width) {
     const FluidParams& params = session.scene().fluid;
     const ChartSetting* setting = settingOf(params);
     ImGui::Spacing();
-    line("here", fmt::format("{}, {:.3g} m:\ndensity error {},\n{} per simulated second",
+    line("this run", fmt::format("{}, {:.3g} m:\ndensity error {},\n{} per simulated second",
                              setting != nullptr ? std::string(setting->name) : params.method + ", custom values", params.spacing,
                              percentText(measured_.densityError()), seconds(measured_.wallPerSecond())));
     line("measured on", machine_);

@@ -1,5 +1,5 @@
-// Filters: the ways to make a surface of the particles' depth. What they are told is in metres: neither the resolution nor the distance
-// changes the surface that they find.
+// Filters: smooth the particles' depth into a surface. Their lengths are in metres, so that the surface depends neither on the resolution
+// nor on the distance.
 #pragma once
 
 #include <utility>
@@ -22,14 +22,14 @@ struct FilterRow {
 const Table<FilterRow>& filters();
 const FilterRow& unfiltered();  // the row that does not smooth
 
-// The look's figures, those that are 0 from the spacing; m.
+// The lengths of the look, m; one that is 0 follows from the spacing.
 struct FilterReach {
     float reach, range, bend;
 };
 FilterReach filterReach(const FluidLook& look, float spacing);
 
-// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere. `setup(program, context)` sets what the program wants;
-// unit 0 is the source's, 1 the tiles'.
+// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere. `setup(program, context)` sets the uniforms;
+// texture unit 0 holds the source, unit 1 the tiles.
 template <class Setup>
 gpu::TextureHandle addTiled(gpu::FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, gpu::Program& program,
                             gpu::TextureHandle tiles, gpu::TextureHandle from, const gpu::TextureDesc& desc, float empty, Setup setup,

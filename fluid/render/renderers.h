@@ -14,28 +14,28 @@
 
 namespace rivulet {
 
-// What a renderer works with: the frame, the water, and the scene as drawn so far.
+// The input of a renderer: the frame, the water, and the scene as drawn so far.
 struct FluidDraw {
     FrameView view;
     FluidView fluid;
     FluidLook look;
-    gpu::BufferHandle frame;                                 // a FrameParams (shaders/render/frame.h)
-    gpu::BufferHandle coarse;                                // of a picture half as large each way, rounded up; empty: look.fast is finer
-    gpu::BufferHandle position, velocity, id, absorption;    // fluid's, imported
-    std::vector<gpu::BufferHandle> ellipsoids;               // likewise; empty: spheres
+    gpu::BufferHandle frame;   // a FrameParams (shaders/render/frame.h)
+    gpu::BufferHandle coarse;  // the same for half the width and height, rounded up; empty: the surface is found at full resolution
+    gpu::BufferHandle position, velocity, id, absorption;    // of `fluid`, imported
+    std::vector<gpu::BufferHandle> ellipsoids;               // of `fluid`, imported; empty: spheres
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle glassDepth;                           // window depth of the nearest clear face; empty: nothing is clear
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
-    // Draws what is clear and lies behind the water into `colour`, before the water is; `fluidDepth` as FluidLayers has it.
+    // Draws transparent objects behind the water into `colour`; called before the water is drawn. `fluidDepth`: of FluidLayers.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
-    // Of a renderer that takes its time: the share that is done; false: it need not go on.
+    // Called by a slow renderer with the finished share, 0 to 1; false: it may stop.
     std::function<bool(double)> progress = [](double) { return true; };
 };
 
 struct FluidLayers {
     gpu::TextureHandle colour;      // the picture with the fluid in it
-    gpu::TextureHandle fluidDepth;  // r32f, m, 1e6 where there is none; empty if the fluid went into the scene's depth instead
+    gpu::TextureHandle fluidDepth;  // r32f, m, 1e6 where there is none; empty if the renderer is opaque
 };
 
 struct RendererRow {
@@ -48,42 +48,42 @@ struct RendererRow {
 };
 const Table<RendererRow>& renderers();
 
-// What the light passes through on its way: x thickness (m), y that times its depth (0..1), z thickness relative to the surroundings (m).
+// A map of the water along the light: x thickness (m), y thickness times depth (0..1), z thickness relative to the surroundings (m).
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
 
 // The particles' buffers, as a pass that draws splats reads them.
 std::vector<gpu::Read> splatReads(const FluidDraw& draw);
 
-// Marks the tiles of the picture that particles touch: what comes after runs only there.
+// Marks the tiles of the picture that particles touch; later passes run only there.
 gpu::TextureDesc tilesOf(const FrameView& view);
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
-// A water surface as the shade pass takes it.
+// The input of the shade pass.
 struct WaterSurface {
-    gpu::TextureHandle tiles;      // as addTiles
+    gpu::TextureHandle tiles;      // of addTiles
     gpu::TextureHandle depth;      // r32f, m, 1e6 where there is none
     gpu::TextureHandle thickness;  // m: x of water, y of that as spray
     gpu::TextureHandle normals;    // xyz view space, w m of water instead of thickness.x; empty: they come from the depth
-    gpu::TextureHandle fades;      // what red, green and blue fade by; empty: particles are alike
+    gpu::TextureHandle fades;      // absorption of red, green and blue; empty: particles are alike
 };
-// Thickness and fades of the spheres, blurred: the rest of a surface is empty.
+// Sets tiles, thickness and fades: of the spheres, blurred.
 WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles);
 FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const WaterSurface& water);
 
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
-// Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds, where anything has changed.
+// Reads the particles back, ray-marches their iso-surface on the CPU, and shades it. Takes seconds when the input has changed.
 FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
-// Spray, foam and bubbles, into layers.colour. `side`: glazed is what something clear stands before where there is no water; it is to be
-// drawn before the glass, and the rest after the water. All, where layers.fluidDepth is empty.
+// Draws spray, foam and bubbles into layers.colour. `side`: `glazed` are those behind a transparent object outside the water, to be drawn
+// before that object; `rest` are the others, to be drawn after the water. `all` where layers.fluidDepth is empty.
 enum class FoamSide { all, glazed, rest };
 void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers, FoamSide side);
 
-// The drops in the air, into layers.colour.
+// Draws the drops in the air into layers.colour.
 void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
-// A particle's volume over its drawn sphere's: what turns lengths within spheres into lengths within water.
+// The volume of a particle divided by that of its drawn sphere: turns lengths within spheres into lengths within water.
 float volumeScale(const FluidView& fluid);
 
 }  // namespace rivulet

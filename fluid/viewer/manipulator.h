@@ -1,5 +1,5 @@
-// Manipulator: moves objects with the mouse. Bodies are grabbed and thrown while the water flows. Meshes, emitters and sinks are selected by
-// a click or in the tree, and moved and rotated by the handles that then appear.
+// Manipulator: moves objects with the mouse. Bodies are grabbed and thrown while the water flows. Meshes, emitters and sinks are selected
+// by a click or in the tree, and moved and rotated by the handles that then appear.
 #pragma once
 
 #include <optional>

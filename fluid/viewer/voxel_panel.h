@@ -14,8 +14,8 @@ namespace rivulet {
 // a few times a second for a deforming mesh.
 class VoxelPanel {
   public:
-    // Inside an ImGui window, `width` pixels across. `time`: s, simulated; a deforming mesh has another shape at another time. Needs a current
-    // OpenGL context.
+    // Inside an ImGui window, `width` pixels across. `time`: s, simulated; a deforming mesh has another shape at another time. Needs a
+    // current OpenGL context.
     void draw(const SolidFields& fields, double time, float width);
     void clear();  // the fields are replaced
 

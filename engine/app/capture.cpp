@@ -100,7 +100,7 @@ struct VideoWriter::Impl {
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
 
-    // What ffmpeg said last: the line that names the cause.
+    // ffmpeg's last message: the line that names the cause.
     std::string lastMessage() const {
         std::string text(4096, '\0');
         off_t end = ::lseek(messages, 0, SEEK_END);

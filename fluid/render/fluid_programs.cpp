@@ -13,7 +13,7 @@ namespace {
 constexpr GLuint kRowUnit = 24;       // as quads.glsl
 constexpr uint32_t kQuadRows = 4096;  // as quads.glsl: their indices fit 16 bits
 
-// What every renderer draws with. The rest stands in the renderers' rows.
+// Programs that all renderers share. The others are in the renderers' rows.
 constexpr ProgramRow kShared[] = {
     {"mark tiles", "screen_space/mark_tiles.vert", "screen_space/mark_tiles.frag"},
     {"mark tiles, ellipsoids", "screen_space/mark_tiles.vert", "screen_space/mark_tiles.frag", {"ELLIPSOIDS"}},

@@ -138,7 +138,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     return out;
 }
 
-// All arrays in one copy, in the Device's order. Error (failed): out of GPU memory. What OpenCL cannot do, refused_ says.
+// All arrays in one copy, in the Device's order. Error (failed): out of GPU memory. A failure of OpenCL is stored in refused_.
 Status FluidUpload::share(std::span<const Array> arrays) {
     std::vector<GlSharing::Copy> copies;
     Status done = ok();

@@ -113,7 +113,7 @@ TextureHandle addTilesOf(FrameGraph& graph, FluidPrograms& programs, const Fluid
     return tiles;
 }
 
-// What the surface is made from, instead of the water.
+// An intermediate result of the surface, instead of the water.
 struct Shown {
     TextureHandle tiles, depth, thickness, colour;
 };

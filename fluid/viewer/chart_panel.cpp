@@ -314,8 +314,8 @@ void ChartPanel::drawLegend(const Session& session, float width) {
     const ChartSetting* setting = settingOf(params);
     ImGui::Spacing();
     line("this run", fmt::format("{}, {:.3g} m:\ndensity error {},\n{} per simulated second",
-                             setting != nullptr ? std::string(setting->name) : params.method + ", custom values", params.spacing,
-                             percentText(measured_.densityError()), seconds(measured_.wallPerSecond())));
+                                 setting != nullptr ? std::string(setting->name) : params.method + ", custom values", params.spacing,
+                                 percentText(measured_.densityError()), seconds(measured_.wallPerSecond())));
     line("measured on", machine_);
 }
 

@@ -21,7 +21,7 @@ bool sameCamera(const CameraParams& a, const CameraParams& b) {
     return a.from == b.from && a.position == b.position && a.target == b.target && a.fieldOfView == b.fieldOfView;
 }
 
-// What a person has set since the file was `before` stays set in what was `written`, where the file says what it said.
+// Values edited since the file was `before` stay in `written`, unless the file changed them.
 void keepEdits(SceneFile before, SceneFile shown, SceneFile& written) {
     const auto visiting = [](SceneFile& scene) { return [&scene](ParamVisitor& v) { scene.visit(v); }; };
     const std::map<std::string, std::string> was = paramTexts(visiting(before)), is = paramTexts(visiting(written));

@@ -83,7 +83,7 @@ void Inspector::stepped(const Session& session, double ms) {
     const FluidStats& late = world.stats();
     const bool water = world.particles().count > 0;  // or drops on skins alone
     const double now = water ? late.time : world.time();
-    if (session.replaying() != nullptr || now == time_) return;  // nothing new has been heard
+    if (session.replaying() != nullptr || now == time_) return;  // no new figures have arrived
     if (now < time_) clear();                                    // it began again
     const double seconds = now - time_;
     const bool next = water && late.frame == frame_ + 1 && late.substeps > 0;  // or the substeps are of the last of several frames

@@ -12,7 +12,7 @@ bool moveCamera(const InputEvents& input, const Bounds& bounds, CameraParams& pa
     vec2 size(std::max(input.size.x, 1), std::max(input.size.y, 1));
     vec2 moved = input.mouseDelta / size.y;
     bool turns = input.down(MouseButton::left), pans = input.down(MouseButton::right) || input.down(MouseButton::middle);
-    // What the mouse did before it was pressed is no drag.
+    // Movement before the press is no drag.
     const bool pressed = input.pressed(MouseButton::left) || input.pressed(MouseButton::right) || input.pressed(MouseButton::middle);
     bool any = (turns || pans) && !pressed && moved != vec2(0.0F);
     if (!any) turns = pans = false;

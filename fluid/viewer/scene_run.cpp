@@ -74,8 +74,8 @@ SceneRun::Result SceneRun::stepped(double ms, double seconds, const std::vector<
         out.toCpu = true;
         if (recorder_) recorder_->follow(session_->world());
     }
-    if (told_)
-        if (Status heard = told_(*session_); !heard) return heard.error();
+    if (onStepped_)
+        if (Status called = onStepped_(*session_); !called) return called.error();
     const int repicked = session_->budget() ? session_->budget()->repicked() : 0;
     out.repicked = std::exchange(repicked_, repicked) != repicked;
     out.passes = device_->takeTimes();

@@ -48,8 +48,8 @@ class SceneRun {
     Result finish(double seconds, const std::vector<PassTime>& drawn, bool drop);
     void stepOn();  // the picture reads no more of the session: another thread may step on
 
-    void onStepped(std::function<Status(const Session&)> told) { told_ = std::move(told); }
-    bool endOnStepped() { return std::exchange(told_, {}) != nullptr; }  // whether there was one
+    void onStepped(std::function<Status(const Session&)> call) { onStepped_ = std::move(call); }
+    bool endOnStepped() { return std::exchange(onStepped_, {}) != nullptr; }  // whether there was one
     void record();
     bool recording() const { return recorder_.has_value(); }
     void transferred(const TransferFacts& facts);
@@ -73,7 +73,7 @@ class SceneRun {
     int repicked_ = 0;     // by the session's budget
     bool paused_ = false, stepOnce_ = false;
     uint64_t steps_ = 0, mostSteps_ = UINT64_MAX;
-    std::function<Status(const Session&)> told_;
+    std::function<Status(const Session&)> onStepped_;
     std::optional<RunRecorder> recorder_;
 };
 

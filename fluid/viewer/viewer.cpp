@@ -13,7 +13,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const SceneFile& scene, const Vie
     Result<UiLayer> ui = UiLayer::create(options.clipboard);
     if (!ui) return ui.error();
     std::unique_ptr<Viewer> viewer(new Viewer(std::move(*ui)));
-    // What is said to the person at the program is said in the panel too.
+    // Notices of the program appear in the panel too.
     viewer->log_.sink = [log, one = std::make_shared<std::mutex>(), kept = viewer->notices_](LogLevel level, std::string_view text) {
         const std::lock_guard<std::mutex> lock(*one);  // at a time
         if (log.sink) log.sink(level, text);
@@ -116,7 +116,7 @@ void Viewer::report(const Status& status) {
     if (!status) message_ = status.error().message;
 }
 
-// What a step has changed is shown.
+// Shows the results of a step.
 Status Viewer::take(SceneRun::Result result) {
     if (!result) return result.error();
     if (!*result) return ok();

@@ -63,7 +63,7 @@ class Viewer {
     // Keeps the record of the run from now on; starts anew with every new session.
     void record() { run_.record(); }
     // Called after each step, before the next one, until another session begins. Its Error ends frame().
-    void onStepped(std::function<Status(const Session&)> told) { run_.onStepped(std::move(told)); }
+    void onStepped(std::function<Status(const Session&)> call) { run_.onStepped(std::move(call)); }
     RunStats finishRecord();  // after record()
     // Ends and counts a step under way on another thread: call it before session() is read between frames. Error: as frame().
     Status settle() { return take(run_.finish(0, renderer().times(), true)); }

@@ -1,4 +1,4 @@
-// What a Viewer does with keys, the mouse and dropped files.
+// Viewer: keys, the mouse and dropped files.
 #include <fmt/format.h>
 
 #include <algorithm>

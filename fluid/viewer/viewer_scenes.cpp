@@ -1,4 +1,4 @@
-// How a Viewer comes from one scene to the next: edits, files that were written, and other scenes.
+// Viewer: edits, changed files, and other scenes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace rivulet {
 
-// An edit that makes no sense is refused with a sentence, and the last good scene stays.
+// An edit that is not valid is refused with a sentence, and the last valid scene stays.
 void Viewer::takeEdits(bool recreate) {
     Status sense = checkScene(draft_.scene);
     if (!sense && !recreate) {
@@ -39,7 +39,7 @@ void Viewer::takeEdits(bool recreate) {
         refuse(sense.error(), Cause::edit, draft_.settled);
 }
 
-// What is only live is taken as it runs.
+// Live values are applied to the running session.
 void Viewer::takeWritten(double seconds) {
     std::optional<SceneFile> written = reload_.look(seconds, draft_.scene, picture_.renderer(), run_.device());
     if (!written) return;
@@ -85,7 +85,7 @@ void Viewer::startOpening(SceneFile scene, Cause cause) {
     if (!trouble.empty()) log_.notice(trouble + ": the window waits while a scene is opened");
     if (aside) {
         opener_.start(std::move(scene), cause, before, run_.device().backend(), asked, renderer);
-        constexpr double kAtOnce = 0.05;  // s: nobody sees that the window waited
+        constexpr double kAtOnce = 0.05;  // s: too short to be seen
         if (opener_.ready(kAtOnce)) finishOpening();
         return;
     }
@@ -122,7 +122,7 @@ void Viewer::finishOpening() {
     if (!same) startOpening(wanted, Cause::edit);
 }
 
-// Error (failed): after this edit the window would stand still, by what a particle and step take now.
+// Error (failed): this edit would freeze the window, estimated from the present time per particle and step.
 Status Viewer::showsSoon(const Session& next) const {
     const uint32_t now = session().world().particles().count, then = next.world().particles().count;
     const double ms = profiler_.mean("simulate"), finer = scene().fluid.spacing / next.scene().fluid.spacing;
@@ -142,7 +142,7 @@ void Viewer::giveUpOpening() {
     if (edit) refuse({}, Cause::edit, before);
 }
 
-// What it replaces goes only now. An edit of what is in the water leaves the water as it is.
+// The old session is destroyed only now. An edit of the objects in the water keeps the water.
 void Viewer::adopt(OpenedScene opened, Cause cause) {
     const bool other = cause == Cause::otherScene;
     run_.drop();

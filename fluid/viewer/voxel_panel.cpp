@@ -93,7 +93,7 @@ void VoxelPanel::draw(const SolidFields& fields, double time, float width) {
     drawMaterials(width);
 }
 
-// What to show, with a list to choose from where there are several.
+// The field to show; a combo box where there are several.
 const VoxelField* VoxelPanel::choose(const SolidFields& fields, float width) {
     std::vector<const VoxelField*> all;
     std::vector<std::string> names;

@@ -40,7 +40,7 @@ Status benchUi(const BenchContext& context) {
             if (Status drawn = viewer.frame(input, seconds, target.name()); !drawn) wrong = drawn;
             input.keysPressed.clear();
             layoutMs += viewer.panelCost().made;
-            drawMs += viewer.panelCost().told;
+            drawMs += viewer.panelCost().drawn;
             return 1000 * (threadSeconds() - start);
         };
         const auto whole = [&](double seconds) {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <json/json.h>
 
 #include <algorithm>
@@ -63,16 +64,20 @@ void print(const PhysicsCase& row, const Outcome& o) {
     std::fflush(stdout);
 }
 
+// Of all cases, each once.
+std::vector<std::string> allMethods() {
+    std::vector<std::string> all;
+    for (const PhysicsCase& row : physicsCases().rows)
+        for (const std::string& method : methodsOf(row))
+            if (std::find(all.begin(), all.end(), method) == all.end()) all.push_back(method);
+    return all;
+}
+
 Status checkRequest(ValidateRequest& request) {
     for (const std::string& name : request.names)
         if (Status known = checkWord("case", name, physicsCases().names()); !known) return known;
-    if (!request.method.empty()) {
-        std::vector<std::string> any;
-        for (const PhysicsCase& row : physicsCases().rows)
-            for (const std::string& method : methodsOf(row))
-                if (std::find(any.begin(), any.end(), method) == any.end()) any.push_back(method);
-        if (Status known = checkWord("method", request.method, any); !known) return known;
-    }
+    if (!request.method.empty())
+        if (Status known = checkWord("method", request.method, allMethods()); !known) return known;
     if (Status sense = settleBackend(request.backend, "cpu", request.device); !sense) return sense;
     if (!request.json.empty())
         if (Status writable = checkWritable(request.json); !writable) return writable;
@@ -97,9 +102,7 @@ int validateVerb(const Arguments& arguments) {
         list);
     reader.positional("CASE", "cases to run; default: all", request.names);
     reader.flag("--quick", "run each case with about 8,000 particles", request.quick);
-    reader.option("--method", "M",
-                  "run one method only: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter's name or reference; default: all",
-                  request.method);
+    reader.option("--method", "M", fmt::format("run one method only: {}; default: all", fmt::join(allMethods(), ", ")), request.method);
     reader.option("--backend", "B", "backend of the simulation: cpu, gl or cl; default: cpu", request.backend);
     reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", request.device);
     reader.option("--json", "FILE.json", "also write the results as JSON", request.json);

@@ -80,7 +80,7 @@ Status usable(const FrameView& v) {
     return ok();
 }
 
-// What water can be drawn into. `depth`: as found.
+// Error (badInput): water cannot be drawn into the target.
 Status usable(const HostTarget& t) {
     if (t.width <= 0 || t.height <= 0)
         return badInput(fmt::format("the target is {} x {} pixels; skip the frame while a window is closed", t.width, t.height));

@@ -261,7 +261,7 @@ TEST_F(Watching, TheFrameGraphIsWhatWasDrawnAndTimed) {
     std::set<std::string> timed, left, shown, shownLeft;
     for (const PassTime& pass : viewer_->renderer().times()) (pass.calls > 0 ? timed : left).insert(pass.name);
     for (const FrameGraphPanel::Row& row : viewer_->watch().frameGraph().rows())
-        (row.figure == "left out" ? shownLeft : shown).insert(row.name);
+        (row.figure == "culled" ? shownLeft : shown).insert(row.name);
     EXPECT_GT(timed.size(), 5U);
     EXPECT_EQ(shown, timed);
     EXPECT_TRUE(std::includes(shownLeft.begin(), shownLeft.end(), left.begin(), left.end()));

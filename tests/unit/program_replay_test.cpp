@@ -205,7 +205,7 @@ TEST_F(ReplayPerson, WhatWasSettledIsRefused) {
         key(GLFW_KEY_ESCAPE);
         ASSERT_NE(viewer_->session().replaying(), nullptr) << y;
     }
-    EXPECT_NE(said.find("replaying: this was settled"), std::string::npos) << said;
+    EXPECT_NE(said.find("replaying a recording, which fixes this value"), std::string::npos) << said;
     EXPECT_EQ(viewer_->scene().fluid.spacing, spacing);
 }
 

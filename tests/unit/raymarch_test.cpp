@@ -1,4 +1,4 @@
-// The ray-marched truth against balls, slabs and the iso-surface itself.
+// The ray-marched reference against balls, slabs and the iso-surface itself.
 #include "fluid/render/raymarch.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/capi/handles.h"
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"

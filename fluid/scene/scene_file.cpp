@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "engine/core/table.h"
 #include "fluid/sim/solids/solids.h"

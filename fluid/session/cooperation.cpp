@@ -8,7 +8,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/core/assert.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {

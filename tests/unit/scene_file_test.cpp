@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "fluid/sim/sources/block.h"
 

@@ -18,8 +18,9 @@ namespace rivulet {
 
 class ColliderModel {
   public:
-    // Reads the file and adds its nodes to `nodes`, as they are at t = 0. `device` bends parts with bones or morphs; it must outlive the
-    // nodes. Error (badInput): no such file, or nothing in it that can be used; no such clip, and which there are.
+    // Of a kind with triangles (collider_kinds.h). Reads the file and adds its nodes to `nodes`, as they are at t = 0. `device` bends parts
+    // with bones or morphs; it must outlive the nodes. Error (badInput): no such file, or nothing in it that can be used; no such clip, and
+    // which there are.
     static Result<ColliderModel> create(const ColliderParams& params, const std::string& folder, Device& device, Scene& nodes);
 
     // All parts at t = 0, m: in the world, or of what moves in the frame that pose() places.

@@ -13,6 +13,8 @@ namespace rivulet {
 // spun so far (a spin may change while it runs), `time` s.
 Pose colliderPose(const ColliderParams& collider, double time, double turned);
 
+mat4 matrixOf(const Pose& pose);  // own frame -> world
+
 // The vertices of a mesh that rests as `rest` (m, world), with the collider's wave at `time` (s).
 void waveShape(const ColliderWave& wave, std::span<const vec3> rest, double time, std::vector<vec3>& shape);
 

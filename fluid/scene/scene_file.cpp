@@ -49,39 +49,8 @@ std::string contradiction(const SceneFile& scene) {
     if (scene.colliders.size() > kMostSurfaces && kinds.size() > kMostSurfaces)
         return fmt::format("colliders have {} different pairs of friction and restitution, there may be {}: give some the same",
                            kinds.size(), kMostSurfaces);
-    for (size_t i = 0; i < scene.colliders.size(); ++i) {
-        const ColliderParams& collider = scene.colliders[i];
-        if (collider.resolution == 1) return fmt::format("colliders[{}].resolution is 1: give 2 or more, or 0 for what suits the fluid", i);
-        if (collider.shape == "mesh" && collider.mesh.empty())
-            return fmt::format("colliders[{}].mesh is empty: name a mesh file, or make its shape a plane", i);
-        if (collider.shape == "plane" && glm::length(collider.normal) < 1.0e-6F)
-            return fmt::format("colliders[{}].normal is {}, must have a length", i, shown(collider.normal));
-        for (const auto& [name, value] : {std::pair("friction", collider.friction), std::pair("restitution", collider.restitution)})
-            if (value < 0 && value != -1)
-                return fmt::format("colliders[{}].{} is {}: give 0 or more, or -1 for what fluid.collision says", i, name, value);
-        const ColliderMotion& motion = collider.motion;
-        const ColliderWave& wave = collider.wave;
-        if (collider.shape == "plane" && (motion.moves() || wave.amplitude > 0))
-            return fmt::format("colliders[{}] is a plane, which stands still: make it a mesh, or take its motion and wave away", i);
-        if (motion.moves() && wave.amplitude > 0)
-            return fmt::format("colliders[{}] has both a motion and a wave: it can have one of them", i);
-        if (collider.animation.speed > 0) {
-            if (collider.shape == "plane") return fmt::format("colliders[{}] is a plane, which has no animation: make it a mesh", i);
-            if (motion.moves() || wave.amplitude > 0)
-                return fmt::format("colliders[{}] has an animation and a {}: it can have one of them", i,
-                                   motion.moves() ? "motion" : "wave");
-        }
-        if (!collider.solid && (collider.shape == "plane" || wave.amplitude > 0))
-            return fmt::format("colliders[{}] {}, which must be solid", i, collider.shape == "plane" ? "is a plane" : "has a wave");
-        if (motion.spin != 0 && glm::length(motion.axis) < 1.0e-6F)
-            return fmt::format("colliders[{}].motion.axis is {}, must have a length", i, shown(motion.axis));
-        for (size_t k = 1; k < motion.keys.size(); ++k)
-            if (!(motion.keys[k].time > motion.keys[k - 1].time))
-                return fmt::format("colliders[{}].motion.keys[{}].time is {} s, must be later than the key before, {} s", i, k,
-                                   motion.keys[k].time, motion.keys[k - 1].time);
-        if (wave.amplitude > 0 && (glm::length(wave.along) < 1.0e-6F || glm::length(wave.direction) < 1.0e-6F))
-            return fmt::format("colliders[{}].wave.along and direction must have a length", i);
-    }
+    for (size_t i = 0; i < scene.colliders.size(); ++i)
+        if (const std::string wrong = contradiction(scene.colliders[i]); !wrong.empty()) return fmt::format("colliders[{}]{}", i, wrong);
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const EmitterParams& emitter = scene.emitters[i];
         if (const std::string wrong = contradiction(emitter); !wrong.empty()) return fmt::format("emitters[{}].{}", i, wrong);
@@ -95,10 +64,7 @@ std::string contradiction(const SceneFile& scene) {
         return fmt::format("look.refractiveIndex is {}: give 1 or more, or 0 for the liquid's", scene.look.refractiveIndex);
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
         const BodyParams& body = scene.bodies[i];
-        if ((body.shape == "mesh" || body.shape == "hull") && body.mesh.empty())
-            return fmt::format("bodies[{}].mesh is empty: name a mesh file, or make its shape a box or a sphere", i);
-        if (!body.parts.empty() && body.shape != "mesh" && body.shape != "hull")
-            return fmt::format("bodies[{}] is a {}: parts are drawn with a hull or mesh alone", i, body.shape);
+        if (const std::string wrong = contradiction(body); !wrong.empty()) return fmt::format("bodies[{}]{}", i, wrong);
         if (!inside(body.position, box))
             return fmt::format("bodies[{}].position {} must lie in fluid.box from {} to {}", i, shown(body.position), shown(box.min),
                                shown(box.max));
@@ -138,110 +104,6 @@ VisitFn visiting(SceneFile& scene) {
 }
 
 }  // namespace
-
-void ColliderKey::visit(ParamVisitor& v) {
-    v.value({"time", "s", "when it is there", 0, 3600}, time);
-    v.value({"position", "m", "added to the collider's", -kFar, kFar}, position);
-    v.value({"rotation", "deg", "about x, then y, then z, after the collider's own", -36000, 36000}, rotation);
-}
-
-void ColliderMotion::visit(ParamVisitor& v) {
-    v.value({"axis", "", "what it spins about, through its position; of any length", -1.0e6, 1.0e6}, axis);
-    v.value({"spin", "deg/s", "how fast it spins, right-handed", -7200, 7200}, spin);
-    v.value({"shake", "m", "how far it swings to and fro", -100, 100}, shake);
-    v.value({"shakeFrequency", "Hz", "how often it does", 0, 100}, shakeFrequency);
-    v.list({.name = "keys", .doc = "places at times, in order; between them it moves smoothly, after the last it stays"}, keys);
-}
-
-void ColliderWave::visit(ParamVisitor& v) {
-    v.value({"amplitude", "m", "height of the wave; 0 = none, as beside bodies, which would pass through", 0, 100, kLinear, kFixed},
-            amplitude);
-    v.value({"length", "m", "from crest to crest", 0.001, kFar, kLog}, length);
-    v.value({"period", "s", "from crest to crest; it rises to its height in the first", 0.01, 3600, kLog}, period);
-    v.value({"along", "", "the way it runs, of any length", -1.0e6, 1.0e6}, along);
-    v.value({"direction", "", "the way it lifts, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, direction);
-}
-
-void ColliderAnimation::visit(ParamVisitor& v) {
-    v.value({.name = "clip", .doc = "an animation of the mesh file, by name; none = its first", .fixed = kFixed}, clip);
-    v.value({"speed", "", "how fast it plays: 1 = as in the file; 0 = it does not, the mesh stands as its file has it", 0, 100, kLinear,
-             kFixed},
-            speed);
-    v.value({.name = "loops", .doc = "whether it begins again at its end, or stays there", .fixed = kFixed}, loops);
-}
-
-void ColliderParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> shapes = {"mesh", "plane"};
-    v.choice({.name = "shape", .doc = "a mesh from a file, or a plane with fluid on the side of its normal", .fixed = kFixed}, shape,
-             shapes);
-    v.value({.name = "mesh", .doc = "mesh file: as given, beside the scene, in RIVULET_ASSETS, in assets/", .fixed = kFixed}, mesh);
-    v.value({"resolution", "", "voxels along the mesh's longest side; 0 = so many that a voxel is a quarter of the fluid's spacing", 0,
-             2048, kLinear, kFixed},
-            resolution);
-    v.value({"position", "m", "where the mesh's origin goes (with fitSize: its middle); of a plane: a point on it", -kFar, kFar, kLinear,
-             kFixed},
-            position);
-    v.value({"rotation", "deg", "of a mesh, about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
-    v.value({"scale", "", "of a mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
-    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to, instead of scale; 0 = scale holds", 0, kFar, kLog, kFixed},
-            fitSize);
-    v.value({"normal", "", "of a plane, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, normal);
-    v.value({"friction", "", "Coulomb friction; -1 = as fluid.collision says", -1, 10}, friction);
-    v.value({"restitution", "", "share of the speed into it that comes back; -1 = as fluid.collision says", -1, 1}, restitution);
-    v.group({.name = "motion", .doc = "how a mesh moves as a whole"}, motion);
-    v.group({.name = "wave", .doc = "a wave that bends a mesh"}, wave);
-    v.group({.name = "animation", .doc = "how a mesh moves that has animations in its file, instead of a motion or a wave"}, animation);
-    v.value({.name = "solid", .doc = "whether water and bodies meet it; off: a mesh is only drawn", .fixed = kFixed}, solid);
-    static const std::vector<std::string> looks = {"file", "scene"};
-    v.choice({.name = "materials",
-              .doc = "of a mesh: file = those of its file, where it has some; scene = colour, roughness and so on for all of it"},
-             materials, looks);
-    v.colour({"colour", "", "linear red, green, blue, where the file has no material, or materials is scene", 0, 1}, colour);
-    v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
-    v.value({"metallic", "", "0 = stone or paint, 1 = metal", 0, 1}, metallic);
-    v.value(
-        {"opacity", "", "1 = what is behind it is hidden; less: glass, whose wall takes this share of the light and tints the rest", 0, 1},
-        opacity);
-    v.value({"grain", "", "0 = smooth and of one colour, 1 = coarse, mottled stone", 0, 1}, grain);
-    v.value({"grainSize", "m", "of the grain's largest spots; there are finer ones in them", 1.0e-4, kFar, kLog}, grainSize);
-    v.value({.name = "visible", .doc = "whether it is drawn; it is solid either way"}, visible);
-}
-
-void BodyPartParams::visit(ParamVisitor& v) {
-    v.value({.name = "mesh", .doc = "mesh file, found as a collider's; scaled and turned as the body's own", .fixed = kFixed}, mesh);
-    v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
-    v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
-}
-
-void BodyParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> shapes = {"box", "sphere", "hull", "mesh"};
-    v.choice({.name = "shape", .doc = "a box, a sphere, the convex hull of a mesh, or a closed mesh", .fixed = kFixed}, shape, shapes);
-    v.value({.name = "mesh", .doc = "mesh file of a hull or mesh, found as a collider's", .fixed = kFixed}, mesh);
-    v.value({"size", "m", "of a box", 1.0e-4, kFar, kLog, kFixed}, size);
-    v.value({"radius", "m", "of a sphere", 1.0e-4, kFar, kLog, kFixed}, radius);
-    v.value({"scale", "", "of a hull or mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
-    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to, instead of scale; 0 = scale holds", 0, kFar, kLog, kFixed},
-            fitSize);
-    v.value({"position", "m", "of its middle; of a hull or mesh: where the mesh's origin goes (with fitSize: its middle)", -kFar, kFar,
-             kLinear, kFixed},
-            position);
-    v.value({"rotation", "deg", "about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
-    v.value({"velocity", "m/s", "at t = 0", -1000, 1000, kLinear, kFixed}, velocity);
-    v.value({"spin", "deg/s", "at t = 0, about its centre of mass", -36000, 36000, kLinear, kFixed}, spin);
-    v.value({"density", "kg/m^3", "mean, of what it is made of; water has about 1000", 0.01, 1.0e5, kLog, kFixed}, density);
-    v.value({"mass", "kg", "instead of a density; 0 = as density says", 0, 1.0e9, kLog, kFixed}, mass);
-    v.value({"ballast", "m", "from the middle of its volume to its centre of mass, before it is turned: a keel's weight", -1000, 1000,
-             kLinear, kFixed},
-            ballast);
-    v.value({"friction", "", "Coulomb friction with walls and other bodies", 0, 10, kLinear, kFixed}, friction);
-    v.value({"restitution", "", "share of the speed that comes back from walls and other bodies", 0, 1, kLinear, kFixed}, restitution);
-    v.value({.name = "fixed", .doc = "whether it stands still: a wall of boundary particles", .fixed = kFixed}, fixed);
-    v.value({.name = "sticks", .doc = "whether fluid sticks to it (no-slip) or slips along", .fixed = kFixed}, sticks);
-    v.list({.name = "parts", .doc = "meshes that are drawn with a hull or mesh", .fixed = kFixed}, parts);
-    v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
-    v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
-    v.value({.name = "visible", .doc = "whether it is drawn"}, visible);
-}
 
 void CameraParams::visit(ParamVisitor& v) {
     v.value({.name = "from",

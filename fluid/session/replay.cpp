@@ -106,12 +106,13 @@ Result<Replay> Replay::open(const std::string& path, const SceneFile& scene, con
 }
 
 Status Replay::next() {
-    if (next_ >= reader_.frames()) return ok();
+    status_ = ok();
+    if (next_ >= reader_.frames()) return status_;
     Result<RecordedFrame> frame = reader_.read(next_);
-    if (!frame) return frame.error();
+    if (!frame) return status_ = frame.error();
     frame_ = std::move(*frame);
     at_ = next_++;
-    return ok();
+    return status_;
 }
 
 std::string Replay::sentence() const {

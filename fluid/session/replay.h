@@ -41,7 +41,8 @@ class Replay {
     void seek(size_t k) { next_ = k; }  // what the next next() shows
     // The last frame stays. Error: as RecordingReader::read; shown() is then as it was.
     Status next();
-    std::string sentence() const;  // for the person: which frame of which file
+    const Status& status() const { return status_; }  // of the last next()
+    std::string sentence() const;                     // for the person: which frame of which file
 
   private:
     Replay(RecordingReader reader, std::string path) : reader_(std::move(reader)), path_(std::move(path)) {}
@@ -49,6 +50,7 @@ class Replay {
     std::string path_;
     RecordedFrame frame_;
     size_t at_ = 0, next_ = 0;
+    Status status_ = ok();
 };
 
 }  // namespace rivulet

@@ -13,7 +13,7 @@ constexpr bool kFixed = true;
 }  // namespace
 
 void BodyPartParams::visit(ParamVisitor& v) {
-    v.value({.name = "mesh", .doc = "mesh file, found as a collider's; scaled and turned as the body's own", .fixed = kFixed}, mesh);
+    v.value({.name = "mesh", .doc = "mesh file, searched as a collider's; scaled and turned like the body's own", .fixed = kFixed}, mesh);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
 }
@@ -21,27 +21,27 @@ void BodyPartParams::visit(ParamVisitor& v) {
 void BodyParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"box", "sphere", "hull", "mesh"};
     v.choice({.name = "shape", .doc = "a box, a sphere, the convex hull of a mesh, or a closed mesh", .fixed = kFixed}, shape, shapes);
-    v.value({.name = "mesh", .doc = "mesh file of a hull or mesh, found as a collider's", .fixed = kFixed}, mesh);
+    v.value({.name = "mesh", .doc = "mesh file of a hull or mesh, searched as a collider's", .fixed = kFixed}, mesh);
     v.value({"size", "m", "of a box", 1.0e-4, kFar, kLog, kFixed}, size);
     v.value({"radius", "m", "of a sphere", 1.0e-4, kFar, kLog, kFixed}, radius);
     v.value({"scale", "", "of a hull or mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
-    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to, instead of scale; 0 = scale holds", 0, kFar, kLog, kFixed},
-            fitSize);
-    v.value({"position", "m", "of its middle; of a hull or mesh: where the mesh's origin goes (with fitSize: its middle)", -kFar, kFar,
-             kLinear, kFixed},
+    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to; 0 = use scale", 0, kFar, kLog, kFixed}, fitSize);
+    v.value({"position", "m", "of its centre; of a hull or mesh: of the mesh's origin (with fitSize: of its centre)", -kFar, kFar, kLinear,
+             kFixed},
             position);
     v.value({"rotation", "deg", "about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
     v.value({"velocity", "m/s", "at t = 0", -1000, 1000, kLinear, kFixed}, velocity);
     v.value({"spin", "deg/s", "at t = 0, about its centre of mass", -36000, 36000, kLinear, kFixed}, spin);
-    v.value({"density", "kg/m^3", "mean, of what it is made of; water has about 1000", 0.01, 1.0e5, kLog, kFixed}, density);
-    v.value({"mass", "kg", "instead of a density; 0 = as density says", 0, 1.0e9, kLog, kFixed}, mass);
-    v.value({"ballast", "m", "from the middle of its volume to its centre of mass, before it is turned: a keel's weight", -1000, 1000,
+    v.value({"density", "kg/m^3", "mean density of the body; water has about 1000", 0.01, 1.0e5, kLog, kFixed}, density);
+    v.value({"mass", "kg", "0 = density times volume", 0, 1.0e9, kLog, kFixed}, mass);
+    v.value({"ballast", "m", "from the centre of its volume to its centre of mass, before rotation, such as a keel's weight", -1000, 1000,
              kLinear, kFixed},
             ballast);
     v.value({"friction", "", "Coulomb friction with walls and other bodies", 0, 10, kLinear, kFixed}, friction);
-    v.value({"restitution", "", "share of the speed that comes back from walls and other bodies", 0, 1, kLinear, kFixed}, restitution);
-    v.value({.name = "fixed", .doc = "whether it stands still: a wall of boundary particles", .fixed = kFixed}, fixed);
-    v.value({.name = "sticks", .doc = "whether fluid sticks to it (no-slip) or slips along", .fixed = kFixed}, sticks);
+    v.value({"restitution", "", "share of the normal speed after an impact with walls and other bodies", 0, 1, kLinear, kFixed},
+            restitution);
+    v.value({.name = "fixed", .doc = "whether it is static: a wall of boundary particles", .fixed = kFixed}, fixed);
+    v.value({.name = "sticks", .doc = "no-slip (on) or free slip (off)", .fixed = kFixed}, sticks);
     v.list({.name = "parts", .doc = "meshes that are drawn with a hull or mesh", .fixed = kFixed}, parts);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
@@ -50,8 +50,8 @@ void BodyParams::visit(ParamVisitor& v) {
 
 std::string contradiction(const BodyParams& body) {
     const bool ofMesh = body.shape == "mesh" || body.shape == "hull";
-    if (ofMesh && body.mesh.empty()) return ".mesh is empty: name a mesh file, or make its shape a box or a sphere";
-    if (!body.parts.empty() && !ofMesh) return fmt::format(" is a {}: parts are drawn with a hull or mesh alone", body.shape);
+    if (ofMesh && body.mesh.empty()) return ".mesh is empty: name a mesh file, or set shape to box or sphere";
+    if (!body.parts.empty() && !ofMesh) return fmt::format(" is a {}: only a hull or mesh can have parts", body.shape);
     return "";
 }
 

@@ -11,7 +11,7 @@ namespace rivulet {
 namespace {
 
 std::string meshContradiction(const ColliderParams& collider) {
-    return collider.mesh.empty() ? ".mesh is empty: name a mesh file, or make its shape a plane" : "";
+    return collider.mesh.empty() ? ".mesh is empty: name a mesh file, or set another shape" : "";
 }
 
 Result<Model> meshModel(const ColliderParams& collider, const std::string& folder) {
@@ -22,7 +22,7 @@ Result<Model> meshModel(const ColliderParams& collider, const std::string& folde
 
 std::string planeContradiction(const ColliderParams& collider) {
     const vec3& n = collider.normal;
-    return glm::length(n) < 1.0e-6F ? fmt::format(".normal is ({}, {}, {}), must have a length", n.x, n.y, n.z) : "";
+    return glm::length(n) < 1.0e-6F ? fmt::format(".normal is ({}, {}, {}): its length must not be 0", n.x, n.y, n.z) : "";
 }
 
 void addPlane(const ColliderParams& collider, uint32_t surface, Solids& solids) {

@@ -310,7 +310,7 @@ Result<std::pair<const ColliderModel*, const T*>> findNamed(std::span<const Coll
 
 }  // namespace
 
-Status takeViews(std::span<const ColliderModel> models, SceneFile& scene) {
+Status setViewsFromFiles(std::span<const ColliderModel> models, SceneFile& scene) {
     if (!scene.camera.from.empty()) {
         const auto found = findNamed(models, &Model::cameras, scene.camera.from, "camera");
         if (!found) return found.error();

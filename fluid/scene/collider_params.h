@@ -1,4 +1,4 @@
-// What a scene file says of a collider: its shape, where it is, how it moves and how it is drawn.
+// A collider of a scene file: its shape, its place, its motion and its material.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace rivulet {
 
-// A collider's place at a time, from where its scene puts it; between keys it moves smoothly, after the last it stays.
+// A key of a collider's motion. Between keys the motion is smooth; before the first and after the last the collider stands still.
 struct ColliderKey {
     float time = 0;       // s
-    vec3 position{0.0F};  // m, added to the collider's
-    vec3 rotation{0.0F};  // deg, about x, then y, then z, after the collider's own
+    vec3 position{0.0F};  // m, added to the collider's own
+    vec3 rotation{0.0F};  // deg, about x, then y, then z, applied after the collider's own
     void visit(ParamVisitor& v);
 };
 
-// How a mesh collider moves as a whole. It turns about its `position`.
+// Rigid motion of a mesh collider. It turns about its `position`.
 struct ColliderMotion {
     vec3 axis{0.0F, 0.0F, 1.0F};
     float spin = 0;            // deg/s about the axis
@@ -27,41 +27,41 @@ struct ColliderMotion {
     void visit(ParamVisitor& v);
 };
 
-// A wave that runs through a mesh collider and bends it.
+// A travelling wave that bends a mesh collider.
 struct ColliderWave {
     float amplitude = 0;               // m; 0 = none
     float length = 0.5F;               // m
     float period = 1;                  // s
-    vec3 along{1.0F, 0.0F, 0.0F};      // the way it runs
-    vec3 direction{0.0F, 1.0F, 0.0F};  // the way it lifts
+    vec3 along{1.0F, 0.0F, 0.0F};      // direction of travel
+    vec3 direction{0.0F, 1.0F, 0.0F};  // direction of the displacement
     void visit(ParamVisitor& v);
 };
 
-// A clip of a mesh file that plays. What it bends, water meets as it is at the time.
+// A clip of a mesh file that is played. Water collides with the mesh as it is at that time.
 struct ColliderAnimation {
-    std::string clip;   // "" = the file's first
-    float speed = 0;    // 0 = it stands as in its file
-    bool loops = true;  // or it stays as it ends
+    std::string clip;   // "" = the first of the file
+    float speed = 0;    // 0 = not played
+    bool loops = true;  // false: it stops at its end
     void visit(ParamVisitor& v);
 };
 
-// A solid. "mesh": a file, scaled, turned, moved. "plane": water on the side the normal points to; it stands still.
+// A solid. `shape` is a row of colliderKinds() (collider_kinds.h), which says which of these values it reads.
 struct ColliderParams {
-    std::string shape = "mesh";  // mesh | plane
-    std::string mesh;            // path: as given, beside the scene file, in RIVULET_ASSETS (a list of folders), in assets/
-    int resolution = 0;          // voxels along the mesh's longest side; 0 = so many that one is a quarter of the fluid's spacing
+    std::string shape = "mesh";  // a row of colliderKinds()
+    std::string mesh;            // path, searched as findAsset does
+    int resolution = 0;          // voxels along the mesh's longest side; 0 = voxels of a quarter of the fluid's spacing
     vec3 position{0.0F};         // m; plane: a point on it
     vec3 rotation{0.0F};         // deg, about x, then y, then z
     float scale = 1.0F;
-    float fitSize = 0.0F;           // m; > 0: scaled so that the longest side has this length, and its bounds' centre put at `position`
+    float fitSize = 0.0F;           // m; > 0: the longest side is scaled to this length, and the centre of its bounds is at `position`
     vec3 normal{0.0F, 1.0F, 0.0F};  // plane
-    float friction = -1;            // Coulomb; -1 = as fluid.collision says
-    float restitution = -1;         // 0..1; -1 = as fluid.collision says
+    float friction = -1;            // Coulomb; -1 = that of fluid.collision
+    float restitution = -1;         // 0..1; -1 = that of fluid.collision
     ColliderMotion motion;
     ColliderWave wave;
     ColliderAnimation animation;
-    bool solid = true;                 // or only drawn
-    std::string materials = "file";    // file | scene: what follows
+    bool solid = true;                 // false: drawn, but not collided with
+    std::string materials = "file";    // file | scene: the values below
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
     float metallic = 0.0F;
@@ -72,7 +72,7 @@ struct ColliderParams {
     void visit(ParamVisitor& v);
 };
 
-// "", or what makes no sense together; it continues "colliders[2]". checkScene calls it.
+// "", or which values contradict each other; the text continues "colliders[2]". checkScene calls it.
 std::string contradiction(const ColliderParams& collider);
 
 }  // namespace rivulet

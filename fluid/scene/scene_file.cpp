@@ -27,7 +27,7 @@ std::string shown(const vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, 
 
 bool inside(const vec3& p, const BoxParams& box) { return glm::clamp(p, box.min, box.max) == p; }
 
-// "", or what makes no sense together; a single value's range was checked when it was read.
+// "", or which values contradict each other. The range of each value was checked when it was read.
 std::string contradiction(const SceneFile& scene) {
     const BoxParams& box = scene.fluid.box;
     if (!glm::all(glm::lessThan(box.min, box.max)))
@@ -37,7 +37,7 @@ std::string contradiction(const SceneFile& scene) {
         if (!glm::all(glm::lessThanEqual(block.min, block.max)))
             return fmt::format("fluid.blocks[{}].min {} must not lie above its max {}", i, shown(block.min), shown(block.max));
         if (!inside(block.min, box) || !inside(block.max, box))
-            return fmt::format("fluid.blocks[{}] from {} to {} reaches out of fluid.box from {} to {}", i, shown(block.min),
+            return fmt::format("fluid.blocks[{}] from {} to {} reaches outside fluid.box from {} to {}", i, shown(block.min),
                                shown(block.max), shown(box.min), shown(box.max));
     }
     const FoamParams& foam = scene.fluid.foam;
@@ -47,17 +47,18 @@ std::string contradiction(const SceneFile& scene) {
     std::set<std::pair<float, float>> kinds;
     for (const ColliderParams& collider : scene.colliders) kinds.emplace(collider.friction, collider.restitution);
     if (scene.colliders.size() > kMostSurfaces && kinds.size() > kMostSurfaces)
-        return fmt::format("colliders have {} different pairs of friction and restitution, there may be {}: give some the same",
-                           kinds.size(), kMostSurfaces);
+        return fmt::format(
+            "colliders have {} different pairs of friction and restitution, at most {} are possible: give some colliders equal values",
+            kinds.size(), kMostSurfaces);
     for (size_t i = 0; i < scene.colliders.size(); ++i)
         if (const std::string wrong = contradiction(scene.colliders[i]); !wrong.empty()) return fmt::format("colliders[{}]{}", i, wrong);
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const EmitterParams& emitter = scene.emitters[i];
         if (const std::string wrong = contradiction(emitter); !wrong.empty()) return fmt::format("emitters[{}].{}", i, wrong);
         if (emitter.shape == "mesh" && emitter.mesh.empty())
-            return fmt::format("emitters[{}].mesh is empty: name a mesh file, or make its shape a nozzle or a box", i);
+            return fmt::format("emitters[{}].mesh is empty: name a mesh file, or set shape to nozzle or box", i);
         if (emitter.shape != "mesh" && !inside(emitter.position, box))
-            return fmt::format("emitters[{}].position {} is out of fluid.box from {} to {}", i, shown(emitter.position), shown(box.min),
+            return fmt::format("emitters[{}].position {} is outside fluid.box from {} to {}", i, shown(emitter.position), shown(box.min),
                                shown(box.max));
     }
     if (scene.look.refractiveIndex != 0 && scene.look.refractiveIndex < 1)
@@ -70,13 +71,13 @@ std::string contradiction(const SceneFile& scene) {
                                shown(box.max));
     }
     const vec3 sight = scene.camera.target - scene.camera.position;
-    if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must not be where the camera is", shown(scene.camera.target));
+    if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must differ from camera.position", shown(scene.camera.target));
     if (glm::length(scene.light.direction) < 1.0e-6F)
-        return fmt::format("light.direction is {}, must have a length", shown(scene.light.direction));
+        return fmt::format("light.direction is {}: its length must not be 0", shown(scene.light.direction));
     return "";
 }
 
-// Folders that hold what the program brings along, the user's own first.
+// Folders of assets, the user's first.
 std::vector<fs::path> assetFolders() {
     std::vector<fs::path> folders;
     if (const char* listed = std::getenv("RIVULET_ASSETS")) {
@@ -107,17 +108,17 @@ VisitFn visiting(SceneFile& scene) {
 
 void CameraParams::visit(ParamVisitor& v) {
     v.value({.name = "from",
-             .doc = "a camera of a collider's file, by name, instead of position, target and fieldOfView; up stays up",
+             .doc = "a camera of a collider's file, by name, instead of position, target and fieldOfView; without roll",
              .fixed = kFixed},
             from);
-    v.value({"position", "m", "where the eye is", -kFar, kFar}, position);
-    v.value({"target", "m", "the point looked at", -kFar, kFar}, target);
+    v.value({"position", "m", "of the eye", -kFar, kFar}, position);
+    v.value({"target", "m", "the point at the centre of the picture", -kFar, kFar}, target);
     v.value({"fieldOfView", "deg", "vertical angle of view", 5, 120}, fieldOfView);
 }
 
 void LightParams::visit(ParamVisitor& v) {
     v.value({.name = "from",
-             .doc = "a directional light of a collider's file, by name: its direction and tint, the intensity stays",
+             .doc = "a directional light of a collider's file, by name: its direction and tint, with the intensity below",
              .fixed = kFixed},
             from);
     v.value({"direction", "", "towards the light, of any length", -1.0e6, 1.0e6}, direction);
@@ -137,41 +138,41 @@ void BackgroundParams::visit(ParamVisitor& v) {
               .doc = "a gradient and lamps, or the sun's glow and clouds outdoors, made when the scene is loaded",
               .fixed = kFixed},
              sky, skies);
-    v.value({"clouds", "", "share of the sky that they cover", 0, 1, kLinear, kFixed}, clouds);
+    v.value({"clouds", "", "share of the sky that is covered", 0, 1, kLinear, kFixed}, clouds);
     v.value({.name = "surroundings",
-             .doc = "equirectangular picture (.hdr) that lights the scene and is seen behind it, found as a mesh is; none = as sky says",
+             .doc = "equirectangular picture (.hdr) that lights the scene and is its background, searched as a mesh is; none = use sky",
              .fixed = kFixed},
             surroundings);
     v.value({"surroundingsLevel", "", "factor on its light", 0, 1000, kLinear, kFixed}, surroundingsLevel);
 }
 
 void BudgetParams::visit(ParamVisitor& v) {
-    v.value({"frameMs", "ms", "what simulating a sixtieth of a second may take; 0 = no budget: all is as fluid says", 0, 10000, kLinear,
+    v.value({"frameMs", "ms", "limit on the cost of simulating 1/60 s; 0 = no budget: all values are those of fluid", 0, 10000, kLinear,
              kFixed},
             frameMs);
-    v.value({"maxDensityError", "", "how far water may be compressed, mean over particles and time, a fraction", 1.0e-5, 1, kLog, kFixed},
+    v.value({"maxDensityError", "", "limit on the compression of water, mean over particles and time, a fraction", 1.0e-5, 1, kLog, kFixed},
             maxDensityError);
-    v.value({"finest", "m", "a finer spacing is not picked; 0 = fluid.spacing, which it is from then on", 0, 100, kLinear, kFixed}, finest);
+    v.value({"finest", "m", "the finest spacing that may be picked; 0 = fluid.spacing", 0, 100, kLinear, kFixed}, finest);
 }
 
 void SceneFile::visit(ParamVisitor& v) {
-    v.value({.name = "name", .doc = "what outputs are called after"}, name);
-    v.value({.name = "doc", .doc = "one sentence on what is to be seen"}, doc);
-    v.value({"duration", "s", "simulated time of a run that is given no other", 0, 3600}, duration);
-    v.value({"timeScale", "", "simulated seconds in a second that is shown: 0.1 = ten times slower than life", 1.0e-4, 1, kLog}, timeScale);
-    v.group({.name = "fluid", .doc = "what flows, and how it is simulated"}, fluid);
-    v.list({.name = "colliders", .doc = "what is solid", .fixed = kFixed}, colliders);
-    v.list({.name = "emitters", .doc = "where fluid comes in"}, emitters);
-    v.list({.name = "sinks", .doc = "where fluid goes"}, sinks);
-    v.group({.name = "pour", .doc = "what a hand pours in, by the key P"}, pour);
-    v.list({.name = "bodies", .doc = "what floats or sinks, and is pushed by the fluid", .fixed = kFixed}, bodies);
-    v.list({.name = "flow", .doc = "skins that something flows on: tears, rain, sweat", .fixed = kFixed}, flow);
-    v.group({.name = "look", .doc = "how the fluid is drawn"}, look);
-    v.group({.name = "camera", .doc = "where the picture is taken from"}, camera);
+    v.value({.name = "name", .doc = "name of the outputs"}, name);
+    v.value({.name = "doc", .doc = "one sentence about the scene"}, doc);
+    v.value({"duration", "s", "simulated time of a run without --seconds or --frames", 0, 3600}, duration);
+    v.value({"timeScale", "", "simulated seconds per second shown: 0.1 = ten times slower than real time", 1.0e-4, 1, kLog}, timeScale);
+    v.group({.name = "fluid", .doc = "the fluid and its simulation"}, fluid);
+    v.list({.name = "colliders", .doc = "solids", .fixed = kFixed}, colliders);
+    v.list({.name = "emitters", .doc = "sources of fluid"}, emitters);
+    v.list({.name = "sinks", .doc = "regions that remove fluid"}, sinks);
+    v.group({.name = "pour", .doc = "the jet that a person pours (key P)"}, pour);
+    v.list({.name = "bodies", .doc = "rigid bodies that float or sink in the fluid", .fixed = kFixed}, bodies);
+    v.list({.name = "flow", .doc = "skins with a liquid on them: tears, rain, sweat", .fixed = kFixed}, flow);
+    v.group({.name = "look", .doc = "look of the fluid"}, look);
+    v.group({.name = "camera", .doc = "point of view"}, camera);
     v.group({.name = "light", .doc = "the sun"}, light);
     v.group({.name = "background", .doc = "sky and ground"}, background);
-    v.group({.name = "budget", .doc = "what a frame may take: picks method, spacing and steps from the measured chart"}, budget);
-    v.list({.name = "presets", .doc = "values that are set together, by a button or --preset"}, presets);
+    v.group({.name = "budget", .doc = "limits on cost and error: method, spacing and steps are picked from the measured chart"}, budget);
+    v.list({.name = "presets", .doc = "groups of values, set by a button or --preset"}, presets);
 }
 
 Status checkScene(const SceneFile& scene) {
@@ -181,7 +182,7 @@ Status checkScene(const SceneFile& scene) {
 
 namespace {
 
-// Where a scene is: as findAsset says, or by the name it has in `rivulet list scenes`.
+// The file of a scene: as findAsset, or by its name in `rivulet list scenes`.
 Result<std::string> findScene(const std::string& path) {
     Result<std::string> file = findAsset(path, "");
     const fs::path typed(path);
@@ -193,8 +194,7 @@ Result<std::string> findScene(const std::string& path) {
         if (names.back() == stem) return s.path;
     }
     const std::string near = nearestName(stem, names);
-    const std::string remedy =
-        near.empty() ? "`rivulet list scenes` names those there are" : fmt::format("did you mean the scene {}?", near);
+    const std::string remedy = near.empty() ? "`rivulet list scenes` prints all scenes" : fmt::format("did you mean the scene {}?", near);
     return badInput(fmt::format("{}; {}", file.error().message, remedy));
 }
 
@@ -202,8 +202,8 @@ Result<std::string> findScene(const std::string& path) {
 
 namespace {
 
-// Skins that give way to another where its mesh is found, and nobody has asked for one.
-Status takeInsteads(SceneFile& scene, std::span<const std::string> assignments) {
+// Replaces skins by their alternative (`instead`) if its mesh is found and no assignment sets a mesh.
+Status useAlternatives(SceneFile& scene, std::span<const std::string> assignments) {
     for (size_t k = 0; k < scene.flow.size(); ++k) {
         const bool asked = std::any_of(assignments.begin(), assignments.end(),
                                        [&](const std::string& a) { return a.starts_with(fmt::format("flow.{}.mesh=", k)); });
@@ -249,7 +249,7 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
     if (Status read = readJsonFile(*file, visit); !read) return read.error();
     scene.folder = fs::path(*file).parent_path().string();
     scene.source = {*file, preset, {assignments.begin(), assignments.end()}};
-    if (Status taken = takeInsteads(scene, assignments); !taken) return taken.error();
+    if (Status used = useAlternatives(scene, assignments); !used) return used.error();
     if (!preset.empty())
         if (Status set = applyPreset(scene, preset); !set) return set.error();
     for (const std::string& assignment : assignments)
@@ -260,7 +260,7 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
 
 namespace {
 
-// Files that a scene names, seen from another folder.
+// Rewrites paths of a scene relative to another folder.
 class FileMover final : public ParamVisitor {
   public:
     FileMover(std::string from, std::string to) : from_(std::move(from)), to_(std::move(to)) {}
@@ -319,17 +319,17 @@ Result<std::string> findAsset(const std::string& path, const std::string& sceneF
     std::vector<std::string> looked;
     looked.reserve(places.size());
     for (const fs::path& place : places) looked.push_back(place.string());
-    for (const fs::path& folder : assetFolders())  // what may not be shipped is fetched
+    for (const fs::path& folder : assetFolders())  // an asset that cannot be shipped has a script that downloads it
         if (const fs::path script = folder / ("fetch_" + fs::path(path).stem().string() + ".sh"); isFile(script))
-            return badInput(fmt::format("{} does not exist; `bash {}` brings it", path, script.string()));
-    return badInput(fmt::format("{} does not exist; looked at {}", path, fmt::join(looked, ", ")));
+            return badInput(fmt::format("{} does not exist; `bash {}` downloads it", path, script.string()));
+    return badInput(fmt::format("{} does not exist; searched {}", path, fmt::join(looked, ", ")));
 }
 
 std::vector<SceneListing> listScenes() {
     std::vector<fs::path> folders = {"."};
     for (const fs::path& folder : assetFolders()) folders.push_back(folder);
     std::vector<SceneListing> listings;
-    std::set<fs::path> seen;  // one folder may be reached in several ways
+    std::set<fs::path> seen;  // one folder may be listed twice
     for (const fs::path& folder : folders) {
         std::error_code error;
         for (fs::directory_iterator at(folder / "scenes", error), end; !error && at != end; at.increment(error)) {

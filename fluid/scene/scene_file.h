@@ -19,7 +19,7 @@
 namespace rivulet {
 
 struct CameraParams {
-    std::string from;                 // a camera of a collider's file; "" = as the rest says
+    std::string from;                 // a camera of a collider's file; "" = the values below
     vec3 position{1.6F, 1.1F, 2.2F};  // m
     vec3 target{0.5F, 0.35F, 0.5F};   // m
     float fieldOfView = 40.0F;        // deg, vertical
@@ -27,7 +27,7 @@ struct CameraParams {
 };
 
 struct LightParams {
-    std::string from;                   // a directional light of a collider's file; "" = as the rest says
+    std::string from;                   // a directional light of a collider's file; "" = the values below
     vec3 direction{0.72F, 0.8F, 0.1F};  // towards the light
     vec3 colour{1.0F, 0.96F, 0.9F};     // linear
     float intensity = 3.6F;
@@ -41,24 +41,24 @@ struct BackgroundParams {
     float floorHeight = 0.0F;         // m
     bool showFloor = true;
     bool showBox = true;             // edges of the fluid's box
-    std::string sky = "studio";      // studio | clouds: what there is where no picture surrounds the scene
-    float clouds = 0.5F;             // share of such a sky that they cover
+    std::string sky = "studio";      // studio | clouds: the sky where `surroundings` is empty
+    float clouds = 0.5F;             // share of a clouds sky that is covered
     std::string surroundings;        // an equirectangular picture (.hdr) instead of the studio; "" = none
     float surroundingsLevel = 1.0F;  // factor on it
     void visit(ParamVisitor& v);
 };
 
-// What a frame may take, and how far density may be off: a setting that holds both is picked (budget.h).
+// Limits on the cost of a frame and on the density error: a setting within both is picked (budget.h).
 struct BudgetParams {
-    float frameMs = 0;              // what simulating a sixtieth of a second may take; 0 = no budget
+    float frameMs = 0;              // limit on simulating 1/60 s; 0 = no budget
     float maxDensityError = 0.01F;  // mean compression, a fraction
-    float finest = 0;               // m, spacing that nothing finer is picked than; 0 = fluid.spacing
+    float finest = 0;               // m, the finest spacing that is picked; 0 = fluid.spacing
     void visit(ParamVisitor& v);
 };
 
-// What loadScene was given.
+// The arguments of loadScene.
 struct SceneSource {
-    std::string path;  // of the file that was found; "": the scene came from none
+    std::string path;  // of the file that was found; "": the scene is of no file
     std::string preset;
     std::vector<std::string> assignments;
 };
@@ -67,7 +67,7 @@ struct SceneFile {
     std::string name = "unnamed";
     std::string doc;
     float duration = 5.0F;   // s
-    float timeScale = 1.0F;  // simulated seconds in a second of what is shown; less than 1: slow motion
+    float timeScale = 1.0F;  // simulated seconds per second shown; less than 1: slow motion
     FluidParams fluid;
     std::vector<ColliderParams> colliders;
     std::vector<EmitterParams> emitters;
@@ -83,28 +83,28 @@ struct SceneFile {
     std::vector<PresetParams> presets;
     std::string folder;  // of the file it came from; not a Param
     SceneSource source;  // nor this
-    uint32_t room = 0;   // nor this: particles there is room for at least, as Sources::least
+    uint32_t room = 0;   // nor this: least number of particles to reserve memory for, as Sources::least
     void visit(ParamVisitor& v);
 };
 
-// `path`: as findAsset takes it, or the name of a listed scene (`dam_break`). `assignments`: each --set, in order. Error: as readJson and
-// setParam say.
-// `preset`: one of the scene's, set before the assignments; "" = none.
+// `path`: as of findAsset, or the name of a listed scene (`dam_break`). `assignments`: each --set, in order. Error: as of readJson and
+// setParam.
+// `preset`: the name of one of the scene's presets, set before the assignments; "" = none.
 Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments, const std::string& preset = "");
 
-// Writes what differs from the defaults, so that loadScene gives the same scene: what it found beside the old file and would not beside
-// the new one is named by its whole path, in `scene`, too. Error (failed): not writable, disk full; what was there stays.
+// Writes what differs from the defaults. loadScene of the new file gives the same scene: a path that was relative to the old file and is
+// not found from the new one becomes absolute, in `scene`, too. Error (failed): not writable, disk full; the old file stays.
 Status saveScene(SceneFile& scene, const std::string& path);
 
-// Sets what one of its presets says. Error (badInput): no such preset, and which there are; a value that setParam refuses: all is as it
-// was then.
+// Sets the values of one of the scene's presets. Error (badInput): no such preset (the sentence lists those that exist); setParam refuses
+// a value. The scene is unchanged then.
 Status applyPreset(SceneFile& scene, const std::string& name);
 
-// Error: values that make no sense together, each fine by itself. loadScene asks it; who edits a scene asks it too.
+// Error (badInput): values that contradict each other, each valid by itself. loadScene calls it; so must an editor of scenes.
 Status checkScene(const SceneFile& scene);
 
-// Where an asset is: `path` as given, beside the scene, in RIVULET_ASSETS, in the source tree's or the installed assets/. Error: every
-// place looked at.
+// The first that exists of: `path` itself; `path` in the scene's folder, in the folders of RIVULET_ASSETS (separated by colons), in the
+// assets/ of the source tree, in the installed assets/. Error (badInput): none exists; the sentence lists all places.
 Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder);
 
 // Every scene file found in the places that findAsset searches under scenes/, with its name and doc.

@@ -19,7 +19,7 @@ struct OpeningProgress {
     // Error (failed): `steps` cancelled it.
     Status next(const std::string& what) {
         if (!steps || steps(what, static_cast<double>(done++) / total)) return ok();
-        return failed("opening " + scene + " was given up");
+        return failed("opening " + scene + " was cancelled");
     }
 };
 

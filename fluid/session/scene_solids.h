@@ -25,24 +25,25 @@ struct RecordedFrame;
 
 // The voxels of a scene's meshes. Pointers hold as long as the session.
 struct SolidFields {
-    const VoxelField* still = nullptr;     // of all meshes that stand still; null = none
+    const VoxelField* still = nullptr;     // of all static meshes; null = none
     std::vector<const VoxelField*> rigid;  // each in its own frame: FluidWorld::poses() has the frames
     std::vector<const VoxelField*> deforming;
-    // One of them: that of what stands still, if there is one. null: there is no mesh.
+    // The static one, else the first of the others; null: there is no mesh.
     const VoxelField* first() const {
         return still != nullptr ? still : !rigid.empty() ? rigid[0] : !deforming.empty() ? deforming[0] : nullptr;
     }
 };
 
-// What of the scene a ray meets first (m, world), of what is drawn.
+// An object of a scene that a person can select.
 struct SceneThing {
     enum class Kind { none, collider, body, emitter, sink } kind = Kind::none;
     size_t index = 0;  // in the scene
     bool operator==(const SceneThing&) const = default;
 };
+// The first hit of a ray on what is drawn.
 struct MetThing {
     SceneThing thing;
-    vec3 place{0.0F}, normal{0.0F};  // m; unit, towards where the ray came from
+    vec3 place{0.0F}, normal{0.0F};  // m, world; unit, towards the ray's origin
 };
 
 class SceneSolids {
@@ -61,7 +62,7 @@ class SceneSolids {
     const VoxelField& stillField() const { return still_; }
     SolidFields fields() const;
     bool anyMoves() const;
-    bool bendsAsDrawn() const;  // what is drawn of some is what the world updates
+    bool bendsAsDrawn() const;  // some are drawn from the buffers that the world updates
     // One a collider, of `scene` with as many colliders.
     static std::vector<Surface> surfaces(const SceneFile& scene);
     // Whether a collider or body of `scene` moves, bends or stands still where it did not before, or has another surface.
@@ -100,7 +101,7 @@ class SceneSolids {
     bool hasBodies() const { return contacts_ != nullptr; }
 
   private:
-    // How a model is met, decided once, by roleOf.
+    // How water meets a model. Decided by roleOf alone.
     enum class Role { still, rigid, deforming, drawn };
     struct Rigid {
         size_t model = 0;
@@ -125,14 +126,14 @@ class SceneSolids {
     void bendNode(const Deforming& deforming, std::span<const vec3> positions);
     void placeModels(const SceneFile& scene, double time);
 
-    std::unique_ptr<Device> bender_;  // a cpu, of models with bones and morphs, whichever device the world is on
+    std::unique_ptr<Device> bender_;  // a cpu, for models with bones and morph targets, whatever the world's device
     Scene nodes_;
     std::vector<ColliderModel> models_;  // of the colliders with triangles, in the order of the scene
     std::vector<size_t> colliderOf_;     // of each model
     std::vector<uint8_t> surfaceOf_;     // of each collider
     VoxelField still_;
     std::vector<Rigid> rigid_;
-    std::vector<size_t> shown_;  // models that move as a whole, but are only drawn
+    std::vector<size_t> shown_;  // models that move rigidly and are drawn, but not solid
     std::vector<Deforming> deforming_;
     std::vector<size_t> bodyNodes_;           // of each body
     std::unique_ptr<BulletSolids> contacts_;  // null: there are no bodies

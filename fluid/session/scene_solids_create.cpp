@@ -22,7 +22,7 @@ float longest(const Bounds& bounds) {
     return std::max({size.x, size.y, size.z});
 }
 
-// One surface a collider while they suffice, so that each can be edited; else colliders that are alike share one.
+// One surface per collider while there are enough, so that each can be edited; otherwise equal colliders share one.
 std::vector<Surface> surfacesOf(const SceneFile& scene, std::vector<uint8_t>& surfaceOf) {
     std::vector<Surface> table;
     surfaceOf.clear();
@@ -40,13 +40,13 @@ std::vector<Surface> surfacesOf(const SceneFile& scene, std::vector<uint8_t>& su
     return table;
 }
 
-// A sentence of the baker, with whose mesh it is about.
+// The baker's error, with the collider that it concerns.
 Error about(const Error& error, size_t collider, const ColliderParams& params) {
     return {fmt::format("colliders[{}] ({}): {}", collider, labelOf(params), error.message), error.fault};
 }
 
-// What a file's materials hide is said once: a colour that changes nothing would be a riddle.
-bool saysMaterial(const ColliderParams& c) {
+// Whether the scene sets a material that the file's own would hide: the log says so once.
+bool setsMaterial(const ColliderParams& c) {
     const ColliderParams none;
     return c.colour != none.colour || c.roughness != none.roughness || c.metallic != none.metallic || c.opacity != none.opacity ||
            c.grain != none.grain;
@@ -55,13 +55,13 @@ bool saysMaterial(const ColliderParams& c) {
 VoxelFieldOptions fieldOptions(const SceneFile& scene, const Bounds& bounds, float edge) {
     VoxelFieldOptions options;
     options.resolution = static_cast<int>(std::clamp(std::ceil(longest(bounds) / edge - 0.001F), 2.0F, 1.0e6F));
-    // A particle must find the field before it touches: two spacings hold what a substep can move and the contact distance.
+    // A particle must enter the band before it touches: two spacings cover the motion of a substep and the contact distance.
     options.band = 2 * scene.fluid.spacing;
     options.padding = options.band;
     return options;
 }
 
-// What a collider asks for; where it leaves the choice, a quarter of the spacing, or the finest that memory holds.
+// m: as the collider's resolution demands; without one, a quarter of the spacing, or the finest that fits in memory.
 float voxelEdge(const SceneFile& scene, const ColliderParams& collider, const Bounds& bounds, const Log& log) {
     const float side = longest(bounds);
     if (!(side > 0)) return 0.25F * scene.fluid.spacing;
@@ -120,13 +120,13 @@ Status SceneSolids::importColliders(SceneFile& scene, const Log& log, OpeningPro
         if (!bender_) bender_ = makeCpuDevice(cpuKernels());
         Result<ColliderModel> model = ColliderModel::create(collider, scene.folder, *bender_, nodes_);
         if (!model) return about(model.error(), i, collider);
-        if (model->dressed() && collider.materials == "file" && saysMaterial(collider))
+        if (model->dressed() && collider.materials == "file" && setsMaterial(collider))
             log.notice(fmt::format("colliders[{}] ({}) is drawn with its file's materials: materials scene would take its colour from here",
                                    i, labelOf(collider)));
         models_.push_back(std::move(*model));
         colliderOf_.push_back(i);
     }
-    return takeViews(models_, scene);
+    return setViewsFromFiles(models_, scene);
 }
 
 SceneSolids::Role SceneSolids::roleOf(const SceneFile& scene, size_t model) const {
@@ -137,11 +137,11 @@ SceneSolids::Role SceneSolids::roleOf(const SceneFile& scene, size_t model) cons
 }
 
 Status SceneSolids::bake(const SceneFile& scene, const Log& log, OpeningProgress& progress) {
-    // All that stands still becomes one field, whose voxels are the finest that any mesh asks for.
+    // All static meshes become one field, with the finest voxels that any of them demands.
     float edge = std::numeric_limits<float>::max();
     std::vector<MeshView> still;
     std::vector<uint8_t> stillSurfaces;
-    size_t one = 0;  // of those that stand still
+    size_t one = 0;  // of the static ones
     for (size_t m = 0; m < models_.size(); ++m) {
         const size_t c = colliderOf_[m];
         const ColliderParams& collider = scene.colliders[c];
@@ -186,7 +186,7 @@ Status SceneSolids::bake(const SceneFile& scene, const Log& log, OpeningProgress
     return ok();
 }
 
-// Node k of the body and nodes of its parts, below it.
+// The index of the body's node; nodes of its parts are below it.
 size_t SceneSolids::addBodyNodes(const BodyParams& params, const Pose& pose, Mesh mesh, std::vector<Mesh> parts) {
     Node node;
     node.name = params.mesh.empty() ? params.shape : params.mesh;

@@ -12,7 +12,7 @@ namespace rivulet {
 
 namespace {
 
-// The scene's fluid, with the normals and the ellipsoids that its look wants to show.
+// The scene's fluid, with the normals and the ellipsoids that its look draws.
 FluidParams simulated(const SceneFile& scene) {
     FluidParams fluid = scene.fluid;
     const bool shown = scene.look.colourBy == "normal" || scene.look.colourBy == "surface";
@@ -38,7 +38,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     s.scene_ = std::move(scene);
     if (Status solids = s.solids_.create(s.scene_, log, progress); !solids) return solids.error();
     if (Status sources = s.sources_.create(s.scene_); !sources) return sources.error();
-    // A scene of skins alone has no water to miss.
+    // A scene of skins alone needs no water: no notice about its absence.
     Log quiet = log;
     if (!s.scene_.flow.empty() && s.scene_.fluid.blocks.empty() && s.scene_.emitters.empty()) quiet.sink = {};
     if (Status on = progress.next("the water"); !on) return on.error();
@@ -49,7 +49,7 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
         return Error{fmt::format("{}: {}", s.scene_.name, flows.error().message), flows.error().fault};
     s.solids_.placeNodes(s.scene_, *s.world_);
     if (s.world_->particles().count == 0 && s.scene_.emitters.empty() && s.scene_.flow.empty())
-        log.notice(fmt::format("the scene {} has 0 particles: there is no water to see", s.scene_.name));
+        log.notice(fmt::format("the scene {} has 0 particles: no water is visible", s.scene_.name));
     return session;
 }
 
@@ -68,14 +68,14 @@ Bounds Session::bounds() const {
 }
 
 void Session::pourOnto(const std::optional<vec3>& place) {
-    if (!replay_ && sources_.pourOnto(scene_, place)) notify(world_->setSources(sources_.now(scene_)));
+    if (!replay_ && sources_.pourOnto(scene_, place)) report(world_->setSources(sources_.now(scene_)));
 }
 
 bool Session::needsNew(const SceneFile& scene) const {
     return solids_.needsNew(scene_, scene) || SceneSources::needsNew(scene_, scene) || flows_.needsNew(scene);
 }
 
-void Session::notify(const Status& status) const {
+void Session::report(const Status& status) const {
     if (!status) log_.notice(status.error().message);
 }
 
@@ -84,14 +84,14 @@ void Session::apply(const SceneFile& scene) {
     scene_ = scene;
     scene_.folder = folder;
     if (budget_) applySetting(budget_->setting(), scene_);
-    notify(world_->setParams(simulated(scene_)));
-    notify(world_->setSources(sources_.now(scene_)));
+    report(world_->setParams(simulated(scene_)));
+    report(world_->setSources(sources_.now(scene_)));
     flows_.apply(scene_);
-    notify(world_->setSurfaces(SceneSolids::surfaces(scene_)));
+    report(world_->setSurfaces(SceneSolids::surfaces(scene_)));
     solids_.apply(scene_);
 }
 
-// Steps the world with the solids where they are to be `seconds` from now.
+// Steps the world, with the solids at their places in `seconds`.
 void Session::advance(double seconds, double deviceMs) {
     FluidInputs inputs;
     inputs.gravity = scene_.fluid.gravity;
@@ -102,7 +102,7 @@ void Session::advance(double seconds, double deviceMs) {
     inputs.poses = motion.poses;
     inputs.shapes = motion.shapes;
     world_->step(inputs, seconds);
-    const double gone = world_->time() - before;  // less than asked where time slows
+    const double gone = world_->time() - before;  // less than asked if the time step limit slows the simulation
     if (Status flowed = flows_.step(scene_, *world_, gone, solids_.nodes()); !flowed) log_.notice(flowed.error().message);
     solids_.advance(scene_, gone);
 }
@@ -115,12 +115,12 @@ void Session::work(double asked, bool wait, double deviceMs) {
         return;
     }
     const double seconds = world_->taken(asked), before = world_->time();
-    // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
+    // Between two poses a solid moves along a straight line and turns the short way: long frames are split to follow its path.
     const int parts = anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
     for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
     if (wait) world_->device().finish();
     worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = world_->time() - before, .costMs = deviceMs};
-    // A GPU that nobody waits for works on after the call: what its passes took, some frames ago, says what a frame costs.
+    // Without a wait a GPU still works after the call: a frame's cost is that of its passes some frames ago.
     if (wait || world_->device().backend() == Backend::cpu) worked_.costMs = worked_.ms;
 }
 
@@ -139,7 +139,7 @@ double Session::settle() {
     return worked_.ms;
 }
 
-bool Session::mayWorkAside() const {
+bool Session::canStepInBackground() const {
     return !replay_ && world_->device().backend() == Backend::cpu && flows_.empty() && !solids_.bendsAsDrawn();
 }
 
@@ -147,7 +147,7 @@ void Session::watchBudget(double ms, double seconds) {
     std::string sentence;
     if (budget_->frame(ms, seconds, world_->stats().avgCompression, sentence)) {
         applySetting(budget_->setting(), scene_);
-        notify(world_->setParams(simulated(scene_)));
+        report(world_->setParams(simulated(scene_)));
     }
     if (!sentence.empty()) log_.notice(sentence);
 }

@@ -1,4 +1,4 @@
-// A Session's state as a whole: saved and restored, recorded and replayed, handed over to another.
+// A session's whole state: saved and restored, replayed, moved to another device, continued in another session.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,8 +11,8 @@ Status Session::replay(Replay replay) {
     const RecordedFrame& frame = replay.shown();
     if (!solids_.fits(frame))
         return badInput(
-            fmt::format("the recording has {} solids that move and {} corners that bend, this scene {} and {}: replay it with the "
-                        "scene and the meshes that it is of",
+            fmt::format("the recording has {} moving solids and {} deforming vertices, this scene {} and {}: use the scene and the "
+                        "meshes of the recording",
                         frame.places.size(), frame.corners.size(), solids_.recordedPlaces(), solids_.recordedCorners()));
     replay_ = std::move(replay);
     solids_.placeNodes(scene_, replay_->shown());
@@ -21,17 +21,17 @@ Status Session::replay(Replay replay) {
 
 Status Session::moveTo(Device& device) {
     takeSnapshot();
-    // What there is to say of the scene was said when it was opened.
+    // Notices about the scene were logged when it was opened.
     const auto opening = std::make_shared<bool>(true);
     const Log quiet{[log = log_, opening](LogLevel level, std::string_view text) {
         if (!*opening && log.sink) log.sink(level, text);
     }};
     if (Status back = solids_.rest(); !back) return back;
-    FluidParams params = world_->params();  // of the scene's, an edit may be under way
+    FluidParams params = world_->params();  // the scene's may hold an edit that is not applied
     if (device.backend() == Backend::cpu) params.grid = scene_.fluid.grid = "sorted";
     if (Status made = makeWorld(device, params, quiet); !made) return made;
-    notify(world_->setSources(sources_.now(scene_)));
-    notify(world_->setSurfaces(SceneSolids::surfaces(scene_)));
+    report(world_->setSources(sources_.now(scene_)));
+    report(world_->setSurfaces(SceneSolids::surfaces(scene_)));
     const std::optional<SnapshotKeeper::Snapshot>& last = snapshots_.last();
     if (Status moved = flows_.moveTo(device, scene_, solids_.nodes(), quiet, last ? last->flows.get() : nullptr); !moved) return moved;
     *opening = false;
@@ -44,7 +44,7 @@ Status Session::moveTo(Device& device) {
     solids_.setTurned(snapshot.turned);
     WorldState& state = snapshot.world;
     (void)state.takeText("world.params");
-    state.putText("world.params", fixedValues([&params](ParamVisitor& v) { params.visit(v); }));  // another grid holds the same particles
+    state.putText("world.params", fixedValues([&params](ParamVisitor& v) { params.visit(v); }));  // a changed grid holds the same particles
     if (Status done = world_->restore(state); !done) return done;
     solids_.placeNodes(scene_, *world_);
     return ok();
@@ -63,7 +63,7 @@ Status Session::restore(WorldState& state) {
     Result<std::vector<double>> turned = state.take<double>("session.turned", solids_.ofWorld().rigid.size());
     if (!turned) return turned.error();
     for (double degrees : *turned)
-        if (!std::isfinite(degrees)) return badInput("the saved state's angles make no sense: save it again");
+        if (!std::isfinite(degrees)) return badInput("the saved state has angles that are not numbers: save it again");
     if (Status done = restoreWorld(state); !done) return done;
     solids_.setTurned(*turned);
     solids_.placeNodes(scene_, *world_);
@@ -86,11 +86,10 @@ Status Session::restoreWorld(WorldState& state) {
     return done;
 }
 
-// The slots of the world that was saved, where they are more than those of this one: it may have gone on from one whose solids left room
-// for more.
+// The slots of the saved world, if it has more than this one: it may have continued from a world whose solids left more space.
 std::optional<uint32_t> Session::moreRoom(const WorldState& state) const {
     const auto ids = state.sections().find("particles.id");
-    constexpr size_t kMost = size_t{1} << 30U;  // bytes: what the world says of more is a better sentence
+    constexpr size_t kMost = size_t{1} << 30U;  // bytes: of more the world's own error is better
     if (ids == state.sections().end() || ids->second.size() % sizeof(uint32_t) != 0 || ids->second.size() > kMost) return std::nullopt;
     const size_t slots = ids->second.size() / sizeof(uint32_t);
     const ParticleView now = world_->particles();
@@ -98,7 +97,7 @@ std::optional<uint32_t> Session::moreRoom(const WorldState& state) const {
     return static_cast<uint32_t>(slots - (now.slots - now.count));
 }
 
-// A world as at first, but for its room.
+// A world at its start, with memory for `least` particles.
 Status Session::remake(uint32_t least) {
     scene_.room = least;
     sources_.setLeast(least);
@@ -117,7 +116,7 @@ bool Session::sameWater(const SceneFile& before, const SceneFile& after) {
 }
 
 Status Session::goOnFrom(Session& other) {
-    if (replay_ || other.replay_) return badInput("what was recorded does not go on");
+    if (replay_ || other.replay_) return badInput("a recording cannot be continued");
     solids_.setTurned(scene_, other.solids_, other.scene_);
     const SceneSolids::Motion motion = solids_.motionAt(scene_, other.world_->time(), 0);
     if (Status gone = world_->goOnFrom(*other.world_, motion.poses, motion.shapes); !gone) {

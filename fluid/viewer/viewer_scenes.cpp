@@ -285,7 +285,7 @@ Result<OpenedScene> Viewer::openShowing(const SceneFile& scene, const ViewerOpti
             if (drawProgress(work, 0.5F)) goesOn = false;
             ui_.draw();
         });
-        if (!open || !goesOn) return failed(fmt::format("opening {} was given up", scene.name));
+        if (!open || !goesOn) return failed(fmt::format("opening {} was cancelled", scene.name));
     }
     return work.take();
 }

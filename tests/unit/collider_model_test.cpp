@@ -243,7 +243,7 @@ TEST_F(ColliderModelTest, WhatMakesNoSenseIsOneSentence) {
     scene = sceneWith(file);
     scene.colliders[0].solid = false;
     scene.colliders[0].wave.amplitude = 0.1F;
-    refused(scene, "has a wave, which must be solid");
+    refused(scene, "has a wave and is not solid");
     scene = sceneWith(file);
     scene.camera.from = "eyes";
     refused(scene, "camera.from is `eyes`, which no collider's file has; there is eye; did you mean eye?");

@@ -78,7 +78,7 @@ TEST_P(Opening, TheFirstIsOpenedBehindAPicture) {
     scene.colliders[0].resolution = 191;  // in no cache yet
     auto closed = open(scene, 1);
     ASSERT_FALSE(closed);
-    EXPECT_NE(closed.error().message.find("given up"), std::string::npos) << closed.error().message;
+    EXPECT_NE(closed.error().message.find("cancelled"), std::string::npos) << closed.error().message;
     auto opened = open(scene, 100000);
     ASSERT_TRUE(opened) << opened.error().message;
     EXPECT_GT(shown, 0);

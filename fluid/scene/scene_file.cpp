@@ -217,6 +217,20 @@ Status useAlternatives(SceneFile& scene, std::span<const std::string> assignment
     return ok();
 }
 
+// Values and keys that had another name in an earlier version, by the error that the old name causes. A rename adds a row.
+struct Renamed {
+    std::string_view error, hint;
+};
+constexpr Renamed kRenamed[] = {
+    {"look.renderer is \"truth\"", "truth is the earlier name of reference"},
+};
+
+Error withNewName(Error error) {
+    for (const Renamed& row : kRenamed)
+        if (error.message.find(row.error) != std::string::npos) error.message += fmt::format("; {}", row.hint);
+    return error;
+}
+
 }  // namespace
 
 Status applyPreset(SceneFile& scene, const std::string& name) {
@@ -235,7 +249,7 @@ Status applyPreset(SceneFile& scene, const std::string& name) {
         while (one.starts_with(' ')) one.remove_prefix(1);
         if (one.empty()) continue;
         if (Status set = setParam(one, visiting(changed)); !set)
-            return badInput(fmt::format("the preset `{}` of {}: {}", name, scene.name, set.error().message));
+            return withNewName(badInput(fmt::format("the preset `{}` of {}: {}", name, scene.name, set.error().message)));
     }
     scene = std::move(changed);
     return ok();
@@ -246,14 +260,15 @@ Result<SceneFile> loadScene(const std::string& path, std::span<const std::string
     if (!file) return file.error();
     SceneFile scene;
     const VisitFn visit = visiting(scene);
-    if (Status read = readJsonFile(*file, visit); !read) return read.error();
+    if (Status read = readJsonFile(*file, visit); !read) return withNewName(read.error());
     scene.folder = fs::path(*file).parent_path().string();
     scene.source = {*file, preset, {assignments.begin(), assignments.end()}};
     if (Status used = useAlternatives(scene, assignments); !used) return used.error();
     if (!preset.empty())
         if (Status set = applyPreset(scene, preset); !set) return set.error();
     for (const std::string& assignment : assignments)
-        if (Status set = setParam(assignment, visit); !set) return badInput("--set " + assignment + ": " + set.error().message);
+        if (Status set = setParam(assignment, visit); !set)
+            return withNewName(badInput("--set " + assignment + ": " + set.error().message));
     if (Status sense = checkScene(scene); !sense) return badInput(*file + ": " + sense.error().message);
     return scene;
 }

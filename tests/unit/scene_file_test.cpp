@@ -156,6 +156,8 @@ TEST_F(SceneTest, WhatMakesNoSenseTogetherIsRefusedByName) {
         {R"({"fluid": {"spacing": -1}})", "x.json:1:23: fluid.spacing is -1 m, must be between 1e-05 and 1 m"},
         {R"({"fluid": {"method": "wcsp"}})",
          "x.json:1:22: fluid.method is \"wcsp\", must be one of pbf, dfsph, wcsph, wcsph_thesis; did you mean wcsph?"},
+        {R"({"look": {"renderer": "truth"}})",
+         "x.json:1:23: look.renderer is \"truth\", must be one of points, screen_space, reference; truth is the earlier name of reference"},
     };
     for (const auto& [text, error] : refusals) EXPECT_EQ(errorOf(text), error) << text;
 }

@@ -92,7 +92,7 @@ TEST_F(SceneTest, EveryShippedSceneLoadsIsDescribedAndFindsItsMeshes) {
     EXPECT_GE(count, 4);
 }
 
-TEST_F(SceneTest, ShippedScenesHoldAsManyParticlesAsTheySay) {
+TEST_F(SceneTest, ShippedScenesHoldAsManyParticlesAsTheirDocSays) {
     EXPECT_NEAR(particles(load("falling_cube.json")), 16384, 0.05 * 16384);
     EXPECT_EQ(particles(load("dam_break.json")), 8192);
     const SceneFile sheet = load("sheet_on_sphere.json");
@@ -131,7 +131,7 @@ TEST_F(SceneTest, EveryAssetHasItsOriginAndLicenceWrittenDown) {
     }
 }
 
-TEST_F(SceneTest, WhatMakesNoSenseTogetherIsRefusedByName) {
+TEST_F(SceneTest, ContradictingValuesAreRefusedByName) {
     const std::pair<const char*, const char*> refusals[] = {
         {R"({"fluid": {"foam": {"airTo": 0.25}}})", "x.json: fluid.foam.airFrom is 0.3: it must lie below airTo, which is 0.25"},
         {R"({"fluid": {"box": {"min": [0, 2, 0]}}})",
@@ -213,7 +213,7 @@ TEST_F(SceneTest, AListedSceneIsFoundByItsNameAndAMistypedOneIsAnsweredWithTheNe
     EXPECT_TRUE(error.ends_with("did you mean the scene teapot_of_ours?")) << error;
 }
 
-TEST_F(SceneTest, TheListHasEverySceneOnceAndSaysWhatIsWrongWithABrokenOne) {
+TEST_F(SceneTest, TheListHasEverySceneOnceAndTheErrorOfABrokenOne) {
     ::setenv("RIVULET_ASSETS", (folder() + ":" + folder() + "/scenes/..").c_str(), 1);
     write("scenes/good.json", R"({"name": "Good", "doc": "All well."})");
     write("scenes/bad.json", "{");

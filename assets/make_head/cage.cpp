@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet::head {
 namespace {

@@ -10,7 +10,7 @@
 #include "assets/make_head/glb.h"
 #include "assets/make_head/morphs.h"
 #include "assets/make_head/paint.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet::head {
 namespace {

@@ -10,7 +10,7 @@
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/autotune.h"

@@ -5,7 +5,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 

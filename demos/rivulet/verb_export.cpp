@@ -9,7 +9,7 @@
 #include "demos/rivulet/interrupt.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"

@@ -9,7 +9,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/render/backend.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/sim/methods/method.h"

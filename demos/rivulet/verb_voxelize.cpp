@@ -8,7 +8,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/core/readable_bytes.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/render/backend.h"

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "engine/core/assert.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 

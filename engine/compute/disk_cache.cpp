@@ -11,7 +11,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 

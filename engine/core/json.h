@@ -30,9 +30,4 @@ Status setParam(std::string_view assignment, const VisitFn& visit);
 // A Markdown table of every path, unit, range, default and doc: the content of docs/parameters.md.
 std::string describeParams(const VisitFn& visit);
 
-// Writes a whole file by temporary name and rename, so that nothing is ever half-written. The Error says why (disk full, not writable).
-// A link is followed; a device or pipe is written into.
-Status writeFileAtomic(const std::string& path, std::string_view bytes);
-Result<std::string> readFile(const std::string& path, size_t maxBytes = size_t{1} << 30);
-
 }  // namespace rivulet

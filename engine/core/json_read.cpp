@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/param_path.h"

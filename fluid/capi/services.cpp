@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/io/export.h"

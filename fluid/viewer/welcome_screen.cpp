@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/session/session.h"
 #include "tests/parity/devices.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/validate/envelope_run.h"
 #include "tests/physics/worlds.h"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "engine/app/context_egl.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::chapter2_test::chapter2_test {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/app/context_egl.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/validate/chapter4.h"
 #include "tests/unit/program_runner.h"

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/validate/chart.h"
 
 namespace rivulet::chart_test::chart_test {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/core/file.h"
 #include "tests/unit/core_sample.h"
 
 namespace rivulet {

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "engine/core/file.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/io/export.h"
 #include "fluid/io/mesh_file.h"

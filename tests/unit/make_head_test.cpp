@@ -15,7 +15,7 @@
 #include <set>
 #include <tuple>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/core/math.h"
 #include "tests/unit/program_runner.h"
 

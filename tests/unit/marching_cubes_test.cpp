@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/io/mesh_file.h"
 #include "tests/unit/mesh_volume.h"

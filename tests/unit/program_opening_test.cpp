@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "engine/scene/load_image.h"
 #include "fluid/viewer/viewer.h"

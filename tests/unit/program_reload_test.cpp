@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "engine/compute/device_cl.h"
+#include "engine/core/file.h"
 #include "engine/core/file_watch.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/viewer/viewer.h"

@@ -7,7 +7,7 @@
 #include <imgui_internal.h>
 #include <signal.h>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "tests/unit/program_runner.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/io/recording.h"
 #include "fluid/voxel/packed_array.h"
 #include "tests/unit/program_runner.h"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/session/reference_data.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/draught.h"

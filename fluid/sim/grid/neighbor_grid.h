@@ -47,8 +47,8 @@ class NeighborGrid {
     // GPU, sorted: the cells of the particles as they lie, as fluid/grid/cell_of finds them: the next build takes them instead of finding
     // them itself. Whoever moves particles before then calls with none.
     void give(std::span<const uint32_t> cells);
-    // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error: out of
-    // memory for the lists.
+    // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error (failed): out
+    // of memory for the lists; the newest state is then as it was, and a later build may succeed.
     Status build(const StepParams& params, Particles& particles);
 
     const Buffer& neighbors() const;   // binding 1 of a kernel with FOR_NEIGHBORS

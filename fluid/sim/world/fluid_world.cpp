@@ -169,7 +169,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
 }
 
 // `from`, `to`: the shares of the frame's time at which it begins and ends.
-void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
+bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), fastestEver) : kAnySpeed;
     bool built = false;
@@ -197,7 +197,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     method->step(context);
     iterations += solve.iterations;
     sorted = built;
-    if (!built) return;
+    if (!built) return false;
     solids.collide(step, *grid, particles);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
@@ -207,6 +207,7 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     const std::vector<NamedBuffer> remembered = method->remembered();
     sources.run({step, params, *grid, particles, solids, bodies, remembered}, time + to * frameLength, dt, last);
 }
+    return true;
 
 double FluidWorld::taken(double seconds) {
     Impl& w = *impl_;
@@ -327,7 +328,7 @@ void FluidWorld::Impl::fillStep() {
 }
 
 // Steps `length` s on, from `begin` s after the start of a frame whose solids need `span` s for their way. Returns how far it came:
-// less where maxSubsteps or the budget end it, and then nothing more of the frame is to be stepped.
+// less where maxSubsteps, the budget or a lack of memory end it, and then nothing more of the frame is to be stepped.
 double FluidWorld::Impl::stepPiece(double length, double begin, double span, int& substeps, bool& stop) {
     fillStep();
     const StepLimit limit = stepLimit(time + begin, length);
@@ -348,7 +349,10 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
     const bool cpu = device->backend() == Backend::cpu;
     int done = 0;
     while (done < count) {
-        substep(dt, (begin + done * dt) / span, (begin + (done + 1) * dt) / span, done + 1 == count);
+        if (!substep(dt, (begin + done * dt) / span, (begin + (done + 1) * dt) / span, done + 1 == count)) {
+            stop = true;
+            break;
+        }
         ++done;
         ++substeps;
         // A fixed step is not left half done.

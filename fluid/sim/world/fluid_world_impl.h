@@ -111,8 +111,8 @@ struct FluidWorld::Impl {
     Status listForces();
     void findForces();
     bool build(bool fromPositions, double from, double to);
-    // `last`: of a piece of its frame.
-    void substep(double dt, double from, double to, bool last);
+    // `last`: of a piece of its frame. false: out of memory; the newest state is as it was.
+    bool substep(double dt, double from, double to, bool last);
     void gatherStats(int substeps, double until);
 };
 

@@ -59,7 +59,7 @@ Status FluidWorld::restore(WorldState& state) {
     }
     Result<std::string> limited = state.takeText("world.limited");
     if (!limited) return limited.error();
-    Result<Particles::Saved> saved = w.particles.take(state);
+    Result<Particles::Saved> saved = w.particles.take(state, w.bodies.matter());
     if (!saved) return saved.error();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     std::vector<std::vector<float>> memory;

@@ -36,7 +36,9 @@ struct Particles {
         std::vector<uint32_t> id;
     };
     void save(Device& device, WorldState& state) const;
-    Result<Saved> take(WorldState& state) const;  // error: as WorldState::take; ids that are not each there once
+    // `samples`: the matter of the samples on bodies (BodyPasses::matter). Error (badInput): as WorldState::take; ids that are not each
+    // there once; matter that no particle of this world can have.
+    Result<Saved> take(WorldState& state, std::span<const vec4> samples) const;
     void restore(Device& device, const Saved& saved);
 };
 

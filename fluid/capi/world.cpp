@@ -221,8 +221,8 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (in.poses != nullptr && in.poses_count != world->poses.size())
             return badInput(fmt::format("{} poses were given, and {} walls move", in.poses_count, world->poses.size()));
         FluidInputs to;
-        to.gravity = in.gravity != nullptr ? vectorOf(in.gravity) : world->params.fluid.gravity;
-        if (!isFinite(to.gravity)) return badInput("inputs.gravity is not finite");
+        if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
+        if (to.gravity && !isFinite(*to.gravity)) return badInput("inputs.gravity is not finite");
         std::vector<Pose> poses;
         for (size_t k = 0; in.poses != nullptr && k < in.poses_count; ++k) {
             poses.push_back(poseOf(in.poses[k]));

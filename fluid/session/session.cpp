@@ -359,7 +359,6 @@ void Session::apply(const SceneFile& scene) {
 // Steps the world with the solids where they are to be `seconds` from now.
 void Session::advance(double seconds, double deviceMs) {
     FluidInputs inputs;
-    inputs.gravity = scene_.fluid.gravity;
     inputs.deviceMs = deviceMs;
     const double before = world_->time(), ahead = world_->pending() + seconds, then = before + ahead;
     std::vector<Pose> poses;

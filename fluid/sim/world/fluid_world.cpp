@@ -237,8 +237,9 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.warn();
     const double span = frame.before + seconds;  // until the solids are where they are to be
     w.frameLength = span;
-    if (isFinite(inputs.gravity))
-        w.gravity = inputs.gravity;
+    const vec3 gravity = inputs.gravity.value_or(p.gravity);
+    if (isFinite(gravity))
+        w.gravity = gravity;
     else
         w.say("the gravity that a step was given is not finite: it stayed as it was");
     if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.say(asked.error().message);

@@ -49,7 +49,7 @@ struct ParticleView {
 
 // What the scene says to the fluid each frame.
 struct FluidInputs {
-    vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2
+    std::optional<vec3> gravity = {};  // m/s^2; absent: params().gravity
     // Where solids are when the frame's time has gone by; on the way there they move evenly. Empty: they stay.
     std::span<const Pose> poses = {};                    // of Solids::rigid
     std::span<const std::span<const vec3>> shapes = {};  // m, the vertices of Solids::deforming

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/core/param_fixed.h"
+
 namespace rivulet {
 
 namespace {
@@ -107,9 +109,9 @@ EmitterFeed::EmitterFeed(const Emitter& emitter, uint32_t index, float spacing) 
 }
 
 void EmitterFeed::take(const EmitterParams& params) {
-    const std::string shape = emitter_.params.shape;
-    emitter_.params = params;
-    emitter_.params.shape = shape;
+    EmitterParams next = params;
+    keepFixed(next, emitter_.params);
+    emitter_.params = next;
     layOut();
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/core/assert.h"
 #include "engine/core/param_check.h"
+#include "engine/core/param_fixed.h"
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 #include "shaders/fluid/world/stats_row.h"
@@ -206,8 +207,8 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
         say(fmt::format("the host of the bodies gave body {} a state that is not finite: it stayed where it was", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
     sources.run({step, params, *grid, particles, solids, bodies, remembered}, time + to * frameLength, dt, last);
-}
     return true;
+}
 
 double FluidWorld::taken(double seconds) {
     Impl& w = *impl_;
@@ -501,29 +502,13 @@ Status FluidWorld::setSources(const Sources& next) {
 Status FluidWorld::setParams(const FluidParams& params) {
     if (Status s = checkParams("fluid", params); !s) return s;
     FluidParams next = params;
-    // What sizes arrays or picks kernels stays as it was made.
     const FluidParams& old = impl_->params;
-    next.method = old.method;
-    next.kernel = old.kernel;
-    next.grid = old.grid;
-    next.workGroup = old.workGroup;
-    next.spacing = old.spacing;
-    next.supportSpacings = old.supportSpacings;
-    next.box.min = old.box.min;
-    next.box.max = old.box.max;
-    next.box.periodicX = old.box.periodicX;
-    next.box.periodicY = old.box.periodicY;
-    next.box.periodicZ = old.box.periodicZ;
-    next.blocks = old.blocks;
-    next.liquid = old.liquid;
-    next.maxParticles = old.maxParticles;
-    next.foam.most = old.foam.most;
+    keepFixed(next, old);
     if (Status s = takeLiquid(next); !s) return s;
     if (impl_->traits.matter) {  // particles have theirs for life
         next.restDensity = old.restDensity;
         next.viscosity = old.viscosity;
     }
-    next.collision.walk = old.collision.walk;
     // A scene gives the origin in floats: it says nothing new of a double that rounds to them.
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
     impl_->params = next;

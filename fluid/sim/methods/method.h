@@ -15,7 +15,7 @@ struct MethodSetup {
     const FluidParams& params;
     uint32_t count;  // slots of particles
     PairTraits traits;
-    bool doesViscosity = false;  // of forces: whether the method has viscosity among its own pair forces
+    bool doesViscosity = false;  // of forces: MethodRow::doesViscosity
 };
 
 // What a method remembers of earlier steps, by a name of its own: at most 20 letters.
@@ -32,8 +32,6 @@ class Method {
     virtual void fill(const FluidParams& params, float fastest, StepParams& step) const = 0;
     // Speed of sound of its equation of state, m/s, 0 where there is none.
     virtual float soundSpeed(const FluidParams& params, float fastest) const = 0;
-    // Whether it does explicit viscosity among its own pair forces; else the row of forces() does.
-    virtual bool doesViscosity() const { return false; }
     // How far the fastest particle may go in a step, in spacings, and the longest step, s, with what says so. `fastest`: as in fill.
     struct StepLimit {
         float reach = 1;
@@ -55,12 +53,24 @@ class Method {
     virtual void forget() {}
 };
 
+// A method is a pair of files method_NAME.h (its Params and its row's function) and .cpp, and its kernels; a line of methods.cpp, and where
+// it has Params a member of FluidParams. What the program asks of a method is here: its name is compared nowhere.
 struct MethodRow {
     const char* name;
     const char* doc;
     // Error (badInput): it cannot do what the world asks for.
     Result<std::unique_ptr<Method>> (*make)(Device& device, const MethodSetup& setup);
+    // It computes explicit viscosity among its own pair forces; else the force viscosity does.
+    bool doesViscosity = false;
+    // An equation of state gives it a speed of sound, which limits its steps (fluid.cfl) and how far bodies push the fluid in one.
+    bool hasSound = false;
+    bool linkedLists = false;  // it runs on fluid.grid linked_list
+    // The least substeps in a sixtieth of a second.
+    int (*leastSubsteps)(const FluidParams& params) = [](const FluidParams&) { return 1; };
+    // Its own Params, a group of the "fluid" section; none: it has none.
+    void (*visit)(FluidParams& params, ParamVisitor& v) = nullptr;
 };
 Table<MethodRow> methods();
+const MethodRow& methodOf(const FluidParams& params);  // params.method must be a name of methods()
 
 }  // namespace rivulet

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "fluid/sim/methods/method.h"
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/methods/solver_residual.h"
 
@@ -126,8 +127,6 @@ class Pbf final : public Method {
     }
 };
 
-}  // namespace
-
 Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
     if (setup.params.kernel != "wendland")
         return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method pbf works with wendland");
@@ -158,6 +157,28 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
         *buffer = std::move(*made);
     }
     return std::unique_ptr<Method>(std::move(m));
+}
+
+}  // namespace
+
+void PbfParams::visit(ParamVisitor& v) {
+    constexpr bool kLog = true;
+    v.value({"iterations", "", "corrections a step, where tolerance is 0: more is stiffer and slower", 1, 50}, iterations);
+    v.value(
+        {"tolerance", "", "mean compression, as a fraction, down to which a step corrects; 0: always as often as iterations says", 0, 0.1},
+        tolerance);
+    v.value({"maxIterations", "", "corrections a step at most, where tolerance is not 0", 1, 1000, kLog}, maxIterations);
+    v.value({"relaxation", "", "share of a correction that is made: more converges faster, too much trembles", 0.05, 1.5}, relaxation);
+    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
+    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: water is stiffer with more", 1, 100}, minSubsteps);
+}
+
+MethodRow pbfMethod() {
+    return {.name = "pbf",
+            .doc = "position based fluids: a few corrections of positions a step; the fast one",
+            .make = makePbf,
+            .leastSubsteps = [](const FluidParams& p) { return p.pbf.minSubsteps; },
+            .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "pbf", .doc = "of method pbf"}, p.pbf); }};
 }
 
 }  // namespace rivulet

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/assert.h"
+#include "fluid/sim/methods/method.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
@@ -62,8 +63,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         b.free_ = std::make_shared<FreeBodies>(bodies);
         b.host_ = b.free_->host();
     }
-    // Method wcsph has viscosity among its own pair terms, and is the only one with a choice of kernels.
-    b.friction_ = params.method == "wcsph";
+    b.friction_ = methodOf(params).doesViscosity;
     std::vector<Define> cubic, periodic, push;
     if (b.friction_ && params.kernel == "cubic_spline") cubic.push_back({"CUBIC", "1"});
     if (glm::any(traits.periodic)) periodic.push_back({"PERIODIC", "1"});

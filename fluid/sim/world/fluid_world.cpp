@@ -64,17 +64,17 @@ float FluidWorld::Impl::fastestFall() const {
     return std::max(fastest, 10.0F * params.spacing);
 }
 
-// No water of this scene is faster, m/s: ten times what a fall across the whole box, walls, wind, a skin or its own start give, or twice
+// No water of this scene is faster, m/s: ten times what a fall across the whole box, walls, forces or its own start give, or twice
 // the speed of sound. Where something goes wrong, speeds would else grow as steps shrink, and steps shrink as speeds grow.
 float FluidWorld::Impl::fastestPossible() const {
     const float fall = std::sqrt(2.0F * glm::length(gravity) * glm::length(params.box.max - params.box.min));
-    const float skin = std::sqrt((params.forces.tension + params.forces.adhesion) / (params.restDensity * params.spacing));
-    const float wind = params.forces.airDrag > 0 ? glm::length(params.forces.wind) : 0.0F;
     const float thrown = time == 0 ? static_cast<float>(bodies.fastest()) : 0.0F;  // later it may be what has gone wrong
-    float hosts = 0;
+    float driven = 0;
+    for (const ForceRow& f : forces().rows)
+        if (f.fastest != nullptr) driven = std::max(driven, f.fastest(params));
     for (const HostForce& f : hostForces)
-        if (f.fastest != nullptr) hosts = std::max(hosts, f.fastest(f.self));
-    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), thrown, wind, skin, hosts}) + fastestFall());
+        if (f.fastest != nullptr) driven = std::max(driven, f.fastest(f.self));
+    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), thrown, driven}) + fastestFall());
     return std::max(most, 2.0F * method->soundSpeed(params, fastestFall()));
 }
 
@@ -126,11 +126,12 @@ StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
     if (c0 > 0) atMost(params.cfl * hs / (c0 + fastest), "the speed of sound (fluid.cfl)");
     atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
     atMost(own.longest, own.why);
-    // Explicit viscosity alone has a limit; an implicit solver has none.
-    const double laminar = explicitViscosity(params, method->doesViscosity());
-    const double nu = (laminar > 0 && traits.matter ? std::max(laminar, double{mostViscous}) : laminar) + 0.1 * double{step.artificial};
-    if (nu > 0) atMost(0.125 * hs * hs / nu, "viscosity");
-    atMost(capillaryLimit(params), "surface tension");
+    const ForceLimitInputs inputs{params, step.h, methodRow->doesViscosity, traits.matter ? mostViscous : 0.0F, step.artificial};
+    for (const ForceRow& f : forces().rows) {
+        if (f.limit == nullptr) continue;
+        const StepLimit forced = f.limit(inputs);
+        atMost(forced.dt, forced.why);
+    }
     if (g > 0) atMost(0.25 * std::sqrt(hs / g), "gravity");
     return limit;
 }
@@ -138,13 +139,13 @@ StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
 // Passes of what is on from now; one that cannot be made stays off, and is said.
 void FluidWorld::Impl::findForces() {
     for (ForceState& f : forcePasses) {
-        f.on = f.wanted(params, method->doesViscosity());
+        f.on = f.wanted(params, methodRow->doesViscosity);
         if (f.on && traits.linked) {  // a slider: create() has refused what was on
-            say(linkedWithout(f.name));
+            say(linkedWithout(f));
             f.on = false;
         }
         if (!f.on || f.pass) continue;
-        Result<ForcePass> made = f.make(*device, {params, particles.count, traits, method->doesViscosity()});
+        Result<ForcePass> made = f.make(*device, {params, particles.count, traits, methodRow->doesViscosity});
         if (made)
             f.pass = std::move(*made);
         else
@@ -191,6 +192,7 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
                         .wallAdhesion = [&](const StepParams& s) { solids.adhesion(s, *grid, particles); }};
     for (const ForceState& f : forcePasses) context.hasForces |= f.on;
+    particles.hasNormals = false;
     context.forces = [&] {
         for (const ForceState& f : forcePasses)
             if (f.on) f.pass(context);
@@ -528,7 +530,7 @@ ParticleView FluidWorld::particles() const {
     return {.position = &w.particles.positionNext,
             .velocity = &w.particles.velocityNext,
             .id = &w.particles.id,
-            .normal = w.params.forces.normals != "none" && w.particles.normal ? &w.particles.normal : nullptr,
+            .normal = w.particles.hasNormals ? &w.particles.normal : nullptr,
             .count = w.slots,
             .slots = w.particles.count,
             .absorption = w.coloured ? &w.particles.absorption : nullptr,
@@ -554,6 +556,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
+    w.methodRow = &methodOf(params);
     w.asked = sources;
     w.hostForces.assign(forces.begin(), forces.end());
     if (Status s = w.listForces(); !s) return s.error();

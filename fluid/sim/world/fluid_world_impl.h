@@ -25,17 +25,12 @@
 
 namespace rivulet {
 
-// The longest step that is stable, s, and what says so.
-struct StepLimit {
-    double dt;
-    const char* why;
-};
-
 struct FluidWorld::Impl {
     Device* device = nullptr;
     FluidParams params;
     Log log;
     std::unique_ptr<Method> method;
+    const MethodRow* methodRow = nullptr;
     std::unique_ptr<NeighborGrid> grid;
     Particles particles;
     std::vector<NewParticle> start;
@@ -61,6 +56,7 @@ struct FluidWorld::Impl {
         std::string name;
         std::function<bool(const FluidParams& params, bool doesViscosity)> wanted;
         std::function<Result<ForcePass>(Device& device, const MethodSetup& setup)> make;
+        std::string remedy;   // as ForceRow::remedy
         ForcePass pass = {};  // made when it is first on
         bool on = false;
     };
@@ -88,8 +84,8 @@ struct FluidWorld::Impl {
     int lastPiece = 0;  // substeps
 
     Status prepare();
-    Status mayLink() const;                                    // whether fluid.grid linked_list knows all that is asked for
-    static std::string linkedWithout(std::string_view force);  // a sentence
+    Status mayLink() const;                                     // whether fluid.grid linked_list knows all that is asked for
+    static std::string linkedWithout(const ForceState& force);  // a sentence
     Status checkPrecision() const;
     void fillStart();
     Status findSlots();

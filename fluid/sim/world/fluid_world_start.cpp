@@ -19,8 +19,6 @@ constexpr double kMostParticles = 64.0e6;
 }  // namespace
 
 Status FluidWorld::Impl::prepare() {
-    const MethodRow* row = methods().find(params.method);
-    if (row == nullptr) return badInput(fmt::format("fluid.method '{}' is not known", params.method));
     const float h = params.supportSpacings * params.spacing;
     double wanted = 0;
     for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
@@ -58,7 +56,7 @@ Status FluidWorld::Impl::prepare() {
         *w.kernel = *found;
     }
     const uint32_t count = slots + traits.samples;
-    Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
+    Result<std::unique_ptr<Method>> made = methodRow->make(*device, {params, count, traits});
     if (!made) return made.error();
     method = std::move(*made);
     if (Status s = checkPrecision(); !s) return s;
@@ -107,31 +105,32 @@ Status FluidWorld::Impl::listForces() {
         if (forces().find(f.name) != nullptr)
             return badInput(fmt::format("there is a force '{}' already: give the host's another name", f.name));
         forcePasses.push_back({f.name, [f](const FluidParams& p, bool) { return f.on == nullptr || f.on(f.self, p); },
-                               [f](Device& d, const MethodSetup& setup) { return f.make(f.self, d, setup); }});
+                               [f](Device& d, const MethodSetup& setup) { return f.make(f.self, d, setup); }, "turn it off"});
     }
-    for (const ForceRow& force : forces().rows) forcePasses.push_back({force.name, force.on, force.make});
+    for (const ForceRow& force : forces().rows) forcePasses.push_back({force.name, force.on, force.make, force.remedy});
     return ok();
 }
 
-std::string FluidWorld::Impl::linkedWithout(std::string_view force) {
-    return fmt::format(
-        "fluid.grid linked_list knows no force '{}': turn it off in fluid.forces, let fluid.collision.walls slip, or choose fluid.grid "
-        "sorted",
-        force);
+std::string FluidWorld::Impl::linkedWithout(const ForceState& force) {
+    return fmt::format("fluid.grid linked_list does not support the force '{}': {}, or choose fluid.grid sorted", force.name, force.remedy);
 }
 
 Status FluidWorld::Impl::mayLink() const {
     if (device->backend() == Backend::cpu)
         return badInput(
             "fluid.grid linked_list is built by a GPU's atomics: simulate with --backend gl or cl, or choose fluid.grid sorted");
-    if (params.method != "wcsph_thesis")
-        return badInput(fmt::format("fluid.grid linked_list is for method wcsph_thesis, not {}: choose that method, or fluid.grid sorted",
-                                    params.method));
+    if (!methodRow->linkedLists) {
+        std::string able;
+        for (const MethodRow& row : methods().rows)
+            if (row.linkedLists) able += able.empty() ? row.name : std::string(", ") + row.name;
+        return badInput(
+            fmt::format("fluid.grid linked_list is for method {}, not {}: choose that method, or fluid.grid sorted", able, params.method));
+    }
     if (!asked.emitters.empty() || !asked.sinks.empty() || asked.poured > 0)
         return badInput("fluid.grid linked_list knows no emitters, sinks and skins: take them away, or choose fluid.grid sorted");
     if (params.foam.most > 0) return badInput("fluid.grid linked_list knows no foam: make fluid.foam.most 0, or choose fluid.grid sorted");
     for (const ForceState& force : forcePasses)
-        if (force.wanted(params, true)) return badInput(linkedWithout(force.name));
+        if (force.wanted(params, methodRow->doesViscosity)) return badInput(linkedWithout(force));
     return ok();
 }
 

@@ -175,7 +175,7 @@ void SkinFlows::takeLanding(const SceneFile& scene, FluidWorld& world, double se
                 air_.push_back(drop);
         }
     }
-    world.take(slots);
+    world.withdraw(slots);
 }
 
 // In the air a drop is a ball that falls and drags; it ends on the first skin in its way, in the world's water, or on the ground.
@@ -219,7 +219,7 @@ Status SkinFlows::fall(const SceneFile& scene, FluidWorld& world, double seconds
         while (wet < way.count && !(full[way.begin + wet].density > kWet)) ++wet;
         const bool landed = way.first.skin != nullptr;
         if (wet < way.count && !(landed && double{way.first.where.share} * static_cast<double>(way.count) < static_cast<double>(wet + 1))) {
-            world.pour(places[way.begin + wet], vec3(d.velocity), d.picolitres * kPicolitre);
+            world.deposit(places[way.begin + wet], vec3(d.velocity), d.picolitres * kPicolitre);
             poured_ += d.picolitres;
             continue;
         }

@@ -39,7 +39,7 @@ class SkinFlows {
     void ledgerLater(const std::function<void(const Ledger&)>& then) const;
     size_t inAir() const { return air_.size(); }
     std::vector<vec4> airDrops() const;  // as FluidView::drops
-    // What skins and the world will hand to each other in `seconds`, for Sources::poured, m^3. 0: the scene has no skins, or no water
+    // What skins and the world will hand to each other in `seconds`, for Sources::expectedDeposit, m^3. 0: the scene has no skins, or no water
     // beside.
     static double expectedPoured(const SceneFile& scene, double seconds);
 

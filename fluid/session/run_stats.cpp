@@ -130,15 +130,15 @@ RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, co
     l.drained = late.drained;
     l.inWorld = inWorld;
     // The world counts in particles, skins in picolitres: each in its own unit, so that rounding is no error.
-    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.taken) / one)) * one;
+    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.withdrawn) / one)) * one;
     if (skins != nullptr) {
-        l.debt = late.debt;
+        l.debt = late.pendingVolume;
         l.inWorld += l.debt;
         // What went from skins to the world, less what of it was born, is its debt; what it gave is what they took, but for rounding.
         constexpr double kPicolitre = 1.0e-15;  // m^3
-        const double handed = std::abs(skins->poured - late.poured - late.debt) + std::abs(late.taken - skins->taken);
+        const double handed = std::abs(skins->poured - late.deposited - late.pendingVolume) + std::abs(late.withdrawn - skins->taken);
         missing += skins->error + (handed < kPicolitre ? 0 : handed);
-        l.emitted += skins->emitted - late.poured;
+        l.emitted += skins->emitted - late.deposited;
         l.onSurface = skins->onSurface;
         l.inAir = skins->inAir;
         l.evaporated = skins->evaporated;

@@ -148,7 +148,7 @@ Status Session::importColliders() {
 
 Result<Sources> Session::importEmitters() const {
     Sources sources{.sinks = scene_.sinks, .seconds = static_cast<double>(scene_.duration), .least = scene_.room};
-    sources.poured = SkinFlows::expectedPoured(scene_, sources.seconds);
+    sources.expectedDeposit = SkinFlows::expectedPoured(scene_, sources.seconds);
     for (const EmitterParams& params : scene_.emitters) {
         Emitter emitter{params, {}};
         if (params.shape == "mesh") {
@@ -423,7 +423,7 @@ void Session::work(double asked, bool wait, double deviceMs) {
         worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = 0, .costMs = 0};
         return;
     }
-    const double seconds = world_->taken(asked), before = world_->time();
+    const double seconds = world_->acceptedSeconds(asked), before = world_->time();
     // Between two places a solid moves straight and turns the short way: a long frame is cut, so that it keeps to its path.
     const int parts = anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
     for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));

@@ -98,7 +98,7 @@ TEST(Volumes, CountsAreWhatLiesInThemStepByStep) {
 TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
     auto device = makeTestCpu();
     Sources sources;
-    sources.poured = 100 * kOne;
+    sources.expectedDeposit = 100 * kOne;
     sources.sinks.push_back({.shape = "box", .position = vec3(0.45F, 0.05F, 0.25F), .size = vec3(0.1F, 0.1F, 0.5F)});
     sources.emitters.push_back(
         {.params = {.litresPerSecond = 4.0F, .position = vec3(0.4F, 0.45F, 0.25F), .radius = 0.06F}, .triangles = {}});
@@ -118,9 +118,9 @@ TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
         }
     }
     EXPECT_GT(world->stats().drained, 10 * kOne);
-    EXPECT_GT(world->stats().taken, 10 * kOne);
+    EXPECT_GT(world->stats().withdrawn, 10 * kOne);
     const VolumeCount all = world->volumes()[2];
-    EXPECT_NEAR(static_cast<double>(all.inside) * kOne, world->stats().emitted - world->stats().drained - world->stats().taken, 1e-12);
+    EXPECT_NEAR(static_cast<double>(all.inside) * kOne, world->stats().emitted - world->stats().drained - world->stats().withdrawn, 1e-12);
     EXPECT_GT(all.left, 20U);
 }
 

@@ -51,8 +51,8 @@ struct Sources {
     std::vector<Emitter> emitters = {};
     std::vector<SinkParams> sinks = {};
     double seconds = 10;  // how long emitters are expected to run: what fluid.maxParticles = 0 makes room for
-    // m^3 that FluidWorld::pour() is expected to bring in that time, beyond what take() has taken. 0: nobody holds water but the world.
-    double poured = 0;
+    // m^3 that FluidWorld::deposit() is expected to bring in that time, beyond what take() has taken. 0: nobody holds water but the world.
+    double expectedDeposit = 0;
     double more = 0;     // m^3 there is room for beyond all that
     uint32_t least = 0;  // particles there is room for at least, wherever they come from
 };
@@ -71,8 +71,8 @@ class EmitterFeed {
   public:
     EmitterFeed(const Emitter& emitter, uint32_t index, float spacing);
     // Of water that others pour in, wherever they do.
-    static EmitterFeed ofPoured(uint32_t index, float spacing);
-    void pour(const vec3& place, const vec3& velocity, double volume);
+    static EmitterFeed ofDeposits(uint32_t index, float spacing);
+    void deposit(const vec3& place, const vec3& velocity, double volume);
 
     // Appends what is due when `seconds` more have gone by since `time` (s), at most `most`, as the end of that time finds it.
     void offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to);
@@ -103,7 +103,7 @@ class EmitterFeed {
 
   private:
     EmitterFeed(uint32_t index, float spacing) : index_(index), spacing_(spacing) {}
-    void offerPoured(const vec3& gravity, size_t most, std::vector<Candidate>& to);
+    void offerDeposits(const vec3& gravity, size_t most, std::vector<Candidate>& to);
     void layOut();
     vec3 onBox(uint64_t k) const;
     void onMesh(uint64_t k, vec3& p, vec3& normal) const;
@@ -115,7 +115,7 @@ class EmitterFeed {
     Account account_;
     std::vector<vec3> layers_[2];  // m, nozzle: offsets of a layer's particles in the opening, one layer after the other in turn
     std::vector<double> areas_;    // mesh: running sum over the triangles
-    bool poured_ = false;
+    bool deposits_ = false;
     Flight flight_;
 };
 

@@ -72,7 +72,7 @@ class FluidWorld {
     // slows, steps do not grow. time() + pending() + dropped() is all that was asked for.
     void step(const FluidInputs& inputs, double seconds);
     // What step would simulate of a frame, s: what is beyond fluid.longestFrame is dropped, and said. For hosts that cut frames.
-    double taken(double seconds);
+    double acceptedSeconds(double seconds);
     // The next step's first work is to find each particle's cell. Who does that elsewhere while this device does something else (the
     // thesis's cooperation, 2.3) runs the kernel fluid/grid/cell_of with this, and gives what it found before the next step. Nothing:
     // before the first step, and where no step's cells are known before it: on the cpu, with bodies, periodic axes, linked lists, or a
@@ -93,14 +93,14 @@ class FluidWorld {
     // As many emitters and sinks as there are; shapes and meshes stay as they were. Error (badInput): as setParams.
     Status setSources(const Sources& sources);
 
-    // Water that others hold too, as skins do: Sources::poured says there are such, else these must not be called. Places m, velocities
-    // m/s. pour: `volume` m^3 has come down there. It is a debt, and whenever that is as much as a particle, one is born above the place.
-    // Volume is what is kept: poured water is of the world's own liquid.
-    void pour(const vec3& place, const vec3& velocity, double volume);
+    // Water that others hold too, as skins do: Sources::expectedDeposit says there are such, else these must not be called. Places m,
+    // velocities m/s. pour: `volume` m^3 has come down there. It is a debt, and whenever that is as much as a particle, one is born above
+    // the place. Volume is what is kept: poured water is of the world's own liquid.
+    void deposit(const vec3& place, const vec3& velocity, double volume);
     // The particles in a box now that are faster (m/s) or of a lower density ratio than that, 16,384 at most; and those of them that go to
     // others, spacing^3 m^3 each. Wait.
     std::vector<WorldParticle> within(const Bounds& box, float faster = 0, float looser = 1.0e9F);
-    void take(std::span<const uint32_t> slots);
+    void withdraw(std::span<const uint32_t> slots);
 
     // What the water is at places, and where rays meet it (water_query.h), as of now: at t = 0, and after each step. What a step's end gave
     // birth to is known from the next on. Nothing of the world changes. They wait. Error (failed): out of memory.

@@ -21,11 +21,12 @@ void FluidWorld::save(WorldState& state) {
     w.device->poll();
     state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
     const FluidStats& f = *w.figures;
-    const double numbers[] = {
-        w.time,        w.stepper.pending(),          w.dropped,         w.dtMin,           w.dtMax,          f.maxSpeed, w.fastestWall,
-        w.fastestEver, static_cast<double>(w.frame), w.params.origin.x, w.params.origin.y, w.params.origin.z};
+    const double numbers[] = {w.clock.time,         w.stepper.pending(),  w.clock.dropped,
+                              w.clock.dtMin,        w.clock.dtMax,        f.maxSpeed,
+                              w.limits.fastestWall, w.limits.fastestEver, static_cast<double>(w.clock.frame),
+                              w.params.origin.x,    w.params.origin.y,    w.params.origin.z};
     state.put<double>("world.numbers", numbers);
-    if (w.begun != w.start.size()) state.put<uint32_t>("world.begun", std::span(&w.begun, 1));
+    if (w.startCount != w.start.size()) state.put<uint32_t>("world.begun", std::span(&w.startCount, 1));
     state.putText("world.limited", fmt::format("{}", fmt::join(f.limited, "\n")));
     w.particles.save(*w.device, state);
     for (const NamedBuffer& b : w.method->remembered())
@@ -33,7 +34,7 @@ void FluidWorld::save(WorldState& state) {
     w.solids.save(state);
     w.sources.save(state);
     if (w.foam) w.foam->save(state);
-    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.takenOut, 1));
+    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.withdrawn, 1));
     w.volumes.save(state);
     w.bodies.save(state);
 }
@@ -51,11 +52,11 @@ Status FluidWorld::restore(WorldState& state) {
     if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
         std::any_of(n.begin(), n.begin() + 9, [](double v) { return v < 0; }))
         return badInput("the saved state's numbers make no sense: save it again");
-    std::optional<uint32_t> begun;
+    std::optional<uint32_t> startCount;
     if (state.sections().contains("world.begun")) {
         Result<std::vector<uint32_t>> count = state.take<uint32_t>("world.begun", 1);
         if (!count) return count.error();
-        begun = (*count)[0];
+        startCount = (*count)[0];
     }
     Result<std::string> limited = state.takeText("world.limited");
     if (!limited) return limited.error();
@@ -92,37 +93,32 @@ Status FluidWorld::restore(WorldState& state) {
     if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the last host that can object
 
     w.writeStart();
-    if (begun) w.begun = *begun;
+    if (startCount) w.startCount = *startCount;
     w.particles.restore(*w.device, *saved);
     w.gatherColours();
     w.sources.restore(*sources);
-    w.takenOut = taken;
+    w.withdrawn = taken;
     if (w.foam) w.foam->restore(foam);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
-    w.time = n[0];
+    w.clock.time = n[0];
     w.stepper.reset(n[1]);
-    w.dropped = n[2];
-    w.dtMin = n[3];
-    w.dtMax = n[4];
-    w.knowFastest(n[5]);
+    w.clock.dropped = n[2];
+    w.clock.dtMin = n[3];
+    w.clock.dtMax = n[4];
+    w.assumeFastest(n[5]);
     for (const vec4& v : saved->velocity)
-        if (isFinite(vec3(v))) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(v)));
-    w.fastestWall = static_cast<float>(n[6]);
-    w.fastestEver = static_cast<float>(n[7]);
-    w.frame = static_cast<uint64_t>(n[8]);
+        if (isFinite(vec3(v))) w.limits.fastestStart = std::max(w.limits.fastestStart, glm::length(vec3(v)));
+    w.limits.fastestWall = static_cast<float>(n[6]);
+    w.limits.fastestEver = static_cast<float>(n[7]);
+    w.clock.frame = static_cast<uint64_t>(n[8]);
     w.params.origin = dvec3(n[9], n[10], n[11]);
     FluidStats& f = *w.figures;
     const double volume = std::pow(double{w.params.spacing}, 3);
-    f.frame = w.frame;
-    f.time = w.time;
+    f.frame = w.clock.frame;
+    f.time = w.clock.time;
     f.particles =
         static_cast<uint32_t>(std::count_if(saved->position.begin(), saved->position.end(), [](const vec4& p) { return !(p.w < 0); }));
-    f.emitted = (static_cast<double>(w.begun) + static_cast<double>(w.sources.given())) * volume;
-    f.drained = static_cast<double>(w.sources.drained()) * volume;
-    f.owed = w.sources.owed() * volume;
-    f.poured = static_cast<double>(w.sources.born()) * volume;
-    f.debt = w.sources.debt() * volume;
-    f.taken = static_cast<double>(w.takenOut) * volume;
+    w.fillLedger(f);
     for (size_t at = 0; at < limited->size();) {
         const size_t end = std::min(limited->find('\n', at), limited->size());
         f.limited.push_back(limited->substr(at, end - at));
@@ -195,20 +191,20 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
         o.foam->save(state);
         if (const auto saved = w.foam->take(state)) w.foam->restore(*saved);  // else another number may be: it begins without
     }
-    w.begun = static_cast<uint32_t>(kept.size());
-    w.time = o.time;
+    w.startCount = static_cast<uint32_t>(kept.size());
+    w.clock.time = o.clock.time;
     w.stepper.reset(o.stepper.pending());
-    w.dropped = o.dropped;
-    w.frame = o.frame;
+    w.clock.dropped = o.clock.dropped;
+    w.clock.frame = o.clock.frame;
     w.params.origin = o.params.origin;
-    w.knowFastest(o.figures->maxSpeed);
-    for (const size_t k : kept) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(velocity[k])));
-    w.fastestEver = o.fastestEver;
+    w.assumeFastest(o.figures->maxSpeed);
+    for (const size_t k : kept) w.limits.fastestStart = std::max(w.limits.fastestStart, glm::length(vec3(velocity[k])));
+    w.limits.fastestEver = o.limits.fastestEver;
     FluidStats& f = *w.figures;
-    f.frame = w.frame;
-    f.time = w.time;
-    f.particles = w.begun;
-    f.emitted = w.begun * std::pow(double{w.params.spacing}, 3);
+    f.frame = w.clock.frame;
+    f.time = w.clock.time;
+    f.particles = w.startCount;
+    f.emitted = w.startCount * std::pow(double{w.params.spacing}, 3);
     return ok();
 }
 

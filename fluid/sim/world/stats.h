@@ -16,10 +16,10 @@ struct FluidStats {
     uint32_t particles = 0;     // all of them, frozen ones too; not free slots
     uint32_t lost = 0;          // left the grid or NaN: counted, frozen, indexed nowhere
     uint32_t nan = 0;           // of those, NaN or infinite
-    double emitted = 0;         // m^3, put in so far: blocks, what emitters let out, and what was born of what others poured
-    double poured = 0;          // m^3, of that: of what others poured
-    double debt = 0;            // m^3, poured and not yet born
-    double taken = 0;           // m^3, by others
+    double emitted = 0;         // m^3, put in so far: blocks, what emitters let out, and particles spawned from deposits
+    double deposited = 0;       // m^3, of that: particles spawned from deposits
+    double pendingVolume = 0;   // m^3, deposited and not yet spawned
+    double withdrawn = 0;       // m^3, by others
     double drained = 0;         // m^3, taken by sinks
     double owed = 0;            // m^3, due from emitters and held back: no room where they let it out, or no slot
     double avgCompression = 0;  // mean of max(rho / rho0 - 1, 0) over particles

@@ -108,7 +108,7 @@ TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
         if (frame % 10 == 5) {
             std::vector<uint32_t> slots;
             for (const WorldParticle& p : world->within({vec3(0.0F), vec3(0.2F, 0.1F, 0.3F)})) slots.push_back(p.slot);
-            world->take(slots);
+            world->withdraw(slots);
         }
         world->step({}, 1.0 / 60);
         const std::vector<VolumeCount> counts = world->volumes();

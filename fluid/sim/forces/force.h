@@ -8,8 +8,8 @@
 
 namespace rivulet {
 
-// Adds to particles.acceleration (m/s^2) of the fluid and of the samples on bodies. What it owns lives in the closure; of earlier steps it
-// remembers nothing that its sums depend on: a saved state would lack it.
+// Adds to particles.acceleration (m/s^2) of the fluid and of the samples on bodies. Its buffers live in the closure; its sums must not
+// depend on earlier steps: a saved state would lack them.
 using ForcePass = std::function<void(StepContext&)>;
 
 // The longest step that is stable, s, and what limits it: the end of "their length limited by ...".
@@ -57,8 +57,8 @@ struct HostForce {
     bool (*on)(void* self, const FluidParams& params) = nullptr;
     // As ForceRow::make. Pass: it adds to particles.acceleration from position and velocity, sorted; StepParams::force is free for it.
     Result<ForcePass> (*make)(void* self, Device& device, const MethodSetup& setup) = nullptr;
-    // m/s, the fastest that it drives water; none: no faster than a fall. Beyond ten times what all give speeds are limited, and that is
-    // said.
+    // m/s, the fastest that it drives water; none: no faster than a fall. Speeds are limited to ten times the largest of all these, and
+    // that is reported.
     float (*fastest)(void* self) = nullptr;
     void (*visit)(void* self, ParamVisitor& v) = nullptr;  // its Params; none: it has none
 };

@@ -1,5 +1,4 @@
-// A Method advances particles by one substep: where they would be, and how fast, if no solid were in the way. Methods are rows of
-// methods().
+// A Method advances particles by one substep: their positions and velocities as if there were no solids. Methods are rows of methods().
 #pragma once
 
 #include <memory>
@@ -18,11 +17,11 @@ struct MethodSetup {
     bool doesViscosity = false;  // of forces: MethodRow::doesViscosity
 };
 
-// What a method remembers of earlier steps, by a name of its own: at most 20 letters.
+// A buffer that a method keeps between steps, with a name of its own: at most 20 letters.
 struct NamedBuffer {
     const char* name;
     Buffer* buffer;    // of floats
-    bool byId = true;  // of the particles: 0 for one that is born; else in no particle's order
+    bool byId = true;  // one value a particle, 0 for a new one; else not per particle
 };
 
 class Method {
@@ -32,7 +31,7 @@ class Method {
     virtual void fill(const FluidParams& params, float fastest, StepParams& step) const = 0;
     // Speed of sound of its equation of state, m/s, 0 where there is none.
     virtual float soundSpeed(const FluidParams& params, float fastest) const = 0;
-    // How far the fastest particle may go in a step, in spacings, and the longest step, s, with what says so. `fastest`: as in fill.
+    // How far the fastest particle may go in a step, in spacings, and the longest step, s, with the reason. `fastest`: as in fill.
     struct StepLimit {
         float reach = 1;
         double longest = 1;
@@ -47,9 +46,9 @@ class Method {
     virtual bool predicts() const { return false; }
     // The pressures of the last step, Pa, slot by slot in the order of the newest state; reads them back and waits. `step`: its params.
     virtual std::vector<float> pressures(Device& device, const Particles& particles, const StepParams& step) const = 0;
-    // All that a step depends on beside particles, params and solids. The world saves it, puts it back, and fills it with 0 at t = 0.
+    // All that a step depends on beside particles, params and solids. The world saves it, restores it, and fills it with 0 at t = 0.
     virtual std::vector<NamedBuffer> remembered() { return {}; }
-    // What was learnt of a solver's pace: the world begins again.
+    // Resets the estimates of a solver's iterations: the world begins at t = 0.
     virtual void forget() {}
 };
 

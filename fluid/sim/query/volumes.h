@@ -1,9 +1,9 @@
-// Volumes that a game watches: how much water is in each, and what has come and gone, step by step.
+// Volumes that a game watches: how much water is in each, and how much has entered and left, step by step.
 //
 // Counted once at the end of each FluidWorld::step that steps, where particles then are: one that passes through within a step is not seen.
-// A particle is in a volume if its centre is. Whatever begins or ends there counts too: what is born in a volume has entered it; what a
-// sink or take() takes out of it, what is lost, and what reset() or restore() put elsewhere has left. Where a slot that is freed is taken
-// by a newborn within the same step, both are as one. So `inside` is `entered` less `left`, always.
+// A particle is in a volume if its centre is. Whatever begins or ends there counts too: a particle spawned in a volume has entered it; one
+// that a sink or withdraw() removes, that is lost, or that reset() or restore() put elsewhere has left. Where a freed slot is filled again
+// within the same step, both count as one. So `inside` is `entered` less `left`, always.
 #pragma once
 
 #include <array>

@@ -253,7 +253,7 @@ Result<BodyPasses::Saved> BodyPasses::take(WorldState& state) const {
     for (size_t k = 0; k < bodies_.size(); ++k) {
         const BodyLoad& l = (*loads)[k];
         if (!isFinite((*states)[k]) || !isFinite(l.force) || !isFinite(l.torque) || !isFinite(l.impulseOwed) || !isFinite(l.turnOwed))
-            return badInput(fmt::format("the saved state of body {} is none: save it again", k));
+            return badInput(fmt::format("the saved state of body {} is not finite or its rotation has no unit length: save it again", k));
     }
     Saved saved{std::move(*states), std::move(*loads), {}};
     if (host_.save != nullptr) {

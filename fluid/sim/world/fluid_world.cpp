@@ -52,16 +52,16 @@ void FluidWorld::Impl::report(const std::string& sentence) {
     log.notice(sentence);
 }
 
-// What is known to go wrong, before it does.
+// Reports settings that are known to fail.
 void FluidWorld::Impl::warn() {
     if (!params.limits) report("fluid.limits is off: steps are as long as asked for, stable or not");
     const vec3 reach = glm::max(glm::abs(params.box.min), glm::abs(params.box.max));
     const float most = std::max({reach.x, reach.y, reach.z}), apart = std::nextafter(most, 2.0F * most) - most;
     if (apart > 2.0e-3F * params.spacing)
-        report(fmt::format(
-            "fluid.box lies so far from its zero that floats there are {:.2g} m apart and slow motion is lost: say where it is by "
-            "fluid.origin",
-            apart));
+        report(
+            fmt::format("fluid.box lies so far from its zero that floats there are {:.2g} m apart and slow motion is lost: give its place "
+                        "by fluid.origin",
+                        apart));
     const float support = params.supportSpacings, neighbours = 4.18879F * support * support * support;
     if (params.kernel == "cubic_spline" && neighbours > 55.0F)
         report(fmt::format(
@@ -172,7 +172,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     else
         w.report("the gravity that a step was given is not finite: it stayed as it was");
     if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.report(asked.error().message);
-    // Remembered for a while: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
+    // It decays slowly: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
     constexpr double kForget = 0.5;  // s
     w.limits.fastestWall = std::max(w.limits.fastestWall * static_cast<float>(std::exp(-now / kForget)), w.solids.fastestWall());
     for (const std::string& off : w.forces.update(*w.device, {p, w.particles.count, w.traits, methodOf(p).doesViscosity})) w.report(off);
@@ -205,7 +205,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     if (!p.ellipsoids) w.ellipsoids.forget();
     if (w.foam && stepped > 0) w.foam->run(p, w.step, *w.grid, w.particles, w.solids, stepped);
     const double lost = w.stepper.end(stepped);
-    // What rounding leaves of a whole frame is no loss.
+    // The rounding of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
         w.clock.dropped += lost;
         if (substeps < p.maxSubsteps && p.frameBudget > 0 && !w.clock.budgetReported) {
@@ -227,7 +227,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
 }
 
-// What a step knows beside its length.
+// StepParams without the step's length.
 void FluidWorld::Impl::fillStep() {
     const FluidParams& p = params;
     step = StepParams{};
@@ -253,11 +253,11 @@ void FluidWorld::Impl::fillStep() {
     step.planeCount = solids.planeCount();
     grid->fill(step);
     method->fill(p, fastestFall(), step);
-    // What it was driven to under other params it keeps for a while, and that is no fault.
+    // Water keeps for a while the speed that it had under other params, and that is no fault.
     limits.fastestEver = std::max(limits.fastestEver, limits.fastestPossible(limitInputs()));
 }
 
-// Steps `length` s on, from `begin` s after the start of a frame whose solids need `span` s for their way. Returns how far it came:
+// Steps `length` s, from `begin` s after the start of a frame whose solids move for `span` s. Returns the time that it stepped:
 // less where maxSubsteps, the budget or a lack of memory end it, and then nothing more of the frame is to be stepped.
 double FluidWorld::Impl::stepPiece(double length, double begin, double span, int& substeps, bool& stop) {
     fillStep();
@@ -285,7 +285,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         }
         ++done;
         ++substeps;
-        // A fixed step is not left half done.
+        // A fixed step is always completed.
         if (!(params.fixedStep > 0) && done < count && !(cpu ? stepper.mayGoOn(substeps) : stepper.mayPlan(substeps))) {
             stop = true;
             break;
@@ -329,7 +329,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
         [now, weak = std::weak_ptr(figures), mass = double{step.mass}, g = gravity, maxSpeed = step.maxSpeed,
          spacingAStep = params.spacing / step.dt, this](std::span<const std::byte> bytes) {
             const std::shared_ptr<FluidStats> into = weak.lock();
-            if (!into) return;  // the world was reset meanwhile, or is no more
+            if (!into) return;  // the world was reset meanwhile, or destroyed
             const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
             FluidStats f = now;
             double centre[3] = {0, 0, 0}, inside = 0, masses = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
@@ -363,7 +363,8 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
             *into = std::move(f);
             if (sources.full())
                 report(fmt::format(
-                    "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles says how many", slots));
+                    "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles sets how many there are",
+                    slots));
             if (into->lost > 0) report("particles left the grid or became NaN: they are frozen and counted as lost");
             if (into->speedLimited == 0) return;
             if (maxSpeed < 0.999F * spacingAStep)
@@ -438,11 +439,11 @@ Status FluidWorld::setParams(const FluidParams& params) {
     const FluidParams& old = impl_->params;
     keepFixed(next, old);
     if (Status s = takeLiquid(next); !s) return s;
-    if (impl_->traits.matter) {  // particles have theirs for life
+    if (impl_->traits.matter) {  // particles keep the liquid they were spawned with
         next.restDensity = old.restDensity;
         next.viscosity = old.viscosity;
     }
-    // A scene gives the origin in floats: it says nothing new of a double that rounds to them.
+    // A scene gives the origin in floats: a double that rounds to them stays.
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
     impl_->params = next;
     return ok();

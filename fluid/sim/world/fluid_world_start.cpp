@@ -1,4 +1,4 @@
-// How a world begins: room for its particles, its kernels, and what is there at t = 0.
+// Creation of a world: room for its particles, its kernels, and its state at t = 0.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace rivulet {
 
 namespace {
 
-// Above this a device's memory is surely exceeded; said before anything is allocated.
+// More than any device's memory holds; refused before anything is allocated.
 constexpr double kMostParticles = 64.0e6;
 
 }  // namespace
@@ -98,8 +98,7 @@ Status FluidWorld::Impl::prepare() {
 
 Status FluidWorld::Impl::mayLink() const {
     if (device->backend() == Backend::cpu)
-        return badInput(
-            "fluid.grid linked_list is built by a GPU's atomics: simulate with --backend gl or cl, or choose fluid.grid sorted");
+        return badInput("fluid.grid linked_list needs the atomics of a GPU: simulate with --backend gl or cl, or choose fluid.grid sorted");
     if (!methodOf(params).linkedLists) {
         std::string able;
         for (const MethodRow& row : methods().rows)
@@ -108,8 +107,9 @@ Status FluidWorld::Impl::mayLink() const {
             fmt::format("fluid.grid linked_list is for method {}, not {}: choose that method, or fluid.grid sorted", able, params.method));
     }
     if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || sourceSetup.expectedDeposit > 0)
-        return badInput("fluid.grid linked_list knows no emitters, sinks and skins: take them away, or choose fluid.grid sorted");
-    if (params.foam.most > 0) return badInput("fluid.grid linked_list knows no foam: make fluid.foam.most 0, or choose fluid.grid sorted");
+        return badInput("fluid.grid linked_list does not support emitters, sinks and skins: remove them, or choose fluid.grid sorted");
+    if (params.foam.most > 0)
+        return badInput("fluid.grid linked_list does not support foam: set fluid.foam.most to 0, or choose fluid.grid sorted");
     return forces.refuseForLinkedLists(params, methodOf(params).doesViscosity);
 }
 
@@ -138,7 +138,7 @@ Status FluidWorld::Impl::checkPrecision() const {
                     params.spacing, params.method, params.supportSpacings, 1.1F * least));
 }
 
-// The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
+// The particles of the blocks, without those that would start inside or too near a mesh or behind a plane.
 void FluidWorld::Impl::fillStart() {
     for (size_t k = 0; k < params.blocks.size(); ++k) {
         const size_t first = start.size();
@@ -154,7 +154,7 @@ void FluidWorld::Impl::fillStart() {
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }
 
-// How many particles there is room for.
+// The number of slots.
 Status FluidWorld::Impl::findSlots() {
     const double held = static_cast<double>(start.size()), wanted = SourcePasses::slotsFor(sourceSetup, params);
     double room = held + wanted;
@@ -175,11 +175,11 @@ Status FluidWorld::Impl::findSlots() {
     return ok();
 }
 
-// Whether particles differ, in what they are or in what they look like.
+// Whether particles differ in their liquid or in their colour.
 void FluidWorld::Impl::findLiquids() {
     std::vector<LiquidOf> all = {liquidOf(params, "")};
     const auto add = [&](const std::string& name, const vec3& dye, float amount, float scattering) {
-        if (liquids().find(name) == nullptr && !name.empty()) return;  // said when sources are made
+        if (liquids().find(name) == nullptr && !name.empty()) return;  // refused when the sources are created
         all.push_back(liquidOf(params, name));
         if (all.back().row != 0) traits.matter = coloured = true;
         if ((dye != vec3(1.0F) && amount > 0) || scattering > 0) coloured = true;

@@ -1,4 +1,4 @@
-// A world's state, put away and taken up again.
+// The state of a world, saved and restored.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -42,7 +42,7 @@ void FluidWorld::save(WorldState& state) {
 Status FluidWorld::restore(WorldState& state) {
     Impl& w = *impl_;
     if (Status can = savable(); !can) return can;
-    // All of it is taken and judged before anything changes.
+    // All of it is read and checked before anything changes.
     Result<std::string> params = state.takeText("world.params");
     if (!params) return params.error();
     if (Status same = sameFixedValues(*params, fixedValues([&w](ParamVisitor& v) { w.params.visit(v); })); !same) return same;
@@ -51,7 +51,7 @@ Status FluidWorld::restore(WorldState& state) {
     const std::vector<double>& n = *numbers;
     if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
         std::any_of(n.begin(), n.begin() + 9, [](double v) { return v < 0; }))
-        return badInput("the saved state's numbers make no sense: save it again");
+        return badInput("the saved state's numbers are not finite or negative: save it again");
     std::optional<uint32_t> startCount;
     if (state.sections().contains("world.begun")) {
         Result<std::vector<uint32_t>> count = state.take<uint32_t>("world.begun", 1);
@@ -90,7 +90,7 @@ Status FluidWorld::restore(WorldState& state) {
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
     if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
-    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the last host that can object
+    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the host is the last that can refuse
 
     w.writeStart();
     if (startCount) w.startCount = *startCount;
@@ -132,9 +132,9 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
     Impl &w = *impl_, &o = *other.impl_;
     const BoxParams &box = w.params.box, &then = o.params.box;
     if (w.params.spacing != o.params.spacing || box.min != then.min || box.max != then.max || box.periodic() != then.periodic())
-        return badInput("the box or the spacing is another: the water starts anew");
+        return badInput("the box or the spacing is not the same: the water restarts at t = 0");
     if ((o.coloured && !w.coloured) || (o.traits.matter && !w.traits.matter && !o.bodies.any()))
-        return badInput("there are liquids in the water that this scene no longer knows: the water starts anew");
+        return badInput("the water holds liquids that this scene no longer has: the water restarts at t = 0");
     SolidPasses::Places places{.poses = {poses.begin(), poses.end()}, .shapes = {}, .voxelsRewritten = 0};
     for (const std::span<const vec3>& shape : shapes) places.shapes.emplace_back(shape.begin(), shape.end());
     if (Status sound = w.solids.beginFrame(poses, shapes, 0); !sound) return sound;
@@ -163,8 +163,8 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
             ++met;
     }
     if (kept.size() > w.slots)
-        return badInput(fmt::format("there is room for {} particles, and there are {}: the water starts anew", w.slots, kept.size()));
-    if (met > 0) w.log.notice(fmt::format("{} particles were where a solid is now: they were taken away", met));
+        return badInput(fmt::format("there are {1} particles and room for {0}: the water restarts at t = 0", w.slots, kept.size()));
+    if (met > 0) w.log.notice(fmt::format("{} particles were removed: a solid is now where they were", met));
 
     w.writeStart();
     std::vector<vec4> positions = w.device->readAll<vec4>(w.particles.positionNext, w.particles.count),

@@ -81,7 +81,7 @@ Result<Particles::Saved> Particles::take(WorldState& state, std::span<const vec4
     saved.id = std::move(*ids);
     std::vector<bool> seen(count);  // kernels write to where ids say
     for (const uint32_t one : saved.id) {
-        if (one >= count || seen[one]) return badInput("the saved state's particles are not each there once: save it again");
+        if (one >= count || seen[one]) return badInput("the saved state's particle ids are not unique: save it again");
         seen[one] = true;
     }
     if (Status sound = checkMatter(saved.matter, samples); !sound) return sound.error();

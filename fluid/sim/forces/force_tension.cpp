@@ -14,7 +14,7 @@ namespace {
 constexpr double kPiD = 3.14159265358979323846;
 constexpr double kTensionFrom = 0.2;  // as in fluid/forces/cohesion
 
-// What a flat surface pulls along itself with, per length (unit spacing), of particles strewn evenly under it, one a cubic spacing: the
+// What a flat surface pulls along itself with, per length (unit spacing), of particles spread evenly under it, one a cubic spacing: the
 // integral over depth z of t(z) times what pairs with what lies deeper and shallower pass on along the surface, less what they pull inward
 // with; t and the pull as in fluid/forces/cohesion. A lattice's sum differs by up to a half, as its layers do or do not come within reach.
 double flatTension(double support) {
@@ -62,8 +62,8 @@ Result<ForcePass> make(Device& device, const MethodSetup& setup) {
     }
     Result<Buffer> buffer = device.allocate(size_t{setup.count} * sizeof(vec4));
     if (!buffer) return buffer.error();
-    // Particles at a surface stand in layers, and pull more than if they were strewn: calibrated once, on the pressure in a drop of 20 mm,
-    // 10 spacings, at a support of 2.3 (rivulet validate tension --quick).
+    // Particles at a surface stand in layers, and pull more than if they were spread evenly: calibrated once, on the pressure in a drop of
+    // 20 mm, 10 spacings, at a support of 2.3 (rivulet validate tension --quick).
     constexpr double kLayers = 1.87;
     const double flat = kLayers * flatTension(double{setup.params.supportSpacings});
     return ForcePass([normals = *normals, pull = *pull, onSamples, samples, flat,

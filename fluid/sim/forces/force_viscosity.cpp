@@ -131,7 +131,7 @@ bool on(const FluidParams& p, bool doesViscosity) {
     if (!(p.viscosity > 0)) return false;
     if (doesViscosity) return p.collision.walls == "no-slip";
     if (p.forces.viscosity != "auto") return p.forces.viscosity != "none";
-    // Within a second it evens out what lies less than a tenth of the support radius apart: nobody would see it.
+    // Within a second it evens out what lies less than a tenth of the support radius apart: that is not visible.
     const double h = double{p.supportSpacings} * double{p.spacing};
     return double{p.viscosity} > 0.01 * h * h;
 }

@@ -99,7 +99,7 @@ class Dfsph final : public Method {
             pushOn(c, k, vec3(0.0F));
             if (residual.enough(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
         }
-        if (!cpu) residual.tellLater(c);
+        if (!cpu) residual.readLater(c);
     }
 };
 

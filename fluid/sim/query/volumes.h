@@ -58,7 +58,7 @@ class VolumePasses {
     void save(WorldState& state) const;
     struct Saved {
         std::vector<Volume> volumes;
-        std::vector<uint64_t> numbers;  // 5 a volume: its bit; entered, left; of these, told of
+        std::vector<uint64_t> numbers;  // 5 a volume: its bit; entered, left; of these, reported
         std::vector<double> times;
         std::vector<uint32_t> inside;
     };
@@ -69,9 +69,9 @@ class VolumePasses {
   private:
     struct Row {
         VolumeCount count;
-        uint64_t entered = 0, left = 0;            // told of
-        uint32_t heardEntered = 0, heardLeft = 0;  // the device's counters when last read: they turn over
-        uint64_t serial = 0;                       // unlike all others'; 0: this bit is no volume's
+        uint64_t entered = 0, left = 0;          // reported by takeEvents
+        uint32_t lastEntered = 0, lastLeft = 0;  // the device's counters when last read: they turn over
+        uint64_t serial = 0;                     // unlike all others'; 0: this bit is no volume's
     };
     using Rows = std::array<Row, kMost>;  // by bit
     Status prepare(Device& device, uint32_t slots);

@@ -109,7 +109,7 @@ Status BodyPasses::allocate(uint32_t slots) {
     return ok();
 }
 
-bool BodyPasses::mayBeBorn(const vec3& p, float spacing, float near) const {
+bool BodyPasses::maySpawn(const vec3& p, float spacing, float near) const {
     for (size_t k = 0; k < bodies_.size(); ++k) {
         if (!bodies_[k].shape.distance) continue;
         const vec3 own = states_[k].pose.toOwn(p);

@@ -160,8 +160,8 @@ void EmitterFeed::offerDeposits(const vec3& gravity, size_t most, std::vector<Ca
 }
 
 // The closest packing of spheres as layers across the jet, stretched by a hair: the smoothing kernel finds that lattice 1.3 % denser than
-// the cubic one it is calibrated on, and a jet that is born compressed bursts. So many a layer that at the jet's speed layers follow each
-// other as the packing wants.
+// the cubic one it is calibrated on, and a jet that is spawned compressed bursts. So many a layer that at the jet's speed layers follow
+// each other as the packing wants.
 void EmitterFeed::layOut() {
     const EmitterParams& p = emitter_.params;
     speed_ = p.speed;

@@ -154,7 +154,7 @@ void SourcePasses::readCounts() {
     }
 }
 
-// Takes from the list what would be born in a wall or a body, or too near to another of the list.
+// Removes from the list what would be spawned in a wall or a body, or too near to another of the list.
 void SourcePasses::dropUnfit(const World& world) {
     const FluidParams& params = world.params;
     const float contact = 0.5F * spacing_, nearest2 = kNearest * kNearest * spacing_ * spacing_;
@@ -177,7 +177,7 @@ void SourcePasses::dropUnfit(const World& world) {
                 const auto [from, to] = taken.equal_range(keyOf(cell + ivec3(k % 3, k / 3 % 3, k / 9) - 1));
                 for (auto it = from; it != to && fits; ++it) fits = glm::dot(it->second - p, it->second - p) >= nearest2;
             }
-            fits = fits && world.solids.mayBeBorn(p, spacing_) && world.bodies.mayBeBorn(p, spacing_);
+            fits = fits && world.solids.maySpawn(p, spacing_) && world.bodies.maySpawn(p, spacing_);
             if (fits) taken.emplace(keyOf(cell), p);
         }
         if (!fits) feeds_[static_cast<size_t>(c.position.w)].refuse(1);
@@ -295,8 +295,8 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
         return badInput("the state was saved with another mesh to let water out of: resume it with the scene it is of");
     Result<std::vector<EmitterFeed::Account>> accounts = state.take<EmitterFeed::Account>("sources.accounts", feeds_.size());
     if (!accounts) return accounts.error();
-    Result<std::vector<uint32_t>> heard = state.take<uint32_t>("sources.heard", feeds_.size());
-    if (!heard) return heard.error();
+    Result<std::vector<uint32_t>> reported = state.take<uint32_t>("sources.heard", feeds_.size());
+    if (!reported) return reported.error();
     Result<std::vector<uint32_t>> counters = state.take<uint32_t>("sources.counters", late_->counters.size());
     if (!counters) return counters.error();
     Result<std::vector<double>> waited = state.take<double>("sources.waited", 1);
@@ -312,19 +312,19 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
     for (size_t k = 0; k < feeds_.size(); ++k) {
         const EmitterFeed::Account& a = (*accounts)[k];
         const uint32_t* c = &(*counters)[k * EMITTER_COUNTERS];
-        // What was offered has been taken or refused: the feed knows of it, or will when it next hears.
-        const auto taken = static_cast<uint32_t>(a.offered - a.refused) - (c[1] + c[2] - (*heard)[k]);
+        // What was offered has been taken or refused: the feed has counted it, or will when it next reads the counters.
+        const auto taken = static_cast<uint32_t>(a.offered - a.refused) - (c[1] + c[2] - (*reported)[k]);
         sound = sound && std::isfinite(a.due) && a.due >= 0 && a.refused <= a.offered && a.offered < uint64_t{1} << 53U && taken == c[0];
     }
     if (!sound) return badInput("the saved state's accounts of the emitters do not add up: save it again");
-    return Saved{std::move(*accounts), std::move(*heard), std::move(*counters), (*waited)[0], flight};
+    return Saved{std::move(*accounts), std::move(*reported), std::move(*counters), (*waited)[0], flight};
 }
 
 void SourcePasses::restore(const Saved& saved) {
     if (!any()) return;
     reset();
     for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].restore(saved.accounts[k], saved.flight);
-    reported_ = saved.heard;
+    reported_ = saved.reported;
     late_->counters = saved.counters;
     waited_ = saved.waited;
     device_->writeAll<uint32_t>(counters_, saved.counters);

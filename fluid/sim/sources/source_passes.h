@@ -59,7 +59,7 @@ class SourcePasses {
     // The emitters' accounts and what is counted. Before save, report and wait for the device.
     struct Saved {
         std::vector<EmitterFeed::Account> accounts;
-        std::vector<uint32_t> heard, counters;
+        std::vector<uint32_t> reported, counters;
         double waited = 0;
         EmitterFeed::Flight flight;
     };

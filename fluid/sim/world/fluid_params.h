@@ -80,7 +80,7 @@ struct FluidParams {
     float longestFrame = 0.1F;  // s
     float fixedStep = 0.0F;     // s; 0 = none
     float frameBudget = 0.0F;   // ms; 0 = none
-    bool limits = true;         // steps no longer than is stable, nobody faster than a spacing a step
+    bool limits = true;         // steps no longer than is stable, no particle faster than a spacing a step
     dvec3 origin{0.0};          // m: where the scene's (0, 0, 0) is in the host's world. A scene file gives it as floats
     bool ellipsoids = false;    // found for drawing
     int maxParticles = 0;       // 0 = what blocks and emitters need

@@ -1,4 +1,4 @@
-// What a world does for a game: it says what the water is at places, where rays meet it, and what volumes hold.
+// Queries of a game: the water at places, where rays meet it, and the counts of volumes.
 #include <cmath>
 #include <limits>
 

@@ -147,7 +147,7 @@ void FluidWorld::Impl::fillStart() {
     }
     size_t left = 0;
     std::erase_if(start, [&](const NewParticle& p) {
-        const bool may = solids.mayBeBorn(p.position, params.spacing) && bodies.mayBeBorn(p.position, params.spacing);
+        const bool may = solids.maySpawn(p.position, params.spacing) && bodies.maySpawn(p.position, params.spacing);
         if (!may && !params.blocks[p.block].cut) ++left;
         return !may;
     });

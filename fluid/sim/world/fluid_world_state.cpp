@@ -156,7 +156,7 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
     for (size_t k = 0; k < position.size(); ++k) {
         const vec3 at(position[k]);
         if (position[k].w < 0 || id[k] >= o.slots || !isFinite(at)) continue;
-        const bool may = w.solids.mayBeBorn(at, w.params.spacing, 0) && (sameBodies || w.bodies.mayBeBorn(at, w.params.spacing, 0));
+        const bool may = w.solids.maySpawn(at, w.params.spacing, 0) && (sameBodies || w.bodies.maySpawn(at, w.params.spacing, 0));
         if (may)
             kept.push_back(k);
         else

@@ -13,7 +13,7 @@ namespace rivulet {
 
 namespace {
 
-// By id: first those of the fluid, then the samples. A row is a liquid's, or says which body a sample is on.
+// By id: first those of the fluid, then the samples. A row is that of a liquid, or names the body that a sample is on.
 Status checkMatter(std::span<const vec4> matter, std::span<const vec4> samples) {
     const auto rows = static_cast<float>(liquids().rows.size());
     const size_t fluid = matter.size() - std::min(samples.size(), matter.size());

@@ -233,10 +233,9 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (in.poses != nullptr && in.poses_count != world->poses.size())
             return badInput(
                 fmt::format("{} poses were given for {} walls that move: give one for each", in.poses_count, world->poses.size()));
-        const vec3 gravity = in.gravity != nullptr ? vectorOf(in.gravity) : world->params.fluid.gravity;
-        if (!isFinite(gravity)) return badInput("inputs.gravity is not finite");
         FluidInputs to;
-        to.gravity = gravity;
+        if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
+        if (to.gravity && !isFinite(*to.gravity)) return badInput("inputs.gravity is not finite");
         std::vector<Pose> poses;
         for (size_t k = 0; in.poses != nullptr && k < in.poses_count; ++k) {
             const Result<Pose> pose = soundPose(in.poses[k], fmt::format("inputs.poses[{}]", k));

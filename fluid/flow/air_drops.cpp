@@ -73,7 +73,7 @@ void AirDrops::takeLanding(const Inputs& inputs, double seconds) {
                 drops_.push_back(drop);
         }
     }
-    world.take(slots);
+    world.withdraw(slots);
 }
 
 // A drop in the air is a falling ball with drag; it ends on the first skin in its path, in the world's water, or on the ground.
@@ -117,7 +117,7 @@ Status AirDrops::fall(const Inputs& inputs, double seconds) {
         while (wet < way.count && !(full[way.begin + wet].density > kWet)) ++wet;
         const bool landed = way.first.skin != inputs.skins.size();
         if (wet < way.count && !(landed && double{way.first.where.share} * static_cast<double>(way.count) < static_cast<double>(wet + 1))) {
-            world->pour(places[way.begin + wet], vec3(d.velocity), d.picolitres * kPicolitre);
+            world->deposit(places[way.begin + wet], vec3(d.velocity), d.picolitres * kPicolitre);
             poured_ += d.picolitres;
             continue;
         }

@@ -1,4 +1,4 @@
-// AirDrops: the drops in the air between skins, a world's water and the ground. A drop that comes down on the world's water is poured into
+// AirDrops: the drops in the air between skins, a world's water and the ground. A drop that comes down on the world's water goes into
 // it; a particle of the world that comes down on a skin becomes drops. One mass: it is counted in picolitres.
 #pragma once
 
@@ -14,7 +14,7 @@ class AirDrops {
   public:
     struct Inputs {
         std::span<PlacedFlow* const> skins = {};  // the same ones in each step
-        // Its water takes drops in, and its particles become drops: it was made with Sources::poured. null: no water is there.
+        // Its water takes drops in, and its particles become drops: it was made with Sources::expectedDeposit. null: no water is there.
         FluidWorld* world = nullptr;
         vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2
         std::span<const vec3> winds = {};  // m/s, of each skin

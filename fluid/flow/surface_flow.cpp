@@ -7,6 +7,7 @@
 #include <array>
 
 #include "engine/core/param_check.h"
+#include "engine/core/param_fixed.h"
 #include "shaders/flow/facing.h"
 
 namespace rivulet {
@@ -89,16 +90,9 @@ Status SurfaceFlow::setThesis(const ThesisParams& params) {
 
 Status SurfaceFlow::setParams(const SurfaceFlowParams& params) {
     if (Status s = checkParams("liquid", params); !s) return s;
-    SurfaceFlowParams p = params;
-    p.capacity = impl_->params.capacity;
-    p.footprint = impl_->params.footprint;
-    p.largestDrop = impl_->params.largestDrop;
-    p.filmReach = impl_->params.filmReach;
-    p.filmCell = impl_->params.filmCell;
-    p.advancing = impl_->params.advancing;
-    p.receding = impl_->params.receding;
-    p.touch = impl_->params.touch;
-    impl_->params = p;
+    SurfaceFlowParams next = params;
+    keepFixed(next, impl_->params);
+    impl_->params = next;
     return ok();
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/param_fixed.h"
+
 namespace rivulet {
 
 namespace {
@@ -117,9 +119,9 @@ Result<ThesisTables> ThesisTables::create(Device& device, const FlowMesh& mesh, 
 }
 
 void ThesisTables::setParams(const ThesisParams& params) {
-    const float reach = params_.reach;
-    params_ = params;
-    params_.reach = reach;
+    ThesisParams next = params;
+    keepFixed(next, params_);
+    params_ = next;
 }
 
 Bounds ThesisTables::around() const {

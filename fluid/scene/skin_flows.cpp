@@ -18,7 +18,7 @@ constexpr double kPicolitre = 1.0e-15, kCubicMillimetre = 1.0e-9;  // m^3
 
 Status SkinFlows::create(const SceneFile& scene, Device& device, Scene& nodes, const Log& log) {
     firstNode_ = nodes.nodes().size();
-    pools_ = expectedPoured(scene, 0) > 0;
+    pools_ = expectedDeposit(scene, 0) > 0;
     for (size_t k = 0; k < scene.flow.size(); ++k) {
         auto made = FlowComponent::create(scene.flow[k], scene.folder, device, nodes, log);
         if (!made) return Error{fmt::format("flow[{}]: {}", k, made.error().message), made.error().fault};
@@ -89,7 +89,7 @@ Status SkinFlows::moveTo(Device& device, SceneFile scene, Scene& nodes, const Lo
     return ok();
 }
 
-double SkinFlows::expectedPoured(const SceneFile& scene, double seconds) {
+double SkinFlows::expectedDeposit(const SceneFile& scene, double seconds) {
     if (scene.flow.empty() || (scene.fluid.blocks.empty() && scene.emitters.empty())) return 0;
     double volume = std::pow(double{scene.fluid.spacing}, 3);
     for (const FlowParams& skin : scene.flow)

@@ -9,6 +9,7 @@
 #include "engine/core/assert.h"
 #include "engine/core/json.h"
 #include "fluid/session/session.h"
+#include "fluid/sim/methods/method.h"
 
 namespace rivulet {
 
@@ -73,7 +74,7 @@ std::optional<double> frameCost(std::span<const ChartRow> chart, std::span<const
     SceneFile scene;
     applySetting(setting, scene);
     const FluidParams& p = scene.fluid;
-    const int least = p.method == "pbf" ? p.pbf.minSubsteps : p.method == "dfsph" ? p.dfsph.minSubsteps : 1;
+    const int least = methodOf(p).leastSubsteps(p);
     const double faster = size.fastest / spacing / (row->fastest / row->spacing);
     const double steps = std::max<double>(least, row->stepsPerSecond / kFramesPerSecond * faster);
     return 1e-6 * cost->ns * size.particles(spacing) * steps * row->sweepsPerSecond / row->stepsPerSecond;

@@ -130,16 +130,16 @@ RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, co
     l.drained = late.drained;
     l.inWorld = inWorld;
     // The world counts particles, skins picolitres: the balance is in each unit, so that rounding is no error.
-    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.taken) / one)) * one;
+    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.withdrawn) / one)) * one;
     if (skins != nullptr) {
-        l.debt = late.debt;
+        l.debt = late.pendingVolume;
         l.inWorld += l.debt;
         // The volume from skins to the world, less what became particles, is pending; the volume back is what skins received, up to
         // rounding.
         constexpr double kPicolitre = 1.0e-15;  // m^3
-        const double handed = std::abs(skins->poured - late.poured - late.debt) + std::abs(late.taken - skins->taken);
+        const double handed = std::abs(skins->poured - late.deposited - late.pendingVolume) + std::abs(late.withdrawn - skins->taken);
         missing += skins->error + (handed < kPicolitre ? 0 : handed);
-        l.emitted += skins->emitted - late.poured;
+        l.emitted += skins->emitted - late.deposited;
         l.onSurface = skins->onSurface;
         l.inAir = skins->inAir;
         l.evaporated = skins->evaporated;

@@ -8,7 +8,7 @@ namespace rivulet {
 
 Status SceneSources::create(const SceneFile& scene) {
     start_ = {.sinks = scene.sinks, .seconds = static_cast<double>(scene.duration), .least = scene.room};
-    start_.poured = SkinFlows::expectedPoured(scene, start_.seconds);
+    start_.expectedDeposit = SkinFlows::expectedDeposit(scene, start_.seconds);
     for (const EmitterParams& params : scene.emitters) {
         Emitter emitter{params, {}};
         if (params.shape == "mesh") {

@@ -86,7 +86,6 @@ void Session::apply(const SceneFile& scene) {
 // Steps the world, with the solids at their places in `seconds`.
 void Session::advance(double seconds, double deviceMs) {
     FluidInputs inputs;
-    inputs.gravity = scene_.fluid.gravity;
     inputs.deviceMs = deviceMs;
     const double before = world_->time(), ahead = world_->pending() + seconds;
     const SceneSolids::Motion motion = solids_.motionAt(scene_, before + ahead, ahead);
@@ -106,7 +105,7 @@ void Session::work(double asked, bool wait, double deviceMs) {
         worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = 0, .costMs = 0};
         return;
     }
-    const double seconds = world_->taken(asked), before = world_->time();
+    const double seconds = world_->acceptedSeconds(asked), before = world_->time();
     // Between two poses a solid moves along a straight line and turns the short way: long frames are split to follow its path.
     const int parts = anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
     for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));

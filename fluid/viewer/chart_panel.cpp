@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/json.h"
+#include "fluid/sim/methods/method.h"
+
 namespace rivulet {
 
 namespace {
@@ -60,13 +63,12 @@ const ChartSetting* settingOf(const FluidParams& params) {
     for (const ChartSetting& setting : chartSettings().rows) {
         if (params.method != setting.method) continue;
         SceneFile scene;
-        applySetting(setting, scene);
-        const FluidParams& p = scene.fluid;
-        const bool pbf = p.pbf.iterations == params.pbf.iterations && p.pbf.tolerance == params.pbf.tolerance &&
-                         p.pbf.reach == params.pbf.reach && p.pbf.minSubsteps == params.pbf.minSubsteps;
-        const bool dfsph = p.dfsph.tolerance == params.dfsph.tolerance && p.dfsph.reach == params.dfsph.reach &&
-                           p.dfsph.minSubsteps == params.dfsph.minSubsteps;
-        if (p.cfl == params.cfl && (params.method != "pbf" || pbf) && (params.method != "dfsph" || dfsph)) return &setting;
+        scene.fluid = params;
+        applySetting(setting, scene);  // changes nothing but what settings name
+        const auto own = [visit = methodOf(params).visit](FluidParams p) {
+            return visit == nullptr ? std::string() : writeJson([&](ParamVisitor& v) { visit(p, v); });
+        };
+        if (scene.fluid.cfl == params.cfl && own(scene.fluid) == own(params)) return &setting;
     }
     return nullptr;
 }

@@ -445,7 +445,7 @@ TEST(LinkedListRefusal, NamesTheKeyAndTheRemedy) {
     Sources emitters, sinks, poured;
     emitters.emitters.emplace_back();
     sinks.sinks.emplace_back();
-    poured.poured = 1.0e-3;
+    poured.expectedDeposit = 1.0e-3;
     for (const Sources& s : {emitters, sinks, poured}) refused("emitters", s, asItIs);
     refused("fluid.foam.most", {}, [](FluidParams& p) { p.foam.most = 100; });
     refused("tension", {}, [](FluidParams& p) { p.forces.tension = 0.07F; });

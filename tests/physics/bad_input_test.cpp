@@ -86,7 +86,7 @@ TEST(BadInput, EmittersAndSinksAreNamed) {
     EXPECT_TRUE(refusal(sound(), {}, {.emitters = {{EmitterParams{}, {}}, {lost, {}}}}).starts_with("emitters[1].position "));
     EXPECT_TRUE(refusal(sound(), {}, {.sinks = {{.radius = -1}}}).starts_with("sinks[0].radius "));
     EXPECT_NE(refusal(sound(), {}, {.seconds = std::numeric_limits<double>::quiet_NaN()}), "");
-    EXPECT_NE(refusal(sound(), {}, {.poured = -1}), "");
+    EXPECT_NE(refusal(sound(), {}, {.expectedDeposit = -1}), "");
 }
 
 TEST(BadInput, SolidsAreNamed) {

@@ -162,15 +162,15 @@ TEST(SceneFlow, TheSameWaterIsInBothWorlds) {
     EXPECT_GT(most, 5e-6);
     const double jet = 0.5 * 0.06e-3;  // m^3: a nozzle lets whole layers out
     // Particles spawned above the water beside the cow may land on it again.
-    EXPECT_GT(world.stats().taken, 0.75 * jet);
-    EXPECT_LT(world.stats().taken, 1.25 * jet + world.stats().poured);
-    EXPECT_GT(world.stats().poured, 0.2 * jet);
+    EXPECT_GT(world.stats().withdrawn, 0.75 * jet);
+    EXPECT_LT(world.stats().withdrawn, 1.25 * jet + world.stats().deposited);
+    EXPECT_GT(world.stats().deposited, 0.2 * jet);
     EXPECT_LT(l.debt, 8 * std::pow(0.008, 3));
     EXPECT_EQ(stats.lost, 0U);
     for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) EXPECT_TRUE(isFinite(d.position));
     (*session)->reset();
     EXPECT_EQ((*session)->flows().ledger().taken, 0.0);
-    EXPECT_EQ(world.stats().taken, 0.0);
+    EXPECT_EQ(world.stats().withdrawn, 0.0);
 }
 
 // A drop that hangs in the air is met by a skin that comes to it: faster than the drop is wide in a frame.

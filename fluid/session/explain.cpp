@@ -26,7 +26,7 @@ constexpr Part kParts[] = {
     {"masses and densities per particle", "there is one liquid and no body", "", "MATTER"},
     {"periodic axes", "no axis of the box is periodic", "fluid/world/wrap", "PERIODIC"},
     {"surface tension", "fluid.forces.tension and adhesion are 0", "fluid/forces/cohesion", ""},
-    {"surface tension of the thesis", "fluid.forces.thesisTension is 0", "fluid/forces/tension_thesis", ""},
+    {"thesis tension", "fluid.forces.thesisTension is 0", "fluid/forces/tension_thesis", ""},
     {"pairwise viscosity", "fluid.forces.viscosity has no effect, or is part of the method", "fluid/forces/viscosity|fluid/viscous", ""},
     {"vorticity confinement", "fluid.forces.vorticity is 0", "fluid/forces/vorticity|fluid/forces/confinement", ""},
     {"air drag", "fluid.forces.airDrag is 0", "fluid/forces/air", ""},

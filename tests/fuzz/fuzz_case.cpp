@@ -55,13 +55,14 @@ SceneFile forces() {
     s.fluid.viscosity = 1.0e-3F;
     s.fluid.collision.friction = 0.2F;
     s.fluid.collision.walls = "no-slip";
-    s.fluid.forces = {.tension = 0.05F,
-                      .adhesion = 0.05F,
-                      .thesisTension = -1,
-                      .normals = "gradient",
-                      .vorticity = 0.5F,
-                      .airDrag = 0.5F,
-                      .wind = vec3(1, 0, 0)};
+    ForcesParams& f = s.fluid.forces;
+    f.tension = 0.05F;
+    f.adhesion = 0.05F;
+    f.thesisTension = -1;
+    f.normals = "gradient";
+    f.vorticity = 0.5F;
+    f.airDrag = 0.5F;
+    f.wind = vec3(1, 0, 0);
     return s;
 }
 

@@ -10,7 +10,7 @@
 
 #include "tests/parity/devices.h"
 
-namespace rivulet::cooperation_test::cooperation_test {
+namespace rivulet::cooperation_test {
 namespace {
 
 SceneFile dam(const char* method = "wcsph") {
@@ -290,4 +290,4 @@ TEST(CooperationOfTheCpu, AutoTriesAllAvailablePlans) {
 }
 
 }  // namespace
-}  // namespace rivulet::cooperation_test::cooperation_test
+}  // namespace rivulet::cooperation_test

@@ -12,7 +12,7 @@
 #include "fluid/validate/physics_case.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::cpu_fallback_test::cpu_fallback_test {
+namespace rivulet::cpu_fallback_test {
 namespace {
 
 struct Said {
@@ -586,4 +586,4 @@ TEST_F(CpuFallback, FlowsOnSkinsWhenADeviceIsLost) {
 }
 
 }  // namespace
-}  // namespace rivulet::cpu_fallback_test::cpu_fallback_test
+}  // namespace rivulet::cpu_fallback_test

@@ -8,7 +8,7 @@
 #include "engine/scene/skin.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::deform_parity_test::deform_parity_test {
+namespace rivulet::deform_parity_test {
 namespace {
 
 // A ball of radius 1 whose seam has two vertices per position, as UV charts need; the morph makes it an ellipsoid, two bones bend it.
@@ -157,4 +157,4 @@ TEST_P(DeformParity, TheSameSkin) {
 INSTANTIATE_TEST_SUITE_P(Devices, DeformParity, testing::Values("gl", "cl"), [](const auto& of) { return std::string(of.param); });
 
 }  // namespace
-}  // namespace rivulet::deform_parity_test::deform_parity_test
+}  // namespace rivulet::deform_parity_test

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <thread>
 
-namespace rivulet::device_cl_test::device_cl_test {
+namespace rivulet::device_cl_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -438,4 +438,4 @@ TEST(ClDeviceDeathTest, withoutADriverThereIsAPlainSentence) {
 }
 
 }  // namespace
-}  // namespace rivulet::device_cl_test::device_cl_test
+}  // namespace rivulet::device_cl_test

@@ -7,7 +7,7 @@
 #include "engine/gpu/device_gl.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::device_gl_test::device_gl_test {
+namespace rivulet::device_gl_test {
 namespace {
 
 struct alignas(16) ScaleParams {
@@ -226,4 +226,4 @@ TEST_F(DeviceGl, AThousandBuffersLeaveNothingBehind) {
 }
 
 }  // namespace
-}  // namespace rivulet::device_gl_test::device_gl_test
+}  // namespace rivulet::device_gl_test

@@ -8,7 +8,7 @@
 #include "shaders/fluid/surface/anisotropy_params.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::ellipsoids_parity_test::ellipsoids_parity_test {
+namespace rivulet::ellipsoids_parity_test {
 namespace {
 
 using glm::dmat3;
@@ -152,4 +152,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, EllipsoidsParity, testing::Values("cpu", "cl",
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::ellipsoids_parity_test::ellipsoids_parity_test
+}  // namespace rivulet::ellipsoids_parity_test

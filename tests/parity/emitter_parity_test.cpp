@@ -8,7 +8,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::emitter_parity_test::emitter_parity_test {
+namespace rivulet::emitter_parity_test {
 namespace {
 
 struct Seen {
@@ -135,4 +135,4 @@ TEST_P(EmitterParity, TheStateOfADrainedParticleIsCleared) {
 INSTANTIATE_TEST_SUITE_P(Devices, EmitterParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::emitter_parity_test::emitter_parity_test
+}  // namespace rivulet::emitter_parity_test

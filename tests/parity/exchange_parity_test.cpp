@@ -4,7 +4,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::exchange_parity_test::exchange_parity_test {
+namespace rivulet::exchange_parity_test {
 namespace {
 
 constexpr double kOne = 0x1p-15;  // m^3, of a particle
@@ -51,4 +51,4 @@ TEST_P(ExchangeParity, TheSameOnAGpu) {
 INSTANTIATE_TEST_SUITE_P(Devices, ExchangeParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::exchange_parity_test::exchange_parity_test
+}  // namespace rivulet::exchange_parity_test

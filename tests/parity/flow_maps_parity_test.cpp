@@ -11,7 +11,7 @@
 #include "tests/parity/devices.h"
 #include "tests/physics/charted_skins.h"
 
-namespace rivulet::flow_maps_parity_test::flow_maps_parity_test {
+namespace rivulet::flow_maps_parity_test {
 namespace {
 
 constexpr int kSize = 128;
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, FlowLayerTest, testing::Values("cpu", "cl", "g
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::flow_maps_parity_test::flow_maps_parity_test
+}  // namespace rivulet::flow_maps_parity_test

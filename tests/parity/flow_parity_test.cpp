@@ -8,7 +8,7 @@
 #include "fluid/validate/flow_shapes.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::flow_parity_test::flow_parity_test {
+namespace rivulet::flow_parity_test {
 namespace {
 
 Result<FlowMesh> bumpyBall() {
@@ -116,4 +116,4 @@ TEST_P(FlowParity, ThesisModeToo) {
 INSTANTIATE_TEST_SUITE_P(Gpus, FlowParity, testing::Values("cl", "gl"));
 
 }  // namespace
-}  // namespace rivulet::flow_parity_test::flow_parity_test
+}  // namespace rivulet::flow_parity_test

@@ -18,7 +18,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::gl_sharing_test::gl_sharing_test {
+namespace rivulet::gl_sharing_test {
 namespace {
 
 enum class Lie { none, blind, mute, once, whole, elsewhere, noContext, noWrap, noAcquire, noRelease };
@@ -357,4 +357,4 @@ TEST_F(GlSharingTest, AnotherDeviceIsNotTakenForTheLastOne) {
 }
 
 }  // namespace
-}  // namespace rivulet::gl_sharing_test::gl_sharing_test
+}  // namespace rivulet::gl_sharing_test

@@ -12,7 +12,7 @@
 #include "fluid/session/session.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::kernels_cl_test::kernels_cl_test {
+namespace rivulet::kernels_cl_test {
 namespace {
 
 // A kernel's figures over all its dispatches.
@@ -208,4 +208,4 @@ TEST_F(KernelsOfCl, EachDispatchIsTheCpus) {
 }
 
 }  // namespace
-}  // namespace rivulet::kernels_cl_test::kernels_cl_test
+}  // namespace rivulet::kernels_cl_test

@@ -14,7 +14,7 @@
 #include "shaders/fluid/world/stats_row.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::linked_list_test::linked_list_test {
+namespace rivulet::linked_list_test {
 namespace {
 
 constexpr float kSpacing = 0.03F, kReach = 2 * kSpacing;
@@ -466,4 +466,4 @@ TEST(LinkedListRefusal, NamesTheKeyAndTheRemedy) {
 }
 
 }  // namespace
-}  // namespace rivulet::linked_list_test::linked_list_test
+}  // namespace rivulet::linked_list_test

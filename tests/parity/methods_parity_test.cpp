@@ -9,7 +9,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::methods_parity_test::methods_parity_test {
+namespace rivulet::methods_parity_test {
 namespace {
 
 struct After {
@@ -132,4 +132,4 @@ TEST_P(SolverStops, AndDoesSoWithoutWaiting) {
 INSTANTIATE_TEST_SUITE_P(Gpus, SolverStops, testing::Values("cl", "gl"));
 
 }  // namespace
-}  // namespace rivulet::methods_parity_test::methods_parity_test
+}  // namespace rivulet::methods_parity_test

@@ -13,7 +13,7 @@
 #include "shaders/fluid/world/stats_row.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::sim_parity_test::sim_parity_test {
+namespace rivulet::sim_parity_test {
 namespace {
 
 constexpr float kSpacing = 0.03F;
@@ -316,4 +316,4 @@ TEST(SimSameness, ACpuRunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_parity_test::sim_parity_test
+}  // namespace rivulet::sim_parity_test

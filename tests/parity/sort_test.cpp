@@ -12,7 +12,7 @@
 #include "shaders/fluid/world/step_params.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::sort_test::sort_test {
+namespace rivulet::sort_test {
 namespace {
 
 const Define kScanDefines[] = {{"LOCAL_SIZE", "256"}};
@@ -227,4 +227,4 @@ TEST_P(SortTest, twoRunsGiveTheSameOrder) {
 INSTANTIATE_TEST_SUITE_P(Gpu, SortTest, testing::Values("cl", "gl"), [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
-}  // namespace rivulet::sort_test::sort_test
+}  // namespace rivulet::sort_test

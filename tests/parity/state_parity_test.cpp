@@ -6,7 +6,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::state_parity_test::state_parity_test {
+namespace rivulet::state_parity_test {
 namespace {
 
 FluidParams block(const char* method) {
@@ -96,4 +96,4 @@ TEST_P(StateParity, AWorldMayGoBeforeItsFiguresCome) {
 INSTANTIATE_TEST_SUITE_P(Devices, StateParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::state_parity_test::state_parity_test
+}  // namespace rivulet::state_parity_test

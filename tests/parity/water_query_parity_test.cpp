@@ -7,7 +7,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::water_query_parity_test::water_query_parity_test {
+namespace rivulet::water_query_parity_test {
 namespace {
 
 class WaterQueryParity : public testing::TestWithParam<const char*> {};
@@ -73,4 +73,4 @@ TEST_P(WaterQueryParity, TheSameOnAGpu) {
 INSTANTIATE_TEST_SUITE_P(Devices, WaterQueryParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::water_query_parity_test::water_query_parity_test
+}  // namespace rivulet::water_query_parity_test

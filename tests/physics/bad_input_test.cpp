@@ -10,7 +10,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::bad_input_test::bad_input_test {
+namespace rivulet::bad_input_test {
 namespace {
 
 FluidParams sound() {
@@ -136,4 +136,4 @@ TEST(BadInput, BodiesAndTheirHostAreNamed) {
 }
 
 }  // namespace
-}  // namespace rivulet::bad_input_test::bad_input_test
+}  // namespace rivulet::bad_input_test

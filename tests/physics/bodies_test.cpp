@@ -15,7 +15,7 @@
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 
-namespace rivulet::bodies_test::bodies_test {
+namespace rivulet::bodies_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu(int threads = 0) {
@@ -502,4 +502,4 @@ TEST(Contact, AScenesBendingColliderIsRefusedBesideBodies) {
 }
 
 }  // namespace
-}  // namespace rivulet::bodies_test::bodies_test
+}  // namespace rivulet::bodies_test

@@ -9,7 +9,7 @@
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::buoyancy_test::buoyancy_test {
+namespace rivulet::buoyancy_test {
 namespace {
 
 constexpr float kSpacing = 0.025F;
@@ -136,4 +136,4 @@ TEST(Buoyancy, ACubeOfHalfTheDensityFloatsHalfUnder) {
 }
 
 }  // namespace
-}  // namespace rivulet::buoyancy_test::buoyancy_test
+}  // namespace rivulet::buoyancy_test

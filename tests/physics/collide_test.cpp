@@ -6,7 +6,7 @@
 #include "tests/physics/collide_unit.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::collide_test::collide_test {
+namespace rivulet::collide_test {
 namespace {
 
 // Free particles (no pressure) under gravity and the collide kernel, as a step of the fluid would run them.
@@ -393,4 +393,4 @@ TEST(Collide, LeavesAloneWhatIsNotItsBusiness) {
 }
 
 }  // namespace
-}  // namespace rivulet::collide_test::collide_test
+}  // namespace rivulet::collide_test

@@ -11,7 +11,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::emitter_test::emitter_test {
+namespace rivulet::emitter_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -358,4 +358,4 @@ TEST(Emitter, ARunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
 }
 
 }  // namespace
-}  // namespace rivulet::emitter_test::emitter_test
+}  // namespace rivulet::emitter_test

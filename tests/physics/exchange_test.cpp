@@ -9,7 +9,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::exchange_test::exchange_test {
+namespace rivulet::exchange_test {
 namespace {
 
 constexpr float kSpacing = 0.03125F;  // m: a float, and so is its cube
@@ -136,4 +136,4 @@ TEST(Exchange, ASavedWorldKeepsItsDebts) {
 }
 
 }  // namespace
-}  // namespace rivulet::exchange_test::exchange_test
+}  // namespace rivulet::exchange_test

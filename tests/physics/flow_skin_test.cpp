@@ -10,7 +10,7 @@
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::flow_skin_test::flow_skin_test {
+namespace rivulet::flow_skin_test {
 namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
@@ -218,4 +218,4 @@ TEST(FlowCase, HoldsItsTolerances) {
 }
 
 }  // namespace
-}  // namespace rivulet::flow_skin_test::flow_skin_test
+}  // namespace rivulet::flow_skin_test

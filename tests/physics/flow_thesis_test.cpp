@@ -13,7 +13,7 @@
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::flow_thesis_test::flow_thesis_test {
+namespace rivulet::flow_thesis_test {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
@@ -398,4 +398,4 @@ TEST(FlowThesis, ItsPictureLeansWithTheWind) {
 }
 
 }  // namespace
-}  // namespace rivulet::flow_thesis_test::flow_thesis_test
+}  // namespace rivulet::flow_thesis_test

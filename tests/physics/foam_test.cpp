@@ -10,7 +10,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::foam_test::foam_test {
+namespace rivulet::foam_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -376,4 +376,4 @@ TEST(Foam, AStateOfOtherSlotsIsRefusedAndNothingIsLost) {
 }
 
 }  // namespace
-}  // namespace rivulet::foam_test::foam_test
+}  // namespace rivulet::foam_test

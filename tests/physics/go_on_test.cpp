@@ -8,7 +8,7 @@
 #include "fluid/sim/world/host_particles.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::go_on_test::go_on_test {
+namespace rivulet::go_on_test {
 namespace {
 
 // A column of water beside a ball on the floor.
@@ -223,4 +223,4 @@ TEST(GoOn, AnotherSpacingStartsAnew) {
 }
 
 }  // namespace
-}  // namespace rivulet::go_on_test::go_on_test
+}  // namespace rivulet::go_on_test

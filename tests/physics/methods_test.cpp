@@ -10,7 +10,7 @@
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 
-namespace rivulet::methods_test::methods_test {
+namespace rivulet::methods_test {
 namespace {
 
 class Methods : public testing::TestWithParam<const char*> {
@@ -348,4 +348,4 @@ TEST(Pbf, CorrectsDownToItsTolerance) {
 }
 
 }  // namespace
-}  // namespace rivulet::methods_test::methods_test
+}  // namespace rivulet::methods_test

@@ -7,7 +7,7 @@
 #include "fluid/viewer/pour_brush.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::pour_test::pour_test {
+namespace rivulet::pour_test {
 namespace {
 
 // A dry ball on the floor of a box.
@@ -131,4 +131,4 @@ TEST(Pour, IntoWaterThatGoesOn) {
 }
 
 }  // namespace
-}  // namespace rivulet::pour_test::pour_test
+}  // namespace rivulet::pour_test

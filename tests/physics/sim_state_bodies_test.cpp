@@ -10,7 +10,7 @@
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::sim_state_bodies_test::sim_state_bodies_test {
+namespace rivulet::sim_state_bodies_test {
 namespace {
 
 constexpr float kSpacing = 0.03F;
@@ -299,4 +299,4 @@ TEST(StateOfAHost, IsKeptWhereItSaysWhatItRemembers) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_state_bodies_test::sim_state_bodies_test
+}  // namespace rivulet::sim_state_bodies_test

@@ -10,7 +10,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::sim_state_test::sim_state_test {
+namespace rivulet::sim_state_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu() {
@@ -202,4 +202,4 @@ TEST(StateOfAWorld, TimeThatWaitsIsKept) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_state_test::sim_state_test
+}  // namespace rivulet::sim_state_test

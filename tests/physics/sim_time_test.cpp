@@ -12,7 +12,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::sim_time_test::sim_time_test {
+namespace rivulet::sim_time_test {
 namespace {
 
 FluidParams column(const char* method) {
@@ -339,4 +339,4 @@ TEST(Origin, FloatAloneLosesMotionFarAway) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_time_test::sim_time_test
+}  // namespace rivulet::sim_time_test

@@ -13,7 +13,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::sim_wcsph_test::sim_wcsph_test {
+namespace rivulet::sim_wcsph_test {
 namespace {
 
 FluidParams boxOfWater(float spacing, vec3 min, vec3 max) {
@@ -392,4 +392,4 @@ TEST(Wcsph, ABoxTooLargeForItsSpacingIsRefusedWithTheSpacingThatFits) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_wcsph_test::sim_wcsph_test
+}  // namespace rivulet::sim_wcsph_test

@@ -13,7 +13,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::solids_moving_test::solids_moving_test {
+namespace rivulet::solids_moving_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu() {
@@ -435,4 +435,4 @@ TEST(ShippedScenes, RunWithNothingLost) {
 }
 
 }  // namespace
-}  // namespace rivulet::solids_moving_test::solids_moving_test
+}  // namespace rivulet::solids_moving_test

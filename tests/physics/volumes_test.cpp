@@ -8,7 +8,7 @@
 
 #include "tests/parity/devices.h"
 
-namespace rivulet::volumes_test::volumes_test {
+namespace rivulet::volumes_test {
 namespace {
 
 constexpr float kSpacing = 0.03125F;
@@ -207,4 +207,4 @@ TEST(Volumes, ASavedWorldKeepsItsCounts) {
 }
 
 }  // namespace
-}  // namespace rivulet::volumes_test::volumes_test
+}  // namespace rivulet::volumes_test

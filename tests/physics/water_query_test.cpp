@@ -7,7 +7,7 @@
 
 #include "tests/physics/worlds.h"
 
-namespace rivulet::water_query_test::water_query_test {
+namespace rivulet::water_query_test {
 namespace {
 
 constexpr float kSpacing = 0.03125F;  // m
@@ -295,4 +295,4 @@ TEST(WaterQuery, WaterEndsAtItsWalls) {
 }
 
 }  // namespace
-}  // namespace rivulet::water_query_test::water_query_test
+}  // namespace rivulet::water_query_test

@@ -8,7 +8,7 @@
 #include "fluid/validate/envelope.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::envelope_test::envelope_test {
+namespace rivulet::envelope_test {
 namespace {
 
 constexpr double kKnown = 0.9;  // a threshold is known to a tenth
@@ -177,4 +177,4 @@ TEST(Envelope, Coupling) {
 }
 
 }  // namespace
-}  // namespace rivulet::envelope_test::envelope_test
+}  // namespace rivulet::envelope_test

@@ -11,7 +11,7 @@
 #include "fluid/validate/envelope_run.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::limits_test::limits_test {
+namespace rivulet::limits_test {
 namespace {
 
 bool says(const FluidWorld& world, const char* words) {
@@ -275,4 +275,4 @@ TEST(EnvelopePage, IsWrittenWithItsTableAndItsPicture) {
 }
 
 }  // namespace
-}  // namespace rivulet::limits_test::limits_test
+}  // namespace rivulet::limits_test

@@ -3,7 +3,7 @@
 
 #include "fluid/session/adaptive_quality.h"
 
-namespace rivulet::adaptive_quality_test::adaptive_quality_test {
+namespace rivulet::adaptive_quality_test {
 namespace {
 
 void frames(AdaptiveQuality& quality, int count, double ms) {
@@ -47,4 +47,4 @@ TEST(AdaptiveQuality, ItDoesNotOscillate) {
 }
 
 }  // namespace
-}  // namespace rivulet::adaptive_quality_test::adaptive_quality_test
+}  // namespace rivulet::adaptive_quality_test

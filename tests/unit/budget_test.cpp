@@ -8,7 +8,7 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
-namespace rivulet::budget_test::budget_test {
+namespace rivulet::budget_test {
 namespace {
 
 // Two settings of pbf and two of dfsph, in a case where the fastest goes 1 m/s over spacings of 1 cm: 60 steps a second where it is not
@@ -234,4 +234,4 @@ TEST(Budget, MakesDoWithAnyScene) {
 }
 
 }  // namespace
-}  // namespace rivulet::budget_test::budget_test
+}  // namespace rivulet::budget_test

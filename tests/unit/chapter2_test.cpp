@@ -11,7 +11,7 @@
 #include "engine/core/file.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::chapter2_test::chapter2_test {
+namespace rivulet::chapter2_test {
 namespace {
 
 Chapter2Row row(int particles, const char* backend, Plan plan, double stepMs, double drawMs, double overlapMs = 0) {
@@ -100,4 +100,4 @@ TEST(Chapter2, AShortRunMeasuresEveryPlanThatThereIs) {
 }
 
 }  // namespace
-}  // namespace rivulet::chapter2_test::chapter2_test
+}  // namespace rivulet::chapter2_test

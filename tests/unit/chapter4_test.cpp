@@ -10,7 +10,7 @@
 #include "fluid/validate/chapter4.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::chapter4_test::chapter4_test {
+namespace rivulet::chapter4_test {
 namespace {
 
 Chapter4Row row(int particles, const char* grid, const char* walk, double stepMs, double drawMs, int workGroup = 128, bool sizes = false) {
@@ -106,4 +106,4 @@ TEST(Chapter4, AShortRunMeasuresAllThatTakesTurns) {
 }
 
 }  // namespace
-}  // namespace rivulet::chapter4_test::chapter4_test
+}  // namespace rivulet::chapter4_test

@@ -14,7 +14,7 @@
 #include "tests/unit/gltf_file.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::collider_model_test::collider_model_test {
+namespace rivulet::collider_model_test {
 namespace {
 
 using testing::Scratch;
@@ -264,4 +264,4 @@ TEST_F(ColliderModelTest, AContradictionIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace rivulet::collider_model_test::collider_model_test
+}  // namespace rivulet::collider_model_test

@@ -7,7 +7,7 @@
 #include "engine/scene/import_model.h"
 #include "fluid/scene/head_look.h"
 
-namespace rivulet::head_look_test::head_look_test {
+namespace rivulet::head_look_test {
 namespace {
 
 const std::string kHead = std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/head/";
@@ -77,4 +77,4 @@ TEST(HeadLook, aMeshThatIsNoHeadIsLeftAsItIs) {
 }
 
 }  // namespace
-}  // namespace rivulet::head_look_test::head_look_test
+}  // namespace rivulet::head_look_test

@@ -17,7 +17,7 @@
 #include "tests/unit/gl_snapshot.h"
 #include "tests/unit/host_fixture.h"
 
-namespace rivulet::host_state_test::host_state_test {
+namespace rivulet::host_state_test {
 namespace {
 
 using testing::difference;
@@ -184,4 +184,4 @@ INSTANTIATE_TEST_SUITE_P(Contexts, HostStateIn, ::testing::Bool(),
                          [](const ::testing::TestParamInfo<bool>& old) { return old.param ? "compatibility" : "core"; });
 
 }  // namespace
-}  // namespace rivulet::host_state_test::host_state_test
+}  // namespace rivulet::host_state_test

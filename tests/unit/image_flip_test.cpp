@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace rivulet::image_flip_test::image_flip_test {
+namespace rivulet::image_flip_test {
 namespace {
 
 constexpr int kSize = 64;  // pixels
@@ -83,4 +83,4 @@ TEST(Flip, EdgesCount) {
 }
 
 }  // namespace
-}  // namespace rivulet::image_flip_test::image_flip_test
+}  // namespace rivulet::image_flip_test

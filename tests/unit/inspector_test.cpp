@@ -13,7 +13,7 @@
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::inspector_test::inspector_test {
+namespace rivulet::inspector_test {
 namespace {
 
 class Watching : public testing::ViewerFixture {
@@ -315,4 +315,4 @@ TEST_F(EachTab, LiesWithinASmallWindow) { liesWithin({1280, 720}); }
 TEST_F(EachTab, LiesWithinALargeWindow) { liesWithin({1920, 1080}); }
 
 }  // namespace
-}  // namespace rivulet::inspector_test::inspector_test
+}  // namespace rivulet::inspector_test

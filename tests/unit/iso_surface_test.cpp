@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace rivulet::iso_surface_test::iso_surface_test {
+namespace rivulet::iso_surface_test {
 namespace {
 
 constexpr float kSpacing = 0.02F;  // m
@@ -143,4 +143,4 @@ TEST(IsoSurface, LeavesOutWhatIsNoParticle) {
 }
 
 }  // namespace
-}  // namespace rivulet::iso_surface_test::iso_surface_test
+}  // namespace rivulet::iso_surface_test

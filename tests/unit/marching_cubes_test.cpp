@@ -13,7 +13,7 @@
 #include "tests/unit/mesh_volume.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::marching_cubes_test::marching_cubes_test {
+namespace rivulet::marching_cubes_test {
 namespace {
 
 constexpr float kSpacing = 0.02F;  // m
@@ -144,4 +144,4 @@ TEST(MarchingCubes, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace rivulet::marching_cubes_test::marching_cubes_test
+}  // namespace rivulet::marching_cubes_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace rivulet::plot_test::plot_test {
+namespace rivulet::plot_test {
 namespace {
 
 TEST(Plot, AxesHoldTheirValuesAndEndAtRoundNumbers) {
@@ -79,4 +79,4 @@ TEST(Plot, ColoursAreSeenOnThePanel) {
 }
 
 }  // namespace
-}  // namespace rivulet::plot_test::plot_test
+}  // namespace rivulet::plot_test

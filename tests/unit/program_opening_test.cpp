@@ -15,7 +15,7 @@
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_opening_test::program_opening_test {
+namespace rivulet::program_opening_test {
 namespace {
 
 class Opening : public testing::ViewerFixture, public ::testing::WithParamInterface<const char*> {
@@ -403,4 +403,4 @@ TEST_P(Opening, APictureIsTakenOfWhatIsShown) {
 INSTANTIATE_TEST_SUITE_P(Devices, Opening, ::testing::Values("cpu", "gl", "cl"), [](const auto& each) { return std::string(each.param); });
 
 }  // namespace
-}  // namespace rivulet::program_opening_test::program_opening_test
+}  // namespace rivulet::program_opening_test

@@ -12,7 +12,7 @@
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_replay_test::program_replay_test {
+namespace rivulet::program_replay_test {
 namespace {
 
 using testing::expectRefusal;
@@ -210,4 +210,4 @@ TEST_F(ReplayPerson, WhatWasSettledIsRefused) {
 }
 
 }  // namespace
-}  // namespace rivulet::program_replay_test::program_replay_test
+}  // namespace rivulet::program_replay_test

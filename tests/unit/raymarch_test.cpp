@@ -5,7 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace rivulet::raymarch_test::raymarch_test {
+namespace rivulet::raymarch_test {
 namespace {
 
 constexpr float kSpacing = 0.02F;  // m
@@ -151,4 +151,4 @@ TEST(Raymarch, TellsOfItsProgressAndStops) {
 }
 
 }  // namespace
-}  // namespace rivulet::raymarch_test::raymarch_test
+}  // namespace rivulet::raymarch_test

@@ -13,7 +13,7 @@
 #include "tests/unit/gltf_file.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::scene_animation_test::scene_animation_test {
+namespace rivulet::scene_animation_test {
 namespace {
 
 using testing::Scratch;
@@ -363,4 +363,4 @@ TEST(SceneAnimation, AnObjFileHasTheMaterialsOfItsMtl) {
 }
 
 }  // namespace
-}  // namespace rivulet::scene_animation_test::scene_animation_test
+}  // namespace rivulet::scene_animation_test

@@ -11,7 +11,7 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
-namespace rivulet::scene_flow_test::scene_flow_test {
+namespace rivulet::scene_flow_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu() {
@@ -326,4 +326,4 @@ TEST(SceneFlow, ASpotIsRound) {
 }
 
 }  // namespace
-}  // namespace rivulet::scene_flow_test::scene_flow_test
+}  // namespace rivulet::scene_flow_test

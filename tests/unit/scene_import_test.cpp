@@ -7,7 +7,7 @@
 
 #include "engine/scene/import_assimp.h"
 
-namespace rivulet::scene_import_test::scene_import_test {
+namespace rivulet::scene_import_test {
 namespace {
 
 class SceneImport : public ::testing::Test {
@@ -133,4 +133,4 @@ TEST_F(SceneImport, anIndexOutOfRangeIsRefused) {
 }
 
 }  // namespace
-}  // namespace rivulet::scene_import_test::scene_import_test
+}  // namespace rivulet::scene_import_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace rivulet::surface_metrics_test::surface_metrics_test {
+namespace rivulet::surface_metrics_test {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 90;
@@ -113,4 +113,4 @@ TEST(SurfaceMetrics, FlickerIsTheSpreadInTime) {
 }
 
 }  // namespace
-}  // namespace rivulet::surface_metrics_test::surface_metrics_test
+}  // namespace rivulet::surface_metrics_test

@@ -7,7 +7,7 @@
 #include <memory>
 #include <thread>
 
-namespace rivulet::timeline_test::timeline_test {
+namespace rivulet::timeline_test {
 namespace {
 
 Json::Value parsed(const std::string& text) {
@@ -103,4 +103,4 @@ TEST(Timeline, TakesSpansFromManyThreads) {
 }
 
 }  // namespace
-}  // namespace rivulet::timeline_test::timeline_test
+}  // namespace rivulet::timeline_test

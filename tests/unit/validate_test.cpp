@@ -12,7 +12,7 @@
 #include "fluid/validate/trial.h"
 #include "fluid/validate/virial.h"
 
-namespace rivulet::validate_test::validate_test {
+namespace rivulet::validate_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,4 +208,4 @@ TEST(PhysicsCases, APlotWithAnyTextIsAValidSvg) {
 }
 
 }  // namespace
-}  // namespace rivulet::validate_test::validate_test
+}  // namespace rivulet::validate_test

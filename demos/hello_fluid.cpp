@@ -1,5 +1,5 @@
-// The smallest host in C++: a window of GLFW's, a scene in OpenGL 4.5 core, and water in it.
-// hello_fluid [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames, keeps the last; dry: the host alone.
+// The smallest host in C++: a GLFW window, a scene in OpenGL 4.5 core, and water in it.
+// hello_fluid [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames and writes the last one; --dry draws no water.
 #include <rivulet_glad/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -44,7 +44,7 @@ Status run(GLFWwindow* window, int frames, const char* picture, bool dry) {
     view.lightDirWorld = glm::normalize(view.lightDirWorld);
     view.lightColour = vec3(1.0F);
 
-    glEnable(GL_DEPTH_TEST);  // said once, with the rest: drawing water leaves all state as it was
+    glEnable(GL_DEPTH_TEST);  // set once, as is all state below: drawing water restores it
     glUseProgram(program);
     glBindVertexArray(corners);
     glClearColor(0.66F, 0.79F, 0.90F, 1);
@@ -52,7 +52,7 @@ Status run(GLFWwindow* window, int frames, const char* picture, bool dry) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         drawScene(program, view.projection * view.view);
         {
-            const gpu::HostState keep;  // stepping and uploading may use OpenGL, too
+            const gpu::HostState keep;  // saves the host's state: stepping and uploading may use OpenGL
             (*world)->step({}, 1.0 / 60);
             auto fluid = upload.view(**world, {});
             if (!fluid) return fluid.error();
@@ -68,7 +68,7 @@ Status run(GLFWwindow* window, int frames, const char* picture, bool dry) {
         }
         glfwSwapBuffers(window);
         glfwPollEvents();
-        if (glGetError() != GL_NO_ERROR) return failed("OpenGL has an error to report");
+        if (glGetError() != GL_NO_ERROR) return failed("glGetError reports an error");
     }
     return ok();
 }

@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet::head {
 namespace {
@@ -48,12 +48,12 @@ void layFaceInTile(Surface& face) {
     for (uint32_t v = 0; v < count; ++v) face.vertices[v].uv = {0.5 + (uv[v].x - 0.5) * 0.735, 0.5 + (uv[v].y - 0.47) * 0.77};
 }
 
-// The model's forehead leans back further than a skull's does.
+// The model's forehead is inclined more than that of a skull.
 void fillForehead(Surface& face) {
     for (Vertex& v : face.vertices) v.at.z += 0.55 * smoothstep(5.2, 8.4, v.at.y);
 }
 
-// The model's lips stand half a centimetre apart, and their chart has no room for what lies between them.
+// The model's lips are half a centimetre apart, and their chart has no room for the surface between them.
 void closeLips(Surface& face) {
     const double share[4] = {0.08, 0.4, 0.85, 1.0};
     for (int row = 0; row < 4; ++row)
@@ -121,7 +121,7 @@ double along(const std::array<dvec2, 6>& table, double y) {
     return table.back().y;
 }
 
-// Signed distance, roughly, to a skull on a neck: where the loft is drawn to.
+// Approximate signed distance to a skull on a neck; the loft is moved to its surface.
 double skullAndNeck(dvec3 p) {
     static const std::array<dvec2, 6> width = {{{0, 5.3}, {-6, 5.2}, {-10, 5.1}, {-14, 5.5}, {-17, 6.4}, {-20, 8.2}}};
     static const std::array<dvec2, 6> depth = {{{0, 4.8}, {-6, 4.9}, {-10, 5.1}, {-14, 5.3}, {-17, 5.6}, {-20, 6.0}}};
@@ -329,7 +329,7 @@ class Loft {
             face_.addTriangle(a, d, b);
             face_.addTriangle(b, d, e);
         }
-        if (side < 0)  // a strip that runs the other way is its mirror image
+        if (side < 0)  // a strip of the opposite direction is its mirror image
             for (Ids& ring : rings) std::reverse(ring.begin(), ring.end());
         for (int step = 0; step + 1 < kSteps; ++step) face_.addStrip(rings[step], rings[step + 1], true);
         Vertex canal;
@@ -344,14 +344,13 @@ class Loft {
     std::vector<Ids> rings_;
 };
 
-// Of the way that the jaw goes: the upper lip stays, the lower goes along, and both meet half-way at the corners, so that the mouth opens
-// round.
+// The share of the jaw's motion: 0 on the upper lip, 1 on the lower lip, 1/2 at the corners, so that the mouth opens round.
 double lipShare(size_t i) {
     double across = std::pow(std::sin(kPi * static_cast<double>(i % 10) / 10), 0.7);
     return i < 10 ? 0.5 - 0.5 * across : 0.5 + 0.5 * across;
 }
 
-// How far each vertex goes with the jaw: given on lips, chin and what stays, harmonic between. By neighbourhood, so the lips part.
+// The share of the jaw's motion of each vertex: fixed on lips, chin and resting parts, harmonic in between, along edges, so that lips part.
 void spreadJaw(Surface& cage) {
     std::vector<double> given(cage.vertices.size(), -1);
     for (size_t v = 0; v < given.size(); ++v) {

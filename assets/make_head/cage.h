@@ -1,5 +1,5 @@
-// The control cage: the canonical face with its eyes and mouth opened, and what the face lacks: cranium, neck, ears, the inside of the
-// mouth.
+// The control cage of the head: the canonical face with open eyes and mouth, and the parts that the face model lacks: cranium, neck, ears,
+// the inside of the mouth.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace rivulet::head {
 
-inline constexpr int kOuterCorner[2] = {263, 33};  // of the lid loops: left, right. Vertices keep these numbers through subdivision.
+inline constexpr int kOuterCorner[2] = {263, 33};  // vertices of the lid loops: left, right. Subdivision keeps vertex numbers.
 inline constexpr int kInnerCorner[2] = {362, 133};
 
 Result<Surface> readFace(const std::string& path);

@@ -45,10 +45,10 @@ double atOut(const std::vector<EyePoint>& margin, double out, double EyePoint::*
     return margin.back().*value;
 }
 
-// Moves what lies around the lids along with them: their edge as given, nothing beyond `reach`, a thin plate between.
+// Moves the surroundings of the lids with them: fixed at the edge, 0 beyond `reach`, a thin plate in between.
 void carryAlong(Surface& head, const Neighbours& around, const Eye& eye, const std::vector<dvec3>& edge, double reach) {
     std::vector<uint32_t> region;
-    std::vector<char> state(head.vertices.size(), 0);  // 1: free, 2: given
+    std::vector<char> state(head.vertices.size(), 0);  // 1: free, 2: fixed
     for (uint32_t v = 0; v < head.vertices.size(); ++v) {
         double d = 1e9;
         for (uint32_t l : eye.loop) d = std::min(d, glm::distance(head.vertices[v].at, head.vertices[l].at));
@@ -73,7 +73,7 @@ void carryAlong(Surface& head, const Neighbours& around, const Eye& eye, const s
     for (uint32_t v = 0; v < move.size(); ++v) head.vertices[v].at += move[v];
 }
 
-// Lids lie on the eye, and the upper one folds some way above its edge.
+// Lids lie on the eye, and the upper one folds above its edge.
 void wrapLids(Surface& head, const Eye& eye) {
     for (Vertex& vertex : head.vertices) {
         if (glm::distance(vertex.at, eye.centre) > 2.6 || vertex.at.z < eye.centre.z + 0.1) continue;

@@ -1,5 +1,5 @@
-// Eyes and lids. Everything near an eye is seen from the eyeball's centre: by two angles, and by the height above the eye's surface
-// (sclera and cornea), so that lids wrap the eye wherever they slide.
+// Eyes and lids. Points near an eye have polar coordinates about the eyeball's centre: two angles, and the height above the surface (sclera
+// and cornea), so that lids stay on the eye when they slide.
 #pragma once
 
 #include <string>
@@ -25,8 +25,8 @@ struct Eye {
 
     EyePoint seen(dvec3 p) const;
     dvec3 placed(const EyePoint& e) const;
-    // Both lids moved by a share of the way to the line where they meet; 1, 1 closes the eye. Points far from the lids stay; what is
-    // `onMargin` slides as one.
+    // Both lids moved by a share of the way to the line where they meet; 1, 1 closes the eye. Points far from the lids do not move; points
+    // of `onMargin` slide together.
     dvec3 lidsMoved(dvec3 p, bool upperLid, bool onMargin, double upperShare, double lowerShare) const;
     double closingLine(double out) const;
     double margin(bool upperLid, double out) const;
@@ -48,7 +48,7 @@ Part makeEyeball(const Eye& eye);
 Part makeCornea(const Eye& eye);
 Part makeCaruncle(const Eye& eye);
 struct Lash {
-    uint32_t root = 0;  // the skin's vertex that it grows by
+    uint32_t root = 0;  // the nearest vertex of the skin
     bool upper = true;
 };
 Part makeLashes(const Eye& eye, const Surface& head, std::vector<Lash>& ofVertex);

@@ -10,7 +10,7 @@ namespace rivulet::head {
 // The bytes of the file. `parts[0]` is the skin; morphs of any part are named by kMorphNames and stored sparsely.
 std::string asGlb(const std::vector<Part>& parts);
 
-// What is stored, and so what everything else must agree with: whole micrometres, here in cm.
+// Rounds to the stored precision, whole micrometres (here in cm); all other files must agree with it.
 dvec3 rounded(dvec3 p);
 
 }  // namespace rivulet::head

@@ -1,4 +1,4 @@
-// make_head FACE.obj FOLDER: writes the head that ships: FOLDER/head.glb, its textures and head.json. The same bytes every time.
+// make_head FACE.obj FOLDER: writes the head model of the project: FOLDER/head.glb, its textures and head.json. Output is reproducible.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 #include "assets/make_head/glb.h"
 #include "assets/make_head/morphs.h"
 #include "assets/make_head/paint.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet::head {
 namespace {
 
-// What must hold before anything is written.
+// Checks that must pass before a file is written.
 Status checkChart(const Surface& head, const SkinPictures& skin) {
     for (const Vertex& v : head.vertices)
         if (v.uv.x < 0 || v.uv.x > 1 || v.uv.y < 0 || v.uv.y > 1)
@@ -31,8 +31,8 @@ Status checkChart(const Surface& head, const SkinPictures& skin) {
         return failed(fmt::format("{} triangles of the head's chart are flipped, one at ({:.4f}, {:.4f})", flipped, where.x, where.y));
     if (skin.overlaps > 0) return failed(fmt::format("the head's chart overlaps itself in {} texels", skin.overlaps));
     if (skin.cheekMillimetres > 0.35)
-        return failed(fmt::format("a texel on the cheeks is {:.2f} mm wide, more than 0.35 mm: give the face more of the tile",
-                                  skin.cheekMillimetres));
+        return failed(
+            fmt::format("a texel on the cheeks is {:.2f} mm wide, more than 0.35 mm: enlarge the face in the tile", skin.cheekMillimetres));
     return ok();
 }
 
@@ -66,7 +66,7 @@ OnSkin nearestOnSkin(const Surface& head, dvec3 p) {
     return best;
 }
 
-// Where simulation finds things.
+// Writes head.json: the positions that simulations need (eyes, lids, lips, ...).
 std::string describe(const Surface& head, const std::array<Eye, 2>& eyes) {
     std::string sides;
     for (int k = 0; k < 2; ++k) {
@@ -95,7 +95,7 @@ std::string describe(const Surface& head, const std::array<Eye, 2>& eyes) {
         kMillimetresPerStep, sides);
 }
 
-// The model's nostrils are shut.
+// The model's nostrils are closed.
 void hollowNostrils(Surface& head) {
     for (Vertex& v : head.vertices) {
         dvec3 d = (dvec3(std::abs(v.at.x), v.at.y, v.at.z) - dvec3(0.80, -1.25, 6.28)) / dvec3(0.27, 0.33, 0.42);
@@ -125,11 +125,11 @@ Result<size_t> make(const std::string& facePath, const std::string& folder) {
         lashes.morphs = lashMorphs(lashes, ofVertex, head, eye, parts[0].morphs);
         for (Part& part : std::vector<Part>{makeEyeball(eye), makeCaruncle(eye), lashes}) parts.push_back(part);
     }
-    for (const Eye& eye : eyes) parts.push_back(makeCornea(eye));  // last: they are seen through
+    for (const Eye& eye : eyes) parts.push_back(makeCornea(eye));  // last, because they are transparent
 
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) return failed(fmt::format("the folder {} cannot be made: {}", folder, error.message()));
+    if (error) return failed(fmt::format("cannot create the folder {}: {}", folder, error.message()));
     const std::pair<const char*, std::string> files[] = {{"head.glb", asGlb(parts)},
                                                          {"head_albedo.jpg", asJpeg(skin.albedo, 92)},
                                                          {"head_relief.png", asPng(skin.relief)},
@@ -151,7 +151,7 @@ Result<size_t> make(const std::string& facePath, const std::string& folder) {
 
 int main(int argc, char** argv) {
     if (argc != 3) {
-        fmt::print(stderr, "make_head: give the canonical face model (an OBJ) and the folder to write into\n");
+        fmt::print(stderr, "usage: make_head FACE.obj FOLDER (the canonical face model and the output folder)\n");
         return 2;
     }
     auto made = rivulet::head::make(argv[1], argv[2]);

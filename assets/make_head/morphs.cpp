@@ -10,7 +10,7 @@ double bell(dvec3 p, dvec3 centre, dvec3 width) {
     return std::exp(-0.5 * glm::dot(d, d));
 }
 
-// 0 at the lids, 1 away from them: what brows and cheeks do must not shear the lids off the eyes.
+// 0 at the lids, 1 away from them: motions of brows and cheeks must not move the lids off the eyes.
 double awayFromLids(dvec3 p, bool above) {
     dvec2 d = dvec2(std::abs(p.x) - 3.17, p.y - 2.6) / dvec2(1.75, above ? 1.35 : 1.2);
     return smoothstep(0.75, 1.5, glm::length(d));
@@ -80,7 +80,7 @@ std::vector<LidPlace> lidPlaces(const Surface& head, const std::array<Eye, 2>& e
     return places;
 }
 
-// A lid that slides unfolds: what the fold leaves uneven is smoothed, the more the further it went, and stays clear of the eye.
+// A sliding lid unfolds: the remaining unevenness is smoothed, more for larger motion, and kept outside the eye.
 void unfold(std::vector<dvec3>& morph, const Surface& head, const Neighbours& around, const std::vector<LidPlace>& places, const Eye& eye,
             int k) {
     std::vector<uint32_t> moved;

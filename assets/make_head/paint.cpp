@@ -41,7 +41,7 @@ double fractal(dvec3 p, int octaves, uint64_t seed) {
     return sum;
 }
 
-// Distance to the nearest of points strewn one a cell; `which` gets the cell's own random number.
+// Distance to the nearest of jittered points, one per cell; `which` receives the random number of the cell.
 double cells(dvec3 p, uint64_t seed, double& which) {
     dvec3 c = glm::floor(p);
     double best = 9;
@@ -293,7 +293,7 @@ SkinPictures paintSkin(const Surface& head, const std::array<Eye, 2>& eyes) {
         double freckled = (cheek + 0.8 * nose + 0.18) * smoothstep(0.19, 0.05, freckle + 0.03 * grain) * smoothstep(0.45, 0.75, which);
         colour = glm::mix(colour, colour * dvec3(0.86, 0.76, 0.68), 0.55 * glm::clamp(freckled, 0.0, 1.0));
 
-        // A close crop: denser up the scalp, with an edge that is strewn rather than drawn.
+        // Short hair: denser up the scalp, with a scattered edge.
         double front = 8.35 + 0.75 * smoothstep(0.8, 3.6, m.x) - 1.2 * smoothstep(4.2, 6.2, m.x);
         double side = glm::mix(1.2, -3.8, smoothstep(-4.5, -9.5, p.z)), edge = glm::mix(front, side, smoothstep(2.6, -2.4, p.z));
         double crop =

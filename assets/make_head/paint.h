@@ -1,4 +1,4 @@
-// Textures painted from the surface itself: colour and relief come from noise in space at rest, so that the chart stretches nothing.
+// Textures painted from the surface itself: colour and relief come from noise in space at rest, so that the chart does not distort it.
 #pragma once
 
 #include <array>

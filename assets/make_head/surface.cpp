@@ -10,7 +10,7 @@ namespace {
 uint64_t directed(uint32_t a, uint32_t b) { return uint64_t{a} << 32 | b; }
 uint64_t undirected(uint32_t a, uint32_t b) { return directed(std::min(a, b), std::max(a, b)); }
 
-// Where a boundary runs on from each of its vertices, in the direction of the triangles.
+// The next boundary vertex of each boundary vertex, in the orientation of the triangles.
 std::map<uint32_t, uint32_t> boundarySteps(const Surface& surface) {
     std::unordered_map<uint64_t, int> edges;
     for (const Triangle& t : surface.triangles)

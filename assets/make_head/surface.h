@@ -1,4 +1,4 @@
-// What the head is built of: triangles with one UV chart and named weights, and Loop subdivision of all of it. Lengths in cm, +Y up, +Z
+// The surface of the head: triangles with one UV chart and named weights, and Loop subdivision of all attributes. Lengths in cm, +Y up, +Z
 // forward.
 #pragma once
 
@@ -16,7 +16,7 @@ using glm::dvec2;
 using glm::dvec3;
 using Triangle = std::array<uint32_t, 3>;
 
-// Weights that are set where parts are known by name, and that subdivision carries along.
+// Weights that are set for named parts; subdivision interpolates them.
 enum Weight { kJaw, kLip, kMouth, kEar, kLoft, kRim, kNostril, kWeights };
 
 struct Vertex {

@@ -1,5 +1,5 @@
-// Water in OpenSceneGraph: a Drawable amid a scene graph's own objects, of which one stands before the water and others are seen through
-// it. embed_osg [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames, keeps the last; dry: the host alone.
+// Water in OpenSceneGraph: a Drawable among the objects of a scene graph; one stands in front of the water, others are seen through it.
+// embed_osg [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames and writes the last one; --dry draws no water.
 #include <algorithm>
 #include <cstdio>
 #include <osg/Image>
@@ -14,19 +14,19 @@ class Water : public osg::Drawable {
   public:
     Water() {
         setSupportsDisplayList(false);
-        getOrCreateStateSet()->setRenderBinDetails(10, "RenderBin");  // after what is opaque: that is seen through it
+        getOrCreateStateSet()->setRenderBinDetails(10, "RenderBin");  // after opaque objects, which are seen through the water
     }
-    bool fine() const { return fine_; }
-    // OSG finds its near and far plane by this.
+    bool works() const { return works_; }
+    // OSG computes its near and far plane from it, m.
     osg::BoundingBox computeBoundingBox() const override { return {0, 0, 0, 1.2F, 1.2F, 1.2F}; }
-    // Whatever OSG believes to have set stays set: rivulet.h leaves OpenGL's state as it was. So OSG need not be told of anything.
+    // rivulet.h restores the OpenGL state, so that OSG's cached state stays valid.
     void drawImplementation(osg::RenderInfo& info) const override {
         rivulet_error why{};
-        if (fine_ && draw(*info.getState(), &why) == RIVULET_OK) return;
-        if (fine_) std::fprintf(stderr, "embed_osg: %s\n", why.message);
-        fine_ = false;
+        if (works_ && draw(*info.getState(), &why) == RIVULET_OK) return;
+        if (works_) std::fprintf(stderr, "embed_osg: %s\n", why.message);
+        works_ = false;
     }
-    // With its context current.
+    // The window's context must be current.
     void destroy() {
         rivulet_world_destroy(world_);
         rivulet_context_destroy(context_);
@@ -51,7 +51,7 @@ class Water : public osg::Drawable {
         if (world_ == nullptr)
             if (const rivulet_status made = create(why); made != RIVULET_OK) return made;
         if (const rivulet_status stepped = rivulet_world_step(world_, nullptr, 1.0 / 60, why); stepped != RIVULET_OK) return stepped;
-        // OSG's model and view are one matrix: the water's own frame is what is above this node.
+        // OSG combines model and view in one matrix, so the water is placed by the nodes above this one.
         const osg::Matrixf modelView(state.getModelViewMatrix()), projection(state.getProjectionMatrix());
         double side = 0, nearPlane = 0, farPlane = 0;
         state.getProjectionMatrix().getFrustum(side, side, side, side, nearPlane, farPlane);
@@ -65,10 +65,10 @@ class Water : public osg::Drawable {
     }
     mutable rivulet_context* context_ = nullptr;
     mutable rivulet_world* world_ = nullptr;
-    mutable bool fine_ = true;
+    mutable bool works_ = true;
 };
 
-// Keeps what a frame has drawn.
+// Keeps the pixels of the last frame.
 struct Keep : osg::Camera::DrawCallback {
     osg::ref_ptr<osg::Image> image = new osg::Image;
     void operator()(osg::RenderInfo&) const override { image->readPixels(0, 0, 640, 480, GL_RGB, GL_UNSIGNED_BYTE, 1); }
@@ -100,7 +100,7 @@ int main(int count, char** arguments) {
     camera.setProjectionMatrixAsPerspective(42.08, 640.0 / 480, 0.1, 15);
     viewer.realize();
     osg::ref_ptr<Keep> kept = new Keep;
-    for (int frame = 0; frame != frames && !viewer.done() && water->fine(); ++frame) {
+    for (int frame = 0; frame != frames && !viewer.done() && water->works(); ++frame) {
         if (frame + 1 == frames && !picture.empty()) camera.setFinalDrawCallback(kept);
         viewer.frame();
     }
@@ -113,5 +113,5 @@ int main(int count, char** arguments) {
     if (camera.getGraphicsContext() == nullptr || !camera.getGraphicsContext()->makeCurrent()) return 1;
     water->destroy();
     camera.getGraphicsContext()->releaseContext();
-    return water->fine() ? 0 : 1;
+    return water->works() ? 0 : 1;
 }

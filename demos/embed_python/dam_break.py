@@ -1,6 +1,6 @@
-"""A column of water twice as high as wide collapses; its front against time, beside what Martin and Moyce measured in 1952.
+"""A column of water, twice as high as wide, collapses. Plots its front over time beside the measurements of Martin and Moyce 1952.
 
-    python3 dam_break.py [PICTURE.png]          prints how far apart they are
+    python3 dam_break.py [PICTURE.png]          prints the differences
 """
 import pathlib
 import sys
@@ -11,21 +11,21 @@ import matplotlib.pyplot as plt
 import numpy as np
 import rivulet
 
-A, SPACING, GRAVITY = 0.25, 0.25 / 16, 9.81  # m, m, m/s^2: the column's width, and how fine
+A, SPACING, GRAVITY = 0.25, 0.25 / 16, 9.81  # m, m, m/s^2: the column's width, the particle spacing, gravity
 SCENE = {"fluid": {"method": "dfsph", "spacing": SPACING, "box": {"max": [5 * A, 3 * A, A]}, "blocks": [{"max": [A, 2 * A, A]}]}}
-TO_T = np.sqrt(2 * GRAVITY / A)  # T = t sqrt(2 g / a), as they made time dimensionless
+TO_T = np.sqrt(2 * GRAVITY / A)  # T = t sqrt(2 g / a), the dimensionless time of Martin and Moyce
 DATA = pathlib.Path(__file__).resolve().parents[2] / "assets/reference"
 
 
 def front_of(positions):
-    """m: as far as half of the tank's width is covered near the floor; tongues and single drops run ahead of that."""
+    """Position of the front, m: near the floor, the median over the tank's width, which ignores single drops that run ahead."""
     near = positions[positions[:, 1] < 2 * SPACING]
     strip = (near[:, 2] / SPACING).astype(int)
     return np.median([near[strip == k, 0].max() for k in np.unique(strip)]) + 0.5 * SPACING
 
 
-def apart(reference):
-    """Mean error over mean, at the reference's points from T = 0.4 on."""
+def relative_error(reference):
+    """Mean absolute error divided by the mean, at the reference's points from T = 0.4 on."""
     r = reference[(reference[:, 0] >= 0.4) & (reference[:, 0] <= T[-1])]
     return np.abs(np.interp(r[:, 0], T, Z) - r[:, 1]).mean() / r[:, 1].mean()
 
@@ -50,9 +50,9 @@ with rivulet.Context() as context, context.world(SCENE) as world:
 T, Z = TO_T * np.array(times), np.array(fronts) / A
 measured = np.loadtxt(DATA / "martin_moyce_1952_front.csv", delimiter=",", skiprows=3)
 inviscid = np.loadtxt(DATA / "inviscid_dam_break_front.csv", delimiter=",", skiprows=4)
-print(f"front against inviscid flow: {100 * apart(inviscid):.1f} %")
-print(f"front against Martin and Moyce 1952, whose water started late: {100 * apart(measured):.1f} %")
-print(f"its speed against theirs: {100 * (speed(T, Z) / speed(*measured.T) - 1):+.1f} %")
+print(f"front against inviscid flow: {100 * relative_error(inviscid):.1f} %")
+print(f"front against Martin and Moyce 1952, whose water was released late: {100 * relative_error(measured):.1f} %")
+print(f"speed of the front against theirs: {100 * (speed(T, Z) / speed(*measured.T) - 1):+.1f} %")
 
 figure = plt.figure(figsize=(9, 6.4), dpi=110, layout="constrained")
 rows = figure.add_gridspec(2, 3, height_ratios=(3, 1))

@@ -1,5 +1,5 @@
-/* Water in a host of C, SDL2 and OpenGL as it was in 1997: a compatibility context, fixed functions, and rivulet.h.
- * embed_sdl2 [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames, keeps the last; dry: the host alone. */
+/* Water in a host in C with SDL2 and OpenGL's fixed-function pipeline (a compatibility context), through rivulet.h.
+ * embed_sdl2 [--frames N] [--picture FILE.ppm] [--dry]: stops after N frames and writes the last one; --dry draws no water. */
 #include <SDL.h>
 #include <SDL_opengl.h>
 #include <math.h>
@@ -60,7 +60,7 @@ static void draw_host(void) {
 }
 int main(int count, char** arguments) {
     int frames = -1, dry = 0;
-    const char* picture = NULL; /* of the last frame */
+    const char* picture = NULL; /* file for the last frame */
     for (int k = 1; k < count; ++k) {
         dry = dry || SDL_strcmp(arguments[k], "--dry") == 0;
         if (SDL_strcmp(arguments[k - 1], "--frames") == 0) frames = SDL_atoi(arguments[k]);
@@ -87,7 +87,7 @@ int main(int count, char** arguments) {
     expect(rivulet_world_create(context, &scene, &world, &why) == RIVULET_OK, why.message);
     const rivulet_view from = {.size = sizeof from, .view = view, .projection = projection, .near_plane = near_plane, .far_plane = far_plane};
     const rivulet_target target = {.size = sizeof target, .width = WIDTH, .height = HEIGHT};
-    /* Said once: drawing water leaves all of it as it was. */
+    /* Set once: drawing water restores this state. */
     const GLenum on[] = {GL_DEPTH_TEST, GL_CULL_FACE, GL_LIGHTING, GL_LIGHT0, GL_COLOR_MATERIAL, GL_NORMALIZE};
     for (int k = 0; k < 6; ++k) glEnable(on[k]);
     glClearColor(0.66F, 0.79F, 0.90F, 1);
@@ -111,9 +111,9 @@ int main(int count, char** arguments) {
             fclose(file);
         }
         SDL_GL_SwapWindow(window);
-        expect(glGetError() == GL_NO_ERROR, "OpenGL has an error to report");
+        expect(glGetError() == GL_NO_ERROR, "glGetError reports an error");
     }
     rivulet_world_destroy(world);
-    rivulet_context_destroy(context); /* while its OpenGL is still there */
+    rivulet_context_destroy(context); /* while its OpenGL context still exists */
     SDL_Quit();
 }

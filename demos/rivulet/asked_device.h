@@ -1,4 +1,4 @@
-// The device that --backend and --device ask a verb without pictures for, with what must outlive it.
+// The device that --backend and --device select for a verb that draws nothing, with the OpenGL context that must outlive it.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@
 namespace rivulet {
 
 struct AskedDevice {
-    std::optional<ContextEgl> context;  // where gl or auto was asked for, and there is one
+    std::optional<ContextEgl> context;  // set if gl or auto was requested and OpenGL is present
     std::unique_ptr<Device> device;
 };
 
-// As makeDevice: an absent one is a notice in `log`, and a cpu device.
+// As makeDevice: if the requested backend is absent, `log` receives a notice and the cpu device is returned.
 inline AskedDevice askedDevice(const std::string& backend, const Log& log, const std::string& clDevice = {}) {
     AskedDevice asked;
-    GlFacts gl = noGl("no OpenGL was asked for");
+    GlFacts gl = noGl("OpenGL was not requested");
     if (backend == "gl" || backend == "auto") {
         Result<ContextEgl> made = ContextEgl::create();
         gl = made ? currentGlFacts() : noGl(made.error().message);

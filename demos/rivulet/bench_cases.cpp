@@ -1,4 +1,5 @@
-// The simulation's benches: the column of 0.5 x 0.5 x 1 m in a 1 m box, and the thesis's series of falling columns, 16,384 i particles.
+// Benchmarks of the simulation: a column of 0.5 x 0.5 x 1 m in a box of 1 m, and the thesis's series of falling columns of 16,384 i
+// particles.
 #include "demos/rivulet/bench_cases.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ struct Column {
     const char* name;
     float spacing;
 };
-// Support radius two spacings: 8,192, 31,250 and 128,000 particles.
+// 8,192, 31,250 and 128,000 particles.
 constexpr Column kColumns[] = {{"8k", 0.03125F}, {"31k", 0.02F}, {"128k", 0.0125F}};
 
 FluidParams columnScene(float spacing) {
@@ -31,7 +32,7 @@ FluidParams columnScene(float spacing) {
     return p;
 }
 
-// Thesis 2.4: a column in free fall in a box of 1 m; its height grows with i.
+// Thesis 2.4: a column in free fall in a box of 1 m; its height is i / 8 m.
 FluidParams seriesScene(int i) {
     FluidParams p{.method = "wcsph"};
     p.spacing = 1.0F / 128.0F;
@@ -39,9 +40,9 @@ FluidParams seriesScene(int i) {
     return p;
 }
 
-// The devices of this machine, with the GL context that one of them needs.
+// One device for each backend of this machine, and the GL context that the device gl needs.
 struct Devices {
-    Result<ContextEgl> context = failed("not asked for");
+    Result<ContextEgl> context = failed("not opened yet");
     std::vector<std::unique_ptr<Device>> list;
 };
 
@@ -61,7 +62,7 @@ struct Measured {
     std::map<std::string, double> passes;  // ms per step
 };
 
-// One world stepped from t = 0 until `seconds` of it have passed.
+// Steps one world from t = 0 to `seconds`, in `frames` calls.
 Result<Measured> measure(Device& device, const FluidParams& params, double seconds, int frames) {
     Result<std::unique_ptr<FluidWorld>> world = FluidWorld::create(device, params, {}, {});
     if (!world) return world.error();
@@ -81,7 +82,7 @@ Result<Measured> measure(Device& device, const FluidParams& params, double secon
     return m;
 }
 
-// Several worlds, one after another; the passes are those of the last.
+// Measures several runs, each with a new world, and reports them; the pass times are those of the last run.
 Status report(const BenchContext& context, const std::string& name, Device& device, const FluidParams& params, double seconds, int frames) {
     Measured last;
     Status status = ok();
@@ -131,7 +132,7 @@ Status benchMemory(const BenchContext& context) {
     return ok();
 }
 
-// The density pass alone, in one run on each device: what a software GPU costs against the CPU's own path.
+// The density pass alone on each device: compares software GL and CL with the native CPU path.
 Status benchDensity(const BenchContext& context) {
     Devices devices = allDevices(context.log);
     const FluidParams p = columnScene(kColumns[1].spacing);
@@ -174,24 +175,22 @@ Status benchSeries(const BenchContext& context) {
 
 Table<BenchCase> benchCases() {
     static constexpr BenchCase rows[] = {
-        {"step", "a whole WCSPH step on the cpu, column of 8k, 31k and 128k particles, t = 0 to 0.1 s", benchStep},
-        {"methods", "wall seconds a simulated second against the compression left, column of 8k, 31k and 128k, t = 0 to 0.2 s",
+        {"step", "one WCSPH step on the cpu: column of 8k, 31k and 128k particles, t = 0 to 0.1 s", benchStep},
+        {"methods", "wall time per simulated second and mean compression of each method: column of 8k, 31k and 128k, t = 0 to 0.2 s",
          benchMethods},
-        {"density", "the density pass on every device, column of 31k", benchDensity},
-        {"memory", "bytes a particle on every device, column of 128k", benchMemory},
-        {"series", "the thesis's falling column, 16,384 i particles, i = 1 to 8, on every device", benchSeries},
-        {"voxels", "a mesh of 70,000 triangles voxelised in every mode, and baked as a field", benchVoxels},
-        {"collide", "the share of a step that collision with a mesh takes, 16,384 particles", benchCollide},
-        {"chapter2", "the thesis's chapter 2: the share of each step, one device against CPU and GPU together; with --out a page",
+        {"density", "the density pass on every device: column of 31k particles", benchDensity},
+        {"memory", "bytes per particle on every device: column of 128k particles", benchMemory},
+        {"series", "the thesis's falling column on every device: 16,384 i particles, i = 1 to 8", benchSeries},
+        {"voxels", "voxelisation of a mesh of 70,000 triangles in every mode, and its signed distance field", benchVoxels},
+        {"collide", "share of a step spent on collision with a mesh: 16,384 particles", benchCollide},
+        {"chapter2", "the thesis's chapter 2: times of the parts of a frame, one device against CPU and GPU together; with --out, a page",
          benchChapter2},
-        {"chapter4",
-         "frames a second as the thesis's chapter 4 has them, with its linked lists and the sorted grid, on gl; with --out a page",
+        {"chapter4", "the thesis's chapter 4: frames per second with its linked lists and with the sorted grid, on gl; with --out, a page",
          benchChapter4},
-        {"flow", "a frame of 512 and 4,096 drops on a head that stirs, drawn into maps of 1024 x 1024, on the cpu", benchFlow},
-        {"host", "what water costs another engine's frame: its OpenGL state kept, particles brought over, drawn into its framebuffer",
+        {"flow", "one frame of 512 and 4,096 drops on a deforming head, drawn into maps of 1024 x 1024 texels, on the cpu", benchFlow},
+        {"host", "cost of water in another engine's frame: saving its OpenGL state, uploading particles, drawing into its framebuffer",
          benchHost},
-        {"ui", "the CPU's share of a frame of an empty scene, and of its panels, each tab open in turn, in a window of 1280 x 720",
-         benchUi},
+        {"ui", "CPU time of a frame of an empty scene and of its panels, one tab after the other, in a window of 1280 x 720", benchUi},
     };
     return {rows};
 }

@@ -1,4 +1,4 @@
-// The rows of `rivulet bench`. A case measures something several times and reports the spread.
+// The cases of `rivulet bench`. A case measures a quantity several times and reports median, minimum and maximum.
 #pragma once
 
 #include <functional>
@@ -13,20 +13,20 @@
 
 namespace rivulet {
 
-// One line of a bench's report.
+// One row of the results.
 struct BenchRow {
     std::string name;                      // "wcsph step, 128k, cpu"
     std::string unit;                      // "ms", "B/particle"
     Spread value;                          // over value.count runs
-    std::map<std::string, double> passes;  // ms, medians of the parts; may be empty
+    std::map<std::string, double> passes;  // ms by name of the pass, of the last run; may be empty
 };
 
 struct BenchContext {
-    int runs = 5;                                 // at least
-    std::string out;                              // the folder for pages that a case writes; "" = none is to be written
-    Log log;                                      // for notices: a backend that is absent
-    std::function<void(const BenchRow&)> report;  // a row is printed as soon as it is known
-    std::function<bool()> interrupted;            // ask between runs; then return
+    int runs = 5;                                 // measured runs of each row
+    std::string out;                              // output folder of the pages of a case; "": no pages
+    Log log;                                      // notices, for example of an absent backend
+    std::function<void(const BenchRow&)> report;  // prints a row at once
+    std::function<bool()> interrupted;            // true after Ctrl-C: the case checks it between runs and returns
 };
 
 struct BenchCase {
@@ -45,7 +45,7 @@ Status benchChapter4(const BenchContext& context);
 Status benchHost(const BenchContext& context);
 Status benchUi(const BenchContext& context);
 
-// Calls `once` context.runs times (a first call, not counted, warms caches); the spread of what it returns.
+// Calls `once` 1 + context.runs times; the first call warms the caches and is not counted. Returns the spread of the values of the others.
 Spread repeat(const BenchContext& context, const std::function<double()>& once);
 
 }  // namespace rivulet

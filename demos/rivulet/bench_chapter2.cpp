@@ -1,4 +1,4 @@
-// The bench of the thesis's chapter 2: see fluid/validate/chapter2.h.
+// The benchmark of the thesis's chapter 2: see fluid/validate/chapter2.h.
 #include <fmt/format.h>
 
 #include "demos/rivulet/bench_cases.h"
@@ -10,7 +10,7 @@ namespace rivulet {
 Status benchChapter2(const BenchContext& context) {
     Result<ContextEgl> egl = ContextEgl::create();
     if (!egl) {
-        context.log.notice("chapter2 draws what it measures, and that needs OpenGL: it is left out");
+        context.log.notice("the case chapter2 needs OpenGL, which is not available: it is skipped");
         return ok();
     }
     Chapter2Request request;
@@ -23,7 +23,7 @@ Status benchChapter2(const BenchContext& context) {
                       .unit = "ms",
                       .value = row.way.frameMs,
                       .passes = row.way.passes};
-        line.passes["until it is stepped"] = row.way.stepMs;
+        line.passes["step"] = row.way.stepMs;
         line.passes["drawing"] = row.way.drawMs;
         line.passes["overlap"] = row.way.overlapMs;
         context.report(line);

@@ -1,4 +1,4 @@
-// The bench of the thesis's chapter 4: see fluid/validate/chapter4.h.
+// The benchmark of the thesis's chapter 4: see fluid/validate/chapter4.h.
 #include <fmt/format.h>
 
 #include "demos/rivulet/bench_cases.h"
@@ -13,7 +13,7 @@ Status benchChapter4(const BenchContext& context) {
     const GlFacts gl = egl ? currentGlFacts() : noGl(egl.error().message);
     const std::unique_ptr<Device> device = makeDevice("gl", gl, context.log);
     if (device->backend() != Backend::gl) {
-        context.log.notice("chapter4 draws what it measures, and that needs OpenGL: it is left out");
+        context.log.notice("the case chapter4 needs OpenGL, which is not available: it is skipped");
         return ok();
     }
     Chapter4Request request;
@@ -26,7 +26,7 @@ Status benchChapter4(const BenchContext& context) {
             .unit = "frames/s",
             .value = row.frames,
             .passes = row.passes};
-        line.passes["all of the step"] = row.stepMs;
+        line.passes["step"] = row.stepMs;
         line.passes["drawing"] = row.drawMs;
         context.report(line);
     };

@@ -1,4 +1,4 @@
-// The bench of flow on a skin: a head that stirs, all drops moving, the step and what draws it into maps.
+// The benchmark of flow on a skin: all drops move on a deforming head; the step and the drawing into maps are measured.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -16,7 +16,7 @@ namespace rivulet {
 
 namespace {
 
-// Of a mesh the triangles that hang together and are the most: of the head its skin, without eyes and lashes.
+// The largest connected part of a mesh, by number of triangles: of the head its skin, without eyes and lashes.
 Mesh largestPart(Mesh mesh) {
     const Result<FlowMesh> whole = makeFlowMesh(mesh.view());
     if (!whole) return mesh;
@@ -42,7 +42,7 @@ Mesh largestPart(Mesh mesh) {
     return mesh;
 }
 
-// Everywhere on it drops of a microlitre or two, which nothing holds and which stay what they are where they meet.
+// Drops of 1 to 2 microlitres at random places on the head. They do not adhere and hardly merge, so that all of them keep moving.
 Result<SurfaceFlow> runningHead(Device& device, const Mesh& head, int drops) {
     SurfaceFlowParams p;
     p.capacity = drops;
@@ -64,13 +64,13 @@ double msSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-constexpr int kEdge = 1024;  // texels, of the maps
+constexpr int kEdge = 1024;  // texels, width and height of the maps
 
 struct FlowBytes {
     size_t flow, maps, coarse;  // coarse: maps of half the edge
 };
 
-// What of it grows with the mesh and what with the maps, and so what both would take of a head of the size that aims are stated for.
+// Reports the memory per triangle and per texel, and from these the memory of a head of kAim triangles, for which the aim is stated.
 void reportMemory(const BenchContext& context, int drops, const FlowBytes& bytes, size_t triangles) {
     constexpr double kTexels = double{kEdge} * kEdge, kAim = 34000;
     const double texel = static_cast<double>(bytes.maps - bytes.coarse) / (0.75 * kTexels);
@@ -80,9 +80,9 @@ void reportMemory(const BenchContext& context, int drops, const FlowBytes& bytes
     };
     row(fmt::format("{} drops on {} triangles", drops, triangles), "MB", static_cast<double>(bytes.flow) / 1.0e6);
     row(fmt::format("{0} drops, {1} x {1} maps", drops, kEdge), "MB", static_cast<double>(bytes.flow + bytes.maps) / 1.0e6);
-    row(fmt::format("{} drops and maps, a triangle", drops), "B", triangle);
-    row(fmt::format("{} drops and maps, a texel", drops), "B", texel);
-    row(fmt::format("{} drops and maps, were it {} triangles", drops, kAim), "MB", (triangle * kAim + texel * kTexels) / 1.0e6);
+    row(fmt::format("{} drops and maps, per triangle", drops), "B", triangle);
+    row(fmt::format("{} drops and maps, per texel", drops), "B", texel);
+    row(fmt::format("{} drops and maps, for {} triangles", drops, kAim), "MB", (triangle * kAim + texel * kTexels) / 1.0e6);
 }
 
 }  // namespace
@@ -93,9 +93,9 @@ Status benchFlow(const BenchContext& context) {
     Result<Mesh> whole = importMesh(*path);
     if (!whole) return whole.error();
     const Mesh head = largestPart(std::move(*whole));
-    std::vector<std::vector<vec3>> moods(8, head.positions);
-    for (size_t mood = 0; mood < moods.size(); ++mood)
-        for (vec3& x : moods[mood]) x.y += 1.0e-3F * std::sin(40 * x.x + 0.785398F * static_cast<float>(mood));
+    std::vector<std::vector<vec3>> poses(8, head.positions);
+    for (size_t pose = 0; pose < poses.size(); ++pose)
+        for (vec3& x : poses[pose]) x.y += 1.0e-3F * std::sin(40 * x.x + 0.785398F * static_cast<float>(pose));
     const std::vector<CpuKernelRow> rows = cpuKernels();
     for (const int drops : {512, 4096}) {
         auto device = makeCpuDevice(rows);
@@ -113,13 +113,13 @@ Status benchFlow(const BenchContext& context) {
         constexpr int kFrames = 20;
         Status status = ok();
         double drawing = 0;
-        BenchRow row{.name = fmt::format("flow, {} drops on a head that stirs, cpu", drops), .unit = "ms/frame", .value = {}, .passes = {}};
+        BenchRow row{.name = fmt::format("flow, {} drops on a deforming head, cpu", drops), .unit = "ms/frame", .value = {}, .passes = {}};
         row.value = repeat(context, [&] {
             device->takeTimes();
             drawing = 0;
             const auto start = std::chrono::steady_clock::now();
             for (int k = 0; k < kFrames && status; ++k) {
-                status = flow->step({.positions = moods[static_cast<size_t>(k) % moods.size()]}, 1.0 / 240);
+                status = flow->step({.positions = poses[static_cast<size_t>(k) % poses.size()]}, 1.0 / 240);
                 const auto stepped = std::chrono::steady_clock::now();
                 maps->draw(*flow);
                 drawing += msSince(stepped) / kFrames;
@@ -127,7 +127,7 @@ Status benchFlow(const BenchContext& context) {
             const double ms = msSince(start) / kFrames;
             row.passes.clear();
             for (const PassTime& t : device->takeTimes()) row.passes[t.name] = t.ms / kFrames;
-            row.passes["drawing, all of it"] = drawing;
+            row.passes["drawing"] = drawing;
             return ms;
         });
         if (!status) return status;

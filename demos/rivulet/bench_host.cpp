@@ -1,4 +1,4 @@
-// What water costs a host's frame: its state kept and put back, the particles brought over, and all of it drawn into its framebuffer.
+// The cost of water in a host's frame: saving and restoring its OpenGL state, uploading the particles, drawing into its framebuffer.
 #include <rivulet_glad/gl.h>
 
 #include <glm/ext/matrix_clip_space.hpp>
@@ -19,7 +19,7 @@ namespace rivulet {
 Status benchHost(const BenchContext& context) {
     Result<ContextEgl> egl = ContextEgl::create();
     if (!egl) {
-        context.log.notice("host draws what it measures, and that needs OpenGL: it is left out");
+        context.log.notice("the case host needs OpenGL, which is not available: it is skipped");
         return ok();
     }
     constexpr int kWidth = 640, kHeight = 360, kScopes = 100;
@@ -52,7 +52,7 @@ Status benchHost(const BenchContext& context) {
         glFinish();
         return 1000 * (hostSeconds() - start) / kScopes;
     });
-    context.report({.name = "host: OpenGL's state kept and put back", .unit = "ms", .value = kept, .passes = {}});
+    context.report({.name = "host: OpenGL state saved and restored", .unit = "ms", .value = kept, .passes = {}});
     for (const bool fast : {false, true}) {
         FluidLookParams look;
         look.quality = fast ? "fast" : "fine";
@@ -83,7 +83,7 @@ Status benchHost(const BenchContext& context) {
         context.report({.name = fast ? "host: 8,192 particles drawn, 640x360, fast" : "host: 8,192 particles drawn, 640x360, fine",
                         .unit = "ms",
                         .value = drawn,
-                        .passes = {{"brought over", uploaded}}});
+                        .passes = {{"upload", uploaded}}});
     }
     return ok();
 }

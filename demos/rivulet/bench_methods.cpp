@@ -1,5 +1,4 @@
-// Methods against each other on the column of 0.5 x 0.5 x 1 m in a 1 m box: wall seconds per simulated second beside the compression they
-// leave.
+// Compares the methods on a column of 0.5 x 0.5 x 1 m in a box of 1 m: wall time per simulated second, and the compression that remains.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -32,7 +31,7 @@ FluidParams dfsph(int substeps, float reach, float tolerance, float correction) 
     p.dfsph.correction = correction;
     return p;
 }
-FluidParams asItComes(const char* method) {
+FluidParams defaultsOf(const char* method) {
     FluidParams p;
     p.method = method;
     return p;
@@ -40,20 +39,19 @@ FluidParams asItComes(const char* method) {
 
 constexpr Setting kSettings[] = {
     {"dfsph, tolerance 1e-4, correction 0.3", "31k", 0.02F, [] { return dfsph(8, 0.3F, 1.0e-4F, 0.3F); }},
-    {"dfsph, as it comes", "31k", 0.02F, [] { return asItComes("dfsph"); }},
+    {"dfsph, default settings", "31k", 0.02F, [] { return defaultsOf("dfsph"); }},
     {"dfsph, 6 substeps, reach 0.4, tolerance 1e-3", "31k", 0.02F, [] { return dfsph(6, 0.4F, 1.0e-3F, 0.2F); }},
-    {"pbf, as it comes", "31k", 0.02F, [] { return asItComes("pbf"); }},
-    {"dfsph, as it comes", "8k", 0.03125F, [] { return asItComes("dfsph"); }},
+    {"pbf, default settings", "31k", 0.02F, [] { return defaultsOf("pbf"); }},
+    {"dfsph, default settings", "8k", 0.03125F, [] { return defaultsOf("dfsph"); }},
     {"dfsph, 4 substeps, reach 0.5, tolerance 8e-4", "8k", 0.03125F, [] { return dfsph(4, 0.5F, 8.0e-4F, 0.2F); }},
-    {"pbf, as it comes", "8k", 0.03125F, [] { return asItComes("pbf"); }},
+    {"pbf, default settings", "8k", 0.03125F, [] { return defaultsOf("pbf"); }},
     {"dfsph, 6 substeps, reach 0.4, tolerance 5e-4", "128k", 0.0125F, [] { return dfsph(6, 0.4F, 5.0e-4F, 0.2F); }},
-    {"pbf, as it comes", "128k", 0.0125F, [] { return asItComes("pbf"); }},
+    {"pbf, default settings", "128k", 0.0125F, [] { return defaultsOf("pbf"); }},
 };
 
 }  // namespace
 
-// The figure is wall seconds a simulated second; beside it, in the row's name, the mean compression over particles and frames, and the
-// steps.
+// Measures wall seconds per simulated second. The row's name holds the mean compression over particles and frames, and the number of steps.
 Status benchMethods(const BenchContext& context) {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     auto device = makeCpuDevice(rows);

@@ -1,4 +1,4 @@
-// What the window costs the CPU where nothing is to be simulated: a frame of an empty scene, and its panels, each tab open in turn.
+// CPU time of the window without a simulation: a frame of an empty scene, and its panels with one tab open after the other.
 #include <fmt/format.h>
 #include <rivulet_glad/gl.h>
 
@@ -13,10 +13,10 @@ namespace rivulet {
 Status benchUi(const BenchContext& context) {
     Result<ContextEgl> egl = ContextEgl::create();
     if (!egl) {
-        context.log.notice("ui is drawn with OpenGL: it is left out");
+        context.log.notice("the case ui needs OpenGL, which is not available: it is skipped");
         return ok();
     }
-    // Few pixels, for the sake of software that draws them; the panels are laid out as in a window of 1280 x 720.
+    // Few pixels, because software renderers draw them on the CPU; the panels are laid out as in a window of 1280 x 720.
     constexpr int kWidth = 64, kHeight = 36, kFrames = 60, kFilled = 620;
     Result<gpu::Texture> colour = gpu::Texture::create({.width = kWidth, .height = kHeight});
     if (!colour) return colour.error();
@@ -33,14 +33,14 @@ Status benchUi(const BenchContext& context) {
         if (!opened) return opened.error();
         Viewer& viewer = **opened;
         Status wrong = ok();
-        double made = 0, told = 0;
+        double layoutMs = 0, drawMs = 0;
         const auto frame = [&](double seconds) {
-            glFinish();  // a software GPU works on the same cores
+            glFinish();  // a software renderer uses the same cores
             const double start = threadSeconds();
             if (Status drawn = viewer.frame(input, seconds, target.name()); !drawn) wrong = drawn;
             input.keysPressed.clear();
-            made += viewer.panelCost().made;
-            told += viewer.panelCost().told;
+            layoutMs += viewer.panelCost().made;
+            drawMs += viewer.panelCost().drawn;
             return 1000 * (threadSeconds() - start);
         };
         const auto whole = [&](double seconds) {
@@ -67,7 +67,7 @@ Status benchUi(const BenchContext& context) {
             frame(0);
         }
         input.framebuffer = ivec2(0);
-        for (int k = 0; water && k < kFilled; ++k) frame(kStep);  // graphs have all of their samples
+        for (int k = 0; water && k < kFilled; ++k) frame(kStep);  // fills the graphs with samples
         input.framebuffer = ivec2(kWidth, kHeight);
         constexpr std::pair<Inspector::Tab, const char*> kTabs[] = {{Inspector::Tab::times, "times"},
                                                                     {Inspector::Tab::graphs, "graphs"},
@@ -78,14 +78,14 @@ Status benchUi(const BenchContext& context) {
             viewer.watch().show(tab);
             for (int k = 0; k < 8; ++k) frame(0);
             const Spread spread = repeat(context, [&] {
-                made = told = 0;
+                layoutMs = drawMs = 0;
                 whole(kStep);
-                return (made + told) / kFrames;
+                return (layoutMs + drawMs) / kFrames;
             });
             context.report({.name = fmt::format("ui: panels, {} open, {}", name, of),
                             .unit = "ms",
                             .value = spread,
-                            .passes = {{"made", made / kFrames}, {"told OpenGL", told / kFrames}}});
+                            .passes = {{"layout", layoutMs / kFrames}, {"OpenGL calls", drawMs / kFrames}}});
         }
         if (!wrong) return wrong;
     }

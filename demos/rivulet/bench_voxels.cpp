@@ -1,4 +1,4 @@
-// The benches of voxels: meshes of 70,000 triangles voxelised, baked as fields, and what keeping particles out of one costs.
+// Benchmarks of voxels: voxelising meshes of 70,000 triangles, baking their distance fields, and the cost of collision with one.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -16,7 +16,7 @@ namespace rivulet {
 
 namespace {
 
-// A ball with dents, closed, of 70,688 triangles: as many as the Stanford bunny has, for machines without one.
+// A closed ball with dents, of 70,688 triangles, about as many as the Stanford bunny has: for machines without the bunny.
 Mesh dentedBall() {
     constexpr int kRings = 188;
     constexpr uint32_t kSides = 188;
@@ -47,7 +47,7 @@ Mesh dentedBall() {
     return mesh;
 }
 
-// The bunny where a folder of RIVULET_ASSETS has it, and the ball in any case.
+// The bunny, if a folder of RIVULET_ASSETS has it, and the ball.
 std::vector<Mesh> benchMeshes(const Log& log) {
     std::vector<Mesh> meshes;
     Result<std::string> path = findAsset("bunny_zipper_open.obj", "");
@@ -58,7 +58,7 @@ std::vector<Mesh> benchMeshes(const Log& log) {
             meshes.push_back(std::move(*bunny));
         }
     }
-    if (meshes.empty()) log.notice("no folder of RIVULET_ASSETS holds bunny_zipper_open.obj: the bench takes the dented ball alone");
+    if (meshes.empty()) log.notice("no folder of RIVULET_ASSETS has bunny_zipper_open.obj: only the dented ball is measured");
     meshes.push_back(dentedBall());
     return meshes;
 }
@@ -67,7 +67,7 @@ double msSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// One row: what `once` takes, in ms, the first error ends it.
+// Reports one row: the time of `once`, ms. The first error ends it.
 Status row(const BenchContext& context, const std::string& name, const std::function<Result<double>()>& once) {
     Status status = ok();
     const Spread spread = repeat(context, [&] {
@@ -119,7 +119,7 @@ Status benchVoxels(const BenchContext& context) {
     return ok();
 }
 
-// A column of 16,384 particles onto Spot, with voxels of a quarter of the spacing: the share of a step that collision takes.
+// A column of 16,384 particles falls onto Spot, voxels of a quarter of the spacing: the share of a step that collision takes.
 Status benchCollide(const BenchContext& context) {
     Result<SceneFile> scene = loadScene("scenes/column_over_spot.json", {});
     if (!scene) return scene.error();
@@ -138,7 +138,7 @@ Status benchCollide(const BenchContext& context) {
         }
         device->finish();
         device->takeTimes();
-        constexpr int kFrames = 36;  // it falls, hits and runs off
+        constexpr int kFrames = 36;  // the column falls, hits and runs off
         for (int frame = 0; frame < kFrames; ++frame) (*session)->step(1.0 / kFramesPerSecond, true);
         double all = 0;
         passes.clear();

@@ -18,12 +18,12 @@ Status checkWord(std::string_view what, std::string_view word, std::span<const s
     if (std::find(names.begin(), names.end(), word) != names.end()) return ok();
     std::string near = nearestName(word, names);
     if (!near.empty()) return badInput(fmt::format("unknown {} '{}'; did you mean '{}'?", what, word, near));
-    return badInput(fmt::format("unknown {} '{}'; there are: {}", what, word, fmt::join(names, ", ")));
+    return badInput(fmt::format("unknown {} '{}'; use one of: {}", what, word, fmt::join(names, ", ")));
 }
 
 namespace {
 
-// CLI11's message as the rest of a sentence.
+// CLI11's message without line breaks and the final period, to be continued as a sentence.
 std::string sentence(std::string text) {
     while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
     for (char& c : text)
@@ -35,7 +35,7 @@ Status checkExtras(const CLI::App& app) {
     std::vector<std::string> extras = app.remaining();
     if (extras.empty()) return ok();
     auto dashed = std::find_if(extras.begin(), extras.end(), [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
-    if (dashed == extras.end()) return badInput(fmt::format("one argument too many: '{}'", extras.front()));
+    if (dashed == extras.end()) return badInput(fmt::format("unexpected argument '{}'", extras.front()));
     std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options()) {
         for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -53,7 +53,7 @@ struct ArgumentReader::Impl {
 ArgumentReader::ArgumentReader(std::string_view verb, std::string_view doc) : impl_(std::make_unique<Impl>()) {
     impl_->app.description(std::string(doc));
     impl_->app.name(fmt::format("rivulet {}", verb));
-    impl_->app.allow_extras();  // judged in read(), with the nearest option named
+    impl_->app.allow_extras();  // read() refuses them and names the nearest option
 }
 
 ArgumentReader::~ArgumentReader() = default;
@@ -71,8 +71,8 @@ void ArgumentReader::flag(const std::string& name, const std::string& doc, bool&
 void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::string& value) {
     impl_->app.add_option(name, value, doc)
         ->type_name(type)
-        ->check(
-            CLI::Validator([](std::string& text) { return text.empty() ? std::string("it takes a name, not ''") : std::string(); }, ""));
+        ->check(CLI::Validator([](std::string& text) { return text.empty() ? std::string("the value must not be empty") : std::string(); },
+                               ""));
 }
 
 void ArgumentReader::option(const std::string& name, const std::string& type, const std::string& doc, std::vector<std::string>& values) {
@@ -81,14 +81,15 @@ void ArgumentReader::option(const std::string& name, const std::string& type, co
 
 namespace {
 
-// A check that NaN fails too.
+// A range check that refuses NaN too.
 template <class T>
 CLI::Validator within(T min, T max, bool strict = true) {
     return CLI::Validator(
         [min, max, strict](std::string& text) {
             T value{};
             if (CLI::detail::lexical_cast(text, value) && (!strict || (value >= min && value <= max))) return std::string();
-            return fmt::format("it takes a {}number from {} to {}, not '{}'", std::is_integral_v<T> ? "whole " : "", min, max, text);
+            return fmt::format("the value must be a {}number from {} to {}, but is '{}'", std::is_integral_v<T> ? "whole " : "", min, max,
+                               text);
         },
         "");
 }
@@ -120,7 +121,7 @@ std::optional<int> ArgumentReader::read(const Arguments& arguments) {
         fmt::print("{}", app.help());
         return kDone;
     } catch (const CLI::ParseError& error) {
-        // An unknown option swallows nothing, so what CLI11 misses may only be a consequence of it.
+        // After an unknown option, CLI11 may report its value as a missing or surplus argument: the unknown option is reported first.
         Status extras = checkExtras(app);
         return refuse(extras ? sentence(error.what()) : extras.error().message);
     }
@@ -133,17 +134,17 @@ Result<std::pair<int, int>> parseSize(const std::string& text) {
     bool plain = !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) != 0;
     if (!plain || text.size() > 11 || std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) != 2 ||
         static_cast<size_t>(end) != text.size() || width < 1 || height < 1 || width > 16384 || height > 16384)
-        return badInput(fmt::format("--size takes WIDTHxHEIGHT in pixels, each 1 to 16384, as in 1280x720; it was '{}'", text));
+        return badInput(fmt::format("--size must be WIDTHxHEIGHT in pixels, each 1 to 16384, for example 1280x720, but is '{}'", text));
     return std::pair(width, height);
 }
 
-Progress::Progress(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
     if (drawn_) fmt::print(stderr, "\r\033[K");
 }
 
-void Progress::show(double share, std::string_view beside) {
+void Progress::show(double share, std::string_view note) {
     auto now = std::chrono::steady_clock::now();
     if (!terminal_ || (drawn_ && now - last_ < std::chrono::milliseconds(100))) return;
     last_ = now;
@@ -151,7 +152,7 @@ void Progress::show(double share, std::string_view beside) {
     constexpr int kCells = 32;
     share = std::clamp(share, 0.0, 1.0);
     int filled = static_cast<int>(share * kCells);
-    fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} %  {}", what_, "", filled, "", kCells - filled, 100 * share, beside);
+    fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} %  {}", label_, "", filled, "", kCells - filled, 100 * share, note);
     std::fflush(stderr);
 }
 

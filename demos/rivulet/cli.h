@@ -1,4 +1,4 @@
-// What every verb shares: exit codes, the reading of arguments, plain sentences for mistakes, a progress bar.
+// Shared by all verbs: exit codes, parsing of arguments, error messages, a progress bar.
 #pragma once
 
 #include <chrono>
@@ -34,10 +34,10 @@ int validateVerb(const Arguments& arguments);
 int chartVerb(const Arguments& arguments);
 int exportVerb(const Arguments& arguments);
 
-// "rivulet: sentence" on stderr; returns the exit code that the error's fault asks for.
+// Prints "rivulet: MESSAGE" on stderr. Returns kBadUse for Fault::badInput, else kFailed.
 int report(const Error& error);
 
-// What a verb takes. CLI11 reads it, behind this one interface: its templates would cost every verb some seconds of compiling.
+// The arguments and options of a verb. Only cli.cpp includes CLI11, which parses them: its templates take seconds to compile.
 class ArgumentReader {
   public:
     ArgumentReader(std::string_view verb, std::string_view doc);
@@ -45,23 +45,23 @@ class ArgumentReader {
     ArgumentReader(const ArgumentReader&) = delete;
     ArgumentReader& operator=(const ArgumentReader&) = delete;
 
-    // By position; `name` as help shows it.
+    // Arguments by position; `name` is the name in the help text.
     void positional(const std::string& name, const std::string& doc, std::string& value, bool required);
     void positional(const std::string& name, const std::string& doc, std::vector<std::string>& values);
-    // By name; `type` as help shows it: "FILE", "N". A text that is given must not be empty.
+    // Options by name ("--out"); `type` is the placeholder in the help text: "FILE", "N". An empty text is refused.
     void flag(const std::string& name, const std::string& doc, bool& value);
     void option(const std::string& name, const std::string& type, const std::string& doc, std::string& value);
     void option(const std::string& name, const std::string& type, const std::string& doc,
-                std::vector<std::string>& values);  // one each time
+                std::vector<std::string>& values);  // may be repeated; one value each time
     void option(const std::string& name, const std::string& type, const std::string& doc, std::optional<int>& value, int min, int max,
-                bool strict = true);  // not strict: a whole number beyond them is let through, for the verb to judge
+                bool strict = true);  // false: values outside min..max are accepted; the verb checks them itself
     void option(const std::string& name, const std::string& type, const std::string& doc, std::optional<double>& value, double min,
                 double max);
-    void exclude(const std::string& name, const std::string& other);  // not both
-    void footer(const std::string& text);                             // below the help
+    void exclude(const std::string& name, const std::string& other);  // using both is refused
+    void footer(const std::string& text);                             // printed below the help text
 
-    // A value: the exit code to leave with, since help was asked for (0) or the arguments make no sense (2, said on stderr
-    // with the nearest option there is).
+    // Parses. A value is the exit code to leave with: 0 after --help, 2 after invalid arguments (the error and the nearest valid option
+    // are on stderr). No value: the verb runs.
     std::optional<int> read(const Arguments& arguments);
 
   private:
@@ -69,23 +69,23 @@ class ArgumentReader {
     std::unique_ptr<Impl> impl_;
 };
 
-// Nothing when `word` is among `names`; else "unknown WHAT 'word'; did you mean 'near'?", or all names where none is near.
+// Error (badInput) if `word` is not among `names`: "unknown WHAT 'word'; did you mean 'near'?", or the list of names if none is near.
 Status checkWord(std::string_view what, std::string_view word, std::span<const std::string> names);
 
-// "1280x720" -> {1280, 720}; each 1 to 16384.
+// "1280x720" -> {1280, 720}, pixels. Error (badInput): another form, or a side outside 1 to 16384.
 Result<std::pair<int, int>> parseSize(const std::string& text);
 
-// A bar on stderr, drawn only when that is a terminal, at most ten times a second.
+// A progress bar on stderr. Drawn only if stderr is a terminal, at most 10 times a second; the destructor erases it.
 class Progress {
   public:
-    explicit Progress(std::string what);
+    explicit Progress(std::string label);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
-    void show(double share, std::string_view beside = {});  // share of the work done, 0..1
+    void show(double share, std::string_view note = {});  // share: of the work that is done, 0..1; note: text after the bar
 
   private:
-    std::string what_;
+    std::string label_;
     bool terminal_, drawn_ = false;
     std::chrono::steady_clock::time_point last_;
 };

@@ -10,7 +10,7 @@
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/autotune.h"
@@ -30,16 +30,16 @@ using Clock = std::chrono::steady_clock;
 
 double msSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
-// Which frames become a PNG: the first, the last, and four evenly between.
+// The frames that are written as PNG: the first, the last, and four at equal distances between them.
 std::set<int> pictureFrames(int frames) {
     constexpr int kPictures = 6;
-    std::set<int> which;
+    std::set<int> chosen;
     for (int k = 0; k < kPictures && frames > 0; ++k)
-        which.insert(static_cast<int>(std::lround(static_cast<double>(frames - 1) * k / (kPictures - 1))));
-    return which;
+        chosen.insert(static_cast<int>(std::lround(static_cast<double>(frames - 1) * k / (kPictures - 1))));
+    return chosen;
 }
 
-// Where everything goes. Made before the first step, so that what cannot be written is said before the work, not after.
+// The output files. Opened before the first step, so that a file that cannot be written is reported before the work starts.
 struct Outputs {
     std::string stats, video, picturePrefix;
     std::optional<VideoWriter> writer;
@@ -65,27 +65,27 @@ struct Outputs {
     }
 };
 
-// Draws a session's frames into a picture in memory.
+// Draws a session's frames into an image in memory.
 struct Painter {
     std::unique_ptr<SceneRenderer> renderer;
     FluidUpload upload;
     Timeline* timeline = nullptr;
 
-    // `uploaded` is called when nothing more is read of the world.
+    // RGBA pixels of the frame. `uploaded` is called once the world is no longer read, so that its next step may start.
     Result<std::vector<uint8_t>> paint(Session& session, int width, int height, const std::function<void()>& uploaded) {
         const SceneFile& scene = session.scene();
-        std::optional<TimedSpan> bringing(std::in_place, timeline, "main", "upload");
+        std::optional<TimedSpan> uploading(std::in_place, timeline, "main", "upload");
         Result<FluidView> fluid = viewOf(upload, session);
         if (!fluid) return fluid.error();
         if (Status wet = session.flows().draw(); !wet) return wet.error();
         FrameView view = frameViewOf(cameraOf(scene.camera, session.bounds()), scene.light, width, height, session.time());
-        bringing.reset();
+        uploading.reset();
         uploaded();
         {
             const TimedSpan span(timeline, "main", "draw");
             if (Status drawn = renderer->draw(view, *fluid, session.solids(), scene); !drawn) return drawn.error();
         }
-        const TimedSpan span(timeline, "main", "picture comes down");
+        const TimedSpan span(timeline, "main", "read pixels");
         return renderer->pixels();
     }
 };
@@ -98,11 +98,11 @@ struct Loop {
     Outputs& to;
     Painter& painter;
     Cooperation& work;
-    std::optional<RunRecorder> recorder;       // nothing: a replay has no figures
+    std::optional<RunRecorder> recorder;       // empty: a replay has no statistics
     std::optional<RecordingWriter> recording;  // of --record
     int pictures = 0;
 
-    // Beside a picture of frame `f` the height field of each skin in thesis mode.
+    // Writes the height field of each skin in thesis mode, beside the image of frame `f`.
     Status writeHeights(int f) {
         const auto& skins = session.flows().skins();
         for (size_t k = 0; k < skins.size(); ++k) {
@@ -117,15 +117,16 @@ struct Loop {
     Status run(int frames) {
         const std::set<int> kept = options.stills.empty() ? pictureFrames(frames) : options.stills;
         Progress progress(options.scene.name);
-        double now = 0;  // s simulated, of what is drawn
+        double now = 0;  // s, the simulated time that is drawn
         if (options.render)
             painter.renderer->onProgress([&](double share) {
                 progress.show(share, fmt::format("drawing {:.2f} s", now));
                 return !graceful.interrupted();
             });
-        // What has been stepped behind a picture is drawn, too: what is saved is what was seen last.
-        const auto goesOn = [&] { return !graceful.interrupted() || (work.started() && work.plan() == Plan::behind); };
-        for (int f = 0; f < frames && goesOn(); ++f) {
+        // With the plan `behind`, a step that runs while the last image is drawn is drawn too, so that --save writes the state of the last
+        // image.
+        const auto continues = [&] { return !graceful.interrupted() || (work.started() && work.plan() == Plan::behind); };
+        for (int f = 0; f < frames && continues(); ++f) {
             const bool shown = options.render && (to.writer || kept.contains(f));
             if (session.replaying() != nullptr && !shown) continue;
             if (session.replaying() != nullptr) session.seek(static_cast<size_t>(f));
@@ -162,7 +163,7 @@ struct Loop {
                     ++pictures;
                 }
             }
-            if (options.render && !shown)  // a skin's maps show what has come since they were last drawn
+            if (options.render && !shown)  // a skin's maps accumulate, so they are drawn in every frame
                 if (Status wet = session.flows().draw(); !wet) return wet.error();
             if (recorder) recorder->drawn(renderMs, msSince(start), drawn);
             progress.show(static_cast<double>(f + 1) / frames, fmt::format("{:.2f} s, {:.0f} ms a frame", now, msSince(start)));
@@ -178,11 +179,11 @@ struct PlanChoice {
     std::vector<CooperationStats::Tried> tried = {};
 };
 
-// What --cooperate says; auto tries them all.
+// The plan of --cooperate; auto measures all of them and takes the fastest.
 Result<PlanChoice> choosePlan(const RunOptions& options, const GlFacts& gl, Painter& painter) {
     if (!options.render && options.cooperate != "off") {
         options.log.notice(
-            fmt::format("--cooperate {}: nothing is drawn, so that CPU and GPU have nothing to share out", options.cooperate));
+            fmt::format("--cooperate {} has no effect: nothing is drawn, so that CPU and GPU have no work to share", options.cooperate));
         return PlanChoice{.backend = options.backend};
     }
     if (options.cooperate != "auto") return PlanChoice{.backend = options.backend, .plan = plans().find(options.cooperate)->plan};
@@ -209,16 +210,18 @@ Result<PlanChoice> choosePlan(const RunOptions& options, const GlFacts& gl, Pain
 }  // namespace
 
 int runHeadless(const RunOptions& options) {
-    // OpenGL is asked for where a picture is, or where it may simulate; its absence is an error only for the picture.
+    // OpenGL is opened if images are drawn or the backend may be gl. Its absence is an error only if images are drawn.
     std::optional<ContextEgl> context;
-    GlFacts gl = noGl("no OpenGL was asked for");
+    GlFacts gl = noGl("OpenGL was not requested");
     if (options.render || options.backend == "gl" || options.backend == "auto") {
         Result<ContextEgl> made = ContextEgl::create();
-        if (!made && options.render) return report(failed(fmt::format("a picture needs OpenGL: {}", made.error().message)));
+        if (!made && options.render)
+            return report(
+                failed(fmt::format("drawing needs OpenGL: {}; use --no-render to simulate without images", made.error().message)));
         gl = made ? currentGlFacts() : noGl(made.error().message);
         if (made) context = std::move(*made);
     }
-    Timeline timeline;  // whoever tells it of spans is gone before it
+    Timeline timeline;  // declared first: it must outlive all that report spans to it
     Painter painter;
     if (options.render) {
         const auto surroundings = surroundingsOf(options.scene);
@@ -243,7 +246,7 @@ int runHeadless(const RunOptions& options) {
     if (!options.stills.empty() && !options.frames) {
         frames = *options.stills.rbegin() + 1;
     } else if (!options.frames) {
-        const double left = std::max(static_cast<double>(options.scene.duration) - session->world().time(), 0.0);  // resumed: less
+        const double left = std::max(static_cast<double>(options.scene.duration) - session->world().time(), 0.0);  // less if resumed
         Result<int> all = framesOf(left, options.scene, "duration");
         if (!all) return report(all.error());
         frames = *all;
@@ -252,17 +255,17 @@ int runHeadless(const RunOptions& options) {
         const int recorded = static_cast<int>(replay->frames());
         if (options.stills.empty() && !options.frames) frames = recorded;
         if (!options.stills.empty() && *options.stills.rbegin() >= recorded)
-            return report(badInput(fmt::format("--still: {} ends with frame {}, at {:.3g} s: ask for an earlier time", options.replay,
+            return report(badInput(fmt::format("--still: {} ends with frame {}, at {:.3g} s; use an earlier time", options.replay,
                                                recorded - 1, recorded * frameSeconds(options.scene))));
         frames = std::min(frames, recorded);
     }
     if (traced) {
-        timeline.restart();  // times of what auto tried may be on their way
+        timeline.restart();  // drops times of the trials of auto that arrive late
         painter.timeline = &timeline;
         traceKernels(*device, timeline);
         if (painter.renderer) painter.renderer->onSpan(timeline.lane(kDrawingLane));
     }
-    Graceful graceful;  // until here Ctrl-C leaves at once; from here files are closed first
+    Graceful graceful;  // before this line Ctrl-C exits at once; after it, files are closed first
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 
@@ -282,7 +285,7 @@ int runHeadless(const RunOptions& options) {
         if (Status closed = to->writer->close(); !closed) return report(closed.error());
     if (!options.trace.empty())
         if (Status written = writeTrace(options.trace, timeline, options.log); !written) return report(written.error());
-    const std::string shown = fmt::format("{}{} picture{} {}_*.png", to->writer ? to->video + ", " : "", loop.pictures,
+    const std::string shown = fmt::format("{}{} image{} {}_*.png", to->writer ? to->video + ", " : "", loop.pictures,
                                           loop.pictures == 1 ? "" : "s", to->picturePrefix);
     if (!loop.recorder) {
         fmt::print("{}\n", shown);

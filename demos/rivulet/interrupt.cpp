@@ -9,7 +9,7 @@ namespace rivulet {
 
 namespace {
 
-// The one place with variables of the whole program: a signal handler can be handed nothing.
+// The only global variables of the program: a signal handler takes no user data.
 volatile sig_atomic_t graceful = 0;
 volatile sig_atomic_t interruptions = 0;
 

@@ -1,5 +1,5 @@
-// Ctrl-C (SIGINT) and SIGTERM. Outside a Graceful scope the program leaves at once with status 130; inside one the first signal is only
-// noted, so that a loop can close its files, and a second one leaves at once.
+// Ctrl-C (SIGINT) and SIGTERM. Outside a Graceful scope the program exits at once with status 130. Inside one, the first signal only sets
+// interrupted(), so that a loop can close its files; a second signal exits at once.
 #pragma once
 
 namespace rivulet {

@@ -1,4 +1,4 @@
-// What `rivulet run` was asked for, and the two loops that carry it out.
+// The options of `rivulet run`, and its two main loops: headless and in a window.
 #pragma once
 
 #include <optional>
@@ -17,19 +17,19 @@ struct RunOptions {
     SceneFile scene;
     std::string backend;            // auto | cpu | gl | cl
     std::string device;             // of cl, as ClOptions::device
-    std::string cooperate = "off";  // a row of plans(), or auto
+    std::string cooperate = "off";  // a name in plans(), or auto
     bool render = true;
     bool explain = false;
-    std::optional<int> frames;       // how many; nothing: the loop's own default
+    std::optional<int> frames;       // number of frames; empty: the loop's own default
     int width = 1280, height = 720;  // pixels
-    bool sized = false;              // they were asked for
-    std::string out = "out";         // folder of what is written
+    bool sized = false;              // --size was given
+    std::string out = "out";         // output folder
     std::string video;               // file; empty: out/NAME.mp4
     std::string stats;               // file; empty: out/stats.json, or none in the window
-    std::set<int> stills;            // frames; empty: a video of all, and some pictures
-    std::string save, resume;        // files of a state; empty: none
-    std::string record, replay;      // files of a recording; empty: none
-    std::string trace;               // file of a timeline; empty: none
+    std::set<int> stills;            // frame numbers to draw; empty: a video of all frames, and six images
+    std::string save, resume;        // state files; empty: none
+    std::string record, replay;      // recording files; empty: none
+    std::string trace;               // timeline file; empty: none
     Log log;
 };
 
@@ -38,19 +38,20 @@ int runHeadless(const RunOptions& options);
 int runWindow(const RunOptions& options);
 
 inline constexpr int kMostFrames = 60'000'000;
-// How many frames show `seconds`, simulated, of a scene. Error (badInput): more than kMostFrames; `place`: who asked for them.
+// The number of frames that show `seconds` of simulated time. Error (badInput): more than kMostFrames; `place` names the option or key
+// that the number comes from.
 Result<int> framesOf(double seconds, const SceneFile& scene, std::string_view place);
 
-// A state from and to a file. Error: what is wrong with it, or why it cannot be written.
+// Reads and writes a state file. Error: badInput if the file does not fit, failed if it cannot be written.
 Status resumeFrom(const std::string& path, Session& session);
 Status saveTo(const std::string& path, Session& session);
 
-// Shows the recording of options.replay, if that names one, instead of simulating. Error: as Replay::open and Session::replay.
+// If options.replay names a recording, the session shows it instead of simulating. Error: as Replay::open and Session::replay.
 Status replayOf(const RunOptions& options, Session& session);
-// The file of options.record, if that names one. Error (failed): not writable.
+// Opens the file that options.record names; empty if it names none. Error (failed): not writable.
 Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, const Session& session);
 
-// The scene's name as a file's: letters, digits, '-' and '_' stay, all else becomes '_'.
+// The scene's name as a file name: ASCII letters, digits, '-' and '_' are kept, other characters become '_'; at most 100 characters.
 std::string fileNameOf(const std::string& sceneName);
 
 }  // namespace rivulet

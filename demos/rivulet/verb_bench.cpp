@@ -5,7 +5,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 
@@ -38,11 +38,11 @@ void print(const BenchRow& row) {
     std::fflush(stdout);
 }
 
-// A page of a table, with the passes of each row beneath it.
+// The results as a Markdown page: one table row for each measurement, with the times of its passes.
 std::string markdownOf(const Json::Value& all) {
     std::string page = fmt::format("# Performance\n\nWritten by `rivulet bench --markdown`, version {}, on: {}.\n\n",
                                    all["version"].asString(), all["machine"].asString());
-    page += "| what | unit | median | least | most | runs | its passes, ms |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+    page += "| measurement | unit | median | minimum | maximum | runs | passes, ms |\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const Json::Value& row : all["rows"]) {
         std::string passes;
         for (const std::string& name : row["passes"].getMemberNames())
@@ -56,18 +56,18 @@ std::string markdownOf(const Json::Value& all) {
 }  // namespace
 
 int benchVerb(const Arguments& arguments) {
-    ArgumentReader reader("bench", "Measures speed and memory.");
+    ArgumentReader reader("bench", "Measures speed and memory use. Each row shows the median, minimum and maximum of the runs.");
     std::vector<std::string> names;
     std::string jsonFile, markdownFile, out;
     std::optional<int> runs;
     std::string list;
     for (const BenchCase& row : benchCases().rows) list += fmt::format("\n  {:<16}{}", row.name, row.doc);
     reader.footer("Cases:" + list);
-    reader.positional("CASE", "which cases; all of them when none is named", names);
-    reader.option("--json", "FILE.json", "also write the figures to a file", jsonFile);
-    reader.option("--markdown", "FILE.md", "also write a page of them, as docs/performance.md is", markdownFile);
-    reader.option("--out", "DIR", "the folder for the pages of chapter2 and chapter4; none are written if not given", out);
-    reader.option("--runs", "N", "measured runs of each", runs, 5, 1000);
+    reader.positional("CASE", "cases to measure; default: all", names);
+    reader.option("--json", "FILE.json", "also write the results as JSON", jsonFile);
+    reader.option("--markdown", "FILE.md", "also write the results as a Markdown page, like docs/performance.md", markdownFile);
+    reader.option("--out", "DIR", "output folder of the pages that chapter2 and chapter4 write; without it they write none", out);
+    reader.option("--runs", "N", "measured runs of each case; default: 5", runs, 5, 1000);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
     std::vector<const BenchCase*> cases;

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kStability = "stability";
 constexpr const char* kSurface = "surface";
 
-// Where methods fail: stability.md with its table and its picture.
+// The stability limits of the methods: stability.md with a table and a chart.
 int chartStability(Device& device, const Graceful& graceful, Progress& progress, const std::string& folder) {
     std::vector<EnvelopeFinding> all;
     for (const EnvelopeRow& row : envelope().rows) {
@@ -34,7 +34,7 @@ int chartStability(Device& device, const Graceful& graceful, Progress& progress,
     return kDone;
 }
 
-// How good the drawn surface is, and what it costs: surface.md with its table and its picture.
+// The error of the drawn surface and its cost: surface.md with a table and a chart.
 int chartSurface(const SurfaceChartRequest& request, const std::string& folder, const std::string& command) {
     const Result<SurfaceChart> chart = runSurfaceChart(request);
     if (!chart) return report(chart.error());
@@ -44,7 +44,7 @@ int chartSurface(const SurfaceChartRequest& request, const std::string& folder, 
     return kDone;
 }
 
-// Speed against accuracy: speed_accuracy.md with its table and its pictures.
+// Speed against accuracy: speed_accuracy.md with a table and charts.
 int chartMethods(const ChartRequest& request, const std::string& folder) {
     const Result<Chart> chart = runChart(request);
     if (!chart) return report(chart.error());
@@ -60,15 +60,16 @@ int chartMethods(const ChartRequest& request, const std::string& folder) {
 }  // namespace
 
 int chartVerb(const Arguments& arguments) {
-    ArgumentReader reader("chart", "Charts speed against accuracy: every setting of every method, on the physics cases.");
+    ArgumentReader reader("chart", "Measures speed against accuracy: every setting of every method, on the cases of 'rivulet validate'.");
     ChartRequest request;
     std::string folder = "docs";
     reader.footer(
-        "Writes speed_accuracy.md, its table and its pictures, and what pbf adds to viscosity;\nand stability.md: where methods fail once "
-        "their limits are off;\nand surface.md: how far off the drawn surface is, by filter and quality, and its ms.");
-    reader.positional("CASE", "which cases; all that are charted, stability and surface, when none is named", request.names);
+        "Writes, each with a table and charts:\n  speed_accuracy.md  speed and error of each setting, and the viscosity that pbf adds\n"
+        "  stability.md       time steps and speeds at which each method becomes unstable if its limits are off\n"
+        "  surface.md         error of the drawn surface by filter and quality, and its time in ms");
+    reader.positional("CASE", "cases to measure, stability or surface; default: all", request.names);
     reader.flag("--quick", "fewer cases and sizes", request.quick);
-    reader.option("--out", "DIR", "the folder that all is written to; docs if not given", folder);
+    reader.option("--out", "DIR", "output folder; default: docs", folder);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     std::vector<std::string> known = chartCases();
     known.insert(known.end(), {kStability, kSurface});

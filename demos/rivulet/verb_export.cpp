@@ -9,7 +9,7 @@
 #include "demos/rivulet/interrupt.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
@@ -31,8 +31,9 @@ struct ExportRequest {
 
 Status checkRequest(ExportRequest& request) {
     if (request.surface.empty() && request.format.empty())
-        return badInput(fmt::format("say what to write: particles with --format {}, the water's surface with --surface {}, or both",
-                                    fmt::join(particleFormats().names(), ", "), fmt::join(meshFormats().names(), " or ")));
+        return badInput(
+            fmt::format("nothing to write was selected; add --format {} for particles, --surface {} for the water's surface, or both",
+                        fmt::join(particleFormats().names(), ", "), fmt::join(meshFormats().names(), " or ")));
     if (!request.format.empty())
         if (Status known = checkWord("particle format", request.format, particleFormats().names()); !known) return known;
     if (!request.surface.empty())
@@ -42,7 +43,7 @@ Status checkRequest(ExportRequest& request) {
     return settleBackend(request.backend, "auto", request.device);
 }
 
-// What becomes of a frame.
+// Writes the files of each frame.
 class Writer {
   public:
     Writer(const ExportRequest& request, const std::string& scene)
@@ -54,7 +55,7 @@ class Writer {
         frame_.up = request.up == "z" ? UpAxis::z : UpAxis::y;
     }
 
-    // Makes the folder, and says what cannot be written before the work, not after.
+    // Creates the folder and checks that the files can be written, before the simulation starts.
     Status open() const {
         if (Status made = makeFolder(folder_.string()); !made) return made;
         if (particles_ != nullptr)
@@ -70,15 +71,15 @@ class Writer {
         return surfaces_ != nullptr ? addSurface(f, host, world.params().spacing) : ok();
     }
 
-    // The list of what was written. Of a run that was cut short, too.
+    // Writes the collection (.pvd) of the vtk files, also after an interrupted run.
     Status close() const {
         if (particles_ == nullptr || particles_->name != std::string_view("vtk") || files_.empty()) return ok();
         return writeFileAtomic(inFolder(collection()), writeVtkCollection(files_));
     }
 
-    bool nothingThere() const { return files_.empty() && meshes_ == 0; }
-    size_t dry() const { return dry_; }
-    void tell() const {
+    bool empty() const { return files_.empty() && meshes_ == 0; }
+    size_t framesWithoutParticles() const { return emptyFrames_; }
+    void printSummary() const {
         const std::string at = (folder_ / name_).string();
         if (!files_.empty()) {
             const std::string list = particles_->name == std::string_view("vtk") ? fmt::format(" and {}", inFolder(collection())) : "";
@@ -114,7 +115,7 @@ class Writer {
         const Result<IsoSurface> surface = IsoSurface::create(host.position, spacing);
         if (!surface) return surface.error();
         if (surface->count() == 0) {
-            ++dry_;
+            ++emptyFrames_;
             return ok();
         }
         const Result<SurfaceMesh> mesh = marchingCubes(*surface, cells_);
@@ -132,7 +133,7 @@ class Writer {
     std::filesystem::path folder_;
     ExportFrame frame_;
     std::vector<TimedFile> files_;  // of particles
-    size_t counted_ = 0, meshes_ = 0, triangles_ = 0, dry_ = 0;
+    size_t counted_ = 0, meshes_ = 0, triangles_ = 0, emptyFrames_ = 0;
 };
 
 int exportAs(const ExportRequest& request, const SceneFile& scene) {
@@ -159,43 +160,45 @@ int exportAs(const ExportRequest& request, const SceneFile& scene) {
     }
     if (Status closed = writer.close(); !closed) return report(closed.error());
     if (graceful.interrupted()) return kInterrupted;
-    if (writer.nothingThere())
-        return report(failed(fmt::format("{} has no particles within {:.3g} s, so there is nothing to write: ask for more --seconds",
+    if (writer.empty())
+        return report(failed(fmt::format("{} has no particles in its first {:.3g} s, so nothing was written; use a larger --seconds",
                                          session->scene().name, session->world().time())));
-    if (writer.dry() > 0) log.notice(fmt::format("{} frames without particles were left out", writer.dry()));
-    writer.tell();
+    if (writer.framesWithoutParticles() > 0)
+        log.notice(fmt::format("{} frames have no particles: no surface was written for them", writer.framesWithoutParticles()));
+    writer.printSummary();
     return kDone;
 }
 
 }  // namespace
 
 int exportVerb(const Arguments& arguments) {
-    ArgumentReader reader("export",
-                          "Runs a scene without pictures, and writes its particles, its water's surface as meshes, or both, in metres.");
+    ArgumentReader reader(
+        "export", "Runs a scene without drawing it and writes the particles, the water's surface as meshes, or both. Lengths are metres.");
     ExportRequest request;
-    std::string formats = "Particles:";
+    std::string formats = "Formats of --format:";
     for (const ParticleFormat& row : particleFormats().rows) formats += fmt::format("\n  {:<10}{}", row.name, row.doc);
-    formats += "\nSurfaces:";
+    formats += "\nFormats of --surface:";
     for (const MeshFormat& row : meshFormats().rows) formats += fmt::format("\n  {:<10}{}", row.name, row.doc);
-    reader.footer(formats +
-                  "\nWhich way is up: +Y, or +Z with --up z. Blender has +Z up: its PLY importer takes coordinates as they are, so ask for "
-                  "--up z;\nits OBJ importer turns +Y up to +Z up itself, so leave --up y. ParaView shows coordinates as they are, in a "
-                  "first view with +Y up.\nPLY and OBJ have no units: one is a metre. Places are of the world: with fluid.origin that is "
-                  "added, and they are doubles.");
-    reader.positional("SCENE.json", "the scene", request.scene, true);
-    reader.option("--format", "FORMAT", fmt::format("particles: {}", fmt::join(particleFormats().names(), ", ")), request.format);
-    reader.option("--surface", "FORMAT", fmt::format("the surface: {}", fmt::join(meshFormats().names(), " or ")), request.surface);
-    reader.option("--up", "AXIS", "y, as simulated, or z: (x, y, z) becomes (x, -z, y); default: y", request.up);
-    reader.option("--every", "N", "a file every so many frames, 60 a second that is shown; default: 1", request.every, 1, kMostEvery);
-    reader.option("--seconds", "S", "how long, simulated; default: the scene's duration", request.seconds, 0,
+    reader.footer(
+        formats +
+        "\n\nThe up axis is +Y, or +Z with --up z. Blender uses +Z: for PLY files use --up z, because its PLY importer does not "
+        "convert;\nits OBJ importer converts +Y to +Z itself, so use --up y. ParaView does not convert; its first view has +Y up.\n"
+        "PLY and OBJ have no units: 1 is one metre. Positions are world positions: fluid.origin is added to them, in double "
+        "precision.");
+    reader.positional("SCENE", "a scene file, or the name of a scene in 'rivulet list scenes'", request.scene, true);
+    reader.option("--format", "FORMAT", fmt::format("write the particles as {}", fmt::join(particleFormats().names(), ", ")),
+                  request.format);
+    reader.option("--surface", "FORMAT", fmt::format("write the surface as {}", fmt::join(meshFormats().names(), " or ")), request.surface);
+    reader.option("--up", "AXIS", "up axis: y, as simulated, or z, which writes (x, y, z) as (x, -z, y); default: y", request.up);
+    reader.option("--every", "N", "write every N-th frame; 60 frames are one second of video; default: 1", request.every, 1, kMostEvery);
+    reader.option("--seconds", "S", "simulated time, s; default: the scene's duration", request.seconds, 0,
                   static_cast<double>(kMostFrames) / kFramesPerSecond);
-    reader.option("--cells", "N", "cells along a particle spacing: how fine the mesh is; default: 2", request.cells, 1,
-                  kMaxCellsPerSpacing);
-    reader.option("--out", "DIR", "folder that files go to, by frame: NAME_particles_0000.vtp, NAME_0000.obj; default: out", request.out);
-    reader.option("--backend", "NAME", "what simulates: auto, cpu, gl or cl", request.backend);
-    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
-    reader.option("--preset", "NAME", "one of the scene's sets of values, before any --set", request.preset);
-    reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", request.assignments);
+    reader.option("--cells", "N", "resolution of the mesh: cells per particle spacing; default: 2", request.cells, 1, kMaxCellsPerSpacing);
+    reader.option("--out", "DIR", "output folder of NAME_particles_0000.vtp, NAME_0000.obj, ...; default: out", request.out);
+    reader.option("--backend", "NAME", "backend of the simulation: auto, cpu, gl or cl; default: auto", request.backend);
+    reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", request.device);
+    reader.option("--preset", "NAME", "a named set of values in the scene file, applied before --set", request.preset);
+    reader.option("--set", "PATH=VALUE", "set a parameter, for example --set fluid.spacing=0.02; may be repeated", request.assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     if (Status sense = checkRequest(request); !sense) return report(sense.error());
     Result<SceneFile> scene = loadScene(request.scene, request.assignments, request.preset);

@@ -9,7 +9,7 @@
 namespace rivulet {
 
 int infoVerb(const Arguments& arguments) {
-    ArgumentReader reader("info", "What this machine offers, what --backend auto would choose and why.");
+    ArgumentReader reader("info", "Shows the CPU, OpenGL and OpenCL of this machine, and which backend --backend auto selects and why.");
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
     Result<ContextEgl> context = ContextEgl::create();
@@ -22,14 +22,14 @@ int infoVerb(const Arguments& arguments) {
     fmt::print("CPU      {}\n", cpu->info().name);
     if (gl.present()) {
         fmt::print("OpenGL   {}, {} (by EGL, {})\n", gl.renderer, gl.version, context->platform());
-        fmt::print("         {}\n", gl.software ? "software: it runs on the CPU" : "a GPU");
+        fmt::print("         {}\n", gl.software ? "a software renderer, which runs on the CPU" : "a GPU");
     } else {
         fmt::print("OpenGL   none: {}\n", gl.absent);
     }
     if (cl.empty()) fmt::print("OpenCL   none\n");
     for (size_t i = 0; i < cl.size(); ++i) fmt::print("{}{} {}\n", i == 0 ? "OpenCL   " : "         ", i + 1, cl[i].sentence);
     BackendChoice choice = chooseBackend("auto", gl);
-    fmt::print("auto     would simulate on {}, because {}\n", backendName(choice.backend), choice.why);
+    fmt::print("auto     selects {}, because {}\n", backendName(choice.backend), choice.why);
     return kDone;
 }
 

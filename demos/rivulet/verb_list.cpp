@@ -32,10 +32,10 @@ void scenes() {
 void liquidRows() {
     for (const LiquidRow& l : liquids().rows) {
         row(l.name, l.doc);
-        fmt::print("{:<18}{} kg/m^3, {} Pa s, {} N/m, absorbs {}, {}, {} 1/m, scatters {:.2g}, {:.2g}, {:.2g} 1/m, refracts {}\n", "",
-                   l.density, l.viscosity, l.surfaceTension, l.absorption.x, l.absorption.y, l.absorption.z, l.scattering.x, l.scattering.y,
-                   l.scattering.z, l.refractiveIndex);
-        fmt::print("{:<18}{}\n", "", l.source);
+        fmt::print("{:<18}density {} kg/m^3, viscosity {} Pa s, surface tension {} N/m\n", "", l.density, l.viscosity, l.surfaceTension);
+        fmt::print("{:<18}absorption {}, {}, {} 1/m, scattering {:.2g}, {:.2g}, {:.2g} 1/m (red, green, blue), refractive index {}\n", "",
+                   l.absorption.x, l.absorption.y, l.absorption.z, l.scattering.x, l.scattering.y, l.scattering.z, l.refractiveIndex);
+        fmt::print("{:<18}sources: {}\n", "", l.source);
     }
 }
 
@@ -52,13 +52,13 @@ struct ListRow {
 };
 Table<ListRow> lists() {
     static const ListRow table[] = {
-        {"scenes", "scene files that come with the program, or lie in RIVULET_ASSETS", scenes},
-        {"methods", "fluid.method: how pressure is found", [] { rows(methods()); }},
-        {"liquids", "fluid.liquid: what flows, in SI units, with its source", liquidRows},
-        {"renderers", "look.renderer: how the water is drawn", [] { rows(renderers()); }},
-        {"filters", "look.filter: how a surface is made of the particles' depth", [] { rows(filters()); }},
-        {"voxels", "voxelize --mode: how a mesh becomes voxels", [] { rows(voxelModes()); }},
-        {"devices", "--backend and --device: what can simulate", devices},
+        {"scenes", "scene files of the program, and those in the folders of RIVULET_ASSETS", scenes},
+        {"methods", "values of fluid.method: how the pressure is computed", [] { rows(methods()); }},
+        {"liquids", "values of fluid.liquid: material properties in SI units, with their sources", liquidRows},
+        {"renderers", "values of look.renderer: how the water is drawn", [] { rows(renderers()); }},
+        {"filters", "values of look.filter: how the depth of the particles is smoothed to a surface", [] { rows(filters()); }},
+        {"voxels", "values of voxelize --mode: how a mesh is converted to voxels", [] { rows(voxelModes()); }},
+        {"devices", "values of --backend and --device", devices},
     };
     return {table};
 }
@@ -66,13 +66,13 @@ Table<ListRow> lists() {
 }  // namespace
 
 int listVerb(const Arguments& arguments) {
-    ArgumentReader reader("list", "Lists what there is.");
+    ArgumentReader reader("list", "Lists the names that scene files and options accept. Without an argument it prints all lists.");
     std::string what;
     bool parameters = false;
-    std::string doc = "what to list:";
+    std::string doc = "one of:";
     for (const ListRow& list : lists().rows) doc += fmt::format(" {}", list.name);
     reader.positional("WHAT", doc, what, false);
-    reader.flag("--parameters", "every parameter of a scene, as a markdown table", parameters);
+    reader.flag("--parameters", "print every parameter of a scene file as a Markdown table", parameters);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
     if (parameters) {

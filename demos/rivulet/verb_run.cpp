@@ -15,30 +15,29 @@ namespace rivulet {
 namespace {
 
 bool hasDisplay() {
-    auto given = [](const char* variable) {
+    auto isSet = [](const char* variable) {
         const char* value = std::getenv(variable);
         return value != nullptr && *value != '\0';
     };
-    return given("DISPLAY") || given("WAYLAND_DISPLAY");
+    return isSet("DISPLAY") || isSet("WAYLAND_DISPLAY");
 }
 
-// The frame that shows the scene at a second written as `text`.
+// The frame number at the time `text`, s, of --still.
 Result<int> frameAt(const std::string& text, const SceneFile& scene) {
     double at = -1;
     const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), at);
     if (wrong != std::errc() || end != text.data() + text.size() || !(at >= 0))
-        return badInput(fmt::format("--still {}: give a time in seconds, 0 or more", text));
+        return badInput(fmt::format("--still must be a time in seconds, 0 or more, but is '{}'", text));
     return framesOf(at, scene, fmt::format("--still {}", text));
 }
 
-// A replay has no water of its own: what asks for figures or for a state of it makes no sense.
+// A replay simulates nothing, so that it has no statistics and no state: options that need them are refused.
 Status checkReplay(const RunOptions& options, bool noRender) {
-    for (const auto& [name, given] : {std::pair("--record", !options.record.empty()), std::pair("--save", !options.save.empty()),
-                                      std::pair("--resume", !options.resume.empty()), std::pair("--stats", !options.stats.empty()),
-                                      std::pair("--explain", options.explain), std::pair("--no-render", noRender),
-                                      std::pair("--cooperate", options.cooperate != "off")})
-        if (given)
-            return badInput(fmt::format("--replay shows a run that has been simulated before, so {} makes no sense: leave it out", name));
+    for (const auto& [name, used] : {std::pair("--record", !options.record.empty()), std::pair("--save", !options.save.empty()),
+                                     std::pair("--resume", !options.resume.empty()), std::pair("--stats", !options.stats.empty()),
+                                     std::pair("--explain", options.explain), std::pair("--no-render", noRender),
+                                     std::pair("--cooperate", options.cooperate != "off")})
+        if (used) return badInput(fmt::format("{} cannot be used with --replay, which simulates nothing; leave one of them out", name));
     return ok();
 }
 
@@ -58,8 +57,8 @@ Result<int> framesOf(double seconds, const SceneFile& scene, std::string_view pl
     const double frames = std::round(seconds / frameSeconds(scene));
     if (frames <= kMostFrames) return static_cast<int>(frames);
     return badInput(
-        fmt::format("{}: {:g} s at timeScale {:g} are {:g} frames, and there may be {}: ask for less, or for a larger timeScale", place,
-                    seconds, scene.timeScale, frames, kMostFrames));
+        fmt::format("{}: {:g} s at timeScale {:g} need {:g} frames, but at most {} are allowed; use fewer seconds or a larger timeScale",
+                    place, seconds, scene.timeScale, frames, kMostFrames));
 }
 
 Status resumeFrom(const std::string& path, Session& session) {
@@ -75,7 +74,7 @@ Status saveTo(const std::string& path, Session& session) {
     session.save(state);
     const Device& device = session.world().device();
     if (const DeviceHealth health = device.health(); health.state == DeviceHealth::lost)
-        return failed(fmt::format("{} {}: what it holds means nothing, and {} is not written", device.info().name, health.why, path));
+        return failed(fmt::format("{} {}: its data is invalid, so {} was not written", device.info().name, health.why, path));
     Result<size_t> written = writeState(path, state);
     if (!written) return written.error();
     return ok();
@@ -99,7 +98,7 @@ Result<std::optional<RecordingWriter>> recordingOf(const RunOptions& options, co
 
 int runVerb(const Arguments& arguments) {
     ArgumentReader reader(
-        "run", "Runs a scene: in a window where there is a display, else (or with --headless) to a video, pictures and figures.");
+        "run", "Runs a scene in a window. Without a display, or with --headless, it writes a video, images and statistics instead.");
     std::string scene, size;
     RunOptions options;
     std::vector<std::string> assignments;
@@ -107,29 +106,31 @@ int runVerb(const Arguments& arguments) {
     std::vector<std::string> stills;
     bool headless = false, noRender = false;
     std::optional<double> seconds;
-    reader.positional("SCENE.json", "the scene", scene, true);
-    reader.option("--backend", "NAME", "what simulates: auto, cpu, gl or cl", options.backend);
-    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", options.device);
-    reader.flag("--headless", "no window: write a video, pictures and figures", headless);
-    reader.flag("--no-render", "no pictures at all: simulate and write figures", noRender);
-    reader.option("--frames", "N", "how many frames, 60 a second that is shown", options.frames, 0, kMostFrames);
-    reader.option("--seconds", "S", "how long, simulated; headless default: the scene's duration", seconds, 0,
+    reader.positional("SCENE", "a scene file, or the name of a scene in 'rivulet list scenes'", scene, true);
+    reader.option("--backend", "NAME", "backend of the simulation: auto, cpu, gl or cl; default: auto", options.backend);
+    reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", options.device);
+    reader.flag("--headless", "open no window; write a video, images and statistics", headless);
+    reader.flag("--no-render", "draw nothing; simulate and write statistics", noRender);
+    reader.option("--frames", "N", "number of frames; 60 frames are one second of video", options.frames, 0, kMostFrames);
+    reader.option("--seconds", "S", "simulated time, s; headless default: the scene's duration", seconds, 0,
                   static_cast<double>(kMostFrames) / kFramesPerSecond);
     reader.exclude("--seconds", "--frames");
-    reader.option("--size", "WxH", "of the picture, in pixels; 1280x720 if not said", size);
-    reader.option("--out", "DIR", "folder that the video, pictures and figures go to", options.out);
-    reader.option("--video", "FILE.mp4", "the video's file, instead of DIR/NAME.mp4", options.video);
-    reader.option("--still", "S", "draw only the frame at this second, and no video; as often as you like", stills);
-    reader.option("--stats", "FILE.json", "the figures' file, instead of DIR/stats.json", options.stats);
-    reader.option("--cooperate", "PLAN", "who simulates while who draws: off, thesis, behind or auto, which tries them", options.cooperate);
-    reader.option("--trace", "FILE.json", "who worked on what and when, for chrome://tracing or Perfetto", options.trace);
-    reader.option("--save", "FILE", "the whole state at the run's end, for --resume", options.save);
-    reader.option("--resume", "FILE", "go on from a state that --save wrote, of the same scene", options.resume);
-    reader.option("--record", "FILE.rrec", "what each frame shows, bit for bit, for --replay; not with skins", options.record);
-    reader.option("--replay", "FILE.rrec", "show what --record wrote of the same scene, without simulating", options.replay);
-    reader.flag("--explain", "at the end, say what was chosen, what was left out, and what the rest cost", options.explain);
-    reader.option("--preset", "NAME", "one of the scene's sets of values, before any --set", preset);
-    reader.option("--set", "PATH=VALUE", "change a parameter: --set fluid.spacing=0.02; as often as you like", assignments);
+    reader.option("--size", "WxH", "size of the image in pixels; default: 1280x720", size);
+    reader.option("--out", "DIR", "output folder of video, images and statistics; default: out", options.out);
+    reader.option("--video", "FILE.mp4", "video file; default: DIR/NAME.mp4", options.video);
+    reader.option("--still", "S", "draw only the frame at this time, s, and no video; may be repeated", stills);
+    reader.option("--stats", "FILE.json", "statistics file; default: DIR/stats.json", options.stats);
+    reader.option("--cooperate", "PLAN", "how CPU and GPU share the work: off, thesis, behind, or auto, which measures all; default: off",
+                  options.cooperate);
+    reader.option("--trace", "FILE.json", "write a timeline of all passes, for chrome://tracing or Perfetto", options.trace);
+    reader.option("--save", "FILE", "write the state at the end of the run, for --resume", options.save);
+    reader.option("--resume", "FILE", "continue from a state of the same scene that --save wrote", options.resume);
+    reader.option("--record", "FILE.rrec", "record every frame exactly, for --replay; not possible with flow on skins", options.record);
+    reader.option("--replay", "FILE.rrec", "show a recording of the same scene without simulating", options.replay);
+    reader.flag("--explain", "at the end, print which options were chosen, which passes were skipped, and the time of the others",
+                options.explain);
+    reader.option("--preset", "NAME", "a named set of values in the scene file, applied before --set", preset);
+    reader.option("--set", "PATH=VALUE", "set a parameter, for example --set fluid.spacing=0.02; may be repeated", assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
 
     if (Status sense = settleBackend(options.backend, "auto", options.device); !sense) return report(sense.error());
@@ -141,9 +142,10 @@ int runVerb(const Arguments& arguments) {
     if (!pixels) return report(pixels.error());
     std::tie(options.width, options.height) = *pixels;
     if (noRender && !options.video.empty())
-        return report(badInput("--video asks for pictures and --no-render for none; leave one of them out"));
+        return report(badInput("--video cannot be used with --no-render, which draws nothing; leave one of them out"));
 
-    if (noRender && !stills.empty()) return report(badInput("--still asks for pictures and --no-render for none; leave one of them out"));
+    if (noRender && !stills.empty())
+        return report(badInput("--still cannot be used with --no-render, which draws nothing; leave one of them out"));
     Result<SceneFile> loaded = loadScene(scene, assignments, preset);
     if (!loaded) return report(loaded.error());
     for (const std::string& still : stills) {
@@ -153,19 +155,21 @@ int runVerb(const Arguments& arguments) {
     }
     if (loaded->budget.frameMs > 0 && (!options.save.empty() || !options.resume.empty()))
         return report(
-            badInput("a budget picks anew at each start, and what is saved would not fit: --set budget.frameMs=0, and the method and "
-                     "spacing that you want"));
+            badInput("--save and --resume cannot be used with a budget, which chooses method and spacing at each start; add --set "
+                     "budget.frameMs=0 and set fluid.method and fluid.spacing"));
     if (!loaded->flow.empty() && (!options.save.empty() || !options.resume.empty()))
-        return report(badInput(fmt::format("a state holds no skins, and {} has some: leave --save and --resume out", loaded->name)));
+        return report(
+            badInput(fmt::format("a state file cannot store flow on skins, and {} has some; leave --save and --resume out", loaded->name)));
     if (!loaded->flow.empty() && (!options.record.empty() || !options.replay.empty()))
-        return report(badInput(fmt::format("a recording holds no skins, and {} has some: leave --record and --replay out", loaded->name)));
+        return report(badInput(
+            fmt::format("a recording cannot store flow on skins, and {} has some; leave --record and --replay out", loaded->name)));
     if (!options.replay.empty())
         if (Status sense = checkReplay(options, noRender); !sense) return report(sense.error());
     options.scene = std::move(*loaded);
     if (!options.replay.empty()) {
-        options.scene.budget.frameMs = 0;  // nothing is simulated that could be too slow
+        options.scene.budget.frameMs = 0;  // nothing is simulated, so there is no time to limit
         options.backend = "cpu";
-        options.scene.fluid.grid = "sorted";  // nothing looks for neighbours; the cpu has no other
+        options.scene.fluid.grid = "sorted";  // the only grid of the cpu; a replay searches no neighbours
     }
     options.render = !noRender;
     if (seconds) {
@@ -176,7 +180,7 @@ int runVerb(const Arguments& arguments) {
     options.log = stderrLog();
 
     if (!headless && !noRender && !hasDisplay()) {
-        options.log.notice("there is no display: running headless");
+        options.log.notice("no display found: running headless");
         headless = true;
     }
     if (!options.stills.empty()) headless = true;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <json/json.h>
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/render/backend.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/sim/methods/method.h"
@@ -63,16 +64,20 @@ void print(const PhysicsCase& row, const Outcome& o) {
     std::fflush(stdout);
 }
 
+// Of all cases, each once.
+std::vector<std::string> allMethods() {
+    std::vector<std::string> all;
+    for (const PhysicsCase& row : physicsCases().rows)
+        for (const std::string& method : methodsOf(row))
+            if (std::find(all.begin(), all.end(), method) == all.end()) all.push_back(method);
+    return all;
+}
+
 Status checkRequest(ValidateRequest& request) {
     for (const std::string& name : request.names)
         if (Status known = checkWord("case", name, physicsCases().names()); !known) return known;
-    if (!request.method.empty()) {
-        std::vector<std::string> any;
-        for (const PhysicsCase& row : physicsCases().rows)
-            for (const std::string& method : methodsOf(row))
-                if (std::find(any.begin(), any.end(), method) == any.end()) any.push_back(method);
-        if (Status known = checkWord("method", request.method, any); !known) return known;
-    }
+    if (!request.method.empty())
+        if (Status known = checkWord("method", request.method, allMethods()); !known) return known;
     if (Status sense = settleBackend(request.backend, "cpu", request.device); !sense) return sense;
     if (!request.json.empty())
         if (Status writable = checkWritable(request.json); !writable) return writable;
@@ -83,23 +88,26 @@ Status checkRequest(ValidateRequest& request) {
 }  // namespace
 
 int validateVerb(const Arguments& arguments) {
-    ArgumentReader reader("validate", "Measures the simulation against nature, papers and formulas.");
+    ArgumentReader reader(
+        "validate",
+        "Compares the simulation with experiments, published data and analytic solutions. The exit status is 1 if an error "
+        "exceeds its tolerance.");
     ValidateRequest request;
     std::string list;
     for (const PhysicsCase& row : physicsCases().rows) list += fmt::format("\n  {:<16}{}", row.name, row.doc);
     reader.footer(
-        "On gl and cl a case runs for half a second at 8,000 particles and is compared with the cpu.\nAims hold for the method dfsph, "
-        "on skins for flow, of surfaces for the first filter; the others are reported beside it.\n\nCases:" +
+        "On the backends gl and cl, a case runs for 0.5 s with 8,000 particles and is compared with the cpu.\nTolerances apply to the "
+        "method "
+        "dfsph, to flow on skins, and to the first filter for surfaces; results of the others are only reported.\n\nCases:" +
         list);
-    reader.positional("CASE", "which cases; all of them when none is named", request.names);
-    reader.flag("--quick", "each at about 8,000 particles", request.quick);
-    reader.option("--method", "M", "one method only; else all: dfsph, pbf, wcsph, wcsph_thesis; flow, flow_thesis; a filter, reference",
-                  request.method);
-    reader.option("--backend", "B", "cpu, gl or cl", request.backend);
-    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
-    reader.option("--json", "FILE.json", "also write the figures to a file", request.json);
-    reader.option("--pictures", "DIR", "draw each case, measured against reference, as SVG into this folder", request.pictures);
-    reader.option("--set", "path=value", "change a parameter of the case's scene", request.assignments);
+    reader.positional("CASE", "cases to run; default: all", request.names);
+    reader.flag("--quick", "run each case with about 8,000 particles", request.quick);
+    reader.option("--method", "M", fmt::format("run one method only: {}; default: all", fmt::join(allMethods(), ", ")), request.method);
+    reader.option("--backend", "B", "backend of the simulation: cpu, gl or cl; default: cpu", request.backend);
+    reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", request.device);
+    reader.option("--json", "FILE.json", "also write the results as JSON", request.json);
+    reader.option("--pictures", "DIR", "write a chart (SVG) of each case, measured values and reference, to this folder", request.pictures);
+    reader.option("--set", "PATH=VALUE", "set a parameter of the case's scene; may be repeated", request.assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     if (Status sense = checkRequest(request); !sense) return report(sense.error());
 

@@ -8,7 +8,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/core/readable_bytes.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/render/backend.h"
@@ -34,15 +34,15 @@ struct VoxelizeRequest {
 
 Status checkEnding(const char* option, const std::string& path, const char* ending) {
     if (path.empty() || fs::path(path).extension() == ending) return ok();
-    return badInput(fmt::format("{} takes a file name that ends in {}; it was '{}'", option, ending, path));
+    return badInput(fmt::format("{} must be a file name that ends in {}, but is '{}'", option, ending, path));
 }
 
-// What makes no sense, and what could not be written later, is said before any work is done.
+// Refuses invalid combinations and files that cannot be written, before the work starts.
 Status checkRequest(VoxelizeRequest& request) {
     if (Status known = checkWord("mode", request.mode, voxelModes().names()); !known) return known;
     if (Status sense = settleBackend(request.backend, "auto", request.device); !sense) return sense;
     if (request.thesisOrder && request.mode != "depth")
-        return badInput("--thesis-order is an order of mode depth's work; add --mode depth, or leave it out");
+        return badInput("--thesis-order applies to --mode depth only; add --mode depth, or leave it out");
     if (request.out.empty()) request.out = fs::path(request.mesh).stem().string() + ".rvox";
     if (Status right = checkEnding("--out", request.out, ".rvox"); !right) return right;
     if (Status right = checkEnding("--slices", request.slices, ".png"); !right) return right;
@@ -51,13 +51,15 @@ Status checkRequest(VoxelizeRequest& request) {
     for (const std::string* file : files) {
         if (file->empty()) continue;
         for (const std::string* other : files) {
-            if (file < other && *file == *other) return badInput(fmt::format("two outputs cannot have the same name '{}'", *file));
+            if (file < other && *file == *other)
+                return badInput(fmt::format("two outputs have the same file name '{}'; change one of them", *file));
         }
-        if (*file == request.mesh) return badInput(fmt::format("'{}' is the mesh; an output would overwrite it", *file));
+        if (*file == request.mesh)
+            return badInput(fmt::format("the output '{}' would overwrite the mesh; choose another file name", *file));
     }
     std::error_code none;
     for (const std::string* file : files) {
-        if (fs::is_directory(*file, none)) return badInput(fmt::format("'{}' is a folder; an output takes a file name", *file));
+        if (fs::is_directory(*file, none)) return badInput(fmt::format("the output '{}' is a folder; choose a file name", *file));
     }
     if (!fs::exists(request.mesh, none)) return badInput(fmt::format("{} cannot be read: it does not exist", request.mesh));
     for (const std::string* file : files) {
@@ -102,7 +104,7 @@ Status writeStats(const VoxelizeRequest& request, const VoxelModel& model, size_
     return writeFileAtomic(request.stats, Json::writeString(builder, v) + "\n");
 }
 
-constexpr int kColumn = 14;  // of the names, "material 11" and some room
+constexpr int kColumn = 14;  // characters: "material 11" and a margin
 
 void printMaterials(const std::vector<VoxelMaterial>& materials) {
     constexpr size_t kMost = 12;
@@ -118,7 +120,7 @@ void printMaterials(const std::vector<VoxelMaterial>& materials) {
         voxels += materials[k].voxels;
         volume += materials[k].volume;
     }
-    fmt::print("{:<{}}{} materials more: {} voxels, volume {:.6g}\n", "", kColumn, materials.size() - kMost, voxels, volume);
+    fmt::print("{:<{}}{} more materials: {} voxels, volume {:.6g}\n", "", kColumn, materials.size() - kMost, voxels, volume);
 }
 
 void printFigures(const VoxelizeRequest& request, const VoxelModel& model, const VoxelFile& file, size_t bytes, const Device& device,
@@ -140,7 +142,7 @@ void printFigures(const VoxelizeRequest& request, const VoxelModel& model, const
                wholeMs);
 }
 
-// Whole files, one after the other, none after Ctrl-C. The bytes of the first.
+// Writes the output files one after the other; after Ctrl-C no further file is started. Returns the size of the voxel file, bytes.
 Result<size_t> writeAll(const VoxelizeRequest& request, const VoxelModel& model, const VoxelFile& file, const VoxelPicture& slices,
                         const VoxelPicture& picture, const Graceful& graceful) {
     Result<size_t> bytes = writeVoxelFile(request.out, file);
@@ -162,7 +164,7 @@ int voxelizeAs(const VoxelizeRequest& request) {
     const AskedDevice asked = askedDevice(request.backend, log, request.device);
     const std::unique_ptr<Device>& device = asked.device;
 
-    // Until files are written Ctrl-C leaves at once: there is nothing to tidy up.
+    // Until the first file is written, Ctrl-C exits at once: there is nothing to close.
     const MeshView view = mesh->view();
     std::optional<Progress> bar(std::in_place, "voxelising");
     VoxelizeOptions options;
@@ -208,7 +210,7 @@ int voxelizeAs(const VoxelizeRequest& request) {
 }  // namespace
 
 int voxelizeVerb(const Arguments& arguments) {
-    ArgumentReader reader("voxelize", "Turns a mesh into voxels, and writes them to a file, with figures and pictures of them.");
+    ArgumentReader reader("voxelize", "Converts a mesh to voxels and writes them to a file; on request also statistics and images.");
     VoxelizeRequest request;
     std::string modes, modeList;
     for (const VoxelModeRow& row : voxelModes().rows) {
@@ -216,19 +218,20 @@ int voxelizeVerb(const Arguments& arguments) {
         modeList += fmt::format("\n  {:<10}{}", row.name, row.doc);
     }
     reader.footer("Modes:" + modeList);
-    reader.positional("MESH", "OBJ, glTF, PLY, STL and more", request.mesh, true);
+    reader.positional("MESH", "a mesh file: OBJ, glTF, PLY, STL or another format of assimp", request.mesh, true);
     reader.option("--resolution", "N", "voxels along the mesh's longest side; default: 128", request.resolution, kMinVoxelResolution,
-                  kMaxVoxelResolution, false);  // what cannot be is said with the memory that it would need
-    reader.option("--out", "FILE.rvox", "what to write; default: the mesh's name with .rvox, in this folder", request.out);
+                  kMaxVoxelResolution, false);  // the voxeliser refuses a larger N and reports the memory that it would need
+    reader.option("--out", "FILE.rvox", "voxel file; default: the mesh's name with the ending .rvox, in the current folder", request.out);
     reader.option("--mode", "NAME", fmt::format("{}; default: solid", modes), request.mode);
-    reader.option("--backend", "NAME", "what computes: auto, cpu, gl or cl; the voxels are the same", request.backend);
-    reader.option("--device", "TEXT", "which OpenCL device: a part of its name, or its number in 'list devices'", request.device);
-    reader.flag("--thesis-order", "mode depth: work in the thesis's order; the voxels are the same", request.thesisOrder);
-    reader.flag("--labels", "also keep which voxel belongs to which material", request.labels);
-    reader.flag("--band", "also keep exact distances and directions near the mesh", request.band);
-    reader.option("--stats", "FILE.json", "also write the figures to a file", request.stats);
-    reader.option("--slices", "FILE.png", "also draw a sheet of slices", request.slices);
-    reader.option("--picture", "FILE.png", "also draw the voxels, cut open", request.picture);
+    reader.option("--backend", "NAME", "backend: auto, cpu, gl or cl; all give the same voxels; default: auto", request.backend);
+    reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", request.device);
+    reader.flag("--thesis-order", "with --mode depth: process the voxels in the order of the thesis; the result is the same",
+                request.thesisOrder);
+    reader.flag("--labels", "also store the material of each voxel", request.labels);
+    reader.flag("--band", "also store exact distances and directions in a band around the surface", request.band);
+    reader.option("--stats", "FILE.json", "also write statistics", request.stats);
+    reader.option("--slices", "FILE.png", "also write an image of all slices", request.slices);
+    reader.option("--picture", "FILE.png", "also write an image of the voxels, cut open", request.picture);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     if (Status sense = checkRequest(request); !sense) return report(sense.error());
     return voxelizeAs(request);

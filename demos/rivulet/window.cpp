@@ -8,7 +8,7 @@
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
 #include "engine/app/window_glfw.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/session/explain.h"
 #include "fluid/viewer/viewer.h"
 

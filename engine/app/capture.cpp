@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "engine/core/assert.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 
@@ -100,7 +100,7 @@ struct VideoWriter::Impl {
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
 
-    // What ffmpeg said last: the line that names the cause.
+    // ffmpeg's last message: the line that names the cause.
     std::string lastMessage() const {
         std::string text(4096, '\0');
         off_t end = ::lseek(messages, 0, SEEK_END);
@@ -111,7 +111,7 @@ struct VideoWriter::Impl {
         while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
         size_t line = text.find_last_of("\r\n");
         if (line != std::string::npos) text.erase(0, line + 1);
-        return text.empty() ? "ffmpeg ended without saying why" : text;
+        return text.empty() ? "ffmpeg ended without a message" : text;
     }
 
     Error failure() {

@@ -1,5 +1,5 @@
-// InputQueue: what the person did, in its order, handed out so that no frame loses any of it however long frames take: a click within a
-// frame is two frames', and it happens where the pointer was.
+// InputQueue: input events in their order, divided into frames so that none is lost in a long frame: press and release of a click go to
+// two frames, each at the position of the pointer.
 #pragma once
 
 #include <deque>

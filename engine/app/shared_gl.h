@@ -6,7 +6,8 @@
 
 namespace rivulet {
 
-// Framebuffers, vertex arrays and queries are not shared: what makes those must be told when it moves (contextChanged of device_gl.h).
+// Framebuffers, vertex arrays and queries are not shared: their owner must be notified when the thread changes (contextChanged of
+// device_gl.h).
 struct SharedGl {
     std::function<bool()> enter;    // makes it current on the calling thread, which has none; waits while another has it. false: it cannot
     std::function<void()> leave;    // none is current there any more

@@ -71,7 +71,7 @@ struct WindowGlfw::Impl {
 
     static InputQueue& of(GLFWwindow* window) { return static_cast<Impl*>(glfwGetWindowUserPointer(window))->queue; }
 
-    // Set when the window is made: whoever installs his own later (ImGui) gets these to call on.
+    // Set when the window is made: callbacks installed later (ImGui's) call these.
     void listen() {
         glfwSetWindowUserPointer(window, this);
         glfwSetCursorPosCallback(window,

@@ -76,7 +76,7 @@ std::string clPlatformText(cl_platform_id platform, cl_platform_info what) {
 }
 
 std::vector<ClCandidate> findClDevices(size_t& platforms) {
-    // A driver file that names a missing library is skipped by the loader; with no other driver the call fails, which means none too.
+    // The loader skips a driver file that names a missing library. Without another driver the call fails, which also means no platform.
     cl_uint count = 0;
     platforms = 0;
     if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
@@ -117,7 +117,7 @@ Result<std::vector<ClCandidate>> namedClDevices(const std::vector<ClCandidate>& 
         if (lower(c.name).find(lower(wanted)) != std::string::npos || lower(c.platformName).find(lower(wanted)) != std::string::npos)
             fits.push_back(c);
     if (!fits.empty()) return fits;
-    return badInput(fmt::format("no OpenCL device is called '{}'; there are: {}", wanted, fmt::join(listed, ", ")));
+    return badInput(fmt::format("no OpenCL device matches '{}'; use one of: {}", wanted, fmt::join(listed, ", ")));
 }
 
 std::vector<ClDeviceListing> listClDevices() {
@@ -137,7 +137,7 @@ std::vector<ClDeviceListing> listClDevices() {
 Status checkClDevice(std::string_view wanted) {
     size_t platforms = 0;
     const std::vector<ClCandidate> all = findClDevices(platforms);
-    if (all.empty()) return ok();  // that there is none is said when it is to be opened
+    if (all.empty()) return ok();  // makeClDevice reports that there is no device
     const auto fits = namedClDevices(all, wanted);
     return fits ? ok() : Status(fits.error());
 }

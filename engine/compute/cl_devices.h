@@ -1,4 +1,4 @@
-// The OpenCL devices of this machine, and what the driver says of them. For device_cl*.cpp and cl_*.cpp alone: it shows OpenCL's own types.
+// The OpenCL devices of this machine and their properties. Only for device_cl*.cpp and cl_*.cpp, because it includes OpenCL.
 #pragma once
 
 #include <CL/cl.h>
@@ -13,10 +13,10 @@
 
 namespace rivulet {
 
-// "CL_OUT_OF_RESOURCES"; where it has no name here: "OpenCL error -1001".
+// "CL_OUT_OF_RESOURCES"; for a code without a name here: "OpenCL error -1001".
 std::string clErrorName(cl_int code);
 
-// What clGet*Info gives as text, without the blanks and line ends that some drivers put around it.
+// A text from clGet*Info, without the white space that some drivers put around it.
 template <class Get>
 std::string clText(Get get) {
     constexpr const char* kBlank = " \n\r\t";
@@ -42,14 +42,14 @@ struct ClCandidate {
     cl_platform_id platform;
     cl_device_id device;
     cl_device_type type;
-    bool usable;  // there now, with a compiler, OpenCL 1.2
+    bool usable;  // available, little-endian, with a compiler and OpenCL 1.2
     std::string name, platformName;
 };
 
-// Every device, the best first: usable GPUs, other usable ones, the rest. `platforms` receives how many drivers were found.
+// All devices, the best first: usable GPUs, other usable ones, the rest. `platforms` receives the number of drivers found.
 std::vector<ClCandidate> findClDevices(size_t& platforms);
 
-// Those of `all` that `wanted` names, as makeClDevice says. Error (badInput): none; it lists those that there are.
+// The devices of `all` that match `wanted` (as ClOptions::device). Error (badInput): none; the message lists all devices.
 Result<std::vector<ClCandidate>> namedClDevices(const std::vector<ClCandidate>& all, std::string_view wanted);
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// Owners of OpenCL's objects. For device_cl*.cpp and cl_*.cpp alone, as cl_devices.h.
+// Owners of OpenCL objects. Only for device_cl*.cpp and cl_*.cpp, as cl_devices.h.
 #pragma once
 
 #include <CL/cl.h>
@@ -36,7 +36,7 @@ using Kernel = Owned<cl_kernel, clReleaseKernel>;
 using Event = Owned<cl_event, clReleaseEvent>;
 using Memory = Owned<cl_mem, clReleaseMemObject>;
 
-// An event's state: > 0 under way, CL_COMPLETE (0) done, < 0 failed.
+// The state of an event: > 0 running, CL_COMPLETE (0) finished, < 0 failed.
 inline cl_int stateOf(const Event& event) {
     cl_int state = CL_COMPLETE;
     if (event) clGetEventInfo(event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, nullptr);

@@ -41,38 +41,38 @@ cl_context contextOf(const cl_context_properties* properties, cl_device_id devic
     return clCreateContext(properties, 1, &device, nullptr, nullptr, code);
 }
 
-Error could(const char* what, cl_int code) { return failed(fmt::format("OpenCL could not {}: {}", what, clErrorName(code))); }
+Error couldNot(const char* what, cl_int code) { return failed(fmt::format("OpenCL could not {}: {}", what, clErrorName(code))); }
 
 GlSharing::Wrapped ownerOf(cl_mem memory) {
     return {memory, [](void* kept) { clReleaseMemObject(static_cast<cl_mem>(kept)); }};
 }
 
-// Between OpenGL's last word and its next: acquires, lets `work` tell the queue what to do, releases, and waits until it is done.
+// Waits for OpenGL, acquires the buffers, lets `work` enqueue its commands, releases the buffers and waits for OpenCL.
 template <class Work>
 Status acquired(const GlSharing::Impl& with, std::span<const cl_mem> all, const Work& work) {
     const auto count = static_cast<cl_uint>(all.size());
-    with.gl.finish();  // portable where OpenCL's events know nothing of OpenGL
+    with.gl.finish();  // portable: events shared by OpenCL and OpenGL are an optional extension
     if (const cl_int code = with.calls.acquire(with.queue.get(), count, all.data(), 0, nullptr, nullptr); code != CL_SUCCESS)
-        return could("acquire OpenGL's buffers", code);
+        return couldNot("acquire OpenGL's buffers", code);
     const Status worked = work();
     cl_event last = nullptr;
     if (const cl_int code = with.calls.release(with.queue.get(), count, all.data(), 0, nullptr, &last); code != CL_SUCCESS) {
         clFinish(with.queue.get());
-        return could("release OpenGL's buffers", code);
+        return couldNot("release OpenGL's buffers", code);
     }
     const cl::Event released(last);
-    if (const cl_int code = clWaitForEvents(1, &last); code != CL_SUCCESS) return could("release OpenGL's buffers", code);
+    if (const cl_int code = clWaitForEvents(1, &last); code != CL_SUCCESS) return couldNot("release OpenGL's buffers", code);
     return worked;
 }
 
-// What neither a cleared buffer nor another turn holds.
+// Data that differs from a cleared buffer and from the other turn.
 std::vector<uint32_t> pattern(uint32_t turn, size_t words) {
     std::vector<uint32_t> made(words);
     for (size_t k = 0; k < words; ++k) made[k] = 0x9e3779b9U * (static_cast<uint32_t>(k) + 1) + turn;
     return made;
 }
 
-// There and back, twice: what is only copied when it is wrapped would pass once.
+// Transfers data in both directions, twice: a driver that copies only when the buffer is wrapped would pass the first time.
 Status proveWith(const GlSharing::Impl& with) {
     constexpr size_t kWords = 1024, kHalf = kWords / 2;
     constexpr size_t kBytes = kWords * sizeof(uint32_t), kHalfBytes = kHalf * sizeof(uint32_t);
@@ -83,12 +83,12 @@ Status proveWith(const GlSharing::Impl& with) {
             if (name != 0) gl.destroy(name);
         }
     } buffer{with.gl, with.gl.create(kBytes)};
-    if (buffer.name == 0) return failed("OpenGL had no memory for a trial");
+    if (buffer.name == 0) return failed("OpenGL has no memory for the test of sharing");
     cl_int code = CL_SUCCESS;
     const cl::Memory wrapped(with.calls.wrap(with.context.get(), CL_MEM_READ_WRITE, buffer.name, &code));
-    if (!wrapped || code != CL_SUCCESS) return could("see a buffer of OpenGL's", code);
+    if (!wrapped || code != CL_SUCCESS) return couldNot("wrap an OpenGL buffer", code);
     const cl::Memory own(clCreateBuffer(with.context.get(), CL_MEM_READ_WRITE, kBytes, nullptr, &code));
-    if (!own) return could("allocate memory for a trial", code);
+    if (!own) return couldNot("allocate memory for the test of sharing", code);
     for (uint32_t turn = 0; turn < 2; ++turn) {
         const std::vector<uint32_t> sent = pattern(2 * turn, kWords), answer = pattern(2 * turn + 1, kHalf);
         std::vector<uint32_t> there(kWords), back(kWords);
@@ -96,12 +96,12 @@ Status proveWith(const GlSharing::Impl& with) {
         const cl_mem all[] = {wrapped.get()};
         const Status done = acquired(with, all, [&]() -> Status {
             const cl_command_queue queue = with.queue.get();
-            cl_int told = clEnqueueReadBuffer(queue, wrapped.get(), CL_TRUE, 0, kBytes, there.data(), 0, nullptr, nullptr);
-            if (told == CL_SUCCESS)
-                told = clEnqueueWriteBuffer(queue, own.get(), CL_TRUE, 0, kHalfBytes, answer.data(), 0, nullptr, nullptr);
-            if (told == CL_SUCCESS)
-                told = clEnqueueCopyBuffer(queue, own.get(), wrapped.get(), 0, kHalfBytes, kHalfBytes, 0, nullptr, nullptr);
-            return told == CL_SUCCESS ? ok() : could("work on a buffer of OpenGL's", told);
+            cl_int result = clEnqueueReadBuffer(queue, wrapped.get(), CL_TRUE, 0, kBytes, there.data(), 0, nullptr, nullptr);
+            if (result == CL_SUCCESS)
+                result = clEnqueueWriteBuffer(queue, own.get(), CL_TRUE, 0, kHalfBytes, answer.data(), 0, nullptr, nullptr);
+            if (result == CL_SUCCESS)
+                result = clEnqueueCopyBuffer(queue, own.get(), wrapped.get(), 0, kHalfBytes, kHalfBytes, 0, nullptr, nullptr);
+            return result == CL_SUCCESS ? ok() : couldNot("read or write an OpenGL buffer", result);
         });
         if (!done) return done;
         if (there != sent) return failed("OpenCL does not read what OpenGL wrote");
@@ -134,7 +134,7 @@ Result<cl::Context> makeSharedContext(const ClCandidate& chosen, const GlContext
         return failed(fmt::format("{} does not drive the OpenGL context", chosen.name));
     cl_int code = CL_SUCCESS;
     cl::Context context(calls.createContext(properties, chosen.device, &code));
-    if (!context || code != CL_SUCCESS) return could("make a context that shares with OpenGL", code);
+    if (!context || code != CL_SUCCESS) return couldNot("create a context that shares with OpenGL", code);
     return context;
 }
 
@@ -153,7 +153,7 @@ GlSharing::~GlSharing() = default;
 Result<GlSharing::Wrapped> GlSharing::wrap(unsigned buffer) const {
     cl_int code = CL_SUCCESS;
     const cl_mem memory = impl_->calls.wrap(impl_->context.get(), CL_MEM_READ_WRITE, buffer, &code);
-    if (!memory || code != CL_SUCCESS) return could("see a buffer of OpenGL's", code);
+    if (!memory || code != CL_SUCCESS) return couldNot("wrap an OpenGL buffer", code);
     return ownerOf(memory);
 }
 
@@ -163,7 +163,7 @@ Status GlSharing::copy(std::span<const Copy> copies) const {
         if (c.bytes > 0) all.push_back(static_cast<cl_mem>(c.to->get()));
     if (all.empty()) return ok();
     std::vector<cl::Event> done;
-    const Status told = acquired(*impl_, all, [&]() -> Status {
+    const Status copied = acquired(*impl_, all, [&]() -> Status {
         for (const Copy& c : copies) {
             if (c.bytes == 0) continue;
             ASSERT(c.bytes <= c.from->bytes(), "copy what the buffer holds");
@@ -171,14 +171,14 @@ Status GlSharing::copy(std::span<const Copy> copies) const {
             cl_event event = nullptr;
             const cl_int code =
                 clEnqueueCopyBuffer(impl_->queue.get(), from, static_cast<cl_mem>(c.to->get()), 0, 0, c.bytes, 0, nullptr, &event);
-            if (code != CL_SUCCESS) return could("copy into OpenGL's buffers", code);
+            if (code != CL_SUCCESS) return couldNot("copy into OpenGL's buffers", code);
             done.emplace_back(event);
         }
         return ok();
     });
-    if (!told) return told;
+    if (!copied) return copied;
     for (const cl::Event& event : done)
-        if (const cl_int state = stateOf(event); state != CL_COMPLETE) return could("copy into OpenGL's buffers", state);
+        if (const cl_int state = stateOf(event); state != CL_COMPLETE) return couldNot("copy into OpenGL's buffers", state);
     return ok();
 }
 

@@ -1,4 +1,4 @@
-// cl_khr_gl_sharing: OpenCL contexts that share buffers with OpenGL. For device_cl*.cpp and tests alone: it shows OpenCL's own types.
+// cl_khr_gl_sharing: OpenCL contexts that share buffers with OpenGL. Only for device_cl*.cpp and tests, because it includes OpenCL.
 #pragma once
 
 #include <CL/cl.h>
@@ -13,24 +13,25 @@
 
 namespace rivulet {
 
-// What is asked of the driver. Tests hand in what lies.
+// The driver functions that sharing uses. Tests replace them by functions that fail.
 struct ClGlCalls {
     std::string (*extensions)(cl_device_id device);
-    // The device that drives the OpenGL context which the properties name; null: none.
+    // The device that drives the OpenGL context in `properties`; null: none.
     cl_device_id (*driving)(cl_platform_id platform, const cl_context_properties* properties);
     cl_context (*createContext)(const cl_context_properties* properties, cl_device_id device, cl_int* code);
     decltype(&clCreateFromGLBuffer) wrap;
     decltype(&clEnqueueAcquireGLObjects) acquire;
     decltype(&clEnqueueReleaseGLObjects) release;
 };
-// The driver's own. All but `extensions` only for a device that names cl_khr_gl_sharing: PoCL does not, and ends the process when called.
+// The driver's functions. Except for `extensions`, call them only for a device with cl_khr_gl_sharing: PoCL has not, and its functions end
+// the process.
 ClGlCalls driversGlCalls();
 
-// A context in which `chosen` and `gl` see the same buffers, if the driver keeps its word. Error (failed), half a sentence: it has none.
+// A context in which `chosen` and `gl` should share buffers; proveSharing() tests it. Error (failed): the driver creates none.
 Result<cl::Context> makeSharedContext(const ClCandidate& chosen, const GlContext& gl, const ClGlCalls& calls);
 
-// Sharing in such a context, proven: what each of the two writes into a buffer of the other, the other reads. Error (failed), half a
-// sentence: it is not so, and nothing may be shared.
+// Tests sharing in such a context: each API must read from a shared buffer what the other has written. Error (failed): the test failed, and
+// sharing must not be used.
 Result<std::shared_ptr<const GlSharing>> proveSharing(cl_context context, cl_command_queue queue, const GlContext& gl,
                                                       const ClGlCalls& calls);
 

@@ -16,12 +16,12 @@ const char* backendName(Backend backend) {
         case Backend::cl:
             return "cl";
     }
-    ASSERT(false, "hand a Backend that exists");
+    ASSERT(false, "pass a valid Backend");
 }
 
-Status Device::room(size_t bytes) const {
+Status Device::checkLimit(size_t bytes) const {
     if (bytesAllocated() + bytes <= mostBytes_) return ok();
-    return failed(fmt::format("{} were asked for while {} of the {} that are allowed are in use; allow more, or use fewer particles",
+    return failed(fmt::format("cannot allocate {}: {} of the allowed {} are in use; raise the limit or use fewer particles",
                               readableBytes(bytes), readableBytes(bytesAllocated()), readableBytes(mostBytes_)));
 }
 

@@ -1,7 +1,8 @@
-// Device: runs kernels, on the CPU (oneTBB), in OpenGL compute shaders or in OpenCL. Everything a step needs is handed to it.
+// Device: runs kernels on the CPU (oneTBB), in OpenGL compute shaders or in OpenCL.
 //
-// Threading: one thread at a time uses a Device and all that is made of it (gl: one on which its context is current); any may be the next.
-// Calls are in order: a dispatch sees what earlier dispatches and writes did. Nothing but read() and finish() waits for the GPU.
+// Threading: a Device and everything made from it may be used by one thread at a time (gl: a thread on which its context is current), but
+// not always the same one. Calls are in order: a dispatch sees the results of earlier dispatches and writes. Only read() and finish() wait
+// for the GPU.
 #pragma once
 
 #include <cstddef>
@@ -31,8 +32,8 @@ class Buffer {
     Buffer(Device& device, uint64_t handle, size_t bytes) : device_(&device), handle_(handle), bytes_(bytes) {}
     Buffer(Buffer&& other) noexcept { swap(other); }
     Buffer& operator=(Buffer&& other) noexcept {
-        Buffer taken(std::move(other));
-        swap(taken);
+        Buffer moved(std::move(other));
+        swap(moved);
         return *this;
     }
     Buffer(const Buffer&) = delete;
@@ -68,24 +69,24 @@ struct DeviceInfo {
     size_t maxBufferBytes = SIZE_MAX;
 };
 
-// Whether a device still does what it is told.
+// Whether a device still works.
 struct DeviceHealth {
     enum State {
         works,
-        full,  // it had no memory for something; what it holds can still be read
-        lost,  // something that it was told was not done: what is read back from it means nothing
+        full,  // an allocation failed; existing buffers are valid
+        lost,  // a command failed: the contents of all buffers are invalid
     } state = works;
-    std::string why;  // half a sentence: "could not run fluid/grid/reorder: CL_OUT_OF_RESOURCES"
+    std::string why;  // continues a sentence after the device's name: "could not run fluid/grid/reorder: CL_OUT_OF_RESOURCES"
 };
 
-// How what a Device holds comes into OpenGL's own buffers without passing through the host.
+// Access of OpenGL to a Device's buffers without a copy through the host.
 class GlSharing;
 struct GlShare {
-    std::shared_ptr<const GlSharing> by;  // null: it does not
-    std::string whyNot;                   // half a sentence: "Portable Computing Language offers no cl_khr_gl_sharing"
+    std::shared_ptr<const GlSharing> by;  // null: not possible
+    std::string whyNot;                   // the reason, if null: "Portable Computing Language offers no cl_khr_gl_sharing"
 };
 
-// Time spent in all dispatches of one kernel since takeTimes() was last called. GPU figures come some frames late.
+// Time of all dispatches of one kernel since the last takeTimes(). GPU times arrive 2 to 3 frames late.
 struct PassTime {
     std::string name;
     double ms = 0;
@@ -97,9 +98,9 @@ class Device {
     virtual ~Device() = default;
     virtual Backend backend() const = 0;
     virtual const DeviceInfo& info() const = 0;
-    // As of what has been heard so far, which may be some calls late. What has gone wrong stays so.
+    // The state known so far; failures on a GPU may be detected some calls late. A failure is permanent, but see forgiveFull().
     DeviceHealth health() const { return health_; }
-    // For who tried something that was too large, and has let go of it: a device that was full works again. One that is lost stays lost.
+    // For a caller that tried an allocation that was too large and has released it: a full device works again. A lost one stays lost.
     void forgiveFull() {
         if (health_.state == DeviceHealth::full) health_ = {};
     }
@@ -109,23 +110,23 @@ class Device {
     virtual Result<Kernel> kernel(std::string_view path, std::span<const Define> defines) = 0;
     Result<Kernel> kernel(std::string_view path) { return kernel(path, {}); }
 
-    // Reads the files of its kernels again. How many kernels are others now; 0 where they are compiled in. Error: what the compiler says,
-    // or a kernel that no longer takes what it is handed; all stay as they were.
+    // Reads the files of its kernels again and compiles the changed ones. Returns how many changed; 0 if kernels are compiled in (cpu).
+    // Error: the compiler's message, or a kernel whose arguments no longer fit its caller; then no kernel changes.
     virtual Result<size_t> reload() { return size_t{0}; }
 
-    // What kernel() has made so far: "fluid/methods/wcsph_density;MATTER=1;PERIODIC=1".
+    // The kernels made so far, with their defines: "fluid/methods/wcsph_density;MATTER=1;PERIODIC=1".
     virtual std::vector<std::string> kernels() const = 0;
 
-    // Contents are zero. 0 bytes give a valid Buffer of 0 bytes.
+    // A Buffer filled with zeros. 0 bytes give a valid Buffer of 0 bytes. Error (failed): out of memory, or above limitMemory().
     virtual Result<Buffer> allocate(size_t bytes) = 0;
     virtual void release(uint64_t handle, size_t bytes) = 0;  // Buffer's destructor calls it
     virtual void write(Buffer& to, std::span<const std::byte> bytes, size_t offset = 0) = 0;
-    virtual void read(const Buffer& from, std::span<std::byte> bytes, size_t offset = 0) = 0;  // waits
-    virtual void fill(Buffer& to, uint32_t word) = 0;
+    virtual void read(const Buffer& from, std::span<std::byte> bytes, size_t offset = 0) = 0;  // waits for the GPU
+    virtual void fill(Buffer& to, uint32_t word) = 0;                                          // every 4 bytes
     virtual void copy(const Buffer& from, Buffer& to, size_t bytes) = 0;
 
-    // Hands a copy of the first `bytes` of `from`, as they are now, to `then` during some later poll(), without waiting. On the cpu: at
-    // once.
+    // Copies the first `bytes` of `from` as of this call and passes them to `then` during a later poll(), without waiting. On the cpu
+    // `then` is called at once.
     virtual void readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) = 0;
     virtual void poll() = 0;
 
@@ -139,9 +140,10 @@ class Device {
     virtual void finish() = 0;
     virtual std::vector<PassTime> takeTimes() = 0;
     virtual size_t bytesAllocated() const = 0;
-    // Of what is allocated from now on: beyond so many bytes in all, allocate() fails.
+    // From now on allocate() fails if it would raise bytesAllocated() above `bytes`.
     void limitMemory(size_t bytes) { mostBytes_ = bytes; }
-    // From now on `sink` hears of each dispatch, a GPU's some frames late, when poll() or takeTimes() know when it was; empty: nobody does.
+    // From now on `sink` receives the span of each dispatch, on a GPU some frames late, during poll() or takeTimes(). An empty sink ends
+    // it.
     void onSpan(SpanSink sink) { span_ = std::move(sink); }
 
     template <class T>
@@ -156,7 +158,7 @@ class Device {
     }
 
   protected:
-    Status room(size_t bytes) const;  // error (failed): the limit
+    Status checkLimit(size_t bytes) const;  // error (failed): above limitMemory()
     SpanSink span_;
     size_t mostBytes_ = SIZE_MAX;
     DeviceHealth health_;

@@ -24,8 +24,8 @@ using cl::stateOf;
 
 constexpr uint32_t kDefaultLocalSize = 64;
 constexpr size_t kParamSlots = 32;      // parameter blocks kept on the device
-constexpr uint32_t kFlushEvery = 16;    // dispatches handed to the driver at once
-constexpr size_t kHarvestAbove = 1024;  // timed dispatches that may wait for takeTimes()
+constexpr uint32_t kFlushEvery = 16;    // dispatches between two flushes
+constexpr size_t kHarvestAbove = 1024;  // timed dispatches above which times are collected without takeTimes()
 
 struct Opened {
     Context context;
@@ -73,7 +73,7 @@ class ClDevice final : public Device {
     };
     struct ParamSlot {
         Memory memory;
-        std::vector<std::byte> bytes;  // what it holds, and what the write in flight reads
+        std::vector<std::byte> bytes;  // its contents; also the source of a write that is still running
         Event written;
     };
     struct Upload {
@@ -84,7 +84,7 @@ class ClDevice final : public Device {
         Event done;
         uint32_t kernel;
     };
-    struct Awaited {
+    struct PendingRead {
         Event done;
         std::vector<std::byte> bytes;
         std::function<void(std::span<const std::byte>)> then;
@@ -99,7 +99,7 @@ class ClDevice final : public Device {
     double hostTime(cl_ulong at);
     void dropUploads();
     bool succeeded(cl_int code, std::string_view what);
-    // What the driver says to a command; nothing is asked of a device that a test has lost.
+    // Calls the driver; a device that a test has declared lost returns an error instead.
     template <class Command>
     cl_int enqueue(const Command& command) {
         return dispatches_ < failAfter_ ? command() : CL_DEVICE_NOT_AVAILABLE;
@@ -114,7 +114,7 @@ class ClDevice final : public Device {
     GlShare share_;
     DeviceInfo info_;
     std::string options_;
-    std::string made_;  // what, beside its source, a program is known by
+    std::string buildKey_;  // the part of a program's cache key beside its source: options, device and driver
     DiskCache cache_;
     size_t memoryLimit_;
     uint64_t failAfter_, eventFailsAfter_, dispatches_ = 0;
@@ -123,13 +123,13 @@ class ClDevice final : public Device {
     std::deque<ParamSlot> params_;  // oldest first
     std::deque<Upload> uploads_;    // in order: the front ends first
     std::deque<Timed> timed_;
-    std::deque<Awaited> awaited_;
+    std::deque<PendingRead> pendingReads_;
     std::vector<PassTime> times_;
     size_t bytesAllocated_ = 0;
     uint32_t sinceFlush_ = 0;
-    Queue clock_;                   // of its own, so that asking for the time waits for no kernel
-    Memory tick_;                   // what is written to ask
-    double ahead_ = 0, told_ = -1;  // s: the host's clock before the device's, and when it was asked
+    Queue clock_;                                  // a separate queue, so that reading the device's clock waits for no kernel
+    Memory tick_;                                  // written to read the clock
+    double clockOffset_ = 0, lastClockSync_ = -1;  // s: host clock minus device clock; host time of the last comparison
 };
 
 ClDevice::ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& files, Log log, const ClOptions& options)
@@ -149,17 +149,17 @@ ClDevice::ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& 
     info_.software = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
     info_.maxBufferBytes = clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
     maxLocalSize_ = clDeviceValue<size_t>(device_, CL_DEVICE_MAX_WORK_GROUP_SIZE);
-    options_ = "-cl-std=CL1.2";  // no fast-math: the backends agree to rounding
+    options_ = "-cl-std=CL1.2";  // no fast-math, so that the backends agree up to rounding
     if (clDeviceValue<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
         options_ += " -cl-fp32-correctly-rounded-divide-sqrt";
     for (const std::string& part : {options_, info_.name, clDeviceText(device_, CL_DEVICE_VENDOR), clDeviceText(device_, CL_DEVICE_VERSION),
                                     driver, chosen.platformName, version})
-        made_ += part + '\n';
+        buildKey_ += part + '\n';
 }
 
 ClDevice::~ClDevice() { clFinish(queue_.get()); }
 
-// Calls that have no Result say their trouble once: after the first, a broken queue would repeat it every frame.
+// For calls without a Result: the first failure is logged; a broken queue would otherwise repeat it every frame.
 bool ClDevice::succeeded(cl_int code, std::string_view what) {
     if (code == CL_SUCCESS) return true;
     if (health_.state != DeviceHealth::lost) {
@@ -169,7 +169,7 @@ bool ClDevice::succeeded(cl_int code, std::string_view what) {
     return false;
 }
 
-// A program of an earlier start, or one of this start's: null where there is none, or the driver will not have it.
+// The compiled program from the cache; null if there is none or the driver refuses it.
 Program ClDevice::cached(const std::string& key) {
     const std::optional<std::vector<std::byte>> kept = cache_.find(key);
     if (!kept) return {};
@@ -191,7 +191,7 @@ void ClDevice::keep(const std::string& key, const Program& program) {
         cache_.keep(key, binary);
 }
 
-// Null: `why` says what the compiler has against it.
+// Compiles a program. On failure it returns null and `why` holds the compiler's message.
 Program ClDevice::build(const KernelSource& source, std::string_view file, Error& why) {
     const char* text = source.text.c_str();
     cl_int code = CL_SUCCESS;
@@ -234,7 +234,7 @@ Result<Kernel> ClDevice::kernel(std::string_view path, std::span<const Define> d
 Result<ClDevice::Entry> ClDevice::make(std::string key, std::string_view path, std::vector<Define> defines, uint32_t localSize,
                                        const KernelSource& source) {
     const std::string file = fmt::format("shaders/{}.kernel", path);
-    const std::string programKey = made_ + source.text;
+    const std::string programKey = buildKey_ + source.text;
     const std::string name(path.substr(path.rfind('/') + 1));
     cl_int code = CL_SUCCESS;
     Program program = cached(programKey);
@@ -245,7 +245,7 @@ Result<ClDevice::Entry> ClDevice::make(std::string key, std::string_view path, s
         if (!program) return why;
         object = cl::Kernel(clCreateKernel(program.get(), name.c_str(), &code));
         if (!object)
-            return failed(fmt::format("{} holds no kernel named {} ({}): write KERNEL({}, ...)", file, name, clErrorName(code), name));
+            return failed(fmt::format("{} has no kernel named {} ({}); write KERNEL({}, ...)", file, name, clErrorName(code), name));
         keep(programKey, program);
     }
     size_t allowed = 0;
@@ -270,7 +270,7 @@ Result<size_t> ClDevice::reload() {
         Result<Entry> made = make(e.key, e.path, e.defines, e.localSize, *source);
         if (!made) return made.error();
         if (made->args != e.args)
-            return failed(fmt::format("shaders/{}.kernel now takes {} arguments and is handed {}: build the program anew", e.path,
+            return failed(fmt::format("shaders/{}.kernel now has {} arguments, but the program passes {}; rebuild the program", e.path,
                                       made->args, e.args));
         fresh.emplace_back(&e, std::move(*made));
     }
@@ -278,14 +278,14 @@ Result<size_t> ClDevice::reload() {
     return fresh.size();
 }
 
-// OpenCL has no buffers of 0 bytes, and fills whole words.
+// OpenCL refuses buffers of 0 bytes, and fills are done in 4-byte words.
 size_t paddedBytes(size_t bytes) { return std::max<size_t>((bytes + 15) / 16 * 16, 16); }
 
 Result<Buffer> ClDevice::allocate(size_t bytes) {
-    if (Status allowed = room(bytes); !allowed) return allowed.error();
+    if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
     if (bytes > info_.maxBufferBytes) {
-        if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("has no buffers of {} MiB", bytes >> 20U)};
-        return failed(fmt::format("{} allows buffers of {} MiB, but {} MiB were asked for; use fewer particles or coarser voxels",
+        if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("allows no buffer of {} MiB", bytes >> 20U)};
+        return failed(fmt::format("{} allows buffers of up to {} MiB, but {} MiB are needed; use fewer particles or coarser voxels",
                                   info_.name, info_.maxBufferBytes >> 20U, bytes >> 20U));
     }
     const size_t padded = paddedBytes(bytes);
@@ -304,11 +304,11 @@ Result<Buffer> ClDevice::allocate(size_t bytes) {
         }
         if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("is out of memory: {}", clErrorName(code))};
         return failed(
-            fmt::format("{} is out of memory: {} MiB were asked for while {} MiB are in use ({}); use fewer particles or coarser voxels",
+            fmt::format("{} is out of memory: cannot allocate {} MiB, {} MiB are in use ({}); use fewer particles or coarser voxels",
                         info_.name, bytes >> 20U, bytesAllocated_ >> 20U, clErrorName(code)));
     }
     bytesAllocated_ += bytes;
-    clRetainMemObject(memory.get());  // the Buffer's
+    clRetainMemObject(memory.get());  // for the Buffer
     return Buffer(*this, reinterpret_cast<uintptr_t>(memory.get()), bytes);
 }
 
@@ -362,17 +362,17 @@ void ClDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
 
 void ClDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
     ASSERT(bytes <= from.bytes(), "read inside the buffer");
-    Awaited awaited{Event(), std::vector<std::byte>(bytes), std::move(then)};
+    PendingRead pending{Event(), std::vector<std::byte>(bytes), std::move(then)};
     if (bytes > 0) {
         cl_event done = nullptr;
         const cl_int code = enqueue(
-            [&] { return clEnqueueReadBuffer(queue_.get(), memory(from), CL_FALSE, 0, bytes, awaited.bytes.data(), 0, nullptr, &done); });
+            [&] { return clEnqueueReadBuffer(queue_.get(), memory(from), CL_FALSE, 0, bytes, pending.bytes.data(), 0, nullptr, &done); });
         if (!succeeded(code, fmt::format("read {} bytes", bytes))) return;
-        awaited.done = Event(done);
+        pending.done = Event(done);
         clFlush(queue_.get());
         sinceFlush_ = 0;
     }
-    awaited_.push_back(std::move(awaited));
+    pendingReads_.push_back(std::move(pending));
 }
 
 void ClDevice::poll() {
@@ -380,16 +380,16 @@ void ClDevice::poll() {
     sinceFlush_ = 0;
     dropUploads();
     harvest();
-    // What a callback asks for waits for another poll().
-    for (size_t left = awaited_.size(); left > 0 && stateOf(awaited_.front().done) <= CL_COMPLETE; --left) {
-        const Awaited ready = std::move(awaited_.front());
-        awaited_.pop_front();
+    // Reads that a callback starts are left to the next poll().
+    for (size_t left = pendingReads_.size(); left > 0 && stateOf(pendingReads_.front().done) <= CL_COMPLETE; --left) {
+        const PendingRead ready = std::move(pendingReads_.front());
+        pendingReads_.pop_front();
         if (succeeded(std::min(stateOf(ready.done), CL_SUCCESS), "read results back")) ready.then(ready.bytes);
     }
 }
 
-// The block on the device. Kernels of a step mostly share theirs, so that it is written once. The queue is in order: a slot may be written
-// anew behind the kernels that read it, once the host's copy is no longer read by an earlier write.
+// The parameter block on the device. Most kernels of a step have the same block, which is written once. The queue is in order: a slot may
+// be overwritten after the kernels that read it, once no earlier write still reads the host's copy.
 cl_mem ClDevice::params(std::span<const std::byte> bytes) {
     const auto same = std::find_if(params_.rbegin(), params_.rend(), [&](const ParamSlot& slot) {
         return slot.bytes.size() == bytes.size() && std::memcmp(slot.bytes.data(), bytes.data(), bytes.size()) == 0;
@@ -417,9 +417,9 @@ cl_mem ClDevice::params(std::span<const std::byte> bytes) {
 }
 
 void ClDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
-    ASSERT(kernel.index < kernels_.size(), "ask this device for the kernel before dispatching it");
+    ASSERT(kernel.index < kernels_.size(), "get the kernel from this device before dispatching it");
     const Entry& entry = kernels_[kernel.index];
-    ASSERT(entry.args == buffers.size() + 1, "hand a buffer for every row of the kernel's ARGS");
+    ASSERT(entry.args == buffers.size() + 1, "pass a buffer for every row of the kernel's ARGS");
     ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
     if (threads == 0) return;
     const cl_mem block = this->params(params);
@@ -455,7 +455,7 @@ void ClDevice::finish() {
     harvest();
 }
 
-// Adds up what is done: the queue is in order, so that the first unfinished one ends the search.
+// Adds up the times of finished dispatches. The queue is in order, so the first unfinished one ends the search.
 void ClDevice::harvest() {
     while (!timed_.empty()) {
         const Timed& front = timed_.front();
@@ -476,11 +476,12 @@ void ClDevice::harvest() {
     }
 }
 
-// s of hostSeconds(). OpenCL 1.2 cannot ask for the device's time: a small write that is waited for ends about now.
+// Converts a device time to s of hostSeconds(). OpenCL 1.2 cannot read the device's clock: instead, the end of a small blocking write is
+// taken as the present time.
 double ClDevice::hostTime(cl_ulong at) {
-    // The two clocks drift.
-    if (const double before = hostSeconds(); told_ < 0 || before > told_ + 1) {
-        told_ = before;
+    // The two clocks drift, so they are compared once a second.
+    if (const double before = hostSeconds(); lastClockSync_ < 0 || before > lastClockSync_ + 1) {
+        lastClockSync_ = before;
         cl_int code = CL_SUCCESS;
         if (!clock_) clock_ = Queue(clCreateCommandQueue(context_.get(), device_, CL_QUEUE_PROFILING_ENABLE, &code));
         if (!tick_) tick_ = Memory(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, paddedBytes(sizeof(uint32_t)), nullptr, &code));
@@ -492,10 +493,10 @@ double ClDevice::hostTime(cl_ulong at) {
             const Event event(written);
             cl_ulong end = 0;
             if (clGetEventProfilingInfo(written, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) == CL_SUCCESS)
-                ahead_ = now - 1.0e-9 * static_cast<double>(end);
+                clockOffset_ = now - 1.0e-9 * static_cast<double>(end);
         }
     }
-    return ahead_ + 1.0e-9 * static_cast<double>(at);
+    return clockOffset_ + 1.0e-9 * static_cast<double>(at);
 }
 
 std::vector<PassTime> ClDevice::takeTimes() {
@@ -507,7 +508,7 @@ Queue queueOf(const Context& context, cl_device_id device, cl_int& code) {
     return Queue(context ? clCreateCommandQueue(context.get(), device, CL_QUEUE_PROFILING_ENABLE, &code) : nullptr);
 }
 
-// In a context that shares with OpenGL where that is proven to work, else in a plain one.
+// Opens a context that shares with OpenGL if sharing passes its test, else a plain one.
 Opened open(const ClCandidate& candidate, const ClOptions& options, cl_int& code) {
     const ClGlCalls calls = options.glCalls != nullptr ? *options.glCalls : driversGlCalls();
     Opened opened;
@@ -539,7 +540,7 @@ Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log, 
     if (platforms == 0)
         return failed(
             "this machine has no working OpenCL driver; install one (on Debian: apt-get install pocl-opencl-icd) or use --backend cpu");
-    if (all.empty()) return failed("OpenCL is installed but has no device to run on (it lists no device); use --backend cpu");
+    if (all.empty()) return failed("OpenCL is installed but lists no device; use --backend cpu");
     const auto candidates = namedClDevices(all, options.device);
     if (!candidates) return candidates.error();
     std::string why;
@@ -555,11 +556,11 @@ Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log, 
             continue;
         }
         if (!options.device.empty() && candidates->size() > 1)
-            log.notice(fmt::format("'{}' names {} OpenCL devices: {} ({}) is taken; 'rivulet list devices' has their numbers",
+            log.notice(fmt::format("'{}' matches {} OpenCL devices: using {} ({}); 'rivulet list devices' shows their numbers",
                                    options.device, candidates->size(), candidate.name, candidate.platformName));
         return std::unique_ptr<Device>(std::make_unique<ClDevice>(candidate, std::move(opened), files, std::move(log), options));
     }
-    return failed(fmt::format("OpenCL is installed but has no device to run on ({}); use --backend cpu", why));
+    return failed(fmt::format("OpenCL is installed but has no usable device ({}); use --backend cpu", why));
 }
 
 }  // namespace rivulet

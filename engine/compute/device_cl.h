@@ -1,4 +1,4 @@
-// Device cl: kernels in OpenCL 1.2, on a GPU where there is one, else on whatever OpenCL offers (PoCL).
+// Device cl: kernels in OpenCL 1.2, on a GPU if there is one, else on another OpenCL device (for example PoCL on the CPU).
 #pragma once
 
 #include <cstddef>
@@ -19,29 +19,29 @@ namespace rivulet {
 struct ClGlCalls;  // cl_sharing.h
 
 struct ClOptions {
-    // Which: its number in listClDevices(), from 1, or a part of its or its platform's name, letters of either case. "": the first.
+    // The device: its number in listClDevices(), from 1, or part of its or its platform's name, ignoring case. "": the first.
     std::string device = {};
-    std::string cache = cacheFolder("cl");  // where built programs are kept; "": nowhere
-    GlContext gl = {};                      // whose buffers glShare() may copy into: outlives the device. None is current: nobody's
-    // What tests let go wrong: the device has no more memory than this; it is lost once it has run so many dispatches; the dispatch after
-    // so many is taken, and its event fails.
+    std::string cache = cacheFolder("cl");  // folder of compiled programs; "": they are not stored
+    GlContext gl = {};                      // the context that glShare() copies into; it must outlive the device. Default: no sharing
+    // For tests of failures: memory of the device, bytes; number of dispatches after which the device is lost; number of dispatches after
+    // which one is accepted but its event fails.
     size_t memoryLimit = SIZE_MAX;
     uint64_t failAfter = UINT64_MAX, eventFailsAfter = UINT64_MAX;
-    const ClGlCalls* glCalls = nullptr;  // and what is taken for the driver's; null: the driver's
+    const ClGlCalls* glCalls = nullptr;  // for tests: replaces the driver's functions; null: the driver's
 };
 
-// Kernels are read through `files`. Errors: no OpenCL platform, no device that can compile kernels, no context (failed); none of the name
-// that was asked for (badInput). `log` hears which one is taken where several have that name, and of trouble that comes later, where there
-// is no Result to say it in: a dispatch that the driver refused. health() knows of it, too.
+// Kernels are read through `files`. Error: no OpenCL platform, no device that can compile kernels, or no context (failed); no device of the
+// requested name (badInput). `log` receives which device is used if several match, and later failures of calls that return no Result, for
+// example a dispatch that the driver refused; health() reports these too.
 Result<std::unique_ptr<Device>> makeClDevice(const ShaderFiles& files, Log log = {}, const ClOptions& options = {});
 
 struct ClDeviceListing {
     std::string name, platform;
-    std::string sentence;  // these, and what it can
+    std::string sentence;  // name, platform, type, memory and versions, for lists
 };
-// The OpenCL devices of this machine, the one that makeClDevice takes first; empty where there is none.
+// The OpenCL devices of this machine, in the order in which makeClDevice prefers them; empty if there are none.
 std::vector<ClDeviceListing> listClDevices();
-// Error (badInput): there are devices, and `wanted` (as ClOptions::device) is none of them.
+// Error (badInput): there are devices, and none matches `wanted` (as ClOptions::device).
 Status checkClDevice(std::string_view wanted);
 
 }  // namespace rivulet

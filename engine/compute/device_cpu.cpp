@@ -86,8 +86,8 @@ constexpr size_t kMostParams = 1024;  // bytes
 
 struct CpuDevice::Impl {
     std::vector<CpuKernelRow> rows;
-    std::vector<CpuKernelRow> kernels;     // those asked for; Kernel::index counts here
-    std::optional<tbb::task_arena> arena;  // of so many threads as were asked for; nothing: the caller's
+    std::vector<CpuKernelRow> kernels;     // those requested; Kernel::index is an index into it
+    std::optional<tbb::task_arena> arena;  // with the requested number of threads; empty: the caller's arena
     std::vector<PassTime> times;
     std::vector<void*> bindings;
 
@@ -104,7 +104,7 @@ std::unique_ptr<CpuDevice> makeCpuDevice(std::span<const CpuKernelRow> rows, con
 
 CpuDevice::CpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& options) : impl_(std::make_unique<Impl>()), isa_(options.isa) {
     impl_->rows.assign(rows.begin(), rows.end());
-    if (options.threads > 0) impl_->arena.emplace(options.threads);  // oneTBB keeps some kB of each that ever was
+    if (options.threads > 0) impl_->arena.emplace(options.threads);  // oneTBB never frees the few kB of an arena
     info_.name = fmt::format("{}, {} thread{}, {}", processorName(), threads(), threads() == 1 ? "" : "s", isaName(isa_));
 }
 
@@ -114,7 +114,7 @@ int CpuDevice::threads() const { return impl_->arena ? impl_->arena->max_concurr
 
 Result<Kernel> CpuDevice::kernel(std::string_view path, std::span<const Define> defines) {
     std::string wanted = joinDefines(defines);
-    // The best instruction set this device may use that the kernel was compiled for.
+    // The best instruction set that the kernel was compiled for and that this device may use.
     const CpuKernelRow* best = nullptr;
     for (const CpuKernelRow& row : impl_->rows)
         if (path == row.path && wanted == inOrder(row.defines) && row.isa <= isa_ && (best == nullptr || row.isa > best->isa)) best = &row;
@@ -137,11 +137,11 @@ std::vector<std::string> CpuDevice::kernels() const {
 }
 
 Result<Buffer> CpuDevice::allocate(size_t bytes) {
-    if (Status allowed = room(bytes); !allowed) return allowed.error();
+    if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
     size_t padded = (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment;
     void* memory = std::aligned_alloc(kAlignment, padded);
     if (memory == nullptr)
-        return failed(fmt::format("out of memory: {} MiB were asked for; use fewer particles or coarser voxels", bytes >> 20U));
+        return failed(fmt::format("out of memory: cannot allocate {} MiB; use fewer particles or coarser voxels", bytes >> 20U));
     std::memset(memory, 0, padded);
     bytesAllocated_ += bytes;
     return Buffer(*this, reinterpret_cast<uintptr_t>(memory), bytes);
@@ -195,7 +195,7 @@ void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void
 }
 
 void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
-    ASSERT(kernel.index < impl_->kernels.size(), "ask this device for the kernel before dispatching it");
+    ASSERT(kernel.index < impl_->kernels.size(), "get the kernel from this device before dispatching it");
     if (threads == 0) return;
     const double started = hostSeconds();
     const CpuKernelRow& row = impl_->kernels[kernel.index];
@@ -204,7 +204,7 @@ void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::
     void* const* bindings = impl_->bindings.data();
     // Kernels read the block with aligned vector loads; the caller's struct need not be aligned.
     alignas(kAlignment) std::byte block[kMostParams];
-    ASSERT(params.size() <= kMostParams, "keep a parameter block under 1 KiB: larger data belong in a buffer");
+    ASSERT(params.size() <= kMostParams, "keep a parameter block at 1 KiB or less: put larger data in a buffer");
     std::memcpy(block, params.data(), params.size());
     parallelFor(threads, row.grain,
                 [&](size_t begin, size_t end) { row.run(static_cast<uint32_t>(begin), static_cast<uint32_t>(end), block, bindings); });

@@ -1,4 +1,4 @@
-// Device cpu: kernels compiled as C++ for several instruction sets, run over chunks by oneTBB.
+// Device cpu: kernels compiled as C++ for several instruction sets; oneTBB runs them in chunks on all cores.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@ namespace rivulet {
 
 enum class Isa { generic, avx2, avx512 };
 const char* isaName(Isa isa);
-Isa bestIsa();  // what this machine runs
+Isa bestIsa();  // the best instruction set that this machine supports
 
 // One compiled kernel. `defines` as "A=1;B=2", empty for none.
 using CpuKernelFn = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);
@@ -18,7 +18,7 @@ struct CpuKernelRow {
     const char* defines;
     Isa isa;
     CpuKernelFn run;
-    uint32_t grain;  // threads a chunk
+    uint32_t grain;  // kernel threads (particles, cells, ...) per chunk
 };
 
 struct CpuOptions {
@@ -53,9 +53,9 @@ class CpuDevice final : public Device {
 
     Isa isa() const { return isa_; }
     int threads() const;
-    // Calls body(begin, end) over chunks of [0, count), chunks in any order on any thread. For native passes (sorting, lists).
+    // Calls body(begin, end) for chunks of [0, count), in any order and on any thread. For passes written in C++ (sorting, lists).
     void parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body);
-    // Adds `ms` to the times of a native pass, so that takeTimes() reports it beside the kernels.
+    // Adds `ms` to the time of a pass written in C++, so that takeTimes() reports it beside the kernels.
     void addTime(std::string_view name, double ms);
 
   private:

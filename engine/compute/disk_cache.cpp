@@ -11,7 +11,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 
@@ -19,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file: this, the key, the thing. The whole key, so that two with one name are told apart.
+// A file holds this header, the key and the data. The whole key is stored, because two keys may have the same hash.
 struct Header {
     std::array<char, 8> magic;
-    uint64_t keyBytes, thingBytes;
-    uint64_t checksum;  // XXH3 of what follows
+    uint64_t keyBytes, dataBytes;
+    uint64_t checksum;  // XXH3 of key and data
 };
 constexpr std::array<char, 8> kMagic = {'R', 'V', 'L', 'T', 'K', 'P', '0', '1'};
 constexpr const char* kEnding = ".kept";
@@ -41,7 +41,7 @@ void trimCache(const std::string& folder, std::string_view ending, size_t mostFi
     const auto longAgo = fs::file_time_type::clock::now() - std::chrono::hours(1);
     size_t total = 0;
     for (fs::directory_iterator at(folder, ignored), end; at != end; at.increment(ignored)) {
-        std::error_code gone;  // by another program
+        std::error_code gone;  // deleted by another process
         Entry entry{at->path(), at->last_write_time(gone), 0};
         if (!gone) entry.bytes = static_cast<size_t>(at->file_size(gone));
         if (gone) continue;
@@ -88,20 +88,20 @@ std::optional<std::vector<std::byte>> DiskCache::find(std::string_view key) cons
     std::memcpy(&header, file->data(), sizeof header);
     const std::string_view rest = std::string_view(*file).substr(sizeof header);
     if (header.magic != kMagic || header.keyBytes != key.size() || rest.size() < key.size() ||
-        header.thingBytes != rest.size() - key.size() || header.checksum != XXH3_64bits(rest.data(), rest.size()) ||
+        header.dataBytes != rest.size() - key.size() || header.checksum != XXH3_64bits(rest.data(), rest.size()) ||
         rest.substr(0, key.size()) != key)
         return std::nullopt;
-    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // it was of use: trimCache keeps it longer
-    const auto thing = std::as_bytes(std::span(rest.substr(key.size())));
-    return std::vector<std::byte>(thing.begin(), thing.end());
+    fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // the time of the last use, for trimCache
+    const auto data = std::as_bytes(std::span(rest.substr(key.size())));
+    return std::vector<std::byte>(data.begin(), data.end());
 }
 
-void DiskCache::keep(std::string_view key, std::span<const std::byte> thing) const {
-    if (folder_.empty() || thing.empty() || sizeof(Header) + key.size() + thing.size() > kMostBytes) return;
+void DiskCache::keep(std::string_view key, std::span<const std::byte> data) const {
+    if (folder_.empty() || data.empty() || sizeof(Header) + key.size() + data.size() > kMostBytes) return;
     std::string file(sizeof(Header), '\0');
     file += key;
-    file.append(reinterpret_cast<const char*>(thing.data()), thing.size());
-    const Header header{kMagic, key.size(), thing.size(), XXH3_64bits(file.data() + sizeof(Header), file.size() - sizeof(Header))};
+    file.append(reinterpret_cast<const char*>(data.data()), data.size());
+    const Header header{kMagic, key.size(), data.size(), XXH3_64bits(file.data() + sizeof(Header), file.size() - sizeof(Header))};
     std::memcpy(file.data(), &header, sizeof header);
     std::error_code ignored;
     fs::create_directories(folder_, ignored);

@@ -1,4 +1,4 @@
-// What takes long to make kept on the disk: the second start of a scene loads what the first one made.
+// A cache on disk for results that take long to compute: the second start of a scene loads what the first one computed.
 #pragma once
 
 #include <cstddef>
@@ -10,29 +10,29 @@
 
 namespace rivulet {
 
-// $XDG_CACHE_HOME/rivulet/NAME, else ~/.cache/rivulet/NAME; "" where neither variable holds an absolute path: nothing is kept then.
+// $XDG_CACHE_HOME/rivulet/NAME, else ~/.cache/rivulet/NAME; "" if neither variable holds an absolute path: then nothing is stored.
 std::string cacheFolder(std::string_view name);
 
-// 32 hexadecimal digits of these bytes (XXH3): for a key of what is large.
+// The hash of `bytes` as 32 hexadecimal digits (XXH3, 128 bits): a short key for large data.
 std::string hashOf(std::span<const std::byte> bytes);
 
-// Deletes of a folder's files with this ending those used longest ago until the rest fits, and what a program that crashed has left
-// half-written.
+// Deletes the least recently used files with this ending until at most `mostFiles` files and `mostBytes` bytes remain. Also deletes
+// temporary files older than an hour, which crashed programs left behind.
 void trimCache(const std::string& folder, std::string_view ending, size_t mostFiles, size_t mostBytes);
 
-// A folder of things, each known by all that it was made of. What cannot be read is a miss, what cannot be written is not kept: neither
-// is an error, and nobody is told. Any number of processes may share a folder.
+// A folder of entries, each with a key that states all its inputs. An entry that cannot be read is a miss; one that cannot be written is
+// not stored; neither is reported as an error. Any number of processes may share a folder.
 class DiskCache {
   public:
-    // Used longest ago goes first.
+    // Limits of the folder: the least recently used entries are deleted first.
     static constexpr size_t kMostFiles = 256, kMostBytes = size_t{64} << 20U;
 
-    explicit DiskCache(std::string folder) : folder_(std::move(folder)) {}  // "": nothing is kept
+    explicit DiskCache(std::string folder) : folder_(std::move(folder)) {}  // "": nothing is stored
 
-    // The thing of exactly this key, whole as it was kept, or nothing.
+    // The data of exactly this key, checked by its checksum; empty: none.
     std::optional<std::vector<std::byte>> find(std::string_view key) const;
-    void keep(std::string_view key, std::span<const std::byte> thing) const;
-    // The file that a key's thing is in, or would be.
+    void keep(std::string_view key, std::span<const std::byte> data) const;
+    // The path of the file of `key`, whether it exists or not.
     std::string pathOf(std::string_view key) const;
 
   private:

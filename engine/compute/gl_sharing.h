@@ -1,5 +1,4 @@
-// GlSharing: how an OpenCL device copies its Buffers into OpenGL's own, so that what it simulates is drawn without passing through the
-// host.
+// GlSharing: copies an OpenCL device's Buffers into OpenGL buffers, so that simulated data is drawn without a copy through the host.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +11,8 @@
 
 namespace rivulet {
 
-// The OpenGL context that is current on this thread, as OpenCL is told of it, and what is asked of it. Plain data: engine/compute knows no
-// OpenGL; gpu::currentContext() fills it.
+// The OpenGL context that is current on this thread, and the OpenGL functions that sharing needs. Plain data, because engine/compute does
+// not include OpenGL; gpu::currentContext() fills it.
 struct GlContext {
     void* context = nullptr;                     // an EGLContext or a GLXContext; null: none is current
     void* display = nullptr;                     // an EGLDisplay, or an X11 Display*
@@ -22,18 +21,18 @@ struct GlContext {
     void (*write)(unsigned buffer, std::span<const std::byte> bytes) = nullptr;
     void (*read)(unsigned buffer, std::span<std::byte> bytes) = nullptr;
     void (*destroy)(unsigned buffer) = nullptr;
-    void (*finish)() = nullptr;  // waits for all that OpenGL was told
+    void (*finish)() = nullptr;  // waits for all OpenGL commands issued so far
 };
 
-// Of one Device and of the OpenGL context that it was made with, which must be current in every call. May outlive the Device, and so may
-// what it has wrapped: both keep OpenCL's own objects alive.
+// Belongs to one Device and the OpenGL context that the Device was made with, which must be current in every call. GlSharing and Wrapped
+// buffers may outlive the Device: they keep OpenCL's objects alive.
 class GlSharing {
   public:
     struct Impl;
     explicit GlSharing(std::unique_ptr<Impl> impl);
     ~GlSharing();
 
-    // An OpenGL buffer as OpenCL sees it; to be let go before that buffer is deleted. Error (failed): half a sentence.
+    // OpenCL's object for an OpenGL buffer; destroy it before the buffer is deleted. Error (failed): a message without final period.
     using Wrapped = std::shared_ptr<void>;
     Result<Wrapped> wrap(unsigned buffer) const;
 
@@ -42,9 +41,8 @@ class GlSharing {
         const Wrapped* to;
         size_t bytes;
     };
-    // The first so many bytes of each `from`, behind all that the Device was told before; acquires and releases all of them once. Waits for
-    // OpenGL, then for OpenCL: whatever OpenGL is told next sees the copies. Error (failed): half a sentence; nothing can be said of what
-    // the OpenGL buffers hold then.
+    // Copies the first `bytes` of each `from`, after all earlier commands of the Device; acquires and releases all buffers once. Waits for
+    // OpenGL, then for OpenCL: later OpenGL commands see the copies. Error (failed): then the contents of the OpenGL buffers are undefined.
     Status copy(std::span<const Copy> copies) const;
 
   private:

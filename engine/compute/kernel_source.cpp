@@ -54,11 +54,11 @@ class Flattener {
   public:
     Flattener(const ShaderFiles& files, Dialect dialect, KernelSource& out) : files_(files), dialect_(dialect), out_(out) {}
 
-    Status take(const std::string& path, const std::string& text, bool unconditional) {
+    Status inlineFile(const std::string& path, const std::string& text, bool unconditional) {
         const size_t index = indexOf(path);
         if (unconditional) always_[index] = true;
         stack_.push_back(path);
-        // The guard makes an include inside a condition safe: whichever copy the compiler reads first counts.
+        // The guard makes an include inside a condition safe: only the copy that the compiler reads first takes effect.
         out_.text += fmt::format("#ifndef RIVULET_INCLUDED_{0}\n#define RIVULET_INCLUDED_{0}\n", index);
         writeLine(1, index);
 
@@ -129,20 +129,20 @@ class Flattener {
             return badInput(fmt::format("{}:{}: cannot read this #include; write #include \"shaders/FOLDER/FILE\"", from, number));
         const std::string path(quoted.substr(1, close - 1));
         if (std::find(stack_.begin(), stack_.end(), path) != stack_.end())
-            return badInput(fmt::format("{}:{}: \"{}\" includes itself ({} -> {}); break the circle", from, number, path,
+            return badInput(fmt::format("{}:{}: \"{}\" includes itself ({} -> {}); remove one of these includes", from, number, path,
                                         fmt::join(stack_, " -> "), path));
         const auto found = std::find(out_.files.begin(), out_.files.end(), path);
         if (found != out_.files.end() && always_[static_cast<size_t>(found - out_.files.begin())]) return ok();
         const Result<std::string> text = files_.load(path);
         if (!text) return badInput(fmt::format("{}:{}: cannot include \"{}\": {}", from, number, path, text.error().message));
-        return take(path, *text, unconditional);
+        return inlineFile(path, *text, unconditional);
     }
 
     const ShaderFiles& files_;
     Dialect dialect_;
     KernelSource& out_;
     std::vector<std::string> stack_;
-    std::vector<bool> always_;  // by index into out_.files: taken outside every condition, so never again
+    std::vector<bool> always_;  // by index into out_.files: included outside every condition, so never included again
 };
 
 // Reads digits at `at`; false if there are none.
@@ -176,7 +176,7 @@ ShaderFiles::ShaderFiles(std::string root) : root_(std::move(root)) {}
 
 namespace {
 
-// A program that was installed, or a host, must not depend on what a source tree on the same machine has become since.
+// An installed program, or a host, must not depend on a source tree on the same machine, which may have changed since.
 bool runsFromBuildTree() {
     std::error_code ignored;
     return std::filesystem::read_symlink("/proc/self/exe", ignored).string().starts_with(RIVULET_BINARY_DIR "/");
@@ -204,8 +204,9 @@ Result<std::string> ShaderFiles::load(std::string_view path) const {
     }
     for (const EmbeddedShader& row : embeddedShaders())
         if (path == row.path) return std::string(row.text);
-    if (root_.empty()) return badInput(fmt::format("there is no shader file \"{}\" in this program; check its name", path));
-    return badInput(fmt::format("there is no shader file \"{}\" under \"{}\", nor in this program; check its name", path, root_));
+    if (root_.empty()) return badInput(fmt::format("no shader file \"{}\" is embedded in this program; check its name", path));
+    return badInput(
+        fmt::format("there is no shader file \"{}\" in \"{}\", and none is embedded in this program; check its name", path, root_));
 }
 
 Result<KernelSource> ShaderFiles::flatten(std::string_view path, std::span<const Define> defines, Dialect dialect,
@@ -217,7 +218,7 @@ Result<KernelSource> ShaderFiles::flatten(std::string_view path, std::span<const
     if (!header.empty() && header.back() != '\n') source.text += '\n';
     for (const Define& define : always_) source.text += fmt::format("#define {} {}\n", define.name, define.value);
     for (const Define& define : defines) source.text += fmt::format("#define {} {}\n", define.name, define.value);
-    const Status flattened = Flattener(*this, dialect, source).take(std::string(path), *text, true);
+    const Status flattened = Flattener(*this, dialect, source).inlineFile(std::string(path), *text, true);
     if (!flattened) return flattened.error();
     return source;
 }
@@ -235,20 +236,20 @@ std::string readableLog(std::string_view log, const KernelSource& source) {
 
 std::string shortLog(std::string_view log) {
     constexpr size_t kMostLines = 40, kWidest = 400;
-    const auto says = [](std::string_view line, std::string_view what) {
+    const auto contains = [](std::string_view line, std::string_view what) {
         const size_t at = line.find(what);
         return at != std::string_view::npos && (at == 0 || line[at - 1] == ' ' || line[at - 1] == ':');
     };
     std::vector<std::string_view> lines, wanted;
-    bool any = false, warned = false;  // an error; below a warning, up to the next error
+    bool any = false, warned = false;  // any: there is an error; warned: the line belongs to a warning
     for (size_t at = 0; at < log.size();) {
         const size_t newline = std::min(log.find('\n', at), log.size());
         const std::string_view line = log.substr(at, newline - at);
         at = newline + 1;
         lines.push_back(line);
-        const bool error = says(line, "error:") || says(line, "error ") || says(line, "ERROR:");
+        const bool error = contains(line, "error:") || contains(line, "error ") || contains(line, "ERROR:");
         any = any || error;
-        warned = !error && (warned || says(line, "warning:") || says(line, "warning ") || says(line, "WARNING:"));
+        warned = !error && (warned || contains(line, "warning:") || contains(line, "warning ") || contains(line, "WARNING:"));
         if (!warned) wanted.push_back(line);
     }
     if (!any) wanted = lines;

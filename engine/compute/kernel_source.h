@@ -1,5 +1,5 @@
-// A kernel's text: includes flattened, defines in front, line numbers kept, so that an error names the file it comes from.
-// Read from disk in a developer build (hot reload), embedded in an installed one.
+// The source of a kernel or shader: includes are inlined, defines are put in front, and #line directives keep the line numbers, so that an
+// error names its file. Files are read from disk in a developer build (hot reload) and embedded in an installed one.
 #pragma once
 
 #include <functional>
@@ -19,25 +19,26 @@ enum class Dialect { glsl, openclC };
 
 struct KernelSource {
     std::string text;                // with #line directives
-    std::vector<std::string> files;  // GLSL's #line names files by number: an index into this
+    std::vector<std::string> files;  // GLSL's #line has a file number: an index into this list
 };
 
 // Finds shader files by path from the project's root ("shaders/common/lang.h").
 class ShaderFiles {
   public:
-    // Empty `root`: the embedded copies only; else files under root come first.
+    // `root`: a folder that is searched before the embedded copies; "": the embedded copies only.
     explicit ShaderFiles(std::string root = {});
-    // RIVULET_SHADERS from the environment; else, of a program in the build folder, the source tree it came from; else the embedded copies.
+    // The root is the environment variable RIVULET_SHADERS; else, for a program in the build folder, its source tree; else "".
     static ShaderFiles developer();
-    // A file that is nowhere else, or stands for another, e.g. a host's own kernel ("shaders/mine/gust.kernel", its KERNEL named gust). For
-    // devices made after.
+    // Adds a file, or replaces one, for devices made afterwards: for example a host's own kernel "shaders/mine/gust.kernel", with a KERNEL
+    // named gust.
     void add(std::string path, std::string text) { added_.emplace_back(std::move(path), std::move(text)); }
-    // A define that every text flattened from now on has, before its own.
+    // Adds a define in front of every source that is flattened from now on.
     void define(Define define) { always_.push_back(std::move(define)); }
     const std::string& root() const { return root_; }
+    // The text of a file. Error (badInput): there is no such file.
     Result<std::string> load(std::string_view path) const;
-    // `path` e.g. "shaders/fluid/grid/reorder.kernel". Each include is taken once. `header` goes before everything (e.g. "#version 450
-    // core\n").
+    // The text of `path`, for example "shaders/fluid/grid/reorder.kernel", with each of its includes inlined once. `header` is put in front
+    // of everything, for example "#version 450 core\n". Error (badInput): a missing file, a circular include, an unclosed #if.
     Result<KernelSource> flatten(std::string_view path, std::span<const Define> defines, Dialect dialect,
                                  std::string_view header = {}) const;
 
@@ -47,10 +48,10 @@ class ShaderFiles {
     std::vector<Define> always_;
 };
 
-// Rewrites "3(12)" or "3:12" (file number, line) of a GLSL log into "shaders/fluid/sph.h:12".
+// Replaces "3(12)" or "3:12" (file number, line) in a GLSL log by "shaders/fluid/sph.h:12".
 std::string readableLog(std::string_view log, const KernelSource& source);
 
-// A compiler's log without its warnings, where there are errors to say, and no longer than a screen; what is left out is counted.
+// A compiler's log of at most 40 lines, without warnings if it has errors; the number of omitted lines is added.
 std::string shortLog(std::string_view log);
 
 }  // namespace rivulet

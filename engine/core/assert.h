@@ -1,4 +1,4 @@
-// ASSERT(cond, "what to do"): a programmer's mistake. Always on; never for user data (that is Result).
+// ASSERT(cond, "remedy"): stops the program on a programming error. Compiled into every build; user data is checked with Result instead.
 #pragma once
 
 namespace rivulet {

@@ -1,4 +1,4 @@
-// Lists of words with blanks between them, as drivers name what they can do.
+// Lists of extensions separated by spaces, as OpenGL, EGL and OpenCL drivers return them.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,11 @@
 
 namespace rivulet {
 
-// Whether `word` is one of them, from blank to blank: "cl_khr_gl_sharing" is not in "cl_khr_gl_sharing_more".
-inline bool hasExtension(std::string_view words, std::string_view word) {
-    for (size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
-        const size_t end = at + word.size();
-        if ((at == 0 || words[at - 1] == ' ') && (end == words.size() || words[end] == ' ')) return true;
+// Whether `list` has the whole word `extension`: "cl_khr_gl_sharing" is not in "cl_khr_gl_sharing_more".
+inline bool hasExtension(std::string_view list, std::string_view extension) {
+    for (size_t at = list.find(extension); at != std::string_view::npos; at = list.find(extension, at + 1)) {
+        const size_t end = at + extension.size();
+        if ((at == 0 || list[at - 1] == ' ') && (end == list.size() || list[end] == ' ')) return true;
     }
     return false;
 }

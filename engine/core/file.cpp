@@ -1,14 +1,15 @@
-// POSIX files under json.h's two promises: a read is bounded, and a write is whole or did not happen.
+// POSIX files. A read is bounded; a write is complete or changes nothing.
+#include "engine/core/file.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
-
-#include "engine/core/json.h"
 
 namespace rivulet {
 

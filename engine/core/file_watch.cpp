@@ -1,4 +1,4 @@
-// FileWatch: one stat() a file, as hundreds are asked some times a second.
+// FileWatch with one stat() per file: hundreds of files are checked several times a second.
 #include "engine/core/file_watch.h"
 
 #include <sys/stat.h>
@@ -9,45 +9,45 @@ namespace rivulet {
 
 namespace fs = std::filesystem;
 
-void FileWatch::look(const std::string& path, Stamps& into) {
-    const auto take = [&into](const fs::path& file) {
+void FileWatch::scan(const std::string& path, Stamps& into) {
+    const auto add = [&into](const fs::path& file) {
         struct stat found = {};
         if (::stat(file.c_str(), &found) == 0 && S_ISREG(found.st_mode))
             into[file.string()] = {found.st_mtim.tv_sec, found.st_mtim.tv_nsec, found.st_size, found.st_ino};
     };
     std::error_code error;
-    if (!fs::is_directory(path, error)) return take(path);
-    for (fs::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error)) take(at->path());
+    if (!fs::is_directory(path, error)) return add(path);
+    for (fs::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error)) add(at->path());
 }
 
 void FileWatch::watch(const std::string& path) {
-    Stamps& seen = seen_[path];
+    Stamps& seen = reference_[path];
     seen.clear();
-    look(path, seen);
-    for (const auto& [file, stamp] : seen) moving_.erase(file);
+    scan(path, seen);
+    for (const auto& [file, stamp] : seen) pending_.erase(file);
 }
 
-void FileWatch::forget(const std::string& path) { seen_.erase(path); }
+void FileWatch::forget(const std::string& path) { reference_.erase(path); }
 
 std::vector<std::string> FileWatch::changed() {
     std::vector<std::string> found;
-    Stamps moving;
-    for (auto& [path, seen] : seen_) {
+    Stamps pending;
+    for (auto& [path, seen] : reference_) {
         Stamps now;
-        look(path, now);
+        scan(path, now);
         for (const auto& [file, stamp] : now) {
             const auto before = seen.find(file);
             if (before != seen.end() && before->second == stamp) continue;
-            const auto last = moving_.find(file);
-            if (last == moving_.end() || last->second != stamp) {
-                moving[file] = stamp;
+            const auto last = pending_.find(file);
+            if (last == pending_.end() || last->second != stamp) {
+                pending[file] = stamp;
                 continue;
             }
             seen[file] = stamp;
             found.push_back(file);
         }
     }
-    moving_ = std::move(moving);
+    pending_ = std::move(pending);
     return found;
 }
 

@@ -1,4 +1,4 @@
-// FileWatch: which files have been written since somebody last looked. It looks at times and sizes, so that any file system will do.
+// FileWatch: reports the files that were written since the last call. It compares times and sizes, so it works on any file system.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@ namespace rivulet {
 
 class FileWatch {
   public:
-    // A file, or a folder with all that is in it. As it is now is as it was seen; watched already, it is seen anew.
+    // Watches a file, or a folder with everything in it. Its present state is the reference; a second call takes a new reference.
     void watch(const std::string& path);
     void forget(const std::string& path);
 
-    // Each file that is another than it was, once it has kept still from one call to the next: a file that is being written does not. One
-    // that is gone, as between the two steps of an editor that saves by renaming, is as it was.
+    // The files that differ from their reference, which is then updated. A file is reported once its state is the same in two calls in a
+    // row, so that no half-written file is reported. A missing file counts as unchanged: some editors save by renaming.
     std::vector<std::string> changed();
 
   private:
     struct Stamp {
-        int64_t seconds = 0, nanoseconds = 0, bytes = 0;  // when it was written, and how much
-        uint64_t inode = 0;                               // another where a file was renamed to this
+        int64_t seconds = 0, nanoseconds = 0, bytes = 0;  // time of the last write; size
+        uint64_t inode = 0;                               // changes if another file was renamed to this name
         bool operator==(const Stamp&) const = default;
     };
     using Stamps = std::map<std::string, Stamp>;
-    static void look(const std::string& path, Stamps& into);
+    static void scan(const std::string& path, Stamps& into);
 
-    std::map<std::string, Stamps> seen_;  // of each path that is watched
-    Stamps moving_;                       // others than those seen, when last looked at
+    std::map<std::string, Stamps> reference_;  // by watched path
+    Stamps pending_;                           // files that differed from their reference in the last call
 };
 
 }  // namespace rivulet

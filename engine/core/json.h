@@ -1,6 +1,6 @@
-// Params from and to JSON, strictly: an unknown key, a wrong type or a value out of range is an Error with file, line, column,
-// JSON path and the nearest valid name. Bounded in time and memory: files above 64 MiB, nesting above 64 and more than 262144 values
-// are refused. No exception leaves, and no locale changes how a number reads.
+// Reads Params from JSON and writes them. Reading is strict: an unknown key, a wrong type or a value out of range is an Error with file,
+// line, column, JSON path and the nearest valid name. Time and memory are bounded: files above 64 MiB, nesting above 64 levels and more
+// than 262144 values are refused. No exception is thrown, and numbers do not depend on the locale.
 #pragma once
 
 #include <functional>
@@ -14,24 +14,20 @@ namespace rivulet {
 
 using VisitFn = std::function<void(ParamVisitor&)>;  // [&](ParamVisitor& v) { scene.visit(v); }
 
-// Reads `text` (named `file` in errors) into the struct behind `visit`. On an Error the struct may be partly changed: read into a copy.
+// Reads `text` (named `file` in errors) into the struct that `visit` visits. After an Error the struct may be partly changed: read into a
+// copy.
 Status readJson(std::string_view text, std::string_view file, const VisitFn& visit);
 Status readJsonFile(const std::string& path, const VisitFn& visit);
 
-// Everything, or only what differs from `defaults` (a visit over a default-constructed struct; null = everything). Ends in a newline.
-// Numbers read back exactly. NaN and infinity are no JSON: they are written as null, which readJson refuses by name.
+// Writes all values, or only those that differ from `defaults` (a visit of a default-constructed struct; null: all values). Ends in a
+// newline. Numbers read back exactly. JSON has no NaN and infinity: they are written as null, which readJson refuses with the path.
 std::string writeJson(const VisitFn& visit, const VisitFn* defaults = nullptr);
 
-// "path.to.param=value", lists by index: "colliders.0.resolution=64"; an index one past the end appends an item. Checked as JSON is;
-// a vector is 1,2,3 or [1,2,3]. On an Error the struct is as it was, but for an item that was appended.
+// Sets one value: "path.to.param=value", lists by index: "colliders.0.resolution=64"; an index one past the end appends an item. The
+// checks are those of readJson; a vector is 1,2,3 or [1,2,3]. After an Error the struct is unchanged, except that an appended item stays.
 Status setParam(std::string_view assignment, const VisitFn& visit);
 
-// The generated reference: a markdown table of every path, unit, range, default and doc. What docs/parameters.md holds.
+// A Markdown table of every path, unit, range, default and doc: the content of docs/parameters.md.
 std::string describeParams(const VisitFn& visit);
-
-// Writes a whole file by temporary name and rename, so that nothing is ever half-written. The Error says why (disk full, not writable).
-// A link is followed; a device or pipe is written into.
-Status writeFileAtomic(const std::string& path, std::string_view bytes);
-Result<std::string> readFile(const std::string& path, size_t maxBytes = size_t{1} << 30);
 
 }  // namespace rivulet

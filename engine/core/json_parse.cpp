@@ -13,19 +13,19 @@ namespace rivulet {
 namespace {
 
 constexpr size_t kDeepest = 64;
-constexpr size_t kMostValues = size_t{1} << 18U;  // JsonCpp takes some 150 bytes each
+constexpr size_t kMostValues = size_t{1} << 18U;  // JsonCpp needs about 150 bytes per value
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-// Looks at the tokens before JsonCpp sees them. Its strict mode lets through comments inside objects, line breaks inside strings,
-// numbers such as 01, 1. and -, and whatever follows a zero byte; it bounds neither memory nor time; and it reads numbers by the
-// C++ locale. All that is refused here, and every digit is made a 0 so that only the text decides what a number is.
-class Screen {
+// Checks the tokens before JsonCpp parses them. JsonCpp's strict mode accepts comments inside objects, line breaks inside strings, numbers
+// such as 01, 1. and -, and anything after a zero byte; it bounds neither memory nor time; and it reads numbers by the C++ locale. All of
+// this is refused here. Every digit is replaced by 0: numbers are parsed later, from the text.
+class TokenCheck {
   public:
-    explicit Screen(std::string_view text) : text_(text), masked_(text) {}
+    explicit TokenCheck(std::string_view text) : text_(text), masked_(text) {}
 
-    // False: complaint() at offset() says why.
+    // False: complaint() and offset() hold the error.
     bool pass() {
         while (at_ < text_.size())
             if (!token()) return false;
@@ -63,7 +63,7 @@ class Screen {
     bool string() {
         size_t end = at_ + 1;
         while (peek(end) != '"') {
-            if (static_cast<unsigned char>(peek(end)) < 0x20) return refuse("the text that starts here has no closing quote on its line");
+            if (static_cast<unsigned char>(peek(end)) < 0x20) return refuse("the string that starts here has no closing quote on its line");
             end += peek(end) == '\\' ? 2 : 1;
         }
         at_ = end + 1;
@@ -99,7 +99,7 @@ class Screen {
         while (isLetter(peek(end))) ++end;
         const std::string_view found = text_.substr(at_, end - at_);
         if (found != "true" && found != "false" && found != "null")
-            return refuse(fmt::format("{} is not a value in JSON; text and keys stand in double quotes", excerpt(found)));
+            return refuse(fmt::format("{} is not a value in JSON; strings and keys must be in double quotes", excerpt(found)));
         at_ = end;
         return true;
     }
@@ -110,12 +110,12 @@ class Screen {
     size_t at_ = 0, depth_ = 0, values_ = 0;
 };
 
-// JsonCpp says "* Line 3, Column 5\n  Duplicate key: 'spacing'\n" and more of the kind; the first counts.
-Error jsonCppError(const std::string& said, std::string_view file) {
+// JsonCpp reports "* Line 3, Column 5\n  Duplicate key: 'spacing'\n", and further errors below; the first one is used.
+Error jsonCppError(const std::string& report, std::string_view file) {
     int line = 1, column = 1;
-    std::sscanf(said.c_str(), "* Line %d, Column %d", &line, &column);
-    const size_t start = std::min(said.find("\n  "), said.size());
-    std::string reason = said.substr(start, said.find('\n', start + 1) - start);
+    std::sscanf(report.c_str(), "* Line %d, Column %d", &line, &column);
+    const size_t start = std::min(report.find("\n  "), report.size());
+    std::string reason = report.substr(start, report.find('\n', start + 1) - start);
     reason.erase(0, reason.find_first_not_of(" \n"));
     if (!reason.empty() && reason.back() == '.') reason.pop_back();
     return badInput(fmt::format("{}:{}:{}: this is not JSON: {}", file, line, column, excerpt(reason)));
@@ -132,21 +132,21 @@ std::string placeOf(std::string_view text, size_t offset) {
 
 Result<Json::Value> parseJson(std::string_view text, std::string_view file) {
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-        return badInput(fmt::format("{}:1:1: the file is empty; the smallest one is {{}}", file));
-    Screen screen(text);
-    if (!screen.pass())
-        return badInput(fmt::format("{}{}: this is not JSON: {}", file, placeOf(text, screen.offset()), screen.complaint()));
+        return badInput(fmt::format("{}:1:1: the file is empty; it must contain at least {{}}", file));
+    TokenCheck tokens(text);
+    if (!tokens.pass())
+        return badInput(fmt::format("{}{}: this is not JSON: {}", file, placeOf(text, tokens.offset()), tokens.complaint()));
 
     Json::CharReaderBuilder builder;
     Json::CharReaderBuilder::strictMode(&builder.settings_);
-    builder["strictRoot"] = false;  // the reader names what stands there instead of an object
+    builder["strictRoot"] = false;  // JsonReader reports a root that is not an object, with its text
     builder["stackLimit"] = static_cast<int>(2 * kDeepest);
     const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
-    const std::string& masked = screen.masked();
+    const std::string& masked = tokens.masked();
     Json::Value root;
-    std::string said;
+    std::string report;
     try {
-        if (!reader->parse(masked.data(), masked.data() + masked.size(), &root, &said)) return jsonCppError(said, file);
+        if (!reader->parse(masked.data(), masked.data() + masked.size(), &root, &report)) return jsonCppError(report, file);
     } catch (const std::exception& e) {
         return badInput(fmt::format("{}: this JSON cannot be read: {}", file, e.what()));
     }

@@ -1,4 +1,4 @@
-// A JSON text as a tree of values that know their place in it, or the Error of what is no JSON.
+// Parses JSON into a tree of values that store their position in the text.
 #pragma once
 
 #include <json/json.h>
@@ -13,8 +13,8 @@ namespace rivulet {
 // ":12:9", the line and column (in bytes) of text[offset], both from 1.
 std::string placeOf(std::string_view text, size_t offset);
 
-// Value::getOffsetStart() and getOffsetLimit() index `text`. Its numbers all read 0: their text is for param_value.h.
-// Refused, with the place: what is not JSON to the letter, a key that comes twice, nesting above 64, more than 262144 values.
+// Value::getOffsetStart() and getOffsetLimit() index `text`. All numbers of the tree are 0: param_value.h parses them from the text.
+// Error (badInput) with line and column: invalid JSON, a duplicate key, nesting above 64 levels, more than 262144 values.
 Result<Json::Value> parseJson(std::string_view text, std::string_view file);
 
 }  // namespace rivulet

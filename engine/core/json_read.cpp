@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "engine/core/json_parse.h"
 #include "engine/core/param_path.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr size_t kLargestFile = size_t{64} << 20U;
 
-// Walks the JSON tree beside the visit. The first mistake is kept; after it nothing more is read.
+// Reads the JSON tree while the struct is visited. The first error is kept, and nothing is read after it.
 class JsonReader final : public ParamVisitor {
   public:
     JsonReader(const Json::Value& root, std::string_view text, std::string_view file, const VisitFn& visit)
@@ -29,11 +30,11 @@ class JsonReader final : public ParamVisitor {
         return error_ ? Status(*error_) : ok();
     }
 
-    void value(const ParamInfo& info, float& v) override { take(info, v); }
-    void value(const ParamInfo& info, int& v) override { take(info, v); }
-    void value(const ParamInfo& info, bool& v) override { take(info, v); }
-    void value(const ParamInfo& info, vec3& v) override { take(info, v); }
-    void colour(const ParamInfo& info, vec3& v) override { take(info, v); }
+    void value(const ParamInfo& info, float& v) override { assign(info, v); }
+    void value(const ParamInfo& info, int& v) override { assign(info, v); }
+    void value(const ParamInfo& info, bool& v) override { assign(info, v); }
+    void value(const ParamInfo& info, vec3& v) override { assign(info, v); }
+    void colour(const ParamInfo& info, vec3& v) override { assign(info, v); }
     void value(const ParamInfo& info, std::string& v) override {
         if (const Json::Value* text = textMember(info)) v = text->asString();
     }
@@ -69,7 +70,7 @@ class JsonReader final : public ParamVisitor {
 
   private:
     struct Level {
-        const Json::Value* object;  // null: the file says nothing of this group, or nothing more is read
+        const Json::Value* object;  // null: the file does not have this group, or an error was found
         std::string path;
         std::vector<std::string> known;
     };
@@ -91,7 +92,7 @@ class JsonReader final : public ParamVisitor {
         if (!complaint.empty()) refuse(v.getOffsetStart(), pathOf(levels_.back().path, info.name) + " " + complaint);
     }
 
-    // The value that the file gives, or null.
+    // The value in the file, or null if it has none.
     const Json::Value* member(const ParamInfo& info) {
         Level& level = levels_.back();
         level.known.emplace_back(info.name);
@@ -107,8 +108,8 @@ class JsonReader final : public ParamVisitor {
     }
 
     template <class T>
-    void take(const ParamInfo& info, T& v) {
-        if (const Json::Value* given = member(info)) refuseIf(*given, info, assignValue(info, sourceOf(*given), v));
+    void assign(const ParamInfo& info, T& v) {
+        if (const Json::Value* found = member(info)) refuseIf(*found, info, assignValue(info, sourceOf(*found), v));
     }
 
     void enter(const Json::Value* object, std::string path) {
@@ -120,19 +121,19 @@ class JsonReader final : public ParamVisitor {
         levels_.push_back({object, std::move(path), {}});
     }
 
-    // By now the visit has named all that may stand in the object.
+    // At this point the visit has named all valid keys of the object.
     void leave() {
         const Level level = std::move(levels_.back());
         levels_.pop_back();
         if (error_ || level.object == nullptr) return;
-        std::map<ptrdiff_t, std::string> unknown;  // by place, so that the first in the file is the one complained of
+        std::map<ptrdiff_t, std::string> unknown;  // by offset, so that the first one in the file is reported
         for (const std::string& key : level.object->getMemberNames())
             if (std::find(level.known.begin(), level.known.end(), key) == level.known.end())
                 unknown.emplace(keyOffset(*level.object->find(key.data(), key.data() + key.size())), key);
         if (!unknown.empty()) refuse(unknown.begin()->first, unknownParam(level.path, unknown.begin()->second, level.known, visit_));
     }
 
-    // JsonCpp knows where a value is; its key is the string before the colon before it.
+    // JsonCpp stores the offset of a value only; its key is the string in front of the colon.
     ptrdiff_t keyOffset(const Json::Value& v) const {
         const size_t closing = text_.rfind('"', text_.rfind(':', static_cast<size_t>(v.getOffsetStart()) - 1));
         size_t opening = text_.rfind('"', closing - 1);

@@ -1,4 +1,4 @@
-// Notices: plain sentences for the person at the program. A Log is handed to whoever may speak; there is no global one.
+// Messages to the user. A function that may report something receives a Log; there is no global log.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@ namespace rivulet {
 
 enum class LogLevel { info, notice, warning, error };
 
-// A sink; empty = silent. Called on the thread that calls the library.
+// Passes messages to `sink`; an empty sink drops them. It is called on the thread that calls the library.
 struct Log {
     std::function<void(LogLevel, std::string_view)> sink;
     void info(std::string_view text) const {
@@ -27,7 +27,7 @@ struct Log {
     }
 };
 
-// A sink that writes to stderr, "rivulet: sentence".
+// Writes messages of level `least` and above to stderr as "rivulet: MESSAGE".
 Log stderrLog(LogLevel least = LogLevel::notice);
 
 }  // namespace rivulet

@@ -35,7 +35,7 @@ inline constexpr float kPi = 3.14159265358979323846F;
 
 inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// An axis-aligned box; empty until something was added.
+// An axis-aligned box; empty until a point is added.
 struct Bounds {
     vec3 min{std::numeric_limits<float>::max()};
     vec3 max{std::numeric_limits<float>::lowest()};

@@ -1,4 +1,4 @@
-// What a mesh is to those who may not see a scene (voxelisers, flow): spans over somebody else's memory.
+// A view of a mesh's arrays, for code that does not include engine/scene (voxelisers, flow). The caller owns the memory.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@ namespace rivulet {
 
 struct MeshView {
     std::span<const vec3> positions;    // m
-    std::span<const uint32_t> indices;  // 3 a triangle, each < positions.size()
-    std::span<const vec3> normals;      // empty, or one a position, unit length
-    std::span<const vec2> uvs;          // empty, or one a position
+    std::span<const uint32_t> indices;  // 3 per triangle, each < positions.size()
+    std::span<const vec3> normals;      // empty, or one per position, unit length
+    std::span<const vec2> uvs;          // empty, or one per position
     size_t triangleCount() const { return indices.size() / 3; }
 };
 

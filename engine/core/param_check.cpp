@@ -13,7 +13,7 @@ namespace rivulet {
 
 namespace {
 
-// What a value reads as when it is read from its own text is what a file's reader says of it, so the rules are written once.
+// Writes each value as text and reads it back with the functions that read files, so that the rules are written once.
 class Checker final : public ParamVisitor {
   public:
     explicit Checker(std::string_view group) : paths_{std::string(group)} {}

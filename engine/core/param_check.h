@@ -1,4 +1,4 @@
-// Whether a struct of Params that a program filled in is one that a file could have said.
+// Checks a struct of Params that a program filled in by the rules that a file is checked by.
 #pragma once
 
 #include <string_view>
@@ -7,8 +7,8 @@
 
 namespace rivulet {
 
-// Error (badInput): the first value that is not finite or out of its ParamInfo's range, or no name of a choice: `fluid.spacing is -1 m,
-// must be between 1e-05 and 1 m`. `group`: where the struct stands, "fluid", or "".
+// Error (badInput): the first value that is not finite, outside its ParamInfo's range, or not a name of its choice: `fluid.spacing is -1 m,
+// must be between 1e-05 and 1 m`. `group`: the path of the struct, for example "fluid", or "".
 Status checkParams(std::string_view group, const VisitFn& visit);
 
 // Visits a copy: `params` stays as it is.

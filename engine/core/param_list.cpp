@@ -83,7 +83,7 @@ std::string plainText(const std::string& json) {
     if (!json.starts_with('"')) return json;
     std::string text;
     for (size_t k = 1; k + 1 < json.size(); ++k) {
-        if (json[k] == '\\' && json[k + 1] == 'u') {  // of what is below a blank, none else
+        if (json[k] == '\\' && json[k + 1] == 'u') {  // only control characters are written in this form
             text += static_cast<char>(std::stoi(json.substr(k + 2, 4), nullptr, 16));
             k += 5;
             continue;

@@ -1,4 +1,4 @@
-// Every Param behind a visit as a flat list, in the visit's order.
+// All Params of a struct as a flat list, in the order of its visit.
 #pragma once
 
 #include <map>
@@ -14,16 +14,16 @@ struct ParamEntry {
     Kind kind = Kind::value;
     std::string path;  // "fluid.spacing"; in the item of an empty list "colliders[].mesh", else "colliders[0].mesh"
     std::string unit;
-    std::string range;  // "between 0.0005 and 1", "one of a, b", "" = any
-    std::string text;   // the value in JSON; of a list "[]" when it is empty
+    std::string range;  // "between 0.0005 and 1", "one of a, b"; "": any value
+    std::string text;   // the value as JSON; "[]" for an empty list
     std::string doc;
     bool fixed = false;
 };
 
 std::vector<ParamEntry> listParams(const VisitFn& visit);
-std::map<std::string, std::string> paramTexts(const VisitFn& visit);  // of the values alone, by path
+std::map<std::string, std::string> paramTexts(const VisitFn& visit);  // the values as JSON by path, without groups and lists
 
-// A value's JSON, as setParam takes it: a string without its quotes.
+// Converts a value's JSON to the form that setParam accepts: a string without its quotes.
 std::string plainText(const std::string& json);
 
 }  // namespace rivulet

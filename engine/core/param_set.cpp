@@ -23,7 +23,7 @@ std::vector<std::string> segmentsOf(std::string_view path) {
     return segments;
 }
 
-// Follows the path down; what lies beside it is left alone. A mistake is said by the level that it was made on.
+// Follows the path and sets the value at its end. An error is reported with the path of the level where it was found.
 class ParamSetter final : public ParamVisitor {
   public:
     ParamSetter(std::string_view path, std::string_view text) : segments_(segmentsOf(path)), text_(text) {}
@@ -99,7 +99,7 @@ class ParamSetter final : public ParamVisitor {
     }
 
     bool isValue(const ParamInfo& info) {
-        if (depth_ + 1 < segments_.size()) finish(pathOf(group_, info.name), "is a single value; nothing stands below it");
+        if (depth_ + 1 < segments_.size()) finish(pathOf(group_, info.name), "is a single value; it has no members");
         return !finished_;
     }
 
@@ -114,7 +114,7 @@ class ParamSetter final : public ParamVisitor {
         beside_.clear();
     }
 
-    // The path led in here: if nothing was found by now, nothing will be.
+    // The path leads into this group: if the name was not found here, it does not exist.
     void leave() { left_ = true; }
 
     void finish(const std::string& path, const std::string& complaint) {

@@ -27,7 +27,7 @@ bool parseNumber(std::string_view text, T& v) {
     return error == std::errc{} && end == text.data() + text.size();
 }
 
-// "between 1 and 64 m", "at least 0"; where the Param sets no range, ParamInfo's own.
+// "between 1 and 64 m", "at least 0"; ParamInfo's own range if the Param sets none.
 std::string wantedRange(const ParamInfo& info) {
     const std::string range = rangeText(info);
     return (range.empty() ? fmt::format("between {} and {}", info.min, info.max) : range) + (*info.unit ? " " : "") + info.unit;
@@ -42,7 +42,7 @@ std::string outOfRange(const ParamInfo& info, std::string_view text, std::string
     return fmt::format("is {}{}{}, must be {}{}", excerpt(text), *info.unit ? " " : "", info.unit, wantedRange(info), suffix);
 }
 
-// NaN is in no range. T's own limits hold where the ParamInfo sets wider ones.
+// NaN is in no range. The limits of T apply if the ParamInfo's are wider.
 template <class T>
 bool inRange(const ParamInfo& info, double v) {
     return v >= info.min && v <= info.max && v >= std::numeric_limits<T>::lowest() && v <= std::numeric_limits<T>::max();
@@ -60,7 +60,7 @@ bool splitInThree(std::string_view text, std::array<std::string_view, 3>& parts)
     return true;
 }
 
-// The nearest float; what is too small for one goes through the double.
+// The nearest float; a value too small for a float is parsed as a double first.
 float nearestFloat(std::string_view text, double wide) {
     float v = 0;
     return parseNumber(text, v) ? v : static_cast<float>(wide);

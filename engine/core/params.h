@@ -1,5 +1,5 @@
-// Params: a plain struct with one `visit(ParamVisitor&)`. Name, unit, range, default and doc of a value are written there, once;
-// JSON in and out, ImGui sliders, --set, the generated reference and the record of a run all come from it.
+// Params: a plain struct with one function `visit(ParamVisitor&)`, which states name, unit, range, default and doc of each value once.
+// JSON reading and writing, ImGui sliders, --set, the generated reference and the record of a run all use it.
 //
 //     struct CameraParams {
 //         float fieldOfView = 45;
@@ -10,7 +10,7 @@
 //         }
 //     };
 //
-// The default is what a default-constructed struct holds. A list is a vector of such structs; a group is a nested struct.
+// The default is the value in a default-constructed struct. A list is a vector of such structs; a group is a nested struct.
 #pragma once
 
 #include <span>
@@ -21,15 +21,15 @@
 
 namespace rivulet {
 
-// Range is inclusive and in `unit`, for each component; a value outside is an error, never clamped.
+// The range is inclusive, in `unit`, and applies to each component; a value outside is an error and is never clamped.
 struct ParamInfo {
     const char* name;
-    const char* unit = "";  // "" = no dimension
+    const char* unit = "";  // "": dimensionless
     const char* doc = "";   // one phrase, lower case, no full stop
     double min = -1e30;
     double max = 1e30;
     bool logarithmic = false;  // the slider's scale
-    bool fixed = false;        // takes effect only when the world is created anew (the panel says so)
+    bool fixed = false;        // takes effect only when the world is created again; panels show this
 };
 
 class ParamVisitor {
@@ -58,7 +58,7 @@ class ParamVisitor {
             items[i].visit(*this);
             endItem();
         }
-        if (documentsItems() && items.empty()) {  // a reference describes an item even where the default list is empty
+        if (documentsItems() && items.empty()) {  // the reference describes an item even if the default list is empty
             P item;
             beginItem(0);
             item.visit(*this);
@@ -68,9 +68,9 @@ class ParamVisitor {
     }
 
   protected:
-    virtual bool beginGroup(const ParamInfo& info) = 0;  // false: skip it, endGroup is not called
+    virtual bool beginGroup(const ParamInfo& info) = 0;  // false: the group is skipped and endGroup is not called
     virtual void endGroup() = 0;
-    virtual size_t beginList(const ParamInfo& info, size_t current) = 0;  // returns the wanted length
+    virtual size_t beginList(const ParamInfo& info, size_t current) = 0;  // returns the new length
     virtual void beginItem(size_t index) = 0;
     virtual void endItem() = 0;
     virtual void endList() = 0;

@@ -1,4 +1,4 @@
-// Amounts of memory for a sentence.
+// Amounts of memory as text.
 #pragma once
 
 #include <cstddef>

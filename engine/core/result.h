@@ -1,4 +1,4 @@
-// Errors as values: a Result<T> holds a T or one plain sentence that names file, place and remedy.
+// Errors as values: a Result<T> holds a T, or an error message with file, position and remedy.
 #pragma once
 
 #include <string>
@@ -7,10 +7,11 @@
 
 namespace rivulet {
 
-// As core/assert.h, whose macro would be a host's, too.
+// As in core/assert.h, which is not included: hosts include this header and must not see the macro ASSERT.
 [[noreturn]] void assertFailed(const char* condition, const char* remedy, const char* file, int line);
 
-// What the program's exit code says about an error: badInput = 2 (what was asked makes no sense), failed = 1 (it could not be carried out).
+// The kind of an error, and the program's exit status: badInput = 2 (invalid file, key, value or argument), failed = 1 (a valid request
+// could not be carried out).
 enum class Fault { badInput, failed };
 
 struct Error {
@@ -48,7 +49,7 @@ class [[nodiscard]] Result {
     std::variant<T, Error> state_;
 };
 
-// The result of work that returns nothing but may fail: `return ok();`.
+// The result of a function that returns no value but may fail: `return ok();`.
 struct Done {};
 using Status = Result<Done>;
 inline Status ok() { return Done{}; }

@@ -6,7 +6,7 @@ namespace rivulet {
 
 namespace {
 
-constexpr size_t kLongestName = 64;  // longer input is no name that anybody meant; bounds the time, too
+constexpr size_t kLongestName = 64;  // longer input matches no name; this also bounds the time
 
 std::string folded(std::string_view text) {
     std::string lower(text);

@@ -1,4 +1,4 @@
-// Rows {name, doc, ...}: methods, forces, renderers, demos. The JSON reader, the combo boxes and the docs read the tables.
+// Tables of rows {name, doc, ...}: methods, forces, renderers, verbs. The JSON reader, the combo boxes and the docs read them.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 
 namespace rivulet {
 
-// The name among `names` with the smallest edit distance to `typed` (case folded); "" when nothing is near enough to be meant.
+// The name among `names` with the smallest edit distance to `typed`, ignoring case; "" if the distance exceeds a third of the length.
 std::string nearestName(std::string_view typed, std::span<const std::string> names);
 
-// Row must have `const char* name` and `const char* doc`. A Table does not own its rows: they are constants of the program.
+// Row must have `const char* name` and `const char* doc`. A Table does not own its rows, which are constants of the program.
 template <class Row>
 struct Table {
     std::span<const Row> rows;

@@ -1,11 +1,11 @@
-// What a thread has worked, whatever others did on its core meanwhile.
+// CPU time of a thread: time during which other threads use its core is not counted.
 #pragma once
 
 #include <ctime>
 
 namespace rivulet {
 
-// s, of the thread that asks.
+// CPU time of the calling thread, s.
 inline double threadSeconds() {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

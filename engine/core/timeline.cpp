@@ -10,7 +10,7 @@ namespace rivulet {
 
 namespace {
 
-// As they follow each other, those that touch as one.
+// The spans sorted by begin; overlapping ones are merged.
 std::vector<PassSpan> merged(std::vector<PassSpan> spans) {
     std::sort(spans.begin(), spans.end(), [](const PassSpan& a, const PassSpan& b) { return a.begin < b.begin; });
     std::vector<PassSpan> whole;
@@ -54,7 +54,7 @@ std::vector<Timeline::Lane> Timeline::lanes(double from) const {
     std::vector<Lane> some;
     for (const Lane& l : lanes_) {
         some.push_back({l.name, {}});
-        // The newest of minutes are wanted: they lie at the end, nearly in order, for who tells of spans tells of them as they end.
+        // Callers want the newest spans of minutes. These are at the end, nearly in order, because spans are added when they end.
         constexpr double kLate = 1;  // s
         auto first = l.spans.end();
         while (first != l.spans.begin() && std::prev(first)->end > from - kLate) --first;
@@ -63,7 +63,7 @@ std::vector<Timeline::Lane> Timeline::lanes(double from) const {
     return some;
 }
 
-double Timeline::remembersSince() const {
+double Timeline::completeSince() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return since_;
 }

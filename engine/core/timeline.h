@@ -1,5 +1,5 @@
-// Timeline: who worked on what and when, each worker in a lane of its own: what overlaps is seen. Written as Chrome's trace format, which
-// chrome://tracing and Perfetto open.
+// Timeline: begin and end of each piece of work, in one lane per worker (thread, GPU queue), so that overlaps are visible. It is written in
+// Chrome's trace format, which chrome://tracing and Perfetto open.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace rivulet {
 
-double hostSeconds();  // of the host's steady clock: what all spans are on
+double hostSeconds();  // s, the host's steady clock; all spans use it
 
 // One piece of work.
 struct PassSpan {
@@ -21,38 +21,38 @@ using SpanSink = std::function<void(const PassSpan&)>;
 
 class Timeline {
   public:
-    // Of what would be more, the oldest half is forgotten.
+    // `most`: spans that are kept. When it is exceeded, the oldest half of each lane is dropped.
     explicit Timeline(size_t most = size_t{1} << 20) : most_(most) {}
 
-    // From any thread. A lane is there from its first span on.
+    // May be called from any thread. The first span of a lane creates it.
     void add(std::string_view lane, PassSpan span);
-    SpanSink lane(std::string name);  // of spans into that lane; must not outlive the timeline
+    SpanSink lane(std::string name);  // a function that adds spans to the lane; must not outlive the timeline
 
     struct Lane {
         std::string name;
-        std::vector<PassSpan> spans;  // as they came
+        std::vector<PassSpan> spans;  // in the order of add()
     };
-    // What ended after `from`, s. A lane's spans are told of in the order of their ends, to a second.
+    // The spans that ended after `from`, s. Requires that the spans of a lane were added in the order of their ends, to within 1 s.
     std::vector<Lane> lanes(double from = 0) const;
-    // s of hostSeconds(): all that ended later is there still. 0: nothing has been forgotten.
-    double remembersSince() const;
-    void restart();  // as new; of what began before now it hears no more, as it does some frames late of a GPU
+    // s, hostSeconds(): all spans that ended later are still stored. 0: no span was dropped.
+    double completeSince() const;
+    void restart();  // removes all spans; spans that began before this call are ignored (GPU times arrive some frames late)
 
-    // One JSON object of complete events ("X", microseconds since the first span's begin), a thread a lane. Ends in a newline.
+    // One JSON object of complete events ("X", in microseconds since the first span's begin), one thread per lane. Ends in a newline.
     std::string chromeTrace() const;
 
   private:
     mutable std::mutex mutex_;
     std::vector<Lane> lanes_;
     size_t most_, count_ = 0;
-    double since_ = 0;  // s, as remembersSince()
-    double begun_ = 0;  // s, when it was last started
+    double since_ = 0;  // s, as completeSince()
+    double begun_ = 0;  // s, hostSeconds() of the last restart()
 };
 
-// Seconds in which both work. Spans of a lane may overlap and come in any order.
+// The time, s, that is covered by spans of both `a` and `b`. Spans may overlap and come in any order.
 double overlapSeconds(const std::vector<PassSpan>& a, const std::vector<PassSpan>& b);
 
-// Adds what lasts as long as it.
+// Adds a span from its construction to its destruction; nothing if `to` is null.
 class TimedSpan {
   public:
     TimedSpan(Timeline* to, std::string_view lane, std::string_view name)

@@ -11,13 +11,13 @@
 namespace rivulet::gpu {
 namespace {
 
-// GL has no buffers of 0 bytes, and fills whole words; std140 blocks end on 16.
+// GL refuses buffers of 0 bytes, fills are done in 4-byte words, and std140 blocks have a size of 16 n bytes.
 size_t paddedBytes(size_t bytes) { return std::max<size_t>((bytes + 15) / 16 * 16, 16); }
 
 }  // namespace
 
 Result<Buffer> Buffer::create(size_t bytes, BufferKind kind) {
-    forgetGlErrors();
+    clearGlErrors();
     Buffer buffer;
     GLuint name = 0;
     glCreateBuffers(1, &name);
@@ -35,8 +35,9 @@ Result<Buffer> Buffer::create(size_t bytes, BufferKind kind) {
         error = takeGlError();
     }
     if (error != GL_NO_ERROR || (kind == BufferKind::mapped && !buffer.mapped_))
-        return failed(fmt::format("the GPU has no room for a buffer of {} bytes ({:.1f} MiB; {}); use fewer particles or coarser voxels",
-                                  bytes, static_cast<double>(bytes) / 1048576.0, glErrorName(error)));
+        return failed(fmt::format(
+            "the GPU is out of memory: cannot allocate a buffer of {} bytes ({:.1f} MiB; {}); use fewer particles or coarser voxels", bytes,
+            static_cast<double>(bytes) / 1048576.0, glErrorName(error)));
     return buffer;
 }
 

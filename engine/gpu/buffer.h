@@ -11,13 +11,14 @@
 
 namespace rivulet::gpu {
 
-// mapped: the host sees the memory all the time (persistent, coherent); who writes while the GPU reads must fence (device_gl does).
+// mapped: the host can access the memory at any time (persistent, coherent). The caller must use a Fence before it overwrites data that the
+// GPU may still read.
 enum class BufferKind { plain, mapped };
 
 class Buffer {
   public:
     Buffer() = default;
-    // Contents are zero. 0 bytes give a valid buffer of 0 bytes. Error (failed): out of memory; says how much was asked for.
+    // A buffer filled with zeros. 0 bytes give a valid buffer of 0 bytes. Error (failed): out of memory, with the requested size.
     static Result<Buffer> create(size_t bytes, BufferKind kind = BufferKind::plain);
     template <class T>
     static Result<Buffer> from(std::span<const T> items) {
@@ -29,14 +30,14 @@ class Buffer {
     }
 
     GLuint name() const { return name_.name(); }
-    GLuint letGo() { return name_.letGo(); }  // the caller owns the name now; this is empty
+    GLuint release() { return name_.release(); }  // the caller owns the name now; the Buffer is empty
     size_t bytes() const { return bytes_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
 
-    // In order with other GL commands; write never waits for the GPU, read does.
+    // In order with other GL commands. write() and fill() never wait for the GPU; read() does.
     void write(std::span<const std::byte> bytes, size_t offset = 0);
     void read(std::span<std::byte> bytes, size_t offset = 0) const;
-    void fill(uint32_t word);
+    void fill(uint32_t word);  // every 4 bytes
     template <class T>
     void writeAll(std::span<const T> items) {
         write(std::as_bytes(items));

@@ -9,7 +9,7 @@ namespace {
 
 using Current = void* (*)();
 
-// What `name` of a library gives that is in the process already: only such a one can have made a context. Else null.
+// Calls `name` of `library` if the process has loaded that library, else returns null: only a loaded library can have created a context.
 void* ask(const char* library, const char* name) {
     void* loaded = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
     if (!loaded) return nullptr;
@@ -21,7 +21,7 @@ void* ask(const char* library, const char* name) {
 
 unsigned createBuffer(size_t bytes) {
     Result<Buffer> made = Buffer::create(bytes);
-    return made ? made->letGo() : 0;
+    return made ? made->release() : 0;
 }
 
 void writeBuffer(unsigned buffer, std::span<const std::byte> bytes) {
@@ -43,7 +43,7 @@ GlContext currentContext() {
         gl.display = ask("libEGL.so.1", "eglGetCurrentDisplay");
         return gl;
     }
-    gl.egl = false;  // libGL has it all where GLX has no library of its own
+    gl.egl = false;  // libGL has the GLX functions if there is no libGLX
     for (const char* library : {"libGLX.so.0", "libGL.so.1"}) {
         gl.context = ask(library, "glXGetCurrentContext");
         gl.display = gl.context ? ask(library, "glXGetCurrentDisplay") : nullptr;

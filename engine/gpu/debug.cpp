@@ -12,7 +12,7 @@ struct DebugMessages::State {
     std::string lastError;
 
     void take(GLenum source, GLenum type, GLenum severity, std::string_view text) {
-        // Programs report their compiler's words themselves, with the names of the files.
+        // Program reports compiler messages itself, with the names of the files.
         if (source == GL_DEBUG_SOURCE_SHADER_COMPILER || severity == GL_DEBUG_SEVERITY_NOTIFICATION) return;
         const std::string sentence = "OpenGL: " + std::string(text.substr(0, text.find_last_not_of(" \n") + 1));
         if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
@@ -37,7 +37,7 @@ struct DebugMessages::State {
 DebugMessages::DebugMessages(Log log) : state_(std::make_unique<State>()) {
     state_->log = std::move(log);
     glEnable(GL_DEBUG_OUTPUT);
-    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // on our thread, inside the call that is to blame
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // on this thread, inside the call that causes the message
     glDebugMessageCallback(State::callback, state_.get());
     glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_TRUE);
 }

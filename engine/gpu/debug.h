@@ -1,4 +1,4 @@
-// DebugMessages: what the driver says about our use of OpenGL, handed to a Log and counted.
+// DebugMessages: passes the driver's debug messages to a Log and counts them.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,9 @@
 
 namespace rivulet::gpu {
 
-// Installed on the current context until destroyed (it must be current then too). Owned by whoever owns the context; tests ask errors() ==
-// 0. Errors and undefined behaviour go to log.error, deprecation and portability to log.warning, hints on speed to log.info.
+// Installed on the context that is current at construction, until destruction (it must be current then too). The owner of the context owns
+// it; tests require errors() == 0. Errors and undefined behaviour go to log.error, deprecation and portability to log.warning, hints on
+// speed to log.info.
 class DebugMessages {
   public:
     explicit DebugMessages(Log log);
@@ -19,7 +20,7 @@ class DebugMessages {
 
     int errors() const;
     int warnings() const;
-    const std::string& lastError() const;  // "" if there was none
+    const std::string& lastError() const;  // "": none
 
   private:
     struct State;  // its address is the callback's user pointer

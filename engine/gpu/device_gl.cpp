@@ -19,10 +19,10 @@ namespace rivulet {
 namespace {
 
 constexpr uint32_t kDefaultLocalSize = 64;
-constexpr size_t kBlockPage = size_t{64} << 10U;  // parameter blocks written before a new page is begun
-constexpr size_t kHarvestAbove = 1024;            // timed dispatches that may wait for takeTimes()
+constexpr size_t kBlockPage = size_t{64} << 10U;  // bytes of parameter blocks per page
+constexpr size_t kHarvestAbove = 1024;            // timed dispatches above which times are collected without takeTimes()
 
-// What a dispatch wrote is there for everything that a Buffer may be used for, here and in drawing.
+// Makes the results of a dispatch visible to every use of a Buffer, in kernels and in drawing.
 constexpr GLbitfield kReaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
                                 GL_TEXTURE_FETCH_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT |
                                 GL_COMMAND_BARRIER_BIT;
@@ -77,18 +77,18 @@ class GlDevice final : public Device {
         std::string path;
         gpu::Program program;
         uint32_t localSize;
-        size_t bindings = 0;   // the highest SSBO binding that the kernel really uses
-        GLint groupBase = -1;  // where lang.h's groupBase_ is; -1: the kernel needs no THREAD_ID
-        size_t handed = 0;     // buffers, by the last dispatch; 0: there was none
+        size_t bindings = 0;   // the highest SSBO binding that the compiled kernel uses
+        GLint groupBase = -1;  // location of lang.h's groupBase_; -1: the kernel does not use THREAD_ID
+        size_t passed = 0;     // buffers passed by the last dispatch; 0: there was none
         void link();           // finds bindings and groupBase
     };
-    // Parameter blocks, written one after the other by the host. A page is written anew when the GPU is done with all it holds.
+    // Parameter blocks, written one after the other by the host. A page is reused when the GPU has finished with all of its blocks.
     struct Page {
         gpu::Buffer buffer;
         size_t used = 0;
         Fence done;
     };
-    struct Awaited {
+    struct PendingRead {
         gpu::Buffer staging;
         size_t bytes = 0;
         Fence copied;
@@ -99,7 +99,7 @@ class GlDevice final : public Device {
     bool nextPage(size_t bytes);
     gpu::Buffer stagingFor(size_t bytes);
     void harvest();
-    void tell(const std::string& trouble);
+    void logOnce(const std::string& error);
 
     ShaderFiles files_;
     Log log_;
@@ -109,12 +109,12 @@ class GlDevice final : public Device {
     std::deque<Page> pages_;  // the oldest first; the last is being written
     std::vector<std::byte> lastBlock_;
     size_t lastBlockAt_ = 0;
-    std::deque<Awaited> awaited_;
+    std::deque<PendingRead> pendingReads_;
     std::vector<gpu::Buffer> staging_;  // free
     gpu::Timer timer_;
     std::vector<PassTime> times_;
     size_t bytesAllocated_ = 0;
-    bool troubleTold_ = false;
+    bool errorLogged_ = false;
 };
 
 GlDevice::GlDevice(const ShaderFiles& files, Log log)
@@ -131,10 +131,10 @@ GlDevice::GlDevice(const ShaderFiles& files, Log log)
     info_.maxBufferBytes = static_cast<size_t>(limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
 }
 
-// Calls that have no Result say their trouble once: it would come again every frame.
-void GlDevice::tell(const std::string& trouble) {
-    if (!troubleTold_) log_.error(trouble);
-    troubleTold_ = true;
+// For calls without a Result: the first error is logged; it would otherwise repeat every frame.
+void GlDevice::logOnce(const std::string& error) {
+    if (!errorLogged_) log_.error(error);
+    errorLogged_ = true;
 }
 
 Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> defines) {
@@ -154,8 +154,8 @@ Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> d
     }
     const std::string file = fmt::format("shaders/{}.kernel", path);
     if (localSize > maxLocalSize_)
-        return failed(
-            fmt::format("{} runs in work groups of {}, but {} allows {}; try --backend cpu", file, localSize, info_.name, maxLocalSize_));
+        return failed(fmt::format("{} needs work groups of {} threads, but {} allows {}; try --backend cpu", file, localSize, info_.name,
+                                  maxLocalSize_));
     Result<gpu::Program> program = gpu::Program::create(files_, {file}, sorted);
     if (!program) return program.error();
     kernels_.push_back({std::move(key), std::string(path), std::move(*program), localSize});
@@ -184,30 +184,30 @@ void GlDevice::Entry::link() {
 Result<size_t> GlDevice::reload() {
     std::vector<gpu::Program*> programs;
     for (Entry& e : kernels_) programs.push_back(&e.program);
-    const Result<size_t> others = gpu::Program::reload(programs, [this](size_t k, GLuint name) {
+    const Result<size_t> changed = gpu::Program::reload(programs, [this](size_t k, GLuint name) {
         const Entry& e = kernels_[k];
         const size_t wanted = highestBinding(name);
-        if (e.handed == 0 || wanted <= e.handed) return ok();
-        return Status(failed(
-            fmt::format("shaders/{}.kernel now reads {} buffers and is handed {}: build the program anew", e.path, wanted, e.handed)));
+        if (e.passed == 0 || wanted <= e.passed) return ok();
+        return Status(failed(fmt::format("shaders/{}.kernel now reads {} buffers, but the program passes {}; rebuild the program", e.path,
+                                         wanted, e.passed)));
     });
-    if (!others) return others.error();
+    if (!changed) return changed.error();
     for (Entry& e : kernels_) e.link();
-    return others;
+    return changed;
 }
 
 Result<Buffer> GlDevice::allocate(size_t bytes) {
-    if (Status allowed = room(bytes); !allowed) return allowed.error();
+    if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
     if (bytes > info_.maxBufferBytes)
         return failed(fmt::format(
-            "a buffer of {} bytes ({:.1f} MiB) was asked for, but {} allows {} bytes ({:.1f} MiB); use fewer particles or coarser voxels",
+            "a buffer of {} bytes ({:.1f} MiB) is needed, but {} allows {} bytes ({:.1f} MiB); use fewer particles or coarser voxels",
             bytes, static_cast<double>(bytes) / 1048576.0, info_.name, info_.maxBufferBytes,
             static_cast<double>(info_.maxBufferBytes) / 1048576.0));
     Result<gpu::Buffer> buffer = gpu::Buffer::create(bytes);
     if (!buffer)
         return failed(fmt::format("{} ({:.1f} MiB are in use)", buffer.error().message, static_cast<double>(bytesAllocated_) / 1048576.0));
     bytesAllocated_ += bytes;
-    return Buffer(*this, buffer->letGo(), bytes);
+    return Buffer(*this, buffer->release(), bytes);
 }
 
 void GlDevice::release(uint64_t handle, size_t bytes) {
@@ -239,7 +239,7 @@ void GlDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
     glCopyNamedBufferSubData(nameOf(from), nameOf(to), 0, 0, static_cast<GLsizeiptr>(bytes));
 }
 
-// A free piece of at least this size, or a new one: the ring grows instead of waiting.
+// A free staging buffer of at least this size, or a new one: the number of buffers grows instead of waiting for the GPU.
 gpu::Buffer GlDevice::stagingFor(size_t bytes) {
     const auto fits = std::find_if(staging_.begin(), staging_.end(), [&](const gpu::Buffer& b) { return b.bytes() >= bytes; });
     if (fits != staging_.end()) {
@@ -249,24 +249,24 @@ gpu::Buffer GlDevice::stagingFor(size_t bytes) {
     }
     Result<gpu::Buffer> made = gpu::Buffer::create(roundedUp(std::max<size_t>(bytes, 1), 4096), gpu::BufferKind::mapped);
     if (made) return std::move(*made);
-    tell(fmt::format("results cannot be read back: {}", made.error().message));
+    logOnce(fmt::format("results cannot be read back: {}", made.error().message));
     return {};
 }
 
 void GlDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
     ASSERT(bytes <= from.bytes(), "read inside the buffer");
-    Awaited awaited{stagingFor(bytes), bytes, {}, std::move(then)};
-    if (!awaited.staging) return;
-    if (bytes > 0) glCopyNamedBufferSubData(nameOf(from), awaited.staging.name(), 0, 0, static_cast<GLsizeiptr>(bytes));
-    awaited.copied = Fence::now();
-    awaited_.push_back(std::move(awaited));
+    PendingRead pending{stagingFor(bytes), bytes, {}, std::move(then)};
+    if (!pending.staging) return;
+    if (bytes > 0) glCopyNamedBufferSubData(nameOf(from), pending.staging.name(), 0, 0, static_cast<GLsizeiptr>(bytes));
+    pending.copied = Fence::now();
+    pendingReads_.push_back(std::move(pending));
 }
 
 void GlDevice::poll() {
-    // What a callback asks for waits for another poll().
-    for (size_t left = awaited_.size(); left > 0 && awaited_.front().copied.passed(); --left) {
-        Awaited ready = std::move(awaited_.front());
-        awaited_.pop_front();
+    // Reads that a callback starts are left to the next poll().
+    for (size_t left = pendingReads_.size(); left > 0 && pendingReads_.front().copied.passed(); --left) {
+        PendingRead ready = std::move(pendingReads_.front());
+        pendingReads_.pop_front();
         ready.then(ready.staging.mapped().first(ready.bytes));
         staging_.push_back(std::move(ready.staging));
     }
@@ -284,7 +284,7 @@ bool GlDevice::nextPage(size_t bytes) {
     } else {
         Result<gpu::Buffer> made = gpu::Buffer::create(std::max(kBlockPage, bytes), gpu::BufferKind::mapped);
         if (!made) {
-            tell(fmt::format("a kernel cannot run: {}", made.error().message));
+            logOnce(fmt::format("a kernel cannot run: {}", made.error().message));
             return false;
         }
         page.buffer = std::move(*made);
@@ -293,7 +293,7 @@ bool GlDevice::nextPage(size_t bytes) {
     return true;
 }
 
-// The kernels of a step mostly share their block: it is written once.
+// Most kernels of a step have the same parameter block, which is written once.
 bool GlDevice::bindParams(std::span<const std::byte> bytes) {
     const bool same = lastBlock_.size() == bytes.size() && std::memcmp(lastBlock_.data(), bytes.data(), bytes.size()) == 0;
     if (!same) {
@@ -311,11 +311,11 @@ bool GlDevice::bindParams(std::span<const std::byte> bytes) {
 }
 
 void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
-    ASSERT(kernel.index < kernels_.size(), "ask this device for the kernel before dispatching it");
+    ASSERT(kernel.index < kernels_.size(), "get the kernel from this device before dispatching it");
     Entry& entry = kernels_[kernel.index];
-    ASSERT(entry.bindings <= buffers.size(), "hand a buffer for every row of the kernel's ARGS");
+    ASSERT(entry.bindings <= buffers.size(), "pass a buffer for every row of the kernel's ARGS");
     ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
-    entry.handed = buffers.size();
+    entry.passed = buffers.size();
     if (threads == 0 || !bindParams(params)) return;
     for (size_t k = 0; k < buffers.size(); ++k)
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(k + 1), buffers[k] ? nameOf(*buffers[k]) : 0);
@@ -323,7 +323,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     entry.program.use();
     timer_.begin(kernel.index);
     const size_t groups = (static_cast<size_t>(threads) + entry.localSize - 1) / entry.localSize;
-    for (size_t base = 0; base < groups; base += maxGroups_) {  // once, but for millions of threads
+    for (size_t base = 0; base < groups; base += maxGroups_) {  // one iteration, except for millions of threads
         if (groups > maxGroups_) glProgramUniform1ui(entry.program.name(), entry.groupBase, static_cast<GLuint>(base));
         glDispatchCompute(static_cast<GLuint>(std::min(maxGroups_, groups - base)), 1, 1);
     }

@@ -1,4 +1,4 @@
-// Fence: whether the GPU has done all that was issued before it.
+// Fence: reports whether the GPU has finished all commands issued before it.
 #pragma once
 
 #include <rivulet_glad/gl.h>
@@ -18,7 +18,7 @@ class Fence {
     ~Fence() {
         if (sync_) glDeleteSync(sync_);
     }
-    // Everything issued so far.
+    // A fence behind all commands issued so far.
     static Fence now() {
         Fence fence;
         fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -31,7 +31,7 @@ class Fence {
     }
 
   private:
-    // A context that was lost answers GL_WAIT_FAILED, and there is nothing to wait for.
+    // A lost context returns GL_WAIT_FAILED, which counts as reached: there is nothing to wait for.
     bool reached(GLuint64 nanoseconds) const {
         return !sync_ || glClientWaitSync(sync_, GL_SYNC_FLUSH_COMMANDS_BIT, nanoseconds) != GL_TIMEOUT_EXPIRED;
     }

@@ -17,17 +17,17 @@
 namespace rivulet::gpu {
 namespace {
 
-constexpr uint64_t kKeepFrames = 8;     // what nobody borrowed for so long is freed
-constexpr uint64_t kTimesLate = 2;      // frames before a pass's time is asked for
-constexpr size_t kMaxTimedFrames = 16;  // whose times may be on their way
+constexpr uint64_t kKeepFrames = 8;     // a resource not used for this many frames is freed
+constexpr uint64_t kTimesLate = 2;      // frames before the time of a pass is read
+constexpr size_t kMaxTimedFrames = 16;  // frames whose times may be pending
 
 bool fitsTexture(Usage usage) { return usage == Usage::sampled || usage == Usage::image || usage == Usage::target || usage == Usage::copy; }
 bool fitsBuffer(Usage usage) { return !fitsTexture(usage) || usage == Usage::copy || usage == Usage::sampled; }
 
-// Writes that OpenGL shows to nobody without a barrier.
+// Writes that are not visible to other commands without a barrier.
 bool incoherent(Usage usage) { return usage == Usage::image || usage == Usage::storage; }
 
-// What glMemoryBarrier needs to hear for such a write to be visible to this usage.
+// The bit of glMemoryBarrier that makes such a write visible to this usage.
 GLbitfield barrierFor(Usage usage, bool texture) {
     switch (usage) {
         case Usage::sampled:
@@ -49,10 +49,10 @@ GLbitfield barrierFor(Usage usage, bool texture) {
         case Usage::copy:
             return texture ? GL_TEXTURE_UPDATE_BARRIER_BIT : GL_BUFFER_UPDATE_BARRIER_BIT;
     }
-    ASSERT(false, "hand a Usage that exists");
+    ASSERT(false, "pass a valid Usage");
 }
 
-// What a pass may leave behind, put back to OpenGL's defaults; framebuffer and viewport to what the host had.
+// Resets the state that a pass may set to OpenGL's defaults, and framebuffer and viewport to those of the host.
 class StateScope {
   public:
     StateScope() {
@@ -228,12 +228,12 @@ struct FrameGraph::Impl {
         bool needed = false;
         GLbitfield barriers = 0;
     };
-    // What happened to one texture or buffer since barriers were last placed. Keyed by the GL name: transients may share one.
+    // The accesses to one texture or buffer since the last barriers. The key is the GL name, because transients may share one.
     struct Hazard {
-        bool written = false;       // by a shader, incoherently ...
-        GLbitfield visibleTo = 0;   // ... but visible to these since
-        bool touched = false;       // otherwise, so that an incoherent write must not overtake it ...
-        GLbitfield orderedFor = 0;  // ... which these cannot any more
+        bool written = false;       // written incoherently by a shader ...
+        GLbitfield visibleTo = 0;   // ... and made visible to these uses by a barrier
+        bool touched = false;       // used in another way; an incoherent write must not be executed before that ...
+        GLbitfield orderedFor = 0;  // ... and for these uses a barrier already ensures it
     };
     using Hazards = std::map<std::pair<bool, GLuint>, Hazard>;
 
@@ -260,7 +260,7 @@ struct FrameGraph::Impl {
     void noteAccesses(const Pass& pass, Hazards& hazards) const;
 };
 
-// Backwards: a pass is needed if it adds to something needed; then all it reads is needed too.
+// Goes backwards: a pass is needed if it writes a needed resource; then all resources that it reads are needed too.
 void FrameGraph::Impl::cull() {
     std::vector<bool> needed(resources.size());
     for (size_t r = 0; r < resources.size(); ++r) needed[r] = resources[r].output;
@@ -286,12 +286,12 @@ Status FrameGraph::Impl::lendTransients() {
             if (r.imported || r.first != p) continue;
             if (r.isTexture) {
                 Result<TransientPool::Impl::TextureItem*> item = pool.lendTexture(r.desc);
-                if (!item) return failed(fmt::format("the picture's \"{}\" cannot be made: {}", r.name, item.error().message));
+                if (!item) return failed(fmt::format("the frame's \"{}\" cannot be allocated: {}", r.name, item.error().message));
                 r.texture = &(*item)->object;
                 r.lent = &(*item)->lent;
             } else {
                 Result<TransientPool::Impl::BufferItem*> item = pool.lendBuffer(roundedBytes(r.bytes));
-                if (!item) return failed(fmt::format("the picture's \"{}\" cannot be made: {}", r.name, item.error().message));
+                if (!item) return failed(fmt::format("the frame's \"{}\" cannot be allocated: {}", r.name, item.error().message));
                 r.buffer = (*item)->object.name();
                 r.lent = &(*item)->lent;
             }
@@ -379,25 +379,26 @@ void FrameGraph::pass(std::string_view name, const std::vector<Read>& reads, con
                       std::function<void(PassContext&)> work) {
     ASSERT(!impl_->executed, "build a new FrameGraph for the next frame");
     std::vector<Impl::Resource>& resources = impl_->resources;
-    const auto told = [&](uint32_t index, const char* what) {
+    const auto message = [&](uint32_t index, const char* what) {
         return fmt::format("pass \"{}\", \"{}\": {}", name, index < resources.size() ? resources[index].name : "?", what);
     };
     const auto check = [&](uint32_t index, Usage usage) {
-        ASSERT(index < resources.size(), told(index, "use a handle that this graph made").c_str());
-        ASSERT(resources[index].isTexture ? fitsTexture(usage) : fitsBuffer(usage), told(index, "use it as what it is").c_str());
+        ASSERT(index < resources.size(), message(index, "use a handle that this graph made").c_str());
+        ASSERT(resources[index].isTexture ? fitsTexture(usage) : fitsBuffer(usage),
+               message(index, "this usage does not fit a texture or a buffer, respectively").c_str());
     };
     for (const Read& read : reads) {
         check(read.index, read.usage);
         ASSERT(resources[read.index].written,
-               told(read.index, "nobody has written this; add the pass that does before the one that reads").c_str());
+               message(read.index, "no earlier pass writes this; add that pass before the one that reads").c_str());
         for (const Write& write : writes)
             ASSERT(write.index != read.index || write.usage != Usage::target || read.usage == Usage::target,
-                   told(read.index, "a pass cannot read what it draws into; draw into another texture").c_str());
+                   message(read.index, "a pass cannot read what it draws into; draw into another texture").c_str());
     }
     for (const Write& write : writes) {
         check(write.index, write.usage);
         ASSERT(write.usage == Usage::target || write.usage == Usage::image || write.usage == Usage::storage || write.usage == Usage::copy,
-               told(write.index, "only targets, images, storage and copies are written").c_str());
+               message(write.index, "only targets, images, storage and copies are written").c_str());
         resources[write.index].written = true;
     }
     impl_->passes.push_back({std::string(name), reads, writes, std::move(work), false, 0});
@@ -415,7 +416,7 @@ Status FrameGraph::execute() {
     const Status lent = impl_->lendTransients();
     if (!lent) return lent.error();
 
-    // A host may have as many groups open as there can be: a pop without a push would take one of its own.
+    // A host may have opened the maximum number of debug groups: a pop without a successful push would close one of the host's.
     GLint groups = 0, mostGroups = 0;
     glGetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &groups);
     glGetIntegerv(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &mostGroups);
@@ -440,20 +441,20 @@ Status FrameGraph::execute() {
         ++pool.timed.back().awaited;
         if (named) glPopDebugGroup();
     }
-    // Whatever comes next, here or in the host, finds what shaders wrote.
+    // Makes shader writes visible to all later commands, here or in the host.
     if (std::any_of(hazards.begin(), hazards.end(), [](const auto& h) { return h.second.written; })) glMemoryBarrier(GL_ALL_BARRIER_BITS);
     return ok();
 }
 
 const Texture& FrameGraph::result(TextureHandle handle) const {
     const Impl::Resource& r = impl_->at(handle.index, true);
-    ASSERT(impl_->executed && r.output && r.texture, "ask for what was an output(), after execute() succeeded");
+    ASSERT(impl_->executed && r.output && r.texture, "call result() for an output(), after execute() succeeded");
     return *r.texture;
 }
 
 GLuint FrameGraph::result(BufferHandle handle) const {
     const Impl::Resource& r = impl_->at(handle.index, false);
-    ASSERT(impl_->executed && r.output && r.buffer != 0, "ask for what was an output(), after execute() succeeded");
+    ASSERT(impl_->executed && r.output && r.buffer != 0, "call result() for an output(), after execute() succeeded");
     return r.buffer;
 }
 
@@ -515,7 +516,7 @@ const Texture& PassContext::texture(TextureHandle handle) const {
     const FrameGraph::Impl::Pass& pass = graph_.impl_->passes[pass_];
     const FrameGraph::Impl::Resource& r = graph_.impl_->at(handle.index, true);
     ASSERT(declared(pass, [&](const auto& use) { return use.index == handle.index; }),
-           fmt::format("pass \"{}\" uses \"{}\" without saying so; add it to its reads or writes", pass.name, r.name).c_str());
+           fmt::format("pass \"{}\" uses \"{}\" without declaring it; add it to its reads or writes", pass.name, r.name).c_str());
     return *r.texture;
 }
 
@@ -523,7 +524,7 @@ GLuint PassContext::buffer(BufferHandle handle) const {
     const FrameGraph::Impl::Pass& pass = graph_.impl_->passes[pass_];
     const FrameGraph::Impl::Resource& r = graph_.impl_->at(handle.index, false);
     ASSERT(declared(pass, [&](const auto& use) { return use.index == handle.index; }),
-           fmt::format("pass \"{}\" uses \"{}\" without saying so; add it to its reads or writes", pass.name, r.name).c_str());
+           fmt::format("pass \"{}\" uses \"{}\" without declaring it; add it to its reads or writes", pass.name, r.name).c_str());
     return r.buffer;
 }
 
@@ -535,7 +536,7 @@ const Framebuffer& PassContext::drawTo(std::initializer_list<TextureHandle> colo
         if (!handle) return Attachment{};
         const Texture& target = texture(handle);
         ASSERT(declared(pass, [&](const auto& use) { return use.index == handle.index && use.usage == Usage::target; }),
-               fmt::format("pass \"{}\" draws into \"{}\" without saying so; add it to its writes", pass.name,
+               fmt::format("pass \"{}\" draws into \"{}\" without declaring it; add it to its writes", pass.name,
                            graph_.impl_->resources[handle.index].name)
                    .c_str());
         return Attachment{&target};

@@ -1,15 +1,15 @@
-// FrameGraph: the passes of one frame. It does four things: leaves out passes whose results nobody needs, lends transient textures and
-// buffers (two that are never alive together share memory), places glMemoryBarrier, and times each pass.
+// FrameGraph: the passes of one frame. It culls passes whose results are not used, provides transient textures and buffers (two whose
+// lifetimes do not overlap share memory), places glMemoryBarrier, and measures the time of each pass.
 //
-//     FrameGraph graph(pool);                                    // built anew each frame; the pool stays
+//     FrameGraph graph(pool);                                    // created in each frame; the pool is kept
 //     TextureHandle depth = graph.texture("depth", desc);
 //     graph.pass("depth", {{particles, Usage::attribute}}, {depth}, [=](PassContext& c) { c.drawTo({}, depth); ... });
 //     TextureHandle picture = addShade(graph, depth);            // a Pass is a free function: handles in, handles out
 //     graph.output(picture);
 //     graph.execute();
 //
-// Passes run in the order they were added. Writing to a handle that has been written adds to it (a pass that replaces it clears it first);
-// a transient's first writer finds undefined contents. After each pass the GL state that passes set is back at its defaults.
+// Passes run in the order they were added. A write to a handle that was written before adds to its contents (a pass that replaces them
+// clears first); for a transient's first writer they are undefined. After each pass the GL state that passes may set is reset to defaults.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@
 
 namespace rivulet::gpu {
 
-// How a pass touches a resource. It decides the barriers: what shaders write by image or storage is not visible elsewhere without one.
+// How a pass uses a resource. It determines the barriers: writes of shaders to images or storage are not visible elsewhere without one.
 enum class Usage {
     sampled,    // texture: texture(), texelFetch(); buffer: texelFetch() of a buffer texture
     image,      // texture: imageLoad, imageStore
@@ -63,7 +63,7 @@ struct Write {
     Usage usage;
 };
 
-// What a graph keeps between frames: textures and buffers to lend, timers. Those not lent for 8 frames are freed.
+// Resources that graphs share between frames: textures, buffers and timers. Textures and buffers not used for 8 frames are freed.
 class TransientPool {
   public:
     TransientPool();
@@ -71,15 +71,15 @@ class TransientPool {
     TransientPool& operator=(TransientPool&&) noexcept;
     ~TransientPool();
 
-    // GPU time a pass, of the latest frame whose times have arrived (2-3 frames late): in order of adding, passes of one name summed up;
-    // calls = 0: left out. Empty before the first arrive.
+    // GPU time of each pass of the latest frame whose times have arrived (2 to 3 frames late), in the order of adding; passes of one name
+    // are summed. calls = 0: culled. Empty before the first times arrive.
     const std::vector<PassTime>& times() const;
-    void onSpan(SpanSink sink);  // hears of each pass when its time has arrived; empty: nobody does
-    void collect();              // takes the times that have arrived: after glFinish() those of all frames
-    size_t textures() const;     // held, lent or free
+    void onSpan(SpanSink sink);  // receives the span of each pass when it arrives; empty: off
+    void collect();              // processes the times that have arrived; after glFinish() those of all frames
+    size_t textures() const;     // number in the pool, in use or free
     size_t buffers() const;
-    size_t bytes() const;      // of both
-    void limit(size_t bytes);  // execute() fails rather than hold more
+    size_t bytes() const;      // of textures and buffers
+    void limit(size_t bytes);  // execute() fails if more would be needed
 
   private:
     friend class FrameGraph;
@@ -90,14 +90,14 @@ class TransientPool {
 
 class FrameGraph;
 
-// What a pass's function works with. Asking for a handle that the pass did not declare is a mistake (ASSERT).
+// The argument of a pass's function. Using a handle that the pass did not declare is a programming error (ASSERT).
 class PassContext {
   public:
     const Texture& texture(TextureHandle handle) const;
     GLuint buffer(BufferHandle handle) const;  // the GL name
     size_t bytes(BufferHandle handle) const;
 
-    // Binds a framebuffer of these (level 0, all layers) and sets the viewport to all of it. Gone after the pass.
+    // Binds a framebuffer of these textures (level 0, all layers) and sets the viewport to its size. It is deleted after the pass.
     const Framebuffer& drawTo(std::initializer_list<TextureHandle> colours, TextureHandle depth = {});
     // One triangle that covers the viewport, from gl_VertexID: no attributes. The program in use draws it.
     void drawFullscreen() const;
@@ -112,30 +112,32 @@ class PassContext {
 
 class FrameGraph {
   public:
-    explicit FrameGraph(TransientPool& pool);  // outlives the graph
+    explicit FrameGraph(TransientPool& pool);  // must outlive the graph
     FrameGraph(const FrameGraph&) = delete;
     FrameGraph& operator=(const FrameGraph&) = delete;
     ~FrameGraph();
 
-    // Lent by the pool from the first pass that uses it to the last.
+    // A transient: the pool provides it from the first pass that uses it to the last.
     TextureHandle texture(std::string_view name, const TextureDesc& desc);
     BufferHandle buffer(std::string_view name, size_t bytes);
-    // Somebody else's, until execute() returns; has contents from the start. Writing to it does not make a pass needed: output() does.
+    // A resource of the caller, which must exist until execute() returns; its contents are defined from the start. A pass that only writes
+    // to an import is culled unless the import is an output().
     TextureHandle importTexture(std::string_view name, const Texture& texture);
     BufferHandle importBuffer(std::string_view name, GLuint buffer, size_t bytes);
     const TextureDesc& desc(TextureHandle handle) const;
 
-    // Reading what nobody has written is a mistake (ASSERT names pass and resource), as is sampling what the pass draws into.
+    // Reading a resource that no earlier pass has written is a programming error (ASSERT with pass and resource), and so is sampling a
+    // texture that the pass draws into.
     void pass(std::string_view name, const std::vector<Read>& reads, const std::vector<Write>& writes,
               std::function<void(PassContext&)> work);
 
-    // Needed after the frame. A transient's texture stays valid until the pool's next graph executes: see result().
+    // Marks a resource as used after the frame. A transient stays valid until the pool's next graph executes: see result().
     void output(TextureHandle handle);
     void output(BufferHandle handle);
 
-    // Runs what is needed, once. Error (failed): a transient could not be allocated; nothing ran.
+    // Runs the passes that contribute to an output; may be called once. Error (failed): a transient could not be allocated; no pass ran.
     Status execute();
-    // After execute(), of an output(): what it became.
+    // The texture or buffer of an output(), after execute().
     const Texture& result(TextureHandle handle) const;
     GLuint result(BufferHandle handle) const;
 
@@ -144,8 +146,8 @@ class FrameGraph {
         bool culled;
         GLbitfield barriers;  // of glMemoryBarrier before the pass; 0: none
     };
-    std::vector<Ran> ran() const;            // what execute() did, pass by pass, for those who explain or test
-    FrameGraphDescription describe() const;  // the same with all that was used, for those who show it
+    std::vector<Ran> ran() const;            // the passes after execute(), for --explain and tests
+    FrameGraphDescription describe() const;  // the same with all resources, for the frame graph panel
 
   private:
     friend class PassContext;

@@ -1,4 +1,4 @@
-// What a frame's graph was, as plain data, for those who show it. FrameGraph::describe() fills it; nobody else pays for it.
+// A frame graph as plain data, for the panel that shows it. FrameGraph::describe() fills it; frames that are not shown do not.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ const char* usageName(Usage usage);  // "sampled"
 struct FrameGraphDescription {
     struct Resource {
         std::string name;
-        std::string format;  // "rgba16f"; "" of a buffer
+        std::string format;  // "rgba16f"; "" for a buffer
         bool isTexture = false, imported = false, output = false;
-        int width = 0, height = 0, layers = 0;  // texels; of a texture
+        int width = 0, height = 0, layers = 0;  // texels; textures only
         size_t bytes = 0;                       // on the GPU
-        size_t memory = SIZE_MAX;               // which of the pool's pieces it was lent, from 0 on; SIZE_MAX: none, somebody else's
-        size_t first = SIZE_MAX, last = 0;      // of the passes that ran; SIZE_MAX: nobody used it
+        size_t memory = SIZE_MAX;               // index of the pool's allocation that it used, from 0; SIZE_MAX: an import
+        size_t first = SIZE_MAX, last = 0;      // indices of the first and last pass that used it; SIZE_MAX: none
     };
     struct Use {
         size_t resource = 0;
@@ -30,10 +30,10 @@ struct FrameGraphDescription {
         bool culled = false;
         std::vector<Use> reads, writes;
     };
-    std::vector<Resource> resources;      // in the order they were made
-    std::vector<Pass> passes;             // in the order they were added, which is that they ran in
-    size_t memories = 0;                  // pieces of the pool that were lent
-    size_t lentBytes = 0, heldBytes = 0;  // of those pieces; of all that the pool holds
+    std::vector<Resource> resources;      // in the order of creation
+    std::vector<Pass> passes;             // in the order they were added and ran
+    size_t memories = 0;                  // allocations of the pool that were used
+    size_t lentBytes = 0, heldBytes = 0;  // bytes of those allocations; of the whole pool
 };
 
 }  // namespace rivulet::gpu

@@ -11,7 +11,7 @@
 namespace rivulet::gpu {
 namespace {
 
-constexpr size_t kMostColours = 8;  // what GL guarantees
+constexpr size_t kMostColours = 8;  // the minimum that GL guarantees
 
 void attach(GLuint framebuffer, GLenum point, const Attachment& a) {
     if (a.layer < 0)

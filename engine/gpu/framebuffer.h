@@ -1,4 +1,4 @@
-// Framebuffer: textures to draw into. Passes of a frame graph rarely need one: PassContext::drawTo makes it.
+// Framebuffer: textures as render targets. Passes of a frame graph rarely need one, because PassContext::drawTo creates it.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace rivulet::gpu {
 
-// One level of a texture; layer -1: all of them (flat textures have one).
+// One level of a texture. layer -1: all layers (flat textures have one).
 struct Attachment {
     const Texture* texture = nullptr;
     int mip = 0;
@@ -19,8 +19,8 @@ struct Attachment {
 class Framebuffer {
   public:
     Framebuffer() = default;
-    // colours[k] is the fragment shader's output k; a null texture is a gap. No colours and no depth is a mistake, as is anything
-    // that GL calls incomplete (ASSERT names the attachments).
+    // colours[k] is the fragment shader's output k; a null texture leaves an output unused. No attachment at all is a programming
+    // error, and so is a framebuffer that GL reports as incomplete (ASSERT names the attachments).
     Framebuffer(std::span<const Attachment> colours, const Attachment& depth);
     Framebuffer(const Texture& colour, const Texture* depth);
 
@@ -29,7 +29,7 @@ class Framebuffer {
     int height() const { return height_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
 
-    void bind() const;  // and the viewport: all of it
+    void bind() const;  // also sets the viewport to the whole framebuffer
     void clearColour(const vec4& value, int index = 0) const;
     void clearDepth(float value = 1) const;
     // Copies colour 0 to another framebuffer (0: the window), scaled to width x height with linear filtering.

@@ -23,12 +23,12 @@ const char* glErrorName(GLenum error) {
 
 GLenum takeGlError() {
     const GLenum first = glGetError();
-    if (first != GL_NO_ERROR) forgetGlErrors();
+    if (first != GL_NO_ERROR) clearGlErrors();
     return first;
 }
 
-void forgetGlErrors() {
-    // A lost context answers with an error for ever.
+void clearGlErrors() {
+    // A lost context returns an error in every call, so the loop is bounded.
     for (int k = 0; k < 16 && glGetError() != GL_NO_ERROR; ++k) {
     }
 }

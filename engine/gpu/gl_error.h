@@ -1,4 +1,4 @@
-// What glGetError says, for the calls whose failure is no mistake of ours: allocations. Everything else is the debug callback's.
+// glGetError, for calls that may fail in a correct program: allocations. All other errors are reported by the debug callback.
 #pragma once
 
 #include <rivulet_glad/gl.h>
@@ -6,7 +6,7 @@
 namespace rivulet::gpu {
 
 const char* glErrorName(GLenum error);  // "GL_OUT_OF_MEMORY"
-GLenum takeGlError();                   // the oldest; the others are dropped
-void forgetGlErrors();                  // so that the next one is ours: the debug callback has heard of them
+GLenum takeGlError();                   // the oldest pending error; the others are dropped
+void clearGlErrors();                   // drops all pending errors, which the debug callback has reported already
 
 }  // namespace rivulet::gpu

@@ -1,6 +1,7 @@
-// GlObject: the one move-only owner of a GL name; buffer.h, texture.h, ... add what can be done with it.
+// GlObject: a move-only owner of a GL object name; Buffer, Texture, ... use it.
 //
-// Everything in engine/gpu needs a current OpenGL 4.5 context, when it is made, used and destroyed (sharing contexts count as one).
+// Everything in engine/gpu needs a current OpenGL 4.5 context when it is created, used and destroyed; contexts that share objects count as
+// the same one.
 #pragma once
 
 #include <rivulet_glad/gl.h>
@@ -9,7 +10,7 @@
 
 namespace rivulet::gpu {
 
-// kDelete(name) gives one GL name back.
+// kDelete(name) deletes the GL object.
 template <void (*kDelete)(GLuint)>
 class GlObject {
   public:
@@ -17,8 +18,8 @@ class GlObject {
     explicit GlObject(GLuint name) : name_(name) {}
     GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
     GlObject& operator=(GlObject&& other) noexcept {
-        GlObject taken(std::move(other));
-        std::swap(name_, taken.name_);
+        GlObject moved(std::move(other));
+        std::swap(name_, moved.name_);
         return *this;
     }
     GlObject(const GlObject&) = delete;
@@ -27,7 +28,7 @@ class GlObject {
         if (name_ != 0) kDelete(name_);
     }
     GLuint name() const { return name_; }
-    GLuint letGo() { return std::exchange(name_, 0); }  // the caller owns it now
+    GLuint release() { return std::exchange(name_, 0); }  // the caller owns the object now
     explicit operator bool() const { return name_ != 0; }
 
   private:

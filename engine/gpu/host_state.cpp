@@ -12,7 +12,7 @@
 namespace rivulet::gpu {
 namespace {
 
-// Whose use would change what we draw, or whom we change; off while we work.
+// Switches that would affect Rivulet's drawing, or that it changes; they are off inside the scope.
 constexpr GLenum kSwitches[] = {GL_DEPTH_TEST,
                                 GL_DEPTH_CLAMP,
                                 GL_CULL_FACE,
@@ -35,7 +35,7 @@ constexpr GLenum kSwitches[] = {GL_DEPTH_TEST,
                                 GL_PRIMITIVE_RESTART_FIXED_INDEX,
                                 GL_DITHER};
 constexpr GLint kClipDistances = 8;
-// The same of a compatibility context; a core one's header does not name them.
+// The same for a compatibility context; the header of the core profile has no names for them.
 constexpr GLenum kAlphaTest = 0x0BC0, kPolygonStipple = 0x0B42, kVertexTwoSide = 0x8643, kPointSprite = 0x8861;
 constexpr GLenum kOldSwitches[] = {kAlphaTest, kPolygonStipple, kVertexTwoSide, kPointSprite};
 constexpr GLenum kClampVertex = 0x891A, kClampFragment = 0x891B;
@@ -46,8 +46,8 @@ constexpr std::pair<GLenum, GLint> kPixelStore[] = {
     {GL_UNPACK_SWAP_BYTES, 0}, {GL_UNPACK_LSB_FIRST, 0},   {GL_UNPACK_ROW_LENGTH, 0},  {GL_UNPACK_IMAGE_HEIGHT, 0},
     {GL_UNPACK_SKIP_ROWS, 0},  {GL_UNPACK_SKIP_PIXELS, 0}, {GL_UNPACK_SKIP_IMAGES, 0}, {GL_UNPACK_ALIGNMENT, 4}};
 
-// What an old context does to pixels on their way: map colours, map stencils, index shift and offset, then scale and bias of red, green,
-// blue, alpha and depth.
+// Pixel transfer of a compatibility context: map colours, map stencils, index shift and offset, then scale and bias of red, green, blue,
+// alpha and depth.
 constexpr std::pair<GLenum, GLfloat> kPixelTransfer[] = {{0x0D10, 0}, {0x0D11, 0}, {0x0D12, 0}, {0x0D13, 0}, {0x0D14, 1},
                                                          {0x0D15, 0}, {0x0D18, 1}, {0x0D19, 0}, {0x0D1A, 1}, {0x0D1B, 0},
                                                          {0x0D1C, 1}, {0x0D1D, 0}, {0x0D1E, 1}, {0x0D1F, 0}};
@@ -74,7 +74,7 @@ constexpr std::pair<GLenum, GLenum> kBuffers[] = {{GL_ARRAY_BUFFER, GL_ARRAY_BUF
                                                   {GL_QUERY_BUFFER, GL_QUERY_BUFFER_BINDING},
                                                   {GL_TEXTURE_BUFFER, GL_TEXTURE_BUFFER_BINDING}};
 
-// What we bind at most.
+// The highest binding points that Rivulet uses.
 constexpr GLint kUnits = 32, kImages = 8, kStorage = 9, kUniform = 4;
 
 GLint number(GLenum what) {
@@ -292,7 +292,7 @@ void HostState::Kept::put() const {
 }
 
 HostState::HostState() : kept_(std::make_unique<Kept>()) {
-    ASSERT(loaded(), "call rivulet::gpu::load with what finds OpenGL's functions, glfwGetProcAddress say, before all else");
+    ASSERT(loaded(), "call rivulet::gpu::load first, with a function that finds OpenGL's functions, for example glfwGetProcAddress");
     kept_->take();
     Kept plain;
     plain.old = kept_->old;
@@ -303,7 +303,7 @@ HostState::HostState() : kept_(std::make_unique<Kept>()) {
     plain.clampRead = kept_->clampRead;
     plain.blends.resize(kept_->blends.size());
     for (Blend& b : plain.blends) b.mask = {GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE};
-    plain.views = kept_->views;  // who draws says where
+    plain.views = kept_->views;  // set by each draw call
     for (View& v : plain.views) v.scissors = false;
     for (View& v : plain.views) v.depth = {0.0, 1.0};
     plain.polygonMode = {GL_FILL, GL_FILL};

@@ -1,14 +1,14 @@
-// HostState: a host's OpenGL state, kept while we work in its context, and put back.
+// HostState: saves a host's OpenGL state and restores it at the end of the scope.
 //
 //     {
-//         const gpu::HostState keep;   // what we find is saved, and all is as we expect it: OpenGL's defaults
+//         const gpu::HostState keep;   // saves the state and sets OpenGL's defaults, which Rivulet expects
 //         world->step(inputs, seconds);  water->draw(...);
-//     }                                // every bit is as it was
+//     }                                // the state is restored exactly
 //
-// Needs a current OpenGL 4.5 context, core or compatibility, and its functions loaded (load.h). What it does not keep, since OpenGL cannot
-// be asked for it or it is no state: pending errors of glGetError, which we leave alone unless an allocation of ours fails; the host's
-// queries, transform feedback and conditional rendering that are under way: end them before; what is bound and was already deleted, here or
-// in a context that shares: it is gone when something else is bound. Scopes may nest.
+// Needs a current OpenGL 4.5 context, core or compatibility, with its functions loaded (load.h). Scopes may nest. Not saved, because OpenGL
+// cannot query it or because it is no state: pending errors of glGetError, which are read only after a failed allocation; active queries,
+// transform feedback and conditional rendering of the host, which must be ended before; bound objects that were already deleted, here or in
+// a context that shares objects: they cease to exist when another object is bound.
 #pragma once
 
 #include <memory>

@@ -19,15 +19,15 @@ bool loaded() { return glGetString != nullptr; }
 PixelTransfer pixelTransfer() { return foundPixelTransfer; }
 
 Status load(FindFunction find) {
-    if (find == nullptr) return badInput("no function was given that finds OpenGL's functions: glfwGetProcAddress, say");
+    if (find == nullptr) return badInput("the function that finds OpenGL's functions is null; pass for example glfwGetProcAddress");
     using GetString = const GLubyte*(GLAD_API_PTR*)(GLenum);
     const auto getString = reinterpret_cast<GetString>(find("glGetString"));
     const auto* version = getString != nullptr ? reinterpret_cast<const char*>(getString(GL_VERSION)) : nullptr;
     if (getString == nullptr)
         return badInput(
-            "the function that finds OpenGL's functions does not find glGetString: give that of the library that made the context");
-    if (version == nullptr) return failed("no OpenGL context is current on this thread: make one current first");
-    // Threads may come with a context each. What one already calls is not written anew for the next.
+            "the function that finds OpenGL's functions does not find glGetString; pass that of the library that created the context");
+    if (version == nullptr) return failed("no OpenGL context is current on this thread; make one current first");
+    // Several threads may call this, each with its own context. Function pointers that a thread may be using are not written again.
     static std::mutex one;
     static FindFunction last = nullptr;
     const std::scoped_lock lock(one);
@@ -42,7 +42,10 @@ Status load(FindFunction find) {
         if (got >= GLAD_MAKE_VERSION(4, 5)) last = find;
         foundPixelTransfer = reinterpret_cast<PixelTransfer>(find("glPixelTransferf"));
     }
-    if (got < GLAD_MAKE_VERSION(4, 5)) return failed(fmt::format("OpenGL 4.5 is needed, and this context is of OpenGL {}", version));
+    if (got < GLAD_MAKE_VERSION(4, 5))
+        return failed(fmt::format(
+            "OpenGL 4.5 is needed, but this context has OpenGL {}; update the graphics driver or create a context of version 4.5",
+            version));
     return ok();
 }
 

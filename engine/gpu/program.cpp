@@ -49,7 +49,7 @@ std::string withoutComments(std::string_view text) {
     return out;
 }
 
-// "uniform vec3 a, b;", "uniform Block { ... } c;": every declaration, whether a condition leaves it out or not.
+// All declarations, "uniform vec3 a, b;", "uniform Block { ... } c;", also those that a condition removes.
 std::string uniformDeclarations(std::string_view source) {
     const std::string text = withoutComments(source);
     std::string out;
@@ -173,15 +173,15 @@ Result<size_t> Program::reload(std::span<Program* const> programs, const Fits& f
         if (const Status fit = fits ? fits(k, built->name.name()) : ok(); !fit) return fit.error();
         fresh.emplace_back(program, std::move(*built));
     }
-    for (auto& [program, built] : fresh) program->take(std::move(built));
+    for (auto& [program, built] : fresh) program->replaceBy(std::move(built));
     return fresh.size();
 }
 
-void Program::take(Built built) {
+void Program::replaceBy(Built built) {
     name_ = std::move(built.name);
     text_ = built.text;
     declarations_ = std::move(built.declarations);
-    // The names stay known: what the program sets, the next reload must declare too.
+    // The names are kept: the next reload must declare every uniform that the program has set.
     for (auto& [uniform, at] : locations_) at = glGetUniformLocation(name(), uniform.c_str());
     localSize_ = uvec3(0);
     if (stageOf(paths_.front()) == GL_COMPUTE_SHADER) {

@@ -23,15 +23,15 @@ namespace rivulet::gpu {
 class Program {
   public:
     Program() = default;
-    // The ending says the stage: .vert .frag .geom .comp .kernel (compute). Error (failed): what the compiler says, each line with the file
-    // and line it comes from, included files too; a file that is missing, or includes one that is.
+    // The file's ending selects the stage: .vert .frag .geom .comp .kernel (compute). Error (failed): the compiler's log, each line with
+    // file and line, also in included files; (badInput): a missing file or include.
     static Result<Program> create(const ShaderFiles& files, std::vector<std::string> paths, std::vector<Define> defines = {});
 
-    // Reads the files again. On failure (as create, or a uniform that was set is no longer declared) the last good program stays.
-    // On success the uniforms may be at their defaults: set them each frame.
+    // Reads the files again. On failure (as create, or a uniform that was set is no longer declared) the last valid program is kept. After
+    // success uniforms may have their defaults: set them in each frame.
     Status reload();
-    // The same for all of them, or on failure for none; only what reads otherwise now is compiled. How many that were. `fits` is asked of
-    // each, programs[k], by its new GL name; its Error is a failure too.
+    // The same for several programs: on failure none changes. Only programs whose text has changed are compiled; their number is returned.
+    // `fits` is called for each compiled programs[k] with its new GL name; its Error is a failure too.
     using Fits = std::function<Status(size_t k, GLuint name)>;
     static Result<size_t> reload(std::span<Program* const> programs, const Fits& fits = {});
 
@@ -40,7 +40,8 @@ class Program {
     explicit operator bool() const { return static_cast<bool>(name_); }
     void use() const { glUseProgram(name()); }
 
-    // Need no use() before. A name that the compiler optimised away is ignored; one that no shader declares is a mistake (ASSERT).
+    // use() is not needed. A uniform that the compiler optimised away is ignored; one that no shader declares is a programming error
+    // (ASSERT).
     void set(std::string_view uniform, float v);
     void set(std::string_view uniform, int v);  // also bool, and a sampler's unit
     void set(std::string_view uniform, unsigned v);
@@ -56,10 +57,10 @@ class Program {
     void set(std::string_view uniform, std::span<const vec4> v);
     void set(std::string_view uniform, std::span<const mat4> v);
 
-    // Binds the texture to the unit and tells the sampler so.
+    // Binds the texture to the unit and sets the sampler to it.
     void texture(std::string_view sampler, int unit, const Texture& t);
 
-    // use(), then as many work groups as hold x * y * z invocations. A barrier is the caller's (the frame graph's) part.
+    // Calls use(), then dispatches enough work groups for x * y * z invocations. The caller (the frame graph) places barriers.
     void dispatch(unsigned x, unsigned y = 1, unsigned z = 1);
 
   private:
@@ -67,15 +68,15 @@ class Program {
     static Result<std::vector<KernelSource>> read(const ShaderFiles& files, const std::vector<std::string>& paths,
                                                   const std::vector<Define>& defines);
     static Result<Built> build(const std::vector<KernelSource>& sources, const std::vector<std::string>& paths);
-    void take(Built built);
+    void replaceBy(Built built);
     GLint location(std::string_view uniform);
 
     ShaderFiles files_;
     std::vector<std::string> paths_;
     std::vector<Define> defines_;
     ProgramName name_;
-    size_t text_ = 0;                                      // a hash of all that was compiled, to tell whether the files have changed
-    std::string declarations_;                             // every uniform declaration's text, to tell "optimised away" from "unknown"
+    size_t text_ = 0;                                      // a hash of the compiled text, to detect changed files
+    std::string declarations_;                             // all uniform declarations, to distinguish "optimised away" from "unknown"
     std::map<std::string, GLint, std::less<>> locations_;  // -1: optimised away
     uvec3 localSize_{0};                                   // of a compute program
 };

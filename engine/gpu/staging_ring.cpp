@@ -5,28 +5,28 @@
 namespace rivulet::gpu {
 
 namespace {
-constexpr size_t kAlignment = 64;  // a cache line, and what a copy may begin at
+constexpr size_t kAlignment = 64;  // bytes: a cache line, and the alignment of copies
 }
 
 Status StagingRing::begin(size_t bytes) {
     at_ = (at_ + 1) % kDeep;
-    Piece& piece = pieces_[at_];
-    if (!piece.read.passed()) {
+    Slot& slot = slots_[at_];
+    if (!slot.read.passed()) {
         ++waits_;
-        piece.read.wait();
+        slot.read.wait();
     }
     used_ = taken_ = 0;
-    if (piece.memory.bytes() >= bytes && piece.memory) return ok();
+    if (slot.memory.bytes() >= bytes && slot.memory) return ok();
     Result<Buffer> made = Buffer::create(bytes + bytes / 4, BufferKind::mapped);
     if (!made) return made.error();
-    piece.memory = std::move(*made);
+    slot.memory = std::move(*made);
     return ok();
 }
 
 std::span<std::byte> StagingRing::take(size_t bytes) {
-    const std::span<std::byte> all = pieces_[at_].memory.mapped();
+    const std::span<std::byte> all = slots_[at_].memory.mapped();
     taken_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
-    ASSERT(taken_ + bytes <= all.size(), "begin() with as many bytes as are taken, and 64 for each piece taken");
+    ASSERT(taken_ + bytes <= all.size(), "begin() with as many bytes as are taken, and 64 for each slot taken");
     used_ = taken_ + bytes;
     return all.subspan(taken_, bytes);
 }
@@ -34,16 +34,16 @@ std::span<std::byte> StagingRing::take(size_t bytes) {
 void StagingRing::copyTo(Buffer& to) {
     ASSERT(used_ - taken_ <= to.bytes(), "copy into a buffer that is large enough");
     if (used_ > taken_)
-        glCopyNamedBufferSubData(pieces_[at_].memory.name(), to.name(), static_cast<GLintptr>(taken_), 0,
+        glCopyNamedBufferSubData(slots_[at_].memory.name(), to.name(), static_cast<GLintptr>(taken_), 0,
                                  static_cast<GLsizeiptr>(used_ - taken_));
 }
 
 size_t StagingRing::bytes() const {
     size_t sum = 0;
-    for (const Piece& piece : pieces_) sum += piece.memory.bytes();
+    for (const Slot& slot : slots_) sum += slot.memory.bytes();
     return sum;
 }
 
-void StagingRing::end() { pieces_[at_].read = Fence::now(); }
+void StagingRing::end() { slots_[at_].read = Fence::now(); }
 
 }  // namespace rivulet::gpu

@@ -1,4 +1,4 @@
-// StagingRing: how the host hands data to the GPU every frame without waiting: mapped memory, three pieces in turn, a fence for each.
+// StagingRing: uploads data to the GPU in every frame without waiting: three mapped buffers used in turn, each with a fence.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ class StagingRing {
   public:
     static constexpr size_t kDeep = 3;
 
-    // The next piece, of at least so many bytes. Waits only where the GPU has not yet read what was written three frames ago, and
-    // waits() counts that. Error (failed): out of memory.
+    // Starts the next buffer, of at least `bytes` bytes. Waits only if the GPU has not yet read the data of three frames ago; waits()
+    // counts this. Error (failed): out of memory.
     Status begin(size_t bytes);
-    // So many bytes of the piece, for the host to write; between begin() and end().
+    // Reserves `bytes` bytes of the buffer for the host to write; between begin() and end().
     std::span<std::byte> take(size_t bytes);
-    // Copies what take() gave last into the beginning of `to`, on the GPU.
+    // Copies the bytes of the last take() to the beginning of `to`, on the GPU.
     void copyTo(Buffer& to);
     void end();
 
@@ -29,12 +29,12 @@ class StagingRing {
     size_t bytes() const;
 
   private:
-    struct Piece {
+    struct Slot {
         Buffer memory;
         Fence read;
     };
-    std::array<Piece, kDeep> pieces_;
-    size_t at_ = 0, used_ = 0, taken_ = 0;  // the piece; bytes of it; where the last that was taken begins
+    std::array<Slot, kDeep> slots_;
+    size_t at_ = 0, used_ = 0, taken_ = 0;  // index of the buffer; bytes used of it; offset of the last take()
     uint64_t waits_ = 0;
 };
 

@@ -40,7 +40,7 @@ GLenum targetOf(TextureShape shape) {
         case TextureShape::cube:
             return GL_TEXTURE_CUBE_MAP;
     }
-    ASSERT(false, "hand a TextureShape that exists");
+    ASSERT(false, "pass a valid TextureShape");
 }
 
 int layersOf(const TextureDesc& desc) {
@@ -52,7 +52,7 @@ int layersOf(const TextureDesc& desc) {
         case TextureShape::cube:
             return 6;
     }
-    ASSERT(false, "hand a TextureShape that exists");
+    ASSERT(false, "pass a valid TextureShape");
 }
 
 GLint limit(GLenum which) {
@@ -61,7 +61,7 @@ GLint limit(GLenum which) {
     return value;
 }
 
-// EXT_texture_filter_anisotropic: everywhere, but in no core version before 4.6, which is why the loader has no names for it.
+// EXT_texture_filter_anisotropic: supported everywhere, but core only since OpenGL 4.6, so that the loader has no names for it.
 constexpr GLenum kTextureMaxAnisotropy = 0x84FE, kMaxTextureMaxAnisotropy = 0x84FF;
 
 float allowedAnisotropy(float wanted) {
@@ -89,7 +89,7 @@ GLint wrapOf(Wrap wrap) {
         case Wrap::border:
             return GL_CLAMP_TO_BORDER;
     }
-    ASSERT(false, "hand a Wrap that exists");
+    ASSERT(false, "pass a valid Wrap");
 }
 
 // Textures and samplers take the same parameters through different functions.
@@ -143,14 +143,15 @@ Result<Texture> Texture::create(const TextureDesc& asked) {
                                          desc.shape == TextureShape::array ? fmt::format(" x {}", desc.layers) : std::string());
     const GLint most = limit(desc.shape == TextureShape::cube ? GL_MAX_CUBE_MAP_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE);
     if (desc.width > most || desc.height > most)
-        return failed(fmt::format("this GPU allows textures of {0} x {0}, but {1} was asked for; ask for a smaller one", most, what));
+        return failed(
+            fmt::format("this GPU allows textures of up to {0} x {0} texels, but {1} is needed; use a smaller image", most, what));
     if (desc.layers > limit(GL_MAX_ARRAY_TEXTURE_LAYERS))
         return failed(
-            fmt::format("this GPU allows {} layers, but {} was asked for; ask for fewer", limit(GL_MAX_ARRAY_TEXTURE_LAYERS), what));
+            fmt::format("this GPU allows {} layers, but {} is needed; use fewer layers", limit(GL_MAX_ARRAY_TEXTURE_LAYERS), what));
     ASSERT(desc.shape != TextureShape::cube || desc.width == desc.height, "give a cube square faces");
     ASSERT(desc.layers > 0, "give an array at least one layer");
 
-    forgetGlErrors();
+    clearGlErrors();
     GLuint name = 0;
     glCreateTextures(targetOf(desc.shape), 1, &name);
     texture.name_ = TextureName(name);
@@ -159,7 +160,7 @@ Result<Texture> Texture::create(const TextureDesc& asked) {
     else
         glTextureStorage2D(name, desc.mips, format.internal, desc.width, desc.height);
     if (const GLenum error = takeGlError(); error != GL_NO_ERROR)
-        return failed(fmt::format("the GPU has no room for {} ({:.1f} MiB; {}); use a smaller picture", what,
+        return failed(fmt::format("the GPU is out of memory: cannot allocate {} ({:.1f} MiB; {}); use a smaller image", what,
                                   static_cast<double>(desc.bytes()) / 1048576.0, glErrorName(error)));
     const Filter filter = format.depth || format.integer ? Filter::nearest : Filter::linear;
     texture.setSampling({.min = filter, .mag = filter, .mip = filter});
@@ -175,7 +176,7 @@ size_t Texture::hostBytes(int mip) const {
 
 void Texture::upload(std::span<const std::byte> texels, int mip, int layer) {
     ASSERT(mip >= 0 && mip < desc_.mips && layer >= 0 && layer < desc_.layers, "upload to a level and layer that the texture has");
-    ASSERT(texels.size() == hostBytes(mip), "hand as many bytes as hostBytes(mip) says");
+    ASSERT(texels.size() == hostBytes(mip), "pass hostBytes(mip) bytes");
     const FormatInfo& format = formatInfo(desc_.format);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     if (desc_.shape == TextureShape::flat)
@@ -187,7 +188,7 @@ void Texture::upload(std::span<const std::byte> texels, int mip, int layer) {
 
 void Texture::read(std::span<std::byte> texels, int mip, int layer) const {
     ASSERT(mip >= 0 && mip < desc_.mips && layer >= 0 && layer < desc_.layers, "read from a level and layer that the texture has");
-    ASSERT(texels.size() == hostBytes(mip), "hand room for as many bytes as hostBytes(mip) says");
+    ASSERT(texels.size() == hostBytes(mip), "pass a span of hostBytes(mip) bytes");
     const FormatInfo& format = formatInfo(desc_.format);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTextureSubImage(name(), mip, 0, 0, layer, width(mip), height(mip), 1, format.layout, format.type,

@@ -48,7 +48,7 @@ struct TextureDesc {
     bool operator==(const TextureDesc&) const = default;
     size_t bytes() const;  // on the GPU, without padding
 };
-// The description a texture really gets: sizes at least 1, `mips` and `layers` as they become.
+// The description that a texture gets: sizes of at least 1, and the actual `mips` and `layers`.
 TextureDesc settled(TextureDesc desc);
 // Levels down to 1 x 1.
 int fullMipCount(int width, int height);
@@ -60,7 +60,7 @@ struct Sampling {
     Filter min = Filter::linear, mag = Filter::linear, mip = Filter::linear;
     Wrap wrap = Wrap::clamp;
     bool compare = false;  // sampler2DShadow: <=
-    float anisotropy = 1;  // limited to what the driver has
+    float anisotropy = 1;  // limited by the driver's maximum
     vec4 border{0.0F};
 };
 
@@ -68,7 +68,7 @@ class Texture {
   public:
     Texture() = default;
     // Contents are undefined. Sampled linear and clamped; nearest for integer formats and depth.
-    // Error (failed): larger than the driver allows, or out of memory; says what was asked for.
+    // Error (failed): larger than the driver allows, or out of memory, with the requested size.
     static Result<Texture> create(const TextureDesc& desc);
 
     GLuint name() const { return name_.name(); }
@@ -77,10 +77,10 @@ class Texture {
     int height(int mip = 0) const;
     explicit operator bool() const { return static_cast<bool>(name_); }
 
-    // One level of one layer (or face), rows from the bottom up, tight. As many bytes as the level holds, by FormatInfo's layout and type.
+    // One level of one layer (or face), rows from the bottom up, without padding; hostBytes(mip) bytes in FormatInfo's layout and type.
     void upload(std::span<const std::byte> texels, int mip = 0, int layer = 0);
-    void read(std::span<std::byte> texels, int mip = 0, int layer = 0) const;  // waits
-    size_t hostBytes(int mip = 0) const;                                       // of one level of one layer
+    void read(std::span<std::byte> texels, int mip = 0, int layer = 0) const;  // waits for the GPU
+    size_t hostBytes(int mip = 0) const;                                       // bytes of one level of one layer
     void generateMips() { glGenerateTextureMipmap(name()); }
     void clear(const vec4& value);  // every level and layer; depth takes x; not for integer formats
     void setSampling(const Sampling& sampling);
@@ -94,11 +94,11 @@ class Texture {
     TextureDesc desc_;
 };
 
-// A second way to sample a texture: while bound to a unit it overrides the texture's own.
+// A sampler object: while it is bound to a unit, it overrides the texture's own sampling.
 class Sampler {
   public:
     Sampler() = default;
-    explicit Sampler(const Sampling& sampling, bool mips = true);  // mips: look at levels other than 0
+    explicit Sampler(const Sampling& sampling, bool mips = true);  // mips: sample levels other than 0
     GLuint name() const { return name_.name(); }
     void bind(GLuint unit) const { glBindSampler(unit, name()); }
 

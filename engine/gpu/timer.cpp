@@ -9,9 +9,9 @@ namespace rivulet::gpu {
 
 QueryName Timer::query() {
     if (!free_.empty()) {
-        QueryName taken = std::move(free_.back());
+        QueryName name = std::move(free_.back());
         free_.pop_back();
-        return taken;
+        return name;
     }
     GLuint name = 0;
     glCreateQueries(GL_TIMESTAMP, 1, &name);
@@ -19,12 +19,12 @@ QueryName Timer::query() {
 }
 
 void Timer::begin(uint64_t tag) {
-    // The two clocks drift.
-    if (const double now = hostSeconds(); told_ < 0 || now > told_ + 1) {
+    // The two clocks drift, so they are compared once a second.
+    if (const double now = hostSeconds(); lastClockSync_ < 0 || now > lastClockSync_ + 1) {
         GLint64 gpu = 0;
         glGetInteger64v(GL_TIMESTAMP, &gpu);
-        told_ = now;
-        ahead_ = now - 1.0e-9 * static_cast<double>(gpu);
+        lastClockSync_ = now;
+        clockOffset_ = now - 1.0e-9 * static_cast<double>(gpu);
     }
     Span span{tag, {}, {}};
     if (pending_.size() + open_.size() < kMaxPending) {
@@ -46,21 +46,21 @@ void Timer::end() {
 
 void Timer::contextChanged() {
     ASSERT(open_.empty(), "call end() first");
-    // Their names may be others' in the new context: they go with the old one.
-    for (QueryName& name : free_) name.letGo();
+    // The new context may use the same names for other objects; the old context deletes its queries itself.
+    for (QueryName& name : free_) name.release();
     for (Span& span : pending_) {
-        span.begin.letGo();
-        span.end.letGo();
+        span.begin.release();
+        span.end.release();
     }
     free_.clear();
     pending_.clear();
-    told_ = -1;
+    lastClockSync_ = -1;
 }
 
 void Timer::collect(const std::function<void(uint64_t tag, const Times& times)>& then) {
     while (!pending_.empty()) {
         Span& front = pending_.front();
-        // The GPU writes timestamps in order: with the end there, so is the beginning.
+        // The GPU writes timestamps in order: if the end is available, so is the beginning.
         GLuint arrived = GL_FALSE;
         glGetQueryObjectuiv(front.end.name(), GL_QUERY_RESULT_AVAILABLE, &arrived);
         if (arrived == GL_FALSE) return;
@@ -71,7 +71,7 @@ void Timer::collect(const std::function<void(uint64_t tag, const Times& times)>&
         free_.push_back(std::move(front.begin));
         free_.push_back(std::move(front.end));
         pending_.pop_front();
-        const double begin = ahead_ + 1.0e-9 * static_cast<double>(from);
+        const double begin = clockOffset_ + 1.0e-9 * static_cast<double>(from);
         then(tag, {begin, begin + (to > from ? 1.0e-9 * static_cast<double>(to - from) : 0.0)});
     }
 }

@@ -1,4 +1,4 @@
-// Timer: how long the GPU worked on what was issued between begin() and end(). Results come some frames late; nothing ever waits.
+// Timer: GPU time of the commands between begin() and end(). Results arrive 2 to 3 frames late; no call waits.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace rivulet::gpu {
 
 class Timer {
   public:
-    // Spans may nest and may overlap those of other Timers (timestamps, not GL_TIME_ELAPSED). `tag` is handed back by collect().
-    // Beyond kMaxPending spans that nobody collected, new ones go untimed.
+    // Spans may nest and may overlap those of other Timers (they use timestamps, not GL_TIME_ELAPSED). collect() returns `tag`.
+    // While kMaxPending spans have not been collected, new ones are not measured.
     void begin(uint64_t tag);
     void end();
 
@@ -21,10 +21,10 @@ class Timer {
         double begin = 0, end = 0;  // s, of hostSeconds()
         double ms() const { return 1000 * (end - begin); }
     };
-    // Calls then(tag, times) for every finished span, in the order of their end(), until one whose result has not arrived.
+    // Calls then(tag, times) for the finished spans in the order of their end(), up to the first whose result has not arrived.
     void collect(const std::function<void(uint64_t tag, const Times& times)>& then);
     size_t pending() const { return pending_.size(); }
-    // Another context is current from now on: queries are not shared. What is pending is never heard of; none may be open.
+    // Call this when another context becomes current, because contexts do not share queries. Pending spans are dropped; none may be open.
     void contextChanged();
     static constexpr size_t kMaxPending = 4096;
 
@@ -38,7 +38,7 @@ class Timer {
     std::vector<Span> open_;
     std::deque<Span> pending_;
     std::vector<QueryName> free_;
-    double ahead_ = 0, told_ = -1;  // s: the host's clock before the GPU's, and when it was asked
+    double clockOffset_ = 0, lastClockSync_ = -1;  // s: host clock minus GPU clock; host time of the last comparison
 };
 
 }  // namespace rivulet::gpu

@@ -1,4 +1,4 @@
-// VertexArray: which buffers feed a vertex shader, and how. Buffers are named, not owned: they may be any owner's.
+// VertexArray: the buffers that a vertex shader reads, and their layout. Buffers are referred to by name and not owned.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@ namespace rivulet::gpu {
 class VertexArray {
   public:
     VertexArray() = default;
-    static VertexArray create();  // without attributes: what a full-screen triangle from gl_VertexID needs
+    static VertexArray create();  // without attributes, for example for a full-screen triangle from gl_VertexID
 
     // Attribute `location` = `components` numbers of `type` (GL_FLOAT; integers are converted to float) every `stride` bytes.
-    // divisor 1: a value per instance instead of per vertex.
+    // divisor 1: one value per instance instead of per vertex.
     void attribute(GLuint location, GLuint buffer, int components, GLenum type, int stride, size_t offset = 0, int divisor = 0);
     // The same for `in uint`, `in ivec2` ...: integers stay integers.
     void integerAttribute(GLuint location, GLuint buffer, int components, GLenum type, int stride, size_t offset = 0, int divisor = 0);
@@ -22,7 +22,7 @@ class VertexArray {
     GLuint name() const { return name_.name(); }
     explicit operator bool() const { return static_cast<bool>(name_); }
     void bind() const { glBindVertexArray(name()); }
-    void letGo() { name_.letGo(); }  // it was made in another context, with which it goes
+    void release() { name_.release(); }  // drops the name without deleting it: another context owns it and deletes it
 
   private:
     VertexArrayName name_;

@@ -1,4 +1,4 @@
-// Image: decoded texels in memory, the bottom row first, as uvs with v up count them.
+// Image: decoded texels in memory, the bottom row first, so that v points up.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,11 @@ namespace rivulet {
 struct Image {
     std::string name;
     int width = 0, height = 0;
-    std::vector<uint8_t> rgba;  // 4 a texel, as stored in the file
+    std::vector<uint8_t> rgba;  // 4 bytes per texel, as stored in the file
 };
 
-// What surrounds a scene: linear radiance in every direction, as an equirectangular map. Its middle is -z, its top row +y; rows as above.
+// The surroundings of a scene: linear radiance in all directions, as an equirectangular map. Its centre is -z, its top row +y; the bottom
+// row is first.
 struct HdrImage {
     std::string name;
     int width = 0, height = 0;

@@ -1,4 +1,4 @@
-// Layer: a liquid that lies on a material, whichever it is. Drawn over the surface function's result, which knows nothing of it.
+// Layer: a liquid on any material. It is applied to the result of the surface function, which does not depend on it.
 #pragma once
 
 #include "engine/core/params.h"
@@ -9,24 +9,24 @@ namespace rivulet {
 struct LayerLook {
     float refractiveIndex = 1.336F;
     vec3 absorption{0.5F, 0.15F, 0.1F};  // 1/m
-    float roughness = 0.10F;             // of a drop's surface
-    float filmRoughness = 0.22F;         // of what is wet, without a drop on it
-    float darkening = 0.18F;             // how much darker and more saturated what is wet gets
-    float scale = 1.0F;                  // of heights and slopes
+    float roughness = 0.10F;             // of the surface of a drop
+    float filmRoughness = 0.22F;         // of a wet surface without a drop
+    float darkening = 0.18F;             // how much darker and more saturated a wet surface is
+    float scale = 1.0F;                  // factor of heights and slopes
 
     void visit(ParamVisitor& v) {
-        v.value({"refractiveIndex", "", "of the liquid", 1, 2}, refractiveIndex);
-        v.value({"absorption", "1/m", "of the liquid, red, green, blue", 0, 5000}, absorption);
-        v.value({"roughness", "", "of a drop's surface", 0, 1}, roughness);
-        v.value({"filmRoughness", "", "of what is wet, without a drop on it", 0, 1}, filmRoughness);
-        v.value({"darkening", "", "how much darker what is wet gets", 0, 1}, darkening);
-        v.value({"scale", "", "of heights: 1 is true", 0, 4}, scale);
+        v.value({"refractiveIndex", "", "refractive index of the liquid", 1, 2}, refractiveIndex);
+        v.value({"absorption", "1/m", "absorption coefficient of the liquid for red, green and blue", 0, 5000}, absorption);
+        v.value({"roughness", "", "roughness of the surface of a drop", 0, 1}, roughness);
+        v.value({"filmRoughness", "", "roughness of a wet surface without a drop", 0, 1}, filmRoughness);
+        v.value({"darkening", "", "how much darker and more saturated a wet surface is; 0: as dry", 0, 1}, darkening);
+        v.value({"scale", "", "factor of the heights and slopes of the liquid; 1: as simulated", 0, 4}, scale);
     }
 };
 
 struct Layer {
-    // rgba16f with all mips, over the mesh's uvs: x, y the slope of the liquid's height (m a unit of u, of v), z the height (mm), w how
-    // wet: 1 under a drop or a full film. Lives as long as what it is drawn with. Null: dry.
+    // rgba16f with all mips, over the mesh's uvs: x, y the slope of the liquid's height (m per unit of u and v), z the height (mm), w the
+    // wetness: 1 under a drop or a full film. Must outlive the drawing. Null: dry.
     const gpu::Texture* texels = nullptr;
     LayerLook look;
 };

@@ -1,4 +1,4 @@
-// Material: a surface function's parameters. The functions themselves are shaders/material/*.glsl.
+// Material: the parameters of the surface functions in shaders/material/*.glsl.
 #pragma once
 
 #include <memory>
@@ -8,24 +8,23 @@
 
 namespace rivulet {
 
-// Skin: light goes in, spreads and comes out elsewhere, red furthest; two lobes of gloss, stronger where it is oily.
+// Skin: subsurface scattering, widest for red, and two specular lobes, which are stronger in oily regions.
 struct SkinLook {
-    vec3 scatter{3.7e-3F, 1.4e-3F, 0.7e-3F};  // m, how far red, green and blue spread
-    float translucency = 1.0F;                // of thin parts with the light behind them
-    float pores = 1.0F;                       // strength of what is finer than the relief's texels
-    std::shared_ptr<const Image> relief;      // grey: height; null: smooth
-    float reliefStep = 4.0e-6F;               // m a grey level
-    std::shared_ptr<const Image> regions;     // R oily, G dry, B hair, A lip; null: none of these
+    vec3 scatter{3.7e-3F, 1.4e-3F, 0.7e-3F};  // m, mean scattering distance of red, green and blue
+    float translucency = 1.0F;                // factor of the light through thin parts
+    float pores = 1.0F;                       // strength of the relief finer than a texel of `relief`
+    std::shared_ptr<const Image> relief;      // red: height; null: smooth
+    float reliefStep = 4.0e-6F;               // m per grey level
+    std::shared_ptr<const Image> regions;     // masks: R oily, G dry, B hair, A lips; null: none
 };
 
-// An eyeball, in the mesh's own frame: its iris is seen where the cornea bends the ray to. Its pictures have the pole of Lambert's
-// equal-area map where the eye looks, in the middle, and the back of the eye along the edge of the inscribed circle. Lengths but `radius`
-// in its radii.
+// An eyeball, in the frame of the mesh; the iris is seen through the refracting cornea. Its images are Lambert equal-area maps: the centre
+// is the direction of sight, the inscribed circle is the back of the eye. All lengths except `radius` are in units of `radius`.
 struct EyeLook {
     vec3 centre{0.0F};           // m
     vec3 sight{0, 0, 1};         // unit
     float radius = 0.012F;       // m
-    float corneaCentre = 0.45F;  // of its sphere, along `sight`
+    float corneaCentre = 0.45F;  // centre of the cornea's sphere, along `sight`
     float corneaRadius = 0.65F;
     float irisPlane = 0.85F;  // along `sight`
     float irisRadius = 0.5F;
@@ -36,28 +35,28 @@ struct Material {
     float roughness = 0.6F;
     float metallic = 0.0F;
 
-    vec3 emission{0.0F};                             // linear radiance, of a lamp
-    float opacity = 1.0F;                            // where blended: of what is matte; gloss stays
-    float grain = 0.0F;                              // of stone or sand: how rough and how mottled, 0..1
-    float grainSize = 0.1F;                          // m, of its largest spots
-    bool blended = false;                            // drawn over what is opaque, farthest first
-    bool clear = false;                              // and each face mirrors: a glass, baseColour and opacity say what a wall lets through
-    float cutoff = 0.0F;                             // alpha below which there is nothing
-    float strand = 0.0F;                             // of blended ribbons: share of u, about its middle, that is a hair; 0: no ribbons
-    bool doubleSided = true;                         // or seen from outside only
-    std::shared_ptr<const Image> colour;             // sRGB, times baseColour; alpha, times opacity
+    vec3 emission{0.0F};                  // linear radiance, of a lamp
+    float opacity = 1.0F;                 // of the diffuse part of blended materials; reflections keep their strength
+    float grain = 0.0F;                   // of stone or sand: how rough and how mottled, 0..1
+    float grainSize = 0.1F;               // m, of its largest spots
+    bool blended = false;                 // drawn after opaque parts, the farthest first
+    bool clear = false;                   // clear glass: each face reflects; baseColour and opacity give the transmission of a wall
+    float cutoff = 0.0F;                  // texels of smaller alpha are not drawn
+    float strand = 0.0F;                  // hair on blended ribbons: the width of a hair as a share of u, about its middle; 0: no ribbons
+    bool doubleSided = true;              // false: back faces are culled
+    std::shared_ptr<const Image> colour;  // sRGB, times baseColour; alpha, times opacity
     std::shared_ptr<const Image> metallicRoughness;  // blue, times metallic; green, times roughness
     std::shared_ptr<const Image> normals;            // of the tangent plane: x along u, y along v
-    std::shared_ptr<const Image> occlusion;          // red: share of the surroundings that its hollows see
+    std::shared_ptr<const Image> occlusion;          // red: visible share of the surroundings
     std::shared_ptr<const Image> glow;               // sRGB, times emission
     std::shared_ptr<const SkinLook> skin;            // null: no skin
     std::shared_ptr<const EyeLook> eye;              // null: no eye
 
     void visit(ParamVisitor& v) {
-        v.colour({"baseColour", "", "reflectance, linear", 0, 1}, baseColour);
-        v.value({"roughness", "", "0 mirror, 1 chalk", 0, 1}, roughness);
-        v.value({"metallic", "", "0 dielectric, 1 metal", 0, 1}, metallic);
-        v.value({"opacity", "", "1 = what is behind it is hidden; less, as of glass: it shows through", 0, 1}, opacity);
+        v.colour({"baseColour", "", "reflectance for red, green and blue, linear", 0, 1}, baseColour);
+        v.value({"roughness", "", "0: mirror, 1: fully diffuse highlights", 0, 1}, roughness);
+        v.value({"metallic", "", "0: dielectric, 1: metal", 0, 1}, metallic);
+        v.value({"opacity", "", "1: opaque; below 1: transparent, as glass", 0, 1}, opacity);
     }
 };
 

@@ -17,7 +17,7 @@ constexpr int kNarrowest = 256, kWidest = 1024;
 struct Picture {
     int width = 0, height = 0;
     std::vector<vec3> texels;
-    // Across the seam it goes on; at the poles it ends.
+    // u wraps around; v is clamped at the poles.
     const vec3& at(int x, int y) const {
         const int u = ((x % width) + width) % width, v = std::clamp(y, 0, height - 1);
         return texels[static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u)];
@@ -38,7 +38,7 @@ Picture shrunk(const Picture& from, int width, int height) {
     return to;
 }
 
-// By one texel of the equator; nearer the poles that is more texels of a row.
+// Blurs by one texel at the equator, which is more texels of a row near the poles.
 Picture blurred(const Picture& from) {
     Picture across = from, to = from;
     for (int y = 0; y < from.height; ++y) {
@@ -80,7 +80,7 @@ std::array<vec4, 9> matteLight(const HdrImage& from) {
             for (size_t k = 0; k < 9; ++k) sum[k] += light * basis[k];
         }
     }
-    // Each basis function's square over the sphere, and what a cosine leaves of its order: 1, 2/3, 1/4.
+    // The norm of each basis function, and the factor of the cosine lobe by order: 1, 2/3, 1/4.
     constexpr double kPi4 = 4 * double{kPi};
     const double share[9] = {1 / kPi4,      2 / kPi4,      2 / kPi4,      2 / kPi4,      15 / kPi4 / 4,
                              15 / kPi4 / 4, 5 / kPi4 / 16, 15 / kPi4 / 4, 15 / kPi4 / 16};
@@ -105,15 +105,15 @@ Environment prefiltered(const HdrImage& from) {
 
 namespace {
 
-// Another one for each change of what is made of the same picture.
+// Must be changed with every change of the algorithm, so that old cache entries are not used.
 constexpr std::string_view kMaker = "surroundings 1";
 
-// Everything that makes one picture differ from another.
+// The cache key: everything that the result depends on.
 std::string keyOf(const HdrImage& image) {
     return fmt::format("{}, {} x {}, {}", kMaker, image.width, image.height, hashOf(std::as_bytes(std::span(image.texels))));
 }
 
-// Width, mips and matte light, one after the other.
+// The cached bytes: width, mips and diffuse coefficients, one after the other.
 std::vector<std::byte> bytesOf(const Environment& made) {
     std::vector<std::byte> bytes;
     const auto add = [&bytes](auto items) {

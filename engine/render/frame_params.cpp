@@ -7,7 +7,7 @@
 namespace rivulet {
 namespace {
 
-// Three softboxes, turned with the key light.
+// Three softboxes, whose directions follow the key light.
 void placeSoftboxes(FrameParams& f) {
     const vec3 key(f.lightDir), colour(f.lightColour);
     const float flatLength = glm::length(vec2(key.x, key.z));

@@ -1,4 +1,4 @@
-// FrameParams: what every render pass knows of the frame, packed for the shaders.
+// FrameParams: the uniform block of a frame, which all render passes read.
 #pragma once
 
 #include "engine/core/math.h"
@@ -7,17 +7,17 @@
 
 namespace rivulet {
 
-// What the studio looks like; colours linear.
+// The default background, a studio; colours are linear RGB.
 struct Studio {
     vec3 horizon{0.80F, 0.84F, 0.88F};
     vec3 zenith{0.30F, 0.42F, 0.58F};
     vec3 floor{0.42F, 0.40F, 0.38F};
     float floorHeight = 0.0F;  // m
     bool showFloor = true;
-    Bounds shown;  // m; what the picture is about: the floor fades around it
+    Bounds shown;  // m; the visible content: the floor fades out around it
 };
 
-// The uniform block of a frame. `meshes`, `water`: the world bounds that the light's maps must cover (m); empty: no map.
+// Fills the uniform block. `meshes`, `water`: world bounds, m, that the light's shadow and water maps must cover; empty: no map.
 FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds& meshes, const Bounds& water);
 
 }  // namespace rivulet

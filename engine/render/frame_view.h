@@ -1,4 +1,4 @@
-// FrameView: plain data a host can fill. What every render pass knows of the frame.
+// FrameView: camera, size, light and time of a frame, as plain data that a host fills in.
 #pragma once
 
 #include "engine/core/math.h"
@@ -16,7 +16,7 @@ struct FrameView {
     vec3 lightColour{3.0F};                 // linear RGB radiance
     double time = 0;                        // s
 
-    // The same on half as many pixels each way, rounded up.
+    // The same view with half the width and height, rounded up.
     FrameView half() const {
         FrameView coarse = *this;
         coarse.width = (width + 1) / 2;

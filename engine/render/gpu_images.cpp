@@ -73,7 +73,7 @@ Result<MaterialTextures> GpuImages::texturesOf(const Material& material) {
     return out;
 }
 
-void GpuImages::forgetBut(const std::set<const Image*>& used) {
+void GpuImages::keepOnly(const std::set<const Image*>& used) {
     std::erase_if(kept_, [&](const auto& item) { return !used.contains(item.first.first); });
 }
 

@@ -1,4 +1,4 @@
-// GpuImages: pictures as textures, each uploaded once for each way it is read, and the tables that skin is drawn with.
+// GpuImages: images as textures, uploaded once for each kind of use, and the lookup tables of skin.
 #pragma once
 
 #include <map>
@@ -10,9 +10,9 @@
 
 namespace rivulet {
 
-enum class ImageUse { colour, data, heights };  // sRGB; as stored; as slopes, see makeSlopes
+enum class ImageUse { colour, data, heights };  // sRGB; linear; converted to slopes, see makeSlopes
 
-// What a material's shader reads; none is null.
+// The textures of a material's shader; none is null.
 struct MaterialTextures {
     const gpu::Texture *colour = nullptr, *metallicRoughness = nullptr, *normals = nullptr;
     const gpu::Texture *occlusion = nullptr, *glow = nullptr;
@@ -21,24 +21,24 @@ struct MaterialTextures {
 
 class GpuImages {
   public:
-    // Stays valid until forgetBut(). Error (failed): out of GPU memory.
+    // Stays valid until keepOnly(). Error (failed): out of GPU memory.
     Result<MaterialTextures> texturesOf(const Material& material);
-    // Lets go of images that are none of these.
-    void forgetBut(const std::set<const Image*>& used);
+    // Frees the textures of all other images.
+    void keepOnly(const std::set<const Image*>& used);
 
   private:
     Result<const gpu::Texture*> get(const std::shared_ptr<const Image>& image, ImageUse use, float step = 0);
     Result<const gpu::Texture*> plain(gpu::Texture& into, const vec4& texel);
     struct Kept {
-        std::shared_ptr<const Image> image;  // so that its address stays its own
+        std::shared_ptr<const Image> image;  // keeps the image alive, so that its address stays unique
         gpu::Texture texture;
     };
     std::map<std::pair<const Image*, ImageUse>, Kept> kept_;
-    gpu::Texture white_, flat_, level_, none_;  // stand in for what a material has not
-    gpu::Texture pores_, diffusion_;            // made when the first skin is seen
+    gpu::Texture white_, flat_, level_, none_;  // defaults for images that a material does not have
+    gpu::Texture pores_, diffusion_;            // created for the first skin
 };
 
-// The images that a material names.
+// The images that a material uses.
 std::set<const Image*> imagesOf(const Material& material);
 
 }  // namespace rivulet

@@ -6,7 +6,7 @@ namespace rivulet {
 
 namespace {
 
-// On a ball of radius r an edge e falls away from the tangent plane by e^2 / 2r.
+// Estimates curvature: on a sphere of radius r, the end of an edge e is e^2 / 2r below the tangent plane.
 std::vector<float> meanCurvatures(const Mesh& mesh) {
     std::vector<float> fall(mesh.positions.size(), 0.0F), squares(fall);
     if (mesh.normals.size() != mesh.positions.size()) return fall;
@@ -23,7 +23,7 @@ std::vector<float> meanCurvatures(const Mesh& mesh) {
     return fall;
 }
 
-// Of each vertex: the longest of its triangles' edges, in uv.
+// For each vertex: the longest edge of its triangles, in uv.
 std::vector<float> reaches(const Mesh& mesh) {
     std::vector<float> reach(mesh.positions.size(), 0.0F);
     if (mesh.uvs.size() != mesh.positions.size()) return reach;

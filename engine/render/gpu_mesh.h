@@ -13,11 +13,11 @@ class GpuMesh {
     // Attribute 0: position, 1: normal (zero where the mesh has none), w: mean curvature (1/m, of the mesh's unit), 2: uv (zero where it
     // has none). Error (failed): out of GPU memory.
     static Result<GpuMesh> create(const Mesh& mesh);
-    // Vertices are where the deformer has them now: drawn from its own buffers if it runs on OpenGL, else from copies, made only when it
-    // has run since. It must have as many vertices, and outlive the drawing. Error (failed): out of GPU memory.
+    // Uses the deformer's vertices: its own buffers if it runs on OpenGL, else copies, which are updated only after it has run again. It
+    // must have the same number of vertices and outlive the drawing. Error (failed): out of GPU memory.
     Status follow(const Deformer& deformer);
-    void draw() const;                                // with the program in use
-    const Bounds& bounds() const { return bounds_; }  // the mesh's own, or the deformer's
+    void draw() const;                                // draws with the program in use
+    const Bounds& bounds() const { return bounds_; }  // of the mesh, or of the deformer
 
   private:
     gpu::Buffer vertices_, indices_, positions_, normals_;

@@ -26,7 +26,8 @@ float octaves(vec2 p) {
     float sum = 0, share = 0.5F;
     for (int k = 0; k < 6; ++k, share *= 0.5F) {
         sum += share * noise(p);
-        p = 2.03F * vec2(0.8F * p.x - 0.6F * p.y, 0.6F * p.x + 0.8F * p.y) + vec2(17.0F, 5.0F);  // turned, so that no lattice shows
+        p = 2.03F * vec2(0.8F * p.x - 0.6F * p.y, 0.6F * p.x + 0.8F * p.y) +
+            vec2(17.0F, 5.0F);  // rotated, so that the noise lattice is not visible
     }
     return sum;
 }

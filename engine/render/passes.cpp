@@ -39,12 +39,12 @@ void bindLight(Program& program, const PassContext& c, const LightMaps& light, i
     program.set("waterAbsorption", light.absorption);
 }
 
-// Whether it shines by itself, or says where light does not reach.
+// Whether the material has emission or an occlusion map.
 bool glows(const Material& m) { return m.emission != vec3(0.0F) || m.occlusion; }
 
 bool isSolid(const Material& m) { return !m.blended && m.cutoff <= 0; }
 
-// Only outsides are drawn where a material says so; a mirroring transform turns triangles round.
+// Sets back-face culling by the material; a mirroring transform reverses the orientation of triangles.
 void cull(const DrawnMesh& m) {
     if (m.material.doubleSided) {
         glDisable(GL_CULL_FACE);
@@ -284,8 +284,8 @@ void bindPlain(Program& p, const PassContext& c, TextureHandle occlusion, const 
     bindLight(p, c, light, 1);
 }
 
-// Solid parts, then those with holes, which write their depth themselves, then what is blended. What has a layer is drawn dry, and then
-// again where it is wet: a liquid costs much more than what lies under it, and most of a skin is dry.
+// Draws solid meshes, then cut-out ones, which write their own depth, then blended ones. A mesh with a layer is drawn dry, and again where
+// it is wet: shading a liquid is much more expensive than the material below, and most of a skin is dry.
 void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const vec3& camera, TextureHandle occlusion,
                const LightMaps& light, TextureHandle colour, TextureHandle behind) {
     auto draw = [&](const DrawnMesh& m) {
@@ -328,7 +328,7 @@ void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const 
 TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
                         std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light, bool floor) {
     const TextureHandle colour = graph.texture("scene colour", sized(view, Format::rgba16f));
-    // What wet panes are looked through at: a copy, since it is read while it is drawn to.
+    // A copy of the picture, which wet panes refract: a texture cannot be read while it is drawn into.
     const bool wetPanes = std::any_of(meshes.begin(), meshes.end(), [](const DrawnMesh& m) { return m.material.blended && m.wetPart; });
     const TextureHandle behind = wetPanes ? graph.texture("behind panes", sized(view, Format::rgba16f)) : TextureHandle{};
     std::vector<gpu::Write> targets = {colour};
@@ -337,14 +337,15 @@ TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandl
                [=, &programs, drawn = std::move(meshes)](PassContext& c) {
                    c.drawTo({colour}, depth);
                    bindFrame(c, frame);
-                   // The full-screen triangle lies on the far plane: sky is where nothing is nearer, floor (and mesh) where something is.
+                   // The full-screen triangle is at the far plane: sky passes the depth test where nothing is nearer, the floor where
+                   // something is.
                    glEnable(GL_DEPTH_TEST);
                    glDepthMask(GL_FALSE);
                    glDepthFunc(GL_EQUAL);
                    programs.sky.use();
                    c.drawFullscreen();
                    glDepthFunc(GL_GREATER);
-                   if (floor) {  // it would be hidden by every mesh, but shaded under them all the same
+                   if (floor) {  // optional, because it is shaded under meshes too, which hide it there
                        programs.floor.use();
                        programs.floor.texture("occlusion", 0, c.texture(occlusion));
                        bindLight(programs.floor, c, light, 1);
@@ -387,7 +388,7 @@ void addGlass(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, s
             setPlace(p, m);
             p.set("opacity", m.material.opacity);
             glFrontFace(glm::determinant(mat3(m.toWorld)) < 0 ? GL_CW : GL_CCW);
-            for (const GLenum hidden : {GL_FRONT, GL_BACK}) {  // far sides first
+            for (const GLenum hidden : {GL_FRONT, GL_BACK}) {  // back faces first
                 glCullFace(hidden);
                 m.mesh->draw();
             }

@@ -1,5 +1,5 @@
-// The passes that draw a scene without water: free functions that add to a frame graph, handles in, handles out.
-// In their order: shadow, depth, occlusion, opaque, (a fluid's passes), box edges, tonemap.
+// The passes that draw a scene without water: functions that add a pass to a frame graph and return handles of its results.
+// Their order: shadow, depth, occlusion, opaque, (passes of the fluid), box edges, tonemap.
 #pragma once
 
 #include <array>
@@ -18,15 +18,15 @@
 
 namespace rivulet {
 
-// The programs of all passes.
+// The shader programs of all passes.
 struct RenderPrograms {
     gpu::Program shadow, shadowHoles, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh,
         glass, box, boxOverWater, tonemap, antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
-    std::vector<gpu::Program*> all();  // and the parts' that were made so far
+    std::vector<gpu::Program*> all();  // also those of part() created so far
 
-    // The program for parts of this material, with or without a layer on it, with or without water in the light's way: made when first
-    // asked for. Error: as create.
+    // The program for meshes of this material, with or without a layer, and with or without water between it and the light. It is created
+    // on first use. Error: as create.
     Result<gpu::Program*> part(const Material& material, bool layered, bool water);
 
   private:
@@ -35,53 +35,54 @@ struct RenderPrograms {
 };
 
 struct DrawnMesh {
-    const GpuMesh* mesh = nullptr;  // lives until the graph has executed
+    const GpuMesh* mesh = nullptr;  // must exist until the graph has executed
     mat4 toWorld{1.0F};
     Material material;
-    gpu::Program* part = nullptr;  // RenderPrograms::part(), and then `textures` too; null: the material's three numbers say all
+    gpu::Program* part = nullptr;  // RenderPrograms::part(), which also needs `textures`; null: the simple program (see isPart)
     MaterialTextures textures;
-    gpu::Program* wetPart = nullptr;  // the same with a layer; and then the layer, whose texels are there
+    gpu::Program* wetPart = nullptr;  // part() with a layer; then `layer` is set and has texels
     const Layer* layer = nullptr;
 };
 
-// Whether a material needs more than its three numbers.
+// Whether a material needs the full program (textures, skin, eye, ...) instead of colour, roughness and metallic alone.
 bool isPart(const Material& material);
 
-// What the light's way to a surface is looked up in. Without meshes or without water, any texture stands in: FrameParams::shadow says so.
+// The maps of the light's visibility. Without meshes or water the handles may be any texture; FrameParams::shadow marks them as unused.
 struct LightMaps {
     gpu::TextureHandle sharp, soft, water;
     vec3 absorption{0.0F};  // 1/m, of the water
 };
 
-// The moments of the meshes' depth as the light sees it, blurred narrowly into `sharp` and widely into `soft`, which are of
-// shadowMapDesc(). They change only with the meshes and the light, so whoever keeps them saves the pass; for who cannot, since a mesh
-// deforms in each frame, there are `quick` ones of half the width.
+// Exponential variance shadow maps (Lauritzen and McCool 2008): moments of the depth from the light, with a small blur in `sharp` and a
+// wide one in `soft`, both of shadowMapDesc(). They depend on meshes and light only, so a caller may keep them and skip the pass. `quick`:
+// half the width, for meshes that deform in every frame.
 gpu::TextureDesc shadowMapDesc(bool soft, bool quick);
 void addShadow(gpu::FrameGraph& graph, RenderPrograms& programs, std::vector<DrawnMesh> meshes, const mat4& projection,
                gpu::TextureHandle sharp, gpu::TextureHandle soft, bool quick);
-// Window depth of meshes and floor, without what is blended or has holes. `frame`: the buffer of a FrameParams.
+// Window depth of meshes and floor, without blended and cut-out meshes. `frame`: the buffer of a FrameParams.
 gpu::TextureHandle addDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                             std::vector<DrawnMesh> meshes);
-// How open each point is to the environment, at half resolution; `reach` in m.
+// Ambient occlusion at half resolution; `reach`: radius, m.
 gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                                 gpu::TextureHandle depth, float reach);
-// Linear radiance (rgba16f) of background, floor and meshes; what is blended comes last, the farthest first.
+// Linear radiance (rgba16f) of background, floor and meshes; blended meshes come last, the farthest first.
 gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                              std::vector<DrawnMesh> meshes, gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light,
                              bool floor = true);
-// What is clear among the meshes, drawn into `colour`: each face mirrors and dims what is behind it. `side`: of the water, whose depth is
-// `fluidDepth` (m, r32f; 1e6 where there is none, and there all is behind); all: there is no water, and fluidDepth may be empty.
+// Draws meshes of clear materials into `colour`: each face reflects, and attenuates what is behind it. `side`: behind or in front of the
+// water, whose depth is `fluidDepth` (m, r32f; 1e6 where there is no water, which counts as behind); all: no water, fluidDepth may be
+// empty.
 enum class GlassSide { all, behind, before };
 void addGlass(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, std::vector<DrawnMesh> meshes,
               gpu::TextureHandle colour, gpu::TextureHandle depth, const LightMaps& light, GlassSide side,
               gpu::TextureHandle fluidDepth = {});
-// Window depth of the nearest face of what is clear, 1 where there is none; empty: nothing is.
+// Window depth of the nearest clear face, 1 where there is none; an empty handle: no mesh is clear.
 gpu::TextureHandle addGlassDepth(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                                  std::vector<DrawnMesh> meshes);
-// The edges of a box, drawn into `colour`. With `fluidDepth` (m, r32f): only those in front of the water.
+// Draws the edges of a box into `colour`; with `fluidDepth` (m, r32f) only those in front of the water.
 void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour,
             gpu::TextureHandle depth, gpu::TextureHandle fluidDepth = {});
-// Linear radiance to sRGB, edges smoothed, dithered, into `picture` (rgba8, view's size).
+// Converts linear radiance to sRGB with antialiasing and dithering, into `picture` (rgba8, the view's size).
 void addTonemap(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, gpu::TextureHandle colour,
                 gpu::TextureHandle picture);
 

@@ -9,7 +9,8 @@ namespace {
 constexpr int kCosines = 64, kSpreads = 32;
 constexpr int kPoreTexels = 512;
 
-// Burley 2015, "Extending the Disney BRDF to a BSDF with integrated subsurface scattering": times the distance, so that it is finite at 0.
+// The profile of Burley 2015, "Extending the Disney BRDF to a BSDF with integrated subsurface scattering", times the distance, so that it
+// is finite at 0.
 double profileTimesDistance(double distance, double spread) {
     return (std::exp(-distance / spread) + std::exp(-distance / (3 * spread))) / (8 * double{kPi} * spread);
 }

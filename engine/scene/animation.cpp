@@ -8,7 +8,7 @@ namespace {
 
 float mixed(float a, float b, float share) { return a + (b - a) * share; }
 vec3 mixed(const vec3& a, const vec3& b, float share) { return glm::mix(a, b, share); }
-quat mixed(const quat& a, const quat& b, float share) { return glm::normalize(glm::slerp(a, b, share)); }  // the short way round
+quat mixed(const quat& a, const quat& b, float share) { return glm::normalize(glm::slerp(a, b, share)); }  // slerp takes the shorter arc
 std::vector<float> mixed(const std::vector<float>& a, const std::vector<float>& b, float share) {
     std::vector<float> out(std::min(a.size(), b.size()));
     for (size_t k = 0; k < out.size(); ++k) out[k] = mixed(a[k], b[k], share);
@@ -24,7 +24,7 @@ T at(const Keys<T>& keys, double time) {
     return mixed(keys.values[after - 1], keys.values[after], static_cast<float>((time - from) / (to - from)));
 }
 
-// A node's own place, taken apart. Shear is lost: a node that a clip moves has none.
+// Translation, rotation and scale of a node's matrix. Shear is dropped: animated nodes have none.
 struct Stand {
     vec3 position, scale;
     quat rotation;
@@ -60,7 +60,7 @@ std::vector<float> morphsAt(const ModelPart& part, const Clip& clip, double time
     for (const MorphTrack& track : clip.morphs)
         if (track.node == part.node) weights = at(track.weights, time);
     if (!weights.empty()) weights.resize(part.morphs.size(), 0.0F);
-    for (size_t k = 0; k < std::min(weights.size(), part.resting.size()); ++k) weights[k] -= part.resting[k];
+    for (size_t k = 0; k < std::min(weights.size(), part.restWeights.size()); ++k) weights[k] -= part.restWeights[k];
     return weights;
 }
 

@@ -21,7 +21,7 @@ std::string extensionOf(const std::string& path) {
     return extension;
 }
 
-// assimp repeats an OBJ's vertex for each corner that uses it, so the file's own lines are counted instead.
+// assimp duplicates an OBJ's vertex for each corner that uses it, so the lines of the file are counted instead.
 size_t countBadObjVertices(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::string line;
@@ -76,7 +76,7 @@ Status checkFile(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return meshFileError(path, "cannot be opened: check its permissions");
     if (std::filesystem::file_size(path, error) == 0) return meshFileError(path, "is an empty file");
-    if (extensionOf(path) == ".ply") {  // assimp 5.2 never returns from a header without an end
+    if (extensionOf(path) == ".ply") {  // assimp 5.2 loops for ever on a header without end_header
         std::string head(size_t{1} << 16, '\0');
         file.read(head.data(), static_cast<std::streamsize>(head.size()));
         if (head.find("end_header") == std::string::npos) return meshFileError(path, "cannot be read: its PLY header has no end");
@@ -91,12 +91,12 @@ Error meshFileError(const std::string& path, std::string_view what) { return bad
 Result<const aiScene*> readMeshFile(Assimp::Importer& importer, const std::string& path) {
     if (Status readable = checkFile(path); !readable) return readable.error();
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* scene = importer.ReadFile(path, 0);  // raw first: post-processing would stumble over NaN
+    const aiScene* scene = importer.ReadFile(path, 0);  // without post-processing, which fails on NaN
     if (scene == nullptr) {
         std::string why = importer.GetErrorString();
         if (why.find("No suitable reader") != std::string::npos)
             return meshFileError(path, importer.IsExtensionSupported(extensionOf(path))
-                                           ? "cannot be read: it is damaged, or not what its name says"
+                                           ? "cannot be read: it is damaged, or its format differs from its file name ending"
                                            : "is of a kind that cannot be read; use OBJ, glTF, FBX, PLY or STL");
         if (why.find("out of range") != std::string::npos) return meshFileError(path, fmt::format("has an index out of range ({})", why));
         return meshFileError(path, fmt::format("cannot be read: {}", why));
@@ -115,7 +115,7 @@ Result<const aiScene*> prepareMeshFile(Assimp::Importer& importer, const std::st
     if (scene != nullptr) return scene;
     const std::string why = importer.GetErrorString();
     if (why.empty() || why.find("No output meshes") != std::string::npos) return meshFileError(path, "has no triangles");
-    return meshFileError(path, fmt::format("has no triangles, or they cannot be prepared ({})", why));
+    return meshFileError(path, fmt::format("has no triangles that can be used ({})", why));
 }
 
 }  // namespace rivulet

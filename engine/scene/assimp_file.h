@@ -1,4 +1,4 @@
-// What every import through assimp shares: a file that is checked, read raw, and refused in one sentence.
+// Shared by all imports through assimp: checks a file, reads it without post-processing, and makes error messages.
 #pragma once
 
 #include <assimp/scene.h>
@@ -12,17 +12,17 @@
 
 namespace rivulet {
 
-// "the mesh 'x.obj' has no triangles": what is wrong with a mesh file, as bad input.
+// An error (badInput) about a mesh file: "the mesh 'x.obj' has no triangles".
 Error meshFileError(const std::string& path, std::string_view what);
 
-// The file as it is, before any post-processing: finite vertices, indices in range, at least one mesh. The importer owns the scene.
-// Error: the file is missing, a folder, empty, unreadable or of an unknown kind, or what is in it is none of that.
+// The contents of the file without post-processing: finite vertices, indices in range, at least one mesh. The importer owns the scene.
+// Error: the file is missing, a folder, empty, unreadable, of an unknown format, or violates one of these conditions.
 Result<const aiScene*> readMeshFile(Assimp::Importer& importer, const std::string& path);
 
-// Does what `steps` (aiProcess flags) say. Error: no triangles are left.
+// Applies `steps` (aiProcess flags) to the scene that was read. Error: no triangles are left.
 Result<const aiScene*> prepareMeshFile(Assimp::Importer& importer, const std::string& path, unsigned steps);
 
-// What importMesh makes of a file that was read. Error: as prepareMeshFile.
+// The result of importMesh for a file that was read. Error: as prepareMeshFile.
 Result<Mesh> meshFrom(Assimp::Importer& importer, const std::string& path);
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// Cameras from plain numbers: a look-at, and the orbit controls that move it.
+// Camera: a position that looks at a target, and OrbitCamera, which moves it.
 #pragma once
 
 #include "engine/core/math.h"
@@ -15,7 +15,7 @@ struct Camera {
     mat4 view() const;                             // world -> view; +Y is up, unless it looks straight up or down
     mat4 projection(float widthOverHeight) const;  // view -> clip, depth -1..1
 
-    // Planes as tight around `bounds` (world, m) as the camera's place allows, with room for the floor around them.
+    // Sets the near and far plane close around `bounds` (world, m), with a margin for the floor.
     void setPlanes(const Bounds& bounds);
 };
 
@@ -26,10 +26,10 @@ struct OrbitCamera {
 
     static OrbitCamera from(const Camera& camera);
     void orbit(float yawDegrees, float pitchDegrees);                            // pitch stays within -89..89
-    void pan(float right, float up);                                             // in distances: 1 = as far as the camera is away
-    void zoom(float steps);                                                      // a step is 10 %; positive comes nearer
-    void frame(const Bounds& bounds, float fieldOfView, float widthOverHeight);  // all of `bounds` in view; the angles stay
-    void apply(Camera& camera) const;                                            // position and target
+    void pan(float right, float up);                                             // in units of `distance`
+    void zoom(float steps);                                                      // one step is 10 % of `distance`; positive: nearer
+    void frame(const Bounds& bounds, float fieldOfView, float widthOverHeight);  // fits `bounds` into the view; keeps the angles
+    void apply(Camera& camera) const;                                            // sets position and target
 };
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// Reads a mesh file through assimp: OBJ, glTF, PLY, STL and what else it knows.
+// Reads a mesh file through assimp: OBJ, glTF, PLY, STL and its other formats.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace rivulet {
 
-// All of the file's triangles as one mesh, each node's transform applied, in the file's own unit. Polygons become triangles; points and
-// lines are dropped. Normals are the file's, or smooth ones where a part has none; uvs are the first channel, kept if every part has it.
-// Error: the file is missing, a folder, empty, unreadable or of an unknown kind; it has no triangles, vertices that are not finite numbers
-// (and how many), or an index out of range.
+// All triangles of the file as one mesh, with each node's transform applied, in the unit of the file. Polygons become triangles; points and
+// lines are dropped. Normals are the file's, or smooth ones for a part without normals; uvs are the first channel, if every part has it.
+// Error (badInput): the file is missing, a folder, empty, unreadable or of an unknown format; it has no triangles, vertices that are not
+// finite (with their number), or an index out of range.
 Result<Mesh> importMesh(const std::string& path);
 
 }  // namespace rivulet

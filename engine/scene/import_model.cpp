@@ -19,12 +19,12 @@
 namespace rivulet {
 namespace {
 
-// A file's textures, each decoded once.
+// The textures of a file; each is decoded once.
 class Textures {
   public:
     Textures(const aiScene& scene, const std::string& path) : scene_(scene), path_(path) {}
 
-    // Null if the material has none of that kind.
+    // Null if the material has no texture of that kind.
     Result<std::shared_ptr<const Image>> of(const aiMaterial& material, aiTextureType type, unsigned index = 0) {
         aiString name;
         if (material.GetTexture(type, index, &name) != aiReturn_SUCCESS) return std::shared_ptr<const Image>();
@@ -77,9 +77,9 @@ Result<Material> materialOf(const aiMaterial& from, Textures& textures) {
     } wanted[] = {{aiTextureType_BASE_COLOR, &to.colour},
                   {aiTextureType_DIFFUSE, &to.colour},
                   {aiTextureType_METALNESS, &to.metallicRoughness},
-                  {aiTextureType_UNKNOWN, &to.metallicRoughness},  // where assimp 5.2 puts glTF's
+                  {aiTextureType_UNKNOWN, &to.metallicRoughness},  // assimp 5.2 stores glTF's here
                   {aiTextureType_NORMALS, &to.normals},
-                  {aiTextureType_LIGHTMAP, &to.occlusion},  // where it puts glTF's
+                  {aiTextureType_LIGHTMAP, &to.occlusion},  // assimp 5.2 stores glTF's here
                   {aiTextureType_EMISSIVE, &to.glow}};
     for (const auto& w : wanted) {
         if (*w.into) continue;
@@ -107,31 +107,31 @@ std::vector<MorphTarget> morphsOf(const aiMesh& from) {
     return morphs;
 }
 
-// Bends the mesh as its file has it while no clip says otherwise.
+// Applies the morph weights of the file to the mesh; they hold while no clip sets others.
 void rest(const aiMesh& from, ModelPart& part) {
     for (unsigned k = 0; k < from.mNumAnimMeshes; ++k) {
         const float weight = from.mAnimMeshes[k]->mWeight;
         if (weight == 0.0F || !std::isfinite(weight)) continue;
-        part.resting.resize(part.morphs.size(), 0.0F);
-        part.resting[k] = weight;
+        part.restWeights.resize(part.morphs.size(), 0.0F);
+        part.restWeights[k] = weight;
         const MorphTarget& morph = part.morphs[k];
         for (size_t i = 0; i < morph.vertices.size(); ++i) part.mesh.positions[morph.vertices[i]] += weight * morph.offsets[i];
     }
-    if (!part.resting.empty()) recomputeNormals(part.mesh);
+    if (!part.restWeights.empty()) recomputeNormals(part.mesh);
 }
 
-// The four strongest of a vertex's bones, their weights brought to a sum of 1.
+// The four bones of largest weight of each vertex, with weights normalised to a sum of 1.
 Status gripsOf(const aiMesh& from, const std::map<std::string, int>& nodeOf, ModelPart& part) {
     if (from.mNumBones == 0) return ok();
     part.grips.resize(from.mNumVertices);
     for (unsigned b = 0; b < from.mNumBones; ++b) {
         const aiBone& bone = *from.mBones[b];
         const auto node = nodeOf.find(bone.mName.C_Str());
-        if (node == nodeOf.end()) return badInput(fmt::format("names a bone '{}' that is none of its nodes", bone.mName.C_Str()));
+        if (node == nodeOf.end()) return badInput(fmt::format("has a bone '{}' without a node of that name", bone.mName.C_Str()));
         part.bones.push_back({node->second, matrixOf(bone.mOffsetMatrix)});
         for (unsigned w = 0; w < bone.mNumWeights; ++w) {
             const aiVertexWeight& weight = bone.mWeights[w];
-            if (weight.mVertexId >= from.mNumVertices) return badInput("has a bone that holds a vertex out of range");
+            if (weight.mVertexId >= from.mNumVertices) return badInput("has a bone with a vertex index out of range");
             if (!(weight.mWeight > 0)) continue;
             Grip& grip = part.grips[weight.mVertexId];
             int least = 0;
@@ -177,7 +177,7 @@ bool isGltf(const std::string& path) {
     return ending == ".gltf" || ending == ".glb";
 }
 
-// Whether the file itself has that material: assimp adds one for what has none, to a glTF file's as the last.
+// Whether the material is in the file: assimp adds a default material, in glTF files as the last one.
 bool isFiles(const aiScene& scene, unsigned material, bool gltf) {
     if (gltf) return material + 1 < scene.mNumMaterials;
     const aiString name = scene.mMaterials[material]->GetName();
@@ -206,7 +206,7 @@ Result<Model> modelFrom(Assimp::Importer& importer, const std::string& path) {
         materials.push_back(std::move(*material));
     }
     std::map<std::string, int> nodeOf;
-    std::vector<std::pair<unsigned, int>> placed;  // a mesh, and the node it hangs on
+    std::vector<std::pair<unsigned, int>> placed;  // a mesh and its node
     const std::function<void(const aiNode&, int)> walk = [&](const aiNode& node, int parent) {
         const int here = static_cast<int>(model.nodes.size());
         model.nodes.push_back({node.mName.C_Str(), matrixOf(node.mTransformation), parent});
@@ -224,7 +224,7 @@ Result<Model> modelFrom(Assimp::Importer& importer, const std::string& path) {
         if (part.mesh.indices.empty()) continue;
         part.material = materials[from.mMaterialIndex];
         part.materialName = (*scene)->mMaterials[from.mMaterialIndex]->GetName().C_Str();
-        part.dressed = isFiles(**scene, from.mMaterialIndex, gltf);
+        part.hasMaterial = isFiles(**scene, from.mMaterialIndex, gltf);
         part.node = node;
         part.morphs = morphsOf(from);
         rest(from, part);

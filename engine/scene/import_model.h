@@ -9,14 +9,14 @@
 
 namespace rivulet {
 
-// In the file's own unit; every part in its node's frame. Polygons become triangles. Normals are the file's, or smooth ones where a part
-// has none. Vertices of what morphs or has bones are those of the file, in its order; others that are identical are joined. Textures lie
-// in the file or beside it.
-// Error: as importMesh; a texture that is missing or damaged, by name; indices of bones out of range.
+// In the unit of the file; each part in the frame of its node. Polygons become triangles. Normals are the file's, or smooth ones for a part
+// without normals. A part with morphs or bones keeps the vertices of the file in their order; in other parts identical vertices are merged.
+// Textures are in the file or beside it.
+// Error (badInput): as importMesh; a missing or damaged texture, with its name; bone indices out of range.
 Result<Model> importModel(const std::string& path);
 
-// The same, but a file that says no more than where its triangles are (no materials, movement, cameras or lights) is one part on one node,
-// as importMesh has it.
+// The same, but a file that has only triangles (no materials, animations, cameras or lights) becomes one part on one node, as in
+// importMesh.
 Result<Model> importWhole(const std::string& path);
 
 }  // namespace rivulet

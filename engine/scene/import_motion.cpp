@@ -13,7 +13,7 @@ vec3 vectorOf(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 namespace {
 
 constexpr float kDegree = kPi / 180.0F;
-constexpr double kTicksPerSecond = 25;  // where a file does not say
+constexpr double kTicksPerSecond = 25;  // if the file does not state it
 
 template <class T>
 void addKey(Keys<T>& keys, double time, bool finite, T value) {
@@ -49,7 +49,7 @@ MorphTrack trackOf(const aiMeshMorphAnim& from, int node, double ticks) {
         bool sound = key.mNumValuesAndWeights > 0;
         for (unsigned m = 0; m < key.mNumValuesAndWeights; ++m) {
             const size_t morph = key.mValues[m];
-            if (morph >= 4096) {  // no mesh has as many
+            if (morph >= 4096) {  // larger indices are invalid: no mesh has as many morphs
                 sound = false;
                 break;
             }
@@ -88,7 +88,7 @@ Clip clipOf(const aiAnimation& from, const std::map<std::string, int>& nodeOf) {
     return clip;
 }
 
-// assimp 5.2 gives glTF's vertical angle times the aspect ratio, and of other files the horizontal angle.
+// assimp 5.2 returns the vertical angle times the aspect ratio for glTF, and the horizontal angle for other files.
 float verticalView(const aiCamera& from, bool gltf) {
     const float aspect = from.mAspect > 0 ? from.mAspect : 1.0F;
     const float angle = gltf ? from.mHorizontalFOV / aspect : 2.0F * std::atan(std::tan(0.5F * from.mHorizontalFOV) / aspect);
@@ -105,7 +105,7 @@ void importMotion(const aiScene& scene, const std::map<std::string, int>& nodeOf
     for (unsigned c = 0; c < scene.mNumCameras; ++c) {
         const aiCamera& from = *scene.mCameras[c];
         const auto node = nodeOf.find(from.mName.C_Str());
-        // Of glTF it repeats the node's own place, which a glTF camera is at.
+        // For glTF, assimp repeats the node's transform in the camera; a glTF camera is at its node.
         const vec3 position = gltf ? vec3(0.0F) : vectorOf(from.mPosition), direction = vectorOf(from.mLookAt);
         if (node == nodeOf.end() || !isFinite(position) || !isFinite(direction) || direction == vec3(0.0F)) continue;
         model.cameras.push_back({from.mName.C_Str(), node->second, position, direction, verticalView(from, gltf)});

@@ -1,4 +1,4 @@
-// What a file says of movement, cameras and light: read beside its parts by importModel.
+// Reads the animations, cameras and lights of a file, for importModel.
 #pragma once
 
 #include <assimp/scene.h>
@@ -10,12 +10,13 @@
 
 namespace rivulet {
 
-// assimp's rows are glm's columns.
+// Conversions from assimp; its matrices are row-major, glm's are column-major.
 mat4 matrixOf(const aiMatrix4x4& m);
 vec3 vectorOf(const aiVector3D& v);
 
-// Fills model.clips, cameras and lights. `nodeOf`: model.nodes by name; what names none of them is left out, as are keys that are not
-// finite or not later than the one before. `gltf`: of a glTF file, which assimp counts some angles of in a way of its own.
+// Fills model.clips, cameras and lights. `nodeOf`: indices of model.nodes by name. Tracks, cameras and lights of other nodes are dropped,
+// and so are keys that are not finite or not later than the previous one. `gltf`: the file is glTF, for which assimp reports angles
+// differently.
 void importMotion(const aiScene& scene, const std::map<std::string, int>& nodeOf, bool gltf, Model& model);
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// Light: one directional light, and the projection its shadow is drawn with.
+// Light: one directional light, and the projection of its shadow map.
 #pragma once
 
 #include <glm/ext/matrix_clip_space.hpp>

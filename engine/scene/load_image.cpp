@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWidest = 16384;  // texels
 
-Error about(const std::string& name, std::string_view what) { return badInput(fmt::format("the picture '{}' {}", name, what)); }
+Error about(const std::string& name, std::string_view what) { return badInput(fmt::format("the image '{}' {}", name, what)); }
 
 }  // namespace
 

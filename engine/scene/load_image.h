@@ -1,4 +1,4 @@
-// Reads pictures: PNG, JPEG, TGA, BMP (stb_image).
+// Reads images: PNG, JPEG, TGA, BMP (stb_image).
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,12 @@
 
 namespace rivulet {
 
-// Error (badInput): no such file, damaged, of an unknown kind, or wider than 16384 texels.
+// Error (badInput): no such file, damaged, of an unknown format, or wider or higher than 16384 texels.
 Result<Image> loadImage(const std::string& path);
-// The same from a file's bytes; `name` is what errors call it.
+// The same from the bytes of a file; errors use `name`.
 Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& name);
 
-// A Radiance .hdr file, or any other picture as linear light. What is not finite, negative or above 1000 is brought back into range.
+// A Radiance .hdr file, or another image converted to linear radiance. NaN and infinity become 0, other values are clamped to 0..1000.
 Result<HdrImage> loadHdr(const std::string& path);
 
 }  // namespace rivulet

@@ -25,7 +25,7 @@ ModelPart* Model::find(std::string_view partName) {
 }
 
 std::vector<mat4> Model::boneMatrices(const ModelPart& part, const std::vector<mat4>& world) const {
-    // Vertices stay in their node's frame: what follows places them in the world as it does any other part's.
+    // The results are in the frame of the part's node, as the vertices of parts without bones.
     const mat4 toNode = glm::inverse(world[static_cast<size_t>(part.node)]);
     std::vector<mat4> all;
     all.reserve(part.bones.size());

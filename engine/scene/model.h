@@ -1,4 +1,4 @@
-// Model: what a file holds beyond triangles: parts with materials, where they stand, morph targets, bones.
+// Model: the contents of a model file: parts with materials, nodes, morph targets, bones, animation clips, cameras and lights.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace rivulet {
 
-// Where vertices go as a morph's weight goes from 0 to 1. Vertices that stay are not in it.
+// A morph target: offsets of vertices at weight 1. Vertices that do not move are not listed.
 struct MorphTarget {
     std::string name;
     std::vector<uint32_t> vertices;  // ascending
-    std::vector<vec3> offsets;       // m, one a vertex of the above
+    std::vector<vec3> offsets;       // m, one for each of `vertices`
 };
 
 struct Bone {
-    int node = 0;         // of the model: where it is
-    mat4 fromMesh{1.0F};  // the mesh -> the bone, as they were bound
+    int node = 0;         // index of the model's node that moves the bone
+    mat4 fromMesh{1.0F};  // mesh -> bone, in the bind pose
 };
 
-// Up to four bones hold a vertex; weights sum to 1.
+// Skinning weights of a vertex: up to four bones; the weights sum to 1.
 struct Grip {
     uvec4 bone{0};  // indices into ModelPart::bones
     vec4 weight{0.0F};
@@ -40,25 +40,26 @@ struct ModelPart {
     Mesh mesh;  // in its node's frame
     Material material;
     std::string materialName;  // as the file calls it
-    bool dressed = false;      // whether the material is the file's; else it is the default one
+    bool hasMaterial = false;  // the material is from the file; else it is the default material
     int node = 0;
     std::vector<MorphTarget> morphs;
-    std::vector<float> resting;  // of them, as the file says where no clip does; the mesh is that already. Empty: all 0
+    std::vector<float>
+        restWeights;  // weights of `morphs` in the file, already applied to `mesh`; used while no clip sets others. Empty: all 0
     std::vector<Bone> bones;
-    std::vector<Grip> grips;  // empty, or one a vertex
+    std::vector<Grip> grips;  // empty, or one per vertex
 };
 
-// Values at times (s, ascending). Between two they change evenly, before the first and after the last they stay.
+// Values at times (s, ascending): interpolated linearly between two, constant before the first and after the last.
 template <class T>
 struct Keys {
     std::vector<double> times;
-    std::vector<T> values;  // as many
+    std::vector<T> values;  // one per time
 };
 
-// How a node goes through a clip, in its parent's frame: scaled, then turned, then moved. What has no keys is as the node stands.
+// The animation of a node relative to its parent: scale, then rotation, then translation. A component without keys keeps the node's value.
 struct NodeTrack {
     int node = 0;
-    Keys<vec3> position;  // the file's unit
+    Keys<vec3> position;  // in the unit of the file
     Keys<quat> rotation;  // unit
     Keys<vec3> scale;
 };
@@ -76,7 +77,7 @@ struct Clip {
     std::vector<MorphTrack> morphs;
 };
 
-// Looks along `direction`; in its node's frame.
+// A camera that looks along `direction`; in its node's frame.
 struct ModelCamera {
     std::string name;
     int node = 0;
@@ -100,10 +101,10 @@ struct Model {
     std::vector<ModelLight> lights;
 
     std::vector<mat4> worldMatrices() const;  // each node's, in the order of `nodes`
-    // The same of nodes that stand otherwise: one matrix each, node -> its parent.
+    // The same with other local matrices: one per node, node -> its parent.
     std::vector<mat4> worldMatrices(const std::vector<mat4>& locals) const;
-    ModelPart* find(std::string_view partName);  // null: there is none of that name
-    // What turns a part's vertices, a matrix a bone, when the nodes stand where `world` says.
+    ModelPart* find(std::string_view partName);  // null: no part has that name
+    // The skinning matrices of a part, one per bone, for nodes with the world matrices `world`.
     std::vector<mat4> boneMatrices(const ModelPart& part, const std::vector<mat4>& world) const;
 };
 

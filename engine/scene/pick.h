@@ -1,4 +1,4 @@
-// What of a scene a ray meets first.
+// Picking: the first node of a scene that a ray hits.
 #pragma once
 
 #include <optional>
@@ -8,16 +8,18 @@
 namespace rivulet {
 
 struct Picked {
-    size_t node = 0;     // of Scene::nodes()
-    float distance = 0;  // in lengths of `direction`
-    vec3 place{0.0F};    // m, world
+    size_t node = 0;     // index into Scene::nodes()
+    float distance = 0;  // in units of the length of `direction`
+    vec3 place{0.0F};    // the point hit; m, world
     vec3 normal{0.0F};   // unit, towards the ray's origin
 };
 
-// Meets visible triangles from both sides, as their meshes have them: what bones bend is met where it is at rest. A sum over all triangles.
+// Tests both sides of all visible triangles in their rest pose: deformations by bones and morphs are ignored. The cost is linear in the
+// number of triangles.
 std::optional<Picked> pick(const Scene& scene, const vec3& origin, const vec3& direction);
 
-// Where a ray meets a triangle, in lengths of `direction`; negative: nowhere before `most`. Moeller and Trumbore 1997.
+// The distance at which a ray hits a triangle, in units of the length of `direction`; negative: no hit before `most`. Moeller and Trumbore
+// 1997.
 float meets(const vec3& origin, const vec3& direction, const vec3& a, const vec3& b, const vec3& c, float most);
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// Scene: meshes, and the nodes that place them. A node's place is relative to its parent's.
+// Scene: nodes with meshes. A node's transform is relative to its parent's.
 #pragma once
 
 #include <memory>
@@ -18,9 +18,9 @@ struct Node {
     int parent = -1;                   // index of an earlier node, or -1: the world
     std::shared_ptr<const Mesh> mesh;  // null: a group
     Material material;
-    bool visible = true;                       // an invisible node hides its children too
-    std::shared_ptr<const Deformer> deformer;  // where the mesh's vertices are now; null: as the mesh says. Goes before its device
-    std::shared_ptr<const Layer> layer;        // what lies on the material; null: nothing
+    bool visible = true;                       // if false, its children are hidden too
+    std::shared_ptr<const Deformer> deformer;  // deformed vertices; null: the mesh's. Must be destroyed before its device
+    std::shared_ptr<const Layer> layer;        // liquid on the material; null: none
 };
 
 class Scene {
@@ -29,10 +29,10 @@ class Scene {
     int add(Node node);
     std::vector<Node>& nodes() { return nodes_; }
     const std::vector<Node>& nodes() const { return nodes_; }
-    // Each node's transform to the world, in the order of nodes().
+    // The transform of each node to the world, in the order of nodes().
     std::vector<mat4> worldMatrices() const;
     std::vector<bool> visible() const;
-    // Of all visible meshes, in the world; empty if there are none.
+    // The bounds of all visible meshes, m, world; empty if there are none.
     Bounds bounds() const;
 
   private:

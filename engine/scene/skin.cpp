@@ -31,7 +31,7 @@ Status checkPart(const ModelPart& part) {
     return ok();
 }
 
-// Vertices that stand at one place share its triangles.
+// Vertices at the same position share their triangles, so that seams have one normal.
 struct Rings {
     std::vector<uint32_t> ring, corner;
 };
@@ -40,7 +40,7 @@ Rings ringsOf(const Mesh& mesh) {
     std::map<std::tuple<float, float, float>, uint32_t> places;
     std::vector<uint32_t> placeOf(n);
     for (size_t i = 0; i < n; ++i) {
-        const vec3 p = mesh.positions[i] + 0.0F;  // -0 is 0
+        const vec3 p = mesh.positions[i] + 0.0F;  // turns -0 into 0
         placeOf[i] = places.emplace(std::tuple(p.x, p.y, p.z), static_cast<uint32_t>(places.size())).first->second;
     }
     std::vector<uint32_t> begin(places.size() + 1, 0);
@@ -157,7 +157,7 @@ void Deformer::run(std::span<const float> weights, std::span<const mat4> bones) 
         const Bounds b = transformBounds(m, bounds_);
         if (!b.empty()) around.add(b.min), around.add(b.max);
     }
-    if (!turned.empty()) bounds_ = around;  // each vertex lies between the places its bones would take it to
+    if (!turned.empty()) bounds_ = around;  // a vertex is a weighted mean of the positions that its bones give it
     if (!amount.empty()) device_->write(amount_, std::as_bytes(std::span(amount)));
     if (!rows.empty()) device_->write(bone_, std::as_bytes(std::span(rows)));
     const DeformParams params{vertices_, static_cast<uint32_t>(turned.size()), 0, 0};

@@ -32,7 +32,7 @@ void tellUses(const Graph& graph, const char* what, const std::vector<Graph::Use
         const Graph::Resource& r = graph.resources[use.resource];
         ImGui::TextDisabled("%s", &use == list.data() ? what : "");
         ImGui::SameLine(ImGui::GetFontSize() * 4);
-        ImGui::Text("%s (%s%s)", r.name.c_str(), gpu::usageName(use.usage), r.imported ? ", from outside" : "");
+        ImGui::Text("%s (%s%s)", r.name.c_str(), gpu::usageName(use.usage), r.imported ? ", imported" : "");
     }
 }
 
@@ -83,9 +83,9 @@ void FrameGraphPanel::draw(const Graph& graph, std::span<const PassTime> times, 
     for (const Graph::Resource& r : graph.resources)
         if (r.memory != SIZE_MAX) asked += r.bytes;
     ImGui::Text("%zu passes, %.2f ms%s", graph.passes.size() - static_cast<size_t>(left), sum,
-                left > 0 ? fmt::format("; {} left out", left).c_str() : "");
-    ImGui::TextDisabled("%zu pieces of memory, %s MB, in which %s MB of pictures take turns", graph.memories,
-                        megabytes(graph.lentBytes).c_str(), megabytes(asked).c_str());
+                left > 0 ? fmt::format("; {} culled", left).c_str() : "");
+    ImGui::TextDisabled("%zu allocations, %s MB of textures share %s MB", graph.memories, megabytes(asked).c_str(),
+                        megabytes(graph.lentBytes).c_str());
     ImGui::TextDisabled("passes");
     ImGui::SameLine(layout.names + ImGui::GetStyle().WindowPadding.x);
     ImGui::TextDisabled("memory: filled = written, ring = read");
@@ -115,7 +115,7 @@ void FrameGraphPanel::drawPass(const Graph& graph, size_t p, const Layout& layou
     const ImVec4 room(layout.low.x, top, msAt - 4, top + layout.row);  // a clip rectangle would be a draw call each
     list->AddText(ImGui::GetFont(), font, ImVec2(layout.low.x + 2, top + 1), text, pass.name.c_str(), nullptr, 0, &room);
     const double ms = layout.ms[p];
-    const std::string figure = pass.culled ? "left out" : std::isfinite(ms) ? fmt::format("{:.2f}", ms) : "\"";
+    const std::string figure = pass.culled ? "culled" : std::isfinite(ms) ? fmt::format("{:.2f}", ms) : "\"";
     const float wide = ImGui::CalcTextSize(figure.c_str()).x;
     rows_.push_back({pass.name, figure});
     list->AddText(ImVec2(msAt + 3.6F * font - wide, top + 1), text, figure.c_str());
@@ -138,8 +138,8 @@ void FrameGraphPanel::drawPass(const Graph& graph, size_t p, const Layout& layou
     }
     ImGui::BeginTooltip();
     ImGui::TextUnformatted(pass.name.c_str());
-    if (pass.culled) ImGui::TextDisabled("left out: nobody needs what it writes");
-    if (std::isfinite(ms) && layout.calls[p] > 1) ImGui::TextDisabled("%.3f ms, of all %d passes of this name", ms, layout.calls[p]);
+    if (pass.culled) ImGui::TextDisabled("culled: no pass reads its output");
+    if (std::isfinite(ms) && layout.calls[p] > 1) ImGui::TextDisabled("%.3f ms for all %d passes of this name", ms, layout.calls[p]);
     if (std::isfinite(ms) && layout.calls[p] == 1) ImGui::TextDisabled("%.3f ms", ms);
     tellUses(graph, "reads", pass.reads);
     tellUses(graph, "writes", pass.writes);
@@ -184,7 +184,7 @@ void FrameGraphPanel::tellResource(const Graph& graph, size_t resource) const {
     for (size_t k = 0; k < graph.resources.size(); ++k)
         if (k != resource && graph.resources[k].memory == r.memory && r.memory != SIZE_MAX)
             others += (others.empty() ? "" : ", ") + graph.resources[k].name;
-    if (!others.empty()) ImGui::TextDisabled("in the same memory: %s", others.c_str());
+    if (!others.empty()) ImGui::TextDisabled("shares memory with: %s", others.c_str());
     ImGui::EndTooltip();
 }
 

@@ -151,7 +151,7 @@ void GraphPanel::drawGraph(size_t graph, float width, float height, bool last) {
     const ImVec2 a(place.left, place.top), b(place.left + place.width, place.top + place.height);
     list->AddRectFilled(a, b, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
     if (filled_ == 0) {
-        list->AddText(ImVec2(a.x + 6, a.y + 4), ImGui::GetColorU32(ImGuiCol_TextDisabled), "nothing has been stepped yet");
+        list->AddText(ImVec2(a.x + 6, a.y + 4), ImGui::GetColorU32(ImGuiCol_TextDisabled), "no step has been simulated yet");
         return;
     }
     drawTimes(place, last);

@@ -41,7 +41,7 @@ class GraphPanel {
 
   private:
     static constexpr size_t kSamples = 600;
-    // What a graph shows of its figures. Its axis follows them gently, so that nothing jumps.
+    // The visible part of a graph. Its axis follows the figures smoothly.
     struct View {
         PlotAxis target, shown;
         bool settled = false;  // shown has been target

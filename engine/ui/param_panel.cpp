@@ -105,7 +105,7 @@ void ParamPanel::search(const VisitFn& params) {
     if (!memory_.changed().empty()) {
         ImGui::AlignTextToFramePadding();
         ImGui::TextColored(kChanged, "%zu changed", memory_.changed().size());
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("their names are of this colour; right click on one resets it");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("changed names have this colour; right-click a name to reset it");
         ImGui::SameLine();
         if (ImGui::SmallButton("reset all")) resetAll(params);
     }
@@ -121,7 +121,7 @@ void ParamPanel::search(const VisitFn& params) {
             found_.insert(entry.path.substr(0, end));
         if (entry.kind != ParamEntry::Kind::value) whole_.push_back(entry.path);
     }
-    if (found_.empty()) ImGui::TextDisabled("no parameter is called so");
+    if (found_.empty()) ImGui::TextDisabled("no matching parameter");
 }
 
 // The list's length is not a value: items that were added stay.
@@ -164,14 +164,14 @@ void ParamPanel::label(const ParamInfo& info, std::string& text) {
         ImGui::TextDisabled("%s", path.c_str());
         if (ImGui::MenuItem("as opened", changed ? excerpt(was->second).c_str() : "", false, changed)) text = was->second;
         if (byDefault != nullptr && ImGui::MenuItem("default", excerpt(*byDefault).c_str())) text = *byDefault;
-        if (ImGui::MenuItem("copy its name")) ImGui::SetClipboardText(path.c_str());
+        if (ImGui::MenuItem("copy the name")) ImGui::SetClipboardText(path.c_str());
         ImGui::EndPopup();
     } else if (ImGui::IsItemHovered() && info.doc[0] != '\0') {
         std::string about = cut == name ? info.doc : fmt::format("{}: {}", name, info.doc);
         if (info.unit[0] != '\0') about += fmt::format("\nunit: {}", info.unit);
         if (!isOpen(info) && info.max < kOpenRange) about += fmt::format("\nrange: {:g} to {:g}", info.min, info.max);
-        if (info.fixed) about += "\nthe water starts anew when this changes";
-        if (changed) about += fmt::format("\nopened as {}; right click to reset", excerpt(was->second));
+        if (info.fixed) about += "\nchanging this restarts the water";
+        if (changed) about += fmt::format("\nopened as {}; right-click to reset", excerpt(was->second));
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
         ImGui::TextUnformatted(about.c_str());

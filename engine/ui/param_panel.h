@@ -17,12 +17,12 @@
 
 namespace rivulet {
 
-// What a panel of Params keeps from frame to frame: what is searched for, and what each value was when the Params were opened.
+// The state of a parameter panel between frames: the search text, and each value as it was opened.
 class ParamMemory {
   public:
-    // These are what a reset goes back to; `defaults`: a visit over what is made by default.
+    // A reset goes back to these values; `defaults`: a visit over default values.
     void open(const VisitFn& params, const VisitFn& defaults);
-    // After an edit: what is no longer as it was.
+    // After an edit: finds the changed values.
     void compare(const VisitFn& params);
     const std::map<std::string, std::string>& changed() const { return changed_; }  // path: its value as opened, in JSON
     const std::string* byDefault(const std::string& path) const;                    // in JSON; null: there is none of that name
@@ -37,9 +37,9 @@ class ParamMemory {
 class ParamPanel final : public ParamVisitor {
   public:
     explicit ParamPanel(ParamMemory& memory) : memory_(memory) {}
-    // The field to search in, and how many values are no longer as they were, with a button that resets them. Before the visit.
+    // The search field, the number of changed values, and a button that resets them. Before the visit.
     void search(const VisitFn& params);
-    bool changed() const { return changed_; }    // some value is another one now
+    bool changed() const { return changed_; }    // a value was changed
     bool recreate() const { return recreate_; }  // a `fixed` value's edit ended, or a list's length changed
 
     void value(const ParamInfo& info, float& v) override;

@@ -1,4 +1,4 @@
-// What graphs and charts share: colours that people with colour blindness tell apart, round numbers for axes, figures that read well.
+// Shared by graphs and charts: colours that are distinct with colour blindness, round numbers for axes, readable figures.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ double roundStep(double least);
 struct PlotAxis {
     double low = 0, high = 1;
     bool decades = false;
-    // 0 at the low end, 1 at the high one. What decades cannot show, 0 and less, lies at the low end.
+    // 0 at the low end, 1 at the high end. Values of 0 and less, which decades cannot show, are at the low end.
     double share(double value) const;
     // Round numbers within: `most` of them or, of decades, a few more.
     std::vector<double> ticks(int most) const;

@@ -137,7 +137,7 @@ void ProfilerPanel::tell(float column) const {
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return lines_[a].ms[at] > lines_[b].ms[at]; });
     constexpr size_t kMost = 8;
     ImGui::BeginTooltip();
-    ImGui::Text("a frame of %.2f ms", static_cast<double>(frame_[at]));
+    ImGui::Text("frame: %.2f ms", static_cast<double>(frame_[at]));
     for (size_t i = 0; i < std::min(order.size(), kMost); ++i) {
         const Line& l = lines_[order[i]];
         ImGui::TextColored(ImColor(hueOf(order[i])), "%7.2f  %s", static_cast<double>(l.ms[at]), l.name.c_str() + (l.name.rfind('/') + 1));

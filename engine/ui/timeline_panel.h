@@ -1,4 +1,4 @@
-// The last moments of a Timeline, a lane a row: what overlaps is seen.
+// TimelinePanel: the last spans of a Timeline, one row per lane, so that overlaps are visible.
 #pragma once
 
 #include "engine/core/timeline.h"

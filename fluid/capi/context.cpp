@@ -1,8 +1,10 @@
-// rivulet.h: contexts, and what all handles share.
+// rivulet.h: contexts.
 #include <fmt/format.h>
 
 #include "engine/gpu/load.h"
-#include "fluid/capi/handles.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 
 namespace rivulet::capi {
 
@@ -18,10 +20,20 @@ rivulet_pose poseOf(const Pose& pose) {
     return {{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}};
 }
 
+void collectTimes(rivulet_context& context) {
+    for (const PassTime& pass : context.device->takeTimes()) {
+        PassTime& all = context.passes[pass.name];
+        all.name = pass.name;
+        all.ms += pass.ms;
+        all.calls += pass.calls;
+        context.deviceMs += pass.ms;
+    }
+}
+
 Result<HostMesh> meshOf(const rivulet_mesh& mesh, const std::string& name) {
     if (mesh.positions == nullptr || mesh.indices == nullptr || mesh.vertices == 0 || mesh.indices_count == 0)
         return badInput(fmt::format("{} has no triangles: give positions and indices", name));
-    if (mesh.indices_count % 3 != 0) return badInput(fmt::format("{} has {} indices: three make a triangle", name, mesh.indices_count));
+    if (mesh.indices_count % 3 != 0) return badInput(fmt::format("{} has {} indices: give a multiple of three", name, mesh.indices_count));
     HostMesh out;
     for (size_t k = 0; k < mesh.vertices; ++k) out.positions.push_back(vectorOf(mesh.positions + 3 * k));
     out.indices.assign(mesh.indices, mesh.indices + mesh.indices_count);
@@ -47,7 +59,7 @@ Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     std::string backend = o.backend == nullptr ? "" : o.backend;
     const std::string device = o.device == nullptr ? "" : o.device;
     if (Status settled = settleBackend(backend, "auto", device); !settled) return settled;
-    const Keep keep(c, Needs::drawing);
+    const CallScope scope(c, Needs::drawing);
     c.device = makeDevice(backend, c.gl, c.log, device);
     c.memoryLimit = o.memory_limit;
     if (o.memory_limit > 0) c.device->limitMemory(o.memory_limit);
@@ -55,9 +67,9 @@ Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     if (!c.gl.present()) return ok();
     WaterRendererOptions look;
     if (o.memory_limit > 0) look.memoryLimit = o.memory_limit;
-    if (given(o.sky_horizon)) look.sky.horizon = vectorOf(o.sky_horizon);
-    if (given(o.sky_zenith)) look.sky.zenith = vectorOf(o.sky_zenith);
-    look.sky.sun = glm::normalize(given(o.sky_sun) ? vectorOf(o.sky_sun) : look.sky.sun);
+    if (isSet(o.sky_horizon)) look.sky.horizon = vectorOf(o.sky_horizon);
+    if (isSet(o.sky_zenith)) look.sky.zenith = vectorOf(o.sky_zenith);
+    look.sky.sun = glm::normalize(isSet(o.sky_sun) ? vectorOf(o.sky_sun) : look.sky.sun);
     look.sky.sunlight = vec3(1.0F);
     look.sky.clouds = o.clouds;
     auto water = WaterRenderer::create(look);
@@ -76,9 +88,9 @@ const char* rivulet_version(void) { return RIVULET_VERSION; }
 
 rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why) {
     return guarded(why, [&]() -> Status {
-        if (context == nullptr) return badInput("context is NULL: give a place for the handle");
+        if (context == nullptr) return badInput("context is NULL: pass the address of a handle");
         *context = nullptr;
-        const Result<rivulet_context_options> o = taken(options, "rivulet_context_options", "options");
+        const Result<rivulet_context_options> o = readStruct(options, "rivulet_context_options", "options");
         if (!o) return o.error();
         auto made = std::make_unique<rivulet_context>();
         if (Status done = createContext(*o, *made); !done) {
@@ -93,14 +105,13 @@ rivulet_status rivulet_context_create(const rivulet_context_options* options, ri
 void rivulet_context_destroy(rivulet_context* context) {
     if (context == nullptr) return;
     if (context->children > 0) {
-        context->log.error(fmt::format("a context was to be destroyed before {} worlds and skins of it: destroy those first; it stays",
-                                       context->children));
+        context->log.error(fmt::format("a context was not destroyed: destroy its {} worlds and skins first", context->children));
         return;
     }
     if (Status can = ready(*context, Needs::drawing); !can)
-        return context->log.error(fmt::format("a context was to be destroyed, and stays: {}", can.error().message));
+        return context->log.error(fmt::format("a context was not destroyed: {}", can.error().message));
     {
-        const Keep keep(*context, Needs::drawing);
+        const CallScope scope(*context, Needs::drawing);
         context->water.reset();
         context->device.reset();
     }
@@ -115,8 +126,8 @@ rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time
         if (context == nullptr) return badInput("context is NULL");
         if (count == nullptr || (times == nullptr && capacity > 0)) return badInput("count or times is NULL");
         if (Status can = ready(*context, Needs::device); !can) return can;
-        const Keep keep(*context, Needs::device);
-        hearTimes(*context);
+        const CallScope scope(*context, Needs::device);
+        collectTimes(*context);
         std::vector<PassTime> all;
         for (const auto& [name, pass] : context->passes) all.push_back(pass);
         if (context->water)

@@ -1,5 +1,7 @@
 // rivulet.h: drawing.
-#include "fluid/capi/handles.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 #include "fluid/render/host_picture.h"
 #include "fluid/render/renderers.h"
 
@@ -10,7 +12,7 @@ namespace {
 
 Status drawable(const rivulet_context& context) {
     if (context.water) return ok();
-    return badInput("the context has no OpenGL: give rivulet_context_options.find");
+    return badInput("the context has no OpenGL: set rivulet_context_options.find");
 }
 
 }  // namespace
@@ -20,14 +22,14 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (world == nullptr) return badInput("world is NULL");
         if (Status there = drawable(*world->context); !there) return there;
         if (Status can = ready(*world->context, Needs::drawing); !can) return can;
-        const Result<rivulet_view> viewing = taken(view, "rivulet_view", "view");
+        const Result<rivulet_view> viewing = readStruct(view, "rivulet_view", "view");
         if (!viewing) return viewing.error();
-        const Result<rivulet_target> drawing = taken(target, "rivulet_target", "target");
+        const Result<rivulet_target> drawing = readStruct(target, "rivulet_target", "target");
         if (!drawing) return drawing.error();
         const rivulet_view& v = *viewing;
         const rivulet_target& t = *drawing;
         if (t.colours < RIVULET_AUTOMATIC || t.colours > RIVULET_SRGB)
-            return badInput(fmt::format("target.colours is {}: RIVULET_AUTOMATIC, RIVULET_LINEAR or RIVULET_SRGB", t.colours));
+            return badInput(fmt::format("target.colours is {}: use RIVULET_AUTOMATIC, RIVULET_LINEAR or RIVULET_SRGB", t.colours));
         if (v.view == nullptr || v.projection == nullptr) return badInput("view.view or view.projection is NULL: 16 floats each");
         Result<FluidLook> look = fluidLookOf(world->params.look, world->params.fluid.liquid);
         if (!look) return look.error();
@@ -40,9 +42,9 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         frame.farPlane = v.far_plane;
         frame.width = t.width;
         frame.height = t.height;
-        if (given(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);
+        if (isSet(v.light_direction)) frame.lightDirWorld = vectorOf(v.light_direction);
         frame.lightDirWorld = glm::normalize(frame.lightDirWorld);
-        frame.lightColour = given(v.light_colour) ? vectorOf(v.light_colour) : vec3(1.0F);
+        frame.lightColour = isSet(v.light_colour) ? vectorOf(v.light_colour) : vec3(1.0F);
         const HostTarget to{.framebuffer = t.framebuffer,
                             .x = t.x,
                             .y = t.y,
@@ -51,7 +53,7 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
                             .colours = static_cast<HostTarget::Colours>(t.colours)};
         if (Status can = HostPicture::nothingUnderWay(); !can) return can;
         const auto uploaded = [&] {
-            const Keep keep(*world->context, Needs::drawing);
+            const CallScope scope(*world->context, Needs::drawing);
             return world->upload.view(*world->world, world->params.look);
         };
         Result<FluidView> fluid = uploaded();
@@ -64,7 +66,8 @@ rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buff
     return with(world, why, Needs::drawing, [&]() -> Status {
         if (Status there = drawable(*world->context); !there) return there;
         FluidLookParams plain = world->params.look;
-        plain.quality = "fine";  // all of them, in one order
+        plain.quality = "fine";    // all of them, in one order
+        plain.colourBy = "speed";  // velocities, not normals
         Result<FluidView> fluid = world->upload.view(*world->world, plain);
         if (!fluid) return fluid.error();
         const rivulet_buffers full{.size = 0,
@@ -73,6 +76,6 @@ rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buff
                                    .id = fluid->id,
                                    .count = fluid->count,
                                    .radius = fluid->radius};
-        return handOver(full, buffers, "rivulet_buffers", "buffers");
+        return writeStruct(full, buffers, "rivulet_buffers", "buffers");
     });
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""reference.py ROOT: writes docs/api.md from the headers that a host includes: what each says of itself, and what it declares. The headers are
-the reference; this is them in one page. With --check: exit 1 where the page is another."""
+"""reference.py ROOT: writes docs/api.md from the headers that a host includes: the comment that each begins with, and its declarations. With
+--check: exit 1 if the page differs from the headers."""
 import pathlib
 import re
 import sys
@@ -8,17 +8,18 @@ import sys
 HEADERS = [
     "engine/core/result.h", "engine/core/log.h", "engine/compute/device.h", "engine/gpu/load.h", "engine/gpu/host_state.h",
     "engine/render/frame_view.h", "engine/core/mesh_view.h", "fluid/voxel/voxel_field.h", "fluid/sim/solids/solids.h", "fluid/sim/solids/bodies.h",
-    "fluid/sim/world/fluid_params.h", "fluid/sim/sources/emitter.h", "fluid/sim/forces/force.h", "fluid/sim/world/stats.h", "fluid/sim/world/fluid_world.h",
+    "fluid/sim/world/fluid_params.h", "fluid/sim/forces/force_*.h", "fluid/sim/methods/method_pbf.h",
+    "fluid/sim/methods/method_dfsph.h", "fluid/sim/sources/emitter.h", "fluid/sim/forces/force.h", "fluid/sim/world/stats.h", "fluid/sim/world/fluid_world.h",
     "fluid/sim/query/water_query.h", "fluid/sim/solids/buoyancy.h", "fluid/sim/query/volumes.h", "fluid/sim/world/world_state.h", "fluid/render/backend.h",
     "fluid/render/fluid_view.h", "fluid/render/fluid_upload.h", "fluid/render/look_params.h", "fluid/render/host_target.h",
     "fluid/render/water_renderer.h", "fluid/render/renderers.h", "fluid/flow/flow_mesh.h", "fluid/flow/surface_flow.h",
-    "fluid/flow/flow_maps.h", "fluid/flow/flow_layer.h", "fluid/io/export.h", "fluid/io/marching_cubes.h", "fluid/io/recording.h",
+    "fluid/flow/flow_maps.h", "fluid/flow/flow_layer.h", "fluid/flow/placed_flow.h", "fluid/flow/air_drops.h", "fluid/io/export.h", "fluid/io/marching_cubes.h", "fluid/io/recording.h",
     "fluid/capi/rivulet.h",
 ]
 
 
 def without_private(text):
-    """Classes without what is private in them."""
+    """Classes without their private members."""
     out, hidden, depth = [], None, 0
     for line in text.splitlines():
         if hidden is None and re.match(r"\s*private:$", line):
@@ -34,11 +35,11 @@ def without_private(text):
 
 
 def page(root):
-    text = "# The API\n\nWritten by `fluid/capi/reference.py` from the headers that a host includes; how they go together is in [embedding.md](embedding.md).\n"
-    for name in HEADERS:
+    text = "# The API\n\nWritten by `fluid/capi/reference.py` from the headers that a host includes; how to use them is in [embedding.md](embedding.md).\n"
+    for name in (name for pattern in HEADERS for name in (sorted(str(p.relative_to(root)) for p in root.glob(pattern)) or [pattern])):
         path = root / name
         if not path.exists():
-            sys.exit(f"{name} does not exist: mend the list in fluid/capi/reference.py")
+            sys.exit(f"{name} does not exist: correct the list in fluid/capi/reference.py")
         source = path.read_text()
         if name.endswith("rivulet.h"):
             head, body = source.split("*/", 1)
@@ -64,6 +65,6 @@ written = page(root)
 target = root / "docs/api.md"
 if "--check" in sys.argv:
     if not target.exists() or target.read_text() != written:
-        sys.exit("docs/api.md is not what the headers say: python3 fluid/capi/reference.py .")
+        sys.exit("docs/api.md differs from the headers: run python3 fluid/capi/reference.py .")
 else:
     target.write_text(written)

@@ -9,24 +9,25 @@
  *     each frame:  rivulet_world_step(world, NULL, 1.0 / 60, &why);
  *                  rivulet_world_draw(world, &view, &target, &why);
  *
- * Units are SI; +Y is up; matrices are 16 floats, column by column, as OpenGL takes them; places and vectors are 3 floats.
+ * Units are SI and +Y is up. A matrix is 16 floats, column by column, as in OpenGL; a place or a vector is 3 floats.
  *
- * Structs begin with `size`, which the caller sets to sizeof of it, also where the library fills the rest: so a program built against an
- * older header goes on working. In an array of such each begins its own size after the one before. Structs without it stand in arrays of
- * plain figures (poses, rays, samples, ...) and never change: what needs more gets another name. All that is 0 or NULL means its default.
+ * Versions: a struct that begins with `size` may grow. The caller sets it to sizeof the struct, also where the library fills the rest, so a
+ * program that was built against an older header still works. In an array of such structs each one begins its own size after the one
+ * before. Structs without `size` (poses, rays, samples, ...) never change: an extension gets a new name. A member that is 0 or NULL has its
+ * default.
  *
- * Every function that can fail returns a rivulet_status, and says why in `why`, which may be NULL: one sentence that names what, where and
- * the remedy. Nothing is thrown. A NULL handle is answered with RIVULET_BAD_INPUT; destroying NULL does nothing.
+ * Errors: every function that can fail returns a rivulet_status and writes one sentence into `why`, which may be NULL: what is wrong,
+ * where, and the remedy. Nothing is thrown. A NULL handle gives RIVULET_BAD_INPUT; destroying NULL does nothing.
  *
- * Threads: a context, and all that is made of it, is used by one thread at a time; with OpenGL, by one on which the context that it was
- * created in is current. Contexts know nothing of each other: different threads may use different ones at once. Callbacks (log, bodies)
- * come on the thread that called, before the call returns, and must not call back into the same context: that is RIVULET_BAD_INPUT.
+ * Threads: one thread at a time uses a context and everything made from it; with OpenGL, a thread on which the context's OpenGL context is
+ * current. Contexts are independent: different threads may use different ones at the same time. Callbacks (log, bodies) run on the calling
+ * thread, before the call returns. A callback that calls back into the same context gets RIVULET_BAD_INPUT.
  *
- * OpenGL: each function that needs it (all with backend gl; else those that create, destroy and draw) finds the context current that it was
- * created in, or answers RIVULET_BAD_INPUT, and leaves every bit of its state as it was, but for glGetError, whose pending errors may be
- * gone, and for what is bound although it was deleted. Transform feedback, queries that count and conditional rendering must not be under
- * way. What is drawn is what rivulet_world_draw says. Worlds, skins and contexts go before the OpenGL context does: one that is not current
- * keeps them, and the log says so.
+ * OpenGL: functions that need it are all with backend gl, else those that create, destroy and draw. They return RIVULET_BAD_INPUT if the
+ * OpenGL context of their rivulet_context is not current. They restore all OpenGL state, with two exceptions: pending errors of glGetError
+ * may be cleared, and an object that was deleted while bound is unbound. Transform feedback, counting queries and conditional rendering
+ * must not be active. Only rivulet_world_draw draws. Destroy worlds, skins and contexts before the OpenGL context: if it is not current,
+ * destruction is refused and logged.
  */
 #ifndef RIVULET_H
 #define RIVULET_H
@@ -45,26 +46,26 @@
 extern "C" {
 #endif
 
-/* Semantic versioning: within a major version, what works goes on working. */
+/* Semantic versioning: a program that works with a version works with later ones of the same major version. */
 #define RIVULET_VERSION_MAJOR 0
 #define RIVULET_VERSION_MINOR 1
 #define RIVULET_VERSION_PATCH 0
-/* Of the library that runs, "0.1.0". */
+/* The version of the loaded library, "0.1.0". */
 RIVULET_API const char* rivulet_version(void);
 
 typedef enum rivulet_status {
     RIVULET_OK = 0,
-    RIVULET_FAILED = 1,   /* it could not be carried out: out of memory, no OpenGL 4.5, a file that cannot be written */
-    RIVULET_BAD_INPUT = 2 /* what was asked makes no sense */
+    RIVULET_FAILED = 1,   /* not possible now: out of memory, no OpenGL 4.5, a file that cannot be written */
+    RIVULET_BAD_INPUT = 2 /* an argument or the order of calls is wrong */
 } rivulet_status;
 
 typedef struct rivulet_error {
     char message[1024];
 } rivulet_error;
 
-typedef struct rivulet_context rivulet_context; /* a device that simulates, and where there is OpenGL what draws */
-typedef struct rivulet_world rivulet_world;     /* particles in a box, among solids */
-typedef struct rivulet_skin rivulet_skin;       /* drops and films on a mesh, and their map */
+typedef struct rivulet_context rivulet_context; /* a device that simulates and, with OpenGL, a renderer */
+typedef struct rivulet_world rivulet_world;     /* particles in a box, with walls and bodies */
+typedef struct rivulet_skin rivulet_skin;       /* drops and films on a mesh, and a map of them */
 
 /* ---- Contexts ---- */
 
@@ -74,40 +75,45 @@ typedef enum rivulet_level { RIVULET_INFO = 0, RIVULET_NOTICE = 1, RIVULET_WARNI
 
 typedef struct rivulet_context_options {
     size_t size;
-    /* Finds OpenGL's functions in the context that is current. NULL: there is no OpenGL; worlds are simulated, nothing is drawn. */
+    /* Finds OpenGL's functions in the current OpenGL context. NULL: no OpenGL; worlds are simulated and cannot be drawn. */
     rivulet_find_function find;
     const char* backend; /* auto (NULL), cpu, gl or cl. auto: gl where OpenGL runs on a GPU, else cpu */
-    const char* device;  /* of backend cl: its number or a part of its name; NULL: the first */
+    const char* device;  /* for backend cl: its number or a part of its name; NULL: the first */
     void (*log)(void* user, rivulet_level level, const char* sentence); /* NULL: silent */
     void* log_user;
-    /* Bytes that the device's buffers may take; as many its pictures; as many what a world of backend cpu or cl brings over to be drawn; as
-       many a wall's voxels. What does not fit is RIVULET_FAILED. 0: no limit. */
+    /* A limit in bytes, applied to each of: the device's buffers, the renderer's images, what a world of backend cpu or cl copies to
+       OpenGL, the voxels of one wall. A call that would exceed it returns RIVULET_FAILED. 0: no limit. */
     size_t memory_limit;
-    float sky_horizon[3], sky_zenith[3]; /* what water mirrors, radiance in the target's units; all 0: a grey-blue sky */
-    float sky_sun[3];                    /* towards the sun; all 0: as rivulet_view's light by default */
-    float clouds;                        /* share of the sky that they cover, about */
+    float sky_horizon[3], sky_zenith[3]; /* reflected by the water, radiance in the target's units; all 0: a grey-blue sky */
+    float sky_sun[3];                    /* towards the sun; all 0: the default light direction of rivulet_view */
+    float clouds;                        /* share of the sky that they cover, 0 to 1, approximate */
 } rivulet_context_options;
 
 RIVULET_API rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why);
-/* Worlds and skins of it are destroyed first. */
+/* Destroy its worlds and skins first: a context that still has some stays, and the log says so. */
 RIVULET_API void rivulet_context_destroy(rivulet_context* context);
-/* What simulates, "cpu: AMD EPYC, 2 threads"; valid as long as the context. */
+/* The device that simulates, "cpu: AMD EPYC, 2 threads"; valid as long as the context. */
 RIVULET_API const char* rivulet_context_device(const rivulet_context* context);
-/* Bytes in use now, of the device's buffers and of pictures. */
+/* Bytes in use now by the device's buffers and by images. */
 RIVULET_API size_t rivulet_context_memory(const rivulet_context* context);
 
-/* What took how long: of the simulation since this was last called, of the drawing in the last frame that is known. A GPU's figures come
-   two or three frames late. */
+/* Times of the passes: the simulation's since the last call of rivulet_context_times, the drawing's in the last frame with known times. A
+   GPU's times arrive two or three frames late. */
 typedef struct rivulet_pass_time {
     char name[64];
     double ms;
     int32_t calls;
 } rivulet_pass_time;
-/* `count`, out: of the passes, were there room or not. */
+/* `count` receives the number of all passes, also where `capacity` is smaller. */
 RIVULET_API rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time* times, size_t capacity, size_t* count,
                                                  rivulet_error* why);
 
 /* ---- Worlds ---- */
+
+typedef struct rivulet_pose {
+    float position[3]; /* m */
+    float rotation[4]; /* unit quaternion, x y z w; all 0: none */
+} rivulet_pose;
 
 typedef struct rivulet_mesh {
     size_t size;
@@ -115,51 +121,48 @@ typedef struct rivulet_mesh {
     size_t vertices;
     const uint32_t* indices; /* 3 a triangle */
     size_t indices_count;
-    const float* uvs;   /* 2 a vertex; of skins */
-    float friction;     /* of walls: Coulomb's coefficient; negative: as fluid.collision says */
-    float restitution;  /* 0..1; negative: as fluid.collision says */
-    uint32_t moves;     /* of walls: 1: it follows rivulet_inputs.poses as a whole, its own origin is what it turns about */
-    int32_t resolution; /* voxels along its longest side; 0: a quarter of the fluid's spacing each */
+    const float* uvs;   /* 2 a vertex; for skins */
+    float friction;     /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
+    float restitution;  /* of a wall: 0 to 1; negative: that of fluid.collision */
+    uint32_t moves;     /* of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 0: stands still */
+    int32_t resolution; /* of a wall: voxels along its longest side; 0: voxels of a quarter of the fluid's spacing */
+    rivulet_pose pose;  /* of a wall that moves: at t = 0 */
 } rivulet_mesh;
 
-typedef struct rivulet_pose {
-    float position[3]; /* m */
-    float rotation[4]; /* unit quaternion, x y z w; all 0: none */
-} rivulet_pose;
-
-/* A body that floats: the fluid pushes it, and it the fluid. Its own frame has its origin at the centre of mass, its axes are the principal
-   ones. */
+/* A floating body, coupled to the fluid both ways. The origin of its frame is its centre of mass, its axes are the principal axes. */
 typedef struct rivulet_body {
     size_t size;
-    const float* samples; /* m, 3 each: places half a spacing under its surface, about a spacing apart */
+    const float* samples; /* m, 3 each: points half a spacing below its surface, about a spacing apart */
     size_t samples_count;
-    float mass;       /* kg; 0: it never moves */
+    float mass;       /* kg; 0: the body is fixed */
     float inertia[3]; /* kg m^2 */
     float volume;     /* m^3 */
     rivulet_pose pose;
 } rivulet_body;
 typedef struct rivulet_body_state {
     rivulet_pose pose;
-    float velocity[3], spin[3]; /* m/s; rad/s, in the world's axes */
+    float velocity[3], spin[3]; /* m/s; rad/s; in world axes */
 } rivulet_body_state;
 typedef struct rivulet_body_load {
-    double force[3], torque[3]; /* N; N m about the centre of mass, in the world's axes */
+    double force[3], torque[3]; /* N; N m about the centre of mass; in world axes */
 } rivulet_body_load;
-/* Who moves the bodies: a host's own rigid-body engine. NULL functions: bodies meet nothing but fluid. */
+/* The host's rigid-body engine, which moves the bodies. NULL functions: bodies collide with nothing but fluid. */
 typedef struct rivulet_body_host {
     size_t size;
     void* user;
-    /* Moves all bodies on by `seconds` under the loads, the host's own contacts and gravity (m/s^2). */
+    /* Advances all bodies by `seconds` under the loads, gravity (m/s^2) and the host's own contacts. Called once a substep. */
     void (*advance)(void* user, const rivulet_body_load* loads, const float* gravity, double seconds, rivulet_body_state* states,
                     size_t count);
-    void (*reset)(void* user, const rivulet_body_state* states, size_t count); /* back to those of t = 0 */
+    void (*reset)(void* user, const rivulet_body_state* states,
+                  size_t count); /* sets the bodies to these states: those of t = 0 after a reset */
 } rivulet_body_host;
 
 typedef struct rivulet_world_options {
     size_t size;
-    /* {"fluid": {...}, "emitters": [...], "sinks": [...], "look": {...}}: as in a scene file; docs/parameters.md has every key. NULL: {} */
+    /* {"fluid": {...}, "emitters": [...], "sinks": [...], "look": {...}}, as in a scene file; docs/parameters.md lists all keys. NULL: {}
+     */
     const char* json;
-    const rivulet_mesh* walls; /* in the world, or of those that move in their own frame */
+    const rivulet_mesh* walls; /* in the world's frame; walls that move in their own frame */
     size_t walls_count;
     const rivulet_body* bodies;
     size_t bodies_count;
@@ -168,80 +171,83 @@ typedef struct rivulet_world_options {
 
 typedef struct rivulet_inputs {
     size_t size;
-    const float* gravity;      /* m/s^2; NULL: as fluid.gravity says */
-    const rivulet_pose* poses; /* of the walls that move, in their order, at the frame's end; NULL: they stay */
+    const float* gravity;      /* m/s^2; NULL: fluid.gravity */
+    const rivulet_pose* poses; /* of the walls that move, in their order, at the end of the frame; NULL: as given before; after a reset
+                                  those of t = 0, after a restore those that were saved */
     size_t poses_count;
 } rivulet_inputs;
 
 typedef struct rivulet_stats {
     size_t size;
     double time;                                    /* s simulated */
-    double dropped;                                 /* s asked for that were not simulated: a frame longer than allowed */
-    uint32_t particles, lost;                       /* there now; that left the grid or are not finite */
+    double dropped;                                 /* s that were not simulated: frames longer than allowed */
+    uint32_t particles, lost;                       /* in the world now; that left the grid or became not finite */
     double average_compression, kinetic, potential; /* a fraction; J */
     double maximum_speed;                           /* m/s */
     double centre_of_mass[3];                       /* m */
-    int32_t substeps;                               /* of the last frame */
+    int32_t substeps;                               /* in the last frame */
 } rivulet_stats;
 
 RIVULET_API rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_world_options* options, rivulet_world** world,
                                                 rivulet_error* why);
 RIVULET_API void rivulet_world_destroy(rivulet_world* world);
-/* A frame of `seconds`, in as many substeps as are stable; 0 or less: nothing happens. `inputs` may be NULL. */
+/* Advances by a frame of `seconds`, in as many substeps as stability needs; 0 or less: nothing happens. `inputs` may be NULL. */
 RIVULET_API rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why);
-/* "fluid.viscosity=0.01", "look.quality=fast", "emitters.0.litresPerSecond=2". What is fixed while a world lives is refused. */
+/* Sets a parameter: "fluid.viscosity=0.01", "look.quality=fast", "emitters.0.litresPerSecond=2". A parameter that docs/parameters.md calls
+   fixed is refused. */
 RIVULET_API rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, rivulet_error* why);
-/* Two or three frames late on a GPU. */
+/* On a GPU the values are two or three frames old. */
 RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why);
 
-/* The particles, in host memory: those that are there, at most `capacity`, in no order that lasts: ids do. Arrays may be NULL. Waits. */
+/* Copies the particles to host memory, at most `capacity`. Their order changes from step to step; ids do not. Arrays may be NULL. Waits for
+   the device. */
 typedef struct rivulet_particles {
     size_t size;
     size_t capacity;   /* of each array */
     float* positions;  /* m, 3 each */
     float* velocities; /* m/s, 3 each */
-    float* densities;  /* density over rest density */
+    float* densities;  /* over the rest density */
     uint32_t* ids;
-    size_t count; /* out: of the particles, were there room or not */
+    size_t count; /* out: the number of all particles, also where capacity is smaller */
 } rivulet_particles;
 RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why);
 
-/* How the bodies stand now, in their order; `count`: as many as there are. */
+/* The states of the bodies now, in their order; `count` must be their number. */
 RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
 
-/* All that the next step depends on, into a file, and back; on the cpu bit for bit. */
+/* Saves and restores all that the next step depends on; on the cpu the restored run is bit-identical. */
 RIVULET_API rivulet_status rivulet_world_save(rivulet_world* world, const char* path, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_world_restore(rivulet_world* world, const char* path, rivulet_error* why);
 
-/* ---- What a game asks ---- */
+/* ---- Queries ---- */
 
-/* The water at places (m, 3 each); the field of the particles as they are now. Waits. */
+/* The water at places (m, 3 each), from the particles as they are now. Waits for the device. */
 typedef struct rivulet_sample {
-    float density;     /* over the rest density; 0 in the air */
-    float velocity[3]; /* m/s; 0 in the air */
-    float gradient[3]; /* 1/m, of density: points into the water */
+    float density;     /* over the rest density; 0 in air */
+    float velocity[3]; /* m/s; 0 in air */
+    float gradient[3]; /* 1/m, of the density: points into the water */
 } rivulet_sample;
 RIVULET_API rivulet_status rivulet_world_sample(rivulet_world* world, const float* places, size_t count, rivulet_sample* samples,
                                                 rivulet_error* why);
 
-/* Where rays first cross the water's surface. Waits. */
+/* The first crossing of each ray with the water's surface. Waits for the device. */
 typedef struct rivulet_ray {
-    float origin[3], direction[3]; /* m; of any length: without one it misses */
-    float reach;                   /* m; 0: without end */
+    float origin[3], direction[3]; /* m; of any length but 0: a ray of length 0 misses */
+    float reach;                   /* m; 0: no limit */
 } rivulet_ray;
 typedef struct rivulet_hit {
-    uint32_t hit, inside;                   /* 1: it hits; it began in water, and this is where it comes out */
+    uint32_t hit, inside;                   /* 1: the ray hits; it begins in water and this is where it leaves it */
     float distance;                         /* m */
     float place[3], normal[3], velocity[3]; /* m; unit, out of the water; m/s */
 } rivulet_hit;
 RIVULET_API rivulet_status rivulet_world_cast(rivulet_world* world, const rivulet_ray* rays, size_t count, rivulet_hit* hits,
                                               rivulet_error* why);
-/* y (m) of the highest surface at each x, z (2 floats each); NaN where there is no water. Waits. */
+/* y (m) of the highest surface at each x, z (2 floats each); NaN where there is no water. Waits for the device. */
 RIVULET_API rivulet_status rivulet_world_heights(rivulet_world* world, const float* places, size_t count, float* heights,
                                                  rivulet_error* why);
 
-/* Volumes to watch, 32 at most, each with an id of the host's own: what has entered, what has left, what is there. */
+/* Volumes that count particles, at most 32, each with an id that the host chooses. */
 typedef enum rivulet_shape { RIVULET_BOX = 0, RIVULET_SPHERE = 1 } rivulet_shape;
 typedef struct rivulet_volume {
     uint32_t id;
@@ -253,19 +259,19 @@ typedef struct rivulet_volume {
 typedef struct rivulet_volume_count {
     uint32_t id;
     uint64_t entered, left, inside; /* particles; inside = entered - left, since the volume was set */
-    double time;                    /* s simulated: when it was so; two or three frames late on a GPU */
+    double time;                    /* s simulated, to which the counts belong; on a GPU two or three frames ago */
     double volume_inside;           /* m^3 */
 } rivulet_volume_count;
 RIVULET_API rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_volume* volumes, size_t count, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_world_volumes(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
                                                  rivulet_error* why);
-/* Of those where something has come or gone since this was last called: entered and left since then. Room for 32. */
+/* The volumes that particles entered or left since the last call, with entered and left since then. `capacity` must be at least 32. */
 RIVULET_API rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
                                                        rivulet_error* why);
 
 /* ---- Files ---- */
 
-/* The particles as .ply, .vtp (ParaView) or .csv; the water's surface as .obj or .ply. By the path's ending; +Y up, metres. */
+/* Writes the particles as .ply, .vtp (ParaView) or .csv, the water's surface as .obj or .ply, by the path's ending; +Y up, metres. */
 RIVULET_API rivulet_status rivulet_world_export(rivulet_world* world, const char* path, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_world_export_surface(rivulet_world* world, const char* path, rivulet_error* why);
 
@@ -274,35 +280,35 @@ RIVULET_API rivulet_status rivulet_world_export_surface(rivulet_world* world, co
 typedef struct rivulet_view {
     size_t size;
     const float* view;       /* world -> view, right-handed, looking down -z */
-    const float* projection; /* a perspective, as the target's depth was drawn with: any of glClipControl's depth modes, reversed or not */
-    float near_plane, far_plane; /* m, finite, and between them what matters */
+    const float* projection; /* a perspective, the one that the target's depth was drawn with: any glClipControl mode, reversed or not */
+    float near_plane, far_plane; /* m, finite */
     float light_direction[3];    /* towards the light; all 0: (0.4, 0.8, 0.45) */
     float light_colour[3];       /* radiance in the target's units; all 0: 1 */
 } rivulet_view;
 
 typedef enum rivulet_colours {
-    RIVULET_AUTOMATIC = 0, /* linear where they are floats, else sRGB */
-    RIVULET_LINEAR = 1,    /* radiance, which the host tonemaps later */
-    RIVULET_SRGB = 2       /* as a screen shows them, 1 is white */
+    RIVULET_AUTOMATIC = 0, /* linear in a framebuffer of floats, else sRGB */
+    RIVULET_LINEAR = 1,    /* radiance; the host tonemaps later */
+    RIVULET_SRGB = 2       /* for the screen, 1 is white */
 } rivulet_colours;
 
 typedef struct rivulet_target {
     size_t size;
-    uint32_t framebuffer;        /* GL name, 0: the window; its colour and depth hold the scene as drawn so far */
+    uint32_t framebuffer;        /* GL name, 0: the window; its colour and depth hold the scene drawn so far */
     int32_t x, y, width, height; /* pixels */
     int32_t colours;             /* a rivulet_colours */
 } rivulet_target;
 
-/* Draws the water over what the target holds: what is nearer hides it, what is farther is seen through it. Colour and depth change where
-   there is water, and nowhere else. */
+/* Draws the water over the target's picture: nearer objects hide it, farther ones are seen through it. Colour and depth change only where
+   there is water. */
 RIVULET_API rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view, const rivulet_target* target,
                                               rivulet_error* why);
 
-/* Particles as OpenGL buffers, to be drawn by the host: places are those of the time asked for, with fluid.fixedStep between steps. Valid
+/* The particles as OpenGL buffers, for a host that draws them. With fluid.fixedStep, positions are interpolated between two steps. Valid
    until the world's next step. */
 typedef struct rivulet_buffers {
     size_t size;
-    uint32_t position; /* GL name; vec4 each: xyz m, w density over rest density, negative: not a particle */
+    uint32_t position; /* GL name; vec4 each: xyz m, w density over rest density; negative w: the row is empty */
     uint32_t velocity; /* GL name; vec4 each: xyz m/s */
     uint32_t id;       /* GL name; uint each */
     uint32_t count;    /* rows */
@@ -314,33 +320,35 @@ RIVULET_API rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_b
 
 typedef struct rivulet_skin_options {
     size_t size;
-    const rivulet_mesh* mesh; /* with uvs, whose charts must not overlap */
-    const char* json;         /* what flows: {"advancing": 60, ...}, as flow.N.liquid in docs/parameters.md; NULL: tears */
+    const rivulet_mesh* mesh; /* with uvs; their charts must not overlap */
+    const char* json;         /* the liquid: {"advancing": 60, ...}, as flow.N.liquid in docs/parameters.md; NULL: tears */
     int32_t map_size;         /* texels of the map's edge, a power of two; 0: 1024 */
 } rivulet_skin_options;
 typedef struct rivulet_skin_inputs {
     size_t size;
     const float* gravity;   /* m/s^2, in the world; NULL: (0, -9.81, 0) */
     const float* wind;      /* m/s; NULL: none */
-    const float* to_world;  /* the mesh's frame -> the world, a matrix without scale; NULL: the same */
-    const float* positions; /* m, where the mesh bends: as many as it has vertices; NULL: as it was */
+    const float* to_world;  /* the mesh's frame -> the world, a matrix without scale; NULL: identity */
+    const float* positions; /* m, of all vertices of a mesh that deforms; NULL: as before */
 } rivulet_skin_inputs;
 typedef struct rivulet_skin_stats {
     size_t size;
-    uint64_t drops;                                   /* there now */
-    double added, on_skin, left, evaporated, refused; /* m^3 since the start; on_skin: now, as drops and film */
+    uint64_t drops; /* on the skin now */
+    double added, on_skin, left, evaporated,
+        refused; /* m^3 since the start; on_skin: now, in drops and film; refused: no drop slot was free */
 } rivulet_skin_stats;
 
 RIVULET_API rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin,
                                                rivulet_error* why);
 RIVULET_API void rivulet_skin_destroy(rivulet_skin* skin);
-/* A drop that appears with the next step at the point of the skin nearest to `place` (m, the mesh's frame); microlitres. */
+/* Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame). */
 RIVULET_API rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why);
-/* Brings the map up to date: a GL texture over the mesh's uvs, rgba16f with mips: r, g the slope of the liquid's height (m a unit of u, of
-   v), b the height (mm), a how wet, 0 to 1. */
+/* Updates the map, a GL texture over the mesh's uvs, rgba16f with mips: r, g the slope of the liquid's height (m a unit of u, of v), b the
+   height (mm), a the wetness, 0 to 1. */
 RIVULET_API rivulet_status rivulet_skin_texture(rivulet_skin* skin, uint32_t* texture, rivulet_error* why);
-RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivulet_skin_stats* stats, rivulet_error* why); /* waits */
+RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivulet_skin_stats* stats,
+                                                 rivulet_error* why); /* waits for the device */
 
 #ifdef __cplusplus
 }

@@ -7,11 +7,12 @@
             world.step(1 / 60)
         print(world.stats().centre_of_mass, world.particles().positions.max(axis=0))
 
-A scene is a dict or a text in JSON: the fluid, emitters, sinks and look of a scene file; docs/parameters.md has every key. What cannot be
-done raises Error, what makes no sense BadInput, which is a ValueError, too; both say in a sentence what, where and the remedy. A context and
-what is made of it are used by one thread at a time. Drawing is for hosts that own an OpenGL context: they call rivulet.h.
+A scene is a dict or a JSON text: the fluid, emitters, sinks and look of a scene file; docs/parameters.md lists all keys. A call that fails
+raises Error; a wrong argument raises BadInput, which is also a ValueError. Both say what is wrong, where, and the remedy. One thread at a time
+uses a context and what is made from it. Drawing needs a host with an OpenGL context: it calls rivulet.h.
 
-The library is looked for in RIVULET_LIBRARY, beside this file, in the prefix that this file is installed in, and where the linker looks.
+librivulet.so is searched in the environment variable RIVULET_LIBRARY, beside this file, in the prefix where this file is installed, and where
+the linker searches.
 """
 import ctypes
 import ctypes.util
@@ -26,11 +27,11 @@ __all__ = ["BadInput", "Body", "Box", "Context", "Error", "Mesh", "Particles", "
 
 
 class Error(RuntimeError):
-    """What was asked could not be carried out."""
+    """A call failed, for example for lack of memory."""
 
 
 class BadInput(Error, ValueError):
-    """What was asked makes no sense."""
+    """An argument or the order of calls is wrong."""
 
 
 # ---- rivulet.h, struct by struct
@@ -50,7 +51,8 @@ class _ContextOptions(Structure):
 
 class _Mesh(Structure):
     _fields_ = [("size", c_size_t), ("positions", c_void_p), ("vertices", c_size_t), ("indices", c_void_p), ("indices_count", c_size_t),
-                ("uvs", c_void_p), ("friction", c_float), ("restitution", c_float), ("moves", c_uint32), ("resolution", c_int32)]
+                ("uvs", c_void_p), ("friction", c_float), ("restitution", c_float), ("moves", c_uint32), ("resolution", c_int32),
+                ("position", c_float * 3), ("rotation", c_float * 4)]
 
 
 class _Body(Structure):
@@ -69,7 +71,7 @@ _SAMPLE = np.dtype([("density", np.float32), ("velocity", np.float32, 3), ("grad
 _RAY = np.dtype([("origin", np.float32, 3), ("direction", np.float32, 3), ("reach", np.float32)])
 _HIT = np.dtype([("hit", np.uint32), ("inside", np.uint32), ("distance", np.float32), ("place", np.float32, 3), ("normal", np.float32, 3),
                  ("velocity", np.float32, 3)])
-_HIT_TOLD = np.dtype([("hit", bool), ("inside", bool)] + _HIT.descr[2:])
+_HIT_RESULT = np.dtype([("hit", bool), ("inside", bool)] + _HIT.descr[2:])
 _VOLUME = np.dtype([("id", np.uint32), ("shape", np.int32), ("position", np.float32, 3), ("size", np.float32, 3), ("radius", np.float32)])
 _COUNT = np.dtype([("id", np.uint32), ("entered", np.uint64), ("left", np.uint64), ("inside", np.uint64), ("time", np.float64),
                    ("volume_inside", np.float64)], align=True)
@@ -122,11 +124,11 @@ Stats.__doc__ = "time, dropped (s); particles, lost; average_compression; kineti
 SkinStats = namedtuple("SkinStats", [name for name, _ in _SkinStats._fields_[1:]])
 SkinStats.__doc__ = "drops; added, on_skin, left, evaporated, refused (m^3)."
 Box = namedtuple("Box", ["id", "position", "size"])
-Box.__doc__ = "A volume to watch: id, the caller's own; position (m) of its centre; size (m)."
+Box.__doc__ = "A volume that counts particles: id, chosen by the caller; position (m) of its centre; size (m)."
 Sphere = namedtuple("Sphere", ["id", "position", "radius"])
-Sphere.__doc__ = "A volume to watch: id, the caller's own; position (m) of its centre; radius (m)."
+Sphere.__doc__ = "A volume that counts particles: id, chosen by the caller; position (m) of its centre; radius (m)."
 Particles = namedtuple("Particles", ["positions", "velocities", "densities", "ids"])
-Particles.__doc__ = "positions (n, 3) m, velocities (n, 3) m/s, densities (n,) over rest density: float32; ids (n,): uint32. In no order; ids last."
+Particles.__doc__ = "positions (n, 3) m, velocities (n, 3) m/s, densities (n,) over rest density: float32; ids (n,): uint32. Their order changes from step to step; ids do not."
 
 
 def _load():
@@ -138,7 +140,7 @@ def _load():
             return ctypes.CDLL(place)
     found = ctypes.util.find_library("rivulet")
     if found is None:
-        raise ImportError("librivulet.so was not found: name it in the environment variable RIVULET_LIBRARY")
+        raise ImportError("librivulet.so was not found: set the environment variable RIVULET_LIBRARY to its path")
     return ctypes.CDLL(found)
 
 
@@ -166,7 +168,7 @@ _lib.rivulet_context_memory.restype = c_size_t
 
 
 def version():
-    """Of the library, "0.1.0"."""
+    """The version of the library, "0.1.0"."""
     return _lib.rivulet_version().decode()
 
 
@@ -177,12 +179,12 @@ def _call(name, *arguments):
         raise (BadInput if status == 2 else Error)(why.message.decode(errors="replace"))
 
 
-def _made(kind, **fields):
+def _struct(kind, **fields):
     return kind(size=ctypes.sizeof(kind), **fields)
 
 
 def _array(values, shape, what, dtype=np.float32):
-    """As C has it: of that type and shape, -1 being any length, without gaps. None stays None."""
+    """A contiguous array of that type and shape, where -1 is any length. None stays None."""
     if values is None:
         return None
     array = np.ascontiguousarray(values, dtype)
@@ -200,25 +202,25 @@ def _text(scene):
         return None
     text = scene if isinstance(scene, str) else json.dumps(scene, default=lambda value: value.tolist())  # of NumPy's
     if "\0" in text:
-        raise BadInput("a text holds a character of value 0, which would end it: take it out")
+        raise BadInput("a text contains a character of value 0: remove it")
     return text.encode()
 
 
 def _whole(value, low, high, what):
-    """An int, as C takes it."""
+    """`value` as an int, checked against its range in C."""
     if int(value) != value or not low <= value <= high:
         raise BadInput(f"{what} is {value}: give a whole number from {low} to {high}")
     return int(value)
 
 
 class _Handle:
-    """What is destroyed when its `with` ends, by close(), or with the last reference to it."""
+    """Destroyed at the end of its `with`, by close(), or with the last reference."""
 
     _kind = ""
     _pointer = None
 
     def close(self):
-        if self._pointer and _lib is not None:  # None: Python is on its way out
+        if self._pointer and _lib is not None:  # None: Python is shutting down
             getattr(_lib, f"rivulet_{self._kind}_destroy")(self._pointer)
         self._pointer = None
 
@@ -229,21 +231,21 @@ class _Handle:
         self.close()
 
     def __reduce__(self):
-        raise TypeError(f"a {type(self).__name__} is one thing in the library and cannot be copied: make another")
+        raise TypeError(f"a {type(self).__name__} cannot be copied: create another")
 
     def __del__(self):
         self.close()
 
 
 class Context(_Handle):
-    """A device that simulates. backend: auto, cpu or cl; device: of cl, its number or a part of its name; log: called with (level, sentence),
-    levels 0 info to 3 error; memory_limit: bytes that it may take, 0 for no limit. Closed after all that was made of it."""
+    """A device that simulates. backend: auto, cpu or cl; device: for cl, its number or a part of its name; log: called with (level, sentence),
+    levels 0 info to 3 error; memory_limit: bytes, as in rivulet.h, 0 for no limit. Close it after its worlds and skins."""
 
     _kind = "context"
 
     def __init__(self, backend="auto", device=None, log=None, memory_limit=0):
         self._log = _LOG(0) if log is None else _LOG(lambda _, level, sentence: log(level, sentence.decode(errors="replace")))
-        options = _made(_ContextOptions, backend=_text(backend), device=_text(device), log=self._log,
+        options = _struct(_ContextOptions, backend=_text(backend), device=_text(device), log=self._log,
                         memory_limit=_whole(memory_limit, 0, 2**63, "memory_limit"))
         pointer = c_void_p()
         _call("context_create", options, pointer)
@@ -251,7 +253,7 @@ class Context(_Handle):
 
     @property
     def device(self):
-        """What simulates, "cpu: AMD EPYC, 2 threads"."""
+        """The device that simulates, "cpu: AMD EPYC, 2 threads"."""
         return _lib.rivulet_context_device(self._pointer).decode()
 
     @property
@@ -260,8 +262,7 @@ class Context(_Handle):
         return _lib.rivulet_context_memory(self._pointer)
 
     def times(self):
-        """{pass: (ms, calls)}: of the simulation since this was last called, of the drawing in the last frame that is known. A GPU's figures
-        come two or three frames late."""
+        """{pass: (ms, calls)} of the simulation since the last call. A GPU's times arrive two or three frames late."""
         count = c_size_t()
         _call("context_times", self._pointer, None, 0, ctypes.byref(count))
         room = count.value + 16
@@ -270,41 +271,44 @@ class Context(_Handle):
         return {t.name.decode(): (t.ms, t.calls) for t in all[:min(count.value, room)]}
 
     def world(self, scene=None, walls=(), bodies=(), body_host=None):
-        """A World: particles as `scene` says, among `walls` (Mesh) and `bodies` (Body).
+        """A World of `scene`, with `walls` (Mesh) and `bodies` (Body).
         body_host moves the bodies: advance(loads, gravity, seconds, states) changes `states`, an array with the fields position (m), rotation
-        (x y z w), velocity (m/s) and spin (rad/s), by loads["force"] (N) and loads["torque"] (N m); reset(states) is told of those at
-        t = 0. None: they meet nothing but fluid."""
+        (x y z w), velocity (m/s) and spin (rad/s), by loads["force"] (N) and loads["torque"] (N m); reset(states) gets the states
+        of t = 0. None: bodies collide with nothing but fluid."""
         return World(self, scene, walls, bodies, body_host)
 
     def skin(self, mesh, liquid=None, map_size=0):
-        """A Skin: drops and films on `mesh`, a Mesh with uvs. liquid: a dict as flow.N.liquid in a scene file; None: tears."""
+        """A Skin: drops and films on `mesh`, a Mesh with uvs. liquid: a dict with keys of flow.N.liquid in a scene file; None: tears."""
         return Skin(self, mesh, liquid, map_size)
 
 
 class Mesh:
-    """positions (m, n x 3), indices (of triangles, k x 3), uvs (n x 2; of skins). Of walls: friction and restitution (negative: as
-    fluid.collision says), moves (it follows World.step's poses as a whole), resolution (voxels along its longest side; 0: from the spacing)."""
+    """positions (m, n x 3), indices (of triangles, k x 3), uvs (n x 2; for skins). Of a wall: friction and restitution (negative: those of
+    fluid.collision), moves (it moves rigidly with World.step's poses), resolution (voxels along its longest side; 0: from the spacing), and if it
+    moves its pose at t = 0: position (m), rotation (x y z w)."""
 
-    def __init__(self, positions, indices, uvs=None, friction=-1.0, restitution=-1.0, moves=False, resolution=0):
+    def __init__(self, positions, indices, uvs=None, friction=-1.0, restitution=-1.0, moves=False, resolution=0, position=(0, 0, 0),
+                 rotation=(0, 0, 0, 1)):
         self.positions, self.uvs = _array(positions, (-1, 3), "positions"), _array(uvs, (-1, 2), "uvs")
         if not (np.mod(indices, 1) == 0).all() or np.min(indices, initial=0) < 0 or np.max(indices, initial=0) >= 2**32:
-            raise BadInput("indices are whole numbers from 0 on: some are not")
+            raise BadInput("indices must be whole numbers from 0 to 2**32 - 1")
         self.indices = _array(indices, (-1, 3), "indices", np.uint32)
         if uvs is not None and len(self.uvs) != len(self.positions):
             raise BadInput(f"{len(self.uvs)} uvs were given for {len(self.positions)} positions: give one for each")
-        self._c = _made(_Mesh, positions=_at(self.positions), vertices=len(self.positions), indices=_at(self.indices),
+        self._c = _struct(_Mesh, positions=_at(self.positions), vertices=len(self.positions), indices=_at(self.indices),
                         indices_count=self.indices.size, uvs=_at(self.uvs), friction=friction, restitution=restitution, moves=int(moves),
-                        resolution=_whole(resolution, 0, 2**31 - 1, "resolution"))
+                        resolution=_whole(resolution, 0, 2**31 - 1, "resolution"), position=tuple(_array(position, (3,), "position")),
+                        rotation=tuple(_array(rotation, (4,), "rotation")))
 
 
 class Body:
-    """A rigid body in the fluid. samples (m, n x 3): places half a spacing under its surface, about a spacing apart, from its centre of mass
-    along its principal axes; mass (kg; 0: it never moves), inertia (kg m^2, about those axes), volume (m^3); where it is at t = 0: position
-    (m), rotation (x y z w)."""
+    """A rigid body in the fluid. samples (m, n x 3): points half a spacing below its surface, about a spacing apart, relative to its centre of
+    mass along its principal axes; mass (kg; 0: fixed), inertia (kg m^2, about those axes), volume (m^3); its pose at t = 0: position (m),
+    rotation (x y z w)."""
 
     def __init__(self, samples, mass, inertia, volume, position=(0, 0, 0), rotation=(0, 0, 0, 1)):
         self.samples = _array(samples, (-1, 3), "samples")
-        self._c = _made(_Body, samples=_at(self.samples), samples_count=len(self.samples), mass=mass, volume=volume,
+        self._c = _struct(_Body, samples=_at(self.samples), samples_count=len(self.samples), mass=mass, volume=volume,
                         inertia=tuple(_array(inertia, (3,), "inertia")), position=tuple(_array(position, (3,), "position")),
                         rotation=tuple(_array(rotation, (4,), "rotation")))
 
@@ -314,94 +318,94 @@ def _view(address, dtype, count):
 
 
 class World(_Handle):
-    """Particles in a box, among solids; see Context.world."""
+    """Particles in a box, with walls and bodies; see Context.world."""
 
     _kind = "world"
 
     def __init__(self, context, scene, walls, bodies, body_host):
         self._context, self._bodies, host = context, len(bodies), None
-        raised = self._raised = []  # by body_host; its functions know this list and not the world, which then goes before its context
+        raised = self._raised = []  # by body_host; its functions reference this list and not the world, which must be destroyed before its context
         if body_host is not None:
-            def careful(work):
+            def guarded(work):
                 try:
                     if not raised:
                         work()
-                except BaseException as what:  # raised again when the library has returned: nothing may pass through it
+                except BaseException as what:  # raised again after the library has returned: an exception must not pass through C
                     raised.append(what)
 
             def advance(_, loads, gravity, seconds, states, count):
-                def work():  # what it keeps is its own: the library's memory is there for the call alone
+                def work():  # copies: the library's memory is valid during the call only
                     theirs = _view(states, _STATE, count)
                     given = theirs.copy()
                     body_host.advance(_view(loads, _LOAD, count).copy(), np.array(gravity.contents), seconds, given)
                     theirs[:] = given
-                careful(work)
+                guarded(work)
 
             def reset(_, states, count):
-                careful(lambda: body_host.reset(_view(states, _STATE, count).copy()))
-            self._host = _made(_BodyHost, advance=_ADVANCE(advance), reset=_RESET(reset))
+                guarded(lambda: body_host.reset(_view(states, _STATE, count).copy()))
+            self._host = _struct(_BodyHost, advance=_ADVANCE(advance), reset=_RESET(reset))
             host = ctypes.pointer(self._host)
-        options = _made(_WorldOptions, json=_text(scene), walls=(_Mesh * len(walls))(*(w._c for w in walls)), walls_count=len(walls),
+        options = _struct(_WorldOptions, json=_text(scene), walls=(_Mesh * len(walls))(*(w._c for w in walls)), walls_count=len(walls),
                         bodies=(_Body * len(bodies))(*(b._c for b in bodies)), bodies_count=len(bodies), body_host=host)
         pointer = c_void_p()
-        self._asked("world_create", context._pointer, options, pointer)
+        self._checked("world_create", context._pointer, options, pointer)
         self._pointer = pointer
 
-    def _asked(self, *arguments):
+    def _checked(self, *arguments):
         _call(*arguments)
         if self._raised:
             raise self._raised.pop()
 
     def step(self, seconds, gravity=None, poses=None):
-        """A frame of `seconds`, in as many substeps as are stable. gravity: m/s^2; poses: (n, 7), where the walls that move are at its end:
-        position (m) and rotation (x y z w)."""
+        """Advances by a frame of `seconds`, in as many substeps as stability needs. gravity: m/s^2; poses: (n, 7), position (m) and rotation
+        (x y z w) of the walls that move, at the end of the frame; None: as given before, after a reset those of t = 0."""
         gravity, poses = _array(gravity, (3,), "gravity"), _array(poses, (-1, 7), "poses")
-        inputs = _made(_Inputs, gravity=_at(gravity), poses=_at(poses), poses_count=0 if poses is None else len(poses))
-        self._asked("world_step", self._pointer, inputs, seconds)
+        inputs = _struct(_Inputs, gravity=_at(gravity), poses=_at(poses), poses_count=0 if poses is None else len(poses))
+        self._checked("world_step", self._pointer, inputs, seconds)
 
     def reset(self):
         """Back to t = 0."""
-        self._asked("world_reset", self._pointer)
+        self._checked("world_reset", self._pointer)
 
     def set(self, path, value):
-        """set("fluid.viscosity", 0.01): a parameter that is not fixed while a world lives."""
+        """Sets a parameter that docs/parameters.md does not call fixed: set("fluid.viscosity", 0.01)."""
         text = value if isinstance(value, str) else json.dumps(np.asarray(value).tolist())
         _call("world_set", self._pointer, _text(f"{path}={text}"))
 
     def stats(self):
-        stats = _made(_Stats)
+        stats = _struct(_Stats)
         _call("world_stats", self._pointer, stats)
         values = {name: getattr(stats, name) for name in Stats._fields}
         return Stats(**{**values, "centre_of_mass": np.array(stats.centre_of_mass)})
 
     def particles(self):
-        """All that are there now, as Particles: arrays that the library wrote into, and that nobody changes later."""
-        asked = _made(_Particles)
+        """All particles now, as Particles: arrays that later steps do not change."""
+        asked = _struct(_Particles)
         _call("world_particles", self._pointer, asked)
         n = asked.count
         arrays = Particles(np.empty((n, 3), np.float32), np.empty((n, 3), np.float32), np.empty(n, np.float32), np.empty(n, np.uint32))
-        asked = _made(_Particles, capacity=n, **{name: _at(array) for name, array in zip(Particles._fields, arrays)})
+        asked = _struct(_Particles, capacity=n, **{name: _at(array) for name, array in zip(Particles._fields, arrays)})
         _call("world_particles", self._pointer, asked)
         return arrays
 
     def bodies(self):
-        """How the bodies stand now: an array with the fields position (m), rotation (x y z w), velocity (m/s) and spin (rad/s)."""
+        """The states of the bodies now: an array with the fields position (m), rotation (x y z w), velocity (m/s) and spin (rad/s)."""
         states = np.zeros(self._bodies, _STATE)
         _call("world_bodies", self._pointer, _at(states), self._bodies)
         return states
 
     def sample(self, places):
-        """The water at places (n, 3), m: an array with the fields density (over the rest density; 0 in the air), velocity (m/s) and gradient
-        (1/m, of density: points into the water)."""
+        """The water at places (n, 3), m: an array with the fields density (over the rest density; 0 in air), velocity (m/s) and gradient
+        (1/m, of the density: points into the water)."""
         places = _array(places, (-1, 3), "places")
         samples = np.zeros(len(places), _SAMPLE)
         _call("world_sample", self._pointer, _at(places), len(places), _at(samples))
         return samples
 
     def cast(self, origins, directions, reach=0.0):
-        """Where rays from origins (n, 3) along directions, (n, 3) or one for all, first cross the water's surface within reach (m; 0: without
-        end): an array with the fields hit, inside (it began in water, and this is where it comes out), distance (m), place (m), normal (out
-        of the water) and velocity (m/s)."""
+        """Where rays from origins (n, 3) along directions, (n, 3) or one for all, first cross the water's surface within reach (m; 0: no
+        limit): an array with the fields hit, inside (the ray begins in water and this is where it leaves it), distance (m), place (m),
+        normal (out of the water) and velocity (m/s)."""
         origins = _array(origins, (-1, 3), "origins")
         rays = np.zeros(len(origins), _RAY)
         rays["origin"] = origins
@@ -412,7 +416,7 @@ class World(_Handle):
                 raise BadInput(f"{field} has the shape {np.shape(values)}: give one for each of {len(origins)} rays, or one for all") from None
         hits = np.zeros(len(rays), _HIT)
         _call("world_cast", self._pointer, _at(rays), len(rays), _at(hits))
-        return hits.astype(_HIT_TOLD)
+        return hits.astype(_HIT_RESULT)
 
     def heights(self, places):
         """y (m) of the highest surface at each x, z of places (n, 2); NaN where there is no water."""
@@ -422,7 +426,7 @@ class World(_Handle):
         return heights
 
     def set_volumes(self, volumes):
-        """Watches these, Box or Sphere, 32 at most, instead of those before."""
+        """Counts particles in these volumes, Box or Sphere, at most 32; they replace those set before."""
         rows = np.zeros(len(volumes), _VOLUME)
         for row, volume in zip(rows, volumes):
             row["id"], row["position"] = _whole(volume.id, 0, 2**32 - 1, "a volume's id"), volume.position
@@ -438,29 +442,29 @@ class World(_Handle):
         return counts[:n.value].copy()
 
     def volumes(self):
-        """An array with the fields id; entered, left and inside (particles, since the volume was set); time (s simulated, when it was so) and
-        volume_inside (m^3)."""
+        """An array with the fields id; entered, left and inside (particles, since the volume was set); time (s simulated, to which the counts
+        belong) and volume_inside (m^3)."""
         return self._counts("world_volumes")
 
     def volume_events(self):
-        """Of those volumes where something has come or gone since this was last called; entered and left since then."""
+        """The volumes that particles entered or left since the last call, with entered and left since then."""
         return self._counts("world_volume_events")
 
     def export(self, path):
-        """The particles, as .ply, .vtp (ParaView) or .csv."""
+        """Writes the particles as .ply, .vtp (ParaView) or .csv."""
         _call("world_export", self._pointer, os.fsencode(path))
 
     def export_surface(self, path):
-        """The water's surface, as .obj or .ply."""
+        """Writes the water's surface as .obj or .ply."""
         _call("world_export_surface", self._pointer, os.fsencode(path))
 
     def save(self, path):
-        """All that the next step depends on, into a file."""
+        """Saves all that the next step depends on to a file."""
         _call("world_save", self._pointer, os.fsencode(path))
 
     def restore(self, path):
-        """Goes on from a file that save() wrote, of a world made alike; on the cpu bit for bit."""
-        self._asked("world_restore", self._pointer, os.fsencode(path))
+        """Restores a file that save() wrote, of a world of the same scene; on the cpu the restored run is bit-identical."""
+        self._checked("world_restore", self._pointer, os.fsencode(path))
 
 
 class Skin(_Handle):
@@ -470,25 +474,25 @@ class Skin(_Handle):
 
     def __init__(self, context, mesh, liquid, map_size):
         self._context, self._vertices = context, len(mesh.positions)
-        options = _made(_SkinOptions, mesh=ctypes.pointer(mesh._c), json=_text(liquid), map_size=map_size)
+        options = _struct(_SkinOptions, mesh=ctypes.pointer(mesh._c), json=_text(liquid), map_size=map_size)
         pointer = c_void_p()
         _call("skin_create", context._pointer, options, pointer)
         self._pointer = pointer
 
     def add(self, place, microlitres):
-        """A drop, with the next step, at the point of the skin nearest to `place` (m, the mesh's frame)."""
+        """Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame)."""
         _call("skin_add", self._pointer, _at(_array(place, (3,), "place")), microlitres)
 
     def step(self, seconds, gravity=None, wind=None, to_world=None, positions=None):
-        """gravity (m/s^2) and wind (m/s) in the world; to_world: the mesh's frame -> the world, 4 x 4, without scale; positions (m): where the
-        mesh's vertices are now, if it bends."""
+        """gravity (m/s^2) and wind (m/s) in the world; to_world: the mesh's frame -> the world, 4 x 4, without scale; positions (m): the
+        vertices of a mesh that deforms."""
         matrix = _array(to_world, (4, 4), "to_world")
         given = [_array(gravity, (3,), "gravity"), _array(wind, (3,), "wind"), None if matrix is None else np.ascontiguousarray(matrix.T),
                  _array(positions, (self._vertices, 3), "positions")]
-        inputs = _made(_SkinInputs, **dict(zip(("gravity", "wind", "to_world", "positions"), map(_at, given))))
+        inputs = _struct(_SkinInputs, **dict(zip(("gravity", "wind", "to_world", "positions"), map(_at, given))))
         _call("skin_step", self._pointer, inputs, seconds)
 
     def stats(self):
-        stats = _made(_SkinStats)
+        stats = _struct(_SkinStats)
         _call("skin_stats_of", self._pointer, stats)
         return SkinStats(**{name: getattr(stats, name) for name in SkinStats._fields})

@@ -1,11 +1,12 @@
-// rivulet.h: what a game asks of the water, and files of it.
+// rivulet.h: queries and files.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
-#include "engine/core/json.h"
-#include "fluid/capi/handles.h"
+#include "engine/core/file.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
@@ -24,14 +25,14 @@ std::vector<vec3> placesOf(const float* places, size_t count) {
 
 rivulet_volume_count countOf(const VolumeCount& c) { return {c.id, c.entered, c.left, c.inside, c.time, c.volumeInside()}; }
 
-Status tell(const std::vector<VolumeCount>& all, rivulet_volume_count* to, size_t capacity, size_t* count) {
-    if (count == nullptr) return badInput("count is NULL: it is told how many there are");
+Status writeCounts(const std::vector<VolumeCount>& all, rivulet_volume_count* to, size_t capacity, size_t* count) {
+    if (count == nullptr) return badInput("count is NULL: it receives the number of volumes");
     *count = all.size();
     for (size_t k = 0; to != nullptr && k < std::min(all.size(), capacity); ++k) to[k] = countOf(all[k]);
     return ok();
 }
 
-// The row whose ending the path has.
+// The row with the path's ending.
 template <class Rows>
 const auto* rowOf(const Rows& rows, const std::string& path) {
     for (const auto& row : rows)
@@ -97,7 +98,7 @@ rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_vol
         for (size_t k = 0; k < count; ++k) {
             const rivulet_volume& v = volumes[k];
             if (v.shape != RIVULET_BOX && v.shape != RIVULET_SPHERE)
-                return badInput(fmt::format("volumes[{}].shape is {}: RIVULET_BOX or RIVULET_SPHERE", k, static_cast<int>(v.shape)));
+                return badInput(fmt::format("volumes[{}].shape is {}: use RIVULET_BOX or RIVULET_SPHERE", k, static_cast<int>(v.shape)));
             all.push_back({.id = v.id,
                            .shape = v.shape == RIVULET_BOX ? Volume::box : Volume::sphere,
                            .position = vectorOf(v.position),
@@ -110,15 +111,15 @@ rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_vol
 
 rivulet_status rivulet_world_volumes(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
                                      rivulet_error* why) {
-    return with(world, why, Needs::memory, [&]() -> Status { return tell(world->world->volumes(), counts, capacity, count); });
+    return with(world, why, Needs::memory, [&]() -> Status { return writeCounts(world->world->volumes(), counts, capacity, count); });
 }
 
 rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
                                            rivulet_error* why) {
     return with(world, why, Needs::memory, [&]() -> Status {
         if (counts == nullptr || capacity < VolumePasses::kMost)
-            return badInput(fmt::format("counts must have room for {}: what is taken is not told again", VolumePasses::kMost));
-        return tell(world->world->takeVolumeEvents(), counts, capacity, count);
+            return badInput(fmt::format("counts must have room for {}: events are reported only once", VolumePasses::kMost));
+        return writeCounts(world->world->takeVolumeEvents(), counts, capacity, count);
     });
 }
 

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "engine/core/json.h"
-#include "fluid/capi/handles.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 
 using namespace rivulet;
 using namespace rivulet::capi;
@@ -13,12 +15,12 @@ namespace {
 
 Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivulet_skin& s) {
     s.context = &context;
-    if (o.mesh == nullptr) return badInput("mesh is NULL: a skin is a mesh with uvs");
-    const Result<rivulet_mesh> given = taken(o.mesh, "rivulet_mesh", "mesh");
+    if (o.mesh == nullptr) return badInput("mesh is NULL: a skin needs a mesh with uvs");
+    const Result<rivulet_mesh> given = readStruct(o.mesh, "rivulet_mesh", "mesh");
     if (!given) return given.error();
     Result<HostMesh> mesh = meshOf(*given, "mesh");
     if (!mesh) return mesh.error();
-    if (mesh->uvs.empty()) return badInput("mesh.uvs is NULL: its map lies over them");
+    if (mesh->uvs.empty()) return badInput("mesh.uvs is NULL: the skin's map needs them");
     SurfaceFlowParams params;
     if (o.json != nullptr)
         if (Status read = readJson(o.json, "json", [&](ParamVisitor& v) { params.visit(v); }); !read) return read;
@@ -45,13 +47,13 @@ Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivul
 
 rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin, rivulet_error* why) {
     return guarded(why, [&]() -> Status {
-        if (skin == nullptr) return badInput("skin is NULL: give a place for the handle");
+        if (skin == nullptr) return badInput("skin is NULL: pass the address of a handle");
         *skin = nullptr;
-        if (context == nullptr) return badInput("context is NULL: rivulet_context_create comes first");
-        const Result<rivulet_skin_options> o = taken(options, "rivulet_skin_options", "options");
+        if (context == nullptr) return badInput("context is NULL: create one with rivulet_context_create");
+        const Result<rivulet_skin_options> o = readStruct(options, "rivulet_skin_options", "options");
         if (!o) return o.error();
         if (Status can = ready(*context, Needs::drawing); !can) return can;
-        const Keep keep(*context, Needs::drawing);
+        const CallScope scope(*context, Needs::drawing);
         auto made = std::make_unique<rivulet_skin>();
         if (Status done = createSkin(*context, *o, *made); !done) return done;
         ++context->children;
@@ -67,7 +69,7 @@ rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double m
         if (place == nullptr) return badInput("place is NULL");
         const vec3 at = vectorOf(place);
         if (!isFinite(at)) return badInput("place is not finite");
-        constexpr double kMost = 4000;  // microlitres: what 32 bits hold of picolitres
+        constexpr double kMost = 4000;  // microlitres, as 32 bits of picolitres hold
         if (!(microlitres > 0) || microlitres > kMost)
             return badInput(fmt::format("a drop of {} microlitres: give more than 0 and at most {}", microlitres, kMost));
         skin->flow->add(nearestPoint(skin->flow->mesh(), at), static_cast<uint32_t>(std::lround(1.0e6 * microlitres)));
@@ -77,9 +79,9 @@ rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double m
 
 rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why) {
     return with(skin, why, Needs::device, [&]() -> Status {
-        const Result<rivulet_skin_inputs> taking = taken(inputs, "rivulet_skin_inputs", "inputs");
-        if (!taking) return taking.error();
-        const rivulet_skin_inputs& in = *taking;
+        const Result<rivulet_skin_inputs> input = readStruct(inputs, "rivulet_skin_inputs", "inputs");
+        if (!input) return input.error();
+        const rivulet_skin_inputs& in = *input;
         if (!std::isfinite(seconds)) return badInput("seconds is not finite");
         SurfaceFlowInputs to;
         if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
@@ -98,7 +100,7 @@ rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* 
 rivulet_status rivulet_skin_texture(rivulet_skin* skin, uint32_t* texture, rivulet_error* why) {
     return with(skin, why, Needs::drawing, [&]() -> Status {
         if (texture == nullptr) return badInput("texture is NULL");
-        if (!skin->layer) return badInput("the context has no OpenGL: give rivulet_context_options.find");
+        if (!skin->layer) return badInput("the context has no OpenGL: set rivulet_context_options.find");
         skin->maps->draw(*skin->flow);
         skin->layer->update(*skin->maps);
         *texture = skin->layer->texture().name();
@@ -117,6 +119,6 @@ rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivulet_skin_stat
         full.left = kPicolitre * static_cast<double>(l.left);
         full.evaporated = kPicolitre * static_cast<double>(l.evaporated);
         full.refused = kPicolitre * static_cast<double>(l.refused);
-        return handOver(full, stats, "rivulet_skin_stats", "stats");
+        return writeStruct(full, stats, "rivulet_skin_stats", "stats");
     });
 }

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "engine/core/json.h"
-#include "fluid/capi/handles.h"
+#include "fluid/capi/call.h"
+#include "fluid/capi/convert.h"
+#include "fluid/capi/versioned.h"
 #include "fluid/sim/world/host_particles.h"
 #include "fluid/sim/world/world_state.h"
 
@@ -13,8 +15,8 @@ namespace rivulet::capi {
 void WorldParams::visit(ParamVisitor& v) {
     v.group({.name = "fluid", .doc = "the water"}, fluid);
     v.list({.name = "emitters", .doc = "where water comes in"}, emitters);
-    v.list({.name = "sinks", .doc = "where it goes"}, sinks);
-    v.group({.name = "look", .doc = "how it looks"}, look);
+    v.list({.name = "sinks", .doc = "where water leaves"}, sinks);
+    v.group({.name = "look", .doc = "how the water looks"}, look);
 }
 
 namespace {
@@ -28,7 +30,7 @@ Result<Sources> sourcesOf(const WorldParams& params) {
     sources.sinks = params.sinks;
     for (size_t k = 0; k < params.emitters.size(); ++k) {
         if (params.emitters[k].shape == "mesh")
-            return badInput(fmt::format("emitters[{}].shape is mesh: a host's emitter is a nozzle or a box", k));
+            return badInput(fmt::format("emitters[{}].shape is mesh: use nozzle or box, a mesh needs a scene file", k));
         if (const std::string wrong = contradiction(params.emitters[k]); !wrong.empty())
             return badInput(fmt::format("emitters[{}].{}", k, wrong));
         sources.emitters.push_back({params.emitters[k], {}});
@@ -37,10 +39,7 @@ Result<Sources> sourcesOf(const WorldParams& params) {
 }
 
 FluidParams simulated(const rivulet_world& w) {
-    FluidParams fluid = w.params.fluid;
-    fluid.ellipsoids =
-        fluid.ellipsoids || (w.context->gl.present() && w.params.look.splats == "ellipsoids" && w.params.look.quality != "fast");
-    return fluid;
+    return w.context->gl.present() ? fluidForLook(w.params.fluid, w.params.look) : w.params.fluid;
 }
 
 Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, std::span<const uint8_t> surfaces, int resolution,
@@ -55,12 +54,21 @@ Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, st
     const float side = std::max({size.x, size.y, size.z});
     VoxelFieldOptions options;
     options.resolution = resolution > 0 ? resolution : std::clamp(static_cast<int>(std::ceil(4 * side / spacing)), 2, 512);
-    options.band = options.padding = 2 * spacing;  // who comes near finds the field before it touches
+    options.band = options.padding = 2 * spacing;  // a particle finds the field before it touches the wall
     options.surfaces = surfaces;
     if (memoryLimit > 0) options.memoryLimit = memoryLimit;
     Result<VoxelField> field = bakeVoxelField(views, options);
     if (!field) return field.error();
     return std::make_unique<VoxelField>(std::move(*field));
+}
+
+// Error (badInput): it is not finite, or its rotation is not of unit length.
+Result<Pose> soundPose(const rivulet_pose& given, const std::string& name) {
+    Pose pose = poseOf(given);
+    if (!isFinite(pose.position) || !(std::abs(glm::length(pose.rotation) - 1) < 0.01F))
+        return badInput(fmt::format("{} is not finite, or its rotation is not of unit length", name));
+    pose.rotation = glm::normalize(pose.rotation);  // a host's own arithmetic loses precision
+    return pose;
 }
 
 Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids) {
@@ -71,9 +79,10 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
     if (o.walls_count > 0 && o.walls == nullptr) return badInput("walls is NULL, and walls_count is not 0");
     const auto* at = reinterpret_cast<const std::byte*>(o.walls);
     for (size_t k = 0; k < o.walls_count; ++k) {
-        const Result<rivulet_mesh> taking = taken(reinterpret_cast<const rivulet_mesh*>(at), "rivulet_mesh", fmt::format("walls[{}]", k));
-        if (!taking) return taking.error();
-        const rivulet_mesh& wall = *taking;
+        const Result<rivulet_mesh> input =
+            readStruct(reinterpret_cast<const rivulet_mesh*>(at), "rivulet_mesh", fmt::format("walls[{}]", k));
+        if (!input) return input.error();
+        const rivulet_mesh& wall = *input;
         at += wall.size;
         Result<HostMesh> mesh = meshOf(wall, fmt::format("walls[{}]", k));
         if (!mesh) return mesh.error();
@@ -85,7 +94,7 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
         if (same == solids.surfaces.end()) solids.surfaces.push_back(surface);
         if (number >= kMostSurfaces)
             return badInput(
-                fmt::format("walls have more than {} different pairs of friction and restitution: give some the same", kMostSurfaces));
+                fmt::format("walls have more than {} different pairs of friction and restitution: let some share a pair", kMostSurfaces));
         const auto surfaceNumber = static_cast<uint8_t>(number);
         if (wall.moves == 0) {
             still.push_back(std::move(*mesh));
@@ -93,10 +102,12 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
             finest = std::max(finest, wall.resolution);
             continue;
         }
+        const Result<Pose> pose = soundPose(wall.pose, fmt::format("walls[{}].pose", k));
+        if (!pose) return pose.error();
         auto field = fieldOf(std::span(&*mesh, 1), std::span(&surfaceNumber, 1), wall.resolution, spacing, w.context->memoryLimit);
         if (!field) return Error{fmt::format("walls[{}]: {}", k, field.error().message), field.error().fault};
-        solids.rigid.push_back({field->get(), {}});
-        w.poses.emplace_back();
+        solids.rigid.push_back({field->get(), *pose});
+        w.poses.push_back(*pose);
         w.fields.push_back(std::move(*field));
     }
     if (still.empty()) return ok();
@@ -138,12 +149,13 @@ Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solid
     if (o.bodies == nullptr) return badInput("bodies is NULL, and bodies_count is not 0");
     const auto* at = reinterpret_cast<const std::byte*>(o.bodies);
     for (size_t k = 0; k < o.bodies_count; ++k) {
-        const Result<rivulet_body> taking = taken(reinterpret_cast<const rivulet_body*>(at), "rivulet_body", fmt::format("bodies[{}]", k));
-        if (!taking) return taking.error();
-        const rivulet_body& given = *taking;
+        const Result<rivulet_body> input =
+            readStruct(reinterpret_cast<const rivulet_body*>(at), "rivulet_body", fmt::format("bodies[{}]", k));
+        if (!input) return input.error();
+        const rivulet_body& given = *input;
         at += given.size;
         if (given.samples == nullptr || given.samples_count == 0)
-            return badInput(fmt::format("bodies[{}] has no samples: places under its surface, about a spacing apart", k));
+            return badInput(fmt::format("bodies[{}] has no samples: give points below its surface, about a spacing apart", k));
         Body body;
         for (size_t i = 0; i < given.samples_count; ++i) body.shape.samples.push_back(vectorOf(given.samples + 3 * i));
         body.shape.mass = given.mass;
@@ -152,7 +164,7 @@ Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solid
         body.state.pose = poseOf(given.pose);
         solids.bodies.push_back(std::move(body));
     }
-    const Result<rivulet_body_host> hosting = taken(o.body_host, "rivulet_body_host", "body_host");
+    const Result<rivulet_body_host> hosting = readStruct(o.body_host, "rivulet_body_host", "body_host");
     if (!hosting) return hosting.error();
     const rivulet_body_host& host = *hosting;
     if ((host.advance == nullptr) != (host.reset == nullptr))
@@ -195,13 +207,13 @@ using namespace rivulet::capi;
 rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_world_options* options, rivulet_world** world,
                                     rivulet_error* why) {
     return guarded(why, [&]() -> Status {
-        if (world == nullptr) return badInput("world is NULL: give a place for the handle");
+        if (world == nullptr) return badInput("world is NULL: pass the address of a handle");
         *world = nullptr;
-        if (context == nullptr) return badInput("context is NULL: rivulet_context_create comes first");
-        const Result<rivulet_world_options> o = taken(options, "rivulet_world_options", "options");
+        if (context == nullptr) return badInput("context is NULL: create one with rivulet_context_create");
+        const Result<rivulet_world_options> o = readStruct(options, "rivulet_world_options", "options");
         if (!o) return o.error();
         if (Status can = ready(*context, Needs::drawing); !can) return can;
-        const Keep keep(*context, Needs::drawing);
+        const CallScope scope(*context, Needs::drawing);
         auto made = std::make_unique<rivulet_world>();
         if (Status done = createWorld(*context, *o, *made); !done) return done;
         ++context->children;
@@ -214,31 +226,31 @@ void rivulet_world_destroy(rivulet_world* world) { destroy(world); }
 
 rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
-        const Result<rivulet_inputs> taking = taken(inputs, "rivulet_inputs", "inputs");
-        if (!taking) return taking.error();
-        const rivulet_inputs& in = *taking;
+        const Result<rivulet_inputs> input = readStruct(inputs, "rivulet_inputs", "inputs");
+        if (!input) return input.error();
+        const rivulet_inputs& in = *input;
         if (!std::isfinite(seconds)) return badInput("seconds is not finite");
         if (in.poses != nullptr && in.poses_count != world->poses.size())
-            return badInput(fmt::format("{} poses were given, and {} walls move", in.poses_count, world->poses.size()));
+            return badInput(
+                fmt::format("{} poses were given for {} walls that move: give one for each", in.poses_count, world->poses.size()));
         FluidInputs to;
-        to.gravity = in.gravity != nullptr ? vectorOf(in.gravity) : world->params.fluid.gravity;
-        if (!isFinite(to.gravity)) return badInput("inputs.gravity is not finite");
+        if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
+        if (to.gravity && !isFinite(*to.gravity)) return badInput("inputs.gravity is not finite");
         std::vector<Pose> poses;
         for (size_t k = 0; in.poses != nullptr && k < in.poses_count; ++k) {
-            poses.push_back(poseOf(in.poses[k]));
-            if (!isFinite(poses[k].position) || !(std::abs(glm::length(poses[k].rotation) - 1) < 0.01F))
-                return badInput(fmt::format("inputs.poses[{}] is not finite, or its rotation has no unit length", k));
-            poses[k].rotation = glm::normalize(poses[k].rotation);  // a host's own turns wear off
+            const Result<Pose> pose = soundPose(in.poses[k], fmt::format("inputs.poses[{}]", k));
+            if (!pose) return pose.error();
+            poses.push_back(*pose);
         }
         if (in.poses != nullptr) world->poses = std::move(poses);
         to.poses = world->poses;
         rivulet_context& context = *world->context;
-        hearTimes(context);
-        to.deviceMs = context.deviceMs - world->deviceMs;  // of all its worlds: nobody knows whose a pass was
+        collectTimes(context);
+        to.deviceMs = context.deviceMs - world->deviceMs;  // of all its worlds: passes are not counted per world
         world->deviceMs = context.deviceMs;
         world->world->step(to, seconds);
         if (const DeviceHealth health = world->context->device->health(); health.state == DeviceHealth::lost)
-            return failed(fmt::format("{} {}; make a context of another backend", world->context->name, health.why));
+            return failed(fmt::format("{} {}; create a context of another backend", world->context->name, health.why));
         return ok();
     });
 }
@@ -246,19 +258,20 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
 rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         world->world->reset();
+        world->poses = world->world->poses();
         return ok();
     });
 }
 
 rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
-        if (assignment == nullptr) return badInput("assignment is NULL: \"fluid.viscosity=0.01\", say");
+        if (assignment == nullptr) return badInput("assignment is NULL: give, for example, \"fluid.viscosity=0.01\"");
         WorldParams changed = world->params;
         if (Status set = setParam(assignment, visiting(changed)); !set) return set;
         if (Status same = sameFixedValues(fixedValues(visiting(world->params)), fixedValues(visiting(changed))); !same)
-            return badInput(fmt::format("{}: that is fixed while a world lives; make a new one", assignment));
+            return badInput(fmt::format("{}: this parameter is fixed; create a new world to change it", assignment));
         if (changed.emitters.size() != world->params.emitters.size() || changed.sinks.size() != world->params.sinks.size())
-            return badInput(fmt::format("{}: emitters and sinks are as many as the world was made with", assignment));
+            return badInput(fmt::format("{}: the number of emitters and sinks is fixed; create a new world to change it", assignment));
         Result<Sources> sources = sourcesOf(changed);
         if (!sources) return sources.error();
         std::swap(world->params, changed);
@@ -283,16 +296,16 @@ rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* st
         full.maximum_speed = s.maxSpeed;
         std::copy(std::begin(s.centreOfMass), std::end(s.centreOfMass), full.centre_of_mass);
         full.substeps = world->world->lastSubsteps();
-        return handOver(full, stats, "rivulet_stats", "stats");
+        return writeStruct(full, stats, "rivulet_stats", "stats");
     });
 }
 
 rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         if (particles == nullptr) return badInput("particles is NULL");
-        const Result<rivulet_particles> taking = taken(particles, "rivulet_particles", "particles");
-        if (!taking) return taking.error();
-        const rivulet_particles& to = *taking;
+        const Result<rivulet_particles> input = readStruct(particles, "rivulet_particles", "particles");
+        if (!input) return input.error();
+        const rivulet_particles& to = *input;
         const HostParticles all = readParticles(*world->world);
         for (size_t n = 0; n < std::min(all.position.size(), to.capacity); ++n) {
             if (to.positions != nullptr) put(vec3(all.position[n]), to.positions + 3 * n);
@@ -300,9 +313,9 @@ rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* 
             if (to.densities != nullptr) to.densities[n] = all.position[n].w;
             if (to.ids != nullptr) to.ids[n] = all.id[n];
         }
-        rivulet_particles told = to;
-        told.count = all.position.size();
-        return handOver(told, particles, "rivulet_particles", "particles");
+        rivulet_particles full = to;
+        full.count = all.position.size();
+        return writeStruct(full, particles, "rivulet_particles", "particles");
     });
 }
 
@@ -332,6 +345,8 @@ rivulet_status rivulet_world_restore(rivulet_world* world, const char* path, riv
         if (path == nullptr) return badInput("path is NULL");
         Result<WorldState> state = readState(path);
         if (!state) return state.error();
-        return world->world->restore(*state);
+        Status restored = world->world->restore(*state);
+        if (restored) world->poses = world->world->poses();
+        return restored;
     });
 }

@@ -35,7 +35,7 @@ void FlowLayer::update(const FlowMaps& maps) {
             takeTiles(maps, hostPointer<uint32_t>(maps.texels()), hostPointer<uint32_t>(maps.stamps()));
             break;
         case Backend::gl:
-            // Memory of the same GPU: who asked which tiles have changed would wait for it.
+            // Memory of the same GPU: reading which tiles have changed would wait for it.
             glMemoryBarrier(GL_PIXEL_BUFFER_BARRIER_BIT);
             glBindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(maps.texels().handle()));
             takeAll(maps, nullptr);
@@ -51,7 +51,7 @@ void FlowLayer::update(const FlowMaps& maps) {
                 sent_->asked = true;
                 device.readLater(maps.texels(), maps.texels().bytes(), [to = std::weak_ptr(sent_)](std::span<const std::byte> bytes) {
                     const std::shared_ptr<Sent> sent = to.lock();
-                    if (!sent) return;  // the layer is no more
+                    if (!sent) return;  // the layer was destroyed
                     sent->asked = false;
                     sent->texels.assign(bytes.begin(), bytes.end());
                 });
@@ -63,7 +63,7 @@ void FlowLayer::update(const FlowMaps& maps) {
 
 void FlowLayer::update(const ThesisPicture& picture, double height) {
     ASSERT(picture.size == texture_.width(), "make the layer as large as the picture");
-    constexpr float kWet = 8.0F;  // a height of one over it is as wet as can be
+    constexpr float kWet = 8.0F;  // a height of 1 / kWet and more has wetness 1
     const auto edge = static_cast<size_t>(picture.size);
     std::vector<uint64_t> texels(edge * edge, 0);
     for (size_t y = 0; y < edge; ++y)
@@ -91,7 +91,7 @@ void FlowLayer::takeAll(const FlowMaps& maps, const void* texels) {
     }
 }
 
-// Each row of tiles from the first that has changed to the last: fewer calls than tile by tile.
+// Each row of tiles from the first changed one to the last: fewer calls than one for each tile.
 void FlowLayer::takeTiles(const FlowMaps& maps, const uint32_t* texels, const uint32_t* stamps) {
     const int tiles = maps.size() / 8;
     bool any = false;

@@ -1,4 +1,4 @@
-// A flow's maps as a texture, for a material's layer: rgba16f with mips, kept as FlowMaps draws them, whichever device does.
+// A flow's maps as a texture, for a material's layer: rgba16f with mips, updated from FlowMaps of any device.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,16 @@ namespace rivulet {
 
 class FlowLayer {
   public:
-    // Needs a current OpenGL context, here and in update(). Error (failed): no room for the texture.
+    // Needs a current OpenGL context, here and in update(). Error (failed): no memory for the texture.
     static Result<FlowLayer> create(int size);
 
-    // After each draw() of `maps`, whose size is the layer's. Takes what has changed since the last call; from device cl it comes some
-    // frames later.
+    // After each draw() of `maps`, whose size is the layer's. Copies the tiles that changed since the last call; from device cl they
+    // arrive some frames later.
     void update(const FlowMaps& maps);
-    // All of a picture of the layer's size; `height`: m, that its 1 stands for.
+    // A whole picture of the layer's size; `height`: m, of the picture's value 1.
     void update(const ThesisPicture& picture, double height);
 
-    // r, g: dh/du, dh/dv (m a unit of u, v); b: height (mm); a: wetness (0 to 1). Wraps round, as UVs do.
+    // r, g: dh/du, dh/dv (m a unit of u, v); b: height (mm); a: wetness (0 to 1). Repeats beyond 0 to 1.
     const gpu::Texture& texture() const { return texture_; }
 
   private:
@@ -30,7 +30,7 @@ class FlowLayer {
 
     gpu::Texture texture_;
     uint32_t seen_ = 0;  // draws
-    // What a device that cannot share sends, on its way; asked for as often as it has come.
+    // Texels on their way from a device that shares no memory with OpenGL; one request at a time.
     struct Sent {
         bool asked = false;
         std::vector<std::byte> texels;

@@ -24,8 +24,8 @@ struct FlowMaps::Impl {
     uint32_t tiles = 0, pieces = 0;
     bool whole = false;  // tiles are drawn by one thread each, with mips 2 and 3
     uint32_t drawn = 0;
-    uint64_t moved = 0;    // as the flow counted when the boxes were made
-    uint32_t stepped = 0;  // as it counted when it was last drawn
+    uint64_t moved = 0;    // FlowView::moved when the boxes were made
+    uint32_t stepped = 0;  // FlowView::steps when it was last drawn
 
     Status prepare(const FlowView& flow, const SurfaceFlowParams& params, MapTexels& made);
     size_t before(int level) const {
@@ -33,7 +33,7 @@ struct FlowMaps::Impl {
         for (int k = 0; k < level; ++k) texels += static_cast<size_t>(size >> k) * static_cast<size_t>(size >> k);
         return texels;
     }
-    int coverLevel() const { return whole ? std::min(3, mips - 1) : 1; }  // whose cover is the first that is asked for
+    int coverLevel() const { return whole ? std::min(3, mips - 1) : 1; }  // the first level whose cover is used
     FlowMapStep stepOf(const FlowView& flow, const SurfaceFlowParams& params) const;
 };
 
@@ -80,7 +80,7 @@ Status FlowMaps::Impl::prepare(const FlowView& flow, const SurfaceFlowParams& pa
     device->writeAll<uint32_t>(pin, made.pin);
     device->writeAll<vec4>(chart, made.chart);
     device->writeAll<float>(cover, asked);
-    // The film's cells about each texel, by the skin as it is now.
+    // The film's cells about each texel, from the skin as it is now.
     device->writeAll<uint32_t>(tile, made.tile);
     device->writeAll<uint32_t>(shown, made.texel);
     const FlowMapStep s = stepOf(flow, params);
@@ -144,11 +144,11 @@ FlowMaps::~FlowMaps() = default;
 
 Result<FlowMaps> FlowMaps::create(const SurfaceFlow& flow, std::span<const vec2> uvs, int size) {
     if (size < kLeastSize || size > kMostSize || !std::has_single_bit(static_cast<uint32_t>(size)))
-        return badInput(fmt::format("a flow's maps were asked for with {0} x {0} texels: give a power of two from {1} to {2}", size,
-                                    kLeastSize, kMostSize));
+        return badInput(
+            fmt::format("a flow's maps cannot have {0} x {0} texels: give a power of two from {1} to {2}", size, kLeastSize, kMostSize));
     const FlowMesh& mesh = flow.mesh();
     if (uvs.size() != mesh.corner.size())
-        return badInput(fmt::format("a flow's maps were given {} UVs for {} corners: give each corner of each triangle its own", uvs.size(),
+        return badInput(fmt::format("a flow's maps have {} UVs for {} corners: give one for each corner of each triangle", uvs.size(),
                                     mesh.corner.size()));
     const FlowView view = flow.view();
     if (view.onLayout) return badInput("a flow in thesis mode has no maps: draw it by thesisPicture()");

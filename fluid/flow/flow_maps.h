@@ -1,4 +1,4 @@
-// A flow drawn into UV: height, slope and wetness, on any layout of charts. Drops are gathered in space, so that no seam is seen.
+// A flow drawn into UV: height, slope and wetness, on any layout of charts. Drops are gathered in space, so that no seam is visible.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace rivulet {
 
-// Of each corner of the mesh's triangles, 3 a triangle, the UV that `from` gives it there: what makeFlowMesh has welded may have several.
+// The UV in `from` of each corner of the mesh's triangles, 3 a triangle: a place that makeFlowMesh has welded may have several UVs.
 // `from` is the mesh of which `mesh` was made. Empty if it has no UVs.
 std::vector<vec2> cornerUvs(const FlowMesh& mesh, const MeshView& from);
 
@@ -18,21 +18,21 @@ class FlowMaps {
     static constexpr int kLeastSize = 16, kMostSize = 8192;
 
     // `uvs`: 3 a triangle of the flow's mesh. `size`: texels of the map's edge, a power of two. The flow's device must outlive it.
-    // Error: a size that is none, UVs that are not as many or leave no texel, a flow in thesis mode (badInput); out of memory.
+    // Error (badInput): a wrong size, another number of UVs, UVs that cover no texel, a flow in thesis mode; (failed): out of memory.
     static Result<FlowMaps> create(const SurfaceFlow& flow, std::span<const vec2> uvs, int size);
     FlowMaps(FlowMaps&&) noexcept;
     FlowMaps& operator=(FlowMaps&&) noexcept;
     ~FlowMaps();
 
-    // Brings texels() up to date; `flow` is the one it was made for. Drops are where the last step began: that is one step late. Before the
-    // first step there is nothing to draw. Does not wait.
+    // Updates texels(); `flow` is the flow that it was made for. Drops are drawn where the last step began, one step late. Before the first
+    // step nothing is drawn. Does not wait.
     void draw(const SurfaceFlow& flow);
 
     Device& device() const;
     int size() const;
     int mips() const;  // down to 1 x 1
     // Two uints a texel, four halves: slopes dh/du and dh/dv (m a unit of u, v), height of drops and film (mm), wetness (0 to 1). Rows from
-    // v = 0 up, tight; mip after mip. Texels on which no skin lies are 0.
+    // v = 0 up, without gaps; mip after mip. Texels without skin are 0.
     const Buffer& texels() const;
     size_t texelsBefore(int mip) const;
     // A uint for every 8 x 8 texels, rows from v = 0 up: the number of the draw that last changed one of them. Behind them the same for
@@ -40,7 +40,7 @@ class FlowMaps {
     const Buffer& stamps() const;
     uint32_t draws() const;  // so far
 
-    size_t tiles() const;  // in which there is skin
+    size_t tiles() const;  // that contain skin
 
   private:
     struct Impl;

@@ -14,7 +14,7 @@ namespace rivulet {
 
 namespace {
 
-// Below this share of its longest edge's square, twice a triangle's area is rounding.
+// Below this share of its longest edge's square, twice a triangle's area is rounding error.
 constexpr double kFlat = 1.0e-6;
 constexpr size_t kMostTriangles = size_t{1} << 27U;
 
@@ -47,7 +47,7 @@ void join(FlowMesh& m, const Side& a, const Side& b) {
     m.across[3 * b.triangle + b.edge] = 4 * a.triangle + a.edge;
 }
 
-// Of all pairs that run against each other the one that bends least, until there is none.
+// Joins the pair of opposite sides that bends least, until there is none.
 void joinBranched(FlowMesh& m, std::vector<Side> sides) {
     while (sides.size() >= 2) {
         double best = -2;
@@ -163,7 +163,7 @@ SkinPoint nearestPoint(const FlowMesh& m, const vec3& given) {
         const std::array<double, 3> w = nearestWeights(x, a, b, c);
         const dvec3 apart = w[0] * a + w[1] * b + w[2] * c - x;
         const double d = glm::dot(apart, apart);
-        if (d >= nearest || flatAt(m, t)) continue;  // on one without area nothing stays
+        if (d >= nearest || flatAt(m, t)) continue;  // no drop stays on one without area
         nearest = d;
         best = {t, static_cast<float>(w[1]), static_cast<float>(w[2])};
     }

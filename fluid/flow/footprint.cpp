@@ -6,7 +6,7 @@ namespace rivulet {
 
 namespace {
 
-// A fine skin has thousands of triangles under a drop: the nearest say as much.
+// A fine skin has thousands of triangles under a drop: the nearest are enough.
 constexpr size_t kMost = 64;
 
 }  // namespace
@@ -42,7 +42,7 @@ Footprint footprintOf(const FlowMesh& m, float width) {
             const float far = glm::distance(positionOf(m, {found[k], 1.0F / 3, 1.0F / 3}), m.rest[p]);
             const float q = radius > 0 ? std::min(far / radius, 1.0F) : 1.0F;
             f.triangle.push_back(found[k]);
-            // Its own count even where they are wider than a drop.
+            // Its own triangles count even if they are wider than a drop.
             f.weight.push_back(std::max(1 - q * q, k < own ? 0.05F : 0.0F));
         }
         f.begin.push_back(static_cast<uint32_t>(f.triangle.size()));

@@ -1,4 +1,4 @@
-// Which triangles a drop's weight rests on where it stands at a place of the skin.
+// The triangles that support a drop at a place of the skin.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@ namespace rivulet {
 
 struct Footprint {
     std::vector<uint32_t> begin;     // of each place's, and the end
-    std::vector<uint32_t> triangle;  // those that join at the place first
+    std::vector<uint32_t> triangle;  // those that share the place first
     std::vector<float> weight;       // 0 to 1, of a triangle's area
 };
 
-// Triangles that hang together with a place and lie within half of `width` (m, at rest) of it: what is near through the air does not count.
+// The triangles connected to each place within half of `width` (m, at rest); skin that is near through the air is left out.
 Footprint footprintOf(const FlowMesh& mesh, float width);
 
 }  // namespace rivulet

@@ -35,7 +35,7 @@ class Rasteriser {
         for (uint32_t t = 0; t < flats_.size(); ++t)
             if (flats_[t].good()) fill(t);
         inside_ = std::count_if(words_.begin(), words_.end(), [](uint32_t w) { return w != TEXEL_NONE; });
-        // A chart of less than a texel has one all the same.
+        // A chart smaller than a texel still gets one.
         std::vector<bool> shown(flats_.size(), false);
         for (const uint32_t w : words_)
             if (w != TEXEL_NONE) shown[w & TEXEL_TRIANGLE] = true;
@@ -46,7 +46,7 @@ class Rasteriser {
             }
     }
 
-    // Round what is there, ring by ring: each takes the nearest of the triangles beside it.
+    // Ring by ring about the charts: each texel takes the nearest of the triangles beside it.
     void grow(int rings) {
         std::vector<uint32_t> front;
         for (uint32_t at = 0; at < words_.size(); ++at)
@@ -101,7 +101,7 @@ class Rasteriser {
             const int bx = x + k % 3 - 1, by = y + k / 3 - 1;
             const uint32_t beside = words_[index(wrapped(bx), wrapped(by))];
             if (beside == TEXEL_NONE) continue;
-            // Where this texel is as that triangle's UVs count, on from its neighbour.
+            // This texel's place in that triangle's UVs, continued from its neighbour.
             const int ux = x + (static_cast<int>(beside >> TEXEL_TURN_U & 3U) - 1 - turnsOf(bx)) * size_;
             const int uy = y + (static_cast<int>(beside >> TEXEL_TURN_V & 3U) - 1 - turnsOf(by)) * size_;
             if (std::max(ux, uy) >= 2 * size_ || std::min(ux, uy) < -size_) continue;
@@ -121,7 +121,7 @@ class Rasteriser {
     std::ptrdiff_t inside_ = 0;
 };
 
-// Of a tile's texels those that hang together on the skin are a piece: each has a box of its own in space.
+// Texels of a tile that are connected on the skin are a piece, with a box of its own in space.
 class PieceMaker {
   public:
     PieceMaker(const FlowMesh& mesh, const std::vector<UvTriangle>& flats, MapTexels& to)
@@ -165,8 +165,8 @@ class PieceMaker {
         return std::any_of(ca, ca + 3, [cb](uint32_t place) { return std::find(cb, cb + 3, place) != cb + 3; });
     }
 
-    // A small triangle with no texels outside itself is pinned by its corners, which its neighbours share; another by the smaller or larger
-    // triangle about what it shows here, with edges along its own; of a large one by the rectangle about that.
+    // A small triangle with no texels outside itself is bounded by its corners, which its neighbours share; another by a triangle with
+    // parallel edges about its texels here; a large one by the rectangle about them.
     void pin(uint32_t x0, uint32_t y0, const std::array<uint32_t, TILE_TEXELS>& words, std::vector<uint32_t>& members) {
         std::sort(members.begin(), members.end(),
                   [&](uint32_t a, uint32_t b) { return words[a] != words[b] ? words[a] < words[b] : a < b; });
@@ -232,7 +232,7 @@ std::vector<vec4> chartsOf(const std::vector<UvTriangle>& flats, std::span<const
     return chart;
 }
 
-// Of every mip from 1, the share of its texels that have skin.
+// The share of skin in the texels of every mip from 1.
 std::vector<float> coverOf(const std::vector<uint32_t>& words, int size) {
     std::vector<float> cover, above(words.size());
     for (size_t k = 0; k < words.size(); ++k) above[k] = words[k] == TEXEL_NONE ? 0.0F : 1.0F;
@@ -294,7 +294,7 @@ std::vector<uint32_t> packTexels(MapTexels& map, std::span<const uint32_t> taps)
             std::sort(names->begin(), names->end());
             names->erase(std::unique(names->begin(), names->end()), names->end());
         }
-        // Most cells lie beside others: fours, which begin at an even one, where every cell then has a number of one byte.
+        // Most cells lie side by side: groups of four that begin at an even cell, where one byte numbers each cell.
         uint32_t shift = 2;
         const auto lay = [&] {
             blocks.clear();

@@ -10,11 +10,11 @@ namespace rivulet {
 
 namespace {
 
-// How far round it one goes along the skin, over `reach`; and how many triangles one looks at there: of a finer skin all is asked.
+// How far the search goes along the skin, over `reach`, and how many triangles it visits.
 constexpr float kRound = 1.6F;
 constexpr size_t kMostSeen = 6000;
-// One triangle answers for the smaller ones that lie whole within this share of `reach` of its middle. With the search, 1 + kTogether of
-// `reach`, none that matters is missed.
+// A triangle represents the smaller ones that lie wholly within this share of `reach` of its middle. The search covers 1 + kTogether of
+// `reach`, so none that matters is missed.
 constexpr float kTogether = 0.25F;
 // Normals further apart face away from each other.
 constexpr float kAway = -0.2F;
@@ -84,7 +84,7 @@ std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
         const vec3 n = glm::cross(mesh.rest[mesh.corner[3 * t + 1]] - a, mesh.rest[mesh.corner[3 * t + 2]] - a);
         normal[t] = glm::dot(n, n) > 0 ? glm::normalize(n) : vec3(0.0F);
     }
-    // A ball round each triangle says mostly whether it is within a distance.
+    // A ball about each triangle decides most distance tests.
     std::vector<vec4> ball;
     for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
         const vec3 middle = positionOf(mesh, {t, 1.0F / 3, 1.0F / 3});
@@ -127,7 +127,7 @@ std::vector<float> skinFolds(const FlowMesh& mesh, float reach) {
         float& nearest = folds[own.triangle];
         samples.eachWithin(own.x, (1 + kTogether) * reach, [&](uint32_t other) {
             if (seen[other] == k && glm::dot(normal[own.triangle], normal[other]) >= kAway) return;
-            // From its own middle and corners, where that can be nearer still.
+            // From its own middle and corners, if these can be nearer.
             if (glm::distance(vec3(ball[other]), vec3(ball[own.triangle])) - ball[other].w - ball[own.triangle].w >= nearest) return;
             nearest = std::min(nearest, distanceTo(mesh, other, own.x));
             for (size_t c = 0; c < 3; ++c)

@@ -7,8 +7,8 @@
 
 namespace rivulet {
 
-// Of each triangle how far it is (m, at rest) to skin that one does not come to by going along the skin near by, or that faces the other
-// way; kNoFold where there is none within `reach`.
+// Each triangle's distance (m, at rest) to skin that is not connected to it nearby, or that faces the other way; kNoFold if there is none
+// within `reach`.
 constexpr float kNoFold = 1.0e30F;
 std::vector<float> skinFolds(const FlowMesh& mesh, float reach);
 

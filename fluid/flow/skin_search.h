@@ -1,4 +1,4 @@
-// Where a straight way meets a skin as it is now. Triangles lie in boxes by where they are at rest; boxes follow the skin.
+// Where a straight path meets a skin in its present shape. Triangles are grouped in boxes by their places at rest; boxes follow the skin.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ class SkinSearch {
     struct Hit {
         SkinPoint at;
         vec3 position{0.0F}, normal{0.0F};  // m; unit
-        float share = 0;                    // of the way
+        float share = 0;                    // of the path, 0 to 1
     };
-    // The first triangle that the way from `from` to `to` (m) meets, from either side. Nothing: none.
+    // The first triangle that the path from `from` to `to` (m) meets, from either side. Nothing: none.
     std::optional<Hit> first(const vec3& from, const vec3& to) const;
     const std::vector<vec3>& places() const { return places_; }
 

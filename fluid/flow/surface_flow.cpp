@@ -7,6 +7,7 @@
 #include <array>
 
 #include "engine/core/param_check.h"
+#include "engine/core/param_fixed.h"
 #include "shaders/flow/facing.h"
 
 namespace rivulet {
@@ -28,11 +29,11 @@ Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const 
     if (positions.empty()) return ok();
     for (const uint32_t k : mesh.given) {
         if (k >= positions.size())
-            return badInput(fmt::format("a skin was given {} positions, too few: its triangles use number {}", positions.size(), k));
+            return badInput(fmt::format("a skin has {} positions, too few: its triangles use number {}", positions.size(), k));
         if (!isFinite(positions[k])) return badInput(fmt::format("position {} of a skin is not a finite number", k));
         if (glm::any(glm::greaterThan(glm::abs(positions[k]), vec3(kFarthest))))
-            return badInput(fmt::format("position {} of a skin is more than {:.0e} m from zero: drops there would have no place in floats",
-                                        k, kFarthest));
+            return badInput(
+                fmt::format("position {} of a skin is more than {:.0e} m from zero, where floats are too coarse for drops", k, kFarthest));
     }
     return ok();
 }
@@ -89,24 +90,17 @@ Status SurfaceFlow::setThesis(const ThesisParams& params) {
 
 Status SurfaceFlow::setParams(const SurfaceFlowParams& params) {
     if (Status s = checkParams("liquid", params); !s) return s;
-    SurfaceFlowParams p = params;
-    p.capacity = impl_->params.capacity;
-    p.footprint = impl_->params.footprint;
-    p.largestDrop = impl_->params.largestDrop;
-    p.filmReach = impl_->params.filmReach;
-    p.filmCell = impl_->params.filmCell;
-    p.advancing = impl_->params.advancing;
-    p.receding = impl_->params.receding;
-    p.touch = impl_->params.touch;
-    impl_->params = p;
+    SurfaceFlowParams next = params;
+    keepFixed(next, impl_->params);
+    impl_->params = next;
     return ok();
 }
 
-void SurfaceFlow::Impl::bear(const FlowBirth& one) {
+void SurfaceFlow::Impl::spawn(const FlowBirth& one) {
     if (one.volume == 0) return;
     added += one.volume;
     if (births.size() >= count()) {
-        told->refused += one.volume;
+        reports->refused += one.volume;
         return;
     }
     largestBirth = std::max(largestBirth, one.volume);
@@ -115,12 +109,12 @@ void SurfaceFlow::Impl::bear(const FlowBirth& one) {
 
 void SurfaceFlow::add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity, bool film) {
     ASSERT(at.triangle < impl_->mesh.triangleCount(), "a drop's triangle is one of mesh()'s");
-    impl_->bear({vec4(velocity, film ? 1.0F : 0.0F), at.triangle, at.b1, at.b2, picolitres});
+    impl_->spawn({vec4(velocity, film ? 1.0F : 0.0F), at.triangle, at.b1, at.b2, picolitres});
 }
 
 void SurfaceFlow::addToBrim(uint32_t place, uint32_t picolitres) {
     ASSERT(place < impl_->brimPlaces, "a brim's place is one of those given to create()");
-    impl_->bear({vec4(0.0F), DROP_BRIM | place, 0.0F, 0.0F, picolitres});
+    impl_->spawn({vec4(0.0F), DROP_BRIM | place, 0.0F, 0.0F, picolitres});
 }
 
 void SurfaceFlow::setGrip(std::span<const float> grip) {
@@ -131,11 +125,11 @@ void SurfaceFlow::setGrip(std::span<const float> grip) {
     w.device->writeAll<vec4>(w.driven, table);
 }
 
-// On a GPU both come some frames later, one after the other.
+// On a GPU both arrive some frames later, one after the other.
 void SurfaceFlow::Impl::takeCounters() {
-    device->readLater(counter, counter.bytes(), [to = std::weak_ptr(told)](std::span<const std::byte> bytes) {
-        const std::shared_ptr<Told> t = to.lock();
-        if (!t) return;  // the flow is no more
+    device->readLater(counter, counter.bytes(), [to = std::weak_ptr(reports)](std::span<const std::byte> bytes) {
+        const std::shared_ptr<Reports> t = to.lock();
+        if (!t) return;  // the flow was destroyed
         const auto* c = reinterpret_cast<const uint32_t*>(bytes.data());
         t->refused += c[0] + (uint64_t{c[7]} << 16U);
         t->merges += c[1];
@@ -143,8 +137,8 @@ void SurfaceFlow::Impl::takeCounters() {
         t->film = c[6] > 0;
         t->evaporated += c[4];
     });
-    device->readLater(left, left.bytes(), [to = std::weak_ptr(told)](std::span<const std::byte> bytes) {
-        const std::shared_ptr<Told> t = to.lock();
+    device->readLater(left, left.bytes(), [to = std::weak_ptr(reports)](std::span<const std::byte> bytes) {
+        const std::shared_ptr<Reports> t = to.lock();
         if (!t) return;
         const auto* first = reinterpret_cast<const FlowLeft*>(bytes.data());
         std::vector<FlowLeft> some(first, first + t->leaving);
@@ -156,9 +150,9 @@ void SurfaceFlow::Impl::takeCounters() {
     });
 }
 
-// What the frame's own motion means to what is in it: x of now was turn^-1 ... in the world, and is drift x faster than it.
+// How the motion of the skin's frame acts on drops: turn rotates velocities, drift x is the frame's own velocity at x.
 void SurfaceFlow::Impl::turnFrame(const dmat4& toWorld, double seconds, FlowStep& f) {
-    const dmat4 before = posed ? glm::inverse(toWorld) * pose : dmat4(1.0);  // a place's coordinates then -> where it is now, had it stayed
+    const dmat4 before = posed ? glm::inverse(toWorld) * pose : dmat4(1.0);  // coordinates of a fixed point before -> now
     pose = toWorld;
     posed = true;
     vec4* turn[] = {&f.turn0, &f.turn1, &f.turn2};
@@ -171,15 +165,15 @@ void SurfaceFlow::Impl::turnFrame(const dmat4& toWorld, double seconds, FlowStep
         for (const vec3& x : {corners.min, corners.max})
             fastest = std::max(fastest, std::abs(double{glm::dot(vec3(*drift[row]), x)} + double{drift[row]->w}));
     }
-    if (fastest > kJump)  // set down elsewhere
+    if (fastest > kJump)  // moved by the user
         for (vec4* row : drift) *row = vec4(0.0F);
 }
 
-// Host memory or the device's own: either is a buffer of the mesh's positions.
+// The mesh's positions, from host memory or from the device.
 void SurfaceFlow::Impl::moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f) {
     const Buffer* from = inputs.moved;
     if (from == nullptr && !inputs.positions.empty()) {
-        // A part at a time: memory of all of them would be got anew from the system each step.
+        // In parts: a copy of all of them would be allocated in each step.
         std::array<vec4, 4096> part;
         const size_t used = hostMoved.bytes() / sizeof(vec4);
         for (size_t first = 0; first < used; first += part.size()) {
@@ -213,7 +207,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     if (!(seconds > 0)) return ok();
     if (Status places = w.checkPositions(inputs.positions); !places) return places;
     if (!isFinite(inputs.toWorld) || !isFinite(inputs.gravity) || !isFinite(inputs.wind))
-        return badInput("what a skin is told of the world (toWorld, gravity, wind) is not finite");
+        return badInput("a skin's toWorld, gravity or wind is not finite");
     StepParams s{};
     s.count = s.firstSample = w.count();
     w.grid->fill(s);
@@ -234,18 +228,19 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     if (!w.births.empty()) {
         w.device->write(w.birth, std::as_bytes(std::span(w.births)));
         w.device->run(w.born, f, {&w.grid->cellStart(), &w.drops.id, &w.birth, &w.drop, &w.motion, &w.counter}, f.births);
-        w.told->film = w.told->film || std::any_of(w.births.begin(), w.births.end(), [](const FlowBirth& b) { return b.velocity.w > 0; });
+        w.reports->film =
+            w.reports->film || std::any_of(w.births.begin(), w.births.end(), [](const FlowBirth& b) { return b.velocity.w > 0; });
         w.births.clear();
     }
     if (f.brims > 0)
         w.device->run(w.brim, f, {&w.chain, &w.spill, &w.grid->cellStart(), &w.drops.id, &w.frames, &w.drop, &w.motion, &w.counter},
                       f.brims);
-    // What holds a film's edge is stiff; drops know no such thing.
-    const int parts = w.thesis ? w.thesis->parts(seconds) : w.told->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
+    // The force that holds a film's edge is stiff; single drops have none.
+    const int parts = w.thesis ? w.thesis->parts(seconds) : w.reports->film ? static_cast<int>(std::ceil(seconds / kFilmStep)) : 1;
     for (int k = 0; k < parts; ++k) {
         w.setStep(f, s, seconds / parts);
         if (Status moved = w.thesis ? w.moveThesis(f, s) : w.moveDrops(f, s); !moved) return moved;
-        f.turn0 = vec4(1, 0, 0, 0);  // the frame has turned, and goes on
+        f.turn0 = vec4(1, 0, 0, 0);  // the frame has already turned
         f.turn1 = vec4(0, 1, 0, 0);
         f.turn2 = vec4(0, 0, 1, 0);
     }
@@ -255,7 +250,7 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     return ok();
 }
 
-// What depends on the length of a step.
+// Sets the values that depend on the length of a step.
 void SurfaceFlow::Impl::setStep(FlowStep& f, StepParams& s, double seconds) const {
     f.dt = s.dt = static_cast<float>(seconds);
     f.inverseDt = static_cast<float>(1 / seconds);
@@ -267,7 +262,7 @@ void SurfaceFlow::Impl::setStep(FlowStep& f, StepParams& s, double seconds) cons
     s.spacing = static_cast<float>(reach * kThinnest);
 }
 
-// Other skin that drops touch: only where there could be a drop as high.
+// Finds other skin that drops touch, within the height of the largest drop.
 void SurfaceFlow::Impl::touchOthers(const FlowStep& f, const StepParams& s) {
     if (!params.contact || f.places > FACING_PLACES) return;
     StepParams c = s;
@@ -294,7 +289,7 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     spread.run(*device, drops, s, {&neighbors, &x, &v, &side, &names, &spreads}, threads);
     meet.run(*device, drops, s, {&neighbors, &x, &v, &side, &names, &into}, threads);
     gather.run(*device, drops, s, {&neighbors, &x, &v, &names, &into, &side, &merged, &shift}, threads);
-    if (told->film) press.run(*device, drops, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
+    if (reports->film) press.run(*device, drops, s, {&neighbors, &x, &v, &side, &spreads, &merged}, threads);
     device->run(merge, f, {&grid->cellStart(), &drops.id, &sortedOf, &into, &drop, &counter}, f.count);
     touchOthers(f, s);
     device->run(stand, f, {&drops.id, &drop, &skin, &wanted}, f.count);
@@ -307,7 +302,7 @@ Status SurfaceFlow::Impl::moveDrops(const FlowStep& f, const StepParams& s) {
     return ok();
 }
 
-// The walk is the same, on other tables; what leaves does so from the skin in space.
+// The same walk on other tables; drops leave from the skin in space.
 Status SurfaceFlow::Impl::moveThesis(const FlowStep& step, const StepParams& s) {
     FlowStep f = step;
     f.trail = 0;
@@ -344,7 +339,7 @@ std::vector<SkinDrop> SurfaceFlow::drops() const {
     return all;
 }
 
-uint64_t SurfaceFlow::refused() const { return impl_->told->refused; }
+uint64_t SurfaceFlow::refused() const { return impl_->reports->refused; }
 
 uint32_t SurfaceFlow::room() const {
     const Impl& w = *impl_;
@@ -356,19 +351,19 @@ uint32_t SurfaceFlow::room() const {
 
 std::vector<LeftDrop> SurfaceFlow::takeLeft() {
     std::vector<LeftDrop> taken;
-    taken.swap(impl_->told->gone);
+    taken.swap(impl_->reports->gone);
     return taken;
 }
 
 uint64_t SurfaceFlow::leaving() const {
     uint64_t sum = 0;
-    for (const LeftDrop& d : impl_->told->gone) sum += d.picolitres;
+    for (const LeftDrop& d : impl_->reports->gone) sum += d.picolitres;
     return sum;
 }
 
 FlowView SurfaceFlow::view() const {
     const Impl& w = *impl_;
-    // Three may run into a fourth at once: a quarter wider than the largest.
+    // Three drops may merge with a fourth at once: a quarter wider than the largest.
     const double largest = 2 * std::max(double{w.params.largestDrop} * kMicrolitre, w.largestBirth * 1.0e-15);
     FlowView v{.device = w.device,
                .skin = &w.skin,
@@ -407,11 +402,11 @@ SurfaceFlow::Ledger SurfaceFlow::ledger() const {
     w.device->finish();
     w.device->poll();
     Ledger l{.added = w.added,
-             .left = w.told->left,
-             .evaporated = w.told->evaporated,
-             .refused = w.told->refused,
-             .merges = w.told->merges,
-             .handed = w.told->left - leaving()};
+             .left = w.reports->left,
+             .evaporated = w.reports->evaporated,
+             .refused = w.reports->refused,
+             .merges = w.reports->merges,
+             .handed = w.reports->left - leaving()};
     const auto state = w.device->readAll<uint32_t>(w.drop, size_t{w.count()} * DROP_UINTS);
     for (size_t k = 0; k < w.count(); ++k) l.drops += state[k * DROP_UINTS + DROP_VOLUME];
     for (const FlowBirth& b : w.births) l.drops += b.volume;  // with the next step
@@ -419,12 +414,12 @@ SurfaceFlow::Ledger SurfaceFlow::ledger() const {
     return l;
 }
 
-// What was counted up to the last step has been told by when the drops and films of that step are: all comes in the order it was asked for.
+// Reads arrive in the order of their requests: the counters of the last step arrive before its drops and films.
 void SurfaceFlow::ledgerLater(std::function<void(const Ledger&)> then) const {
     Impl& w = *impl_;
     const auto l = std::make_shared<Ledger>();
     l->added = w.added;
-    l->handed = w.told->left - leaving();
+    l->handed = w.reports->left - leaving();
     for (const FlowBirth& b : w.births) l->drops += b.volume;  // with the next step
     const auto words = [](std::span<const std::byte> bytes) {
         return std::span(reinterpret_cast<const uint32_t*>(bytes.data()), bytes.size() / sizeof(uint32_t));
@@ -434,14 +429,14 @@ void SurfaceFlow::ledgerLater(std::function<void(const Ledger&)> then) const {
         for (size_t k = 0; k < state.size(); k += DROP_UINTS) l->drops += state[k + DROP_VOLUME];
     });
     w.device->readLater(w.film, size_t{w.firstCell.back()} * sizeof(uint32_t),
-                        [l, words, from = std::weak_ptr(w.told), then = std::move(then)](std::span<const std::byte> bytes) {
-                            const std::shared_ptr<const Impl::Told> told = from.lock();
-                            if (!told) return;  // the flow is no more
+                        [l, words, from = std::weak_ptr(w.reports), then = std::move(then)](std::span<const std::byte> bytes) {
+                            const std::shared_ptr<const Impl::Reports> reports = from.lock();
+                            if (!reports) return;  // the flow was destroyed
                             for (const uint32_t v : words(bytes)) l->film += v;
-                            l->left = told->left;
-                            l->evaporated = told->evaporated;
-                            l->refused = told->refused;
-                            l->merges = told->merges;
+                            l->left = reports->left;
+                            l->evaporated = reports->evaporated;
+                            l->refused = reports->refused;
+                            l->merges = reports->merges;
                             then(*l);
                         });
 }

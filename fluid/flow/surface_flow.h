@@ -1,6 +1,6 @@
-// Flow on a skin: drops that walk over a mesh's triangles, run into each other, are held and let go. UVs play no part in it.
-// Drop: Furmidge 1962 (what holds it), Le Grand, Daerr and Limat 2005 (what slows it). Drops that overlap and are too much to be one are a
-// film: Nusselt 1916, its height by a sum over neighbours.
+// SurfaceFlow: drops that walk over a mesh's triangles, merge, are held and leave. UVs are not used.
+// Drop: Furmidge 1962 (what holds it), Le Grand, Daerr and Limat 2005 (what slows it). Drops that overlap and are too large for one drop
+// are a film: Nusselt 1916, its height by a sum over neighbours.
 #pragma once
 
 #include <memory>
@@ -15,31 +15,31 @@
 
 namespace rivulet {
 
-// What flows, and how it clings. Tears, unless said otherwise.
+// The liquid and how it clings. The defaults are tears.
 struct SurfaceFlowParams {
     float surfaceTension = 0.0436F;  // N/m
     float viscosity = 1.73e-3F;      // Pa s
     float density = 1005.0F;         // kg/m^3
-    float advancing = 60.0F;         // deg, contact angle at the front
+    float advancing = 60.0F;         // deg, contact angle at the front of a drop
     float receding = 40.0F;          // deg, at the back
-    float hold = 1.0F;               // k of what holds a drop: k w gamma (cos receding - cos advancing)
-    float drag = 60.0F;              // beta of what slows it: beta w eta |v|
+    float hold = 1.0F;               // k of the force that holds a drop: k w gamma (cos receding - cos advancing)
+    float drag = 60.0F;              // beta of its viscous drag: beta w eta |v|
     float adhesion = 1.0F;           // share of w gamma sin(advancing) pi that holds a drop under a skin
     float airDrag = 1.0F;            // drag coefficient of a drop in the wind
-    float largestDrop = 30.0F;       // microlitres: what would be more stays several drops
-    float touch = 0.8F;              // of the sum of two drops' radii: as near they are one
+    float largestDrop = 30.0F;       // microlitres: larger sums stay several drops
+    float touch = 0.8F;              // of the sum of two drops' radii: at this distance they merge
     float footprint = 2.5e-3F;       // m, over which a drop's weight is spread
     float trail = 1.0e-5F;           // m, thickness of the film that a drop leaves
     float trailWidth = 0.7F;         // of the drop's width
-    float slip = 0.85F;              // share of what holds a drop that a wet way takes
-    float steer = 0.5F;              // of what holds it: how strongly a trail beside its way pulls it in
+    float slip = 0.85F;              // share of the holding force that a wet trail removes
+    float steer = 0.5F;              // of the holding force: how strongly a trail beside the drop attracts it
     float evaporation = 2.0e-8F;     // m/s, of the film
-    float filmCell = 7.0e-4F;        // m, the cells of what drops leave behind are no wider
-    float filmReach = 5.0e-3F;       // m, support radius of the sum that a film's height is
-    bool contact = true;             // drops go over to skin that faces them
-    float brimHolds = 8.0F;          // microlitres, of a brim that is full
+    float filmCell = 7.0e-4F;        // m, largest edge of the film's cells
+    float filmReach = 5.0e-3F;       // m, support radius of the sum for a film's height
+    bool contact = true;             // drops move to skin that faces them
+    float brimHolds = 8.0F;          // microlitres in a full brim
     float brimStarts = 1.2F;         // microlitres, in a brim at the start
-    float brimWidth = 6.0e-4F;       // m, radius of what lies in a brim
+    float brimWidth = 6.0e-4F;       // m, radius of the liquid in a brim
     float tear = 4.5F;               // microlitres, of a drop that spills over it
     int capacity = 4096;             // drops at most
     void visit(ParamVisitor& v);
@@ -49,15 +49,15 @@ struct SurfaceFlowInputs {
     vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2, in the world
     vec3 wind{0.0F};                   // m/s, of the air, in the world
     dmat4 toWorld{1.0};                // the skin's frame -> the world: turned and moved, not scaled
-    // m, in the skin's frame, of the mesh's positions where they have changed; as many as the mesh has. Drops feel how the skin moves.
+    // m, in the skin's frame: the mesh's positions if the skin deforms, all of them. Its motion acts on the drops.
     std::span<const vec3> positions = {};
-    const Buffer* moved = nullptr;  // the same on the device (vec4, w unused), instead. A place that is no number stays where it was
+    const Buffer* moved = nullptr;  // the same on the device (vec4, w unused), instead. A place that is not finite stays where it was
 };
 
-// A row of places along an edge, as of a lower lid, that fills before it spills.
+// A row of places along an edge, for example a lower lid, that fills before it spills.
 struct SkinBrim {
     std::vector<SkinPoint> places;
-    std::vector<SkinPoint> spills;  // of each place: where what spills begins to run
+    std::vector<SkinPoint> spills;  // of each place: where spilled liquid begins to run
     uint32_t picolitres = 1200000;  // in it at the start, from end to end
 };
 
@@ -66,38 +66,37 @@ struct SkinDrop {
     SkinPoint at;
     vec3 position{0.0F}, velocity{0.0F};  // m, m/s
     double volume = 0;                    // m^3
-    double way = 0;                       // m, walked since it was born
+    double way = 0;                       // m, walked since it appeared
     double film = 0;                      // 0 a drop, 1 part of a film
 };
 
-// What let go of the skin, or ran over an open edge.
+// A drop that fell off the skin, or ran over an open edge.
 struct LeftDrop {
     vec3 position{0.0F}, velocity{0.0F};  // m, m/s, in the skin's frame; the velocity is the world's
     uint32_t picolitres = 0;
     uint32_t triangle = 0;
 };
 
-// A flow as those see it who draw it: memory of its device, between two steps.
+// A flow's memory on its device between two steps, for drawing.
 struct FlowView {
     Device* device = nullptr;
-    const Buffer *skin, *point, *basis, *film, *painted;  // as the kernels of shaders/flow have them
-    const Buffer *cellStart, *position, *velocity;        // drops as they were last sorted: position.w radius, m; velocity.w volume, m^3
+    const Buffer *skin, *point, *basis, *film, *painted;  // as in the kernels of shaders/flow
+    const Buffer *cellStart, *position, *velocity;        // drops as last sorted: position.w radius, m; velocity.w volume, m^3
     StepParams grid{};                                    // the grid's part of it
     uint32_t slots = 0;                                   // of drops
-    float largestRadius = 0;                              // m, of a drop's foot; only where several met at once there are wider ones
-    uint64_t moved = 0;                                   // how often the skin has; 0: no step was made yet
-    uint32_t steps = 0;                                   // made
+    float largestRadius = 0;                              // m, of a drop's foot; wider ones only where several merged at once
+    uint64_t moved = 0;                                   // how often the skin's shape has changed; 0: before the first step
+    uint32_t steps = 0;                                   // so far
     bool onLayout = false;                                // thesis mode: drops are sorted by their UV
 };
 
 class SurfaceFlow {
   public:
-    // `device` must outlive it. Error: a value out of its range, a mesh whose skin would not fit (badInput);
-    // out of memory.
+    // `device` must outlive it. Error (badInput): a value out of its range, a skin too large for its film; (failed): out of memory.
     static Result<SurfaceFlow> create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims = {});
-    // Thesis mode: the same walk on the layout of `uvs` (3 a triangle), by the thesis's forces. Drops do not merge, and leave no trail.
-    // Places and velocities are told in space as ever, but FlowMaps does not know them: thesisPicture() draws them. Error: as create, and
-    // of UVs that are not as many or have no area.
+    // Thesis mode: the same walk on the layout of `uvs` (3 a triangle), with the forces of the thesis. Drops do not merge and leave no
+    // trail. drops() are in space as ever; FlowMaps refuses such a flow, thesisPicture() draws it. Error: as create; (badInput): another
+    // number of UVs, or UVs without area.
     static Result<SurfaceFlow> createThesis(Device& device, FlowMesh mesh, std::span<const vec2> uvs, const SurfaceFlowParams& params,
                                             const ThesisParams& thesis);
     SurfaceFlow(SurfaceFlow&&) noexcept;
@@ -106,25 +105,25 @@ class SurfaceFlow {
 
     const FlowMesh& mesh() const;
     const SurfaceFlowParams& params() const;
-    // Error (badInput): a value out of its range; nothing has changed then.
+    // Error (badInput): a value out of its range; nothing changes then.
     Status setParams(const SurfaceFlowParams& params);  // those that are `fixed` stay: tables are sized for them
     Status setThesis(const ThesisParams& params);       // in thesis mode; reach stays
 
-    // A drop that appears with the next step. Where no slot is free it is counted as refused.
-    // `film`: it is not taken up by others, but part of a film as long as there is one.
+    // Adds a drop, which appears with the next step; without a free slot it is counted as refused.
+    // `film`: other drops do not absorb it; it is part of a film as long as there is one.
     void add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity = vec3(0.0F), bool film = false);
     void addToBrim(uint32_t place, uint32_t picolitres);  // places count through all brims in their order
-    void setGrip(std::span<const float> grip);            // of each of mesh()'s places: what holds drops there, 1 as usual. Waits
-    // Error: positions that are not as many as the mesh's, not finite or over 1e5 m from zero, inputs that are not finite (badInput); no
-    // memory for the sort (failed). Nothing has moved then.
+    void setGrip(std::span<const float> grip);            // of each of mesh()'s places: factor of the holding force, 1 by default. Waits
+    // Error (badInput): fewer positions than the mesh's, not finite or over 1e5 m from zero, inputs that are not finite; (failed): no
+    // memory for the sort. Nothing moves then.
     Status step(const SurfaceFlowInputs& inputs, double seconds);
 
     // Waits for the device.
     std::vector<SkinDrop> drops() const;
-    uint64_t refused() const;          // picolitres that found no slot, as far as is known; does not wait
-    uint32_t room() const;             // drops that there are slots for, beside those that were added since the last step; waits
-    std::vector<LeftDrop> takeLeft();  // since it was last asked, in the order of their ids each step
-    uint64_t leaving() const;          // picolitres that takeLeft() would give, as far as is known; does not wait
+    uint64_t refused() const;          // picolitres that found no slot, as last known; does not wait
+    uint32_t room() const;             // free drop slots, less the drops added since the last step; waits
+    std::vector<LeftDrop> takeLeft();  // since the last call, in the order of ids within each step
+    uint64_t leaving() const;          // picolitres that takeLeft() would return; does not wait
     FlowView view() const;
     // The film's thickness, m, of every cell of a triangle's lattice; waits.
     std::vector<float> film(uint32_t triangle) const;
@@ -132,18 +131,16 @@ class SurfaceFlow {
     struct Ledger {
         uint64_t added = 0, drops = 0, film = 0, left = 0, evaporated = 0, refused = 0;
         uint64_t merges = 0;
-        uint64_t handed = 0;  // of left, by takeLeft(), when it was asked
+        uint64_t handed = 0;  // of left: already returned by takeLeft()
     };
     Ledger ledger() const;  // waits
-    // The same without waiting: `then` hears of it once, on the cpu before this returns, on a GPU with a later step; it may outlive the
-    // flow.
+    // The same without waiting: `then` is called once, on the cpu before this returns, on a GPU in a later step; it may outlive the flow.
     void ledgerLater(std::function<void(const Ledger&)> then) const;
 
     // All that the next step depends on, in host memory.
     struct Snapshot;
     std::shared_ptr<const Snapshot> save() const;  // waits
-    // Goes on from there, on whichever device; of a flow that was made of the same mesh, with the same params. Error (failed): no memory
-    // for the sort.
+    // Continues from a snapshot of a flow with the same mesh and params, on any device. Error (failed): no memory for the sort.
     Status restore(const Snapshot& snapshot);
 
   private:

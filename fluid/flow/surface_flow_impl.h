@@ -1,4 +1,4 @@
-// What a SurfaceFlow is made of. For fluid/flow/surface_flow*.cpp alone.
+// The members of SurfaceFlow, for fluid/flow/surface_flow*.cpp.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ namespace rivulet {
 inline constexpr double kRadian = 3.14159265358979323846 / 180;
 inline constexpr double kMicrolitre = 1.0e-9;  // m^3
 inline constexpr double kPiD = 3.14159265358979323846;
-// Of the support radius of the film's kernel: the paraboloid whose volume is spread as widely has this radius.
+// Of the support radius of the film's kernel: radius of the paraboloid with the same spread of volume.
 inline constexpr double kFilmRadius = 0.6455;
-inline constexpr float kJump = 50.0F;        // m/s: a skin that is faster has been set down elsewhere
-inline constexpr double kThinnest = 0.06;    // of the film's reach: of what is thinner the edge is not resolved
-inline constexpr double kFilmStep = 0.0045;  // s: with a film in it a step is no longer
-inline constexpr double kCalming = 0.02;     // s, in which parts of a film come to go as those about them
-inline constexpr double kSettling = 0.2;     // s, in which what is in a brim comes to rest along it
+inline constexpr float kJump = 50.0F;        // m/s: a faster skin counts as moved by the user, without drift
+inline constexpr double kThinnest = 0.06;    // of the film's reach: the edge of a thinner film is not resolved
+inline constexpr double kFilmStep = 0.0045;  // s, longest step with a film
+inline constexpr double kCalming = 0.02;     // s, in which parts of a film take the velocity of those around
+inline constexpr double kSettling = 0.2;     // s, in which the liquid in a brim comes to rest
 
 // Radius of the foot of a cap over the cube root of its volume.
 inline double contactRadius(double degrees) {
@@ -33,17 +33,17 @@ inline double contactRadius(double degrees) {
 
 inline double meanAngle(const SurfaceFlowParams& p) { return 0.5 * double{p.advancing + p.receding}; }
 
-// What changes from step to step on the host.
+// State that changes from step to step on the host.
 struct FlowCourse {
-    uint32_t phase = 0;                // whose turn it is to dry
+    uint32_t phase = 0;                // of the triangles that dry in this step
     double sinceTurn[DRY_EVERY] = {};  // s
     std::vector<FlowBirth> births;
     uint64_t added = 0;     // picolitres
-    bool moved = true;      // the basis is to be made anew
+    bool moved = true;      // the basis must be computed again
     bool stirring = false;  // the skin has a velocity
     dmat4 pose{1.0};        // the skin's frame -> the world, as of the last step
     bool posed = false;
-    uint64_t moves = 0;  // how often it was
+    uint64_t moves = 0;  // how often the basis was computed
     uint32_t steps = 0;
     uint32_t largestBirth = 0;  // picolitres
 };
@@ -63,19 +63,19 @@ struct SurfaceFlow::Impl : FlowCourse {
     Buffer film;                                                                                      // picolitres, of each cell
     Buffer birth, counter, left;
     std::vector<uint32_t> firstCell;  // of each triangle's lattice, and the end
-    // What the device tells: shared with reads that are still on their way.
-    struct Told {
+    // Counters that the device reports: shared with reads that are still pending.
+    struct Reports {
         uint64_t refused = 0, left = 0, evaporated = 0;  // picolitres
         uint64_t merges = 0;
-        uint32_t leaving = 0;  // in the step that is being told
-        bool film = false;     // there is some
+        uint32_t leaving = 0;  // in the step that is being reported
+        bool film = false;     // a film exists
         std::vector<LeftDrop> gone;
     };
-    std::shared_ptr<Told> told = std::make_shared<Told>();
+    std::shared_ptr<Reports> reports = std::make_shared<Reports>();
     Bounds corners;  // m, of the skin at rest
     uint32_t brims = 0, brimPlaces = 0;
     std::optional<ThesisTables> thesis;  // of thesis mode
-    // What changes from step to step on the device, beside what is sorted.
+    // Buffers that change from step to step, besides those that are sorted.
     auto remembered() { return std::array{&drop, &motion, &film, &painted, &point, &driven}; }
 
     uint32_t count() const { return drops.count; }
@@ -83,7 +83,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     Status fillBrims(std::span<const SkinBrim> along);
     Status layLattice();
     Status checkPositions(std::span<const vec3> positions) const;
-    void bear(const FlowBirth& one);
+    void spawn(const FlowBirth& one);
     void moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f);
     void setStep(FlowStep& f, StepParams& s, double seconds) const;
     void touchOthers(const FlowStep& f, const StepParams& s);

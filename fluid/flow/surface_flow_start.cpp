@@ -52,8 +52,8 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     for (const vec3& p : mesh.rest) around.add(p);
     const vec3 size = around.size();
     const float longest = std::max({size.x, size.y, size.z});
-    // A skin may move within a margin. Cells as wide as two of the largest drops reach; wider on a large skin, whose cells would be too
-    // many: they are counted anew each step, which on the cpu takes as long as all else that a few drops need.
+    // A skin may move within a margin. Cells as wide as the reach of two of the largest drops; wider on a large skin, which would have too
+    // many: they are counted in each step, which on the cpu takes as long as all else for a few drops.
     corners = around;
     const float margin = 0.25F * longest;
     around.add(around.min - margin);
@@ -68,7 +68,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
     Result<NeighborGrid> made = NeighborGrid::create(on, around, h, slots);
     if (!made) return made.error();
     grid = std::make_unique<NeighborGrid>(std::move(*made));
-    if (!thesis) grid->setMargin(static_cast<float>(reach) / h);  // the cpu's lists hold who is near, however wide the cells
+    if (!thesis) grid->setMargin(static_cast<float>(reach) / h);  // the cpu's lists hold the neighbours, however wide the cells
     Result<Particles> particles = Particles::create(on, slots);
     if (!particles) return particles.error();
     drops = std::move(*particles);
@@ -94,7 +94,7 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         *kernel = *found;
     }
     if (Status fits = layLattice(); !fits) return fits;
-    const Footprint under = footprintOf(mesh, thesis ? 0.0F : params.footprint);  // the thesis's normals are the model's
+    const Footprint under = footprintOf(mesh, thesis ? 0.0F : params.footprint);  // the thesis uses the model's normals
     const size_t triangles = mesh.triangleCount(), places = mesh.rest.size(), n = slots;
     const size_t positions = size_t{*std::max_element(mesh.given.begin(), mesh.given.end())} + 1;
     for (auto [buffer, bytes] : {std::pair(&skin, SKIN_UINTS * triangles * sizeof(uint32_t)),
@@ -157,13 +157,13 @@ Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
         for (const SkinPoint& p : along[k].places) free[id++] = vec4(positionOf(mesh, p), 0.0F);
     on.writeAll<vec4>(drops.positionNext, free);
     if (Status filled = fillBrims(along); !filled) return filled;
-    // The first step's births look where the last sort put free slots.
+    // Drops spawned in the first step use the free slots of the last sort.
     StepParams s{};
     s.h = h;
     s.invH = 1 / h;
     s.count = s.firstSample = slots;
     grid->fill(s);
-    // Who draws asks for the skin at rest.
+    // Drawing before the first step shows the skin at rest.
     FlowStep f{};
     f.triangles = static_cast<uint32_t>(triangles);
     on.run(basis, f, {&skin, &point, &frames}, f.triangles);
@@ -175,8 +175,8 @@ Status SurfaceFlow::Impl::fillBrims(std::span<const SkinBrim> along) {
     std::vector<FlowBirth> spills;
     for (const SkinBrim& b : along) {
         if (b.places.empty() || b.spills.size() != b.places.size())
-            return badInput(fmt::format("a brim has {} places and {} to spill at: there must be as many, and one at least", b.places.size(),
-                                        b.spills.size()));
+            return badInput(
+                fmt::format("a brim has {} places and {} to spill at: give as many, and at least one", b.places.size(), b.spills.size()));
         chains.insert(chains.end(), {static_cast<uint32_t>(spills.size()), static_cast<uint32_t>(b.places.size())});
         for (size_t k = 0; k < b.places.size(); ++k) {
             const SkinPoint &p = b.places[k], &s = b.spills[k];
@@ -197,7 +197,7 @@ Status SurfaceFlow::Impl::fillBrims(std::span<const SkinBrim> along) {
     return ok();
 }
 
-// Rows so many that no cell's side is longer than asked.
+// Enough rows that no cell's side is longer than filmCell.
 Status SurfaceFlow::Impl::layLattice() {
     constexpr uint64_t kMostCells = uint64_t{1} << 28U;
     firstCell.assign(1, 0);
@@ -242,7 +242,7 @@ Result<SurfaceFlow> SurfaceFlow::createThesis(Device& device, FlowMesh mesh, std
     auto impl = std::make_unique<Impl>();
     impl->mesh = std::move(mesh);
     impl->params = params;
-    impl->params.filmCell = 1.0e6F;  // m: there is no film
+    impl->params.filmCell = 1.0e6F;  // m: no film
     impl->thesis.emplace(std::move(*tables));
     if (Status ready = impl->prepare(device, {}); !ready) return ready.error();
     return SurfaceFlow(std::move(impl));

@@ -1,4 +1,4 @@
-// A flow's state, put away in host memory and taken up again on another device.
+// A flow's state, saved in host memory and restored on any device.
 #include "engine/core/assert.h"
 #include "fluid/flow/surface_flow_impl.h"
 
@@ -6,9 +6,9 @@ namespace rivulet {
 
 struct SurfaceFlow::Snapshot {
     FlowCourse course;
-    Impl::Told told;
+    Impl::Reports reports;
     std::vector<std::vector<uint32_t>> buffers;  // in the order of Impl::remembered()
-    // As the last sort left them: cells of another device's grid may be of another size, so there they are sorted anew.
+    // As last sorted. Cells of another device's grid may have another size: drops are sorted again there.
     std::vector<uint32_t> id;
     std::vector<vec4> position, velocity;
 };
@@ -19,7 +19,7 @@ std::shared_ptr<const SurfaceFlow::Snapshot> SurfaceFlow::save() const {
     w.device->poll();
     auto made = std::make_shared<Snapshot>();
     made->course = w;
-    made->told = *w.told;
+    made->reports = *w.reports;
     for (const Buffer* b : w.remembered()) made->buffers.push_back(w.device->readAll<uint32_t>(*b, b->bytes() / sizeof(uint32_t)));
     made->id = w.device->readAll<uint32_t>(w.drops.id, w.count());
     made->position = w.device->readAll<vec4>(w.drops.position, w.count());
@@ -31,7 +31,7 @@ Status SurfaceFlow::restore(const Snapshot& snapshot) {
     Impl& w = *impl_;
     ASSERT(snapshot.id.size() == w.count(), "a snapshot of a flow that was made with the same params");
     static_cast<FlowCourse&>(w) = snapshot.course;
-    w.told = std::make_shared<Impl::Told>(snapshot.told);
+    w.reports = std::make_shared<Impl::Reports>(snapshot.reports);
     size_t k = 0;
     for (Buffer* b : w.remembered()) {
         ASSERT(snapshot.buffers[k].size() * sizeof(uint32_t) == b->bytes(), "a snapshot of a flow on the same mesh");
@@ -45,7 +45,7 @@ Status SurfaceFlow::restore(const Snapshot& snapshot) {
     w.grid->fill(s);
     s.h = 1 / s.gridScale.x;
     s.invH = s.gridScale.x;
-    // Who draws before the next step asks for the skin as it was.
+    // Drawing before the next step shows the skin as it was.
     FlowStep f{};
     f.triangles = static_cast<uint32_t>(w.mesh.triangleCount());
     w.device->run(w.basis, f, {&w.skin, &w.point, &w.frames}, f.triangles);

@@ -1,5 +1,5 @@
-// The thesis's picture of a flow, (22) and (23), as printed: discs in UV, their sum a height field, normals by its differences. A reference
-// beside FlowMaps: what lies on a stretched chart is stretched, and what lies over a seam is cut off.
+// The picture of a flow in the thesis, (22) and (23), as printed: discs in UV, their sum a height field, normals by its differences. A
+// reference for FlowMaps: discs are stretched on a stretched chart and cut off at a seam.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct ThesisPicture {
     std::vector<vec3> normal;   // tangent space, unit length
 };
 
-// `radius`: UV, of a disc of `largest` (kg), the others' in proportion to their mass. `relief`: how high 1 stands, in texels.
+// `radius`: UV, of a disc of mass `largest` (kg); the others are in proportion to their mass. `relief`: the height of 1, in texels.
 ThesisPicture thesisPicture(std::span<const ThesisParticle> particles, int size, float radius, float largest, float relief = 4.0F);
 
 // The height field as grey, rgba a texel, the top row (v = 1) first; 1 and above is white.

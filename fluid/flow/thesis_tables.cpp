@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/param_fixed.h"
+
 namespace rivulet {
 
 namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
 constexpr int kMostParts = 16;    // of a step
-constexpr float kFarUv = 1.0e4F;  // beyond it a UV says nothing
+constexpr float kFarUv = 1.0e4F;  // limit of a usable UV
 
 bool somewhere(const vec2& uv) { return std::abs(uv.x) < kFarUv && std::abs(uv.y) < kFarUv; }
 
@@ -56,7 +58,7 @@ double capHeight(double volume, double degrees) {
 
 Result<ThesisTables> ThesisTables::create(Device& device, const FlowMesh& mesh, std::span<const vec2> given, const ThesisParams& params) {
     if (given.size() != mesh.corner.size())
-        return badInput(fmt::format("thesis mode was given {} UVs for {} corners: give each corner of each triangle its own", given.size(),
+        return badInput(fmt::format("thesis mode has {} UVs for {} corners: give one for each corner of each triangle", given.size(),
                                     mesh.corner.size()));
     ThesisTables w;
     w.device_ = &device;
@@ -117,9 +119,9 @@ Result<ThesisTables> ThesisTables::create(Device& device, const FlowMesh& mesh, 
 }
 
 void ThesisTables::setParams(const ThesisParams& params) {
-    const float reach = params_.reach;
-    params_ = params;
-    params_.reach = reach;
+    ThesisParams next = params;
+    keepFixed(next, params_);
+    params_ = next;
 }
 
 Bounds ThesisTables::around() const {
@@ -129,7 +131,7 @@ Bounds ThesisTables::around() const {
     return b;
 }
 
-// As wide as the kernels reach; wider where there would be too many.
+// As wide as the kernels' support; wider if there would be too many cells.
 float ThesisTables::cell() const {
     constexpr double kCells = 1 << 15;
     const dvec3 all(uvs_.size());
@@ -168,7 +170,7 @@ Status ThesisTables::press(const Of& of, const FlowStep& f, StepParams s) {
     Particles& p = of.particles;
     device_->run(place_, t, {&p.id, &flat_, &inverse_, &of.drop, &of.motion, &p.positionNext, &p.velocityNext}, f.count);
     if (Status sorted = of.grid.build(s, p); !sorted) return sorted;
-    // Stiffer and thicker than the parts of a step can bear they are not.
+    // Stiffness and viscosity are limited to values that the parts of a step resolve stably.
     const double dt = s.dt, h = params_.reach;
     s.stiffness = static_cast<float>(std::min(double{params_.stiffness}, std::pow(0.25 * h / dt, 2)));
     s.force =

@@ -1,5 +1,5 @@
-// Thesis mode of a flow: the same walker on the skin's UV layout taken as a flat mesh, cut at seams, with the thesis's force field
-// (12)-(19), 2D SPH in UV and friction (20), (21). Velocities are UV/s: what is held, and how fast it goes, depends on the layout.
+// Thesis mode of a flow: the same walk on the skin's UV layout taken as a flat mesh, cut at seams, with the force field (12)-(19) of the
+// thesis, 2D SPH in UV and friction (20), (21). Velocities are UV/s: holding and speed depend on the layout.
 #pragma once
 
 #include <span>
@@ -22,19 +22,19 @@ struct ThesisParams {
     float friction = 0.45F;       // mu of (21)
     float adhesive = 8.0e-6F;     // N, F_adhesive of (20)
     float curvature = 1.0e-6F;    // N kg/UV^3, k of (20)
-    float curvatureMost = 1e-6F;  // N, what k / |grad rho| is at most
-    float windPush = 1.0F;        // 1/s: m/s^2 by each m/s of wind
+    float curvatureMost = 1e-6F;  // N, limit of k / |grad rho|
+    float windPush = 1.0F;        // 1/s: m/s^2 for each m/s of wind
     float disc = 0.012F;          // UV, radius of the disc (22) of the largest particle
     void visit(ParamVisitor& v);
 };
 
-// What lies across each edge, as FlowMesh::across has it, where UVs of both sides agree; kOpen at seams. `uvs`: 3 a triangle.
+// The neighbour across each edge, as FlowMesh::across, where the UVs of both sides agree; kOpen at seams. `uvs`: 3 a triangle.
 std::vector<uint32_t> acrossInUv(const FlowMesh& mesh, std::span<const vec2> uvs);
 vec2 uvAt(std::span<const vec2> uvs, const SkinPoint& at);
-// m, of a cap of `volume` (m^3) with this contact angle: what a particle's mass stands for.
+// m, height of a cap of `volume` (m^3) with this contact angle: the height that a particle's mass stands for.
 double capHeight(double volume, double degrees);
 
-// The tables and kernels in which the mode differs. What moves particles after the law is the flow's own.
+// The tables and kernels of the mode. After the law, the flow's own kernels move particles.
 class ThesisTables {
   public:
     // `uvs`: 3 a triangle. Error (badInput): not as many, or no triangle with an area in UV; out of memory.
@@ -47,17 +47,17 @@ class ThesisTables {
     const Buffer& skin() const { return skin_; }
     const Buffer& flat() const { return flat_; }
 
-    // Buffers of the flow, as the kernels of shaders/flow have them; skin, basis and drive are those in space.
+    // Buffers of the flow, as in the kernels of shaders/flow; skin, basis and drive are those in space.
     struct Of {
         const Buffer &skin, &basis, &drive;
         Buffer &drop, &motion, &spread, &merged;
         Particles& particles;
         NeighborGrid& grid;
     };
-    // (12)-(19) anew: `bent`, M^-1 as well.
+    // Computes (12)-(19); `bent`: M^-1 as well.
     void makeField(const Of& of, const FlowStep& f, bool bent);
-    int parts(double seconds) const;  // steps that are short enough for pressure and viscosity
-    // Up to the law: `motion` is q, `merged` what holds it. Error (failed): no memory for the sort.
+    int parts(double seconds) const;  // substeps that pressure and viscosity need
+    // Up to the law: `motion` is q, `merged` the holding force. Error (failed): no memory for the sort.
     Status press(const Of& of, const FlowStep& f, StepParams s);
     void letGo(const Of& of, const FlowStep& f);  // after the walk
 

@@ -21,10 +21,10 @@ namespace rivulet {
 
 namespace {
 
-// Normals of a chart's triangles are no further from its mean than this (cosine): what projects onto a plane without folding.
+// Least cosine between a triangle's normal and its chart's mean: such a chart projects onto a plane without folding.
 constexpr double kBend = 0.5;
 constexpr size_t kFew = 4;
-// Of the skin's area, and of the texels claimed.
+// Of the skin's area, and of the covered texels.
 constexpr double kMostLost = 0.02, kMostOverlap = 0.02;
 
 dvec3 place(const FlowMesh& m, size_t corner) { return dvec3(m.rest[m.corner[corner]]); }
@@ -39,7 +39,7 @@ bool flat(const FlowMesh& m, size_t t) {
     return glm::length(normalOf(m, t)) <= 1.0e-6 * longest * longest;
 }
 
-// A part of the skin and how it lies flat, in metres.
+// A part of the skin and its flat layout, in metres.
 struct Chart {
     std::vector<uint32_t> triangles;
     std::vector<uint32_t> places;  // of the mesh
@@ -52,7 +52,7 @@ class Cutter {
   public:
     explicit Cutter(const FlowMesh& mesh) : mesh_(mesh), chart_(mesh.triangleCount(), UINT32_MAX) {}
 
-    // Grows charts from the largest triangle that has none, those first that bend least from what is there.
+    // Grows charts from the largest triangle without one, adding first the triangles that bend least.
     std::vector<std::vector<uint32_t>> cut() {
         std::vector<dvec3> normal;
         for (size_t t = 0; t < chart_.size(); ++t) normal.push_back(normalOf(mesh_, t));
@@ -121,8 +121,8 @@ void project(const FlowMesh& m, Chart& c) {
     for (const uint32_t p : c.places) c.at.emplace_back(glm::dot(dvec3(m.rest[p]), u), glm::dot(dvec3(m.rest[p]), v));
 }
 
-// Levy et al. 2002: in every triangle the map to UV is as near to a turn and a scale as can be; the two places furthest apart, as they are
-// projected, stay where they are. False where the equations cannot be solved.
+// Levy et al. 2002: in every triangle the map to UV is as near to a rotation and scale as possible; the two places furthest apart in the
+// projection stay fixed. False if the equations cannot be solved.
 bool layConformal(const FlowMesh& m, Chart& c) {
     project(m, c);
     const auto n = static_cast<int>(c.places.size());
@@ -180,8 +180,8 @@ double areaInUv(const Chart& c, size_t t) {
     return cross2(c.at[c.corner[3 * t + 1]] - a, c.at[c.corner[3 * t + 2]] - a);
 }
 
-// As large in UV as on the skin, along the sides of its narrowest box, in one corner. False where a triangle is turned round or has shrunk
-// to a hundredth.
+// Scales the chart to its size on the skin, aligns it with its narrowest box and moves it to a corner. False if a triangle is mirrored or
+// has shrunk to a hundredth.
 bool settle(const FlowMesh& m, Chart& c) {
     double inUv = 0, onSkin = 0;
     for (size_t t = 0; t < c.triangles.size(); ++t) {
@@ -233,7 +233,7 @@ bool overlapsItself(const Chart& c) {
     return twice;
 }
 
-// Two parts, each nearer to one of two triangles far apart.
+// Splits into two parts, each nearer to one of two triangles far apart.
 void halve(const FlowMesh& m, const std::vector<uint32_t>& triangles, std::vector<std::vector<uint32_t>>& to) {
     std::vector<uint32_t> sorted = triangles;
     std::sort(sorted.begin(), sorted.end());
@@ -273,7 +273,7 @@ std::vector<Chart> layCharts(const FlowMesh& m) {
     for (size_t k = 0; k < todo.size(); ++k) {
         Chart c = chartOf(m, todo[k]);
         bool lies = layConformal(m, c) && settle(m, c) && !overlapsItself(c);
-        // A ring, or what winds, may come to lie on itself: its parts do not. A few triangles at last are seen straight on.
+        // A ring or a spiral may overlap itself; its parts do not. The last few triangles are projected.
         if (!lies && c.triangles.size() <= kFew) {
             project(m, c);
             lies = settle(m, c) && (!overlapsItself(c) || c.triangles.size() == 1);
@@ -289,7 +289,7 @@ std::vector<Chart> layCharts(const FlowMesh& m) {
     return charts;
 }
 
-// Whether all charts fit into the map at so many texels a metre; and where.
+// Whether all charts fit into the map at this number of texels a metre, and where.
 bool pack(const std::vector<Chart>& charts, double scale, int size, int gutter, std::vector<stbrp_rect>& rects) {
     rects.clear();
     for (const Chart& c : charts) {
@@ -412,13 +412,13 @@ Result<SkinUvs> skinUvs(const FlowMesh& mesh, const MeshView& from, int size) {
     SkinUvs s;
     s.uvs = cornerUvs(mesh, from);
     s.given = checkUvs(mesh, s.uvs, size);
-    s.said = s.given.sentence();
+    s.notice = s.given.sentence();
     if (s.given.usable()) return s;
     Result<Unwrap> own = unwrap(mesh, size);
     if (!own) return own.error();
     s.uvs = std::move(own->uvs);
     s.unwrapped = true;
-    s.said += fmt::format(" It is unwrapped anew, into {} chart{}.", own->charts, own->charts == 1 ? "" : "s");
+    s.notice += fmt::format(" It is unwrapped anew, into {} chart{}.", own->charts, own->charts == 1 ? "" : "s");
     return s;
 }
 

@@ -34,7 +34,7 @@ std::string base64(std::string_view bytes) {
     return out;
 }
 
-// A DataArray of VTK: the bytes' number, then they.
+// A DataArray of VTK: the number of bytes, then the bytes.
 void addArray(std::string& out, std::string_view type, std::string_view name, int components, std::string_view bytes) {
     std::string whole;
     whole.reserve(bytes.size() + 8);
@@ -76,7 +76,7 @@ std::string writeParticlesPly(const ExportParticles& of, const ExportFrame& fram
     out += "property uint id\nend_header\n";
     std::vector<size_t> order(of.position.size());
     std::iota(order.begin(), order.end(), size_t{0});
-    // Assimp takes a line's end that the data begin with for the header's (its issue 5341): another particle comes first then.
+    // Assimp reads a line end at the start of the data as part of the header (its issue 5341): another particle is written first then.
     const auto safe = std::find_if(order.begin(), order.end(), [&](size_t i) {
         std::string place;
         putPlace(place, vec3(of.position[i]), frame);
@@ -123,7 +123,7 @@ std::string writeParticlesVtp(const ExportParticles& of, const ExportFrame& fram
     addArray(out, "Float32", "mass", 1, bytesOf(of.mass));
     if (of.pressure) addArray(out, "Float32", "pressure", 1, bytesOf(*of.pressure));
     addArray(out, "UInt32", "id", 1, bytesOf(of.id));
-    // Each point is a cell of its own: what ParaView shows, and what its filters take or leave one by one.
+    // Each point is a cell of its own, which ParaView needs to show and to filter it.
     std::string cells, ends;
     for (size_t i = 0; i < count; ++i) {
         putLong(cells, i);

@@ -1,4 +1,4 @@
-// Particles to files: PLY, VTK, CSV. Of plain spans, so that a host can write what it has read of its FluidWorld.
+// Particles to files: PLY, VTK, CSV. From plain spans, so that a host can write particles that it has read back.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace rivulet {
 
-// The particles of a moment, all spans as long as `position`.
+// The particles at one time, all spans as long as `position`.
 struct ExportParticles {
     std::span<const vec4> position;  // xyz m, w density / rest density, as ParticleView::position without its free slots
     std::span<const vec4> velocity;  // xyz m/s
-    std::span<const uint32_t> id;    // stays with a particle from file to file; their order does not
+    std::span<const uint32_t> id;    // constant for a particle from file to file; the order is not
     std::span<const float> mass;     // kg
-    std::optional<std::span<const float>> pressure = {};  // Pa; nothing: left out
+    std::optional<std::span<const float>> pressure = {};  // Pa; nothing: not written
     double volume = 0;                                    // m^3, of a particle at rest density: spacing^3
     double time = 0;                                      // s, simulated
     double density(size_t i) const {                      // kg/m^3
@@ -33,12 +33,12 @@ struct ParticleFormat {
 };
 const Table<ParticleFormat>& particleFormats();
 
-// Numbers read back exactly: floats, and where the frame has an origin the places are doubles.
+// Numbers read back exactly: floats; places are doubles if the frame has an origin.
 std::string writeParticlesPly(const ExportParticles& of, const ExportFrame& frame = {});  // binary, little-endian; vertices without faces
 std::string writeParticlesVtp(const ExportParticles& of, const ExportFrame& frame = {});  // VTK's XML PolyData, its numbers in base64
-std::string writeParticlesCsv(const ExportParticles& of, const ExportFrame& frame = {});  // a head with units, then a line a particle
+std::string writeParticlesCsv(const ExportParticles& of, const ExportFrame& frame = {});  // a header with units, then one line a particle
 
-// A .pvd file: which .vtp shows which time, so that ParaView plays them at the right pace.
+// A .pvd file: the time of each .vtp, so that ParaView plays them at the right speed.
 struct TimedFile {
     double time = 0;   // s
     std::string file;  // relative to the .pvd; of plain letters

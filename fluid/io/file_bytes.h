@@ -1,4 +1,4 @@
-// Numbers into a file's bytes, little-endian whatever the machine.
+// Numbers as a file's bytes, little-endian on any machine.
 #pragma once
 
 #include <bit>
@@ -21,7 +21,7 @@ inline void putDouble(std::string& out, double number) { putLong(out, std::bit_c
 inline void putVector(std::string& out, const vec3& v) {
     for (int k = 0; k < 3; ++k) putFloat(out, v[k]);
 }
-// m; three doubles where the frame asks for them, else floats.
+// m; three doubles if frame.doubles(), else floats.
 inline void putPlace(std::string& out, const vec3& p, const ExportFrame& frame) {
     if (!frame.doubles()) return putVector(out, frame.turned(p));
     const dvec3 far = frame.place(p);

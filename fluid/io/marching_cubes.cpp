@@ -14,7 +14,7 @@ namespace rivulet {
 namespace {
 
 constexpr int kBisections = 12;   // of an edge: 2^-12 of a cell
-constexpr double kCorner = 1e-3;  // cells: a vertex keeps so far from an edge's ends, else triangles would have no area
+constexpr double kCorner = 1e-3;  // cells: least distance of a vertex from an edge's ends, else triangles would have no area
 
 // Corner k of a cell: bits 0, 1, 2 are x, y, z. An edge goes from a corner along an axis.
 ivec3 cornerAt(unsigned k) { return {static_cast<int>(k & 1U), static_cast<int>(k >> 1U & 1U), static_cast<int>(k >> 2U & 1U)}; }
@@ -45,7 +45,7 @@ Loops loopsOf(unsigned inside) {
         for (unsigned k = 0; k < 4; ++k) crossings += in(face[k]) != in(face[(k + 1) % 4]) ? 1 : 0;
         for (unsigned k = 0; k < 4; ++k) {
             if (in(face[k]) || !in(face[(k + 1) % 4])) continue;
-            unsigned last = k + 1;  // of the run of corners inside that begins there
+            unsigned last = k + 1;  // of the run of corners inside that begins at k
             while (in(face[(last + 1) % 4])) ++last;
             const unsigned entry = edgeOf(face[k], face[(k + 1) % 4]), leaving = edgeOf(face[last % 4], face[(last + 1) % 4]);
             next[entry] = leaving;
@@ -145,8 +145,8 @@ Result<SurfaceMesh> marchingCubes(const IsoSurface& surface, int cellsPerSpacing
     SurfaceMesh mesh;
     std::unordered_map<EdgeKey, uint32_t, EdgeHash> vertexOf;
     std::vector<EdgeKey> edges;                // of each vertex; those in the middle of a cell come after them
-    std::vector<std::vector<uint32_t>> rings;  // what each vertex in the middle is in the middle of
-    constexpr uint32_t kMiddle = 0x80000000U;  // marks them until it is known how many edges there are
+    std::vector<std::vector<uint32_t>> rings;  // the vertices about each vertex in the middle of a cell
+    constexpr uint32_t kMiddle = 0x80000000U;  // marks them until the number of edges is known
     for (const Crossed& c : cells) {
         const Loops loops = loopsOf(c.inside);
         for (unsigned l = 0; l < loops.count; ++l) {
@@ -159,7 +159,7 @@ Result<SurfaceMesh> marchingCubes(const IsoSurface& surface, int cellsPerSpacing
                 if (made) edges.push_back(key);
                 ring[k] = at->second;
             }
-            // A diagonal between two crossings of an ambiguous face could be the neighbour's, too.
+            // The neighbour could have the same diagonal between two crossings of an ambiguous face.
             if (loops.ambiguous[l] && length > 3) {
                 const auto middle = kMiddle | static_cast<uint32_t>(rings.size());
                 rings.emplace_back(ring.begin(), ring.begin() + length);

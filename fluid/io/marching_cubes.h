@@ -1,6 +1,6 @@
 // Marching cubes (Lorensen & Cline 1987) over an IsoSurface, without tables: in each cell the crossings of its edges are joined face by
-// face to loops. A face's crossings are joined as its four corners say, so that the cells on both sides agree: the mesh is closed, and each
-// edge has two triangles. On ambiguous faces the corners inside stay apart.
+// face to loops. A face's crossings are joined by its four corners alone, so that the cells on both sides agree: the mesh is closed, and
+// each edge has two triangles. On ambiguous faces the corners inside are not connected.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct SurfaceMesh {
 constexpr int kMaxCellsPerSpacing = 8;
 
 // `cellsPerSpacing`: 1 to kMaxCellsPerSpacing cells along a spacing. Error (badInput): another number. Error (failed): more vertices than
-// 32 bits can name.
+// 32 bits can count.
 Result<SurfaceMesh> marchingCubes(const IsoSurface& surface, int cellsPerSpacing = 2);
 
 }  // namespace rivulet

@@ -54,7 +54,7 @@ std::string writePly(const MeshView& mesh, const ExportFrame& frame) {
     const size_t start = out.size();
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         putPlace(out, mesh.positions[i], frame);
-        // Assimp takes a line's end that the data begin with for the header's (its issue 5341): one bit of the first number is in the way.
+        // Assimp reads a line end at the start of the data as part of the header (its issue 5341): one bit of the first number is changed.
         if (i == 0 && (out[start] == '\n' || out[start] == '\r')) out[start] = '\v';
         if (!mesh.normals.empty()) putVector(out, frame.turned(mesh.normals[i]));
     }

@@ -17,7 +17,8 @@ struct MeshFormat {
 };
 const Table<MeshFormat>& meshFormats();
 
-// Metres; with normals if the mesh has them. Numbers read back exactly, but for the last bits of a ply's first, see there.
+// Metres; with normals if the mesh has them. Numbers read back exactly, except one bit of the first number of some PLY files, see
+// mesh_file.cpp.
 std::string writeObj(const MeshView& mesh, const ExportFrame& frame = {});
 std::string writePly(const MeshView& mesh, const ExportFrame& frame = {});  // binary, little-endian
 

@@ -15,7 +15,7 @@ namespace rivulet {
 
 namespace {
 
-// The first byte is no letter and a line's end follows, so that a transfer as text shows.
+// The first byte is no letter and a line end follows, so that a transfer as text is detected.
 constexpr std::array<uint8_t, 8> kMagic = {0x89, 'R', 'R', 'E', 'C', '\r', '\n', 0x1A};
 constexpr uint32_t kByteOrder = 0x01020304, kOtherByteOrder = 0x04030201;
 constexpr uint32_t kVersion = 1;
@@ -27,21 +27,21 @@ struct Header {
     std::array<uint8_t, 8> magic;
     uint32_t byteOrder, version;
     uint32_t aboutBytes, zero;
-    uint64_t checksum;  // of all above, then of the text that follows
+    uint64_t checksum;  // of all members above, then of the text that follows
 };
 static_assert(sizeof(Header) == 32 && std::is_trivially_copyable_v<Header>);
 
 struct FrameHead {
     uint32_t mark, number;
     double time;
-    uint64_t packedBytes, bytes;  // as they follow; unpacked
+    uint64_t packedBytes, bytes;  // in the file; unpacked
     uint64_t checksum;            // of the packed bytes
     uint64_t headChecksum;        // of all above
 };
 static_assert(sizeof(FrameHead) == 48 && std::is_trivially_copyable_v<FrameHead>);
 
 struct IndexHead {
-    uint32_t mark, count;  // as many offsets follow, then the tail
+    uint32_t mark, count;  // count: of the offsets that follow, then the tail
 };
 static_assert(sizeof(IndexHead) == 8);
 
@@ -51,7 +51,7 @@ struct Tail {
 };
 static_assert(sizeof(Tail) == 16);
 
-// What a frame's bytes begin with.
+// The head of a frame's bytes.
 struct Counts {
     std::array<uint64_t, kArrays> items;
     Bounds box;
@@ -91,7 +91,7 @@ void eachArray(Frame& frame, F f) {
     f(frame.corners, k++);
 }
 
-// The first bytes of all items, then their second bytes: what is alike stands together.
+// The first bytes of all items, then their second bytes: similar bytes are adjacent and compress better.
 template <class T>
 std::vector<uint8_t> planesOf(const std::vector<T>& items) {
     std::vector<uint8_t> planes(items.size() * sizeof(T));
@@ -127,7 +127,7 @@ std::string pack(const RecordedFrame& frame, uint64_t& bytes) {
     return out;
 }
 
-// Nothing: what is wrong is in `why`.
+// Nothing: `why` has the fault.
 bool unpack(std::span<const std::byte> packed, uint64_t bytes, RecordedFrame& frame, std::string& why) {
     ArrayUnpacker unpacker(packed);
     std::vector<Counts> counts;
@@ -155,7 +155,7 @@ bool unpack(std::span<const std::byte> packed, uint64_t bytes, RecordedFrame& fr
     return why.empty();
 }
 
-// Arrays that go with the particles are as long as they are.
+// Arrays of the particles are all equally long, or empty.
 bool sensible(const RecordedFrame& f) {
     const size_t n = f.position.size();
     const auto fits = [n](const std::vector<vec4>& array) { return array.empty() || array.size() == n; };
@@ -180,7 +180,7 @@ Result<RecordingWriter> RecordingWriter::open(const std::string& path, const std
     return writer;
 }
 
-// Flushed, so that a run that is killed leaves what was drawn, and a full disk is heard of at once.
+// Flushed, so that a killed run leaves its frames, and a full disk is an error at once.
 Status RecordingWriter::put(const std::string& bytes, const std::string& what) {
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size() || std::fflush(file_.get()) != 0)
         return failed(fmt::format("{}: {} cannot be written: {}", path_, what, std::strerror(errno)));
@@ -265,7 +265,7 @@ Status RecordingReader::readHeader() {
     return ok();
 }
 
-// False: there is none, or it was damaged.
+// False: there is no index, or it is damaged.
 bool RecordingReader::readIndex() {
     Tail tail{};
     IndexHead head{};
@@ -280,7 +280,7 @@ bool RecordingReader::readIndex() {
     return whole;
 }
 
-// Frame by frame, as far as they are whole.
+// Finds the frames one by one, up to the last whole one.
 Status RecordingReader::scan() {
     uint64_t at = first_;
     FrameHead head{};

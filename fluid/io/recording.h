@@ -1,9 +1,9 @@
-// A recorded run as a file (.rrec): what each frame shows, so that it can be shown again without simulating, and from any frame on.
+// A recorded run as a file (.rrec): what each frame draws, to be shown again without simulating, from any frame.
 //
-// Numbers are those that were drawn, bit for bit: nothing is rounded. The file, in the byte order of the machine that wrote it: a header
+// Numbers are those that were drawn, bit for bit. The file, in the byte order of the machine that wrote it: a header
 // with a text, then for each frame 48 bytes of head and one zstd frame (packed_array.h) of its arrays, each sorted into planes of bytes;
-// at the end an index. A run that was killed leaves no index: it is found again frame by frame, and a frame that was cut off is left out.
-// XXH3 checks the header with the text, each head, each frame's bytes, the index.
+// at the end an index. A run that was killed leaves no index: the reader rebuilds it frame by frame and leaves out a frame that was cut
+// off. XXH3 checks the header with the text, each head, each frame's bytes, the index.
 #pragma once
 
 #include <array>
@@ -20,10 +20,10 @@ namespace rivulet {
 struct RecordedFrame {
     double time = 0;                              // s, simulated
     float spacing = 0;                            // m, of the particles
-    bool halves = false;                          // whether they may be drawn those of even id first, as FluidView::half
-    Bounds box;                                   // m, that the water is in
+    bool halves = false;                          // whether particles of even id may be drawn first, as FluidView::half
+    Bounds box;                                   // m, the world's box
     std::vector<vec4> position, velocity;         // as ParticleView::drawn and velocity, without free slots; in the order that was drawn
-    std::vector<uint32_t> id;                     // stays with a particle from frame to frame
+    std::vector<uint32_t> id;                     // constant for a particle from frame to frame
     std::vector<vec4> normal, absorption;         // as ParticleView; empty: none
     std::array<std::vector<vec4>, 3> ellipsoids;  // as ParticleView; empty: none
     std::vector<vec4> foam, foamVelocity;         // as ParticleView::foamDrawn and foamVelocity
@@ -33,9 +33,9 @@ struct RecordedFrame {
 
 class RecordingWriter {
   public:
-    // Begins the file, in the place of one that is there. `about`: what it is of, given back as it is. Error (failed): not writable.
+    // Begins the file and replaces an existing one. `about`: a text that the reader returns unchanged. Error (failed): not writable.
     static Result<RecordingWriter> open(const std::string& path, const std::string& about);
-    // Each is in the file when this returns. Error (failed): disk full, out of memory; what was added before stays valid.
+    // Writes a frame before it returns. Error (failed): disk full, out of memory; frames added before stay valid.
     Status add(const RecordedFrame& frame);
     // Writes the index. Error as add.
     Status close();
@@ -56,12 +56,12 @@ class RecordingWriter {
 
 class RecordingReader {
   public:
-    // Error (badInput: what is wrong with the file and where; failed: it cannot be read, out of memory): whatever its bytes are.
+    // For any bytes: error (badInput): a fault of the file, and where; (failed): it cannot be read, out of memory.
     static Result<RecordingReader> open(const std::string& path);
 
     const std::string& about() const { return about_; }
     size_t frames() const { return offsets_.size(); }  // at least 1
-    // A sentence where the file has no end: a run was killed, or a copy was cut off; "" else.
+    // A sentence if the file has no end, because the run was killed or a copy was cut off; else "".
     const std::string& cut() const { return cut_; }
     // Frame k < frames(). A frame of more than `memoryLimit` bytes is refused. Error: as open.
     Result<RecordedFrame> read(size_t k, size_t memoryLimit = size_t{16} << 30U);

@@ -1,4 +1,4 @@
-// Which Device simulates, and why: what --backend asks for, what the machine has, what auto chooses.
+// Backends: the Device that simulates, by --backend, by what the machine has, and by what `auto` chooses.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,14 @@
 namespace rivulet {
 
 struct BackendRow {
-    const char* name;  // as --backend takes it
+    const char* name;  // the value of --backend
     const char* doc;
 };
 Table<BackendRow> backends();  // auto, cpu, gl, cl
 
-// What the current OpenGL context is; `absent` when there is none.
+// The current OpenGL context; `absent` says why there is none.
 struct GlFacts {
-    std::string absent = "no OpenGL context was asked for";  // why there is none; empty: there is one
+    std::string absent = "no OpenGL context was asked for";  // empty: there is a context
     std::string renderer, version;
     bool software = false;  // it runs on the CPU: llvmpipe, softpipe
     bool present() const { return absent.empty(); }
@@ -31,16 +31,16 @@ struct BackendChoice {
     Backend backend = Backend::cpu;
     std::string why;  // half a sentence: "the OpenGL renderer llvmpipe is software"
 };
-// `wanted`: auto, cpu, gl or cl. gl only where `gl` is present; cl as asked, makeDevice finds out.
+// `wanted`: auto, cpu, gl or cl. gl only if `gl` is present. cl is not checked here; makeDevice does.
 BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl);
 
-// What --backend and --device ask for together; `backend` "" where it was not given, and is `otherwise` then. A device alone asks for cl.
-// Error (badInput): an unknown backend; a device of one that has none to choose among; an OpenCL device that is not there.
+// Resolves --backend and --device. An empty `backend` becomes `otherwise`, or cl if a device is given.
+// Error (badInput): an unknown backend; a device for a backend other than cl; an OpenCL device that does not exist.
 Status settleBackend(std::string& backend, const char* otherwise, const std::string& device);
 
-// The device that was asked for, of cl that which `clDevice` names (ClOptions::device). One that is absent: a notice in `log`, and a cpu
-// device. Error: none at all, the cpu's cannot fail. Where `gl` is present, its context must be current and outlive the device: OpenCL
-// shares memory with it if it can.
+// The wanted device; of cl the one that `clDevice` names (ClOptions::device). If it is absent, a cpu device is returned and `log` gets a
+// notice; there is no Error. If `gl` is present, its context must be current and outlive the device: OpenCL shares memory with it where
+// possible.
 std::unique_ptr<Device> makeDevice(std::string_view wanted, const GlFacts& gl, const Log& log, const std::string& clDevice = {});
 std::unique_ptr<Device> makeCpu();  // on all cores
 

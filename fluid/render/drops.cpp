@@ -26,7 +26,7 @@ void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         glEnable(GL_BLEND);
         glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-        gpu::Program& p = layers.fluidDepth ? programs.dropsOverWater : programs.drops;
+        gpu::Program& p = programs[layers.fluidDepth ? "drops over water" : "drops"];
         p.use();
         p.set("shutter", kShutter);
         p.set("refractiveIndex", d.look.refractiveIndex);

@@ -52,12 +52,12 @@ TextureDesc depthDesc(const FluidDraw& d) { return {.width = d.view.width, .heig
 
 // A filter's pass; the last one puts the spray back and cuts at the box.
 template <class Setup>
-TextureHandle addStep(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, FilterPrograms& filter, TextureHandle tiles,
+TextureHandle addStep(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FilterRow& own, TextureHandle tiles,
                       TextureHandle from, TextureHandle spheres, bool final, Setup setup) {
     const float huge = 1.0e5F;
     const Bounds box = d.fluid.bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : d.fluid.bounds;
     return addTiled(
-        graph, "smooth", programs, d, final ? filter.last : filter.step, tiles, from, depthDesc(d), kFar,
+        graph, "smooth", programs, d, programs.filter(own, final), tiles, from, depthDesc(d), kFar,
         [=](Program& p, const PassContext& c) {
             setup(p);
             if (!final) return;
@@ -68,13 +68,14 @@ TextureHandle addStep(FrameGraph& graph, FluidPrograms& programs, const FluidDra
         final ? spheres : TextureHandle{});
 }
 
-TextureHandle addNarrowRange(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+TextureHandle addNarrowRange(const FilterRow& own, FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles,
+                             TextureHandle spheres) {
     const FilterReach f = filterReach(d.look, d.fluid.spacing);
     const Levels levels = levelsOf(d, f.reach);
     TextureHandle depth = spheres;
     for (size_t k = 0; k < levels.steps.size(); ++k) {
         const float step = levels.steps[k];
-        depth = addStep(graph, programs, d, programs.narrowRange, tiles, depth, spheres, k + 1 == levels.steps.size(), [=](Program& p) {
+        depth = addStep(graph, programs, d, own, tiles, depth, spheres, k + 1 == levels.steps.size(), [=](Program& p) {
             p.set("step_", step * levels.unit);
             p.set("maxStep", step * kUnitPixels);
             p.set("range", f.range);
@@ -84,11 +85,12 @@ TextureHandle addNarrowRange(FrameGraph& graph, FluidPrograms& programs, const F
     return depth;
 }
 
-TextureHandle addBilateral(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+TextureHandle addBilateral(const FilterRow& own, FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles,
+                           TextureHandle spheres) {
     const FilterReach f = filterReach(d.look, d.fluid.spacing);
     TextureHandle depth = spheres;
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
-        depth = addStep(graph, programs, d, programs.bilateral, tiles, depth, spheres, axis.y == 1, [=](Program& p) {
+        depth = addStep(graph, programs, d, own, tiles, depth, spheres, axis.y == 1, [=](Program& p) {
             p.set("axis", axis);
             p.set("reach", f.reach);
             p.set("range", f.range);
@@ -97,38 +99,46 @@ TextureHandle addBilateral(FrameGraph& graph, FluidPrograms& programs, const Flu
     return depth;
 }
 
-TextureHandle addCurvatureFlow(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
+TextureHandle addCurvatureFlow(const FilterRow& own, FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles,
+                               TextureHandle spheres) {
     const FilterReach f = filterReach(d.look, d.fluid.spacing);
     const Levels levels = levelsOf(d, f.reach);
     TextureHandle depth = spheres;
     for (size_t k = 0; k < 2 * levels.steps.size(); ++k) {  // each twice: a step flows half as far as a level smooths
         const float step = levels.steps[k / 2];
-        depth =
-            addStep(graph, programs, d, programs.curvatureFlow, tiles, depth, spheres, k + 1 == 2 * levels.steps.size(), [=](Program& p) {
-                p.set("step_", step * levels.unit);
-                p.set("maxStep", step * kUnitPixels);
-                p.set("range", f.range);
-            });
+        depth = addStep(graph, programs, d, own, tiles, depth, spheres, k + 1 == 2 * levels.steps.size(), [=](Program& p) {
+            p.set("step_", step * levels.unit);
+            p.set("maxStep", step * kUnitPixels);
+            p.set("range", f.range);
+        });
     }
     return depth;
 }
 
 // The spheres as they are: what the others begin with.
-TextureHandle addNone(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle spheres) {
-    return addStep(graph, programs, d, programs.unfiltered, tiles, spheres, spheres, true, [](Program&) {});
+TextureHandle addNone(const FilterRow& own, FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles,
+                      TextureHandle spheres) {
+    return addStep(graph, programs, d, own, tiles, spheres, spheres, true, [](Program&) {});
 }
 
 constexpr FilterRow kRows[] = {
-    {"narrow_range", "depths near a straight line are one surface (Truong & Yuksel 2018), in levels with holes", addNarrowRange},
-    {"bilateral", "the thesis's: near in the picture and near in depth (Tomasi & Manduchi 1998), one axis after the other", addBilateral},
-    {"curvature_flow", "the surface moves by its mean curvature (van der Laan et al. 2009)", addCurvatureFlow},
-    {"none", "the particles' depth as it is", addNone},
+    {"narrow_range", "depths near a straight line are one surface (Truong & Yuksel 2018), in levels with holes",
+     "screen_space/narrow_range.frag", true, addNarrowRange},
+    {"bilateral", "the thesis's: near in the picture and near in depth (Tomasi & Manduchi 1998), one axis after the other",
+     "screen_space/bilateral.frag", true, addBilateral},
+    {"curvature_flow", "the surface moves by its mean curvature (van der Laan et al. 2009)", "screen_space/curvature_flow.frag", true,
+     addCurvatureFlow},
+    {"none", "the particles' depth as it is", "screen_space/unfiltered.frag", false, addNone},
 };
 constexpr Table<FilterRow> kFilters{kRows};
 
 }  // namespace
 
 const Table<FilterRow>& filters() { return kFilters; }
+
+const FilterRow& unfiltered() {
+    return *std::find_if(std::begin(kRows), std::end(kRows), [](const FilterRow& row) { return !row.smooths; });
+}
 
 FilterReach filterReach(const FluidLook& look, float spacing) {
     const auto orOf = [&](float given, float spacings) { return given > 0 ? given : spacings * spacing; };

@@ -1,5 +1,5 @@
-// Filters: the ways to make a surface of the particles' depth. What they are told is in metres: neither the resolution nor the distance
-// changes the surface that they find.
+// Filters: smooth the particles' depth into a surface. Their lengths are in metres, so that the surface depends neither on the resolution
+// nor on the distance.
 #pragma once
 
 #include <utility>
@@ -12,20 +12,24 @@ namespace rivulet {
 struct FilterRow {
     const char* name;
     const char* doc;
-    // `spheres`: rg32f, depth of the bulk and of the spray, m. The depth of the surface: r32f, m, 1e6 where there is none.
-    gpu::TextureHandle (*add)(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles,
-                              gpu::TextureHandle spheres);
+    const char* shader;  // of its passes, under shaders/; includes filter.glsl and is compiled with LAST defined for the last pass
+    bool smooths;        // false: one pass, which leaves the depth as it is
+    // `own`: this row. `spheres`: rg32f, depth of the bulk and of the spray, m. Returns the depth of the surface: r32f, m, 1e6 where there
+    // is none.
+    gpu::TextureHandle (*add)(const FilterRow& own, gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw,
+                              gpu::TextureHandle tiles, gpu::TextureHandle spheres);
 };
 const Table<FilterRow>& filters();
+const FilterRow& unfiltered();  // the row that does not smooth
 
-// The look's figures, those that are 0 from the spacing; m.
+// The lengths of the look, m; one that is 0 follows from the spacing.
 struct FilterReach {
     float reach, range, bend;
 };
 FilterReach filterReach(const FluidLook& look, float spacing);
 
-// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere. `setup(program, context)` sets what the program wants;
-// unit 0 is the source's, 1 the tiles'.
+// A pass over the tiles from one texture to another of `desc`, `empty` elsewhere. `setup(program, context)` sets the uniforms;
+// texture unit 0 holds the source, unit 1 the tiles.
 template <class Setup>
 gpu::TextureHandle addTiled(gpu::FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, gpu::Program& program,
                             gpu::TextureHandle tiles, gpu::TextureHandle from, const gpu::TextureDesc& desc, float empty, Setup setup,

@@ -1,4 +1,4 @@
-// FluidLook: how a fluid is to look, whoever draws it.
+// FluidLook: the appearance of a fluid, for every renderer.
 #pragma once
 
 #include "engine/core/math.h"
@@ -8,9 +8,17 @@ namespace rivulet {
 
 struct FilterRow;  // fluid/render/filters.h
 
+// What the colour of a point shows.
 enum class ColourBy { speed, density, id, dye, normal, surface };
+struct ColourRow {
+    const char* name;
+    const char* doc;
+    ColourBy colourBy;
+    bool normals = false;  // shows the surface's normals, which the world then computes
+};
+const Table<ColourRow>& colourings();
 
-// What of the water is shown: the water, or what it is made from.
+// The water, or an intermediate result of it.
 enum class WaterView { water, normals, depth, spheres, thickness };
 struct ViewRow {
     const char* name;
@@ -22,14 +30,14 @@ const Table<ViewRow>& waterViews();
 struct FluidLook {
     ColourBy colourBy = ColourBy::speed;   // points
     float fullSpeed = 3.0F;                // m/s: the end of the colour map
-    const FilterRow* filter = nullptr;     // of the surface's depth; null: the first row of filters()
-    float smoothing = 0.0F;                // m, reach of the smoothing, two deviations; 0 = from the spacing
-    float smoothingRange = 0.0F;           // m, how far apart depths of one surface may be; 0 = from the spacing
+    const FilterRow* filter = nullptr;     // of the surface's depth: a row of filters(); null: the first
+    float smoothing = 0.0F;                // m, reach of the smoothing, two standard deviations; 0 = 1.8 spacings
+    float smoothingRange = 0.0F;           // m, largest difference of depths on one surface; 0 = 4.2 spacings
     vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
     vec3 scattering{0.05F, 0.30F, 0.27F};  // 1/m, reduced, per channel
     float refractiveIndex = 1.333F;        // > 1
     WaterView view = WaterView::water;     // screen_space
-    bool fast = false;                     // half the resolution for the surface, no reflection of the picture in itself
+    bool fast = false;                     // the surface at half the resolution, no reflection of the picture in itself
 };
 
 }  // namespace rivulet

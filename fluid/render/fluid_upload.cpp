@@ -99,7 +99,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     }
     out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
     // The points' shader reads normals where it else reads velocities. There are none before the first step.
-    const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && particles.normal != nullptr;
+    const bool normals = look.showsNormals() && particles.normal != nullptr;
     std::vector<Array> arrays;
     const auto wanted = [&](const Buffer* from, Target& to, unsigned& name, bool ofParticles) {
         if (from == nullptr) return;
@@ -138,7 +138,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     return out;
 }
 
-// All arrays in one copy, in the Device's order. Error (failed): out of GPU memory. What OpenCL cannot do, refused_ says.
+// All arrays in one copy, in the Device's order. Error (failed): out of GPU memory. A failure of OpenCL is stored in refused_.
 Status FluidUpload::share(std::span<const Array> arrays) {
     std::vector<GlSharing::Copy> copies;
     Status done = ok();
@@ -172,7 +172,7 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
     out.radius = look.radiusSpacings * frame.spacing;
     out.bounds = frame.box;
     out.foamCount = static_cast<uint32_t>(frame.foam.size());
-    const bool normals = (look.colourBy == "normal" || look.colourBy == "surface") && !frame.normal.empty();
+    const bool normals = look.showsNormals() && !frame.normal.empty();
     std::vector<Array> arrays;
     const auto wanted = [&](const std::vector<vec4>& from, Target& to, unsigned& name, bool ofParticles) {
         if (!from.empty()) arrays.push_back({nullptr, std::as_bytes(std::span(from)), &to, &name, from.size() * sizeof(vec4), ofParticles});

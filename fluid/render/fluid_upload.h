@@ -1,4 +1,4 @@
-// FluidUpload: a world's particles as GL buffers, whichever Device simulates them.
+// FluidUpload: the particles of a world as OpenGL buffers, from any Device.
 #pragma once
 
 #include <array>
@@ -16,14 +16,14 @@
 
 namespace rivulet {
 
-// How particles come to be drawn.
+// How the particles reached OpenGL.
 struct TransferFacts {
     // "same memory": the Device's own buffers (gl); "shared with OpenCL": copied by the GPU (cl); "ring": through mapped memory.
     const char* way = "";
-    std::string why;     // of the ring: half a sentence, why nothing is shared
-    double ms = 0;       // on the wall, the last time, a wait for the simulation included
-    size_t bytes = 0;    // that went through the host
-    uint64_t waits = 0;  // so far: frames in which the ring was full
+    std::string why;     // of the ring: why no memory is shared, half a sentence
+    double ms = 0;       // on the wall, of the last view(), with the wait for the simulation
+    size_t bytes = 0;    // copied through host memory
+    uint64_t waits = 0;  // frames so far in which the ring was full
 };
 std::string sentenceOf(const TransferFacts& facts);  // "ring: 0.31 ms, 1.2 MB (the cpu simulates)"
 
@@ -32,14 +32,14 @@ class FluidUpload {
     // Valid until the next view() and until the world's next step. Error (failed): out of GPU memory.
     // `drops`: those in the air, as FluidView::drops has them.
     Result<FluidView> view(const FluidWorld& world, const FluidLookParams& look, std::span<const vec4> drops = {});
-    // The same of a frame that was recorded, whatever simulated it.
+    // The same for a recorded frame.
     Result<FluidView> view(const RecordedFrame& frame, const FluidLookParams& look);
-    size_t bytes() const;                                   // of OpenGL's memory, what is brought over
-    void limitMemory(size_t bytes) { mostBytes_ = bytes; }  // view() fails rather than hold more
+    size_t bytes() const;                                   // of OpenGL memory that it holds
+    void limitMemory(size_t bytes) { mostBytes_ = bytes; }  // the limit of bytes(): view() fails beyond it
     const TransferFacts& facts() const { return facts_; }   // of the last view()
 
   private:
-    // An OpenGL buffer, and how OpenCL sees it: let go first, also when both are destroyed.
+    // An OpenGL buffer, and OpenCL's view of it, which is released first.
     struct Target {
         gpu::Buffer memory;
         GlSharing::Wrapped seen;
@@ -59,7 +59,7 @@ class FluidUpload {
         Target* to;
         unsigned* name;
         size_t bytes;
-        bool ofParticles;  // sorted where the picture is hurried
+        bool ofParticles;  // sorted unless quality is fine
     };
     Status room(std::span<const Array> arrays, size_t others, bool ring) const;
     void follow(std::shared_ptr<const GlSharing> sharing);
@@ -72,10 +72,10 @@ class FluidUpload {
     Target position_, velocity_, id_, absorption_;
     std::array<Target, 2> foam_;
     std::array<Target, 3> ellipsoids_;
-    std::shared_ptr<const GlSharing> sharing_;  // what the Targets were last seen by
-    std::string refused_;                       // why it is no longer used, half a sentence
+    std::shared_ptr<const GlSharing> sharing_;  // that the Targets were last wrapped by
+    std::string refused_;                       // why sharing_ is no longer used, half a sentence
     std::vector<vec4> vectors_;
-    std::vector<uint32_t> ids_, order_;  // ids_: of what is brought over
+    std::vector<uint32_t> ids_, order_;  // ids_: of the copied particles
     TransferFacts facts_;
     size_t mostBytes_ = SIZE_MAX;
 };

@@ -17,7 +17,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         glEnable(GL_BLEND);
         glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-        gpu::Program& p = layers.fluidDepth ? programs.foamOverWater : programs.foam;
+        gpu::Program& p = programs[layers.fluidDepth ? "foam over water" : "foam"];
         p.use();
         p.set("radius", 0.15F * d.fluid.spacing);
         p.texture("sceneDepth", 0, c.texture(d.depth));

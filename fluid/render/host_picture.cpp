@@ -80,7 +80,7 @@ Status usable(const FrameView& v) {
     return ok();
 }
 
-// What water can be drawn into. `depth`: as found.
+// Error (badInput): water cannot be drawn into the target.
 Status usable(const HostTarget& t) {
     if (t.width <= 0 || t.height <= 0)
         return badInput(fmt::format("the target is {} x {} pixels; skip the frame while a window is closed", t.width, t.height));
@@ -166,7 +166,7 @@ Status HostPicture::takeDepth(const HostTarget& t) {
             GLuint name = 0;
             glCreateTextures(GL_TEXTURE_2D, 1, &name);
             rawDepth_ = gpu::TextureName(name);
-            gpu::forgetGlErrors();
+            gpu::clearGlErrors();
             glTextureStorage2D(name, 1, format, raw_.width(), raw_.height());
             if (gpu::takeGlError() != GL_NO_ERROR) continue;
             glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -178,7 +178,7 @@ Status HostPicture::takeDepth(const HostTarget& t) {
             glNamedFramebufferDrawBuffer(name, GL_NONE);
             rawFormat_ = format;
         }
-        gpu::forgetGlErrors();
+        gpu::clearGlErrors();
         glBlitNamedFramebuffer(t.framebuffer, rawFramebuffer_.name(), t.x, t.y, t.x + t.width, t.y + t.height, 0, 0, t.width, t.height,
                                GL_DEPTH_BUFFER_BIT, GL_NEAREST);
         if (gpu::takeGlError() == GL_NO_ERROR) return ok();

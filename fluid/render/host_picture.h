@@ -1,5 +1,5 @@
-// HostPicture: what a host has drawn so far, as our passes want it: linear radiance and our own window depth; and the way back, into the
-// host's framebuffer, only where water is. Whatever the host's formats, samples and depth conventions are.
+// HostPicture: converts a host's picture to linear radiance and Rivulet's window depth, and writes the result back into the host's
+// framebuffer where there is water. Any format, number of samples and depth convention.
 #pragma once
 
 #include "engine/gpu/framebuffer.h"
@@ -10,7 +10,7 @@
 
 namespace rivulet {
 
-// How the host's depths come about; asked of OpenGL while its state is still the host's own.
+// The host's depth convention, read from OpenGL before gpu::HostState changes its state.
 struct HostDepth {
     bool zeroToOne = false, upperLeft = false;  // glClipControl: GL_ZERO_TO_ONE, GL_UPPER_LEFT
     float near = 0, far = 1;                    // glDepthRange
@@ -22,18 +22,18 @@ class HostPicture {
     // Error (failed): a shader does not compile.
     static Result<HostPicture> create(const ShaderFiles& files);
 
-    // Error (badInput): the host has transform feedback under way, or a query that would count what we draw. Conditional rendering cannot
-    // be asked for. Before gpu::HostState.
+    // Error (badInput): transform feedback is active, or a query that would count these draws. Conditional rendering cannot be detected.
+    // Call it before gpu::HostState.
     static Status nothingUnderWay();
     // Fetches the scene, in the plain state that gpu::HostState makes. Error (badInput): a target of no size, that is incomplete, without a
     // colour or of whole numbers; a view that is not finite or scales; a projection that is not a perspective; GL_UPPER_LEFT. (failed): out
     // of memory; a depth that cannot be copied.
     Status take(const HostTarget& target, const HostDepth& depth, const FrameView& host);
-    const FrameView& view() const { return view_; }         // the host's, with our way of depths, and the target's size
+    const FrameView& view() const { return view_; }         // the host's, with Rivulet's depth convention and the target's size
     const gpu::Texture& colour() const { return colour_; }  // rgba16f, linear radiance
     const gpu::Texture& depth() const { return depth_; }    // depth32f, window depth by view()'s projection
     size_t bytes() const;                                   // of its textures
-    void limit(size_t bytes) { most_ = bytes; }             // take() fails rather than hold more
+    void limit(size_t bytes) { most_ = bytes; }             // the limit of bytes(): take() fails beyond it
 
     // Puts a picture into the target where it differs from colour(), and its depth: that of water, `fluidDepth` (m; 1e6 where there is
     // none), or null: depth().

@@ -1,37 +1,23 @@
 #include "fluid/render/look_params.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <vector>
 
 #include "fluid/render/filters.h"
+#include "fluid/render/renderers.h"
 #include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 
-namespace {
-
-Result<ColourBy> colourByName(const std::string& name) {
-    if (name == "speed") return ColourBy::speed;
-    if (name == "density") return ColourBy::density;
-    if (name == "id") return ColourBy::id;
-    if (name == "dye") return ColourBy::dye;
-    if (name == "normal") return ColourBy::normal;
-    if (name == "surface") return ColourBy::surface;
-    return badInput(fmt::format("look.colourBy '{}' is not known; use speed, density, id, dye, normal or surface", name));
-}
-
-}  // namespace
-
 void FluidLookParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> renderers = {"points", "screen_space", "reference"};
-    static const std::vector<std::string> colourings = {"speed", "density", "id", "dye", "normal", "surface"};
-    v.choice({.name = "renderer",
-              .doc = "particles as points, a water surface found on the screen, or their iso-surface at full precision, seconds a frame"},
-             renderer, renderers);
+    static const std::vector<std::string> rendererNames = renderers().names(), colourNames = colourings().names();
+    v.choice({.name = "renderer", .doc = "how the water is drawn; rivulet list renderers says what each is"}, renderer, rendererNames);
     v.choice({.name = "colourBy",
               .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"},
-             colourBy, colourings);
+             colourBy, colourNames);
     static const std::vector<std::string> splatKinds = {"spheres", "ellipsoids"}, qualities = {"auto", "fast", "fine"};
     static const std::vector<std::string> viewNames = waterViews().names();
     v.choice(
@@ -66,12 +52,27 @@ void FluidLookParams::visit(ParamVisitor& v) {
             refractiveIndex);
 }
 
+bool FluidLookParams::showsNormals() const {
+    const ColourRow* row = colourings().find(colourBy);
+    return row != nullptr && row->normals;
+}
+
+bool FluidLookParams::showsEllipsoids() const {
+    const auto draws = [](const std::string& name) {
+        const RendererRow* row = renderers().find(name);
+        return row != nullptr && row->ellipsoids;
+    };
+    return splats == "ellipsoids" && quality != "fast" && (draws(renderer) || draws(split));
+}
+
 Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& liquidName) {
-    Result<ColourBy> colourBy = colourByName(params.colourBy);
-    if (!colourBy) return colourBy.error();
+    const ColourRow* colour = colourings().find(params.colourBy);
+    if (colour == nullptr)
+        return badInput(
+            fmt::format("look.colourBy '{}' is not known; there are: {}", params.colourBy, fmt::join(colourings().names(), ", ")));
     const FilterRow* filter = filters().find(params.filter);
     if (filter == nullptr) return badInput(fmt::format("look.filter '{}' is not known", params.filter));
-    FluidLook look{.colourBy = *colourBy, .filter = filter, .smoothing = params.smoothing, .smoothingRange = params.smoothingRange};
+    FluidLook look{.colourBy = colour->colourBy, .filter = filter, .smoothing = params.smoothing, .smoothingRange = params.smoothingRange};
     const ViewRow* view = waterViews().find(params.view);
     if (view == nullptr) return badInput(fmt::format("look.view '{}' is not known", params.view));
     look.view = view->view;
@@ -87,6 +88,12 @@ Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& 
     else if (liquid != nullptr)
         look.scattering = liquid->scattering;
     return look;
+}
+
+FluidParams fluidForLook(FluidParams fluid, const FluidLookParams& look) {
+    if (look.showsNormals() && fluid.forces.normals == "none") fluid.forces.normals = "thesis";
+    fluid.ellipsoids = fluid.ellipsoids || look.showsEllipsoids();
+    return fluid;
 }
 
 }  // namespace rivulet

@@ -3,6 +3,13 @@
 
 namespace rivulet {
 
+namespace {
+
+constexpr ProgramRow kPrograms[] = {
+    {"points", "screen_space/points.vert", "screen_space/points.frag"},
+    {"points shade", "screen_space/tile.vert", "screen_space/points_shade.frag"},
+};
+
 FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     using gpu::PassContext;
     using gpu::Usage;
@@ -19,7 +26,7 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
         target.clearColour(vec4(0.0F), 0);
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         glEnable(GL_DEPTH_TEST);
-        gpu::Program& p = programs.points;
+        gpu::Program& p = programs["points"];
         p.use();
         p.set("radius", d.fluid.radius);
         p.set("colourBy", static_cast<int>(d.look.colourBy));
@@ -34,7 +41,7 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
                {d.colour}, [=, &programs](PassContext& c) {
                    c.drawTo({d.colour});
                    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
-                   gpu::Program& p = programs.pointsShade;
+                   gpu::Program& p = programs["points shade"];
                    p.use();
                    p.texture("surface", 0, c.texture(surface));
                    p.texture("normal", 1, c.texture(normal));
@@ -46,6 +53,16 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
                    programs.drawTiles(p, c.texture(tiles), 6);
                });
     return {d.colour, {}};
+}
+
+}  // namespace
+
+RendererRow pointsRenderer() {
+    return {.name = "points",
+            .doc = "every particle as a lit sphere, coloured by speed, density, id, dye, normal or surface",
+            .opaque = true,
+            .add = addPoints,
+            .programs = kPrograms};
 }
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// Raymarch: the picture that an IsoSurface makes, at full precision, on all cores: what the renderers are measured against.
+// Raymarch: the picture of an IsoSurface at full precision, on all cores: the reference for the renderers.
 #pragma once
 
 #include <functional>
@@ -12,22 +12,22 @@ namespace rivulet {
 
 constexpr float kNoDepth = 1.0e6F;  // m: shaders/render/frame.glsl's depth of nothing
 
-// A pixel each, in OpenGL's order: the bottom row first.
+// One value per pixel in OpenGL's order: the bottom row first.
 struct RaymarchPicture {
     int width = 0, height = 0;
-    std::vector<float> depth;  // m along the view axis, to where the ray enters the water; kNoDepth: it does not
+    std::vector<float> depth;  // m along the view axis to the point where the ray enters the water; kNoDepth: it misses
     std::vector<vec4> water;   // xyz: the normal there, view space, unit, w: m of water along the whole ray
 };
 
 struct RaymarchOptions {
-    Bounds box;                    // m, world: the water is cut there, flat as glass; empty: it is not
-    std::span<const float> until;  // m along the view axis, a pixel each: no water is seen behind; empty: the far plane
-    // The share that is done, from whichever thread has just finished a tile, one at a time. false: leave the rest empty.
+    Bounds box;                    // m, world: the water is cut at its faces; empty: no cut
+    std::span<const float> until;  // m along the view axis, one per pixel: where the ray ends; empty: at the far plane
+    // Called with the finished share, 0 to 1, after each tile, from any thread, one call at a time. false: the rest stays empty.
     std::function<bool(double)> progress = [](double) { return true; };
 };
 
 // Rays through the centres of pixels, from the near plane to the far one. Cells without particles are skipped; elsewhere a step is 0.08 to
-// 0.7 spacings, by how far the value is from the surface's, and a peak between steps is looked at. Hits are bisected to 1e-4 spacings.
+// 0.7 spacings, longer the farther the value is from the surface's; a peak between steps is checked. Hits are bisected to 1e-4 spacings.
 RaymarchPicture raymarch(const IsoSurface& surface, const FrameView& view, const RaymarchOptions& options = {});
 
 }  // namespace rivulet

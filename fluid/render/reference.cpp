@@ -8,7 +8,7 @@
 
 namespace rivulet {
 
-// What the last picture was marched from, and what came of it.
+// The last picture and its input.
 struct MarchedReference {
     std::vector<vec4> particles;
     std::vector<float> until;
@@ -55,12 +55,12 @@ const RaymarchPicture& march(std::shared_ptr<MarchedReference>& last, MarchedRef
     const Result<IsoSurface> surface = IsoSurface::create(now.particles, now.spacing);
     ASSERT(surface, "a FluidView has a spacing of more than 0");
     bool whole = true;
-    const auto told = [&](double share) {
+    const auto report = [&](double share) {
         const bool on = progress(share);
         whole = whole && on;
         return on;
     };
-    now.picture = raymarch(*surface, now.view, {.box = now.box, .until = now.until, .progress = told});
+    now.picture = raymarch(*surface, now.view, {.box = now.box, .until = now.until, .progress = report});
     last = std::make_shared<MarchedReference>(std::move(now));
     if (!whole) last->particles.clear();  // marched anew the next time
     return last->picture;
@@ -95,6 +95,13 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
                    upload(c.texture(water.normals), picture.water);
                });
     return addShade(graph, programs, d, water);
+}
+
+RendererRow referenceRenderer() {
+    return {.name = "reference",
+            .doc = "the same shading of the particles' iso-surface, ray-marched at full precision: seconds a frame",
+            .opaque = false,
+            .add = addReference};
 }
 
 }  // namespace rivulet

@@ -1,92 +1,41 @@
 // Renderers: the ways to draw a fluid, as passes added to a frame graph after the scene's opaque pass.
 #pragma once
 
-#include <array>
 #include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "engine/compute/kernel_source.h"
 #include "engine/core/table.h"
 #include "engine/gpu/frame_graph.h"
-#include "engine/gpu/program.h"
-#include "engine/gpu/vertex_array.h"
 #include "engine/render/frame_view.h"
 #include "fluid/render/fluid_look.h"
+#include "fluid/render/fluid_programs.h"
 #include "fluid/render/fluid_view.h"
 
 namespace rivulet {
 
-// A filter's passes: each, and the one that ends it.
-struct FilterPrograms {
-    gpu::Program step, last;
-};
-
-// What draws particles' depth and thickness: as spheres, or as ellipsoids. Ink: particles differ in absorption.
-struct SplatPrograms {
-    gpu::Program occluder, markTiles, depth, thickness, thicknessInk;
-};
-
-// What a quad's vertex shader reads of each row.
-struct QuadRows {
-    unsigned buffer = 0;  // GL name; 0: none
-    GLenum format = GL_RGBA32F;
-};
-
-struct MarchedReference;
-
-// The programs of all renderers. Whose particles are drawn is set anew each frame.
-struct FluidPrograms {
-    gpu::Program waterBlocks, waterTiles, refine;
-    gpu::Program points, pointsShade, blur, shade, lightWater, lightWaterFirst, lightWaterLast, shadeInk, showView;
-    gpu::Program shadeNormals, shadeNormalsInk;  // Ink: particles differ in absorption; Normals: they are given
-    SplatPrograms spheres, ellipsoids;
-    SplatPrograms& splats(const FluidView& fluid) { return fluid.ellipsoids[0] != 0 ? ellipsoids : spheres; }
-    gpu::Program drops, dropsOverWater, foam, foamOverWater;
-    FilterPrograms narrowRange, bilateral, curvatureFlow, unfiltered;
-    gpu::VertexArray quads, none;
-    gpu::Buffer quadIndices;
-    std::array<gpu::TextureName, 7> rowTextures;
-    std::shared_ptr<MarchedReference> marched;  // by the row `reference`, the last time
-    uint32_t mostTexels = 0;                    // of a buffer that shaders read as a texture, as this GPU has it
-    static Result<FluidPrograms> create(const ShaderFiles& files);
-    std::vector<gpu::Program*> all();
-    // They were made in another context, with which the one that is current now shares its objects.
-    void contextChanged();
-    // Error (failed): more rows than this GPU can read, and those beyond would lie anywhere.
-    Status fits(const FluidView& fluid) const;
-    // A quad for each of `count` rows, whose vertex shader includes quads.glsl, with the program in use; rows[k] is its ROWS(k, ...).
-    void drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows);
-    // The same for one of `each` particles, whose vertex shader includes particle.glsl. They lie in the order of their cells: one that is
-    // larger by the cube root of `each` stands for the others.
-    void drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t count);
-    // The marked ones, with the program in use, whose vertex shader is tile.vert; the mask is bound to `unit`.
-    void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
-};
-
-// What a renderer works with: the frame, the water, and the scene as drawn so far.
+// The input of a renderer: the frame, the water, and the scene as drawn so far.
 struct FluidDraw {
     FrameView view;
     FluidView fluid;
     FluidLook look;
-    gpu::BufferHandle frame;                                 // a FrameParams (shaders/render/frame.h)
-    gpu::BufferHandle coarse;                                // of a picture half as large each way, rounded up; empty: look.fast is finer
-    gpu::BufferHandle position, velocity, id, absorption;    // fluid's, imported
-    std::vector<gpu::BufferHandle> ellipsoids;               // likewise; empty: spheres
+    gpu::BufferHandle frame;   // a FrameParams (shaders/render/frame.h)
+    gpu::BufferHandle coarse;  // the same for half the width and height, rounded up; empty: the surface is found at full resolution
+    gpu::BufferHandle position, velocity, id, absorption;    // of `fluid`, imported
+    std::vector<gpu::BufferHandle> ellipsoids;               // of `fluid`, imported; empty: spheres
     gpu::TextureHandle colour;                               // rgba16f, linear radiance
     gpu::TextureHandle depth;                                // window depth
     gpu::TextureHandle glassDepth;                           // window depth of the nearest clear face; empty: nothing is clear
     gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
-    // Draws what is clear and lies behind the water into `colour`, before the water is; `fluidDepth` as FluidLayers has it.
+    // Draws transparent objects behind the water into `colour`; called before the water is drawn. `fluidDepth`: of FluidLayers.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
-    // Of a renderer that takes its time: the share that is done; false: it need not go on.
+    // Called by a slow renderer with the finished share, 0 to 1; false: it may stop.
     std::function<bool(double)> progress = [](double) { return true; };
 };
 
 struct FluidLayers {
     gpu::TextureHandle colour;      // the picture with the fluid in it
-    gpu::TextureHandle fluidDepth;  // r32f, m, 1e6 where there is none; empty if the fluid went into the scene's depth instead
+    gpu::TextureHandle fluidDepth;  // r32f, m, 1e6 where there is none; empty if the renderer is opaque
 };
 
 struct RendererRow {
@@ -94,46 +43,47 @@ struct RendererRow {
     const char* doc;
     bool opaque;  // draws into the scene's colour and depth
     FluidLayers (*add)(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
+    std::span<const ProgramRow> programs = {};  // that add() draws with; of the table's rows FluidPrograms::create makes them
+    bool ellipsoids = false;                    // reads FluidDraw::ellipsoids, which the world then computes
 };
 const Table<RendererRow>& renderers();
 
-// What the light passes through on its way: x thickness (m), y that times its depth (0..1), z thickness relative to the surroundings (m).
+// A map of the water along the light: x thickness (m), y thickness times depth (0..1), z thickness relative to the surroundings (m).
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
 
 // The particles' buffers, as a pass that draws splats reads them.
 std::vector<gpu::Read> splatReads(const FluidDraw& draw);
 
-// Marks the tiles of the picture that particles touch: what comes after runs only there.
+// Marks the tiles of the picture that particles touch; later passes run only there.
 gpu::TextureDesc tilesOf(const FrameView& view);
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
-// A water surface as the shade pass takes it.
+// The input of the shade pass.
 struct WaterSurface {
-    gpu::TextureHandle tiles;      // as addTiles
+    gpu::TextureHandle tiles;      // of addTiles
     gpu::TextureHandle depth;      // r32f, m, 1e6 where there is none
     gpu::TextureHandle thickness;  // m: x of water, y of that as spray
     gpu::TextureHandle normals;    // xyz view space, w m of water instead of thickness.x; empty: they come from the depth
-    gpu::TextureHandle fades;      // what red, green and blue fade by; empty: particles are alike
+    gpu::TextureHandle fades;      // absorption of red, green and blue; empty: particles are alike
 };
-// Thickness and fades of the spheres, blurred: the rest of a surface is empty.
+// Sets tiles, thickness and fades: of the spheres, blurred.
 WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles);
 FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const WaterSurface& water);
 
-FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
-// Reads the particles back, ray-marches their iso-surface on the host, and shades it. Takes seconds, where anything has changed.
+// Reads the particles back, ray-marches their iso-surface on the CPU, and shades it. Takes seconds when the input has changed.
 FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);
 
-// Spray, foam and bubbles, into layers.colour. `side`: glazed is what something clear stands before where there is no water; it is to be
-// drawn before the glass, and the rest after the water. All, where layers.fluidDepth is empty.
+// Draws spray, foam and bubbles into layers.colour. `side`: `glazed` are those behind a transparent object outside the water, to be drawn
+// before that object; `rest` are the others, to be drawn after the water. `all` where layers.fluidDepth is empty.
 enum class FoamSide { all, glazed, rest };
 void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers, FoamSide side);
 
-// The drops in the air, into layers.colour.
+// Draws the drops in the air into layers.colour.
 void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
-// A particle's volume over its drawn sphere's: what turns lengths within spheres into lengths within water.
+// The volume of a particle divided by that of its drawn sphere: turns lengths within spheres into lengths within water.
 float volumeScale(const FluidView& fluid);
 
 }  // namespace rivulet

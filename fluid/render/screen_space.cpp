@@ -22,6 +22,29 @@ constexpr int kThicknessBlur = 4;                            // texels either si
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
 
+constexpr ProgramRow kPrograms[] = {
+    {"occluder", "screen_space/occluder.vert", "render/depth.frag"},
+    {"occluder, ellipsoids", "screen_space/occluder.vert", "render/depth.frag", {"ELLIPSOIDS"}},
+    {"depth", "screen_space/sphere.vert", "screen_space/depth.frag"},
+    {"depth, ellipsoids", "screen_space/sphere.vert", "screen_space/depth.frag", {"ELLIPSOIDS"}},
+    {"thickness", "screen_space/sphere.vert", "screen_space/thickness.frag"},
+    {"thickness, ellipsoids", "screen_space/sphere.vert", "screen_space/thickness.frag", {"ELLIPSOIDS"}},
+    {"thickness, ink", "screen_space/sphere.vert", "screen_space/thickness.frag", {"INK"}},
+    {"thickness, ink, ellipsoids", "screen_space/sphere.vert", "screen_space/thickness.frag", {"INK", "ELLIPSOIDS"}},
+    {"water blocks", "render/fullscreen.vert", "screen_space/water_blocks.frag"},
+    {"water tiles", "render/fullscreen.vert", "screen_space/water_tiles.frag"},
+    {"refine", "screen_space/tile.vert", "screen_space/refine.frag"},
+    {"show view", "screen_space/tile.vert", "screen_space/show_view.frag"},
+    {"blur", "screen_space/tile.vert", "screen_space/blur.frag"},
+    {"light water", "screen_space/light_water.vert", "screen_space/light_water.frag"},
+    {"light water blur, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag"},
+    {"light water blur, last", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"LAST"}},
+    {"shade", "screen_space/tile.vert", "screen_space/shade.frag"},
+    {"shade, ink", "screen_space/tile.vert", "screen_space/shade.frag", {"INK"}},
+    {"shade, normals", "screen_space/tile.vert", "screen_space/shade.frag", {"NORMALS"}},
+    {"shade, normals, ink", "screen_space/tile.vert", "screen_space/shade.frag", {"NORMALS", "INK"}},
+};
+
 // Where there is no time, half of the particles stand for all of them.
 struct Drawn {
     uint32_t count;
@@ -42,7 +65,6 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
     size.format = Format::depth32f;
     const TextureHandle hidden = graph.texture("fluid occluders", size);
     graph.pass("fluid depth", splatReads(d), {depth, hidden}, [=, &programs](PassContext& c) {
-        SplatPrograms& splats = programs.splats(d.fluid);
         const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
         useFrame(c, d);
         target.clearColour(vec4(kFar));
@@ -50,17 +72,19 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
         if (prepare) {
             glEnable(GL_DEPTH_TEST);
             glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-            splats.occluder.use();
-            splats.occluder.set("radius", d.fluid.radius);
-            programs.drawParticles(splats.occluder, d.fluid, d.fluid.count);
+            Program& occluder = programs.splat("occluder", d.fluid);
+            occluder.use();
+            occluder.set("radius", d.fluid.radius);
+            programs.drawParticles(occluder, d.fluid, d.fluid.count);
             glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
             glDepthMask(GL_FALSE);
         }
         glEnable(GL_BLEND);
         glBlendEquation(GL_MIN);
-        splats.depth.use();
-        splats.depth.set("radius", d.fluid.radius);
-        programs.drawParticles(splats.depth, d.fluid, d.fluid.count);
+        Program& p = programs.splat("depth", d.fluid);
+        p.use();
+        p.set("radius", d.fluid.radius);
+        programs.drawParticles(p, d.fluid, d.fluid.count);
     });
     return depth;
 }
@@ -73,21 +97,23 @@ TextureHandle addTilesOf(FrameGraph& graph, FluidPrograms& programs, const Fluid
     const TextureHandle tiles = graph.texture("water tiles", size);
     graph.pass("tiles", {spheres}, {blocks}, [=, &programs](PassContext& c) {
         c.drawTo({blocks});
-        programs.waterBlocks.use();
-        programs.waterBlocks.texture("depths", 0, c.texture(spheres));
+        Program& p = programs["water blocks"];
+        p.use();
+        p.texture("depths", 0, c.texture(spheres));
         c.drawFullscreen();
     });
     graph.pass("tiles", {blocks}, {tiles}, [=, &programs](PassContext& c) {
         c.drawTo({tiles});
-        programs.waterTiles.use();
-        programs.waterTiles.texture("blocks", 0, c.texture(blocks));
-        programs.waterTiles.set("perTile", vec2(from.width, from.height) / vec2(size.width, size.height));
+        Program& p = programs["water tiles"];
+        p.use();
+        p.texture("blocks", 0, c.texture(blocks));
+        p.set("perTile", vec2(from.width, from.height) / vec2(size.width, size.height));
         c.drawFullscreen();
     });
     return tiles;
 }
 
-// What the surface is made from, instead of the water.
+// An intermediate result of the surface, instead of the water.
 struct Shown {
     TextureHandle tiles, depth, thickness, colour;
 };
@@ -109,7 +135,7 @@ void addView(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, con
                [=, &programs](PassContext& c) {
                    c.drawTo({of.colour});
                    useFrame(c, d);
-                   Program& p = programs.showView;
+                   Program& p = programs["show view"];
                    p.use();
                    p.texture("sceneColour", 0, c.texture(d.colour));
                    p.texture("sceneDepth", 1, c.texture(d.depth));
@@ -147,7 +173,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         useFrame(c, d);
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE);
-        Program& p = ink ? programs.splats(d.fluid).thicknessInk : programs.splats(d.fluid).thickness;
+        Program& p = programs.splat(ink ? "thickness, ink" : "thickness", d.fluid);
         p.use();
         if (ink) p.set("ownAbsorption", vec4(d.look.absorption, d.look.scattering.y));
         const Drawn some = drawnOf(d);
@@ -163,8 +189,8 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
             p.set("axis", axis);
             p.set("reach", kThicknessBlur * kThicknessScale / scale);
         };
-        thickness = addTiled(graph, "thickness blur", programs, d, programs.blur, tiles, thickness, size, 0.0F, setup);
-        if (ink) depths = addTiled(graph, "ink blur", programs, d, programs.blur, tiles, depths, inkSize, 0.0F, setup);
+        thickness = addTiled(graph, "thickness blur", programs, d, programs["blur"], tiles, thickness, size, 0.0F, setup);
+        if (ink) depths = addTiled(graph, "ink blur", programs, d, programs["blur"], tiles, depths, inkSize, 0.0F, setup);
     }
     return {.tiles = tiles, .depth = {}, .thickness = thickness, .normals = {}, .fades = depths};
 }
@@ -181,7 +207,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         useFrame(c, d);
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE);
-        Program& p = programs.lightWater;
+        Program& p = programs["light water"];
         p.use();
         p.set("clipRadius", some.larger * clipRadius);
         p.set("radius", some.larger * d.fluid.radius);
@@ -194,7 +220,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     TextureHandle from = drawn;
     for (const bool first : {true, false}) {
         const TextureHandle to = graph.texture("water light", map);
-        Program& p = first ? programs.lightWaterFirst : programs.lightWaterLast;
+        Program& p = programs[first ? "light water blur, first" : "light water blur, last"];
         graph.pass("water light blur", {from}, {to}, [=, &p](PassContext& c) {
             c.drawTo({to});
             p.use();
@@ -227,7 +253,7 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
     graph.pass("shade", reads, {colour}, [=, &programs](PassContext& c) {
         c.drawTo({colour});
         useFrame(c, d);
-        Program& p = water.normals ? (ink ? programs.shadeNormalsInk : programs.shadeNormals) : ink ? programs.shadeInk : programs.shade;
+        Program& p = programs[water.normals ? (ink ? "shade, normals, ink" : "shade, normals") : ink ? "shade, ink" : "shade"];
         p.use();
         p.texture("sceneColour", 0, c.texture(d.colour));
         p.texture("sceneDepth", 1, c.texture(d.depth));
@@ -251,8 +277,7 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
 
 FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {
     if (d.fluid.count == 0) return {d.colour, {}};
-    const FilterRow& unfiltered = *filters().find("none");
-    const FilterRow& filter = d.look.view == WaterView::spheres ? unfiltered
+    const FilterRow& filter = d.look.view == WaterView::spheres ? unfiltered()
                               : d.look.filter != nullptr        ? *d.look.filter
                                                                 : filters().rows.front();
     // Where there is no time, the surface is found at half the resolution, and only its light in full.
@@ -264,15 +289,24 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     }
     const TextureHandle spheres = addSphereDepth(graph, programs, s, !half);
     const TextureHandle tiles = addTilesOf(graph, programs, d, spheres);
-    TextureHandle depth = filter.add(graph, programs, s, tiles, spheres);
+    TextureHandle depth = filter.add(filter, graph, programs, s, tiles, spheres);
     if (half) {
         const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-        depth = addTiled(graph, "refine", programs, d, programs.refine, tiles, depth, size, kFar,
+        depth = addTiled(graph, "refine", programs, d, programs["refine"], tiles, depth, size, kFar,
                          [=](Program& p, const PassContext&) { p.set("range", filterReach(d.look, d.fluid.spacing).range); });
     }
     WaterSurface water = addThickness(graph, programs, d, tiles);
     water.depth = depth;
     return addShade(graph, programs, d, water);
+}
+
+RendererRow screenSpaceRenderer() {
+    return {.name = "screen_space",
+            .doc = "a water surface from the particles' smoothed depth: refraction, absorption, reflection",
+            .opaque = false,
+            .add = addScreenSpace,
+            .programs = kPrograms,
+            .ellipsoids = true};
 }
 
 }  // namespace rivulet

@@ -12,6 +12,7 @@
 #include "engine/render/environment_map.h"
 #include "engine/render/frame_params.h"
 #include "fluid/render/host_picture.h"
+#include "fluid/render/look_params.h"
 #include "fluid/render/renderers.h"
 
 namespace rivulet {
@@ -148,7 +149,7 @@ Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const gpu::HostState keep;
     impl_->picture.limit(impl_->most - impl_->ownBytes());
     if (Status taken = impl_->picture.take(target, depth, view); !taken) return taken;
-    return impl_->draw(fluid, look, row != nullptr ? *row : *renderers().find("screen_space"));
+    return impl_->draw(fluid, look, row != nullptr ? *row : *renderers().find(FluidLookParams().renderer));
 }
 
 const std::vector<PassTime>& WaterRenderer::times() const { return impl_->pool.times(); }

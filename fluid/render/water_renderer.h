@@ -1,11 +1,11 @@
-// WaterRenderer: water drawn into a host's picture, in the host's own OpenGL context, whose state is afterwards as it was.
+// WaterRenderer: draws water into a host's picture, in the host's OpenGL context, and restores the context's state.
 //
 //     auto water = WaterRenderer::create({});
 //     FluidView fluid = ...;                                  // FluidUpload makes one of a FluidWorld
 //     (*water)->draw(view, fluid, look, {.framebuffer = 0, .width = w, .height = h});
 //
-// Needs a current OpenGL 4.5 context, core or compatibility, the same throughout, its destruction included, with its functions loaded
-// (engine/gpu/load.h). One for all worlds of a context; contexts need one each. Not to be called from two threads at once.
+// Needs a current OpenGL 4.5 context, core or compatibility, with its functions loaded (engine/gpu/load.h): the same context for every call
+// and for the destruction. One renderer serves all worlds of a context. Do not call it from two threads at once.
 #pragma once
 
 #include <memory>
@@ -24,10 +24,10 @@ namespace rivulet {
 struct RendererRow;  // fluid/render/renderers.h
 
 struct WaterRendererOptions {
-    // What water mirrors beside the picture itself: a map of the surroundings (read once; radiance in the target's units), or null: `sky`.
+    // Reflected by the water beside the picture itself: a map of the surroundings (read once; radiance in the target's units); null: `sky`.
     const HdrImage* surroundings = nullptr;
     SkyLook sky = {};
-    size_t memoryLimit = SIZE_MAX;  // bytes, of its textures, the surroundings' included; create() and draw() fail rather than hold more
+    size_t memoryLimit = SIZE_MAX;  // bytes of its textures, the surroundings included; create() and draw() fail beyond it
 };
 
 class WaterRenderer {
@@ -38,11 +38,11 @@ class WaterRenderer {
     WaterRenderer(const WaterRenderer&) = delete;
     WaterRenderer& operator=(const WaterRenderer&) = delete;
 
-    // Draws over what `target` holds: what is nearer hides water, what is farther is seen through it, refracted. Colours and depths change
-    // where there is water, and nowhere else. `view.width` and `height` are the target's; `view.projection` is the one that the target's
-    // depth was drawn with, of any of glClipControl's depth modes, reversed or not; nearPlane and farPlane (m) are finite and hold what
-    // matters. Light is in the target's units: in one of srgb, 1 is white. `row`: another way to draw than the water's surface; a host may
-    // bring its own. Error: (badInput) what of that does not hold; (failed) out of memory.
+    // Draws over the picture in `target`: nearer surfaces hide the water, farther ones are seen through it, refracted. Colours and depths
+    // change only where there is water. `view.width` and `height` are the target's; `view.projection` is the one that the target's
+    // depth was drawn with, in any depth mode of glClipControl, reversed or not; nearPlane and farPlane (m) are finite and enclose the
+    // scene. Light is in the target's units: in an srgb target, 1 is white. `row`: a row of renderers(), or one of the host; null: the
+    // water's surface. Error: (badInput) a condition above that does not hold; (failed) out of memory.
     Status draw(const FrameView& view, const FluidView& fluid, const FluidLook& look, const HostTarget& target,
                 const RendererRow* row = nullptr);
 

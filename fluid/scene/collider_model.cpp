@@ -7,8 +7,8 @@
 #include <glm/matrix.hpp>
 
 #include "engine/core/table.h"
-#include "engine/scene/import_model.h"
 #include "engine/scene/transform.h"
+#include "fluid/scene/collider_kinds.h"
 
 namespace rivulet {
 
@@ -50,9 +50,7 @@ bool same(const mat4& a, const mat4& b, float size) {
 }  // namespace
 
 Result<ColliderModel> ColliderModel::create(const ColliderParams& params, const std::string& folder, Device& device, Scene& nodes) {
-    Result<std::string> path = findAsset(params.mesh, folder);
-    if (!path) return path.error();
-    Result<Model> model = importWhole(*path);
+    Result<Model> model = kindOf(params).model(params, folder);
     if (!model) return model.error();
     ColliderModel c;
     c.model_ = std::move(*model);
@@ -69,13 +67,13 @@ Result<ColliderModel> ColliderModel::create(const ColliderParams& params, const 
     c.mesh_ = c.merged(c.place_);
     if (params.wave.amplitude > 0) {  // which bends it as one piece
         ModelPart whole;
-        whole.name = params.mesh;
+        whole.name = labelOf(params);
         c.model_ = Model{};
-        c.model_.nodes.push_back({params.mesh, mat4(1.0F), -1});
+        c.model_.nodes.push_back({labelOf(params), mat4(1.0F), -1});
         c.model_.parts.push_back(std::move(whole));
         c.parts_.assign(1, Part{});
     }
-    c.addNodes(params.mesh, nodes);
+    c.addNodes(labelOf(params), nodes);
     c.dress(params, nodes);
     return c;
 }
@@ -155,13 +153,13 @@ void ColliderModel::addNodes(const std::string& name, Scene& nodes) {
 void ColliderModel::dress(const ColliderParams& params, Scene& nodes) const {
     nodes.nodes()[group_].visible = params.visible;
     for (size_t k = 0; k < parts_.size(); ++k) {
-        const bool own = params.materials == "file" && model_.parts[k].dressed;
+        const bool own = params.materials == "file" && model_.parts[k].hasMaterial;
         nodes.nodes()[parts_[k].node].material = own ? model_.parts[k].material : sceneMaterial(params);
     }
 }
 
 bool ColliderModel::dressed() const {
-    return std::any_of(model_.parts.begin(), model_.parts.end(), [](const ModelPart& part) { return part.dressed; });
+    return std::any_of(model_.parts.begin(), model_.parts.end(), [](const ModelPart& part) { return part.hasMaterial; });
 }
 
 double ColliderModel::clipTime(double time) const {
@@ -312,7 +310,7 @@ Result<std::pair<const ColliderModel*, const T*>> findNamed(std::span<const Coll
 
 }  // namespace
 
-Status takeViews(std::span<const ColliderModel> models, SceneFile& scene) {
+Status setViewsFromFiles(std::span<const ColliderModel> models, SceneFile& scene) {
     if (!scene.camera.from.empty()) {
         const auto found = findNamed(models, &Model::cameras, scene.camera.from, "camera");
         if (!found) return found.error();

@@ -1,5 +1,5 @@
-// ColliderModel: a collider's file in a scene. Its parts are nodes that hang together as in the file, with the file's materials, and all of
-// them at once are the mesh that water meets. A clip of the file moves both.
+// ColliderModel: a collider's model in a scene. Its parts are nodes with the hierarchy and the materials of the file. All parts together
+// are the mesh that water collides with. A clip of the file moves both.
 #pragma once
 
 #include <memory>
@@ -18,14 +18,15 @@ namespace rivulet {
 
 class ColliderModel {
   public:
-    // Reads the file and adds its nodes to `nodes`, as they are at t = 0. `device` bends parts with bones or morphs; it must outlive the
-    // nodes. Error (badInput): no such file, or nothing in it that can be used; no such clip, and which there are.
+    // Of a kind with triangles (collider_kinds.h). Adds its nodes to `nodes`, as they are at t = 0. `device` deforms parts with bones or
+    // morph targets and must outlive the nodes. Error (badInput): the file is missing or unusable; no such clip (the sentence lists those
+    // that exist).
     static Result<ColliderModel> create(const ColliderParams& params, const std::string& folder, Device& device, Scene& nodes);
 
-    // All parts at t = 0, m: in the world, or of what moves in the frame that pose() places.
+    // All parts at t = 0, m: in the world, or, of a collider that moves, in the frame that pose() places.
     const Mesh& mesh() const { return mesh_; }
-    size_t node() const { return group_; }  // that all others hang from
-    // The file's materials, or what the scene says of them.
+    size_t node() const { return group_; }  // the parent of all others
+    // Sets the nodes' materials: those of the file, or that of the scene.
     void dress(const ColliderParams& params, Scene& nodes) const;
     bool dressed() const;  // whether the file has materials
 
@@ -33,10 +34,10 @@ class ColliderModel {
     bool rigid() const { return rigid_; }  // the clip moves it as a whole
     // Of a rigid clip, at a time (s): mesh() -> the world.
     Pose pose(double time) const;
-    // Of any other: mesh()'s vertices, in their order, within reach() at all times.
+    // Of any other clip: the vertices of mesh(), in their order, always within reach().
     void shape(double time, std::vector<vec3>& positions);
     const Bounds& reach() const { return reach_; }  // m, world
-    // Puts the nodes where a clip that is not rigid has them.
+    // Places the nodes of a clip that is not rigid.
     void place(double time, Scene& nodes);
 
     const Model& model() const { return model_; }  // its parts' meshes are with the nodes
@@ -47,7 +48,7 @@ class ColliderModel {
     struct Part {
         size_t node = 0;  // of the scene
         std::shared_ptr<const Mesh> mesh;
-        std::shared_ptr<Deformer> deformer;  // null: it keeps its shape
+        std::shared_ptr<Deformer> deformer;  // null: rigid
     };
 
     ColliderModel() = default;
@@ -72,15 +73,15 @@ class ColliderModel {
     mat4 start_{1.0F};           // the file -> the world, at t = 0
     mat4 place_{1.0F};           // the file -> mesh()'s frame
     std::vector<mat4> atStart_;  // model_.nodes -> the file, at t = 0
-    std::vector<mat4> world_;    // the same, as it stands
+    std::vector<mat4> world_;    // the same, now
     Mesh mesh_;
     bool rigid_ = false;  // see rigid()
     vec3 pivot_{0.0F};    // m, world: the origin of a rigid clip's frame
     Bounds reach_;
 };
 
-// The scene's camera and light, where they come from one of these files, as they are at t = 0. The camera's target is then the point of
-// its axis nearest to the middle of the fluid's box. Error (badInput): none has one of that name, and which there are.
-Status takeViews(std::span<const ColliderModel> models, SceneFile& scene);
+// Sets the scene's camera and light where camera.from and light.from name one of these files', as they are at t = 0. The camera's target is
+// the point on its axis nearest to the centre of the fluid's box. Error (badInput): no such name (the sentence lists those that exist).
+Status setViewsFromFiles(std::span<const ColliderModel> models, SceneFile& scene);
 
 }  // namespace rivulet

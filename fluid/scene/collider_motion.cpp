@@ -47,6 +47,12 @@ Pose colliderPose(const ColliderParams& collider, double time, double turned) {
     return pose;
 }
 
+mat4 matrixOf(const Pose& pose) {
+    mat4 m = glm::mat4_cast(pose.rotation);
+    m[3] = vec4(pose.position, 1.0F);
+    return m;
+}
+
 void waveShape(const ColliderWave& wave, std::span<const vec3> rest, double time, std::vector<vec3>& shape) {
     const vec3 along = glm::normalize(wave.along), lift = glm::normalize(wave.direction) * wave.amplitude * smooth(time / wave.period);
     shape.resize(rest.size());

@@ -1,4 +1,4 @@
-// Where a scene's colliders are at a time.
+// The place and the shape of a scene's colliders at a time.
 #pragma once
 
 #include <span>
@@ -9,14 +9,16 @@
 
 namespace rivulet {
 
-// Of a collider whose mesh was placed in the world and then moved by -position, so that it turns about that point. `turned`: deg it has
-// spun so far (a spin may change while it runs), `time` s.
+// Of a collider whose mesh was placed in the world and then moved by -position: it turns about that point. `turned`: deg of spin so far
+// (the spin rate may change during a run); `time`: s.
 Pose colliderPose(const ColliderParams& collider, double time, double turned);
 
-// The vertices of a mesh that rests as `rest` (m, world), with the collider's wave at `time` (s).
+mat4 matrixOf(const Pose& pose);  // own frame -> world
+
+// The vertices of a mesh with the rest shape `rest` (m, world), displaced by the wave at `time` (s).
 void waveShape(const ColliderWave& wave, std::span<const vec3> rest, double time, std::vector<vec3>& shape);
 
-// Holds the mesh at every time.
+// Bounds of the mesh at all times.
 Bounds waveReach(const ColliderWave& wave, const Bounds& rest);
 
 }  // namespace rivulet

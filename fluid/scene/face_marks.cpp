@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/core/json_parse.h"
 
 namespace rivulet {

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr double kMicrolitre = 1.0e6;  // picolitres
 constexpr float kBrimStep = 6.0e-4F;   // m, between the places of a brim
 constexpr int kMostBrimPlaces = 400;
-constexpr size_t kMostABirth = 4096;  // drops of one source in one step
+constexpr size_t kMostEmitted = 4096;  // drops of one source in one step
 
 Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
     Bounds all;
@@ -36,7 +36,7 @@ Bounds boundsOf(const Model& model, const std::vector<mat4>& world) {
     return all;
 }
 
-// Puts a part into the frame of the whole: positions, normals, morphs.
+// Transforms a part into the model's frame: positions, normals, morphs.
 void place(ModelPart& part, const mat4& to) {
     part.mesh = transformed(part.mesh, to);
     for (MorphTarget& morph : part.morphs)
@@ -67,7 +67,7 @@ bool named(std::string_view list, const ModelPart& part) {
     return false;
 }
 
-// Vertices anew, one for each UV that a vertex has in `uvs` (3 a triangle of `mesh`, which was made of the part).
+// Splits vertices, so that each has one UV of `uvs` (3 a triangle of `mesh`, which was made from the part).
 void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
     Mesh fresh;
     fresh.name = part.mesh.name;
@@ -137,7 +137,6 @@ Result<std::unique_ptr<FlowComponent>> FlowComponent::create(const FlowParams& p
     const Bounds all = boundsOf(*model, world);
     const Transform asked{params.position, params.rotation, params.scale};
     mat4 to = params.fitSize > 0 ? Transform::fitted(all, params.fitSize, params.position, params.rotation) : asked.matrix();
-    c.toWorld_ = c.worldAt(0);
     to = glm::translate(mat4(1.0F), -params.position) * to;
     for (ModelPart& part : model->parts) place(part, to * world[static_cast<size_t>(part.node)]);
     if (Status dressed = dressHead(*model, fs::path(*path).parent_path().string()); !dressed) return dressed.error();
@@ -186,14 +185,14 @@ Result<ModelPart*> FlowComponent::skinOf(Model& model) const {
     return badInput(fmt::format("{} has no part `{}`; there are {}", params_.mesh, params_.part, fmt::join(names, ", ")));
 }
 
-// UVs that can be drawn into: the mesh's, or own ones, for which its vertices are split where charts end.
+// Usable UVs: the mesh's, or new ones, for which its vertices are split at the edges of charts.
 Status FlowComponent::layOut(ModelPart& skin, const Log& log) {
     Result<FlowMesh> mesh = makeFlowMesh(skin.mesh.view());
     if (!mesh) return badInput(fmt::format("{}: {}", params_.mesh, mesh.error().message));
     if (const std::string found = mesh->report.sentence(); !found.empty()) log.info(fmt::format("{}: {}", params_.mesh, found));
     Result<SkinUvs> uvs = skinUvs(*mesh, skin.mesh.view(), std::clamp(params_.mapSize, 256, 2048));
     if (!uvs) return badInput(fmt::format("{}: {}", params_.mesh, uvs.error().message));
-    if (!uvs->said.empty()) log.notice(fmt::format("{}: {}", params_.mesh, uvs->said));
+    if (!uvs->notice.empty()) log.notice(fmt::format("{}: {}", params_.mesh, uvs->notice));
     if (uvs->unwrapped) {
         split(skin, *mesh, uvs->uvs);
         mesh = makeFlowMesh(skin.mesh.view());
@@ -265,32 +264,32 @@ Status FlowComponent::prepareFlow(const Mesh& skin) {
         if (marks_.eyes[side].tear) tears_[side] = nearestPoint(*mesh, *marks_.eyes[side].tear);
     for (const FlowSourceParams& source : params_.sources)
         if (const std::string fault = faultOf(source); source.rate > 0 && !fault.empty()) return badInput(fault);
-    // The thesis knows no lids: what would fill a brim begins below the eye's corner.
+    // The thesis has no lids: a brim's liquid begins below the eye's corner.
     const std::vector<SkinBrim> along = thesis() ? std::vector<SkinBrim>() : brims(*mesh);
     Result<SurfaceFlow> flow = thesis() ? SurfaceFlow::createThesis(*device_, std::move(*mesh), uvs_, params_.liquid, params_.thesis)
                                         : SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
     if (!flow) return badInput(fmt::format("{}: {}", params_.mesh, flow.error().message));
     flow_.emplace(std::move(*flow));
-    search_.emplace(flow_->mesh());
-    if (thesis()) return ok();  // its picture wants the UVs
+    placed_.emplace(*flow_, [this](double time) { return worldAt(time); });
+    if (thesis()) return ok();  // its picture needs the UVs
     Result<FlowMaps> maps = FlowMaps::create(*flow_, std::exchange(uvs_, {}), params_.mapSize);
     if (!maps) return badInput(fmt::format("{}: {}", params_.mesh, maps.error().message));
     maps_.emplace(std::move(*maps));
     return ok();
 }
 
-// The eyes that a source may be at: those that its side names, where what its kind needs is marked.
+// The eyes of a source: those of its side with the marks that its kind needs.
 std::vector<size_t> FlowComponent::eyesOf(const FlowSourceParams& source) const {
     std::vector<size_t> eyes;
     for (const size_t side : {size_t{0}, size_t{1}}) {
         if (source.side == (side == 0 ? "right" : "left")) continue;
-        const bool inBrim = source.kind == "brim" && !thesis();  // the thesis knows no lids
+        const bool inBrim = source.kind == "brim" && !thesis();  // the thesis has no lids
         if (inBrim ? marks_.eyes[side].lowerLid.size() >= 2 : marks_.eyes[side].tear.has_value()) eyes.push_back(side);
     }
     return eyes;
 }
 
-// "", or why nothing can come from there.
+// "", or why the source cannot emit.
 std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
     if (source.kind != "corner" && source.kind != "brim") return {};
     if (eyesOf(source).empty())
@@ -304,7 +303,7 @@ std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
     return {};
 }
 
-// Along each lower lid, one place every half millimetre or so. What spills begins on the skin below.
+// One place about every half millimetre along each lower lid. Spilled liquid begins on the skin below.
 std::vector<SkinBrim> FlowComponent::brims(const FlowMesh& mesh) {
     std::vector<SkinBrim> all;
     for (size_t side = 0; side < 2; ++side) {
@@ -351,7 +350,7 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
         }
         flow_->setGrip(grip);
     }
-    // Drops are strewn where a skin sweats: mostly where it is oily.
+    // Sweat appears mostly where a skin is oily.
     double sum = 0;
     for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
         const uint32_t* c = &mesh.corner[3 * size_t{t}];
@@ -363,7 +362,7 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
 }
 
 void FlowComponent::apply(const FlowParams& params) {
-    // What tables are sized for, or files were read by, stays: a panel may be dragging it.
+    // Values that tables are sized for or files were read with stay, also while a panel edits them.
     const FlowParams before = std::exchange(params_, params);
     params_.mode = before.mode;
     params_.mesh = before.mesh;
@@ -373,7 +372,7 @@ void FlowComponent::apply(const FlowParams& params) {
     params_.regions = before.regions;
     for (size_t e = 0; e < std::min(before.expression.size(), params_.expression.size()); ++e)
         params_.expression[e].morph = before.expression[e].morph;
-    // What a scene's reader has let through is in its ranges.
+    // Values of a scene have been checked by its reader.
     (void)flow_->setParams(params.liquid);
     if (thesis()) (void)flow_->setThesis(params.thesis);
     layer_->look = params.look;
@@ -420,7 +419,7 @@ void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint3
         const vec3 way = glm::length(source.along) > 0 ? glm::normalize(source.along) : vec3(0, -1, 0);
         const auto [a, b] = across(way);
         const float reach = 0.5F * glm::length(around_.size());
-        const vec3 middle = source.radius > 0 ? vec3(toWorld_ * glm::dvec4(dvec3(source.position), 1)) : around_.centre();
+        const vec3 middle = source.radius > 0 ? vec3(placed_->toWorld() * glm::dvec4(dvec3(source.position), 1)) : around_.centre();
         const vec2 off = source.radius > 0 ? disc() : vec2(any(state.random), any(state.random)) * reach;
         air.push_back({dvec3(middle + a * off.x + b * off.y - way * (reach * (1.2F + 0.2F * any(state.random)))), dvec3(way * source.speed),
                        picolitres});
@@ -436,8 +435,8 @@ void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint3
     }
 }
 
-// A point of the disc about a spot, `off` (m) from its middle in the plane of the skin there. All triangles are asked only where the spot
-// has been moved, or the skin turns away under the disc.
+// A point of the disc about a spot, `off` (m) from its middle in the plane of the skin there. All triangles are searched only if the spot
+// has moved, or the skin curves away under the disc.
 SkinPoint FlowComponent::besideSpot(const FlowSourceParams& source, Source& state, const vec2& off) {
     const FlowMesh& mesh = flow_->mesh();
     if (!state.spot || state.spotOf != source.position) {
@@ -446,19 +445,19 @@ SkinPoint FlowComponent::besideSpot(const FlowSourceParams& source, Source& stat
     }
     if (source.radius == 0) return *state.spot;
     const uint32_t* c = &mesh.corner[3 * size_t{state.spot->triangle}];
-    const std::vector<vec3>& x = search_->places();
+    const std::vector<vec3>& x = placed_->search().places();
     const vec3 n = glm::normalize(glm::cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]));
     if (!isFinite(n)) return *state.spot;
     const auto [a, b] = across(n);
     const vec3 at =
         (1 - state.spot->b1 - state.spot->b2) * x[c[0]] + state.spot->b1 * x[c[1]] + state.spot->b2 * x[c[2]] + a * off.x + b * off.y;
-    const std::optional<SkinSearch::Hit> hit = search_->first(at + n * source.radius, at - n * source.radius);
+    const std::optional<SkinSearch::Hit> hit = placed_->search().first(at + n * source.radius, at - n * source.radius);
     return hit ? hit->at : nearestPoint(mesh, at);
 }
 
-void FlowComponent::sayOnce(const std::string& sentence) {
-    if (std::find(said_.begin(), said_.end(), sentence) != said_.end()) return;
-    said_.push_back(sentence);
+void FlowComponent::noticeOnce(const std::string& sentence) {
+    if (std::find(noticed_.begin(), noticed_.end(), sentence) != noticed_.end()) return;
+    noticed_.push_back(sentence);
     log_.notice(sentence);
 }
 
@@ -471,47 +470,44 @@ void FlowComponent::emit(double time, double seconds, std::vector<AirDrop>& air)
             continue;
         }
         if (const std::string fault = faultOf(source); !fault.empty()) {
-            sayOnce(fault);
+            noticeOnce(fault);
             continue;
         }
         const double wave = 1 + double{source.swell} * std::sin(2 * std::numbers::pi * time / double{source.period});
         state.due += double{source.rate} * kMicrolitre / 60 * seconds * wave;
         const auto each = static_cast<uint32_t>(std::max(double{source.drop} * kMicrolitre, 1.0));
-        // The first drop comes at once, not when the rate has made up for it.
+        // The first drop appears at once.
         if (!std::exchange(state.begun, true)) state.due = std::max(state.due, static_cast<double>(each));
-        size_t born = 0;
-        for (; state.due >= each && born < kMostABirth; ++born, state.due -= each) emitOne(source, state, each, air);
-        if (born == kMostABirth) {
+        size_t emitted = 0;
+        for (; state.due >= each && emitted < kMostEmitted; ++emitted, state.due -= each) emitOne(source, state, each, air);
+        if (emitted == kMostEmitted) {
             state.due = 0;
-            sayOnce(fmt::format(
+            noticeOnce(fmt::format(
                 "flow.sources[{}] would let more than {} drops out at once: the others are not let out; make its drops larger, or "
                 "its rate smaller",
-                k, kMostABirth));
+                k, kMostEmitted));
         }
     }
 }
 
 Status FlowComponent::step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air) {
     const double then = time + seconds;
-    toWorld_ = worldAt(then);
-    time_ = then;
+    placed_->moveTo(then);
     around_ = {};
     bend(then);
-    seen_ = false;
     emit(time, seconds, air);
-    SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld_};
+    const dmat4& toWorld = placed_->toWorld();
+    SurfaceFlowInputs inputs{.gravity = gravity, .wind = params_.wind, .toWorld = toWorld};
     if (skinDeformer_) inputs.moved = &skinDeformer_->positions();
     if (Status moved = flow_->step(inputs, seconds); !moved) return moved;
     if (flow_->refused() > 0)
-        sayOnce(
-            "a skin has no room for more drops: what finds none is lost, and counted as drained; flow.liquid.capacity says how many there "
-            "may be");
+        noticeOnce("a skin has no free drop slots: further drops are discarded and counted as drained; raise flow.liquid.capacity");
     for (const LeftDrop& d : flow_->takeLeft())
-        air.push_back({dvec3(toWorld_ * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld_) * dvec3(d.velocity), d.picolitres});
+        air.push_back({dvec3(toWorld * glm::dvec4(dvec3(d.position), 1)), glm::dmat3(toWorld) * dvec3(d.velocity), d.picolitres});
     return ok();
 }
 
-// The expression that it has then.
+// Sets the expression at a time.
 void FlowComponent::bend(double time) {
     for (Deformed& d : deformed_) {
         std::vector<float> weights(d.morphs, 0.0F);
@@ -522,35 +518,9 @@ void FlowComponent::bend(double time) {
     }
 }
 
-void FlowComponent::look() {
-    if (seen_) return;
-    seen_ = true;
-    const FlowView view = flow_->view();
-    search_->follow(device_->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
-}
-
 dmat4 FlowComponent::worldAt(double time) const { return glm::translate(dmat4(1.0), dvec3(params_.position)) * params_.motion.at(time); }
 
-std::optional<SkinSearch::Hit> FlowComponent::meets(const dvec3& from, const dvec3& to, double then) {
-    look();
-    const dmat4 now = glm::inverse(toWorld_), later = then == time_ ? now : glm::inverse(worldAt(then));
-    return search_->first(vec3(now * glm::dvec4(from, 1)), vec3(later * glm::dvec4(to, 1)));
-}
-
-void FlowComponent::land(const SkinSearch::Hit& where, const AirDrop& drop) {
-    // What comes straight at the skin stays there: it keeps the part of its speed that goes along, and no more than runs down by itself.
-    // Against the skin, as it moves as a whole.
-    constexpr double kMoment = 1.0e-4;  // s
-    const glm::dvec4 at(dvec3(where.position), 1);
-    const dvec3 carried = dvec3(worldAt(time_ + kMoment) * at - worldAt(time_) * at) / kMoment;
-    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * (drop.velocity - carried));
-    v -= where.normal * glm::dot(v, where.normal);
-    constexpr float kMost = 0.2F;  // m/s
-    if (const float pace = glm::length(v); pace > kMost) v *= kMost / pace;
-    flow_->add(where.at, drop.picolitres, v);
-}
-
-void FlowComponent::placeNode(Scene& scene) const { scene.nodes()[static_cast<size_t>(group_)].local = mat4(toWorld_); }
+void FlowComponent::placeNode(Scene& scene) const { scene.nodes()[static_cast<size_t>(group_)].local = mat4(placed_->toWorld()); }
 
 Status FlowComponent::draw() {
     if (!texture_) {
@@ -568,7 +538,7 @@ Status FlowComponent::draw() {
     return ok();
 }
 
-// (22) and (23) on the host, so this waits for the device: a baseline, not for speed. A particle's mass is its height, by the contact
+// (22) and (23) on the host, a baseline: reads the drops back, which waits for a GPU. A particle's mass gives its height, by the contact
 // angle.
 void FlowComponent::drawThesis() {
     std::vector<ThesisParticle> particles;
@@ -580,12 +550,6 @@ void FlowComponent::drawThesis() {
     const float mass = static_cast<float>(std::max(largest, 1.0e-15) * double{params_.liquid.density});
     picture_ = thesisPicture(particles, params_.mapSize, params_.thesis.disc, mass);
     texture_->update(picture_, capHeight(largest, 0.5 * double{params_.liquid.advancing + params_.liquid.receding}));
-}
-
-Bounds FlowComponent::bounds() const {
-    Bounds own;
-    for (const vec3& p : search_->places()) own.add(p);
-    return transformBounds(mat4(toWorld_), own);
 }
 
 }  // namespace rivulet

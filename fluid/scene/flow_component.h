@@ -1,5 +1,5 @@
-// FlowComponent: a skin of a scene with what flows on it. Loads the mesh and dresses it, bends and turns it, lets drops out where the scene
-// says, steps the flow and draws its maps.
+// FlowComponent: a skin of a scene and the flow on it. Loads the mesh and its materials, deforms and moves it, emits drops from the scene's
+// sources, steps the flow and draws its maps.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 #include "engine/scene/scene.h"
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
-#include "fluid/flow/skin_search.h"
+#include "fluid/flow/placed_flow.h"
 #include "fluid/scene/face_marks.h"
 #include "fluid/scene/flow_params.h"
 
@@ -19,50 +19,41 @@ namespace rivulet {
 
 class FlowComponent {
   public:
-    // Adds its nodes to `scene`. `device` must outlive it. Error (badInput): a file that is missing or damaged, a part or a morph that is
-    // not there, UVs that leave no texel, no eyes where a source needs them; (failed): out of memory.
+    // Adds its nodes to `scene`. `device` must outlive it. Error (badInput): a file that is missing or damaged, an unknown part or
+    // morph, UVs that cover no texel, no eyes where a source needs them; (failed): out of memory.
     static Result<std::unique_ptr<FlowComponent>> create(const FlowParams& params, const std::string& sceneFolder, Device& device,
                                                          Scene& scene, const Log& log);
-    // Takes what may change while it runs.
+    // Applies the parameters that may change while it runs.
     void apply(const FlowParams& params);
     bool needsNew(const FlowParams& params) const;
 
-    // Moves the skin to where it is at `time` + `seconds`, and what flows on it. What leaves goes to `left`, what begins in the air to
-    // `air`: in the world. Error (failed): out of memory.
-    struct AirDrop {
-        dvec3 position{0.0}, velocity{0.0};  // m, m/s
-        uint32_t picolitres = 0;
-    };
+    // Moves the skin to `time` + `seconds` and steps its flow. Drops that leave it or begin in the air are appended to `air`, in the
+    // world's frame. Error (failed): out of memory.
     Status step(double time, double seconds, const vec3& gravity, std::vector<AirDrop>& air);
-    // Where a way through the world first meets the skin, as a share of it. Nothing: nowhere. The skin has the shape it has now; as a
-    // whole it is where it is now when the way begins, and where it will be at `then` (s) when it ends.
-    std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
-    // A drop that comes to rest on the skin there.
-    void land(const SkinSearch::Hit& where, const AirDrop& drop);
     void placeNode(Scene& scene) const;
 
-    // Brings the layer up to date. Needs a current OpenGL context.
+    // Updates the layer. Needs a current OpenGL context.
     Status draw();
 
-    // Where it was, to be taken up by one that was made of the same params, on whichever device.
+    // Its state, for one that was made with the same params, on any device.
     struct Snapshot;
     std::shared_ptr<const Snapshot> save() const;  // waits
     Status restore(const Snapshot& snapshot);      // error (failed): out of memory
 
-    uint64_t emitted() const { return emitted_; }  // picolitres, by sources; not what has landed
+    uint64_t emitted() const { return emitted_; }  // picolitres, by its sources; without drops that landed
     const SurfaceFlow& flow() const { return *flow_; }
-    double time() const { return time_; }  // s, of where it is
+    PlacedFlow& placed() { return *placed_; }
     const FlowParams& params() const { return params_; }
     const FlowMaps& maps() const { return *maps_; }  // in mode drops
-    // As last drawn, in mode thesis; of size 0 else.
+    // As last drawn, in mode thesis; else of size 0.
     const ThesisPicture& picture() const { return picture_; }
-    Bounds bounds() const;  // m, world
+    Bounds bounds() const { return placed_->bounds(); }  // m, world
 
   private:
     struct Source {
         double due = 0;  // picolitres
         bool begun = false;
-        std::optional<SkinPoint> spot;  // of kind spot, where it was last asked for
+        std::optional<SkinPoint> spot;  // of kind spot, at spotOf
         vec3 spotOf{0.0F};
         std::mt19937 random;
     };
@@ -70,7 +61,7 @@ class FlowComponent {
         std::shared_ptr<Deformer> deformer;
         std::vector<int> morphOf;  // of each of params_.expression, or -1
         size_t morphs = 0;
-        std::vector<mat4> bones;  // as the file's nodes stand
+        std::vector<mat4> bones;  // of the file's node pose
     };
 
     FlowComponent() = default;
@@ -91,32 +82,28 @@ class FlowComponent {
     std::vector<size_t> eyesOf(const FlowSourceParams& source) const;
     std::string faultOf(const FlowSourceParams& source) const;
     SkinPoint besideSpot(const FlowSourceParams& source, Source& state, const vec2& off);
-    void sayOnce(const std::string& sentence);
-    void look();  // where the skin is now
+    void noticeOnce(const std::string& sentence);
 
     FlowParams params_;
     Log log_;
-    std::vector<std::string> said_;
+    std::vector<std::string> noticed_;
     Bounds around_;  // bounds(), once a step
     Device* device_ = nullptr;
-    int group_ = 0;  // the node that all parts hang from
-    dmat4 toWorld_{1.0};
-    double time_ = 0;  // s, at which toWorld_ is
+    int group_ = 0;  // the parent node of all parts
     std::vector<Deformed> deformed_;
-    std::shared_ptr<const Deformer> skinDeformer_;  // null: it keeps its shape
-    std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps have them; of mode thesis for ever
+    std::shared_ptr<const Deformer> skinDeformer_;  // null: the skin does not deform
+    std::vector<vec2> uvs_;                         // 3 a triangle of the flow's mesh, until the maps are made; kept in mode thesis
     std::optional<SurfaceFlow> flow_;
     std::optional<FlowMaps> maps_;
     ThesisPicture picture_;
     std::optional<FlowLayer> texture_;
     std::shared_ptr<Layer> layer_;
-    std::optional<SkinSearch> search_;
-    bool seen_ = false;  // search_ is as the skin is now
+    std::optional<PlacedFlow> placed_;  // of flow_
     FaceMarks marks_;
     std::vector<Source> sources_;
     std::array<SkinPoint, 2> tears_{};     // of the left and right eye
     std::array<uint32_t, 3> brimBegin_{};  // places of the left, the right brim, and the end
-    std::vector<double> areaTo_;           // of the triangles, one by one, as far as each: m^2, weighted by how oily they are
+    std::vector<double> areaTo_;           // running sum of the triangles' areas, m^2, weighted by how oily they are
     std::vector<uint8_t> oily_;            // of each place
     uint64_t emitted_ = 0;
 };

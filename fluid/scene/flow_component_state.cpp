@@ -1,4 +1,4 @@
-// Where a skin was, put away in host memory and taken up again on another device.
+// A skin's state, saved in host memory and restored on any device.
 #include "fluid/scene/flow_component.h"
 
 namespace rivulet {
@@ -7,24 +7,22 @@ struct FlowComponent::Snapshot {
     double time = 0;
     dmat4 toWorld{1.0};
     std::vector<Source> sources;
-    std::vector<std::string> said;
+    std::vector<std::string> noticed;
     uint64_t emitted = 0;
     std::shared_ptr<const SurfaceFlow::Snapshot> flow;
 };
 
 std::shared_ptr<const FlowComponent::Snapshot> FlowComponent::save() const {
-    return std::make_shared<const Snapshot>(Snapshot{time_, toWorld_, sources_, said_, emitted_, flow_->save()});
+    return std::make_shared<const Snapshot>(Snapshot{placed_->time(), placed_->toWorld(), sources_, noticed_, emitted_, flow_->save()});
 }
 
 Status FlowComponent::restore(const Snapshot& snapshot) {
-    time_ = snapshot.time;
-    toWorld_ = snapshot.toWorld;
+    placed_->restore(snapshot.time, snapshot.toWorld);
     sources_ = snapshot.sources;
-    said_ = snapshot.said;
+    noticed_ = snapshot.noticed;
     emitted_ = snapshot.emitted;
     around_ = {};
-    seen_ = false;
-    bend(time_);
+    bend(snapshot.time);
     return flow_->restore(*snapshot.flow);
 }
 

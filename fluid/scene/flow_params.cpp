@@ -28,37 +28,38 @@ void FlowSourceParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> kinds = {"corner", "brim", "spot", "strewn", "rain"}, sides = {"left", "right", "both"};
     v.choice(
         {.name = "kind",
-         .doc = "corner: below an eye's inner corner; brim: into the lower lid, which fills and spills; spot: about a point; strewn: all "
-                "over; rain: from the air"},
+         .doc = "corner: below an eye's inner corner; brim: into the lower lid, which fills and overflows; spot: around a point; strewn: "
+                "jittered over the whole skin; rain: from the air"},
         kind, kinds);
-    v.choice({.name = "side", .doc = "whose eye, of corner and brim; left is the face's own"}, side, sides);
-    v.value({"rate", "ul/min", "volume, of all together, the first drop at once; 0 = off; of corner and brim 100,000 at most", 0, 1.0e7},
-            rate);
+    v.choice({.name = "side", .doc = "which eye, of corner and brim; left as the face sees it"}, side, sides);
+    v.value(
+        {"rate", "ul/min", "volume of all drops per minute, the first drop at once; 0 = off; of corner and brim 100,000 at most", 0, 1.0e7},
+        rate);
     v.value({"drop", "ul", "volume of each drop", 1.0e-4, 100, kLog}, drop);
     v.value({"start", "s", "when it begins", 0, 3600}, start);
     v.value({"stop", "s", "when it ends", 0, 3600}, stop);
-    v.value({"swell", "", "0 steady, 1 comes and goes", 0, 1}, swell);
-    v.value({"period", "s", "of the swell", 0.05, 3600, kLog}, period);
-    v.value({"position", "m", "of a spot, or the middle of where it is strewn or rains; in the skin's own frame", -kFar, kFar}, position);
-    v.value({"radius", "m", "about the position; 0 = a point, or of strewn and rain everywhere", 0, kFar}, radius);
+    v.value({"swell", "", "modulation: 0 = steady, 1 = between 0 and the full rate", 0, 1}, swell);
+    v.value({"period", "s", "of the modulation", 0.05, 3600, kLog}, period);
+    v.value({"position", "m", "of a spot, or the centre of strewn drops or rain; in the skin's own frame", -kFar, kFar}, position);
+    v.value({"radius", "m", "around the position; 0 = a point; of strewn and rain: everywhere", 0, kFar}, radius);
     v.value({"speed", "m/s", "of rain", 0, 100}, speed);
-    v.value({"along", "", "the way rain falls, in the world, of any length", -1.0e6, 1.0e6}, along);
-    v.value({.name = "film", .doc = "part of a sheet, which spreads, instead of single drops"}, film);
+    v.value({"along", "", "direction of rain, in the world, of any length", -1.0e6, 1.0e6}, along);
+    v.value({.name = "film", .doc = "a film that spreads, instead of single drops"}, film);
 }
 
 void ExpressionParams::visit(ParamVisitor& v) {
     v.value({.name = "morph", .doc = "a morph target of the mesh", .fixed = kFixed}, morph);
-    v.value({"weight", "", "how much of it", 0, 1}, weight);
-    v.value({"swing", "", "how far it comes and goes", 0, 1}, swing);
-    v.value({"period", "s", "how long it takes to", 0.05, 3600, kLog}, period);
+    v.value({"weight", "", "mean weight", 0, 1}, weight);
+    v.value({"swing", "", "amplitude of an oscillation of the weight", 0, 1}, swing);
+    v.value({"period", "s", "of the oscillation", 0.05, 3600, kLog}, period);
     v.value({"phase", "", "in periods", 0, 1}, phase);
 }
 
 void FlowMotionParams::visit(ParamVisitor& v) {
-    v.value({"pivot", "m", "what it turns about, in the skin's frame", -kFar, kFar}, pivot);
+    v.value({"pivot", "m", "centre of rotation, in the skin's frame", -kFar, kFar}, pivot);
     v.value({"turn", "deg", "about x, then y, then z", -360, 360}, turn);
-    v.value({"swing", "deg", "how far it turns to and fro", -180, 180}, swing);
-    v.value({"period", "s", "how long that takes", 0.05, 3600, kLog}, period);
+    v.value({"swing", "deg", "amplitude of an oscillation", -180, 180}, swing);
+    v.value({"period", "s", "of the oscillation", 0.05, 3600, kLog}, period);
 }
 
 void RegionParams::visit(ParamVisitor& v) {
@@ -66,56 +67,58 @@ void RegionParams::visit(ParamVisitor& v) {
              .doc = "picture of any size over the mesh's UVs: red oily, green dry, blue hair, alpha lip; none = the same everywhere",
              .fixed = kFixed},
             mask);
-    v.value({"oily", "", "of what holds a drop, where the mask says so", 0, 10, kLinear, kFixed}, oily);
-    v.value({"dry", "", "the same of dry skin", 0, 10, kLinear, kFixed}, dry);
-    v.value({"hair", "", "the same of brows and the roots of lashes", 0, 10, kLinear, kFixed}, hair);
-    v.value({"lip", "", "the same of lips", 0, 10, kLinear, kFixed}, lip);
+    v.value({"oily", "", "factor on the force that holds a drop, where the mask is red", 0, 10, kLinear, kFixed}, oily);
+    v.value({"dry", "", "the same, where it is green", 0, 10, kLinear, kFixed}, dry);
+    v.value({"hair", "", "the same of brows and lashes, where it is blue", 0, 10, kLinear, kFixed}, hair);
+    v.value({"lip", "", "the same, by its alpha", 0, 10, kLinear, kFixed}, lip);
 }
 
 void FlowParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> modes = {"drops", "thesis"};
     v.choice({.name = "mode",
-              .doc = "drops: they walk the mesh, the same way whatever its UVs; thesis: particles in UV, as the thesis has them",
+              .doc = "drops: they move on the mesh, independent of its UVs; thesis: particles in UV space (thesis, chapter 4)",
               .fixed = kFixed},
              mode, modes);
-    v.value({.name = "mesh", .doc = "model file: as given, beside the scene, in RIVULET_ASSETS, in assets/", .fixed = kFixed}, mesh);
-    v.value({.name = "part", .doc = "of a file with several parts the one that is wet; the others are drawn with it", .fixed = kFixed},
-            part);
+    v.value({.name = "mesh",
+             .doc = "model file, searched in this order: the path itself, beside the scene, in RIVULET_ASSETS, in assets/",
+             .fixed = kFixed},
+            mesh);
+    v.value({.name = "part", .doc = "the wet part of a file with several parts; the others are drawn", .fixed = kFixed}, part);
     v.value({.name = "instead",
-             .doc = "JSON file of another skin, with the keys of this one that differ: taken where the mesh that it names is found",
+             .doc = "JSON file of another skin, with the keys that differ from this one; used if its mesh is found",
              .fixed = kFixed},
             instead);
     v.value({.name = "hide",
-             .doc = "parts that are not drawn, by name or material, ', ' between them; * at the end = and the like",
+             .doc = "parts that are not drawn, by name or material, separated by ', '; * at the end matches any ending",
              .fixed = kFixed},
             hide);
-    v.value({.name = "skinParts", .doc = "parts that are made of skin, the same way; the default head knows its own", .fixed = kFixed},
-            skinParts);
+    v.value(
+        {.name = "skinParts", .doc = "parts with the skin material, in the same form; the default head has its own list", .fixed = kFixed},
+        skinParts);
     v.value(
         {.name = "marks", .doc = "JSON file of a face's eyes and lids; none = the file beside the mesh, if there is one", .fixed = kFixed},
         marks);
-    v.value({"position", "m", "where the mesh's origin goes (with fitSize: its middle)", -kFar, kFar, kLinear, kFixed}, position);
+    v.value({"position", "m", "of the mesh's origin (with fitSize: of its centre)", -kFar, kFar, kLinear, kFixed}, position);
     v.value({"rotation", "deg", "about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
-    v.value({"scale", "", "of the mesh: its file's unit in m", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
-    v.value({"fitSize", "m", "length that its longest side is scaled to, instead of scale; 0 = scale holds", 0, kFar, kLog, kFixed},
-            fitSize);
-    v.value({"mapSize", "", "texels of the map that it is drawn into: a power of two", 16, 8192, kLog, kFixed}, mapSize);
+    v.value({"scale", "", "of the mesh: the unit of its file in m", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
+    v.value({"fitSize", "m", "length that its longest side is scaled to; 0 = use scale", 0, kFar, kLog, kFixed}, fitSize);
+    v.value({"mapSize", "", "texels along a side of the map that it is drawn into: a power of two", 16, 8192, kLog, kFixed}, mapSize);
     v.value({"wind", "m/s", "of the air, in the world", -1.0e6, 1.0e6}, wind);
-    v.group({.name = "liquid", .doc = "what flows, and how it clings"}, liquid);
+    v.group({.name = "liquid", .doc = "the liquid, and how it adheres"}, liquid);
     v.group({.name = "thesis", .doc = "the forces of mode thesis"}, thesis);
-    v.group({.name = "motion", .doc = "how the skin turns as a whole"}, motion);
-    v.value({"expressive", "", "how much of expression: 0 = a statue", 0, 1}, expressive);
-    v.list({.name = "expression", .doc = "how it bends: morph targets of the mesh"}, expression);
-    v.list({.name = "sources", .doc = "where drops come from"}, sources);
-    v.group({.name = "regions", .doc = "where the skin holds more, where less"}, regions);
-    v.group({.name = "look", .doc = "how what flows looks"}, look);
-    v.group({.name = "material", .doc = "of a mesh whose file has none"}, material);
+    v.group({.name = "motion", .doc = "rigid motion of the skin"}, motion);
+    v.value({"expressive", "", "factor on all of expression; 0 = none", 0, 1}, expressive);
+    v.list({.name = "expression", .doc = "weights of the mesh's morph targets"}, expression);
+    v.list({.name = "sources", .doc = "sources of drops"}, sources);
+    v.group({.name = "regions", .doc = "parts of the skin that hold drops more or less strongly"}, regions);
+    v.group({.name = "look", .doc = "look of the liquid"}, look);
+    v.group({.name = "material", .doc = "of a mesh whose file has no material"}, material);
 }
 
 void PresetParams::visit(ParamVisitor& v) {
-    v.value({.name = "name", .doc = "what its button says"}, name);
+    v.value({.name = "name", .doc = "label of its button, and value of --preset"}, name);
     v.value({.name = "doc", .doc = "one sentence"}, doc);
-    v.value({.name = "set", .doc = "values, as --set has them, '; ' between them"}, set);
+    v.value({.name = "set", .doc = "values in the form of --set, separated by '; '"}, set);
 }
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// A scene's `flow`: skins, what flows on them, where it comes from, and how the face under it moves. Metres, seconds, microlitres.
+// A scene's `flow`: skins, the liquid on them, its sources, and the motion of the face below. Metres, seconds, microlitres.
 #pragma once
 
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace rivulet {
 
-// Where drops come from.
+// A source of drops.
 struct FlowSourceParams {
     std::string kind = "spot";      // corner | brim | spot | strewn | rain
     std::string side = "both";      // of an eye: left | right | both
-    float rate = 0;                 // microlitres a minute, all together; 0 = off
-    float drop = 1;                 // microlitres, of each
+    float rate = 0;                 // microlitres per minute, in all; 0 = off
+    float drop = 1;                 // microlitres per drop
     float start = 0, stop = 3600;   // s
-    float swell = 0;                // 0 steady .. 1: comes and goes
+    float swell = 0;                // 0 (steady) to 1 (fully modulated)
     float period = 4;               // s, of the swell
     vec3 position{0.0F};            // m, in the skin's own frame: of a spot, or above what it rains on
     float radius = 0.0F;            // m, about a spot; strewn or rain: about `position`; 0 = everywhere
     float speed = 9;                // m/s, of rain
-    vec3 along{0.0F, -1.0F, 0.0F};  // the way rain falls
+    vec3 along{0.0F, -1.0F, 0.0F};  // direction of rain
     bool film = false;              // a sheet, not single drops
     void visit(ParamVisitor& v);
 };
@@ -36,17 +36,17 @@ struct ExpressionParams {
     void visit(ParamVisitor& v);
 };
 
-// How the skin turns and moves as a whole, about a pivot.
+// Rigid motion of the skin about a pivot.
 struct FlowMotionParams {
     vec3 pivot{0.0F};  // m, in the skin's frame
     vec3 turn{0.0F};   // deg, about x, then y, then z
-    vec3 swing{0.0F};  // deg, to and fro
+    vec3 swing{0.0F};  // deg, amplitude of an oscillation
     float period = 3;  // s
     dmat4 at(double time) const;
     void visit(ParamVisitor& v);
 };
 
-// What a painted mask says of a skin: how much of what holds a drop there is there. Channels red, green, blue, alpha of the picture.
+// Factors on the force that holds a drop, by a painted mask: its red, green, blue and alpha channels in this order.
 struct RegionParams {
     std::string mask;  // picture, over the mesh's UVs; "" = none
     float oily = 1.3F, dry = 0.9F, hair = 1.8F, lip = 0.7F;
@@ -56,10 +56,10 @@ struct RegionParams {
 struct FlowParams {
     std::string mode = "drops";  // drops | thesis
     std::string mesh = "meshes/head/head.glb";
-    std::string part = "skin";  // of a file with several
-    std::string instead;        // JSON file of another skin, which takes its place where the mesh that it names is found; "" = none
+    std::string part = "skin";  // of a file with several parts
+    std::string instead;        // JSON file of another skin, used instead if its mesh is found; "" = none
     std::string hide;           // parts that are not drawn, by name or material, ", " between them; one may end in *
-    std::string skinParts;      // parts that are made of skin, the same way; the default head knows its own
+    std::string skinParts;      // parts with the skin material, as `hide`; the default head has its own list
     std::string marks;          // JSON with eyes, lids and where tears begin; "" = beside the mesh, if there is one
     vec3 position{0.0F};        // m
     vec3 rotation{0.0F};        // deg
@@ -75,7 +75,7 @@ struct FlowParams {
     std::vector<FlowSourceParams> sources;
     RegionParams regions;
     LayerLook look;
-    Material material;  // of a mesh whose file has none
+    Material material;  // of a mesh whose file has no material
     void visit(ParamVisitor& v);
 };
 

@@ -1,4 +1,4 @@
-// Gives a head's parts the looks that glTF has no words for: skin, eyes.
+// Materials of a head's parts that glTF cannot describe: skin, eyes.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace rivulet {
 
-// The eyeball in a mesh: the sphere that fits its vertices best, looking where the uvs' middle is.
+// The eyeball in a mesh: the sphere that fits its vertices best, looking towards the centre of its uvs.
 EyeLook eyeLookOf(const Mesh& mesh);
 
-// The tear that always lies along a lower lid: a strip that curves from the lid's edge to the eyeball, blended, as much of a mirror as a
-// mesh can be. It follows the skin's morphs. `width`: m, from the lid to where it ends on the eye. Nothing where no lid is near the eye.
+// The tear film along a lower lid: a blended, mirror-like strip that curves from the lid's edge to the eyeball. It follows the skin's
+// morph targets. `width`: m, from the lid to where it ends on the eye. Nothing where no lid is near the eye.
 ModelPart makeTearLine(const ModelPart& skin, const EyeLook& eye, const std::string& name, float width = 0.8e-3F);
 
 // The part `skin` becomes skin, with head_relief.png and skin_regions.png of `folder` where they are there; parts whose names begin with

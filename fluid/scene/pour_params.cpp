@@ -7,20 +7,22 @@ namespace rivulet {
 
 namespace {
 
-constexpr float kAbove = 3;  // radii, over what it falls on
+constexpr float kAbove = 3;  // radii, above the point it falls on
 
 }  // namespace
 
 void PourParams::visit(ParamVisitor& v) {
     constexpr bool kLog = true, kLinear = false, kFixed = true;
-    v.value({"litres", "l", "how much may be poured in by hand, by the key P: room is kept for it; 0 = nothing", 0, 1.0e6, kLog, kFixed},
+    v.value({"litres", "l", "volume that a person can pour in (key P); memory is reserved for it; 0 = none", 0, 1.0e6, kLog, kFixed},
             litres);
-    v.value({"radius", "m", "of the jet from the hand; 0 = three spacings", 0, 100, kLog}, radius);
-    v.value({"speed", "m/s", "how fast it leaves the hand; 0 = as if it had fallen three radii", 0, 100}, speed);
-    v.value({.name = "liquid", .doc = "what is poured, a row of rivulet list liquids; empty = as fluid.liquid", .fixed = kFixed}, liquid);
+    v.value({"radius", "m", "of the jet; 0 = three spacings", 0, 100, kLog}, radius);
+    v.value({"speed", "m/s", "of the jet at its start; 0 = that of a fall of three radii", 0, 100}, speed);
+    v.value({.name = "liquid", .doc = "liquid of the jet, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
+            liquid);
     v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
-    v.value({"dyeAmount", "1/m", "how much dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed}, dyeAmount);
-    v.value({"dyeScattering", "1/m", "how cloudy the dye makes it, on top; 0 = clear as ink", 0, 1.0e4, kLog, kFixed}, dyeScattering);
+    v.value({"dyeAmount", "1/m", "concentration of the dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed},
+            dyeAmount);
+    v.value({"dyeScattering", "1/m", "scattering of the dye; 0 = clear, like ink", 0, 1.0e4, kLog, kFixed}, dyeScattering);
 }
 
 EmitterParams pouring(const PourParams& pour, const FluidParams& fluid, const std::optional<vec3>& onto) {
@@ -45,7 +47,7 @@ float litresToPour(const FluidParams& fluid, uint32_t particles) {
     const vec3 size = fluid.box.max - fluid.box.min;
     const double volume = std::pow(double{fluid.spacing}, 3), box = double{size.x} * double{size.y} * double{size.z};
     const double wanted = std::min(std::clamp(static_cast<double>(particles), 4000.0, 40000.0) * volume, 0.5 * box);
-    const double digit = std::pow(10, std::floor(std::log10(1000 * wanted)) - 1);  // two digits: a person reads it
+    const double digit = std::pow(10, std::floor(std::log10(1000 * wanted)) - 1);  // two digits, for display
     return static_cast<float>(std::max(std::round(1000 * wanted / digit), 1.0) * digit);
 }
 

@@ -1,4 +1,4 @@
-// The bodies of a scene: shapes with their samples, how they touch, and meshes to draw.
+// The bodies of a scene: shapes with their samples, forms for contact, and meshes to draw.
 #pragma once
 
 #include <vector>
@@ -12,11 +12,11 @@ namespace rivulet {
 struct SceneBody {
     Body body;
     BodyForm form;
-    Mesh mesh;                // in the body's own frame, as
-    std::vector<Mesh> parts;  // of BodyParams::parts
+    Mesh mesh;                // in the body's own frame
+    std::vector<Mesh> parts;  // of BodyParams::parts, in the same frame
 };
 
-// Error (badInput): a mesh that is missing, unreadable, open or inside out. Says which body.
+// Error (badInput): a mesh that is missing, unreadable, open or inside out; the sentence names the body.
 Result<std::vector<SceneBody>> sceneBodies(const SceneFile& scene);
 
 }  // namespace rivulet

@@ -9,6 +9,8 @@
 #include "engine/core/params.h"
 #include "engine/core/result.h"
 #include "fluid/render/look_params.h"
+#include "fluid/scene/body_params.h"
+#include "fluid/scene/collider_params.h"
 #include "fluid/scene/flow_params.h"
 #include "fluid/scene/pour_params.h"
 #include "fluid/sim/sources/emitter.h"
@@ -16,106 +18,8 @@
 
 namespace rivulet {
 
-// A collider's place at a time, from where its scene puts it; between keys it moves smoothly, after the last it stays.
-struct ColliderKey {
-    float time = 0;       // s
-    vec3 position{0.0F};  // m, added to the collider's
-    vec3 rotation{0.0F};  // deg, about x, then y, then z, after the collider's own
-    void visit(ParamVisitor& v);
-};
-
-// How a mesh collider moves as a whole. It turns about its `position`.
-struct ColliderMotion {
-    vec3 axis{0.0F, 0.0F, 1.0F};
-    float spin = 0;            // deg/s about the axis
-    vec3 shake{0.0F};          // m, amplitude
-    float shakeFrequency = 1;  // Hz
-    std::vector<ColliderKey> keys;
-    bool moves() const { return spin != 0 || shake != vec3(0.0F) || !keys.empty(); }
-    void visit(ParamVisitor& v);
-};
-
-// A wave that runs through a mesh collider and bends it.
-struct ColliderWave {
-    float amplitude = 0;               // m; 0 = none
-    float length = 0.5F;               // m
-    float period = 1;                  // s
-    vec3 along{1.0F, 0.0F, 0.0F};      // the way it runs
-    vec3 direction{0.0F, 1.0F, 0.0F};  // the way it lifts
-    void visit(ParamVisitor& v);
-};
-
-// A clip of a mesh file that plays. What it bends, water meets as it is at the time.
-struct ColliderAnimation {
-    std::string clip;   // "" = the file's first
-    float speed = 0;    // 0 = it stands as in its file
-    bool loops = true;  // or it stays as it ends
-    void visit(ParamVisitor& v);
-};
-
-// A solid. "mesh": a file, scaled, turned, moved. "plane": water on the side the normal points to; it stands still.
-struct ColliderParams {
-    std::string shape = "mesh";  // mesh | plane
-    std::string mesh;            // path: as given, beside the scene file, in RIVULET_ASSETS (a list of folders), in assets/
-    int resolution = 0;          // voxels along the mesh's longest side; 0 = so many that one is a quarter of the fluid's spacing
-    vec3 position{0.0F};         // m; plane: a point on it
-    vec3 rotation{0.0F};         // deg, about x, then y, then z
-    float scale = 1.0F;
-    float fitSize = 0.0F;           // m; > 0: scaled so that the longest side has this length, and its bounds' centre put at `position`
-    vec3 normal{0.0F, 1.0F, 0.0F};  // plane
-    float friction = -1;            // Coulomb; -1 = as fluid.collision says
-    float restitution = -1;         // 0..1; -1 = as fluid.collision says
-    ColliderMotion motion;
-    ColliderWave wave;
-    ColliderAnimation animation;
-    bool solid = true;                 // or only drawn
-    std::string materials = "file";    // file | scene: what follows
-    vec3 colour{0.72F, 0.71F, 0.69F};  // linear
-    float roughness = 0.6F;
-    float metallic = 0.0F;
-    float opacity = 1.0F;    // less than 1: glass
-    float grain = 0.0F;      // 0 = smooth and of one colour, 1 = coarse stone
-    float grainSize = 0.1F;  // m
-    bool visible = true;
-    void visit(ParamVisitor& v);
-};
-
-// A mesh that is drawn with a body, and neither weighs nor touches anything.
-struct BodyPartParams {
-    std::string mesh;  // in the frame of the body's mesh
-    vec3 colour{0.1F};
-    float roughness = 0.4F;
-    void visit(ParamVisitor& v);
-};
-
-// A rigid body that floats, sinks, or, fixed, is a wall of boundary particles.
-struct BodyParams {
-    std::string shape = "box";  // box | sphere | hull | mesh
-    std::string mesh;           // of a hull or mesh: a closed mesh file, found as a collider's
-    vec3 size{0.1F};            // m, of a box
-    float radius = 0.05F;       // m, of a sphere
-    float scale = 1.0F;         // of a hull or mesh
-    float fitSize = 0.0F;       // m; as a collider's
-    vec3 position{0.0F};        // m
-    vec3 rotation{0.0F};        // deg, about x, then y, then z
-    vec3 velocity{0.0F};        // m/s
-    vec3 spin{0.0F};            // deg/s
-    float density = 500.0F;     // kg/m^3
-    float mass = 0.0F;          // kg; 0 = as density says
-    vec3 ballast{0.0F};         // m, from the middle of its volume to its centre of mass, before it is turned
-    float friction = 0.5F;      // Coulomb, with what it touches
-    float restitution = 0.1F;   // 0..1
-    bool fixed = false;
-    bool sticks = false;  // whether fluid sticks to it
-    std::vector<BodyPartParams> parts;
-    vec3 colour{0.85F, 0.45F, 0.2F};  // linear
-    float roughness = 0.4F;
-    bool visible = true;
-    void visit(ParamVisitor& v);
-};
-
 struct CameraParams {
-    std::string from;                 // a camera of a collider's file; "" = as the rest says
+    std::string from;                 // a camera of a collider's file; "" = the values below
     vec3 position{1.6F, 1.1F, 2.2F};  // m
     vec3 target{0.5F, 0.35F, 0.5F};   // m
     float fieldOfView = 40.0F;        // deg, vertical
@@ -123,7 +27,7 @@ struct CameraParams {
 };
 
 struct LightParams {
-    std::string from;                   // a directional light of a collider's file; "" = as the rest says
+    std::string from;                   // a directional light of a collider's file; "" = the values below
     vec3 direction{0.72F, 0.8F, 0.1F};  // towards the light
     vec3 colour{1.0F, 0.96F, 0.9F};     // linear
     float intensity = 3.6F;
@@ -137,24 +41,24 @@ struct BackgroundParams {
     float floorHeight = 0.0F;         // m
     bool showFloor = true;
     bool showBox = true;             // edges of the fluid's box
-    std::string sky = "studio";      // studio | clouds: what there is where no picture surrounds the scene
-    float clouds = 0.5F;             // share of such a sky that they cover
+    std::string sky = "studio";      // studio | clouds: the sky where `surroundings` is empty
+    float clouds = 0.5F;             // share of a clouds sky that is covered
     std::string surroundings;        // an equirectangular picture (.hdr) instead of the studio; "" = none
     float surroundingsLevel = 1.0F;  // factor on it
     void visit(ParamVisitor& v);
 };
 
-// What a frame may take, and how far density may be off: a setting that holds both is picked (budget.h).
+// Limits on the cost of a frame and on the density error: a setting within both is picked (budget.h).
 struct BudgetParams {
-    float frameMs = 0;              // what simulating a sixtieth of a second may take; 0 = no budget
+    float frameMs = 0;              // limit on simulating 1/60 s; 0 = no budget
     float maxDensityError = 0.01F;  // mean compression, a fraction
-    float finest = 0;               // m, spacing that nothing finer is picked than; 0 = fluid.spacing
+    float finest = 0;               // m, the finest spacing that is picked; 0 = fluid.spacing
     void visit(ParamVisitor& v);
 };
 
-// What loadScene was given.
+// The arguments of loadScene.
 struct SceneSource {
-    std::string path;  // of the file that was found; "": the scene came from none
+    std::string path;  // of the file that was found; "": the scene is of no file
     std::string preset;
     std::vector<std::string> assignments;
 };
@@ -163,7 +67,7 @@ struct SceneFile {
     std::string name = "unnamed";
     std::string doc;
     float duration = 5.0F;   // s
-    float timeScale = 1.0F;  // simulated seconds in a second of what is shown; less than 1: slow motion
+    float timeScale = 1.0F;  // simulated seconds per second shown; less than 1: slow motion
     FluidParams fluid;
     std::vector<ColliderParams> colliders;
     std::vector<EmitterParams> emitters;
@@ -179,28 +83,28 @@ struct SceneFile {
     std::vector<PresetParams> presets;
     std::string folder;  // of the file it came from; not a Param
     SceneSource source;  // nor this
-    uint32_t room = 0;   // nor this: particles there is room for at least, as Sources::least
+    uint32_t room = 0;   // nor this: least number of particles to reserve memory for, as Sources::least
     void visit(ParamVisitor& v);
 };
 
-// `path`: as findAsset takes it, or the name of a listed scene (`dam_break`). `assignments`: each --set, in order. Error: as readJson and
-// setParam say.
-// `preset`: one of the scene's, set before the assignments; "" = none.
+// `path`: as of findAsset, or the name of a listed scene (`dam_break`). `assignments`: each --set, in order. Error: as of readJson and
+// setParam.
+// `preset`: the name of one of the scene's presets, set before the assignments; "" = none.
 Result<SceneFile> loadScene(const std::string& path, std::span<const std::string> assignments, const std::string& preset = "");
 
-// Writes what differs from the defaults, so that loadScene gives the same scene: what it found beside the old file and would not beside
-// the new one is named by its whole path, in `scene`, too. Error (failed): not writable, disk full; what was there stays.
+// Writes what differs from the defaults. loadScene of the new file gives the same scene: a path that was relative to the old file and is
+// not found from the new one becomes absolute, in `scene`, too. Error (failed): not writable, disk full; the old file stays.
 Status saveScene(SceneFile& scene, const std::string& path);
 
-// Sets what one of its presets says. Error (badInput): no such preset, and which there are; a value that setParam refuses: all is as it
-// was then.
+// Sets the values of one of the scene's presets. Error (badInput): no such preset (the sentence lists those that exist); setParam refuses
+// a value. The scene is unchanged then.
 Status applyPreset(SceneFile& scene, const std::string& name);
 
-// Error: values that make no sense together, each fine by itself. loadScene asks it; who edits a scene asks it too.
+// Error (badInput): values that contradict each other, each valid by itself. loadScene calls it; so must an editor of scenes.
 Status checkScene(const SceneFile& scene);
 
-// Where an asset is: `path` as given, beside the scene, in RIVULET_ASSETS, in the source tree's or the installed assets/. Error: every
-// place looked at.
+// The first that exists of: `path` itself; `path` in the scene's folder, in the folders of RIVULET_ASSETS (separated by colons), in the
+// assets/ of the source tree, in the installed assets/. Error (badInput): none exists; the sentence lists all places.
 Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder);
 
 // Every scene file found in the places that findAsset searches under scenes/, with its name and doc.

@@ -11,7 +11,7 @@
 
 namespace rivulet {
 
-// What a body touches with, in its own frame.
+// The contact shape of a body, in its own frame.
 struct BodyForm {
     enum class Kind { box, sphere, hull, cells };
     Kind kind = Kind::box;
@@ -24,10 +24,10 @@ struct BodyForm {
     float friction = 0.5F, restitution = 0.1F;
 };
 
-// Boxes that fill what `distance` is negative in, `across` of them along the longest side.
+// Boxes that fill the inside of a shape (negative distance), `across` of them along the longest side.
 std::vector<std::pair<vec3, vec3>> cellsOf(const BodyShape& shape, const Bounds& bounds, int across);
 
-// The convex hull of some points as a mesh, counter-clockwise from outside. Empty where they lie in a plane.
+// The convex hull of points as a mesh, counter-clockwise from outside. Empty where they lie in a plane.
 struct HullMesh {
     std::vector<vec3> positions;
     std::vector<uint32_t> indices;
@@ -36,22 +36,22 @@ HullMesh convexHull(std::span<const vec3> points);
 
 class BulletSolids {
   public:
-    // Walls of `box` where it is not periodic, `planes`, meshes that stand still (in the world) and that move (in their own frames, at
-    // `poses`).
+    // The walls of `box` along axes that are not periodic, `planes`, static meshes (in the world) and moving ones (in their own frames,
+    // at `poses`).
     struct Scene {
         BoxParams box;
         std::span<const PlaneSolid> planes;
         std::span<const MeshView> still, moving;
         std::span<const Pose> poses;
     };
-    // One form a body. Copies what it needs.
+    // One form per body. Copies its arguments.
     BulletSolids(const Scene& scene, std::span<const Body> bodies, std::span<const BodyForm> forms);
     ~BulletSolids();
     BodyHost host();  // the BulletSolids must outlive its use
-    // Where the moving meshes are to be when `seconds` have gone by; 0: they are there now.
+    // The poses of the moving meshes in `seconds`; 0: they are moved there now.
     void moveTo(std::span<const Pose> poses, double seconds);
-    // A hand that holds a body, at `at` (m, the body's own frame), and draws that to `to` (m, world) until it lets go: by a spring that is
-    // damped critically, carries the body's weight, and never pulls harder than 20 times that.
+    // Pulls the point `at` (m, own frame) of a body to `to` (m, world) with a critically damped spring that carries the body's weight and
+    // is limited to 20 times that weight. Nothing: ends.
     struct Hold {
         size_t body = 0;
         vec3 at{0.0F}, to{0.0F};

@@ -1,17 +1,15 @@
-// AdaptiveQuality: whether look.quality auto is fast or fine, by what frames cost to draw: the picture gives way before the frame rate
-// does.
+// AdaptiveQuality: whether look.quality auto is fast or fine, by the cost of drawing: quality drops before the frame rate does.
 #pragma once
 
 namespace rivulet {
 
 class AdaptiveQuality {
   public:
-    static constexpr double kMost = 12;  // ms: what is left of a 60th of a second beside the simulation
-    // A frame has cost `ms` to draw, >= 0. Frames in a row that cost more make it fast; many that would leave room for the fine picture,
-    // which costs up to four times the fast one's, make it fine again. Each time that turns out wrong it waits twice as long before the
-    // next.
+    static constexpr double kMost = 12;  // ms: the share of 1/60 s for drawing, beside the simulation
+    // A frame took `ms` >= 0 to draw. Consecutive frames above kMost switch to fast. Many frames that leave time for the fine picture,
+    // which costs up to four times the fast one, switch back to fine. Each time that was wrong, the next attempt waits twice as long.
     void frame(double ms);
-    // From the start, or again from there: fast where software draws.
+    // At the start and after a reset: fast where a software renderer draws.
     void begin(bool software);
     bool fast() const { return fast_; }
 

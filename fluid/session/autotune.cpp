@@ -53,7 +53,7 @@ Status Autotune::run(const DrawFrame& draw, int frames) {
         double uploaded = stepped;
         std::vector<PassTime> drawn;
         const auto next = [&] {
-            // In the last one, too: all that are counted are drawn beside a step, or none.
+            // Also in the last one: each counted frame is drawn beside a step.
             work_->start(frameSeconds(session.scene()), true);
             uploaded = hostSeconds();
         };
@@ -70,7 +70,7 @@ Status Autotune::run(const DrawFrame& draw, int frames) {
     work_->drop();
     device.takeTimes();
     if (const DeviceHealth health = device.health(); health.state != DeviceHealth::works)
-        return failed(fmt::format("{} {}: nothing it took can be believed", device.info().name, health.why));
+        return failed(fmt::format("{} {}: its times are invalid", device.info().name, health.why));
     frames_ += frames;
     frame_.push_back(1000 * whole / frames);
     step_.push_back(1000 * stepping / frames);
@@ -89,7 +89,7 @@ bool Autotune::couldHelp() const { return work_->plan() == tried_.plan && (tried
 
 double Autotune::lastMs() const { return lastMs_; }
 
-PlanTried Autotune::told() const {
+PlanTried Autotune::result() const {
     PlanTried all = tried_;
     all.frameMs = spreadOf(frame_);
     all.turns = frame_;
@@ -110,20 +110,20 @@ struct Contest {
     std::optional<Error> why = {};  // the first device cannot
 
     void leaveOut(std::string_view backend, const std::string& sentence) const {
-        request.log.notice(fmt::format("--cooperate auto leaves {} out: {}", backend, sentence));
+        request.log.notice(fmt::format("--cooperate auto skips {}: {}", backend, sentence));
     }
 
     void enter() {
         for (const char* backend : {"cpu", "gl", "cl"}) {
             devices.push_back(makeDevice(backend, request.gl, {}, request.clDevice));
             Device& device = *devices.back();
-            if (std::string_view(backend) != backendName(device.backend())) continue;  // there is none
+            if (std::string_view(backend) != backendName(device.backend())) continue;  // not available here
             const bool cpu = device.backend() == Backend::cpu;
             for (const Plan plan : {Plan::alone, cpu ? Plan::behind : Plan::thesis}) {
                 Result<Autotune> made = Autotune::create(request.scene, device, plan, {});
                 if (!made) {
                     leaveOut(nameOf({.backend = backend, .plan = plan}), made.error().message);
-                    if (plan != Plan::alone) device.forgiveFull();  // what is there already fits
+                    if (plan != Plan::alone) device.forgiveFull();  // the plan before still fits
                     if (!why) why = made.error();
                     break;
                 }
@@ -132,22 +132,22 @@ struct Contest {
         }
     }
 
-    // What stays is within `far` times the fastest of the turn.
+    // Keeps the trials within `far` times the fastest of the turn.
     Status turn(int at, int frames, double far) {
         std::vector<double> ms(trials.size(), std::numeric_limits<double>::max());
         double best = std::numeric_limits<double>::max();
         for (size_t k = 0; k < trials.size(); ++k) {
-            const size_t who = (k + static_cast<size_t>(at)) % trials.size();  // nobody always comes first
-            Autotune& trial = trials[who];
-            request.progress((at + static_cast<double>(k) / static_cast<double>(trials.size())) / (kTurns + 1), nameOf(trial.told()));
+            const size_t which = (k + static_cast<size_t>(at)) % trials.size();  // the order rotates
+            Autotune& trial = trials[which];
+            request.progress((at + static_cast<double>(k) / static_cast<double>(trials.size())) / (kTurns + 1), nameOf(trial.result()));
             Device& device = trial.session().world().device();
             if (device.health().state == DeviceHealth::works) {
                 const Status done = trial.run(request.draw, frames);
-                if (!done && device.health().state == DeviceHealth::works) return done;  // no picture: nobody can
+                if (!done && device.health().state == DeviceHealth::works) return done;  // drawing fails for all
                 if (!done) leaveOut(backendName(device.backend()), done.error().message);
-                if (done && trial.couldHelp()) ms[who] = trial.lastMs();
+                if (done && trial.couldHelp()) ms[which] = trial.lastMs();
             }
-            best = std::min(best, ms[who]);
+            best = std::min(best, ms[which]);
         }
         size_t k = 0;
         std::erase_if(trials, [&](const Autotune&) { return !(ms[k++] <= far * best); });
@@ -160,24 +160,24 @@ struct Contest {
 Result<std::vector<PlanTried>> tryPlans(const PlanRequest& request) {
     if (request.scene.budget.frameMs > 0)
         return badInput(
-            "--cooperate auto compares plans on one setting, and budget.frameMs picks another on each device: name a plan instead");
+            "--cooperate auto compares plans with equal settings, but budget.frameMs picks a setting per device: choose a plan instead");
     Contest contest{request};
     contest.enter();
     const double start = hostSeconds();
-    // Kernels are compiled, caches filled: that turn counts for nobody.
+    // The first turn compiles kernels and fills caches: it is not counted.
     if (Status done = contest.turn(0, 2, kFarBehindFirst); !done) return done.error();
     for (Autotune& trial : contest.trials) trial.forget();
     for (int at = 1; at <= kTurns && (at == 1 || hostSeconds() - start < request.seconds); ++at)
         if (Status done = contest.turn(at, kFramesATurn, kFarBehind); !done) return done.error();
-    if (contest.trials.empty()) return contest.why.value_or(failed("no device could try the scene"));
+    if (contest.trials.empty()) return contest.why.value_or(failed("no device can run the scene"));
     std::vector<PlanTried> all;
-    for (const Autotune& trial : contest.trials) all.push_back(trial.told());
+    for (const Autotune& trial : contest.trials) all.push_back(trial.result());
     std::stable_sort(all.begin(), all.end(), [](const PlanTried& a, const PlanTried& b) { return a.frameMs.median < b.frameMs.median; });
     return all;
 }
 
 double beyond(const PlanTried& own, const PlanTried& other) {
-    std::vector<double> ratios;  // the machine is slower in some turns, for both
+    std::vector<double> ratios;  // some turns are slower for both
     for (size_t k = 0; k < std::min(own.turns.size(), other.turns.size()); ++k) ratios.push_back(own.turns[k] / other.turns[k] - 1);
     return spreadOf(std::move(ratios)).median;
 }
@@ -187,9 +187,9 @@ std::string sentenceOf(std::span<const PlanTried> tried, std::string_view named)
     for (const PlanTried& t : tried.subspan(1))
         others += fmt::format("{}{} {:.1f}", others.empty() ? "" : ", ", nameOf(t), t.frameMs.median);
     const PlanTried& best = tried.front();
-    return fmt::format("--cooperate auto: {}, {:.1f} ms a frame{}{}", nameOf(best), best.frameMs.median,
+    return fmt::format("--cooperate auto: {}, {:.1f} ms per frame{}{}", nameOf(best), best.frameMs.median,
                        others.empty() ? "" : fmt::format(" ({})", others),
-                       named != "auto" && named != best.backend ? fmt::format("; --backend {} is left for it", named) : "");
+                       named != "auto" && named != best.backend ? fmt::format("; it replaces --backend {}", named) : "");
 }
 
 std::vector<CooperationStats::Tried> statsOf(std::span<const PlanTried> tried) {

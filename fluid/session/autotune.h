@@ -1,4 +1,5 @@
-// Autotune: plans of cooperation, tried on a scene, in turns, to find the fastest here. `--cooperate auto` and chapter 2's bench share it.
+// Autotune: measures the plans of cooperation on a scene, in turns, to find the fastest on this machine. `--cooperate auto` and the
+// benchmark of the thesis's chapter 2 share it.
 #pragma once
 
 #include <functional>
@@ -17,34 +18,34 @@
 
 namespace rivulet {
 
-// A plan on a device, and what a frame took of it.
+// A plan on a device, and the measured cost of a frame.
 struct PlanTried {
     std::string backend;  // as --backend
     Plan plan = Plan::alone;
     Spread frameMs = {};                         // on the wall, over the turns
-    std::vector<double> turns = {};              // and of each turn
-    double stepMs = 0, drawMs = 0;               // on the wall of the main thread, medians; what waits for another thread included
-    double overlapMs = 0;                        // a frame: of drawing, and what another thread did meanwhile
-    std::map<std::string, double> passes = {};   // ms a frame, the device's kernels, means
-    std::map<std::string, double> drawing = {};  // the same of the passes that draw
+    std::vector<double> turns = {};              // of each turn
+    double stepMs = 0, drawMs = 0;               // wall time of the main thread, medians; waits for another thread included
+    double overlapMs = 0;                        // per frame: time in which drawing and another thread's work overlapped
+    std::map<std::string, double> passes = {};   // ms per frame, the device's kernels, means
+    std::map<std::string, double> drawing = {};  // the same of the render passes
 };
 std::string nameOf(const PlanTried& tried);  // "cpu", "gl, thesis", "cpu, behind"
 
-// Draws the session as it is, until it is drawn; calls `uploaded` once nothing more is read of its world. `passes`: what it took.
+// Draws the session's current state and waits for it; calls `uploaded` when its world is no longer read. `passes`: receives the times.
 using DrawFrame = std::function<Status(Session& session, const std::function<void()>& uploaded, std::vector<PassTime>& passes)>;
 
 class Autotune {
   public:
     // From the scene's start. Error: as Session::create.
     static Result<Autotune> create(const SceneFile& scene, Device& device, Plan plan, const Log& log);
-    // One turn: `frames` frames, each stepped and drawn, after one that is not counted. Error: it cannot be drawn; (failed) the device has
+    // One turn: `frames` frames, each stepped and drawn, after one that is not counted. Error: drawing fails; (failed) the device has
     // failed.
     Status run(const DrawFrame& draw, int frames);
-    void forget();           // what was counted so far
-    bool couldHelp() const;  // whether the plan had something to do; of what has run
+    void forget();           // discards the turns so far
+    bool couldHelp() const;  // whether the plan had work to do in the turns so far
     double lastMs() const;   // of the last turn's fastest frame
     const Session& session() const { return *session_; }
-    PlanTried told() const;
+    PlanTried result() const;
 
   private:
     Autotune() = default;
@@ -60,20 +61,20 @@ class Autotune {
 
 struct PlanRequest {
     const SceneFile& scene;
-    const GlFacts& gl;  // of the context that is current
+    const GlFacts& gl;  // of the current context
     const DrawFrame& draw;
     Log log = {};
     std::string clDevice = {};  // as makeDevice
-    double seconds = 10;        // about: no turn begins later, once each plan has had one
+    double seconds = 10;        // about: after this no turn begins, once each plan has had one
     std::function<void(double share, const std::string& plan)> progress = [](double, const std::string&) {};
 };
-// Every plan on every device that there is, the fastest first; those that are compared take turns, and who is far behind drops out. A
-// device that cannot open the scene, or fails, and a plan that could do nothing are left out. Error: the scene cannot be opened, or drawn;
-// it has a budget, which picks another setting on each device (badInput).
+// Measures every plan on every available device, the fastest first. Candidates take turns; one that is far behind is dropped. A device that
+// cannot open the scene, or fails, and a plan with nothing to do are left out. Error: the scene cannot be opened or drawn; it has a budget,
+// which would pick another setting on each device (badInput).
 Result<std::vector<PlanTried>> tryPlans(const PlanRequest& request);
-// What a frame of one takes beyond another's, a fraction: the median over the turns of their ratio in each.
+// By how much a frame of `own` costs more than one of `other`, a fraction: the median over the turns of their ratio.
 double beyond(const PlanTried& own, const PlanTried& other);
-// The choice, in words; `named`: the backend that was asked for, which it may leave.
+// The choice as a sentence; `named`: the backend that was requested, which the choice may differ from.
 std::string sentenceOf(std::span<const PlanTried> tried, std::string_view named);
 // For --stats.
 std::vector<CooperationStats::Tried> statsOf(std::span<const PlanTried> tried);

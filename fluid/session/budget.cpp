@@ -9,18 +9,19 @@
 #include "engine/core/assert.h"
 #include "engine/core/json.h"
 #include "fluid/session/session.h"
+#include "fluid/sim/methods/method.h"
 
 namespace rivulet {
 
 namespace {
 
-constexpr double kHolds = 1.1;                // of what was asked for: a tenth more holds it
-constexpr double kPlanned = 0.85;             // of the frame: the chart and a calibration are not that exact
-constexpr double kFewest = 500;               // particles: fewer show no water
-constexpr const char* kMoving = "dam_break";  // the case whose cost is a scene's: in the others water hardly moves
+constexpr double kHolds = 1.1;                // a limit counts as held up to a tenth above it
+constexpr double kPlanned = 0.85;             // share of the frame that is planned: chart and calibration are not exact
+constexpr double kFewest = 500;               // particles: fewer do not look like water
+constexpr const char* kMoving = "dam_break";  // the case that scenes are compared with: in the others water hardly moves
 constexpr const char* kFree[] = {"hydrostatic", "dam_break", "standing_wave"};  // with a free surface, as scenes have
 
-// The row of the case and setting, at the size that most settings were run at.
+// The row of the case and setting, at the size with the most settings.
 const ChartRow* rowOf(std::span<const ChartRow> chart, std::string_view name, const ChartSetting& setting) {
     std::map<uint32_t, int> runs;
     for (const ChartRow& row : chart)
@@ -32,7 +33,7 @@ const ChartRow* rowOf(std::span<const ChartRow> chart, std::string_view name, co
     return best;
 }
 
-// What a setting leaves of compression, in the worst of the cases.
+// The compression of a setting, in the worst of the cases.
 double densityErrorOf(std::span<const ChartRow> chart, const ChartSetting& setting) {
     double worst = 0;
     for (const char* name : kFree)
@@ -73,7 +74,7 @@ std::optional<double> frameCost(std::span<const ChartRow> chart, std::span<const
     SceneFile scene;
     applySetting(setting, scene);
     const FluidParams& p = scene.fluid;
-    const int least = p.method == "pbf" ? p.pbf.minSubsteps : p.method == "dfsph" ? p.dfsph.minSubsteps : 1;
+    const int least = methodOf(p).leastSubsteps(p);
     const double faster = size.fastest / spacing / (row->fastest / row->spacing);
     const double steps = std::max<double>(least, row->stepsPerSecond / kFramesPerSecond * faster);
     return 1e-6 * cost->ns * size.particles(spacing) * steps * row->sweepsPerSecond / row->stepsPerSecond;
@@ -135,7 +136,7 @@ bool Budget::frame(double ms, double seconds, double densityError, std::string& 
     return !holds(meanMs, meanError) && again(meanMs, meanError, sentence);
 }
 
-// Another setting of the same method, as far as what was measured lets one hope: costs and errors go by the chart, from what they are now.
+// Picks another setting of the same method that should hold both limits: measured cost and error, scaled by the chart's ratios.
 bool Budget::again(double ms, double densityError, std::string& sentence) {
     missed_.insert(pick_.setting);
     const double cost = frameCost(chart_, costs_, size_, *pick_.setting, pick_.spacing).value_or(ms),
@@ -153,31 +154,32 @@ bool Budget::again(double ms, double densityError, std::string& sentence) {
         if (best.setting == nullptr || pick.frameMs < best.frameMs) best = pick;
     }
     const std::string now =
-        fmt::format("with {} a frame takes {:.3g} ms, {:.4g} were asked for, and density is {} off, {} was allowed", pick_.setting->name,
-                    ms, budget_.frameMs, percentText(densityError), percentText(double{budget_.maxDensityError}));
+        fmt::format("with {} a frame takes {:.3g} ms (limit {:.4g}) and density has an error of {} (limit {})", pick_.setting->name, ms,
+                    budget_.frameMs, percentText(densityError), percentText(double{budget_.maxDensityError}));
     if (best.setting != nullptr) {
         sentence = fmt::format("budget: {}: {} from now on", now, best.setting->name);
         pick_ = best;
         ++repicked_;
         return true;
     }
-    // What remains is fixed. Cost goes by the cube of the spacing, and by steps.
+    // Only fixed values remain. Cost scales with the cube of the spacing, and with the number of steps.
     const double coarser = pick_.spacing * std::pow(std::max(ms / (kPlanned * double{budget_.frameMs}), 1.0), 0.25);
-    const bool told = !why_.empty();
-    why_ = fmt::format(
-        "{}: no other setting of {} promises to hold both, and method and spacing are not changed in a run: {}", now, pick_.setting->method,
-        ms > kHolds * double{budget_.frameMs} ? fmt::format("start again with budget.finest = {:.3g}, or allow more", coarser)
-                                              : "start again with a smaller budget.maxDensityError, which picks what is stricter");
-    if (!told) sentence = "budget: " + why_;
+    const bool reported = !why_.empty();
+    why_ = fmt::format("{}: no other setting of {} is expected to hold both, and method and spacing cannot change during a run: {}", now,
+                       pick_.setting->method,
+                       ms > kHolds * double{budget_.frameMs}
+                           ? fmt::format("restart with budget.finest = {:.3g}, or raise the limit", coarser)
+                           : "restart with a smaller budget.maxDensityError, which picks a stricter setting");
+    if (!reported) sentence = "budget: " + why_;
     return false;
 }
 
 std::string Budget::report() const {
     std::string text =
-        fmt::format("  budget of {:.4g} ms a frame and {} of density: {} ({}), {:.3g} m apart, about {:.0f} particles\n", budget_.frameMs,
+        fmt::format("  budget of {:.4g} ms per frame and {} of density: {} ({}), {:.3g} m apart, about {:.0f} particles\n", budget_.frameMs,
                     percentText(double{budget_.maxDensityError}), pick_.setting->name, pick_.setting->doc, pick_.spacing, pick_.particles);
     text += fmt::format("    expected {:.3g} ms and {}", pick_.frameMs, percentText(pick_.densityError));
-    if (repicked_ > 0) text += repicked_ == 1 ? ", picked anew once" : fmt::format(", picked anew {} times", repicked_);
+    if (repicked_ > 0) text += repicked_ == 1 ? ", picked again once" : fmt::format(", picked again {} times", repicked_);
     if (all_.seconds <= 0) return text + "\n";
     text += fmt::format("; measured over {:.3g} s {:.3g} ms and {}", all_.seconds, all_.frameMs(), percentText(all_.densityError()));
     const bool whole = secondsDone_ > 0;

@@ -1,4 +1,4 @@
-// A scene's budget in this machine's milliseconds: half a second of its own water, with each method and then with what they lead to.
+// A scene's budget in milliseconds of this machine: half a second of its own water, with each method and then with the resulting picks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,22 +12,22 @@ namespace rivulet {
 namespace {
 
 constexpr double kCalibration = 300;  // ms, of all methods together
-constexpr double kCloser = 100;       // ms, of what they lead to, each time
+constexpr double kCloser = 100;       // ms, of the resulting pick, each time
 constexpr int kCloserTimes = 2;
-constexpr int kSmallerTimes = 10;   // half the particles each time, where the device has no memory for them
-constexpr double kAtMost = 20000;   // particles of a whole box of water: a sweep costs each the same
-constexpr double kSomeWater = 200;  // particles, below which a frame says nothing of what one costs
-constexpr double kUsual = 60;       // ns: where nothing could be measured
+constexpr int kSmallerTimes = 10;   // halvings of the particles, if the device has not enough memory
+constexpr double kAtMost = 20000;   // particles of a whole box of water: the cost per particle is constant
+constexpr double kSomeWater = 200;  // particles: with fewer, the cost of one cannot be measured
+constexpr double kUsual = 60;       // ns: if nothing could be measured
 
 struct Cost {
-    double ns = 0, frameMs = 0;  // a particle and sweep; a frame, mean
+    double ns = 0, frameMs = 0;  // per particle and sweep; per frame, mean
 };
 
-// Steps the scene for so many ms. nullopt: there was too little water.
+// Steps the scene for this many ms. nullopt: there was too little water.
 std::optional<Cost> costOf(Session& session, double budgetMs) {
     double ms = 0, work = 0, frames = 0;  // work: particles times sweeps
     const FluidWorld& world = session.world();
-    session.step(1.0 / kFramesPerSecond, true);  // the first one makes what the others find made
+    session.step(1.0 / kFramesPerSecond, true);  // the first one creates kernels and buffers
     for (double spent = 0; spent < budgetMs;) {
         const uint64_t before = world.stats().sweeps;
         const double took = session.step(1.0 / kFramesPerSecond, true);
@@ -52,12 +52,11 @@ SceneFile trialOf(const SceneFile& scene, double spacing) {
     SceneFile trial = scene;
     trial.budget = {};
     trial.fluid.spacing = static_cast<float>(spacing);
-    trial.fluid.maxParticles = 0;  // how many there would be
+    trial.fluid.maxParticles = 0;  // the unlimited number is wanted
     return trial;
 }
 
-// A trial that runs. One that the device has no memory for is no fault of the device's, which goes on with the next; `small`: that it was
-// so.
+// Runs a trial. If the device has not enough memory for it (`small`), the device stays usable for the next.
 struct Tried {
     Result<std::unique_ptr<Session>> session;
     std::optional<Cost> cost;
@@ -75,15 +74,15 @@ Tried tryOut(const SceneFile& trial, Device& device, double budgetMs) {
     return tried;
 }
 
-// Each of these methods, as it comes, at so coarse a spacing (m). Those that refuse the scene are left out, and so are those that the
-// device has no memory for: whether there were such. `refused`: the last one's sentence.
+// Tries each of these methods with default settings at this spacing (m). Methods that refuse the scene are skipped, and so are those that
+// the device has not enough memory for: returns whether there were such. `refused`: the last one's error.
 bool tryMethods(const SceneFile& scene, Device& device, std::span<const ChartSetting* const> plain, double coarse, Calibration& c,
                 std::optional<Error>& refused) {
     bool small = false;
     for (const ChartSetting* setting : plain) {
         Tried tried{failed(""), {}, false};
         double spacing = coarse;
-        for (;; spacing = std::max(0.5 * spacing, c.size.finest)) {  // too coarse for the scene, or for a drop in it
+        for (;; spacing = std::max(0.5 * spacing, c.size.finest)) {  // until it is fine enough for the scene and its drops
             SceneFile trial = trialOf(scene, spacing);
             applySetting(*setting, trial);
             tried = tryOut(trial, device, kCalibration / static_cast<double>(plain.size()));
@@ -105,7 +104,7 @@ bool tryMethods(const SceneFile& scene, Device& device, std::span<const ChartSet
     return small;
 }
 
-// Each method that the chart can pick; the last one's sentence, where all refuse the scene.
+// Tries each method that the chart can pick. Error: the last one's, if all refuse the scene.
 Result<Calibration> calibrate(const SceneFile& scene, Device& device, std::span<const ChartRow> chart) {
     Calibration c;
     c.size.finest = scene.budget.finest > 0 ? double{scene.budget.finest} : double{scene.fluid.spacing};
@@ -126,8 +125,8 @@ Result<Calibration> calibrate(const SceneFile& scene, Device& device, std::span<
     return c;
 }
 
-// As it was picked, with as many particles as there are then: what a frame takes that the chart's dam break knows nothing of (bodies, a
-// liquid that is thick, short steps) makes each sweep dearer.
+// Measures the pick itself, with its number of particles. Costs that the chart's dam break does not have (bodies, a viscous liquid, short
+// steps) raise the cost of a sweep.
 Status comeCloser(const SceneFile& scene, Device& device, std::span<const ChartRow> chart, Calibration& c,
                   std::optional<BudgetPick>& pick) {
     int smaller = 0;
@@ -168,23 +167,23 @@ Result<std::optional<Budget>> openBudget(SceneFile& scene, Device& device, const
     if (!c) return c.error();
     std::optional<BudgetPick> pick = pickSetting(chart, c->costs, c->size, scene.budget);
     if (!pick) {
-        log.notice("the scene starts without water: its budget has nothing to measure, and picks nothing");
+        log.notice("the scene starts without water: its budget has nothing to measure and is ignored");
         return std::optional<Budget>();
     }
     if (Status closer = comeCloser(scene, device, chart, *c, pick); !closer) return closer.error();
     device.finish();
-    (void)device.takeTimes();  // of the trials: nobody asked for them
+    (void)device.takeTimes();  // of the trials: not part of the run
     applySetting(*pick->setting, scene);
     scene.fluid.spacing = static_cast<float>(pick->spacing);
-    scene.budget.finest = static_cast<float>(c->size.finest);  // so that another pick may be finer again
+    scene.budget.finest = static_cast<float>(c->size.finest);  // a later pick may be finer again
     const std::string allowed = percentText(double{scene.budget.maxDensityError});
-    std::string said = fmt::format(
+    std::string sentence = fmt::format(
         "budget of {:.4g} ms and {}: {}, particles {:.3g} m apart, about {:.0f} of them; {:.3g} ms and {} expected", scene.budget.frameMs,
         allowed, pick->setting->name, pick->spacing, pick->particles, pick->frameMs, percentText(pick->densityError));
-    if (!c->measured) said += "; the scene starts with too little water to measure what it costs here";
-    if (!pick->holdsError) said += fmt::format("; nothing on the chart keeps density within {}", allowed);
-    if (!pick->holdsFrame) said += "; so few particles that water would not be seen still take longer: allow a frame more";
-    log.notice(said);
+    if (!c->measured) sentence += "; the scene starts with too little water to measure its cost on this machine";
+    if (!pick->holdsError) sentence += fmt::format("; no setting of the chart keeps the density error within {}", allowed);
+    if (!pick->holdsFrame) sentence += "; the fewest particles that look like water still take longer: raise budget.frameMs";
+    log.notice(sentence);
     return std::optional(Budget(scene.budget, std::move(chart), c->costs, c->size, *pick));
 }
 

@@ -1,5 +1,5 @@
-// The table of the chart "speed against accuracy": its settings and its measured rows. The program embeds the one that was measured last;
-// budgets pick from it, and `rivulet chart` measures it anew.
+// The chart "speed against accuracy": its settings and its measured rows. The program embeds the last measurement; budgets pick from it,
+// and `rivulet chart` measures it again.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace rivulet {
 
-// A way to simulate: a method, how long its steps are and how often it corrects.
+// A way to simulate: a method, its step length and its iterations.
 struct ChartSetting {
     const char* name;
     const char* doc;
     const char* method;
     const char* assignments;  // "; " between them
-    bool quick;               // whether it is run when the chart is to be quick
+    bool quick;               // whether `rivulet chart --quick` runs it
 };
-std::vector<std::string> assignmentsOf(std::string_view joined);  // what "; " stands between
-// Per method from the cheapest to the most careful; the one without assignments is as the method comes.
+std::vector<std::string> assignmentsOf(std::string_view joined);  // separated by "; "
+// Per method from the cheapest to the most accurate; the one without assignments has the method's default settings.
 Table<ChartSetting> chartSettings();
 
 struct ChartRow {
@@ -30,11 +30,11 @@ struct ChartRow {
     double spacing = 0;   // m
     uint32_t particles = 0;
     double error = 0;            // a fraction
-    double wallPerSecond = 0;    // s on the wall per simulated second, steps alone
-    double sweepsPerSecond = 0;  // over all neighbours
+    double wallPerSecond = 0;    // s of wall time per simulated second, steps alone
+    double sweepsPerSecond = 0;  // sweeps over neighbours
     double stepsPerSecond = 0;
     double compression = 0;  // mean over particles and frames, a fraction
-    double fastest = 0;      // m/s, what the water reaches by falling: FluidWorld::fastestFall
+    double fastest = 0;      // m/s, reached by falling: FluidWorld::fastestFall
     bool onFront = false;    // no other row of its case is both cheaper and more accurate
 };
 
@@ -44,7 +44,7 @@ std::string_view builtInChart();
 // "0.5 %", "120 %".
 std::string percentText(double fraction);
 
-// The rows of a speed_accuracy.csv. A line that is no row is left out.
+// The rows of a speed_accuracy.csv. Other lines are skipped.
 std::vector<ChartRow> readChart(std::string_view csv);
 
 }  // namespace rivulet

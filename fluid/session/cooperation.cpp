@@ -1,4 +1,4 @@
-// The thesis's cooperation of CPU and GPU (2.3), and what else may overlap.
+// Cooperation of CPU and GPU (thesis 2.3), and other ways to overlap work.
 #include "fluid/session/cooperation.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/core/assert.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
 namespace rivulet {
@@ -20,7 +20,7 @@ constexpr const char* kAheadLane = "cpu: ahead";
 Table<PlanRow> plans() {
     static constexpr PlanRow rows[] = {
         {"off", "a frame is stepped, then drawn", Plan::alone},
-        {"thesis", "the CPU finds the next step's cells while the GPU draws the step just done", Plan::thesis},
+        {"thesis", "the CPU finds the next step's cells while the GPU draws the last step", Plan::thesis},
         {"behind", "the cpu steps on while OpenGL draws the frame before", Plan::behind},
     };
     return {rows};
@@ -31,13 +31,12 @@ void traceKernels(Device& device, Timeline& timeline) {
 }
 
 Status writeTrace(const std::string& path, const Timeline& timeline, const Log& log) {
-    if (const double since = timeline.remembersSince(); since > 0)
-        log.notice(fmt::format("{}: the run was longer than a trace holds: the last {:.3g} s are in it, what came before is missing", path,
-                               hostSeconds() - since));
+    if (const double since = timeline.completeSince(); since > 0)
+        log.notice(fmt::format("{}: the run was longer than a trace holds: only the last {:.3g} s are in it", path, hostSeconds() - since));
     return writeFileAtomic(path, timeline.chromeTrace());
 }
 
-// Finds cells on the CPU, of particles whose places come down from a GPU.
+// Finds cells on the CPU, of particles whose positions are read from a GPU.
 struct Cooperation::Cells {
     std::unique_ptr<CpuDevice> cpu;
     Kernel cellOf;
@@ -54,7 +53,7 @@ struct Cooperation::Cells {
         made->cellOf = *kernel;
         return made.release();
     }
-    // The places, on their way down. Error: out of memory.
+    // Reads the positions. Error: out of memory.
     Status fetch(Device& from, const FluidWorld::CellWork& work) {
         step = work.step;
         for (auto [buffer, size] :
@@ -74,20 +73,21 @@ struct Cooperation::Cells {
 Cooperation::Cooperation(Session& session, Plan plan, Timeline* timeline, const Log& log)
     : session_(&session), plan_(plan), timeline_(timeline), log_(log), cells_(nullptr, [](Cells* c) { delete c; }) {
     const bool cpu = session.world().device().backend() == Backend::cpu;
-    if (plan == Plan::behind && !session.mayWorkAside()) {
-        log.notice(
-            cpu ? "--cooperate behind: a skin's maps are drawn from what is being stepped, so that a frame is stepped, then drawn"
-                : "--cooperate behind is for the cpu, which steps while OpenGL draws; with another backend a frame is stepped, then drawn");
+    if (plan == Plan::behind && !session.canStepInBackground()) {
+        log.notice(cpu ? "--cooperate behind is not possible here: the maps of skins are drawn from buffers that a step writes; each frame "
+                         "is stepped, then drawn"
+                       : "--cooperate behind needs the cpu backend, which steps while OpenGL draws; with another backend each frame is "
+                         "stepped, then drawn");
         plan_ = Plan::alone;
     }
     if (plan == Plan::thesis && cpu) {
-        log.notice("--cooperate thesis is for a GPU that simulates while the cpu helps: here the cpu simulates, alone");
+        log.notice("--cooperate thesis needs a backend on the GPU, which the CPU assists: here the cpu simulates alone");
         plan_ = Plan::alone;
     }
     if (plan_ == Plan::thesis && !session.world().knowsCells()) {
         log.notice(
-            "--cooperate thesis: with bodies, periodic axes, linked lists or a method that moves particles before it sorts them (pbf) no "
-            "cell is known before the next step: the device finds them, alone");
+            "--cooperate thesis is not possible with bodies, periodic axes, linked lists or a method that moves particles before sorting "
+            "(pbf): cells are unknown before the next step, and the device finds them alone");
         plan_ = Plan::alone;
     }
     if (plan_ != Plan::thesis) return;
@@ -101,7 +101,7 @@ Cooperation::Cooperation(Session& session, Plan plan, Timeline* timeline, const 
 }
 
 void Cooperation::begin(double seconds, bool wait, double deviceMs) {
-    ASSERT(!started_, "finish() a step before the next");
+    ASSERT(!started_, "call finish() before the next step");
     startedAt_ = hostSeconds();
     seconds_ = seconds;
     wait_ = wait;
@@ -131,7 +131,7 @@ void Cooperation::findCells() {
     const double before = hostSeconds();
     {
         const TimedSpan span(timeline_, "main", "places come down");
-        if (!cells_->fetch(world.device(), *work)) return;  // then the device finds them
+        if (!cells_->fetch(world.device(), *work)) return;  // the device finds them then
     }
     aheadMs_ = 1000 * (hostSeconds() - before);
     ahead_ = std::async(std::launch::async, [this] {
@@ -185,7 +185,7 @@ double Cooperation::advance() {
 
 void Cooperation::count() {
     if (timeline_ == nullptr) return;
-    const double since = timeline_->remembersSince();
+    const double since = timeline_->completeSince();
     while (!frames_.empty() && frames_.front() < since) frames_.pop_front();
     frames_.push_back(startedAt_);
 }
@@ -195,7 +195,7 @@ CooperationStats Cooperation::stats() const {
     for (const PlanRow& row : plans().rows)
         if (row.plan == plan_) s.plan = row.name;
     if (timeline_ == nullptr || plan_ == Plan::alone) return s;
-    const double since = timeline_->remembersSince();
+    const double since = timeline_->completeSince();
     const auto first = std::find_if(frames_.begin(), frames_.end(), [&](double began) { return began >= since; });
     if (first == frames_.end()) return s;
     const auto frames = static_cast<double>(frames_.end() - first);

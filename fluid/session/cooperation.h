@@ -1,4 +1,5 @@
-// Cooperation: who simulates while who draws. The plans are rows; a frame is start(), drawing, finish(), whatever the plan.
+// Cooperation of CPU and GPU: what is simulated while the frame before is drawn. The plans are rows; with each of them a frame is start(),
+// drawing, finish().
 #pragma once
 
 #include <deque>
@@ -15,11 +16,11 @@ namespace rivulet {
 
 enum class Plan {
     alone,   // a frame is stepped, then drawn
-    thesis,  // the next step's cells are found on the CPU while the GPU draws the step just done (thesis 2.3)
+    thesis,  // the CPU finds the next step's cells while the GPU draws the last step (thesis 2.3)
     behind,  // the cpu steps on while gl draws the frame before
 };
 struct PlanRow {
-    const char* name;  // as --cooperate takes it, but for auto
+    const char* name;  // a value of --cooperate, which also has auto
     const char* doc;
     Plan plan;
 };
@@ -29,26 +30,26 @@ inline constexpr const char* kDrawingLane = "gl: drawing";
 
 class Cooperation {
   public:
-    // Lanes of `timeline`, null: none: "main", and "cpu: ahead" of what another thread does meanwhile. A plan that the session cannot
-    // follow, or could do nothing for, becomes alone, and `log` says why.
+    // Lanes of `timeline` (may be null): "main", and "cpu: ahead" for the other thread. A plan that the session does not support, or
+    // that would have nothing to do, becomes alone; the log gives the reason.
     Cooperation(Session& session, Plan plan, Timeline* timeline, const Log& log);
-    ~Cooperation();  // what is under way on another thread is done then
+    ~Cooperation();  // waits for the other thread
     Cooperation(const Cooperation&) = delete;
     Cooperation& operator=(const Cooperation&) = delete;
 
-    // The next step of the session, of `seconds`; `wait`, `deviceMs` as Session::step. What is to be drawn meanwhile has been uploaded.
-    // Until finish() nothing else of the session may be called, but what drawing reads: solids(), scene(), flows().
+    // Starts the next step, of `seconds`; `wait`, `deviceMs` as Session::step. The frame to be drawn must be uploaded before. Until
+    // finish() only solids(), scene() and flows() of the session may be called, which drawing reads.
     void start(double seconds, bool wait, double deviceMs = 0);
-    // The session is stepped then: ms on the wall that it took, those of finding cells included. 0: nothing was started.
+    // Completes the step. Returns ms of wall time, finding cells included. 0: no step was started.
     double finish();
-    // Both at once, where nothing is drawn meanwhile: whatever the plan, it would gain nothing.
+    // Both, where nothing is drawn at the same time: no plan would gain anything.
     double step(double seconds, bool wait, double deviceMs = 0);
-    void drop();  // as finish, but steps no further than has been stepped already
+    void drop();  // as finish, but without completing the step
     bool started() const { return started_; }
-    bool helped() const { return helped_; }  // of thesis: whether cells could be found ahead
+    bool helped() const { return helped_; }  // plan thesis: cells could be found ahead
     Timeline* timeline() const { return timeline_; }
-    CooperationStats stats() const;      // of its own frames that the timeline still knows
-    Plan plan() const { return plan_; }  // thesis becomes alone when the cpu takes over
+    CooperationStats stats() const;      // of those of its frames that the timeline still holds
+    Plan plan() const { return plan_; }  // thesis becomes alone after a fallback to the cpu
 
   private:
     void wait();
@@ -63,14 +64,14 @@ class Cooperation {
     Log log_;
     bool started_ = false, wait_ = false, helped_ = false;
     double seconds_ = 0, deviceMs_ = 0, aheadMs_ = 0, startedAt_ = 0;
-    std::deque<double> frames_;  // s of hostSeconds(), when each began, of those that the timeline still knows
-    std::future<void> ahead_;    // what runs meanwhile
+    std::deque<double> frames_;  // s of hostSeconds(), when each began, of those that the timeline still holds
+    std::future<void> ahead_;    // the other thread's work
     struct Cells;
     std::unique_ptr<Cells, void (*)(Cells*)> cells_;
 };
 
 void traceKernels(Device& device, Timeline& timeline);  // into a lane "cl: kernels"
-// As a file for chrome://tracing; of a run that was longer than the timeline remembers, the log says so. Error (failed): not writable.
+// Writes a file for chrome://tracing. If the run was longer than the timeline holds, the log reports it. Error (failed): not writable.
 Status writeTrace(const std::string& path, const Timeline& timeline, const Log& log);
 
 }  // namespace rivulet

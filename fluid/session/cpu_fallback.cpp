@@ -8,19 +8,19 @@ namespace rivulet {
 
 namespace {
 
-// Makes them what the cpu knows. What was changed, to follow another sentence; "": nothing.
+// Replaces values that the cpu does not support. Returns the end of a notice about it; "": nothing changed.
 const char* fitToCpu(FluidParams& fluid) {
     if (fluid.grid != "linked_list") return "";
     fluid.grid = "sorted";
-    return "; fluid.grid is sorted there, as a linked_list needs a GPU's atomics";
+    return "; fluid.grid is sorted there, because linked_list needs the atomics of a GPU";
 }
 
 }  // namespace
 
 Result<OpenedSession> openSession(SceneFile scene, Device& device, const Log& log, std::string_view asked, const OpeningSteps& steps) {
     OpenedSession opened;
-    const bool standsIn = device.backend() == Backend::cpu && asked != "cpu";
-    const char* changed = standsIn ? fitToCpu(scene.fluid) : "";
+    const bool replaces = device.backend() == Backend::cpu && asked != "cpu";
+    const char* changed = replaces ? fitToCpu(scene.fluid) : "";
     auto session = Session::create(scene, device, log, steps);
     const bool fails = device.health().state != DeviceHealth::works || (!session && session.error().fault == Fault::failed);
     if (device.backend() != Backend::cl || !fails) {
@@ -34,7 +34,7 @@ Result<OpenedSession> openSession(SceneFile scene, Device& device, const Log& lo
     opened.instead = makeCpu();
     auto other = Session::create(scene, *opened.instead, log, steps);
     if (!other) {
-        device.forgiveFull();  // who has another session on it goes on
+        device.forgiveFull();  // other sessions on it continue
         return other.error();
     }
     opened.session = std::move(*other);
@@ -51,13 +51,14 @@ Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, cons
     std::unique_ptr<Device> cpu = makeCpu();
     if (Status moved = session.moveTo(*cpu); !moved) {
         session.hold(std::move(cpu));
-        return Error{fmt::format("OpenCL on {} {}, and the cpu cannot go on: {}", device->info().name, health.why, moved.error().message),
-                     moved.error().fault};
+        return Error{
+            fmt::format("OpenCL on {} {}, and the cpu cannot continue: {}", device->info().name, health.why, moved.error().message),
+            moved.error().fault};
     }
     const double from = session.world().time();
-    const std::string back = reached - from > 1.0e-9 ? fmt::format(", {:.3g} s back", reached - from) : std::string();
+    const std::string back = reached - from > 1.0e-9 ? fmt::format(", {:.3g} s earlier", reached - from) : std::string();
     log.notice(
-        fmt::format("OpenCL on {} {}: the cpu goes on from {:.3f} s{}{}", device->info().name, health.why, from, back, fitToCpu(before)));
+        fmt::format("OpenCL on {} {}: the cpu continues from {:.3f} s{}{}", device->info().name, health.why, from, back, fitToCpu(before)));
     device = std::move(cpu);
     return true;
 }
@@ -65,8 +66,8 @@ Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, cons
 Status stillWorks(const Device& device) {
     const DeviceHealth health = device.health();
     if (health.state == DeviceHealth::works) return ok();
-    return failed(fmt::format("OpenCL on {} {}: what it has found means nothing; use --backend cpu, or fewer particles", device.info().name,
-                              health.why));
+    return failed(
+        fmt::format("OpenCL on {} {}: its results are invalid; use --backend cpu, or fewer particles", device.info().name, health.why));
 }
 
 }  // namespace rivulet

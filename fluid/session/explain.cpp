@@ -9,33 +9,32 @@ namespace rivulet {
 
 namespace {
 
-// What a scene may do without, and how that shows in the kernels: none has a path that begins so (up to '|', several), or none was made
-// with the define.
+// Parts that a scene may not need, and the sign of that: no kernel has a path that begins with one of `paths` (separated by '|'), or none
+// was compiled with `define`.
 struct Part {
     const char* name;
-    const char* why;     // it is not there
-    const char* paths;   // "" = told by `define`
-    const char* define;  // "" = told by `paths`
+    const char* why;     // it is left out
+    const char* paths;   // "" = see `define`
+    const char* define;  // "" = see `paths`
 };
 constexpr Part kParts[] = {
-    {"walls", "the box wraps round along all axes, and there are no colliders", "fluid/solids/boundary|fluid/wall", ""},
-    {"meshes to collide with", "no collider is a mesh", "fluid/solids/collide", ""},
-    {"moving meshes", "no collider moves or bends", "fluid/solids/boundary_moving|fluid/forces/wall_friction_moving", ""},
+    {"walls", "the box is periodic along all axes, and there are no colliders", "fluid/solids/boundary|fluid/wall", ""},
+    {"collision with meshes", "no collider has triangles", "fluid/solids/collide", ""},
+    {"moving meshes", "no collider moves or deforms", "fluid/solids/boundary_moving|fluid/forces/wall_friction_moving", ""},
     {"floating bodies", "the scene has none",
      "fluid/solids/place_samples|fluid/solids/push_samples|fluid/solids/sum_loads|fluid/solids/index_samples", ""},
-    {"particles that differ", "there is one liquid and no body", "", "MATTER"},
-    {"wrapping round", "no axis of the box is periodic", "fluid/world/wrap", "PERIODIC"},
+    {"masses and densities per particle", "there is one liquid and no body", "", "MATTER"},
+    {"periodic axes", "no axis of the box is periodic", "fluid/world/wrap", "PERIODIC"},
     {"surface tension", "fluid.forces.tension and adhesion are 0", "fluid/forces/cohesion", ""},
-    {"the thesis's tension", "fluid.forces.thesisTension is 0", "fluid/forces/tension_thesis", ""},
-    {"viscosity by pairs", "fluid.forces.viscosity finds nothing to do, or the method has it among its own",
-     "fluid/forces/viscosity|fluid/viscous", ""},
+    {"thesis tension", "fluid.forces.thesisTension is 0", "fluid/forces/tension_thesis", ""},
+    {"pairwise viscosity", "fluid.forces.viscosity has no effect, or is part of the method", "fluid/forces/viscosity|fluid/viscous", ""},
     {"vorticity confinement", "fluid.forces.vorticity is 0", "fluid/forces/vorticity|fluid/forces/confinement", ""},
-    {"air", "fluid.forces.airDrag is 0", "fluid/forces/air", ""},
+    {"air drag", "fluid.forces.airDrag is 0", "fluid/forces/air", ""},
     {"normals of the surface", "fluid.forces.normals is none", "fluid/forces/normals", ""},
-    {"ellipsoids about particles", "fluid.ellipsoids is false, and look asks for spheres", "fluid/surface/ellipsoids", ""},
+    {"ellipsoids about particles", "fluid.ellipsoids is false, and look draws spheres", "fluid/surface/ellipsoids", ""},
     {"emitters", "the scene has none", "fluid/sources/emit", ""},
     {"sinks", "the scene has none", "fluid/sources/drain", ""},
-    {"dyes", "all particles look alike", "fluid/world/gather_absorption", ""},
+    {"dyes", "all particles have the same colour", "fluid/world/gather_absorption", ""},
     {"positions between steps", "fluid.fixedStep is 0", "fluid/world/blend", ""},
 };
 
@@ -62,8 +61,8 @@ std::string explain(const Session& session, const RunStats& stats) {
     const FluidParams& p = world.params();
     std::string text = fmt::format("chosen\n  {}: {}{}{}\n", backendName(device.backend()), device.info().name,
                                    device.info().driver.empty() ? "" : ", ", device.info().driver);
-    text += fmt::format("  method {}, {} particles {} m apart, reaching {} spacings\n", p.method, world.stats().particles, p.spacing,
-                        p.supportSpacings);
+    text += fmt::format("  method {}, {} particles {} m apart, with a support radius of {} spacings\n", p.method, world.stats().particles,
+                        p.spacing, p.supportSpacings);
     if (session.budget()) text += session.budget()->report();
 
     std::vector<std::string> kernels = device.kernels();
@@ -72,8 +71,8 @@ std::string explain(const Session& session, const RunStats& stats) {
     for (const Part& part : kParts)
         if (!isThere(part, kernels)) text += fmt::format("  {}: {}\n", part.name, part.why);
 
-    text +=
-        fmt::format("made, {} kernels{}\n", kernels.size(), session.budget() ? ", those of methods that the budget tried among them" : "");
+    text += fmt::format("compiled, {} kernels{}\n", kernels.size(),
+                        session.budget() ? ", including those of methods that the budget tried" : "");
     for (std::string k : kernels) {
         std::replace(k.begin(), k.end(), ';', ' ');
         for (size_t at = 0; (at = k.find("=1", at)) != std::string::npos;) {
@@ -84,12 +83,12 @@ std::string explain(const Session& session, const RunStats& stats) {
         text += "  " + k + '\n';
     }
 
-    text += stats.frames > 0 ? fmt::format("costs, ms a frame, median of {}\n", stats.frames) : "costs: nothing has run yet\n";
+    text += stats.frames > 0 ? fmt::format("costs, ms per frame, median of {}\n", stats.frames) : "costs: no frame has run yet\n";
     std::vector<std::pair<double, std::string>> costs;
     for (const auto& [name, spread] : stats.passes) costs.emplace_back(spread.median, name);
     std::sort(costs.rbegin(), costs.rend());
     for (const auto& [ms, name] : costs) text += fmt::format("  {:>9.3f}  {}\n", ms, name);
-    if (stats.frames > 0) text += fmt::format("  {:>9.3f}  simulation, all of it\n", stats.simulateMs.median);
+    if (stats.frames > 0) text += fmt::format("  {:>9.3f}  simulation, in all\n", stats.simulateMs.median);
     return text;
 }
 

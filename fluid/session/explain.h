@@ -1,4 +1,4 @@
-// What a run is made of, told plainly: what was chosen, what was left out of kernels and passes, and what the rest costs.
+// --explain: which settings were chosen, which kernels and passes were left out, and what the others cost.
 #pragma once
 
 #include <string>

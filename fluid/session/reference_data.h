@@ -19,7 +19,7 @@ std::span<const ReferenceTable> referenceTables();
 // Two columns of a table, by number. The table must be there.
 std::vector<glm::dvec2> referenceCurve(std::string_view name, size_t x = 0, size_t y = 1);
 
-// The curve at `x`, by straight lines between its points; beyond its ends the value there.
+// The curve at `x`, by straight lines between its points; beyond its ends the end's value.
 double valueAt(std::span<const glm::dvec2> curve, double x);
 
 }  // namespace rivulet

@@ -13,7 +13,7 @@ std::string_view takeLine(std::string_view& text) {
     const size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    return line.empty() ? std::string_view("nothing more") : line;
+    return line.empty() ? std::string_view("nothing else") : line;
 }
 
 // Error (badInput): names the first line that differs.
@@ -22,8 +22,8 @@ Status sameScene(const std::string& path, std::string_view recorded, std::string
         const std::string_view was = takeLine(recorded), is = takeLine(now);
         if (was != is)
             return badInput(
-                fmt::format("{}: it was recorded with {}, this scene has {}: replay it with the scene, the --preset and the --set "
-                            "that it is of",
+                fmt::format("{}: it was recorded with {}, this scene has {}: use the scene, the --preset and the --set of the "
+                            "recording",
                             path, was, is));
     }
     return ok();
@@ -106,12 +106,13 @@ Result<Replay> Replay::open(const std::string& path, const SceneFile& scene, con
 }
 
 Status Replay::next() {
-    if (next_ >= reader_.frames()) return ok();
+    status_ = ok();
+    if (next_ >= reader_.frames()) return status_;
     Result<RecordedFrame> frame = reader_.read(next_);
-    if (!frame) return frame.error();
+    if (!frame) return status_ = frame.error();
     frame_ = std::move(*frame);
     at_ = next_++;
-    return ok();
+    return status_;
 }
 
 std::string Replay::sentence() const {

@@ -24,7 +24,7 @@ Spread spreadOf(std::vector<double> values) {
 }
 
 std::optional<double> bulkFront(std::span<const vec4> positions, const BoxParams& box, float spacing) {
-    // The floor in squares of half a spacing: a particle covers the two by two nearest to it, a slab is four squares wide.
+    // The floor in squares of half a spacing: a particle covers the nearest 2 x 2, a slab is four squares wide.
     double square = 0.5 * static_cast<double>(spacing);
     vec3 size = box.max - box.min;
     if (!(square > 0) || !(size.x > 0) || !(size.z > 0)) return std::nullopt;
@@ -129,16 +129,17 @@ RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, co
     l.emitted = late.emitted;
     l.drained = late.drained;
     l.inWorld = inWorld;
-    // The world counts in particles, skins in picolitres: each in its own unit, so that rounding is no error.
-    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.taken) / one)) * one;
+    // The world counts particles, skins picolitres: the balance is in each unit, so that rounding is no error.
+    double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.withdrawn) / one)) * one;
     if (skins != nullptr) {
-        l.debt = late.debt;
+        l.debt = late.pendingVolume;
         l.inWorld += l.debt;
-        // What went from skins to the world, less what of it was born, is its debt; what it gave is what they took, but for rounding.
+        // The volume from skins to the world, less what became particles, is pending; the volume back is what skins received, up to
+        // rounding.
         constexpr double kPicolitre = 1.0e-15;  // m^3
-        const double handed = std::abs(skins->poured - late.poured - late.debt) + std::abs(late.taken - skins->taken);
+        const double handed = std::abs(skins->poured - late.deposited - late.pendingVolume) + std::abs(late.withdrawn - skins->taken);
         missing += skins->error + (handed < kPicolitre ? 0 : handed);
-        l.emitted += skins->emitted - late.poured;
+        l.emitted += skins->emitted - late.deposited;
         l.onSurface = skins->onSurface;
         l.inAir = skins->inAir;
         l.evaporated = skins->evaporated;
@@ -191,7 +192,7 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.maxCompression = readBack_ ? maxCompression_ : late.maxCompression;
     stats.front = bulkFront(now.position, params.box, world.particles().spacing);
     stats.volume = stats.particles * std::pow(static_cast<double>(world.particles().spacing), 3);
-    // What is in the world is counted from positions; what came and went, by the passes that let it.
+    // The world's content is counted from positions; sources and sinks are counted by their passes.
     const double volumeOfOne = std::pow(static_cast<double>(world.particles().spacing), 3);
     const vec3 slack(2 * world.particles().spacing);
     size_t within = 0;

@@ -1,5 +1,5 @@
-// The record of a run: times, density, where the water is, and what went wrong; what --stats writes. Figures of the particles are taken on
-// the host from their positions, not from the world's own sums: late figures of a GPU and the code that collides have no say in them.
+// The statistics of a run that --stats writes: times, density, the water's place, and errors. Figures of particles are computed on the host
+// from their positions, not from the world's own sums: they depend neither on late GPU figures nor on the collision code.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace rivulet {
 
-// ms, over the frames.
+// ms, over all frames.
 struct Spread {
     double min = 0, median = 0, p95 = 0, max = 0;
     size_t count = 0;
@@ -26,7 +26,7 @@ Spread spreadOf(std::vector<double> values);
 
 // The bulk front along +x, m: where the covered share of the floor, in slabs of 2 spacings, last crosses 25 %, interpolated between the
 // slabs' centres. A particle less than 2 spacings above the floor covers a square of one spacing. Nothing where no slab is covered that
-// far.
+// much.
 std::optional<double> bulkFront(std::span<const vec4> positions, const BoxParams& box, float spacing);
 
 // Whether a point lies in a set voxel, from the bits alone. NaN and points outside the grid: no.
@@ -35,22 +35,22 @@ bool inSetVoxel(const VoxelGrid& surface, const vec4& p);
 // How the CPU and the GPU shared the work.
 struct CooperationStats {
     std::string plan = "off";  // a row of plans()
-    double aheadMs = 0;        // mean a frame, of what ran while another drew: finding cells, or stepping
-    double overlapMs = 0;      // mean a frame in which it and drawing both worked
+    double aheadMs = 0;        // per frame, mean: work beside drawing (finding cells, or stepping)
+    double overlapMs = 0;      // per frame, mean: time in which it and drawing overlapped
     struct Tried {
         std::string plan;  // "gl, thesis"
         double frameMs = 0;
-        std::map<std::string, double> passes;  // ms a frame
+        std::map<std::string, double> passes;  // ms per frame
     };
     std::vector<Tried> tried = {};  // by --cooperate auto, the fastest first
 };
 
-// How particles came to be drawn.
+// How particles were transferred for drawing.
 struct TransferStats {
     std::string way = "none";  // as TransferFacts; "none": nothing was drawn
-    std::string why;           // of the ring: half a sentence, why nothing is shared
-    Spread ms;                 // a frame
-    double bytes = 0;          // a frame, mean, through the host
+    std::string why;           // of the ring: half a sentence, why buffers are not shared
+    Spread ms;                 // per frame
+    double bytes = 0;          // per frame, mean, through the host
     uint64_t waits = 0;        // frames in which it had to wait for the GPU
 };
 
@@ -58,51 +58,50 @@ struct RunStats {
     std::string scene, machine, device, backend, method;
     CooperationStats cooperation;
     TransferStats transfer;
-    uint32_t particles = 0;  // there at the end, lost ones too
+    uint32_t particles = 0;  // at the end, lost ones included
     uint64_t frames = 0;
-    double seconds = 0, wallSeconds = 0;  // simulated; on the wall, of all the frames
+    double seconds = 0, wallSeconds = 0;  // simulated; wall time of all frames
     Spread simulateMs, renderMs, frameMs;
-    std::map<std::string, Spread> passes;           // ms a frame
+    std::map<std::string, Spread> passes;           // ms per frame
     double avgCompression = 0, maxCompression = 0;  // fractions; mean over particles and time, largest ever
     double kinetic = 0, potential = 0;              // J
     std::optional<dvec3> centreOfMass;              // m; nothing without particles
     std::optional<double> front;                    // m
     double volume = 0;                              // m^3, of all particles at rest density
     uint32_t lost = 0, penetrations = 0, nan = 0;
-    uint64_t voxelsRewritten = 0;  // of solids that change their shape
+    uint64_t voxelsRewritten = 0;  // of deforming solids
     std::optional<double>
-        standOff;  // m, of centres at rest on a mesh beyond half a spacing, the largest of the fields; nothing without a mesh
+        standOff;  // m, beyond half a spacing: distance of particles at rest from a mesh, the largest of all fields; nothing without a mesh
     uint64_t substeps = 0;
     double iterations = 0;           // of the pressure solver, mean over substeps
-    std::optional<double> residual;  // mean compression that the last one left, as the solver predicts it; nothing: it does not
+    std::optional<double> residual;  // mean compression after the last iteration, as the solver predicts it; nothing: it has no prediction
     dvec3 origin{0.0};               // m: positions above are relative to it
-    double dropped = 0;              // s asked for that were not simulated
+    double dropped = 0;              // s requested but not simulated
     double dtMin = 0, dtMax = 0;     // s
     std::vector<std::string> limited;
-    // m^3; emitted: blocks, and what emitters and sources let out. debt: of inWorld, what came from skins and is not yet a particle.
-    // error: what is not where the rest is, over emitted.
+    // m^3. emitted: blocks, emitters and sources. debt: the part of inWorld that came from skins and is not yet a particle. error: the
+    // imbalance over emitted.
     struct Ledger {
         double emitted = 0, onSurface = 0, inAir = 0, inWorld = 0, debt = 0, evaporated = 0, drained = 0, error = 0;
     } ledger;
 };
-// What came and what became of it. `late`: of the world; `inWorld`: m^3, of its particles that are there, of `one` m^3 each; `skins`: null
-// where there are none.
+// The balance of volumes. `late`: of the world; `inWorld`: m^3, of its particles, of `one` m^3 each; `skins`: null where there are none.
 RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, const SkinFlows::Ledger* skins);
 std::string writeRunStats(const RunStats& stats);  // one JSON object, ends in a newline
 
 // Gathers a run frame by frame.
 class RunRecorder {
   public:
-    // `readBack`: reads the particles after each frame, for compression and penetrations; costs time that is not counted as simulation.
-    // `flows`: what is on the scene's skins; null: nothing.
+    // `readBack`: reads the particles after each frame, for compression and penetrations; its time is not counted as simulation. `flows`:
+    // the scene's skins; null: none.
     RunRecorder(FluidWorld& world, SolidFields fields, bool readBack, const SkinFlows* flows = nullptr);
-    // A frame is two calls: when it has been stepped, before anything steps it on; and when it has been drawn. renderMs 0: it was not.
+    // Two calls per frame: after its step, before the next one; and after drawing. renderMs 0: it was not drawn.
     void stepped(double simulateMs, std::span<const PassTime> passes);
     void drawn(double renderMs, double frameMs, std::span<const PassTime> passes);
     void transferred(const TransferFacts& facts);  // of a frame that is drawn
-    // The same particles, from now on in another world: one that goes on for the first.
+    // From now on the same particles are in another world, which continues the first.
     void follow(FluidWorld& world) { world_ = &world; }
-    // Reads the particles once more for what holds at the end.
+    // Reads the particles once more, for the figures at the end.
     RunStats finish(std::string scene);
 
   private:

@@ -15,19 +15,19 @@ SceneOpening::SceneOpening(Request request) : request_(std::move(request)) {
         Result<OpenedScene> opened = failed("the OpenGL driver makes no context current on a second thread");
         if (request_.gl.enter()) {
             opened = work();
-            glFinish();  // what it has made is there for the other context
+            glFinish();  // its objects are visible to the other context
             request_.gl.leave();
         }
         const std::lock_guard<std::mutex> lock(mutex_);
         result_.emplace(std::move(opened));
         done_ = true;
-        told_.notify_all();
+        changed_.notify_all();
     });
 }
 
 SceneOpening::~SceneOpening() {
     giveUp();
-    if (thread_.joinable()) (void)take();  // what nobody took goes in this context, and knows it
+    if (thread_.joinable()) (void)take();  // an unclaimed scene is destroyed in this context
 }
 
 Result<OpenedScene> SceneOpening::work() {
@@ -48,27 +48,27 @@ Result<OpenedScene> SceneOpening::work() {
         }
         auto session = openSession(request_.scene, *request_.device, request_.log, request_.backend, steps);
         if (!session) return session.error();
-        if (const std::lock_guard<std::mutex> lock(mutex_); givenUp_)  // what it made goes in the context that it was made in
-            return failed(fmt::format("opening {} was given up", request_.scene.name));
+        if (const std::lock_guard<std::mutex> lock(mutex_); givenUp_)  // its objects are destroyed in the context that made them
+            return failed(fmt::format("opening {} was cancelled", request_.scene.name));
         opened.device = session->instead ? std::move(session->instead) : std::move(request_.device);
         opened.session = std::move(session->session);
         return opened;
     } catch (const std::bad_alloc&) {
-        return failed(request_.scene.name + ": the computer has no memory for it");
+        return failed(request_.scene.name + ": the computer has not enough memory for it");
     }
 }
 
 bool SceneOpening::ready(double seconds) {
     std::unique_lock<std::mutex> lock(mutex_);
-    return told_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return done_; });
+    return changed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return done_; });
 }
 
 Result<OpenedScene> SceneOpening::take() {
     thread_.join();
-    Result<OpenedScene> taken = std::move(*result_);
-    if (taken && taken->renderer) taken->renderer->contextChanged();
-    if (taken && taken->device->backend() == Backend::gl) contextChanged(*taken->device);
-    return taken;
+    Result<OpenedScene> opened = std::move(*result_);
+    if (opened && opened->renderer) opened->renderer->contextChanged();
+    if (opened && opened->device->backend() == Backend::gl) contextChanged(*opened->device);
+    return opened;
 }
 
 void SceneOpening::giveUp() {

@@ -1,4 +1,4 @@
-// SceneOpening: a scene that is made ready on a thread of its own, while another goes on being shown.
+// SceneOpening: opens a scene on its own thread while another scene is still shown.
 #pragma once
 
 #include <condition_variable>
@@ -17,30 +17,30 @@ namespace rivulet {
 struct OpenedScene {
     std::unique_ptr<Device> device;
     std::unique_ptr<Session> session;
-    std::unique_ptr<SceneRenderer> renderer;  // null: nobody asked for one
+    std::unique_ptr<SceneRenderer> renderer;  // null: none was requested
 };
 
 class SceneOpening {
   public:
     struct Request {
         SceneFile scene;
-        std::unique_ptr<Device> device;  // cpu or gl, that nothing else is on
+        std::unique_ptr<Device> device;  // cpu or gl, used by nothing else
         std::string backend;             // as openSession's `asked`
-        bool renderer = false;           // whether its surroundings are others than those that are shown
+        bool renderer = false;           // whether one is needed: its surroundings differ from those shown
         SharedGl gl;
-        Log log;  // told from the other thread
+        Log log;  // called from the other thread
     };
     explicit SceneOpening(Request request);
-    ~SceneOpening();  // gives up, and waits
+    ~SceneOpening();  // cancels, and waits
 
-    bool ready(double seconds = 0);  // waits for so long
-    // Once, when it is ready, on the thread whose context shares with the request's. Error: as openSession; it was given up.
+    bool ready(double seconds = 0);  // waits up to this, s
+    // Once, when ready, on the thread whose context shares objects with the request's. Error: as openSession; (failed) it was cancelled.
     Result<OpenedScene> take();
     void giveUp();
 
     struct Step {
-        std::string what = "waiting for what was given up";  // or "voxels of rocks.obj"
-        double share = 0;                                    // of all that is done, 0..1
+        std::string what = "waiting for a cancelled scene";  // or "voxels of rocks.obj"
+        double share = 0;                                    // of all steps that is done, 0..1
     };
     Step step() const;
     const SceneFile& scene() const { return request_.scene; }
@@ -50,7 +50,7 @@ class SceneOpening {
 
     Request request_;
     mutable std::mutex mutex_;
-    std::condition_variable told_;
+    std::condition_variable changed_;
     Step step_;
     bool givenUp_ = false, done_ = false;
     std::optional<Result<OpenedScene>> result_;

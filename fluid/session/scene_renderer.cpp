@@ -149,7 +149,7 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
             if (Status followed = meshes_.at(key).follow(*node.deformer); !followed) return followed;
     }
     std::erase_if(meshes_, [&](const auto& item) { return !used.contains(item.first); });
-    images_.forgetBut(seen);
+    images_.keepOnly(seen);
     if (!picture_ || width() != view.width || height() != view.height) {
         Result<gpu::Texture> picture = gpu::Texture::create({.width = view.width, .height = view.height, .format = gpu::Format::rgba8});
         if (!picture) return picture.error();

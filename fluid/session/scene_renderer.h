@@ -26,42 +26,42 @@ namespace rivulet {
 
 // The scene file's camera, with planes that hold `bounds` (m, world).
 Camera cameraOf(const CameraParams& params, const Bounds& bounds);
-// What surrounds the scene, or nothing where the studio does. Error (badInput): the picture is missing or damaged.
+// The picture that surrounds the scene; nothing: the studio. Error (badInput): the picture is missing or damaged.
 Result<std::optional<HdrImage>> surroundingsOf(const SceneFile& scene);
 // A window of 0 pixels gives a view of 1.
 FrameView frameViewOf(const Camera& camera, const LightParams& light, int width, int height, double time);
 
 class SceneRenderer {
   public:
-    // `surroundings`: what lights the scene beside the key light, and is seen behind it; null: the studio.
+    // `surroundings`: lights the scene beside the key light and is its background; null: the studio.
     // Error (failed): a shader does not compile, or is missing.
     static Result<std::unique_ptr<SceneRenderer>> create(const ShaderFiles& files, const HdrImage* surroundings = nullptr);
 
-    // Draws into a picture of its own, of the view's size. Error: an unknown renderer or colouring (badInput); out of GPU memory (failed).
+    // Draws into its own picture, of the view's size. Error: an unknown renderer or colouring (badInput); out of GPU memory (failed).
     Status draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings);
 
-    // Of a renderer that takes seconds: told the share that is done, from any thread; false: the rest of the picture may stay empty.
-    void onProgress(std::function<bool(double)> told) { progress_ = std::move(told); }
+    // Of a renderer that takes seconds: receives the share that is done, from any thread; false: the rest of the picture may stay empty.
+    void onProgress(std::function<bool(double)> progress) { progress_ = std::move(progress); }
 
     // The last picture, scaled into a framebuffer of this size (0: the window).
     void present(GLuint framebuffer, int width, int height) const;
     // The last picture: RGBA8, sRGB, top row first, alpha 255. Waits for the GPU.
     std::vector<uint8_t> pixels() const;
-    void finish();  // waits until it is drawn: times() are the last picture's then, and onSpan() has heard of all
+    void finish();  // waits for the GPU: times() are then the last picture's, and onSpan() has received all
     int width() const { return picture_.desc().width; }
     int height() const { return picture_.desc().height; }
 
-    // GPU time a pass, some frames late.
+    // GPU time per pass, some frames late.
     const std::vector<PassTime>& times() const { return pool_.times(); }
-    void onSpan(SpanSink sink) { pool_.onSpan(std::move(sink)); }  // hears of each pass, as late
-    // What the last picture's graph was. Nothing, unless describe(true) was said before the picture was drawn.
+    void onSpan(SpanSink sink) { pool_.onSpan(std::move(sink)); }  // receives each pass, as late
+    // The last picture's frame graph. Nothing, unless describe(true) was called before it was drawn.
     const std::optional<gpu::FrameGraphDescription>& description() const { return description_; }
     void describe(bool yes) { describes_ = yes; }
-    // Whether look.quality auto is fast. It is fine until this says so.
+    // Whether look.quality auto means fast; fine by default.
     void hurry(bool yes) { hurries_ = yes; }
-    // It was made in another context, with which the one that is current now shares its objects, and has drawn nothing yet.
+    // Call once before drawing if it was made in another context, which shares its objects with the current one.
     void contextChanged() { fluid_.contextChanged(); }
-    // Reads the shaders again. How many programs are others now. Error: as create; the last good ones stay in use, all of them.
+    // Reads the shaders again. Returns how many programs changed. Error: as create; all programs stay as they were.
     Result<size_t> reload();
 
   private:
@@ -74,12 +74,12 @@ class SceneRenderer {
     RenderPrograms render_;
     FluidPrograms fluid_;
     gpu::TransientPool pool_;
-    gpu::Buffer frame_, coarse_;                            // FrameParams; of half the resolution
+    gpu::Buffer frame_, coarse_;                            // FrameParams; for half the resolution
     gpu::Texture picture_;                                  // the last frame
-    std::array<gpu::Texture, 2> shadowSharp_, shadowSoft_;  // and the quick ones
-    std::vector<mat4> shadowOf_;                            // what the shadow maps show: the light's projection, then a matrix a mesh
+    std::array<gpu::Texture, 2> shadowSharp_, shadowSoft_;  // and those of fast quality
+    std::vector<mat4> shadowOf_;  // the content of the shadow maps: the light's projection, then a matrix per mesh
     std::vector<const GpuMesh*> shadowMeshes_;
-    gpu::Texture nothing_;                  // stands in for a map of the light that is not there
+    gpu::Texture nothing_;                  // placeholder for a missing map of the light
     std::vector<uint64_t> shadowVersions_;  // of their deformers
     struct MeshKey {
         std::shared_ptr<const Mesh> mesh;

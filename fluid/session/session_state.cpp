@@ -1,4 +1,4 @@
-// A Session's state as a whole: saved and restored, recorded and replayed, handed over to another.
+// A session's whole state: saved and restored, replayed, moved to another device, continued in another session.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,48 +8,51 @@
 namespace rivulet {
 
 Status Session::replay(Replay replay) {
-    size_t corners = 0;
-    for (const Deforming& d : deforming_) corners += d.rest.size();
     const RecordedFrame& frame = replay.shown();
-    if (frame.places.size() != rigid_.size() + bodyNodes_.size() || frame.corners.size() != corners)
+    if (!solids_.fits(frame))
         return badInput(
-            fmt::format("the recording has {} solids that move and {} corners that bend, this scene {} and {}: replay it with the "
-                        "scene and the meshes that it is of",
-                        frame.places.size(), frame.corners.size(), rigid_.size() + bodyNodes_.size(), corners));
+            fmt::format("the recording has {} moving solids and {} deforming vertices, this scene {} and {}: use the scene and the "
+                        "meshes of the recording",
+                        frame.places.size(), frame.corners.size(), solids_.recordedPlaces(), solids_.recordedCorners()));
     replay_ = std::move(replay);
-    placeRecorded();
+    solids_.placeNodes(scene_, replay_->shown());
     return ok();
 }
 
-void Session::placesInto(RecordedFrame& frame) const {
-    for (const Rigid& r : rigid_) frame.places.push_back(nodeOf(r.model).local);
-    for (const size_t node : bodyNodes_) frame.places.push_back(solids_.nodes()[node].local);
-    for (const Deforming& d : deforming_)
-        frame.corners.insert(frame.corners.end(), d.field->positions().begin(), d.field->positions().end());
-}
-
-// A frame of other solids than the first has is no frame of this recording: nothing moves then.
-void Session::placeRecorded() {
-    const RecordedFrame& frame = replay_->shown();
-    size_t corner = 0;
-    for (const Deforming& d : deforming_) corner += d.rest.size();
-    if (frame.places.size() != rigid_.size() + bodyNodes_.size() || frame.corners.size() != corner) return;
-    auto place = frame.places.begin();
-    for (const Rigid& r : rigid_) nodeOf(r.model).local = *place++;
-    for (const size_t node : bodyNodes_) solids_.nodes()[node].local = *place++;
-    auto next = frame.corners.begin();
-    for (const Deforming& d : deforming_) {
-        bendNode(d, std::span(next, d.rest.size()));
-        next += static_cast<std::ptrdiff_t>(d.rest.size());
+Status Session::moveTo(Device& device) {
+    takeSnapshot();
+    // Notices about the scene were logged when it was opened.
+    const auto opening = std::make_shared<bool>(true);
+    const Log quiet{[log = log_, opening](LogLevel level, std::string_view text) {
+        if (!*opening && log.sink) log.sink(level, text);
+    }};
+    if (Status back = solids_.rest(); !back) return back;
+    FluidParams params = world_->params();  // the scene's may hold an edit that is not applied
+    if (device.backend() == Backend::cpu) params.grid = scene_.fluid.grid = "sorted";
+    if (Status made = makeWorld(device, params, quiet); !made) return made;
+    report(world_->setSources(sources_.now(scene_)));
+    report(world_->setSurfaces(SceneSolids::surfaces(scene_)));
+    const std::optional<SnapshotKeeper::Snapshot>& last = snapshots_.last();
+    if (Status moved = flows_.moveTo(device, scene_, solids_.nodes(), quiet, last ? last->flows.get() : nullptr); !moved) return moved;
+    *opening = false;
+    if (!last) {
+        world_->reset();
+        toStart();
+        return ok();
     }
-    placeModels();
+    SnapshotKeeper::Snapshot snapshot = snapshots_.release();
+    solids_.setTurned(snapshot.turned);
+    WorldState& state = snapshot.world;
+    (void)state.takeText("world.params");
+    state.putText("world.params", fixedValues([&params](ParamVisitor& v) { params.visit(v); }));  // a changed grid holds the same particles
+    if (Status done = world_->restore(state); !done) return done;
+    solids_.placeNodes(scene_, *world_);
+    return ok();
 }
 
 void Session::save(WorldState& state) {
     state.putText("session.params", fixedValues([this](ParamVisitor& v) { scene_.visit(v); }));
-    std::vector<double> turned;
-    for (const Rigid& r : rigid_) turned.push_back(r.turned);
-    state.put<double>("session.turned", turned);
+    state.put<double>("session.turned", solids_.turned());
     world_->save(state);
 }
 
@@ -57,13 +60,13 @@ Status Session::restore(WorldState& state) {
     Result<std::string> params = state.takeText("session.params");
     if (!params) return params.error();
     if (Status same = sameFixedValues(*params, fixedValues([this](ParamVisitor& v) { scene_.visit(v); })); !same) return same;
-    Result<std::vector<double>> turned = state.take<double>("session.turned", rigid_.size());
+    Result<std::vector<double>> turned = state.take<double>("session.turned", solids_.ofWorld().rigid.size());
     if (!turned) return turned.error();
     for (double degrees : *turned)
-        if (!std::isfinite(degrees)) return badInput("the saved state's angles make no sense: save it again");
+        if (!std::isfinite(degrees)) return badInput("the saved state has angles that are not numbers: save it again");
     if (Status done = restoreWorld(state); !done) return done;
-    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].turned = (*turned)[k];
-    placeNodes();
+    solids_.setTurned(*turned);
+    solids_.placeNodes(scene_, *world_);
     if (world_->device().backend() == Backend::cl) takeSnapshot();
     return ok();
 }
@@ -71,7 +74,7 @@ Status Session::restore(WorldState& state) {
 Status Session::restoreWorld(WorldState& state) {
     const std::optional<uint32_t> room = world_->savable() ? moreRoom(state) : std::nullopt;
     if (!room) return world_->restore(state);
-    const uint32_t least = sources_.least;
+    const uint32_t least = sources_.ofWorld().least;
     WorldState mine;
     world_->save(mine);
     Status done = remake(*room);
@@ -79,15 +82,14 @@ Status Session::restoreWorld(WorldState& state) {
     if (done) return done;
     if (Status back = remake(least); !back) return back;
     if (Status back = world_->restore(mine); !back) return back;
-    placeNodes();
+    solids_.placeNodes(scene_, *world_);
     return done;
 }
 
-// The slots of the world that was saved, where they are more than those of this one: it may have gone on from one whose solids left room
-// for more.
+// The slots of the saved world, if it has more than this one: it may have continued from a world whose solids left more space.
 std::optional<uint32_t> Session::moreRoom(const WorldState& state) const {
     const auto ids = state.sections().find("particles.id");
-    constexpr size_t kMost = size_t{1} << 30U;  // bytes: what the world says of more is a better sentence
+    constexpr size_t kMost = size_t{1} << 30U;  // bytes: of more the world's own error is better
     if (ids == state.sections().end() || ids->second.size() % sizeof(uint32_t) != 0 || ids->second.size() > kMost) return std::nullopt;
     const size_t slots = ids->second.size() / sizeof(uint32_t);
     const ParticleView now = world_->particles();
@@ -95,13 +97,13 @@ std::optional<uint32_t> Session::moreRoom(const WorldState& state) const {
     return static_cast<uint32_t>(slots - (now.slots - now.count));
 }
 
-// A world as at first, but for its room.
+// A world at its start, with memory for `least` particles.
 Status Session::remake(uint32_t least) {
-    sources_.least = scene_.room = least;
-    for (Deforming& d : deforming_)
-        if (const auto back = d.field->update(d.rest); !back) return back.error();
+    scene_.room = least;
+    sources_.setLeast(least);
+    if (Status back = solids_.rest(); !back) return back;
     if (Status made = makeWorld(world_->device(), world_->params(), {}); !made) return made;
-    startSolids();
+    toStart();
     return ok();
 }
 
@@ -114,26 +116,16 @@ bool Session::sameWater(const SceneFile& before, const SceneFile& after) {
 }
 
 Status Session::goOnFrom(Session& other) {
-    if (replay_ || other.replay_) return badInput("what was recorded does not go on");
-    const double time = other.world_->time();
-    for (Rigid& r : rigid_)
-        for (const Rigid& before : other.rigid_)
-            if (before.collider == r.collider && scene_.colliders[r.collider].mesh == other.scene_.colliders[r.collider].mesh)
-                r.turned = before.turned;
-    std::vector<Pose> poses;
-    for (const Rigid& r : rigid_) poses.push_back(poseOf(r.model, time, r.turned));
-    std::vector<std::span<const vec3>> shapes;
-    for (Deforming& d : deforming_) {
-        bend(d, time);
-        shapes.emplace_back(d.shape);
-    }
-    if (Status gone = world_->goOnFrom(*other.world_, poses, shapes); !gone) {
+    if (replay_ || other.replay_) return badInput("a recording cannot be continued");
+    solids_.setTurned(scene_, other.solids_, other.scene_);
+    const SceneSolids::Motion motion = solids_.motionAt(scene_, other.world_->time(), 0);
+    if (Status gone = world_->goOnFrom(*other.world_, motion.poses, motion.shapes); !gone) {
         world_->reset();
-        startSolids();
+        toStart();
         return gone;
     }
-    if (contacts_) contacts_->moveTo(poses, 0);
-    placeNodes();
+    solids_.moveContacts(motion.poses, 0);
+    solids_.placeNodes(scene_, *world_);
     return ok();
 }
 

@@ -1,4 +1,4 @@
-// SurfaceProbe: the depth of the water's surface as the screen-space renderer finds it, of particles in an empty scene.
+// SurfaceProbe: the depth of the water's surface as the screen-space renderer computes it, of particles in an empty scene.
 #pragma once
 
 #include <optional>
@@ -14,19 +14,19 @@ namespace rivulet {
 
 class SurfaceProbe {
   public:
-    // `ownContext`: makes an OpenGL context, current as long as the probe lives; else one is current. Error (failed): no OpenGL 4.5; a
+    // `ownContext`: makes an OpenGL context, current during the probe's life; else one must be current. Error (failed): no OpenGL 4.5; a
     // shader does not compile.
     static Result<SurfaceProbe> create(bool ownContext);
 
     // m along the view axis, a pixel each, the bottom row first; 1e6 where there is none. `fluid`: radius, spacing and bounds; the buffers
-    // are made of `particles` (xyz m, w density ratio) and of the ellipsoids about them; none: they are spheres. Error (failed): out of GPU
+    // are made from `particles` (xyz m, w density ratio) and their ellipsoids; none: spheres. Error (failed): out of GPU
     // memory.
     Result<std::vector<float>> depth(std::span<const vec4> particles, FluidView fluid, const FrameView& view, const FluidLook& look,
                                      const HostEllipsoids& ellipsoids = {});
 
   private:
     SurfaceProbe() = default;
-    std::optional<ContextEgl> context_;  // before what lives in it
+    std::optional<ContextEgl> context_;  // declared first: destroyed last
     FluidPrograms programs_;
 };
 

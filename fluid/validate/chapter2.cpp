@@ -80,7 +80,7 @@ Result<Chapter2> runChapter2(const Chapter2Request& request) {
             }
         const size_t first = chapter.rows.size();
         for (const Autotune& trial : all) {
-            chapter.rows.push_back({static_cast<int>(trial.session().world().stats().particles), trial.told()});
+            chapter.rows.push_back({static_cast<int>(trial.session().world().stats().particles), trial.result()});
             request.report(chapter.rows.back());
         }
         all.clear();

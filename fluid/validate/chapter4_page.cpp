@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/validate/chapter4.h"
 #include "fluid/validate/physics_case.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/validate/chart.h"
 
 namespace rivulet {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/validate/envelope.h"
 #include "fluid/validate/physics_case.h"
 

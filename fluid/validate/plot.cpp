@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/validate/physics_case.h"
 
 namespace rivulet {

@@ -37,7 +37,7 @@ struct Under {
 std::vector<std::string> surfaceMethods() {
     std::vector<std::string> names;
     for (const FilterRow& row : filters().rows)
-        if (std::string_view(row.name) != "none") names.emplace_back(row.name);
+        if (row.smooths) names.emplace_back(row.name);
     names.emplace_back(kSurfaceReference);
     return names;
 }

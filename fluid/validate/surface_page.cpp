@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/render/filters.h"
 #include "fluid/validate/surface.h"
 #include "fluid/validate/surface_chart.h"

@@ -98,7 +98,7 @@ Result<Outcome> runTension(const CaseSettings& settings) {
             plot.curves.push_back(curve);
             plot.curves.push_back({"2 sigma / R", true, {{0, expected * kStarts}, {trial->time(), expected * kStarts}}});
         }
-        // The force is calibrated at 20 mm with 10 spacings (fluid/sim/forces/force_surface.cpp); the others are predictions.
+        // The force is calibrated at 20 mm with 10 spacings (fluid/sim/forces/force_tension.cpp); the others are predictions.
         findings.push_back(
             {fmt::format("pressure in a drop, R = {:.3g} mm = {:.3g} spacings", 1000 * drop.radius, drop.radius / drop.spacing), "Pa",
              inside, expected, std::abs(inside / expected - 1), 0.1});

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/json.h"
+#include "fluid/sim/methods/method.h"
+
 namespace rivulet {
 
 namespace {
@@ -60,13 +63,12 @@ const ChartSetting* settingOf(const FluidParams& params) {
     for (const ChartSetting& setting : chartSettings().rows) {
         if (params.method != setting.method) continue;
         SceneFile scene;
-        applySetting(setting, scene);
-        const FluidParams& p = scene.fluid;
-        const bool pbf = p.pbf.iterations == params.pbf.iterations && p.pbf.tolerance == params.pbf.tolerance &&
-                         p.pbf.reach == params.pbf.reach && p.pbf.minSubsteps == params.pbf.minSubsteps;
-        const bool dfsph = p.dfsph.tolerance == params.dfsph.tolerance && p.dfsph.reach == params.dfsph.reach &&
-                           p.dfsph.minSubsteps == params.dfsph.minSubsteps;
-        if (p.cfl == params.cfl && (params.method != "pbf" || pbf) && (params.method != "dfsph" || dfsph)) return &setting;
+        scene.fluid = params;
+        applySetting(setting, scene);  // changes nothing but what settings name
+        const auto own = [visit = methodOf(params).visit](FluidParams p) {
+            return visit == nullptr ? std::string() : writeJson([&](ParamVisitor& v) { visit(p, v); });
+        };
+        if (scene.fluid.cfl == params.cfl && own(scene.fluid) == own(params)) return &setting;
     }
     return nullptr;
 }
@@ -125,14 +127,14 @@ void ChartPanel::chooseCase(float width) {
             if (ImGui::Selectable(cases_[k].c_str(), k == case_)) case_ = k;
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the case that was run with every setting; rivulet validate runs it here");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the case that every setting was run on; rivulet validate runs it on this machine");
     ImGui::SameLine();
     if (ImGui::RadioButton("density", ofDensity_)) ofDensity_ = true;
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("how far water is compressed, mean over particles and time: every run measures it");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("mean compression over particles and time; every run measures it");
     ImGui::SameLine();
-    if (ImGui::RadioButton("the case's own", !ofDensity_)) ofDensity_ = false;
+    if (ImGui::RadioButton("case error", !ofDensity_)) ofDensity_ = false;
     const auto row = std::find_if(chart_.begin(), chart_.end(), [&](const ChartRow& r) { return r.name == cases_[case_]; });
-    if (ImGui::IsItemHovered() && row != chart_.end()) ImGui::SetTooltip("the error of: %s", row->what.c_str());
+    if (ImGui::IsItemHovered() && row != chart_.end()) ImGui::SetTooltip("error of: %s", row->what.c_str());
 }
 
 // Where each point and the run lie. The axes hold all of them.
@@ -181,9 +183,9 @@ void ChartPanel::drawAxes(vec2 low, vec2 size) const {
         const float wide = ImGui::CalcTextSize(label.c_str()).x;
         list->AddText(ImVec2(std::min(x - 0.5F * wide, low.x + size.x - wide), low.y + size.y + 3), text, label.c_str());
     }
-    const char* below = "cost: wall time of a simulated second";
+    const char* below = "cost: wall time per simulated second";
     list->AddText(ImVec2(low.x + 0.5F * (size.x - ImGui::CalcTextSize(below).x), low.y + size.y + tall + 5), text, below);
-    list->AddText(ImVec2(low.x, low.y - tall - 3), text, ofDensity_ ? "error: of density" : "error: of the case's own figure");
+    list->AddText(ImVec2(low.x, low.y - tall - 3), text, ofDensity_ ? "density error" : "case error");
 }
 
 // A curve a method: its settings at the size that most were run at, from the cheapest on. Other sizes are hollow points.
@@ -222,7 +224,7 @@ void ChartPanel::drawHere(const Session& session, vec2 low, vec2 size) const {
         list->AddLine(ImVec2(low.x, at.y), ImVec2(low.x + size.x, at.y), faint);
         list->AddCircle(ImVec2(at.x, at.y), 7, white, 20, 2);
     }
-    const char* text = "you are here";
+    const char* text = "this run";
     const ImVec2 wide = ImGui::CalcTextSize(text);
     const float x = at.x + 10 + wide.x < low.x + size.x ? at.x + 10 : at.x - 10 - wide.x;
     const float y = ofDensity_ ? std::max(at.y - wide.y - 6, low.y + wide.y + 4) : low.y + size.y - wide.y - 4;
@@ -234,7 +236,7 @@ void ChartPanel::drawHere(const Session& session, vec2 low, vec2 size) const {
     if (ImGui::IsItemHovered() && (over || onIt)) tellHere(session);
 }
 
-// Exactly how "you are here" was found.
+// How the place of "this run" was found.
 void ChartPanel::tellHere(const Session& session) const {
     const FluidParams& params = session.scene().fluid;
     const ChartSetting* setting = settingOf(params);
@@ -242,19 +244,19 @@ void ChartPanel::tellHere(const Session& session) const {
     const ChartRow* row = rowLike(chart_, cases_[case_], setting, params.method, particles);
     if (row == nullptr) return;
     ImGui::BeginTooltip();
-    ImGui::TextUnformatted("This run, as it is now");
-    line("method", setting != nullptr ? std::string(setting->name) : params.method + ", with values of its own");
+    ImGui::TextUnformatted("This run");
+    line("method", setting != nullptr ? std::string(setting->name) : params.method + ", custom values");
     line("spacing", fmt::format("{:.4g} m, {} particles", params.spacing, readableCount(particles)));
     line("density",
-         fmt::format("{} off: mean over particles, and over about the last half second simulated", percentText(measured_.densityError())));
-    line("cost", fmt::format("{} a simulated second, {:.3g} ns a particle and substep", seconds(measured_.wallPerSecond()),
+         fmt::format("{} error: mean over particles and the last 0.5 s simulated, about", percentText(measured_.densityError())));
+    line("cost", fmt::format("{} per simulated second, {:.3g} ns per particle and substep", seconds(measured_.wallPerSecond()),
                              measured_.nsPerParticleStep()));
     ImGui::Spacing();
-    line("on the chart", fmt::format("{:.3g} ns x {} particles x {} substeps a simulated second of {} with {}: {}",
+    line("on the chart", fmt::format("{:.3g} ns x {} particles x {} substeps per simulated second of {} with {}: {}",
                                      measured_.nsPerParticleStep(), readableCount(row->particles), readableCount(row->stepsPerSecond),
                                      row->name, row->setting, seconds(broughtTo(*row, measured_))));
-    line("there", fmt::format("that took {} on: {}", seconds(row->wallPerSecond), machine_));
-    if (!ofDensity_) line("error", fmt::format("no run but the case's own measures this: {}", row->what));
+    line("reference", fmt::format("that run took {} on: {}", seconds(row->wallPerSecond), machine_));
+    if (!ofDensity_) line("error", fmt::format("measured by the case only: {}", row->what));
     ImGui::EndTooltip();
 }
 
@@ -268,17 +270,17 @@ void ChartPanel::tellRow(const ChartRow& row, const Session& session, const Scen
     ImGui::BeginTooltip();
     ImGui::Text("%s: %s", setting->name, setting->doc);
     line("case", fmt::format("{}, {} particles, {:.3g} m apart", row.name, readableCount(row.particles), row.spacing));
-    line("cost", seconds(row.wallPerSecond) + " a simulated second");
-    line("density", percentText(row.compression) + " off");
+    line("cost", seconds(row.wallPerSecond) + " per simulated second");
+    line("density", percentText(row.compression) + " error");
     line("error", percentText(row.error) + ", " + row.what);
     ImGui::Spacing();
     if (draft.budget.frameMs > 0) {
-        line("click", "nothing: the scene's budget picks the method; budget.frameMs = 0 leaves it to you");
+        line("click", "no effect: the scene's budget picks the method; set budget.frameMs = 0 to choose it");
     } else {
         std::string what = fmt::format("fluid.method = {}", setting->method);
         for (const std::string& assignment : assignmentsOf(setting->assignments)) what += ", " + assignment;
         if (asMany_ && spacingFor(row, session) > 0) what += fmt::format(", fluid.spacing = {:.3g}", spacingFor(row, session));
-        line("click", what + "; the water starts again");
+        line("click", what + "; restarts the water");
     }
     ImGui::EndTooltip();
 }
@@ -307,16 +309,15 @@ void ChartPanel::drawLegend(const Session& session, float width) {
         list->AddText(ImVec2(low.x + 1.1F * font, low.y), ImGui::GetColorU32(ImGuiCol_Text), methods_[m].c_str());
         ImGui::Dummy(ImVec2(wide, ImGui::GetTextLineHeight()));
     }
-    ImGui::TextDisabled("filled: the size that all were run at; hollow: coarser or finer");
-    ImGui::Checkbox("a click takes the number of particles, too", &asMany_);
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("the spacing becomes what makes as many particles of this scene's water as the point's case has");
+    ImGui::TextDisabled("filled: the common size; hollow: coarser or finer");
+    ImGui::Checkbox("a click also sets the number of particles", &asMany_);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("sets the spacing so that this scene has as many particles as the point's case");
     const FluidParams& params = session.scene().fluid;
     const ChartSetting* setting = settingOf(params);
     ImGui::Spacing();
-    line("here", fmt::format("{}, {:.3g} m:\ndensity {} off,\n{} a simulated second",
-                             setting != nullptr ? std::string(setting->name) : params.method + " with values of its own", params.spacing,
-                             percentText(measured_.densityError()), seconds(measured_.wallPerSecond())));
+    line("this run", fmt::format("{}, {:.3g} m:\ndensity error {},\n{} per simulated second",
+                                 setting != nullptr ? std::string(setting->name) : params.method + ", custom values", params.spacing,
+                                 percentText(measured_.densityError()), seconds(measured_.wallPerSecond())));
     line("measured on", machine_);
 }
 

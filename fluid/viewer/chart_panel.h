@@ -1,5 +1,5 @@
-// Speed against accuracy, with "you are here": the chart that the program was built with, and where the run that is on lies on it. A click
-// on one of its points takes that point's method and values into the scene.
+// ChartPanel: speed against accuracy: the chart that the program was built with, and the place of the current run on it. A click on a point
+// takes that point's method and values into the scene.
 #pragma once
 
 #include <optional>
@@ -16,10 +16,10 @@ namespace rivulet {
 // The chart's setting that these values are; null: none.
 const ChartSetting* settingOf(const FluidParams& params);
 
-// What a run has measured of itself of late: sums that fade.
+// Measurements of the current run: sums that decay over about 0.5 s simulated.
 struct ChartMeasured {
     double ms = 0, seconds = 0;  // on the wall; simulated
-    double particleSteps = 0;    // each substep as often as there were particles
+    double particleSteps = 0;    // substeps times particles
     double compression = 0;      // mean over particles, times simulated seconds
     void add(double addedMs, double addedSeconds, double particles, int substeps, double avgCompression);
     double wallPerSecond() const { return seconds > 0 ? 1e-3 * ms / seconds : 0; }  // s
@@ -27,7 +27,7 @@ struct ChartMeasured {
     double densityError() const { return seconds > 0 ? compression / seconds : 0; }  // a fraction
 };
 
-// The row that a run is compared with: of the case, of the run's setting or else its method's own, of the sizes the one nearest in
+// The row that a run is compared with: of the case, of the run's setting or else of its method's default, of the nearest number of
 // particles. Null: the case was not run with that method.
 const ChartRow* rowLike(const std::vector<ChartRow>& chart, std::string_view name, const ChartSetting* setting, std::string_view method,
                         double particles);
@@ -39,12 +39,12 @@ class ChartPanel {
     ChartPanel();
     void stepped(const FluidWorld& world, double ms, double seconds);  // on the wall; simulated
     void clear() { measured_ = {}; }
-    // Inside an ImGui window, pixels. Whether a point was clicked: `draft` has its values then, and needs a new session.
+    // Inside an ImGui window, pixels. Returns whether a point was clicked: `draft` then has its values and needs a new session.
     bool draw(const Session& session, SceneFile& draft, float width, float height);
 
     const ChartMeasured& measured() const { return measured_; }
     struct Placed {
-        const ChartRow* row = nullptr;  // null: here
+        const ChartRow* row = nullptr;  // null: the current run
         vec2 at{0.0F};                  // window coordinates, when it was last drawn
     };
     const std::vector<Placed>& placed() const { return placed_; }

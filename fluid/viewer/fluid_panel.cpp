@@ -32,33 +32,34 @@ void simulationFacts(const FluidWorld& world) {
     fact("time", fmt::format("{:.2f} s, {} substeps a frame", world.time(), world.lastSubsteps()));
     fact("particles",
          stats.lost > 0 ? fmt::format("{}, {} of them lost", stats.particles, stats.lost) : fmt::format("{}", stats.particles));
-    fact("compression", fmt::format("{:.2f} % mean, {:.1f} % most", 100 * stats.avgCompression, 100 * stats.maxCompression));
+    fact("compression", fmt::format("{:.2f} % mean, {:.1f} % max", 100 * stats.avgCompression, 100 * stats.maxCompression));
     if (stats.iterations > 0)
-        fact("pressure", stats.residual ? fmt::format("{:.1f} iterations a substep, {:.3f} % left", stats.iterations, 100 * *stats.residual)
-                                        : fmt::format("{:.1f} iterations a substep", stats.iterations));
+        fact("pressure", stats.residual
+                             ? fmt::format("{:.1f} iterations a substep, residual {:.3f} %", stats.iterations, 100 * *stats.residual)
+                             : fmt::format("{:.1f} iterations a substep", stats.iterations));
 }
 
 }  // namespace
 
 FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState& state) {
     FluidPanelActions actions;
-    float gap = ImGui::GetStyle().ItemSpacing.x;
-    const ImVec2 button((ImGui::GetContentRegionAvail().x - 2 * gap) / 3, 0);
-    actions.togglePause = ImGui::Button(state.paused ? "run###pause" : "pause###pause", button);
-    ImGui::SameLine();
-    actions.step = ImGui::Button("step", button);
-    ImGui::SameLine();
-    actions.reset = ImGui::Button("reset", button);
-    actions.scenes = ImGui::Button("scenes", button);
-    ImGui::SameLine();
-    actions.save = ImGui::Button("save", button);
-    ImGui::SameLine();
-    actions.help = ImGui::Button("keys", button);
-    actions.pour = ImGui::Button(state.pouring ? "stop pouring###pour" : "pour###pour", button);
-    ImGui::SameLine();
-    actions.picture = ImGui::Button("picture", button);
-    ImGui::SameLine();
-    actions.video = ImGui::Button(state.filming ? "stop###video" : "video###video", button);
+    const ImVec2 size((ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3, 0);
+    const struct {
+        const char* label;
+        Command command;
+    } buttons[] = {{state.paused ? "run###pause" : "pause###pause", Command::pause},
+                   {"step", Command::step},
+                   {"reset", Command::restart},
+                   {"scenes", Command::scenes},
+                   {"save", Command::save},
+                   {"keys", Command::help},
+                   {state.pouring ? "stop pouring###pour" : "pour###pour", Command::pour},
+                   {"picture", Command::picture},
+                   {state.filming ? "stop###video" : "video###video", Command::video}};
+    for (size_t k = 0; k < std::size(buttons); ++k) {
+        if (k % 3 != 0) ImGui::SameLine();
+        if (ImGui::Button(buttons[k].label, size)) actions.command = buttons[k].command;
+    }
     ImGui::Spacing();
 
     const bool replays = !state.replay.empty();
@@ -68,7 +69,7 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     fact("transfer", state.transfer);
     fact("drawn by", state.renderer);
     if (!replays) simulationFacts(world);
-    fact("frame", fmt::format("{:.1f} ms", state.frameMs) + (replays ? "" : fmt::format(", of it simulation {:.1f} ms", state.simulateMs)));
+    fact("frame", fmt::format("{:.1f} ms", state.frameMs) + (replays ? "" : fmt::format(", simulation {:.1f} ms", state.simulateMs)));
 
     const ImVec4 red = refusedColour(), amber(0.95F, 0.78F, 0.45F, 1);
     if (!state.message.empty()) sentence(red, state.message);
@@ -77,7 +78,7 @@ FluidPanelActions drawFluidPanel(const FluidWorld& world, const FluidPanelState&
     for (const std::string& text : state.notices)
         if (std::find(limited.begin(), limited.end(), text) == limited.end()) {
             sentence(amber, text);
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("a click takes it away");
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("click to dismiss");
             if (ImGui::IsItemClicked()) actions.dismiss = text;
         }
     return actions;

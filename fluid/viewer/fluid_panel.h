@@ -1,28 +1,29 @@
-// The panel that says what the water does: pause, step, reset, and figures.
+// The top of the scene's panel: buttons, figures of the run, messages.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
 #include "fluid/sim/world/fluid_world.h"
+#include "fluid/viewer/commands.h"
 
 namespace rivulet {
 
 struct FluidPanelState {
     bool paused = false, filming = false, pouring = false;
-    std::string backend;   // what simulates: "cpu: Intel(R) ..."
-    std::string transfer;  // how particles come to be drawn: as sentenceOf(TransferFacts)
-    std::string plan;      // who simulates while who draws: "off: a frame is stepped, then drawn"
-    std::string renderer;  // what draws: "llvmpipe (LLVM 15.0.6, 256 bits)"
+    std::string backend;   // the device that simulates: "cpu: Intel(R) ..."
+    std::string transfer;  // how particles reach OpenGL: sentenceOf(TransferFacts)
+    std::string plan;      // of simulating and drawing: "off: a frame is stepped, then drawn"
+    std::string renderer;  // of OpenGL: "llvmpipe (LLVM 15.0.6, 256 bits)"
     double simulateMs = 0, frameMs = 0;
-    std::string message;  // an edit that was refused
+    std::string message;  // why an edit was refused; "": none
     std::span<const std::string> notices;
-    std::string replay;  // which recorded frame is shown; empty: it simulates
+    std::string replay;  // the recorded frame that is shown; empty: no replay
 };
 
 struct FluidPanelActions {
-    bool togglePause = false, step = false, reset = false, help = false, scenes = false, save = false, picture = false, video = false,
-         pour = false;
+    Command command = Command::none;     // of the button that was pressed
     std::optional<std::string> dismiss;  // a notice that was read
 };
 

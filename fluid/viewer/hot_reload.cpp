@@ -21,7 +21,7 @@ bool sameCamera(const CameraParams& a, const CameraParams& b) {
     return a.from == b.from && a.position == b.position && a.target == b.target && a.fieldOfView == b.fieldOfView;
 }
 
-// What a person has set since the file was `before` stays set in what was `written`, where the file says what it said.
+// Values edited since the file was `before` stay in `written`, unless the file changed them.
 void keepEdits(SceneFile before, SceneFile shown, SceneFile& written) {
     const auto visiting = [](SceneFile& scene) { return [&scene](ParamVisitor& v) { scene.visit(v); }; };
     const std::map<std::string, std::string> was = paramTexts(visiting(before)), is = paramTexts(visiting(written));
@@ -75,10 +75,10 @@ void HotReload::takeShaders(const std::vector<std::string>& written, SceneRender
     constexpr double kShown = 2;  // s
     const size_t programs = *drawn + *simulated;
     if (programs > 0) {
-        done_ = fmt::format("read again: {} shader{}", programs, programs == 1 ? "" : "s");
+        done_ = fmt::format("reloaded {} shader{}", programs, programs == 1 ? "" : "s");
         doneFor_ = kShown;
     } else if (device.backend() == Backend::cpu && std::any_of(written.begin(), written.end(), isKernel)) {
-        done_ = "kernels are compiled into the program for the cpu: build it anew, or run with --backend gl";
+        done_ = "the cpu's kernels are compiled into the program: rebuild it, or run with --backend gl";
         doneFor_ = 2 * kShown;
     }
 }
@@ -120,7 +120,7 @@ void HotReload::draw() const {
     if (wrong.empty()) {
         ImGui::TextUnformatted(done_.c_str());
     } else {
-        ImGui::TextColored(refusedColour(), "what was written is not taken; the last that was right stays");
+        ImGui::TextColored(refusedColour(), "reload failed; the last valid version stays in use");
         ImGui::TextUnformatted(wrong.c_str());
     }
     ImGui::PopTextWrapPos();

@@ -1,5 +1,5 @@
-// HotReload: shaders and the scene's file are read again when they are written. What does not compile, or cannot be read, changes nothing,
-// and is shown until it is mended.
+// HotReload: reloads shaders and the scene's file when they change on disk. A file that does not compile or cannot be read changes nothing;
+// its error is shown until the file is corrected.
 #pragma once
 
 #include <optional>
@@ -12,22 +12,21 @@ namespace rivulet {
 
 class HotReload {
   public:
-    // `root`: as ShaderFiles has it; "": the shaders are inside the program, and none is watched.
+    // `root`: of ShaderFiles; "": the shaders are embedded in the program, and none is watched.
     explicit HotReload(const std::string& root);
 
-    // From now on this is the scene whose file is watched, as it is now; one that came from no file is not.
+    // Watches the file of this scene from now on; a scene without a file is not watched.
     void follow(const SceneFile& scene);
 
-    // Looks some times a second. Shaders that were written are taken by the renderer and the device. A scene that was written and can be
-    // read is returned, once, with what a person has made of the one that is `shown`: the camera, values and things that were added, all
-    // unless it is they that were written.
+    // Checks the files 5 times a second. The renderer and the device take changed shaders. A changed scene that can be read is returned
+    // once. It keeps the person's edits of the scene that is `shown` (camera, values, added objects), except where the file changed them.
     std::optional<SceneFile> look(double seconds, const SceneFile& shown, SceneRenderer& renderer, Device& device);
-    const SceneFile& before() const { return before_; }           // as the file was before that
-    const SceneFile& opened() const { return opened_; }           // as it is, without what a person made of it
-    void refuse(const std::string& why) { sceneTrouble_ = why; }  // what look() returned cannot be shown
+    const SceneFile& before() const { return before_; }           // the file before the last change
+    const SceneFile& opened() const { return opened_; }           // the file, without edits
+    void refuse(const std::string& why) { sceneTrouble_ = why; }  // look()'s scene cannot be opened
 
-    bool broken() const { return !shaderTrouble_.empty(); }  // what is drawn with is not what the files say
-    std::string message() const;                             // "": all is as the files say
+    bool broken() const { return !shaderTrouble_.empty(); }  // the shaders in use are older than the files
+    std::string message() const;                             // "": all files are in use
     void draw() const;                                       // over the picture, low in its middle
 
   private:
@@ -36,10 +35,10 @@ class HotReload {
 
     FileWatch watch_;
     std::string scene_;        // its file
-    SceneFile read_, before_;  // as the file was when it could be read last, and before that
+    SceneFile read_, before_;  // the file when it was valid last, and before that
     SceneFile opened_;
     std::string shaderTrouble_, sceneTrouble_, done_;
-    double waited_ = 0;   // s since it looked
+    double waited_ = 0;   // s since the last check
     double doneFor_ = 0;  // s that done_ is still shown
 };
 

@@ -23,42 +23,40 @@ std::vector<GraphPanel::Graph> graphsOfARun() {
     return {
         {.name = kDensity,
          .unit = "%",
-         .doc = "how far particles are compressed beyond rest density",
-         .series = {{"mean", "over all particles, those that are not compressed as 0"}, {"largest", "of any particle"}},
+         .doc = "compression of the particles beyond the rest density",
+         .series = {{"mean", "over all particles; 0 where a particle is not compressed"}, {"largest", "of all particles"}},
          .decades = true},
         {.name = kEnergy,
          .unit = "J",
-         .doc = "of the particles; what the total loses went into viscosity and impacts, what it gains came from outside, or is an error",
-         .series = {{"kinetic", "m v^2 / 2, of all"},
-                    {"potential", "m g h, of all, against height 0"},
-                    {"total", "kinetic and potential together"}}},
+         .doc = "of the particles; viscosity and impacts reduce the total; a gain comes from outside or is an error",
+         .series = {{"kinetic", "sum of m v^2 / 2"}, {"potential", "sum of m g h; 0 at height 0"}, {"total", "kinetic plus potential"}}},
         {.name = kParticles,
          .unit = "",
          .doc = "the world's ledger, in its own unit",
-         .series = {{"there", "all there are, lost ones too"},
-                    {"emitted", "since the start: blocks, and what emitters let out"},
+         .series = {{"there", "all particles, lost ones included"},
+                    {"emitted", "since the start, by blocks and emitters"},
                     {"drained", "since the start, by sinks"},
-                    {"lost", "left the grid or became NaN: frozen, and counted"}}},
+                    {"lost", "left the grid or became NaN; frozen and counted"}}},
         {.name = kLedger,
          .unit = "l",
-         .doc = "all water, on skins and off them",
-         .series = {{"emitted", "since the start: blocks, and what emitters and sources let out"},
+         .doc = "all water, on skins and elsewhere",
+         .series = {{"emitted", "since the start, by blocks, emitters and sources"},
                     {"on surface", "drops and films on skins"},
                     {"in air", "drops between skins, world and ground"},
-                    {"in world", "particles, and what is owed to the world until it makes one"},
-                    {"evaporated", "since the start, off skins"},
+                    {"in world", "particles, and the pending volume that makes no particle yet"},
+                    {"evaporated", "since the start, from skins"},
                     {"drained", "since the start, by sinks and edges"}},
          .shown = false},
         {.name = kLedgerError,
          .unit = "%",
-         .doc = "what is not where the rest is, of what was emitted",
-         .series = {{"error", "0 where no drop is lost or made of nothing"}},
+         .doc = "imbalance as a share of the emitted volume",
+         .series = {{"error", "0 if volume is conserved"}},
          .unfolded = false,
          .shown = false},
         {.name = kSteps,
          .unit = "",
-         .doc = "what a frame of the simulation takes",
-         .series = {{"substeps", "a frame"}, {"iterations", "of the pressure solver a substep, mean; on a GPU over some frames earlier"}}},
+         .doc = "work per simulated frame",
+         .series = {{"substeps", "a frame"}, {"iterations", "of the pressure solver per substep, mean; on a GPU some frames late"}}},
         {.name = kStepLength,
          .unit = "s",
          .doc = "simulated time of a substep",
@@ -85,7 +83,7 @@ void Inspector::stepped(const Session& session, double ms) {
     const FluidStats& late = world.stats();
     const bool water = world.particles().count > 0;  // or drops on skins alone
     const double now = water ? late.time : world.time();
-    if (session.replaying() != nullptr || now == time_) return;  // nothing new has been heard
+    if (session.replaying() != nullptr || now == time_) return;  // no new figures have arrived
     if (now < time_) clear();                                    // it began again
     const double seconds = now - time_;
     const bool next = water && late.frame == frame_ + 1 && late.substeps > 0;  // or the substeps are of the last of several frames
@@ -224,7 +222,7 @@ bool Inspector::drawTab(const Session& session, SceneRenderer& renderer, const T
             if (renderer.description()) {
                 frameGraph_.draw(*renderer.description(), renderer.times(), across);
             } else {
-                ImGui::TextDisabled("no picture has been drawn yet");
+                ImGui::TextDisabled("no frame has been drawn yet");
             }
             break;
         case Tab::voxels:

@@ -1,5 +1,5 @@
-// Inspector: what a run is doing, at the right of the window, a tab each: times, graphs, chart, frame graph, voxels. What is not shown
-// costs nothing but a few figures kept of each step.
+// Inspector: the measurements of a run, at the right of the window, one tab each: times, graphs, chart, frame graph, voxels. A hidden tab
+// costs a few stored figures per step.
 #pragma once
 
 #include "engine/ui/frame_graph_panel.h"
@@ -22,11 +22,11 @@ class Inspector {
     // After a step that took `ms` on the wall.
     void stepped(const Session& session, double ms);
     void clear();  // a new session begins
-    // Needs a current OpenGL context. Whether `draft` was edited so that a new session is wanted. `margin`: px, about the window; `room`:
-    // px across, that it may take.
+    // Needs a current OpenGL context. Returns whether `draft` was edited so that a new session is needed. `margin`: px around the window;
+    // `room`: px, its largest width.
     bool draw(const Session& session, SceneRenderer& renderer, const Timeline& timeline, const ProfilerPanel& profiler, SceneFile& draft,
               float margin, float room);
-    void hide(SceneRenderer& renderer);  // it is not drawn in this frame
+    void hide(SceneRenderer& renderer);  // instead of draw(), in a frame without panels
     Tab shown() const { return shown_; }
     void show(Tab tab) { asked_ = tab; }  // from the next frame on
 
@@ -46,9 +46,9 @@ class Inspector {
     FrameGraphPanel frameGraph_;
     VoxelPanel voxels_;
     Tab shown_ = Tab::none;  // in the last frame
-    Tab open_ = Tab::times;  // that is or would be
+    Tab open_ = Tab::times;  // the selected tab, shown or not
     Tab asked_ = Tab::none;  // to be opened
-    // Of a scene with skins, whose figures come late.
+    // Of a scene with skins: its figures arrive some frames late.
     struct Ledgers {
         std::optional<RunStats::Ledger> last;
         bool asked = false;

@@ -250,7 +250,7 @@ void Manipulator::draw(const InputEvents& input, const Camera& camera, const Ses
     if (bounds.empty()) return;
     const Place<const vec3> wanted = placeOf(chosen_, draft), shown = placeOf(chosen_, session.scene());
     const vec3 off = wanted.position != nullptr && shown.position != nullptr ? *wanted.position - *shown.position : vec3(0.0F);
-    // What is being turned is shown as its box, turned.
+    // An object that is being rotated is shown as its rotated box.
     const quat turn = wanted.rotation != nullptr && shown.rotation != nullptr
                           ? turned(*wanted.rotation) * glm::inverse(turned(*shown.rotation))
                           : quat(1, 0, 0, 0);

@@ -1,5 +1,5 @@
-// Manipulator: what a person takes hold of in the picture. Bodies are grabbed and thrown while water flows; meshes, emitters and sinks are
-// chosen by a click or in the tree, and moved and turned by the handles that then stand on them.
+// Manipulator: moves objects with the mouse. Bodies are grabbed and thrown while the water flows. Meshes, emitters and sinks are selected
+// by a click or in the tree, and moved and rotated by the handles that then appear.
 #pragma once
 
 #include <optional>
@@ -10,35 +10,35 @@
 
 namespace rivulet {
 
-// From the camera through a place of the window, in lengths of its own.
+// A ray from the camera through a point of the window; m, world; `direction` is not normalised.
 struct ViewRay {
     vec3 origin{0.0F}, direction{0.0F};
     vec3 at(float t) const { return origin + direction * t; }
 };
 ViewRay rayThrough(const Camera& camera, const vec2& mouse, const vec2& size);
-// The place in the window where `p` is seen; nothing: behind the camera.
+// The point of the window where `p` (m, world) appears; nothing: it is behind the camera.
 std::optional<vec2> seenAt(const Camera& camera, const vec3& p, const vec2& size);
 
 class Manipulator {
   public:
     using Thing = Session::Thing;
-    // What an edit of the scene needs.
+    // What the input asks of the caller.
     struct Asks {
-        bool mouse = false;     // it is the hand's: the camera stays
-        bool edited = false;    // a value was changed that the world takes while it runs
-        bool recreate = false;  // one was that a new world needs
+        bool mouse = false;     // the manipulator uses the mouse: the camera stays
+        bool edited = false;    // a live value was changed
+        bool recreate = false;  // a fixed value was changed: a new session is needed
     };
-    // One frame's input, over no panel. Changes `draft` where things are moved.
+    // The input of one frame, outside the panels. Changes `draft` when an object is moved.
     Asks take(const InputEvents& input, const Camera& camera, Session& session, SceneFile& draft);
-    // Back to before the last move of a thing. false: there is none.
+    // Undoes the last move of an object. Returns false if there is none.
     bool undo(SceneFile& draft, Asks& asks);
     // Over the picture, under the panels, by ImGui.
     void draw(const InputEvents& input, const Camera& camera, const Session& session, const SceneFile& draft) const;
 
     const Thing& chosen() const { return chosen_; }
     void choose(const Thing& thing) { chosen_ = thing; }
-    bool holds() const { return held_ || move_; }  // the mouse is its, also over a panel
-    // The session is another one: a body that was in the hand is gone. A thing that is being moved by its handles still is.
+    bool holds() const { return held_ || move_; }  // it uses the mouse, also over a panel
+    // The session is replaced: a body is no longer held. A move by handles goes on.
     void letGo();
 
   private:
@@ -51,7 +51,7 @@ class Manipulator {
         Part part = Part::none;
         vec3 position{0.0F}, rotation{0.0F};  // as they were
         vec3 centre{0.0F};                    // of the handles, then
-        float begin = 0;                      // m along the axis, or rad about it, where it was taken
+        float begin = 0;                      // m along the axis, or rad about it, where the drag began
     };
     struct Held {
         BulletSolids::Hold hold;
@@ -67,7 +67,7 @@ class Manipulator {
     struct Before {
         Thing thing;
         vec3 position{0.0F}, rotation{0.0F};
-        vec3 movedTo{0.0F};  // whatever else stands under its number by now is left alone
+        vec3 movedTo{0.0F};  // another object may have its index by now: it stays
     };
     std::optional<Before> before_;
     vec2 pressedAt_{0.0F};

@@ -1,4 +1,4 @@
-// Notices: the last sentences that were said to the person, from whichever thread.
+// Notices: the last 4 messages of the log, from any thread.
 #pragma once
 
 #include <mutex>

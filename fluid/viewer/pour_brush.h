@@ -1,4 +1,4 @@
-// PourBrush: the left button as a tap: water falls onto what the mouse points at, for as long as it is held.
+// PourBrush: pours water onto the point under the mouse while the left button is held.
 #pragma once
 
 #include <optional>
@@ -14,9 +14,9 @@ class PourBrush {
     bool on() const { return on_; }
     bool pours() const { return pours_; }
     void turn(bool on) { on_ = on; }
-    // One frame's input. `over`: a panel has the mouse. Whether the left button is the brush's.
+    // The input of one frame. `over`: a panel has the mouse. Returns whether the brush uses the left button.
     bool take(const InputEvents& input, const Camera& camera, Session& session, bool over);
-    // A ring where the water will fall, by ImGui.
+    // Draws a ring where the water starts and a line to where it falls, with ImGui.
     void draw(const InputEvents& input, const Camera& camera, const Session& session) const;
 
   private:
@@ -24,7 +24,7 @@ class PourBrush {
     std::optional<vec3> at_;  // m, what the mouse points at
 };
 
-// What a ray meets first of a scene: a solid, the water, or, inside the box, its far side. Nothing: it passes the box by.
+// The first hit of a ray (m, world): a solid, the water, or the far side of the box. Nothing: it misses the box.
 std::optional<vec3> pouredOnto(Session& session, const vec3& origin, const vec3& direction);
 
 }  // namespace rivulet

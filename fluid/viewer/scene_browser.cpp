@@ -74,7 +74,7 @@ bool SceneBrowser::card(size_t index, float width) {
         list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(picture->name())), at, under, ImVec2(0, 1), ImVec2(1, 0),
                              IM_COL32_WHITE, 4, ImDrawFlags_RoundCornersTop);
     else if (pictures_.contains(scene.path))  // looked for
-        list.AddText(ImVec2(at.x + 7, at.y + 7), ImGui::GetColorU32(ImGuiCol_TextDisabled), "no picture yet");
+        list.AddText(ImVec2(at.x + 7, at.y + 7), ImGui::GetColorU32(ImGuiCol_TextDisabled), "no picture");
     const ImVec2 name(at.x + 7, at.y + tall + 4);
     list.AddText(name, ImGui::GetColorU32(ImGuiCol_Text), scene.name.c_str());
     const float small = 0.88F * ImGui::GetFontSize(), doc = name.y + ImGui::GetTextLineHeight() + 1;
@@ -96,7 +96,7 @@ std::optional<std::string> SceneBrowser::draw() {
     if (ImGui::Begin("scenes", &shown_, ImGuiWindowFlags_NoCollapse)) {
         ImGui::SetNextItemWidth(-1);
         if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-        ImGui::InputTextWithHint("##wanted", "search: a name, a word of what it shows", &wanted_);
+        ImGui::InputTextWithHint("##wanted", "search names and descriptions", &wanted_);
         const float wrapped = ImGui::GetContentRegionAvail().x, gapBelow = ImGui::GetStyle().ItemSpacing.y;
         const float said = trouble_.empty() ? 0 : ImGui::CalcTextSize(trouble_.c_str(), nullptr, false, wrapped).y + gapBelow;
         const float below = ImGui::GetFrameHeightWithSpacing() + said;

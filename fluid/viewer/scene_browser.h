@@ -1,4 +1,4 @@
-// SceneBrowser: the scenes that are there, as cards with a picture and what they show; or any other scene file.
+// SceneBrowser: the installed scenes as cards with a picture and a description, and a field for the path of any scene file.
 #pragma once
 
 #include <map>
@@ -14,15 +14,15 @@ namespace rivulet {
 
 class SceneBrowser {
   public:
-    void show(bool yes);  // and looks anew for scenes
+    void show(bool yes);  // when shown, the list of scenes is read again
     bool shown() const { return shown_; }
-    // Where it is shown, over the middle of the picture. The path of the scene that was chosen, for loadScene: show(false), or refuse().
+    // Call it while shown. Returns the path of a chosen scene, for loadScene; the caller then calls show(false) or refuse().
     std::optional<std::string> draw();
     void refuse(std::string why) { trouble_ = std::move(why); }
 
   private:
     bool card(size_t index, float width);
-    // Beside the scene's folder, in pictures/ under its file's name; null: there is none. Reads one a frame at most.
+    // From pictures/ in the scene's folder; null: there is none. Reads at most one file per frame.
     const gpu::Texture* pictureOf(const std::string& scene);
 
     bool shown_ = false, refocus_ = false;

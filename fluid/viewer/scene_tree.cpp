@@ -37,7 +37,7 @@ class Tree {
             ImGui::PushID(static_cast<int>(root));
             if (visible != nullptr) {
                 asks.edited = ImGui::Checkbox("##drawn", visible) || asks.edited;
-                if (ImGui::IsItemHovered()) ImGui::SetTooltip("whether it is drawn; water meets it all the same");
+                if (ImGui::IsItemHovered()) ImGui::SetTooltip("shown or hidden; water collides with it in both cases");
                 ImGui::SameLine();
             }
             if (row(nodes[root].name, path, thing, !children[root].empty())) {

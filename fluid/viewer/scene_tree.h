@@ -1,4 +1,4 @@
-// What there is in a scene, as a tree: meshes with the nodes of their files, bodies, skins, emitters, sinks, blocks.
+// The objects of a scene as a tree: meshes with the nodes of their files, bodies, skins, emitters, sinks, blocks.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 namespace rivulet {
 
 struct TreeAsks {
-    bool edited = false;  // whether something is drawn was changed in the draft
-    std::string find;     // the path of what was clicked, to look its Params up: "colliders[2]"; "": nothing was
+    bool edited = false;  // the draft: an object was shown or hidden
+    std::string find;     // the path of the clicked object's params: "colliders[2]"; "": no click
 };
 
-// Inside an ImGui window. A click chooses; a box says whether a thing is drawn.
+// Inside an ImGui window. A click selects an object; its check box shows or hides it.
 TreeAsks drawSceneTree(const Session& session, SceneFile& draft, Manipulator& hand);
 
 }  // namespace rivulet

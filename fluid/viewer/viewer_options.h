@@ -1,4 +1,4 @@
-// ViewerOptions: what a window gives a Viewer, and how a Viewer opens its first scene.
+// ViewerOptions: what a Viewer needs of its window, and how it opens its first scene.
 #pragma once
 
 #include <functional>
@@ -13,16 +13,16 @@ namespace rivulet {
 
 struct ViewerOptions {
     std::string backend = "auto";
-    std::string device = {};         // of cl, as makeDevice
+    std::string device = {};         // of cl: clDevice of makeDevice
     std::string cooperate = "off";   // a row of plans(), or auto, which tries them at the start
-    void* clipboard = nullptr;       // as UiLayer
-    int width = 1280, height = 720;  // pixels, of what auto tries
-    std::string seen = {};           // as WelcomeScreen
-    double longestStep = 20;         // s: an edit after which a picture would take longer is refused
-    // Makes a context that shares with the current one: scenes are opened on another thread then, and the window goes on. None: it waits.
+    void* clipboard = nullptr;       // of UiLayer::create
+    int width = 1280, height = 720;  // pixels, of the pictures that auto tries
+    std::string seen = {};           // of WelcomeScreen
+    double longestStep = 20;         // s: an edit is refused if a frame would then take longer
+    // Makes a context that shares with the current one, so that scenes are opened on another thread. None: the window waits.
     std::function<Result<SharedGl>()> share = {};
-    // With `share`: shows what `draw` draws into a framebuffer, while the first scene is being opened. false: the person has closed the
-    // window. None: create() returns when all is ready, and shows nothing till then.
+    // With `share`: called while the first scene is opened; it calls `draw` and shows the framebuffer. Returns false if the window was
+    // closed. None: create() shows nothing until the scene is ready.
     using Draw = std::function<void(const InputEvents& input, GLuint framebuffer)>;
     std::function<bool(const Draw& draw)> showing = {};
 };

@@ -93,15 +93,15 @@ void VoxelPanel::draw(const SolidFields& fields, double time, float width) {
     drawMaterials(width);
 }
 
-// What to show, with a list to choose from where there are several.
+// The field to show; a combo box where there are several.
 const VoxelField* VoxelPanel::choose(const SolidFields& fields, float width) {
     std::vector<const VoxelField*> all;
     std::vector<std::string> names;
     if (fields.still != nullptr && !fields.still->empty()) {
         all.push_back(fields.still);
-        names.emplace_back("standing still");
+        names.emplace_back("static");
     }
-    for (const auto& [kind, list] : {std::pair("moving", &fields.rigid), std::pair("bending", &fields.deforming)}) {
+    for (const auto& [kind, list] : {std::pair("moving", &fields.rigid), std::pair("deforming", &fields.deforming)}) {
         for (size_t k = 0; k < list->size(); ++k) {
             all.push_back((*list)[k]);
             names.push_back(fmt::format("{} {}", kind, k + 1));

@@ -1,4 +1,4 @@
-// The panel that shows the voxels of a scene's meshes: a slice of bits, materials or distances, and the list of materials.
+// VoxelPanel: the voxels of a scene's meshes: a slice of materials or distances, and the list of materials.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace rivulet {
 
-// Not drawn it costs nothing; the regions of a field are found when it is first looked at, and a slice is drawn when it changes; of a
-// mesh that bends, both again a few times a second.
+// Costs nothing while hidden. The regions of a field are found when it is first shown, a slice is drawn when it changes; both are repeated
+// a few times a second for a deforming mesh.
 class VoxelPanel {
   public:
-    // Inside an ImGui window, `width` pixels across. `time`: s, simulated; another time, another shape of what bends. Needs a current
-    // OpenGL context.
+    // Inside an ImGui window, `width` pixels across. `time`: s, simulated; a deforming mesh has another shape at another time. Needs a
+    // current OpenGL context.
     void draw(const SolidFields& fields, double time, float width);
-    void clear();  // the fields are others from now on
+    void clear();  // the fields are replaced
 
   private:
     enum class Shown { materials, distance };
@@ -31,7 +31,7 @@ class VoxelPanel {
 
     int axis_ = 2;
     int at_[3] = {-1, -1, -1};           // voxels; -1: the middle
-    int chosen_ = 0;                     // among the fields: what stands still, what moves, what bends
+    int chosen_ = 0;                     // among the fields: static, moving, deforming
     const VoxelField* field_ = nullptr;  // that labels_ are of
     double labelledAt_ = 0;              // s, simulated
     double nextLook_ = 0;                // s, on ImGui's clock: no shape is looked at anew before that

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 
 namespace rivulet {
 
@@ -16,15 +16,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::pair<const char*, const char*> kGestures[] = {{"drag", "turn the view; with the right button, move it"},
-                                                             {"wheel", "nearer, farther"},
-                                                             {"space", "pause, go on"},
-                                                             {"O", "another scene, out of pictures"},
-                                                             {"H", "all keys"}};
-constexpr const char* kTries[] = {"P, and hold the left button: water, wherever you point. P again ends it.",
-                                  "Search for viscosity at the left, and drag its slider up: water, oil, honey.",
-                                  "Drop a mesh file onto the window (.obj, .gltf, .fbx): water runs over it.",
-                                  "O, then crying: tears on a face; a click on the skin is one more."};
+constexpr std::pair<const char*, const char*> kGestures[] = {{"drag", "rotate the view; with the right button, pan"},
+                                                             {"wheel", "zoom"},
+                                                             {"space", "pause or resume"},
+                                                             {"O", "choose another scene"},
+                                                             {"H", "show all keys"}};
+constexpr const char* kTries[] = {"Press P, then hold the left button to pour; P again stops.",
+                                  "Search for viscosity in the left panel and raise it: water, oil, honey.",
+                                  "Drop a mesh file (.obj, .gltf, .fbx) onto the window: water flows over it.",
+                                  "Press O and choose crying: tears on a face; click the skin to add one."};
 const ImVec4 kAccent(0.42F, 0.78F, 0.94F, 1);
 
 void heading(const char* text) {
@@ -59,7 +59,7 @@ void WelcomeScreen::draw(const InputEvents& input) {
         shown_ = false;
         std::error_code error;
         fs::create_directories(fs::path(seen_).parent_path(), error);
-        (void)writeFileAtomic(seen_, "the first screen of rivulet's window was seen; without this file it is shown again\n");
+        (void)writeFileAtomic(seen_, "rivulet's welcome screen was shown; delete this file to show it again\n");
         return;
     }
     // One window over all, so that no panel takes the click.
@@ -78,20 +78,20 @@ void WelcomeScreen::draw(const InputEvents& input) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(pad, pad));
     ImGui::BeginChild("sheet", size, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted("Rivulet: water that is simulated while you look at it. Take hold of anything.");
-    heading("Five things to know");
+    ImGui::TextUnformatted("Rivulet simulates water in real time. Drag, pour and drop things into it while it runs.");
+    heading("Controls");
     for (const auto& [key, does] : kGestures) {
         ImGui::TextUnformatted(key);
         ImGui::SameLine(pad + 6 * em);
         ImGui::TextDisabled("%s", does);
     }
-    heading("Four to try");
+    heading("Things to try");
     for (const char* each : kTries) {
         ImGui::Bullet();
         ImGui::TextUnformatted(each);
     }
     ImGui::Dummy(ImVec2(0, 0.8F * em));
-    ImGui::TextDisabled("any key or click begins");
+    ImGui::TextDisabled("press any key or click to start");
     ImGui::PopTextWrapPos();
     tall_ = ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + pad;
     ImGui::EndChild();

@@ -1,4 +1,4 @@
-// WelcomeScreen: one screen that says what this is and what to try, for who opens the window for the first time.
+// WelcomeScreen: one screen with the controls and things to try, shown when the window is opened for the first time.
 #pragma once
 
 #include <string>
@@ -7,22 +7,22 @@
 
 namespace rivulet {
 
-// The file that says that somebody has seen it, $XDG_CONFIG_HOME/rivulet/seen, else ~/.config/rivulet/seen. "": there is no place for one.
+// The file that records that it was shown: $XDG_CONFIG_HOME/rivulet/seen, else ~/.config/rivulet/seen. "": neither variable is set.
 std::string seenFile();
 
 class WelcomeScreen {
   public:
     WelcomeScreen() = default;
-    // Shown where no such file is; "": not at all.
+    // Shown if the file `seen` does not exist; "": never shown.
     explicit WelcomeScreen(std::string seen);
     bool shown() const { return shown_; }
-    // Over all else, until any key or click: then it is never shown again. Between UiLayer's begin and draw.
+    // Drawn over everything until a key or click, which creates the file. Between UiLayer's begin and draw.
     void draw(const InputEvents& input);
 
   private:
     std::string seen_;
     bool shown_ = false;
-    float tall_ = 320;  // as its words need it, as of the frame before
+    float tall_ = 320;  // px, the height of its text in the last frame
 };
 
 }  // namespace rivulet

@@ -9,7 +9,7 @@
 #include <new>
 
 #include "engine/core/assert.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/core/readable_bytes.h"
 #include "fluid/voxel/packed_array.h"
 

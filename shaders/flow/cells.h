@@ -1,16 +1,16 @@
-// Cells of space: those of the flow's grid, and coarser ones of which one bit says whether a drop reaches into them. The bits are found by
-// a hash (Teschner et al. 2003): one may be set for another cell's sake.
+// Cells of space: those of the flow's grid, and coarser ones with one bit that states whether a drop reaches into them. The bits are stored in
+// a hash table (Teschner et al. 2003) without collision handling: a bit may be set because of another cell.
 #if !defined(RIVULET_CELLS_H)
 #define RIVULET_CELLS_H
 #define REACHED_WORDS 4096u
 #define REACHED_PARTS 10.0f /* bit k of the word behind them: some drop reaches as far as k to k + 1 of these parts of a cell */
 #if !defined(__cplusplus) || defined(RIVULET_KERNEL_UNIT)
-// The grid's cell, along one axis, of `x`: one of those that there are.
+// The grid's cell of `x` along one axis, clamped to the grid.
 FN int cellAlong(float x, float origin, float scale, int cells) {
     return TO_INT(min(max((x - origin) * scale, 0.0f), TO_FLOAT(cells - 1)));
 }
 FN uint reachedPart(float far, float inverse) { return 1u << min(TO_UINT(REACHED_PARTS * far * inverse), 31u); }
-// m: as far as any.
+// m: larger than any distance.
 FN float reachOf(uint parts, float cell) {
     uint most = 0u;
     for (uint half_ = 16u; half_ > 0u; half_ = half_ / 2u)

@@ -1,4 +1,4 @@
-// Asks for what drops that come soon will need: where they are in no order, a thread waits for memory several times a drop.
+// Prefetches the data of the drops that are processed next: they are in random order, and a thread would wait for memory.
 #if !defined(RIVULET_FETCH_H)
 #define RIVULET_FETCH_H
 FN void fetchDrops(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(vec4, motion) GLOBAL(uint, skin) GLOBAL(vec4, basis) uint i, uint count) {
@@ -14,7 +14,7 @@ FN void fetchDrops(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(vec4, motion) GLOB
         PREFETCH(basis[5u * t + 4u]);
     }
 }
-// And the triangles beside a drop's, and its film.
+// Also the neighbours of a drop's triangle, and its film.
 FN void fetchBeside(GLOBAL(uint, id) GLOBAL(uint, drop) GLOBAL(uint, skin) GLOBAL(vec4, basis) GLOBAL(uint, film) uint i, uint count) {
     if (i + 2u >= count) return;
     uint t = SKIN_UINTS * (drop[DROP_UINTS * id[i + 2u] + DROP_TRIANGLE] & DROP_NUMBER);

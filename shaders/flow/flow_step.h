@@ -1,4 +1,4 @@
-// What every kernel of flow on a skin knows, and how a drop is kept. Layout shared by C++, GLSL and OpenCL. Lengths in m, in the skin's
+// The parameter block of the kernels of flow on a skin, and the layout of a drop. Shared by C++, GLSL and OpenCL. Lengths in m, in the skin's
 // frame.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
@@ -22,63 +22,63 @@ CONSTANT(uint, SKIN_OPEN, 0xFFFFFFFFu);
 CONSTANT(uint, SKIN_UINTS, 8u);
 CONSTANT(uint, DRY_EVERY, 16u);  // triangles: one in so many has its turn each step
 STRUCT(FlowStep) {
-    vec4 pull;   // xyz m/s^2, what acts on all mass alike, in the skin's frame as all that follows
-    vec4 wind;   // xyz m/s, of the air
-    vec4 turn0;  // rows of a matrix: a direction as the last step's frame has it -> as this one's has it
+    vec4 pull;   // xyz m/s^2, gravity, in the skin's frame as all vectors below
+    vec4 wind;   // xyz m/s, velocity of the air
+    vec4 turn0;  // rows of a matrix: a direction in the last step's frame -> in this step's frame
     vec4 turn1;
     vec4 turn2;
-    vec4 drift0;  // rows of a matrix, w with 1: a place (m) -> its speed as the frame moves, m/s
+    vec4 drift0;  // rows of a matrix, applied to (x, y, z, 1): a point (m) -> its velocity because the frame moves, m/s
     vec4 drift1;
     vec4 drift2;
-    uint count;  // slots of drops
+    uint count;  // number of drop slots
     uint triangles;
     uint places;
-    uint births;          // of this step
-    uint insideAt;        // index into cellStart: how many drops there are
-    uint freeAt;          // index into cellStart: where free slots begin
+    uint births;          // drops spawned in this step
+    uint insideAt;        // index into cellStart: the number of drops
+    uint freeAt;          // index into cellStart: the first free slot
     float dt;             // s
     float density;        // kg/m^3
-    float contactRadius;  // of a drop, over the cube root of its volume
-    float hold;           // N/m: times a drop's width, the force that holds it
-    float drag;           // Pa s: times its width and speed, the force that slows it
-    float adhesion;       // N/m: times its width, the force that keeps it on a skin it hangs from
-    float airDrag;        // kg/m^3: times the square of its width and of the air's speed, the force of wind
+    float contactRadius;  // radius of a drop's foot over the cube root of its volume
+    float hold;           // N/m: times a drop's width: the retention force (contact angle hysteresis)
+    float drag;           // Pa s: times its width and speed: the drag force
+    float adhesion;       // N/m: times its width: the force that holds it on a skin from below
+    float airDrag;        // kg/m^3: times the squares of its width and of the air's speed: the force of the wind
     float trail;          // m, thickness of the film that a drop leaves; 0: none
-    float trailWidth;     // of a drop's width
-    float slip;           // share of what holds it that a wet way takes
-    float steer;          // of what holds it: the pull of a trail to one side
-    float cell;           // m, a film's cells are no wider
-    float dries;          // m, of film in the time since this triangle's turn
+    float trailWidth;     // share of a drop's width
+    float slip;           // share of the retention force that a wet trail removes
+    float steer;          // share of the retention force: the sideways pull of a trail
+    float cell;           // m, maximum width of a film's cell
+    float dries;          // m, thickness that evaporates between two turns of a triangle
     float viscosity;      // Pa s
-    float filmSelf;       // 1/m^2: height of a film over volume, where one particle is alone
-    float filmReach;      // m, support radius of the film's sum
-    float filmRadius;     // m, of a cap that is spread as widely as one particle of a film
-    float jump;           // m/s: a skin's place that is faster has not moved, it is another
+    float filmSelf;       // 1/m^2: height of a film over its volume for a single particle
+    float filmReach;      // m, support radius of the film's SPH sum
+    float filmRadius;     // m, radius of a cap that is as wide as one particle of a film
+    float jump;           // m/s: a faster place of the skin counts as teleported, with velocity 0
     float inverseDt;      // 1/s
     float tension;        // N/m
-    uint dryPhase;        // whose turn it is
+    uint dryPhase;        // the group of triangles whose turn it is to dry
     uint brimAt;          // id of the first place of a brim
     uint brims;
-    float brimMost;    // picolitres, of a place of a brim: more spills
-    float brimRadius;  // m, of a place of a brim, as drawn
-    float tear;        // picolitres, of a drop that spills
-    float settle;      // share of the way to rest that a brim goes in a step
-    float reach;       // of a cap's height: how near another skin takes a drop over
-    uint number;       // of this step, from 1
+    float brimMost;    // picolitres, capacity of a place of a brim: more spills
+    float brimRadius;  // m, radius of a place of a brim, as drawn
+    float tear;        // picolitres, volume of a drop that spills
+    float settle;      // share of the way to equilibrium that a brim moves in a step
+    float reach;       // share of a cap's height: the distance at which a drop moves to the facing skin
+    uint number;       // number of this step, from 1
     uint everywhere;   // 1: flow/drive is needed at every place
 };
 STRUCT(FlowBirth) {
     vec4 velocity;  // m/s, along the triangle; w: 1 part of a film, 0 a drop
     uint triangle;
-    float b1;  // barycentric, of corners 1 and 2
+    float b1;  // barycentric coordinates of corners 1 and 2
     float b2;
     uint volume;  // picolitres
 };
 STRUCT(FlowLeft) {
-    vec4 position;  // m; w: the slot it had
+    vec4 position;  // xyz m; w: its former slot
     vec4 velocity;  // m/s
     uint volume;    // picolitres
-    uint triangle;  // the last one
+    uint triangle;  // its last triangle
     uint spare0;
     uint spare1;
 };

@@ -1,13 +1,13 @@
-// A triangle as a map shows it: where its places lie depends on UV by an affine map.
+// A triangle in a map: positions on it are an affine function of UV.
 STRUCT(MapSheet) {
     vec3 middle;  // m
-    vec3 alongU;  // m a unit of u
+    vec3 alongU;  // m per unit of u
     vec3 alongV;
     vec3 n;   // unit normal
-    float u;  // of its middle, where the map's own go from 0 to 1
+    float u;  // of its centre; the map's u goes from 0 to 1
     float v;
 };
-// `word`: a texel's, see map_step.h.
+// `word`: the word of a texel, see map_step.h.
 FN MapSheet sheetOf(GLOBAL(vec4, chart) GLOBAL(vec4, basis) uint word) {
     uint t = word & TEXEL_TRIANGLE;
     vec4 slope = chart[2u * t];
@@ -22,8 +22,8 @@ FN MapSheet sheetOf(GLOBAL(vec4, chart) GLOBAL(vec4, basis) uint word) {
     s.v = chart[2u * t + 1u].y + 1.0f - TO_FLOAT((word >> TEXEL_TURN_V) & 3u);
     return s;
 }
-// m: of a texel of the map, of which `inverse` is one over the edge, a power of two.
+// m: the position of a texel; `inverse` is 1 / the edge of the map, a power of two.
 FN vec3 sheetPlace(MapSheet s, float x, float y, float inverse) {
     return s.middle + s.alongU * ((x + 0.5f) * inverse - s.u) + s.alongV * ((y + 0.5f) * inverse - s.v);
 }
-FN float sheetInverse(MapSheet s) { return 1.0f / max(sqrt(dot(s.alongU, s.alongU)), 1.0e-15f); }  // units of u a metre
+FN float sheetInverse(MapSheet s) { return 1.0f / max(sqrt(dot(s.alongU, s.alongU)), 1.0e-15f); }  // units of u per metre

@@ -1,36 +1,36 @@
-// What every kernel that draws a flow into UV knows, and how its tables are laid out. Layout shared by C++, GLSL and OpenCL. Lengths in m,
-// in the skin's frame. A map's texels come in tiles of 8 x 8; tiles in which no triangle lies are not kept.
+// The parameter block of the kernels that draw a flow into UV, and the layout of its tables. Shared by C++, GLSL and OpenCL. Lengths in m,
+// in the skin's frame. A map's texels are stored in tiles of 8 x 8; tiles without a triangle are not stored.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-// What a texel shows: its triangle; how often the map's width and height, less one, are added to its own place to lie where the triangle's
-// UVs do (they may be outside 0 to 1); and whether other skin is so near that a drop may lie on that instead.
+// The word of a texel: its triangle; the number of map widths and heights, minus one, to add to its position to reach the UVs of the
+// triangle (which may be outside 0 to 1); and whether other skin is so near that a drop may lie on that instead.
 #define TEXEL_NONE 0xFFFFFFFFu
 #define TEXEL_TRIANGLE 0x07FFFFFFu
 #define TEXEL_TURN_U 27u
 #define TEXEL_TURN_V 29u
 #define TEXEL_FOLD 0x80000000u
 #define TILE_TEXELS 64u
-// A tile: where it lies, in tiles, x | y << 16; its first piece and the one past its last; and where its texels begin. A piece is what
-// hangs together on the skin. Texels are 64 uints of four bytes: which of the tile's words says what it shows, and of the film the three
-// cells about it. Behind them how many words there are and how many blocks (from bit PACKED_BLOCKS), of one cell each or, with
-// PACKED_FOURS, of four; then the words; then the first cell of each block, as flow/map_thick has them. A byte counts the blocks' cells. A
-// texel without skin: the first byte is PACKED_NONE.
+// A tile: its position in tiles, x | y << 16; its first piece and the one past its last; and the offset of its texels. A piece is a connected
+// part of the skin. Texels are 64 uints of four bytes: the index of the word that the texel shows, and the three cells of the film
+// around it. They are followed by the number of words and of blocks (from bit PACKED_BLOCKS), of one cell each or, with
+// PACKED_FOURS, of four; then the words; then the first cell of each block, as in flow/map_thick. A byte is an index into the cells of the
+// blocks. A texel without skin has the first byte PACKED_NONE.
 #define TILE_UINTS 4u
 #define PACKED_NONE 255u
 #define PACKED_BLOCKS 8u
 #define PACKED_FOURS 0x80000000u
-// A chart, 2 vec4 a triangle: how b1 and b2 grow with u and v, b1u b2u b1v b2v; u and v of its middle, and how near other skin is, m, where
-// it was at rest. A pin of a piece, of which its bounds are made: a place; with PIN_PART the places of a triangle's corners and how much
-// there is of each at least (in PIN_PARTS, from -PIN_MOST; 16 bits each); or with PIN_RECT a triangle with its turns and then a rectangle
+// A chart, 2 vec4 per triangle: the derivatives of b1 and b2 by u and v, b1u b2u b1v b2v; u and v of its centre, and the distance of other
+// skin at rest, m. A pin of a piece, from which its bounds are computed: a place; with PIN_PART the places of the corners of a triangle and
+// their minimum weights (in PIN_PARTS, from -PIN_MOST; 16 bits each); or with PIN_RECT a triangle with its turns and a rectangle
 // of texels, x | y << 13 | (width - 1) << 26 | (height - 1) << 29.
 #define PIN_RECT 0x80000000u
 #define PIN_PART 0x40000000u
 #define PIN_MOST 7.0f
 #define PIN_PARTS 4096.0f
-// What a tile knows of drops, 16 uints. Behind all tiles: how many are to be drawn, and which.
+// The drops of a tile, 16 uints. After all tiles: the number of tiles to draw, and their indices.
 #define NEAR_UINTS 16u
 #define NEAR_DRAW 0u  /* bit 0: it is to be drawn; 1: all its rows; 4 to 7: where drops were when it was last drawn */
 #define NEAR_HASH 1u  /* of the drops that were there when it was last drawn */
@@ -44,37 +44,37 @@ namespace rivulet {
 #define MOST_NEAR 8u
 #define WET_EVERY 16u /* draws: a wet tile is drawn anew that often, for what dries */
 #define ANY_EVERY 64u /* and a dry one, for what a drop left that went too fast to be seen in between */
-// Of the film's thickness two halves a uint, mm: where those of a triangle begin, which is the t-th, its cells from `first` on.
+// The film's thickness, two half floats per uint, mm: the offset of a triangle's cells, of which the t-th begins at `first`.
 #define THICK_BEGIN(first, t) (2u * (((first) + (t)) >> 1u))
 STRUCT(FlowMapStep) {
-    vec4 gridOrigin;  // of the flow's grid, see fluid/world/step_params.h
+    vec4 gridOrigin;  // as in fluid/world/step_params.h, for the flow's grid
     vec4 gridScale;
     int cellsX;
     int cellsY;
     int cellsZ;
-    uint finer;     // cells of the sort to one of the grid's along x
-    uint insideAt;  // index into cellStart: how many drops there are
-    uint slots;     // of drops
+    uint finer;     // cells of the sort per cell of the grid along x
+    uint insideAt;  // index into cellStart: the number of drops
+    uint slots;     // number of drop slots
     uint triangles;
     uint tiles;
     uint pieces;
-    uint size;     // texels, of the map's edge
-    uint draw;     // number of this one, from 1
-    uint moved;    // 1: the skin has moved since the last
-    float reach;   // m, radius of a drop's foot at most
-    float trail;   // m, film as thick is as wet as can be
-    float tap;     // m, from a texel to the places where it takes its film
-    uint level;    // of the mip that is made
+    uint size;     // texels, edge of the map
+    uint draw;     // number of this draw, from 1
+    uint moved;    // 1: the skin has moved since the last draw
+    float reach;   // m, maximum radius of a drop's foot
+    float trail;   // m, thickness of a film of wetness 1
+    float tap;     // m, distance from a texel to the points where it samples the film
+    uint level;    // level of the mip that is computed
     uint levelAt;  // texels before it in the map
-    uint aboveAt;  // and before the finer one
-    uint stampAt;  // where the stamps of level 3 and above begin
+    uint aboveAt;  // texels before the finer level
+    uint stampAt;  // offset of the stamps of level 3 and above
     uint stampAbove;
-    uint since;           // number of the flow's step that was drawn last
-    uint levelTexels;     // of the mip that is made
-    float contactRadius;  // of a drop, over the cube root of its volume
-    float inverseCorner;  // s/m: one over the speed at which a drop's back becomes a corner
+    uint since;           // number of the flow's step in the last draw
+    uint levelTexels;     // texels of the mip that is computed
+    float contactRadius;  // radius of a drop's foot over the cube root of its volume
+    float inverseCorner;  // s/m: 1 / the speed at which a drop's back becomes a corner
     float inverseReach;   // 1/m
-    uint coverFrom;       // texels before those of which flow/map_mips has the cover
+    uint coverFrom;       // texels before those whose cover flow/map_mips stores
     uint unused1;
     uint unused2;
 };

@@ -1,7 +1,7 @@
-// What a drop finds under it: the skin's own velocity there, and how it holds.
+// The skin under a drop: its velocity and how strongly it retains the drop.
 #if !defined(RIVULET_UNDER_H)
 #define RIVULET_UNDER_H
-// m/s: the skin's place with these barycentric coordinates, at x (m), as it bends and as its frame moves.
+// m/s: the velocity of the skin at these barycentric coordinates and x (m), by deformation and by the motion of its frame.
 FN vec3 skinSpeed(GLOBAL(uint, skin) GLOBAL(vec4, drive) uint triangle, float b1, float b2, vec3 x, vec4 d0, vec4 d1, vec4 d2) {
     uint corner = SKIN_UINTS * triangle;
     vec3 bends = drive[2u * skin[corner] + 1u].xyz * (1.0f - b1 - b2) + drive[2u * skin[corner + 1u] + 1u].xyz * b1 +

@@ -1,4 +1,4 @@
-// A straight walk over a skin: on a triangle along a line, over an edge unfolded into the next one's plane. And the film's lattice in a
+// A straight walk over a skin: along a line on a triangle, and across edges by unfolding the next triangle. Also the film's lattice in a
 // triangle.
 #if !defined(RIVULET_WALK_H)
 #define RIVULET_WALK_H
@@ -6,21 +6,21 @@
 #define TRIANGLE_NORMAL(t) vec3(basis[5u * (t) + 1u].w, basis[5u * (t) + 2u].w, basis[5u * (t) + 3u].w)
 STRUCT(SkinWalk) {
     vec3 n;  // the triangle's normal
-    vec3 v;  // what is carried along and turned with the skin
+    vec3 v;  // a vector that is transported along and rotated with the skin
     uint triangle;
-    float b1;  // barycentric, of corners 1 and 2
+    float b1;  // barycentric coordinates of corners 1 and 2
     float b2;
-    uint gone;  // 1: over an open edge
+    uint gone;  // 1: it crossed an open edge
 };
 
-// v, seen from a triangle with normal `from`, turned about the edge along unit `u` into one with normal `to`.
+// Rotates v about the edge with unit direction `u` from a triangle with normal `from` to one with normal `to`.
 FN vec3 unfolded(vec3 v, vec3 u, vec3 from, vec3 to) { return u * dot(v, u) + cross(to, u) * dot(v, cross(from, u)); }
-// How far along the edge from `a` by `e` the point x is, 0 to 1.
+// The position of the point x along the edge from `a` by `e`, 0 to 1.
 FN float alongEdge(vec3 x, vec3 a, vec3 e) { return min(max(dot(x - a, e) / max(dot(e, e), 1.0e-30f), 0.0f), 1.0f); }
 
-// `way`: m, along the triangle that w stands on.
+// `way`: m, the displacement in the plane of the triangle of w.
 FN SkinWalk walked(GLOBAL(uint, skin) GLOBAL(vec4, basis) SkinWalk w, vec3 way) {
-    float rest = 1.0f;  // of the way
+    float rest = 1.0f;  // share of the way that is left
     for (int k = 0; k < MOST_EDGES; ++k) {
         vec3 e1 = basis[5u * w.triangle + 1u].xyz;
         vec3 e2 = basis[5u * w.triangle + 2u].xyz;
@@ -46,7 +46,7 @@ FN SkinWalk walked(GLOBAL(uint, skin) GLOBAL(vec4, basis) SkinWalk w, vec3 way) 
         w.b2 = w.b2 + r2 * go;
         rest = rest - go;
         if (edge == 3u) return w;
-        // Over the edge, and through triangles without area, in which there is no way of its own.
+        // Crosses the edge, and triangles without area, on which no distance is covered.
         for (int flat_ = 0; flat_ < 16; ++flat_) {
             float s = edge == 0u ? w.b1 : edge == 1u ? w.b2 : 1.0f - w.b1 - w.b2;
             s = min(max(s, 0.0f), 1.0f);
@@ -68,7 +68,7 @@ FN SkinWalk walked(GLOBAL(uint, skin) GLOBAL(vec4, basis) SkinWalk w, vec3 way) 
                 w.n = to;
                 break;
             }
-            // Out again by the edge that is nearest to where it came in.
+            // Leaves by the edge that is nearest to the point of entry.
             e1 = basis[5u * w.triangle + 1u].xyz;
             e2 = basis[5u * w.triangle + 2u].xyz;
             vec3 x = e1 * w.b1 + e2 * w.b2;
@@ -93,7 +93,7 @@ FN SkinWalk walked(GLOBAL(uint, skin) GLOBAL(vec4, basis) SkinWalk w, vec3 way) 
     return w;
 }
 
-// Which cell of its triangle's lattice a point is in: n rows along edge 0->1's direction, n^2 cells of equal area.
+// The cell of the triangle's lattice that contains a point: n rows along edge 0->1, n^2 cells of equal area.
 FN uint latticeCell(float b1, float b2, uint n) {
     float x = min(max(b1, 0.0f), 1.0f) * TO_FLOAT(n);
     float y = min(max(b2, 0.0f), 1.0f) * TO_FLOAT(n);

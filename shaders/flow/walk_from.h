@@ -1,4 +1,4 @@
-// A walk's beginning at a place in space on triangle t, or where it is nearest to one beyond its edges. After walk.h.
+// Starts a walk at a point in space on triangle t, or at its nearest point on t. After walk.h.
 FN SkinWalk walkFrom(GLOBAL(vec4, basis) uint t, vec3 x) {
     vec3 d = x - basis[5u * t].xyz;
     SkinWalk w;

@@ -1,4 +1,4 @@
-// What deform.kernel and normals.kernel know of a mesh. Layout shared by C++, GLSL and OpenCL.
+// Parameters of deform.kernel and normals.kernel. Layout shared by C++, GLSL and OpenCL.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
@@ -6,7 +6,7 @@ namespace rivulet {
 #endif
 STRUCT(DeformParams) {
     uint vertices;
-    uint bones;  // 0: nothing is turned
+    uint bones;  // 0: no skinning
     uint unused0;
     uint unused1;
 };

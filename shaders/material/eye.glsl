@@ -1,9 +1,9 @@
-// An eyeball: its iris seen through the cornea, where the ray is bent to, and lit through it; a wet white. In the mesh's own frame.
+// An eyeball: its iris seen and lit through the refracting cornea, and a wet white. In the frame of the mesh.
 // Needs surface.glsl.
 uniform mat4 toEyeMatrix;   // world -> eye: the eyeball's centre at the origin, its radius 1, sight along +z
 uniform vec4 cornea;        // its sphere's centre along z, its radius, the iris's plane and its radius
 
-// Lambert's equal-area map round the pole: uv of a direction, as the eye's pictures have it; u may be mirrored.
+// Lambert's equal-area map around the pole: uv of a direction in the eye's images; u may be mirrored.
 vec2 uvOfEye(vec3 at, float mirror) {
     float c = 0.5 * sqrt(acos(clamp(at.z / max(length(at), 1.0e-4), -1.0, 1.0)) * 0.3183099);
     vec2 turn = at.xy / max(length(at.xy), 1.0e-5);
@@ -14,7 +14,7 @@ vec2 throughCornea(vec2 uv, vec3 toEye) {
     vec3 at = (toEyeMatrix * vec4(posWorld, 1.0)).xyz;
     vec3 ray = -normalize(mat3(toEyeMatrix) * toEye);
     if (length(at.xy) > cornea.w * 1.02 || at.z < 0.0) return uv;
-    // Back along the ray to the cornea's sphere, bent there, on to the iris.
+    // Follows the ray back to the cornea's sphere, refracts it, and continues to the iris.
     vec3 from = at - vec3(0.0, 0.0, cornea.x);
     float b = dot(from, ray), c = dot(from, from) - cornea.y * cornea.y;
     float inside = b * b - c;
@@ -35,16 +35,16 @@ void shadeEye(vec2 uv, vec3 n, vec3 toEye, vec3 albedo, vec3 falling, float lit,
     vec3 lampEye = normalize(mat3(toEyeMatrix) * lamp);
     float r = length(at.xy) / cornea.w;
     float iris = at.z > 0.0 ? 1.0 - smoothstep(0.94, 1.03, r) : 0.0;
-    // The white: soft as skin is, and wet.
+    // The white: subsurface scattering as skin, and wet.
     vec3 wide = clamp(vec3(0.16, 0.10, 0.07), 0.0, 0.97);
     float nl = dot(n, lamp);
     vec3 white = vec3(texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.x)).r, texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.y)).r,
                       texture(diffusionMap, vec2(0.5 + 0.5 * nl, wide.z)).r);
-    // Lids shade what lies under the upper one and deep in the corners.
+    // Shadow of the upper lid and in the corners.
     open *= mix(1.0, 0.45, smoothstep(0.05, 0.48, at.y)) * mix(1.0, 0.15, smoothstep(0.45, 0.9, abs(at.x)));
     lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));
     vec3 arriving = white * pow(vec3(lit), vec3(0.7, 0.9, 1.0)) * falling * 0.3183099;
-    // The iris: a bowl that the cornea fills with light on the side away from the lamp.
+    // The iris: a bowl; the cornea focuses light on the side away from the lamp.
     vec2 away = at.xy / cornea.w;
     float gathered = 0.55 + 1.5 * smoothstep(-0.1, 0.9, -dot(away, normalize(lampEye.xy + 1.0e-4)) * length(lampEye.xy)) * smoothstep(0.25, 0.75, r);
     vec3 onIris = max(lampEye.z, 0.0) * lit * falling * 0.3183099 * gathered;

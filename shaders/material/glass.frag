@@ -1,4 +1,4 @@
-// A face of a clear body: it mirrors, and lets the rest of the light through; blended by GL_ONE, GL_SRC1_COLOR.
+// A face of a clear body: reflects, and transmits the rest of the light; blended by GL_ONE, GL_SRC1_COLOR.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/fresnel.glsl"
@@ -6,12 +6,12 @@
 #include "shaders/material/surface.glsl"
 in vec3 posWorld;
 in vec3 normalWorld;
-uniform vec3 baseColour;      // what a wall, two faces, lets through of white light that meets it squarely,
-uniform float opacity;        // but for this share
+uniform vec3 baseColour;      // transmission of a wall (two faces) at normal incidence,
+uniform float opacity;        // reduced by this share
 uniform float roughness;
 uniform float metallic;       // a metal is not clear: 0
 uniform sampler2D fluidDepth; // m
-uniform int side;             // 0: all is drawn; 1: what is behind the water's surface, or where none is; 2: the rest
+uniform int side;             // 0: everything; 1: only behind the water's surface, or where there is none; 2: only in front of it
 layout(location = 0, index = 0) out vec4 colour;
 layout(location = 0, index = 1) out vec4 passed;
 

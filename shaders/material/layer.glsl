@@ -1,25 +1,25 @@
-// A liquid on a surface: where the ray from the eye meets it, where it is bent to, how the light gets under it. Heights in m.
-// Needs tangents.glsl and frame.glsl. Drawn over the dry surface, where the mesh is wet at all: see mesh.vert.
-uniform sampler2D layerMap;     // x, y slope (m a unit of u, v), z height (mm), w how wet
-uniform vec4 layerLook;         // refractive index, roughness of a drop, roughness of what is wet, darkening
+// A liquid on a surface: the point where the eye ray enters it, the refracted point on the surface, and the light below. Heights in m.
+// Needs tangents.glsl and frame.glsl. Drawn over the dry surface where the mesh is wet: see mesh.vert.
+uniform sampler2D layerMap;     // x, y slope (m per unit of u, v), z height (mm), w wetness 0..1
+uniform vec4 layerLook;         // refractive index, roughness of a drop, roughness of a wet surface, darkening
 uniform vec4 layerAbsorption;   // 1/m; w: scale of heights
 
 struct Liquid {
     float wet;       // 0..1
-    float drop;      // 0..1: how much of a drop there is, rather than a film
-    vec2 uvBelow;    // the point of the surface that is seen through it
-    vec3 slope;      // of its surface, as a vector in the tangent plane
+    float drop;      // 0..1: a film .. a drop
+    vec2 uvBelow;    // the point of the surface seen through the liquid
+    vec3 slope;      // of the liquid's surface, as a vector in the tangent plane
     float path;      // m, through the liquid to that point
-    float light;     // of what reaches that point, against a dry one: gathered or shaded
+    float light;     // light at that point relative to a dry one: focused or shaded
     float variance;  // of slopes within a pixel
 };
 
 vec4 liquidTexel(vec2 uv, float lod) { return textureLod(layerMap, uv, lod) * vec4(layerAbsorption.www, 1.0); }
 
-// A wet way is not flat as tape is: it stands higher in its middle than where it ends, which a map of what is 10 um thick, in texels of
-// 0.3 mm, does not tell. The slope of such a cushion, by how wetness falls over its edge.
+// A wet trail is not flat: it is higher in its middle than at its edge, which a map with heights of 10 um and texels of
+// 0.3 mm does not resolve. The slope of such a cushion, from the gradient of the wetness at its edge.
 vec3 filmEdge(Tangents t, vec2 uv, float lod) {
-    const float kSoft = 0.6e-3, kCushion = 3.0e-4;  // m, over which it falls; m, how high it is
+    const float kSoft = 0.6e-3, kCushion = 3.0e-4;  // m, width of the edge; m, height
     float texels = float(textureSize(layerMap, 0).x);
     float wide = max(log2(kSoft * texels * sqrt(0.5 * (dot(t.du, t.du) + dot(t.dv, t.dv)))), lod);
     float e = exp2(wide) / texels;
@@ -34,9 +34,9 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     vec4 around = liquidTexel(uv, max(lod, 3.5));
     if (around.z < 1.0e-5 && around.w < 1.0e-3) return dry;
 
-    // Down the ray, from the highest that may be here, until it is below the liquid's surface.
+    // Marches along the ray from the maximum height until it is below the liquid's surface.
     float cosine = max(dot(t.normal, toEye), 0.2);
-    vec2 climb = uvStep(t, toEye) / cosine;  // of uv, a metre of height
+    vec2 climb = uvStep(t, toEye) / cosine;  // change of uv per metre of height
     vec2 top = uv;
     vec4 here = liquidTexel(uv, lod);
     if (lod < 3.0) {
@@ -46,7 +46,7 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
             vec4 l = liquidTexel(uv + climb * at, lod);
             float above = at - 1.0e-3 * l.z;
             if (above <= 0.0) {
-                float back = before > 0.0 ? step_ * above / (above - before) : 0.0;  // where the two heights cross
+                float back = before > 0.0 ? step_ * above / (above - before) : 0.0;  // intersection of the two heights
                 top = uv + climb * (at + max(back, 0.0));
                 here = liquidTexel(top, lod);
                 break;
@@ -68,7 +68,7 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     q.uvBelow = top + uvStep(t, bent) * (height / down);
     q.path = height / down;
 
-    // The light enters nearer to the lamp: where the surface rises towards the lamp, at a drop's far side, it is gathered.
+    // The light enters nearer to the lamp: where the surface rises towards the lamp, at a drop's far side, it is focused.
     vec3 lamp = frame.lightDir.xyz, across = lamp - t.normal * dot(lamp, t.normal);
     float sun = max(dot(lamp, t.normal), 0.15);
     vec3 bentLight = refract(-lamp, t.normal, 1.0 / layerLook.x);
@@ -76,7 +76,7 @@ Liquid liquidAt(Tangents t, vec2 uv, vec3 toEye) {
     float toLamp = dot(gradient(t, entry.xy), across);
     toLamp /= max(sun, 0.4);
     q.light = clamp(1.0 + q.drop * (1.5 * toLamp + 2.2 * max(toLamp, 0.0) * max(toLamp, 0.0)), 0.35, 3.2);
-    // Along its edge a drop keeps light in; and it takes some from what lies behind it as the lamp sees it.
+    // At its edge a drop reflects light internally; it casts a shadow on the side away from the lamp.
     q.light *= 1.0 - 0.25 * smoothstep(0.25, 0.6, steep) * (1.0 - smoothstep(0.03, 0.14, here.z));
     const float kShade = 1.5e-4;
     float over = 1.0e-3 * liquidTexel(uv + uvStep(t, across) * (kShade / sun), lod).z - kShade;

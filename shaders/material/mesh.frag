@@ -26,7 +26,7 @@ vec4 noise(vec3 p) {
     vec3 slope = dw * vec3(mix(mix(b - a, d - c, w.y), mix(g - e, i - h, w.y), w.z), mix(mix(c - a, d - b, w.x), mix(h - e, i - g, w.x), w.z), high - low);
     return 2.0 * vec4(mix(low, high, w.z), slope) - vec4(1.0, 0.0, 0.0, 0.0);
 }
-// Spots of `size` m and finer, but for what is finer than two pixels: about -1..1, and its gradient, 1/m.
+// Spots of `size` m and finer, without those finer than two pixels: about -1..1, and the gradient, 1/m.
 vec4 grainAt(vec3 at, float size, float pixel) {
     vec4 sum = vec4(0.0);
     float share = 0.5;

@@ -1,10 +1,10 @@
-// A mesh's vertices in the world. With PART: with what textures and skin need.
+// A mesh's vertices in world space. PART: also the outputs for textures and skin.
 #include "shaders/render/frame.glsl"
 layout(location = 0) in vec3 position;
 #if defined(PART)
 layout(location = 1) in vec4 normal;  // w: mean curvature, 1 / the mesh's unit
-layout(location = 2) in vec3 uv;  // z: the longest edge that ends here
-uniform float scale;  // of the mesh's unit, m
+layout(location = 2) in vec3 uv;  // z: the longest edge at this vertex
+uniform float scale;  // m per unit of the mesh
 #if defined(LAYER)
 uniform sampler2D layerMap;
 out float gl_CullDistance[1];
@@ -13,7 +13,7 @@ out vec2 posUv;
 out float curvature;  // 1/m
 #else
 layout(location = 1) in vec3 normal;
-out vec3 posOwn;  // in the mesh's own frame
+out vec3 posOwn;  // in the frame of the mesh
 #endif
 uniform mat4 toWorldMatrix;
 uniform mat3 normalMatrix;
@@ -26,10 +26,10 @@ void main() {
     posUv = uv.xy;
     curvature = normal.w / scale;
 #if defined(LAYER) && defined(BLENDED)
-    gl_CullDistance[0] = 1.0;  // what is blended is drawn once, wet and dry together
+    gl_CullDistance[0] = 1.0;  // blended meshes are drawn once, wet and dry together
 #elif defined(LAYER)
-    // A triangle whose three corners are dry is not drawn: looked up in a mip wide enough for what is between them, and for what a drop's
-    // height and shadow reach.
+    // A triangle with three dry corners is not drawn: the wetness is read from a mip that covers the area between them and the reach of
+    // heights and shadows of drops.
     float lod = max(log2(max(0.7 * uv.z * float(textureSize(layerMap, 0).x), 1.0)), 3.0);
     vec4 around = textureLod(layerMap, uv.xy, lod);
     gl_CullDistance[0] = max(around.z, around.w) - 1.0e-6;

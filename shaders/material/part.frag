@@ -1,4 +1,4 @@
-// A model's part: textures on the plain surface function (with GLOW: its own light and hollows), on SKIN, on an EYE; BLENDED over what is behind; a LAYER of liquid on top.
+// A mesh with a full material: textures on the plain surface function (GLOW: emission, occlusion), on SKIN, on an EYE; BLENDED; with a LAYER of liquid.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"
@@ -13,7 +13,7 @@ uniform float roughness;
 uniform float metallic;
 uniform float opacity;
 uniform float cutoff;
-uniform float strand;  // share of u that a strand covers in the middle of its ribbon; 0: no strands
+uniform float strand;  // hair: width of a strand as a share of u, in the middle of its ribbon; 0: none
 uniform vec4 mapLod;   // log2 of the widths of the maps of colour, relief, regions and pores (those tiled)
 uniform sampler2D occlusion;
 uniform sampler2D colourMap;
@@ -35,7 +35,7 @@ layout(location = 0) out vec4 colour;
 #if defined(LAYER)
 #include "shaders/material/layer.glsl"
 #if defined(BLENDED)
-uniform sampler2D behindMap;  // linear radiance of what is solid
+uniform sampler2D behindMap;  // linear radiance of the solid scene
 #endif
 #endif
 
@@ -62,7 +62,7 @@ void main() {
     vec4 albedo = look(colourMap, uv, t, mapLod.x) * vec4(baseColour, opacity);
     if (albedo.a < cutoff) discard;
 #if defined(BLENDED)
-    if (strand > 0.0) {  // what a pixel's width holds of it, so that thin ones fade and do not break up
+    if (strand > 0.0) {  // the covered share of the pixel's width, so that thin strands fade instead of breaking up
         float pixel = max(fwidth(posUv.x), 1.0e-4), from = max(abs(posUv.x - 0.5) - 0.5 * pixel, -0.5 * strand);
         float to = min(abs(posUv.x - 0.5) + 0.5 * pixel, 0.5 * strand);
         float held = clamp((to - from) / pixel, 0.0, 1.0);
@@ -87,14 +87,14 @@ void main() {
     facing = normalize(n - slope - fine);
     vec3 soft = normalize(n - 0.35 * (slope + fine)), blurred = normalize(n - 0.12 * (slope + fine));
     float bend = clamp(abs(curvature), 2.0, 250.0), nl = dot(n, lamp);
-    lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));  // near the terminator the table knows better than the map
+    lit = mix(1.0, lit, smoothstep(-0.15, 0.12, nl));  // near the terminator the table is more exact than the shadow map
     vec3 through = mix(vec3(lit), vec3(sqrt(lit)), vec3(0.9, 0.3, 0.0));  // red bleeds into a shadow's edge
     vec3 arriving = spread(blurred, soft, facing, lamp, bend) * through * falling;
     vec3 around = 0.5 * (ambient(blurred) + ambient(facing)) * vec3(mix(open, sqrt(open), 0.3), open, open);
-    // Thin parts: what the light loses between where it enters and here.
+    // Thin parts: attenuation of the light between its entry and this point.
     vec3 glow = exp(-thick / (3.0 * scatterLength)) * (skinAmount.x * 0.20 * smoothstep(0.30, 0.75, -nl));
 #if defined(LAYER)
-    arriving *= mix(vec3(1.0), vec3(q.light), vec3(0.35, 0.6, 0.75));  // what a drop gathers and shades spreads under it, red furthest
+    arriving *= mix(vec3(1.0), vec3(q.light), vec3(0.35, 0.6, 0.75));  // light and shadow of a drop spread in the skin, red furthest
 #endif
     matte = albedo.rgb * (arriving * 0.3183099 + around + glow * falling * vec3(1.0, 0.32, 0.2));
     float oily = 0.30 + 0.75 * region.r - 0.10 * region.g;
@@ -103,7 +103,7 @@ void main() {
     float rough = mix(roughness, 0.36, 0.5 * region.r + 0.4 * region.a);
     f0 = vec3(0.028);
     vec3 glossLight = falling * lit;
-    // Folds mirror their own other side; hair scatters what skin mirrors.
+    // Folds reflect their own other side; hair scatters instead of reflecting.
     float corner = open * open * (1.0 - 0.75 * region.b) / (1.0 + 0.006 * max(-curvature, 0.0));
     glossLight *= 1.0 - 0.75 * region.b;
     shine = twoLobes(facing, toEye, f0, rough, oily, variance, glossLight, corner);
@@ -119,7 +119,7 @@ void main() {
     facing = normalize(n * max(mapped.z, 0.05) + alongU * mapped.x + alongV * mapped.y);
     if (!(dot(facing, facing) > 0.5)) facing = n;
 #if defined(LAYER)
-    facing = normalize(facing - q.slope * (layerLook.x - 1.0));  // a prism over a mirror turns it, as seen from outside
+    facing = normalize(facing - q.slope * (layerLook.x - 1.0));  // the liquid acts as a prism over the reflecting surface
 #endif
 #if defined(GLOW)
     open *= texture(occlusionMap, uv).r;
@@ -140,7 +140,7 @@ void main() {
 #endif
 
 #if defined(LAYER)
-    // What leaves the surface goes out through the liquid; the liquid's own gloss takes the surface's place.
+    // Light from the surface leaves through the liquid, whose specular reflection replaces that of the surface.
     if (q.wet > 0.0 || q.drop > 0.0) {
         float cover = max(q.wet, q.drop);
         float r0 = (layerLook.x - 1.0) / (layerLook.x + 1.0);
@@ -152,7 +152,7 @@ void main() {
         film += (facing + q.slope * (layerLook.x - 1.0) - n) * (1.0 - q.drop);
 #endif
         film = normalize(film);
-        // The far side of a mound is behind the mound: what is seen there is its crest.
+        // The far side of a drop is hidden by the drop: its crest is seen instead.
         float least = clamp(dot(n, toEye), 0.02, 0.3), seen = dot(film, toEye);
         if (seen < least) film = normalize(film + toEye * (least - seen));
         float wetRough = mix(layerLook.z, layerLook.y, q.drop);
@@ -168,7 +168,7 @@ void main() {
 #endif
 #if defined(BLENDED)
     if (strand > 0.0) shine *= 0.3 * albedo.a;
-    colour = vec4(matte * albedo.a + shine, albedo.a);  // gloss stays where the body is clear
+    colour = vec4(matte * albedo.a + shine, albedo.a);  // specular light is kept where the body is transparent
 #if defined(LAYER)
     // A drop on a pane is a prism: what is behind is seen where the ray is bent to, at about the scene's own distance, or in the studio.
     float cover = max(q.wet, q.drop) * (1.0 - albedo.a);

@@ -1,11 +1,11 @@
-// Skin: light that spreads in it (pre-integrated: Penner 2011), two lobes of gloss, relief down to pores, thin parts lit from behind.
+// Skin: subsurface scattering (pre-integrated: Penner 2011), two specular lobes, relief down to pores, translucency of thin parts.
 // Needs surface.glsl, shadow.glsl and tangents.glsl.
 uniform sampler2D reliefMap;   // slopes, see makeSlopes
 uniform sampler2D regionsMap;  // oily, dry, hair, lip
 uniform sampler2D poresMap;    // slopes of a tile
 uniform vec3 scatterLength;    // m
-uniform vec2 skinAmount;       // of translucency, of pores
-uniform float poreTiling;      // tiles a unit of uv
+uniform vec2 skinAmount;       // strength of translucency, of pores
+uniform float poreTiling;      // tiles per unit of uv
 
 // A height's slope in the tangent plane; added to `variance` what of it the mip hides, to `height` (mm) where it lies.
 vec3 reliefSlope(sampler2D map, vec2 uv, Tangents t, float stretch, float sizeLod, inout float variance, inout float height) {
@@ -16,7 +16,7 @@ vec3 reliefSlope(sampler2D map, vec2 uv, Tangents t, float stretch, float sizeLo
     return (s.x * t.du + s.y * t.dv) * stretch;
 }
 
-// What comes back of white light from direction `lamp`, for the normals that each colour sees and a surface bent by `bend` (1/m).
+// Diffuse reflection of white light from direction `lamp`, with one normal per colour, on a surface of curvature `bend` (1/m).
 vec3 spread(vec3 red, vec3 green, vec3 blue, vec3 lamp, float bend) {
     vec3 cosine = 0.5 + 0.5 * vec3(dot(red, lamp), dot(green, lamp), dot(blue, lamp));
     vec3 wide = clamp(scatterLength * bend, 0.0, 0.97) + 0.015;
@@ -24,7 +24,7 @@ vec3 spread(vec3 red, vec3 green, vec3 blue, vec3 lamp, float bend) {
                 texture(diffusionMap, vec2(cosine.z, wide.z)).r);
 }
 
-// Gloss of skin: a broad lobe, and a sharper one where it is oily; one look at the environment serves both.
+// Specular reflection of skin: a broad lobe, and a sharper one where it is oily; both use one sample of the environment.
 vec3 twoLobes(vec3 normal, vec3 toEye, vec3 f0, float rough, float oily, float variance, vec3 lightArriving, float open) {
     float nv = max(dot(normal, toEye), 1.0e-3), nl = max(dot(normal, frame.lightDir.xyz), 0.0);
     vec3 h = normalize(toEye + frame.lightDir.xyz);

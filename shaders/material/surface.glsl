@@ -5,7 +5,7 @@ struct Surface {
     float roughness;   // 0..1
     float metallic;    // 0..1
     vec3 normal;       // unit, world
-    float occlusion;   // 0..1: how open to the environment
+    float occlusion;   // 0..1: visible share of the environment
 };
 
 // GGX times the visibility, for `a` = roughness squared.
@@ -38,7 +38,7 @@ vec3 shadeSurface(Surface s, vec3 toEye, vec3 lightArriving) {
     return shadeSurface(s, toEye, lightArriving, environment(reflect(-toEye, s.normal), max(s.roughness, 0.08)));
 }
 
-// Gloss alone, of the key light and the environment: one lobe over a normal. `variance`: of the slopes that `normal` is the mean of.
+// Specular reflection only, of the key light and the environment: one lobe. `variance`: of the slopes whose mean is `normal`.
 vec3 gloss(vec3 normal, vec3 toEye, vec3 f0, float roughness, float variance, vec3 lightArriving, float open) {
     float nv = max(dot(normal, toEye), 1.0e-3);
     float nl = max(dot(normal, frame.lightDir.xyz), 0.0);

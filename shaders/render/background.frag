@@ -1,4 +1,4 @@
-// Sky, and with FLOOR the floor, which fades into the horizon, so that it has no edge.
+// Sky, and with FLOOR the floor, which fades into the horizon, so that its edge is not visible.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #if defined(FLOOR)

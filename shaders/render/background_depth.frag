@@ -1,4 +1,4 @@
-// The floor's depth: a plane without end.
+// The depth of the floor, an infinite plane.
 #include "shaders/render/frame.glsl"
 void main() {
     vec3 dir = directionToWorld(viewRay(gl_FragCoord.xy));

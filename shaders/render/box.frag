@@ -1,4 +1,4 @@
-// OVER_WATER: only where the edge lies in front of water, so that those seen through it are refracted and those before it are not.
+// The colour of box edges. OVER_WATER: only where the edge is in front of the water, so that edges behind it are refracted and others are not.
 #include "shaders/render/frame.glsl"
 uniform float width;
 uniform vec4 lineColour;

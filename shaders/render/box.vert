@@ -11,7 +11,7 @@ void main() {
     from[(axis + 1) % 3] = float(k & 1);
     from[(axis + 2) % 3] = float(k >> 1);
     vec3 a = (frame.view * vec4(mix(low, high, from), 1.0)).xyz, b = (frame.view * vec4(mix(low, high, from + along), 1.0)).xyz;
-    float front = -2.0 * frame.planes.x;  // both ends in front of the camera
+    float front = -2.0 * frame.planes.x;  // both ends are moved in front of the camera
     if (a.z > front && b.z > front) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); across = 0.0; posView = a; return; }
     if (a.z > front) a = mix(b, a, (front - b.z) / (a.z - b.z));
     if (b.z > front) b = mix(a, b, (front - a.z) / (b.z - a.z));

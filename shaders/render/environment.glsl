@@ -1,6 +1,6 @@
-// What lights everything: a studio, or with ENVIRONMENT_MAP a picture.
-// The studio: a gradient from horizon to zenith, a floor below, and three softboxes. One function for what is seen behind the scene, what
-// meshes reflect and what water reflects. Needs frame.glsl.
+// The environment light: a studio, or with ENVIRONMENT_MAP an image.
+// The studio: a gradient from horizon to zenith, a floor below, and three softboxes. One function for the background, the reflections of
+// meshes and the reflections of water. Needs frame.glsl.
 
 // Softbox k: a rectangle of light at infinity, facing the origin, its edge blurred over `edge` (tangents of angles).
 vec3 softbox(int k, vec3 dir, float edge) {
@@ -9,20 +9,20 @@ vec3 softbox(int k, vec3 dir, float edge) {
     float facing = dot(dir, towards);
     vec2 at = abs(vec2(dot(dir, side), dot(dir, cross(towards, side)))) / max(facing, 0.05);
     vec2 inside = 1.0 - smoothstep(halfSize - min(halfSize, edge), halfSize + edge, at);
-    vec2 spread = halfSize / max(halfSize, 0.5 * (halfSize + edge));  // what is blurred wider than the box is dimmer
+    vec2 spread = halfSize / max(halfSize, 0.5 * (halfSize + edge));  // a box blurred wider than itself is dimmer
     return frame.boxRadiance[k].rgb * (facing > 0.05 ? inside.x * inside.y * spread.x * spread.y : 0.0);
 }
 
 #if defined(ENVIRONMENT_MAP)
-layout(binding = 16) uniform sampler2D environmentMap;  // see environment_map.h; a unit that passes leave alone
+layout(binding = 16) uniform sampler2D environmentMap;  // see environment_map.h; no pass uses this unit
 vec3 surroundings(vec3 dir, float lod) {
-    float edge = 0.5 * exp2(lod) / float(textureSize(environmentMap, 0).y);  // at the poles it must not go on at the other one
+    float edge = 0.5 * exp2(lod) / float(textureSize(environmentMap, 0).y);  // no wrap-around at the poles
     vec2 uv = vec2(atan(dir.x, -dir.z) * 0.15915494 + 0.5, asin(clamp(dir.y, -1.0, 1.0)) * 0.3183099 + 0.5);
     return textureLod(environmentMap, vec2(uv.x, clamp(uv.y, edge, 1.0 - edge)), lod).rgb;
 }
 #endif
 
-// Radiance of the sky alone, without softboxes: what is seen directly.
+// Radiance of the sky without softboxes, for the background.
 vec3 skyGradient(vec3 dir) {
 #if defined(ENVIRONMENT_MAP)
     return surroundings(dir, 1.0);
@@ -41,7 +41,7 @@ vec3 floorRadiance() {
 vec3 environment(vec3 dir, float roughness) {
 #if defined(ENVIRONMENT_MAP)
     float fine = float(textureSize(environmentMap, 0).x) / 256.0;
-    return surroundings(dir, log2(max(24.0 * roughness * roughness, 1.0) * fine));  // a mip's texels are as wide as the cone
+    return surroundings(dir, log2(max(24.0 * roughness * roughness, 1.0) * fine));  // selects the mip whose texels are as wide as the cone
 #endif
     float blur = 0.03 + 0.9 * roughness * roughness;
     vec3 lifted = normalize(dir + vec3(0.0, 0.6 * roughness, 0.0));  // a wide cone at the horizon sees more of the sky's upper part
@@ -51,7 +51,7 @@ vec3 environment(vec3 dir, float roughness) {
     return radiance;
 }
 
-// Irradiance / pi: what a white matte surface with this normal returns of the sky and the floor, without the key light.
+// Irradiance / pi: the radiance of a white diffuse surface with this normal, lit by sky and floor without the key light.
 vec3 ambient(vec3 normal) {
 #if defined(ENVIRONMENT_MAP)
     vec3 n = normal, sum = frame.matteLight[0].rgb + frame.matteLight[1].rgb * n.y + frame.matteLight[2].rgb * n.z + frame.matteLight[3].rgb * n.x;

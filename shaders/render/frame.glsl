@@ -2,14 +2,14 @@
 #include "shaders/render/frame.h"
 layout(std140, binding = 0) uniform FrameBlock { FrameParams frame; };
 
-const float kFar = 1.0e6;  // the depth of nothing
+const float kFar = 1.0e6;  // m, depth where nothing is visible
 
 vec3 viewRay(vec2 pixel) { return vec3(pixel * frame.ray.xy + frame.ray.zw, -1.0); }
 float depthOfWindow(float z) { return frame.planes.w / (2.0 * z - 1.0 + frame.planes.z); }
 float windowOfDepth(float depth) { return 0.5 - 0.5 * frame.planes.z + 0.5 * frame.planes.w / depth; }
 vec3 toWorld(vec3 posView) { return (frame.inverseView * vec4(posView, 1.0)).xyz; }
 vec3 directionToWorld(vec3 dirView) { return mat3(frame.inverseView) * dirView; }
-vec2 pixelOf(vec3 posView) {  // of a point in front of the camera
+vec2 pixelOf(vec3 posView) {  // the pixel of a point in front of the camera
     return (posView.xy / -posView.z - frame.ray.zw) / frame.ray.xy;
 }
 // Interleaved gradient noise (Jimenez 2014): 0..1, evenly spread over any 3x3 pixels.

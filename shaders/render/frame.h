@@ -1,4 +1,4 @@
-// What every render pass knows of the frame: uniform block 0. Layout shared by C++ and GLSL (std140): vec4 and mat4 only.
+// The parameters of a frame for all render passes: uniform block 0. Layout shared by C++ and GLSL (std140): vec4 and mat4 only.
 #if defined(__cplusplus)
 #pragma once
 #endif
@@ -20,7 +20,7 @@ STRUCT(FrameParams) {
     vec4 lightDir;          // unit, world, towards the light
     vec4 lightColour;       // linear radiance
     vec4 horizon;           // linear radiance of the sky at the horizon
-    vec4 zenith;            // and overhead
+    vec4 zenith;            // linear radiance of the sky overhead
     vec4 floorColour;       // reflectance; w = height, m
     vec4 floorFade;         // x, z of the centre (m), radius where the floor begins to fade into the horizon (m), 1 if there is a floor
     vec4 boxTowards[3];     // softboxes: unit direction, world; w = half width / distance

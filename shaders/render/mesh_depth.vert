@@ -1,4 +1,4 @@
-// A mesh's depth, from the camera or the light. With HOLES: where its picture's alpha leaves something of it.
+// A mesh's depth, from the camera or the light. HOLES: also passes uv, for cut-out materials.
 layout(location = 0) in vec3 position;
 #if defined(HOLES)
 layout(location = 2) in vec3 uv;

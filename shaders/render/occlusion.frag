@@ -2,7 +2,7 @@
 #include "shaders/render/frame.glsl"
 uniform sampler2D sceneDepth;  // window depth
 uniform float reach;           // m
-layout(location = 0) out vec2 openDepth;  // and the depth, m
+layout(location = 0) out vec2 openDepth;  // openness 0..1, and the depth, m
 const int kTaps = 8;
 vec3 at(ivec2 p) {
     p = clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1);

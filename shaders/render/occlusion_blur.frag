@@ -1,4 +1,4 @@
-// Four texels along one axis over the noise pattern of occlusion.frag, not across depth edges.
+// Blurs four texels along one axis, the size of the noise pattern of occlusion.frag, but not across depth edges.
 uniform sampler2D source;  // openness, depth (m)
 uniform ivec2 axis;
 layout(location = 0) out vec2 openDepth;

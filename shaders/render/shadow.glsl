@@ -1,5 +1,5 @@
-// How much of the key light reaches a point: through the meshes' shadow map (exponential variance shadow map: Lauritzen & McCool 2008) and
-// through the water. Needs frame.glsl.
+// The share of the key light that reaches a point: the shadow map of the meshes (exponential variance shadow map: Lauritzen and McCool 2008) and
+// the light map of the water. Needs frame.glsl.
 uniform sampler2D shadowSharp;  // moments, narrowly blurred
 uniform sampler2D shadowSoft;   // moments, widely blurred
 uniform sampler2D waterLight;   // thickness along the light (m), that times its depth, thickness relative to its surroundings (m)
@@ -12,7 +12,7 @@ float litFraction(vec2 moments, float warped, out float mean) {
     float variance = max(moments.y - moments.x * moments.x, 1.0e-5 * warped * warped);
     float beyond = warped - moments.x;
     float p = beyond <= 0.0 ? 1.0 : variance / (variance + beyond * beyond);
-    return smoothstep(0.12, 1.0, p);  // cuts the tail that lets light bleed through
+    return smoothstep(0.12, 1.0, p);  // reduces light bleeding
 }
 
 // `thickness`: m of meshes between the point and where the light enters them, 0 where it is lit; blurred as the sharp map is.
@@ -27,14 +27,14 @@ float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
     float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, blocker);
     float sharp = litFraction(texture(shadowSharp, at.xy).xy, warped, first);
     thickness = max(at.z - first, 0.0) * frame.shadow.z;
-    return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // far from what casts it, a shadow is soft
+    return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // a shadow is soft far from its caster
 }
 float meshShadow(vec3 posWorld, vec3 normal) {
     float thickness;
     return meshShadow(posWorld, normal, thickness);
 }
 
-// Transmittance of the water between the point and the light, brighter where its surface gathers light.
+// Transmittance of the water between the point and the light, brighter where its surface focuses light.
 vec3 waterShadow(vec3 posWorld) {
     if (frame.shadow.y == 0.0) return vec3(1.0);
     vec4 clip = frame.waterProjection * vec4(posWorld, 1.0);

@@ -1,5 +1,5 @@
-// Moments of the warped depth (exponential variance shadow map: Lauritzen & McCool 2008), blurred along one axis; or with
-// HALVE made half as wide and high, and no more.
+// Moments of the warped depth (exponential variance shadow map: Lauritzen and McCool 2008), blurred along one axis; or with
+// HALVE only reduced to half the width and height.
 uniform sampler2D source;   // FROM_DEPTH: a depth map; else moments
 uniform ivec2 axis;         // (1,0) or (0,1)
 uniform int reach;          // texels either side

@@ -1,4 +1,4 @@
-// One axis of the bilateral Gaussian (Tomasi & Manduchi 1998) that the thesis smooths depth with: near in the picture and near in depth.
+// One axis of the bilateral Gaussian filter (Tomasi and Manduchi 1998) with which the thesis smooths depth: weights by image and depth distance.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/filter.glsl"
 uniform ivec2 axis;

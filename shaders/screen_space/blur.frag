@@ -1,4 +1,4 @@
-// Gaussian along one axis.
+// A Gaussian blur along one axis.
 uniform sampler2D source;
 uniform ivec2 axis;
 uniform int reach;  // texels either side

@@ -1,10 +1,10 @@
-// One step of screen-space curvature flow (van der Laan et al. 2009): the surface moves by its mean curvature, so that bumps go and what is flat
-// stays. Its differences are taken over a stencil with holes, whose width is in metres: a step over k pixels does what k^2 over one would.
+// One step of screen-space curvature flow (van der Laan et al. 2009): the surface moves by its mean curvature, so that bumps vanish and flat parts
+// stay. The differences use a stencil with holes whose width is in metres: a step over k pixels has the effect of k^2 steps over one.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/filter.glsl"
-uniform float step_;    // m, the stencil's
+uniform float step_;    // m, width of the stencil
 uniform float maxStep;  // pixels
-uniform float range;    // m: depths further apart are not of one surface
+uniform float range;    // m: depths further apart belong to different surfaces
 
 float z;
 // How far in front of this pixel's depth, to first order; of 1 / depth, which unlike depth is straight along a flat surface.
@@ -27,5 +27,5 @@ void main() {
     float twice = ((1.0 + sy * sy) * zxx / (width.x * width.x) + (1.0 + sx * sx) * zyy / (width.y * width.y) -
                    2.0 * sx * sy * zxy / (width.x * width.y)) / (1.0 + sx * sx + sy * sy);
     float wide = pixels * frame.ray.y * z;
-    end(z < kFar ? z + 0.125 * wide * wide * twice : z);  // a half of what would be unstable
+    end(z < kFar ? z + 0.125 * wide * wide * twice : z);  // half of the stability limit
 }

@@ -1,4 +1,4 @@
-// Depth of the sphere or ellipsoid, in the bulk's layer or the spray's; blended by minimum.
+// Depth of the sphere or ellipsoid, in the layer of the bulk or of the spray; blended by minimum.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/sphere.glsl"
 flat in vec4 centreView;

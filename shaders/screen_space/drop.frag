@@ -1,4 +1,4 @@
-// A drop in the air: a ball of water that turns what is behind it upside down, and mirrors what is about it.
+// A drop in the air: a sphere of water that refracts the background, which appears upside down, and reflects the environment.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 uniform sampler2D sceneColour;
@@ -29,7 +29,7 @@ void main() {
 
     vec3 outwards = d > 1.0e-4 ? (wayView.xyz * off.x + across * off.y) / d : vec3(0.0);
     vec3 n = outwards * min(d, 1.0) + toEye * nv;
-    // Through a ball a ray turns twice by the same angle, towards the middle.
+    // A sphere refracts a ray twice by the same angle, towards its centre.
     float turn = 2.0 * (asin(min(d, 1.0)) - asin(min(d, 1.0) / refractiveIndex));
     vec3 bent = -toEye * cos(turn) - outwards * sin(turn);
     vec3 p = centreView.xyz;
@@ -39,7 +39,7 @@ void main() {
     vec2 inside = smoothstep(vec2(0.5), vec2(0.45), abs(uv - 0.5));
     float seen = met.z < -frame.planes.x ? inside.x * inside.y : 0.0;
     uv = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
-    // What stands before the drop is not seen in it.
+    // Objects in front of the drop are not visible in it.
     if (depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < depth) seen = 0.0;
     vec3 through = mix(environment(directionToWorld(bent), 0.15), textureLod(sceneColour, uv, 0.0).rgb, seen);
 

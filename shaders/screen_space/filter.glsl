@@ -1,8 +1,8 @@
-// What the filters of depth share: the source, and with LAST what ends each of them. Needs frame.glsl.
+// Shared by the depth filters: the source, and with LAST the final step of each. Needs frame.glsl.
 uniform sampler2D source;  // m
 #if defined(LAST)
-uniform sampler2D spray;   // y, m: drops stay as they are
-uniform vec3 low, high;    // m, world: the box that the water cannot leave
+uniform sampler2D spray;   // y, m: spray is not filtered
+uniform vec3 low, high;    // m, world: the box of the water
 #endif
 layout(location = 0) out float depth;
 
@@ -18,7 +18,7 @@ void end(float filtered) {
     depth = filtered;
 #if defined(LAST)
     depth = min(depth, texelFetch(spray, here, 0).g);
-    // The spheres reach a little out of the box. Cut, its walls are as flat as glass.
+    // Spheres extend slightly out of the box. Clipped, the water is flat at its walls.
     vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy));
     vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;
     vec3 enter = min(a, b), leave = max(a, b);

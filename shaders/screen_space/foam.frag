@@ -1,4 +1,4 @@
-// A fleck: all are of one colour, so that their order does not matter. Below the water's surface it fades.
+// A foam particle: all have one colour, so that their order does not matter. Below the water's surface it fades.
 #include "shaders/render/frame.glsl"
 uniform sampler2D sceneDepth;  // window depth
 #if defined(OVER_WATER)
@@ -6,7 +6,7 @@ uniform sampler2D waterDepth;  // m
 uniform float radius;          // m
 uniform vec3 absorption;       // 1/m
 uniform sampler2D glassDepth;  // window depth
-uniform int side;              // 0: all is drawn; 1: what is behind glass where no water is; 2: the rest
+uniform int side;              // 0: everything; 1: only behind glass where there is no water; 2: the rest
 #endif
 flat in vec4 white;
 flat in float depth;
@@ -23,7 +23,7 @@ void main() {
         bool glazed = water >= kFar && depth > depthOfWindow(texelFetch(glassDepth, here, 0).r);
         if (glazed != (side == 1)) discard;
     }
-    // Foam that lies on the surface is at its depth, give or take the smoothing.
+    // Foam on the surface is at its depth, up to the error of the smoothing.
     float under = max(depth - water - 3.0 * radius, 0.0);
     colour.rgb *= exp(-2.0 * absorption * under);
     colour.a *= exp(-under / (8.0 * radius));

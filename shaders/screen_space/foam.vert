@@ -1,12 +1,12 @@
-// A fleck of spray or foam, or a bubble, as a quad.
+// A particle of spray, foam or bubbles as a quad.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"
 #include "shaders/screen_space/quads.glsl"
-ROWS(0, flecks)        // xyz m, world; w s, what is left of its life
+ROWS(0, flecks)        // xyz m, world; w s, remaining lifetime
 ROWS(1, velocities)    // xyz m/s; w size 0.5..1, + 1 spray, 2 foam, 3 bubble
-uniform float radius;  // m, of a fleck of size 1
-flat out vec4 white;  // rgb radiance, a how much of what is behind it hides in its middle
+uniform float radius;  // m, of a particle of size 1
+flat out vec4 white;  // rgb radiance, a opacity at its centre
 flat out float depth; // m
 out vec2 place;
 void main() {
@@ -15,7 +15,7 @@ void main() {
     float r = radius * fract(velocity.w) * (kind == 1.0 ? 0.6 : kind == 3.0 ? 0.8 : 1.0);
     vec3 c = (frame.view * vec4(fleck.xyz, 1.0)).xyz;
     depth = -c.z;
-    // One that is less than a pixel hides less of it.
+    // A particle smaller than a pixel has a lower opacity.
     float least = 0.7 * depth * frame.ray.x, drawn = max(r, least);
     float share = (r / drawn) * (r / drawn);
     place = corner() * 2.0 - 1.0;

@@ -1,4 +1,4 @@
-// A host's picture: its colours, and its depths by its own projection.
+// A host's image: its colours, and depths in its own projection.
 uniform bool isLinear;
 uniform vec4 hostPlanes;  // [2][2], [3][2] of its projection; its depth range
 uniform bool zeroToOne;   // its clip space's depth
@@ -10,7 +10,7 @@ float clipOfHost(float window) {
     float z = (window - hostPlanes.z) / (hostPlanes.w - hostPlanes.z);
     return zeroToOne ? z : 2.0 * z - 1.0;
 }
-float hostOfDepth(float depth) {  // of m along the view axis
+float hostOfDepth(float depth) {  // converts m along the view axis to the host's depth
     float clip = hostPlanes.y / depth - hostPlanes.x;
     return mix(hostPlanes.z, hostPlanes.w, clamp(zeroToOne ? clip : 0.5 * clip + 0.5, 0.0, 1.0));
 }

@@ -1,9 +1,9 @@
-// A host's picture as linear radiance, and its depth as ours.
+// Converts a host's image to linear radiance, and its depth to Rivulet's projection.
 #include "shaders/screen_space/host.glsl"
 uniform sampler2D hostColour;
 uniform sampler2D hostDepth;
-uniform bool depthThere;  // else nothing is in front
-uniform vec2 planes;      // [2][2], [3][2] of our projection
+uniform bool depthThere;  // false: nothing is in front of the water
+uniform vec2 planes;      // [2][2], [3][2] of Rivulet's projection
 layout(location = 0) out vec4 colour;
 
 void main() {

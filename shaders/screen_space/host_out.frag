@@ -1,8 +1,8 @@
-// Our picture into a host's, where it is another than before.
+// Writes the result into a host's image, where it has changed.
 #include "shaders/screen_space/host.glsl"
 uniform sampler2D picture;
-uniform sampler2D scene;       // as it was
-uniform sampler2D hostColour;  // the same, as the host has it
+uniform sampler2D scene;       // the image before the water was drawn
+uniform sampler2D hostColour;  // the same, in the host's encoding
 uniform sampler2D hostDepth;
 uniform sampler2D depths;      // m, of water; OPAQUE: window depth by our projection
 #if defined(OPAQUE)
@@ -20,6 +20,6 @@ void main() {
 #if defined(OPAQUE)
     depth = depth < 1.0 ? planes.y / (2.0 * depth - 1.0 + planes.x) : 1.0e6;
 #endif
-    // Spray and drops before what is no water leave the depth as it is.
+    // Spray and drops in front of other objects do not change the depth.
     gl_FragDepth = depth < 0.9e6 ? hostOfDepth(depth) : texelFetch(hostDepth, p, 0).r;
 }

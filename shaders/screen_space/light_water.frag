@@ -1,4 +1,4 @@
-// Thickness along the light, and thickness times depth; added up.
+// Thickness along the light, and thickness times depth; blended by addition.
 uniform float radius;
 uniform float volumeScale;
 in vec2 inDisc;

@@ -1,4 +1,4 @@
-// A particle as the light sees it: an orthographic disc.
+// A particle seen from the light: an orthographic disc.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 uniform float clipRadius;  // of a particle in the light's clip space

@@ -1,5 +1,5 @@
-// Blurs the light's map of the water along one axis: x thickness, y thickness times depth, z thickness blurred twice as widely. LAST: z becomes
-// how much more water there is here than around, which is where light gathers.
+// Blurs the light's map of the water along one axis: x thickness, y thickness times depth, z thickness with twice the width. LAST: z becomes
+// the excess of thickness over the surroundings, which focuses light.
 uniform sampler2D source;
 uniform ivec2 axis;
 uniform int reach;  // texels either side, of the narrow blur

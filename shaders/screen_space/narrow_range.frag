@@ -1,12 +1,12 @@
-// One level of the surface's smoothing: a 3x3 binomial kernel with holes (Holschneider et al. 1989, "a trous"), levels of growing step in turn.
-// Which depths belong to the surface is decided as in the narrow-range filter (Truong & Yuksel 2018): what lies far in front is left out, what
-// lies far behind is pulled near, so that surfaces bend at their edges and do not melt into each other. Opposite neighbours are judged
-// together, by how far the three depths are from a straight line: a steep surface is as smooth as a level one.
+// One level of surface smoothing: a 3x3 binomial kernel with holes (Holschneider et al. 1989, "a trous"), in levels of growing step.
+// The depths of the surface are selected as in the narrow-range filter (Truong and Yuksel 2018): depths far in front are ignored,
+// depths far behind are clamped to near ones, so that surfaces curve at their edges and do not merge. Opposite neighbours are tested
+// together, by the deviation of the three depths from a straight line: a steep surface is smoothed as much as a level one.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/filter.glsl"
 uniform float step_;    // m
-uniform float maxStep;  // pixels: wider holes than other levels can fill would show
-uniform float range;    // m: how far from a straight line depths of one surface may be
+uniform float maxStep;  // pixels: wider holes would be visible, because other levels could not fill them
+uniform float range;    // m: maximum deviation from a straight line of depths of one surface
 uniform float bend;     // m
 
 float z, sum, weights;
@@ -21,7 +21,7 @@ void addPair(ivec2 away, float w) {
 }
 void main() {
     z = begin();
-    // In whole pixels, with so much less weight that the variance is the step's own, whatever the distance and the resolution.
+    // In whole pixels; the weight is reduced so that the variance equals that of the step, at every distance and resolution.
     float pixels = min(step_ / (z * frame.ray.y), maxStep);
     int k = max(int(ceil(pixels)), 1);
     float side = 0.25 * pixels * pixels / float(k * k), centre = 1.0 - 2.0 * side;

@@ -1,6 +1,6 @@
-// A square inside the sphere, facing the camera: whatever lies behind it is behind the sphere's near side too. Drawn first, depth only and
-// without a fragment shader's work, it spares the spheres deep in the water theirs. Spray hides nothing: the water's surface goes on behind it. What the near plane cuts hides nothing either: it
-// is drawn just behind that plane itself.
+// A square inside the sphere, facing the camera: objects behind it are behind the near side of the sphere too. It is drawn first, depth only
+// and without fragment shading, and saves shading spheres deep in the water. Spray has none, because the water's surface continues behind it.
+// For a sphere that the near plane cuts, the square is drawn just behind that plane.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
 void main() {

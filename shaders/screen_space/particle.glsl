@@ -1,4 +1,4 @@
-// A particle as a quad that just covers the picture of its sphere, or with ELLIPSOIDS of its ellipsoid. Needs frame.glsl.
+// A particle as a quad that just covers the image of its sphere, or with ELLIPSOIDS of its ellipsoid. Needs frame.glsl.
 #include "shaders/screen_space/quads.glsl"
 ROWS(0, particles) // xyz m, world
 #if defined(ELLIPSOIDS)
@@ -10,14 +10,14 @@ vec4 particle = texelFetch(particles, row());
 uniform float radius;                   // m
 
 const float kOverlap = 1.35;  // radii: drawn so large, they cover the water without gaps. Spheres make it 0.3 radii too thick by that
-// The mean of a particle's neighbours lies inward of the surface: of the way to it this much, in radii, is no noise that is smoothed but
-// the shrinking that Yu & Turk 2013 name, and is given back. Then a level surface, once filtered, lies half a spacing over its topmost
+// The mean of a particle's neighbours lies inward of the surface: a displacement of up to this, in radii, is not noise but the shrinking
+// described by Yu and Turk 2013, and is reversed. Then a level surface, after filtering, is half a spacing above its topmost
 // particles, where their volume ends: within 0.1 radii, seen from any angle, for radii of 0.6 spacings.
 const float kShrunk = 0.77;
-// Spray is finer than the particles that stand for it: those with few neighbours are drawn smaller.
+// Spray is finer than the particles that represent it: those with few neighbours are drawn smaller.
 float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
 float drawnRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
-// NaN, too; and where there is no particle: a free slot, or a sample on a body.
+// Also for NaN, for a free slot and for a body sample.
 bool lost(vec4 p) { return beyond() || p.w < 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
 
 // What is drawn, in view space: the points p with (p - centre)^T squares^-1 (p - centre) < 1.
@@ -30,12 +30,12 @@ Splat splatOf(vec4 p) {
     Splat s = Splat((frame.view * vec4(p.xyz, 1.0)).xyz, mat3(r * r));
 #if defined(ELLIPSOIDS)
     vec3 toCentre = texelFetch(centres, row()).xyz, spread = texelFetch(spreads, row()).xyz, slant = texelFetch(slants, row()).xyz;
-    // One that was born after the ellipsoids were found has none yet.
+    // A particle spawned after the ellipsoids were computed has none yet.
     float sum = spread.x + spread.y + spread.z;
     if (sum > 0.05 && sum < 50.0 && dot(toCentre, toCentre) < 9.0 * radius * radius) {
         float wide = radius * kOverlap;
         mat3 view = mat3(frame.view);
-        // In a thin sheet there is nothing to give back, and what is left is noise.
+        // In a thin sheet there is no shrinking to reverse; the rest is noise.
         float way = length(toCentre) / radius;
         s.centre += view * (toCentre * (1.0 - kShrunk * smoothstep(0.15, 0.45, way) / max(way, 1.0e-6)));
         s.squares = view * (wide * wide * mat3(spread.x, slant.z, slant.y, slant.z, spread.y, slant.x, slant.y, slant.x, spread.z)) * transpose(view);

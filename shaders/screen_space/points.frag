@@ -1,11 +1,11 @@
-// Spheres into a small picture of surfaces, lit afterwards, once a pixel.
+// Spheres, drawn into a small buffer of surfaces that is lit afterwards, once per pixel.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/sphere.glsl"
 flat in vec4 centreView;
 flat in vec3 baseColour;
 layout(location = 0) out vec4 surface;  // colour, 1
-layout(location = 1) out vec2 normal;   // x and y, view; z is what is missing to 1
-// The quad lies in the plane through its sphere's nearest point: what that hides needs no shading.
+layout(location = 1) out vec2 normal;   // x and y, view; z follows from the unit length
+// The quad lies in the plane through its sphere's nearest point: hidden quads need no shading.
 layout(depth_greater) out float gl_FragDepth;
 void main() {
     float depth, through;

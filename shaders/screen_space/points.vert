@@ -5,10 +5,10 @@ ROWS(1, velocities)   // normal, surface: normals, w their length
 layout(binding = 26) uniform usamplerBuffer ids;
 ROWS(3, absorptions)  // see FluidView
 uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye, 4 normal, 5 surface
-uniform int alike;        // 1: absorption is not given
+uniform int alike;        // 1: all particles have ownAbsorption
 uniform vec3 ownAbsorption;  // 1/m
-uniform float dyeDepth;      // m, of liquid and dye that a sphere's colour stands for
-uniform float fullSpeed;  // m/s, the colour map's end
+uniform float dyeDepth;      // m, depth of liquid and dye that a sphere's colour represents
+uniform float fullSpeed;  // m/s, upper end of the colour map
 flat out vec4 centreView;  // w: radius
 flat out vec3 baseColour;
 void main() {
@@ -20,7 +20,7 @@ void main() {
     else if (colourBy == 1) baseColour = ramp(0.5 + 5.0 * (particle.w - 1.0));  // 0.9 .. 1.1 of the rest density
     else if (colourBy == 3) {
         vec3 a = (alike == 1 ? ownAbsorption : absorption.xyz + (absorption.w < 0.0 ? vec3(0.0) : ownAbsorption)) * dyeDepth;
-        // Of what lets next to nothing through the hue is left.
+        // A nearly opaque liquid keeps its hue.
         baseColour = 0.9 * exp(-(a - max(min(a.x, min(a.y, a.z)) - 1.0, 0.0)));
     }
     else if (colourBy == 4) baseColour = abs(velocity.xyz) / max(length(velocity.xyz), 1.0e-6);  // the thesis's (9)

@@ -1,4 +1,4 @@
-// Lights the spheres that points.frag found.
+// Lights the spheres that points.frag has drawn.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"

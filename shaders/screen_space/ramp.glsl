@@ -1,4 +1,4 @@
-// A colour map of even perceived steps: dark blue, blue, teal, pale sand, white-hot; interpolated in Oklab (Ottosson 2020).
+// A perceptually uniform colour map: dark blue, blue, teal, pale sand, white; interpolated in Oklab (Ottosson 2020).
 vec3 oklabToLinear(vec3 c) {
     float l = c.x + 0.3963377774 * c.y + 0.2158037573 * c.z;
     float m = c.x - 0.1055613458 * c.y - 0.0638541728 * c.z;

@@ -1,5 +1,5 @@
-// The surface's depth for a picture twice as large each way, by quadratic B-splines: normals from it have no steps at the texels. It ends where
-// half of what is about a pixel is no water.
+// The surface's depth at twice the resolution, by quadratic B-splines: normals computed from it have no steps at texels. The surface ends where
+// half of the surroundings of a pixel are not water.
 #include "shaders/render/frame.glsl"
 uniform sampler2D source;  // m
 uniform float range;       // m: depths of one surface differ by less from texel to texel
@@ -24,7 +24,7 @@ void main() {
     }
     depth = kFar;
     if (water < 0.5) return;
-    // Along a plane 1 / depth is what is even in the picture. Texels that are not of the surface at hand stand for its middle.
+    // On a plane, 1 / depth is linear in the image. Texels of other surfaces are replaced by the centre value.
     float sum = 0.0;
     for (int k = 0; k < 9; ++k) sum += wx[k % 3] * wy[k / 3] / (abs(z[k] - mine) < range ? z[k] : mine);
     depth = 1.0 / sum;

@@ -1,4 +1,4 @@
-// The water's surface: what lies behind it, refracted and absorbed, and what it reflects.
+// Shades the water's surface: the refracted and attenuated background, and the reflection.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/fresnel.glsl"
@@ -8,16 +8,16 @@ uniform sampler2D sceneDepth;   // window depth
 uniform sampler2D fluidDepth;   // m
 uniform sampler2D thickness;    // m: of water, of that as spray
 #if defined(NORMALS)
-uniform sampler2D normals;      // of the surface, view space, unit; w: m of water, instead of thickness's. Else they come from the depth
+uniform sampler2D normals;      // of the surface, view space, unit; w: m of water, instead of thickness. Without it normals come from the depth
 #endif
 uniform float radius;           // m
 uniform vec3 absorption;        // 1/m
 #if defined(INK)
-uniform sampler2D depths;       // what red, green and blue fade by, instead: e^-depth is left; w: by scattering
+uniform sampler2D depths;       // optical depth for red, green and blue instead of absorption: e^-depth is transmitted; w: by scattering
 #endif
 uniform vec3 scattering;        // 1/m, reduced
 uniform float refractiveIndex;
-uniform int mirrorSteps;        // of the search for what the picture's own things reflect; 0: none
+uniform int mirrorSteps;        // steps of screen-space reflection; 0: none
 layout(location = 0) out vec4 colour;
 
 vec2 waterAt(vec2 uv) {
@@ -52,7 +52,7 @@ vec3 layer(vec3 absorbed, vec3 thrown, out vec3 through) {
     return s * t / rest;
 }
 
-// What the mirror direction meets of the picture itself: rgb, and a = how surely. View space; steps grow with distance. `steps` 0: nothing.
+// Screen-space reflection: the colour in the mirror direction, rgb, and its confidence a. View space; step lengths grow with distance. 0 steps: none.
 vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     float t = 3.0 * radius, low = 0.0, high = 0.0;
     for (int k = 0; k < steps; ++k) {
@@ -91,7 +91,7 @@ vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 light) {
     return light * min(lobe * mirror, kMostGlint);
 }
 
-// Where the ray through a pixel leaves the water that the eye is in, m, view space.
+// For an eye inside the water: the point where the ray through a pixel leaves it, m, view space.
 vec3 wayOut(vec2 pixel) { return normalize(viewRay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
 // What the eye sees that is in the water: the scene in it as it is, what is above through Snell's window, and about the window the water's own
 // colour `deep`, mirrored. `scene`: m along the ray.
@@ -153,7 +153,7 @@ void main() {
     for (int k = 0; k < 3; ++k) {
         vec2 uv = pixelOf(p + way * stretch) * frame.viewport.zw;
         vec2 inside = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
-        if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else something in front of the water would leak into it
+        if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else an object in front of the water would be visible in it
             back = texture(sceneColour, inside).rgb;
             through = mix(through, waterAt(inside).x, 0.5);
 #if defined(INK)
@@ -173,7 +173,7 @@ void main() {
 #endif
     vec3 passed = exp(-absorbed - thrown), diffuse;
     vec3 returned = layer(absorbed, thrown, diffuse);
-    // A clear liquid glows with the light that comes in from above, wherever; in a cloudy one it comes out where it went in, or right behind.
+    // In a clear liquid, light from above illuminates all of it; in a cloudy one it leaves near the point of entry.
     vec3 cloudy = 1.0 - exp(-0.3 * thrown);
     float facing = dot(nWorld, frame.lightDir.xyz);
     vec3 above = ambient(vec3(0.0, 1.0, 0.0)) + frame.lightColour.rgb * (lit * 0.25 * max(frame.lightDir.y, 0.0));
@@ -185,23 +185,23 @@ void main() {
     float under = 1.0 - smoothstep(frame.planes.x + 0.5 * radius, frame.planes.x + 2.5 * radius, depth);  // the eye is in the water
     vec3 within = vec3(0.0);
     if (under > 0.0) {
-        vec3 deep = layer(40.0 * absorbed, 40.0 * thrown, diffuse) * glow;  // as much as comes back of depths that one sees no end of
+        vec3 deep = layer(40.0 * absorbed, 40.0 * thrown, diffuse) * glow;  // backscatter of very deep liquid
         within = fromWithin(-toEye, water.x, behind * length(p) / depth, texelFetch(sceneColour, here, 0).rgb, deep) * passed + scattered;
     }
     float white = 1.0 - exp(-water.y * 0.24 / radius);
     transmitted = mix(transmitted, 0.9 * (ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * (0.35 + 0.65 * max(dot(nWorld, frame.lightDir.xyz), 0.0)))), 0.75 * white);
 
-    // Where the normal varies within a pixel the reflection is blurred: no sparkling.
+    // Where the normal varies within a pixel, the reflection is blurred, to avoid aliasing.
     float rough = sqrt(min(0.02 + 0.35 * dot(turn, turn), 0.2));
     vec3 mirrored = reflect(-eyeWorld, nWorld);
     vec3 reflected = environment(mirrored, rough) * mix(0.6, 1.0, lit);
-    // The fringe of the water, less than a particle thick, is a matter of where particles happen to be: it does not mirror.
+    // The fringe of the water, thinner than a particle, depends on random particle positions: it has no reflection.
     float mirror = fresnel(nv, refractiveIndex) * smoothstep(0.0, 0.8 * radius, through);
     vec4 met = mirroredScene(p, reflect(-toEye, n), mirror > 0.03 ? mirrorSteps : 0);
     reflected = mix(reflected, met.rgb, met.a);
     vec3 sun = glint(nWorld, eyeWorld, turn, fresnel(max(dot(eyeWorld, normalize(eyeWorld + frame.lightDir.xyz)), 0.02), refractiveIndex), frame.lightColour.rgb * lit) *
                smoothstep(0.0, 0.8 * radius, through);
-    // Where it meets a solid, at the rim of a film on it and at its own outline, the water does not end in a line.
+    // At contact with a solid, at the rim of a film and at its outline, the water is faded to avoid hard lines.
     float there = smoothstep(0.0, 1.2 * radius, behind - depth) * smoothstep(0.0, 0.5 * radius, water.x);
     colour.rgb = mix(mix(colour.rgb, mix(transmitted, reflected, mirror) + sun, there), within, under);
 }

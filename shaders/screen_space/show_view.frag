@@ -1,4 +1,4 @@
-// What the water's surface is made from, to look at: normals as the thesis's (9), depth, thickness.
+// Shows intermediate results of the water's surface: normals as in the thesis (9), depth, thickness.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/ramp.glsl"
 uniform sampler2D sceneColour;
@@ -6,7 +6,7 @@ uniform sampler2D sceneDepth;  // window depth
 uniform sampler2D fluidDepth;  // m
 uniform sampler2D thickness;   // m
 uniform int what;              // 1 normals, 2, 3 depth, 4 thickness: of WaterView
-uniform vec2 depths;           // m: what the ends of the ramp stand for
+uniform vec2 depths;           // m: depths at the ends of the colour map
 uniform float fullThickness;   // m
 layout(location = 0) out vec4 colour;
 

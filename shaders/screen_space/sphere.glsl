@@ -1,5 +1,5 @@
-// The ray through a pixel and a sphere or ellipsoid: exact in perspective. Needs frame.glsl.
-// False: no hit. `front`: depth of the near point; `through`: length of the ray in it (m). What is before the near plane is cut away.
+// Intersection of the ray through a pixel with a sphere or ellipsoid, exact in perspective. Needs frame.glsl.
+// False: no hit. `front`: depth of the near point; `through`: length of the ray inside it (m). Parts in front of the near plane are cut away.
 bool cutAtNear(float middle, float h, float slant, out float front, out float through) {
     front = max(middle - h, frame.planes.x);
     through = (middle + h - front) * slant;

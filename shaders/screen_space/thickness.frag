@@ -1,8 +1,8 @@
-// Water along the line of sight, in front of the scene, and how much of it is spray; blended by addition. Drawn at 1 / `scale` of the resolution.
+// Thickness of water along the line of sight, in front of the scene, and the part that is spray; blended by addition. At 1 / `scale` of the resolution.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/sphere.glsl"
 uniform float spacing;      // m
-uniform float standsFor;    // so many particles
+uniform float standsFor;    // number of particles that a drawn one represents
 uniform int scale;
 uniform sampler2D sceneDepth;
 flat in vec4 centreView;
@@ -13,7 +13,7 @@ flat in mat3 shapeView;
 layout(location = 0) out vec2 thickness;
 #if defined(INK)
 flat in vec4 ink;                  // 1/m; w: scattering
-layout(location = 1) out vec4 depths;  // what red, green and blue fade by: e^-depth is left; w: by scattering, all alike
+layout(location = 1) out vec4 depths;  // optical depth of red, green and blue: e^-depth is transmitted; w: by scattering
 #endif
 void main() {
     vec2 pixel = gl_FragCoord.xy * float(scale);

@@ -1,4 +1,4 @@
-// One instance a tile of the picture: only those with water in them are drawn.
+// One instance per tile of the image: only tiles with water are drawn.
 uniform sampler2D tileMask;
 void main() {
     ivec2 tiles = textureSize(tileMask, 0), tile = ivec2(gl_InstanceID % tiles.x, gl_InstanceID / tiles.x);

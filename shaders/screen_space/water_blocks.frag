@@ -1,4 +1,4 @@
-// Which blocks of 8 x 8 texels of the spheres' depth have water in them.
+// Marks the blocks of 8 x 8 texels of the spheres' depth that contain water.
 uniform sampler2D depths;  // x: of the bulk, y: of the spray, m
 layout(location = 0) out float water;
 void main() {

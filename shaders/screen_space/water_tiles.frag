@@ -1,4 +1,4 @@
-// Which tiles of the picture have water in them, or just beside them: see water_blocks.frag.
+// Marks the tiles of the image that contain water or are adjacent to it: see water_blocks.frag.
 uniform sampler2D blocks;
 uniform vec2 perTile;  // texels of the spheres' depth along a tile's sides
 layout(location = 0) out float marked;

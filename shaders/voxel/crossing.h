@@ -1,9 +1,9 @@
-// Signed crossings of triangles with the columns of voxel centres along x, in double, bit for bit the same on every device: no division,
-// nothing contracted. Coordinates are in voxels from the grid's low corner; a column's centre is at (y + 1/2, z + 1/2).
+// Signed crossings of triangles with the columns of voxel centres along x, in double, identical bit for bit on every device: no division,
+// no fused multiply-add. Coordinates are in voxels from the grid's low corner; a column's centre is at (y + 1/2, z + 1/2).
 //
-// A triangle's corners are sorted by z. At the height of a row of centres two of its edges pass, the long one (corner 0 to 2) and a short
-// one (0 to 1 or 1 to 2); it covers the columns between them. An edge is always reckoned from its lower end, so faces that share it agree
-// on which columns it parts, whatever rounding does: a closed mesh has no leak, and no column is counted twice (a half-open rule).
+// A triangle's corners are sorted by z. At the height of a row of centres it has two edges, the long one (corner 0 to 2) and a short
+// one (0 to 1 or 1 to 2); it covers the columns between them. An edge is always evaluated from its lower end, so that faces that share it agree
+// on the columns that it separates, whatever the rounding: a closed mesh has no leak, and no column is counted twice (a half-open rule).
 //
 // Include after BUFFERS; the buffer is `corners`.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
@@ -12,7 +12,7 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-// What a row of columns sees of a triangle.
+// The section of a triangle with a row of columns.
 STRUCT(CrossingRow) {
     double lowX;  // the cut's bounds along x
     double highX;
@@ -32,7 +32,7 @@ FN int centresBelow(double x, int most) {
     return TO_DOUBLE(whole) < held ? whole + 1 : whole;
 }
 
-// `sense`: +1 if the sorted corners run round as the mesh has them, else -1.
+// `sense`: +1 if the sorted corners have the orientation of the mesh, else -1.
 FN CrossingRow crossingRow(GLOBAL(double, corners) uint triangle, int sense, int row, int sizeY) {
     uint at = triangle * CROSSING_DOUBLES;
     EXACT double z = TO_DOUBLE(row) + 0.5;

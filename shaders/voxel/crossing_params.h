@@ -1,4 +1,4 @@
-// What the kernels of crossings and the host share: how triangles and work items are laid out. See shaders/voxel/crossing.h.
+// The layout of triangles and work items that the kernels of crossings share with the host. See shaders/voxel/crossing.h.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
@@ -8,14 +8,14 @@ namespace rivulet {
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 #endif
-// A triangle as it is handed to a device, in doubles: corner 0 x y z, corner 1, corner 2, then 1 / (z1 - z0), 1 / (z2 - z1),
+// A triangle on the device, in doubles: corner 0 x y z, corner 1, corner 2, then 1 / (z1 - z0), 1 / (z2 - z1),
 // 1 / (z2 - z0) (0 where they are level), then its plane's dx/dy and dx/dz (0 where it is edge-on).
 #define CROSSING_DOUBLES 14u
-// A work item: triangle << 1 | (1 if its sorted corners run round as the mesh has them), its first row, the row after its last.
+// A work item: triangle << 1 | (1 if its sorted corners have the orientation of the mesh), its first row, the row after its last.
 #define CROSSING_ITEM 3u
-// Rows a work item has at most: with rows of 4096 columns no loop comes near the 65,535 rounds llvmpipe allows.
+// Maximum rows per work item: with rows of 4096 columns, loops stay far below the 65,535 iterations that llvmpipe allows.
 #define CROSSING_ROWS 8u
-// Bits of a voxel's counter, and crossings of a column that they and llvmpipe's loops are enough for.
+// Bits of a voxel's counter, and the maximum number of crossings per column that they and llvmpipe's loops permit.
 #define CROSSING_PLANES 9u
 #define CROSSING_DEEPEST 150u
 

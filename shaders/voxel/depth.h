@@ -1,6 +1,6 @@
-// depth.h: depth images of work boxes, for kernels and for the host: which voxel does a line through voxels' centres meet on its way
-// through a triangle? Scan lines in double; each value depends on one edge alone, whichever triangle it is seen from, so that along
-// any line a closed mesh is met an even number of times and no line slips between two triangles.
+// Depth images of work boxes (thesis 4.1), for kernels and the host: the first voxel in which a line through voxel centres crosses a
+// triangle. Scan lines in double; each value depends on one edge only, whichever triangle uses it, so that along any line
+// a closed mesh is crossed an even number of times and no line passes between two triangles.
 #if defined(__cplusplus)
 #pragma once
 #include "shaders/common/lang.h"
@@ -56,14 +56,14 @@ FN double depthEdge(double u, double v, double slope, double y) {
     return at;
 }
 
-// Where row `row` enters and leaves the triangle: columns firstAfter(smaller) .. firstAfter(larger) - 1 are covered.
+// The points where row `row` enters and leaves the triangle: columns firstAfter(smaller) .. firstAfter(larger) - 1 are covered.
 FN double longEdge(DepthJob job, int row) { return depthEdge(job.lowU, job.lowV, job.slopeLong, TO_DOUBLE(row) + 0.5); }
 FN double shortEdge(DepthJob job, int row) {
     double y = TO_DOUBLE(row) + 0.5;
     return row < job.middleRow ? depthEdge(job.lowU, job.lowV, job.slopeLow, y) : depthEdge(job.middleU, job.middleV, job.slopeHigh, y);
 }
 
-// The voxel along the axis. The plane of a triangle that is nearly edge-on says anything; hence the limits.
+// The voxel along the axis. The plane of a nearly edge-on triangle gives arbitrary values; hence the limits.
 FN int depthAt(DepthJob job, int column, int row) {
     EXACT double across = (TO_DOUBLE(column) + 0.5 - job.lowU) * job.depthU;
     EXACT double up = (TO_DOUBLE(row) + 0.5 - job.lowV) * job.depthV;

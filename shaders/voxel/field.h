@@ -1,15 +1,15 @@
-// The distance band as a kernel reads it: interpolated distance and its gradient. Include after BUFFERS; the buffer is `bandDistance`.
-// Where the mesh is closed that is negative inside; here only the distance counts, whichever side one is on (fluid/voxel/README.md).
+// Reads the distance band in a kernel: interpolated distance and its gradient. Include after BUFFERS; the buffer is `bandDistance`.
+// For a closed mesh it is negative inside; here only the absolute distance counts, on either side (fluid/voxel/README.md).
 // Points are in metres, cell coordinates in voxels from the grid's low corner.
 STRUCT(FieldSample) {
-    vec3 gradient;   // of the trilinear interpolant: away from the mesh; length 1 by a lone wall
+    vec3 gradient;   // of the trilinear interpolant: away from the mesh; length 1 near a single wall
     float distance;  // m, at most the band
-    float bend;      // how far the cell's samples are from lying on a plane; 0 by a lone flat wall, about 1 voxel / radius by a round one
+    float bend;      // deviation of the cell's samples from a plane; 0 near a single flat wall, about 1 voxel / radius near a curved one
 };
 
 FN vec3 toCells(FieldParams f, vec3 p) { return (p - f.origin.xyz) * f.origin.w; }
 
-// Beyond the grid the border's value holds, which is the band's: the grid is padded by at least that much.
+// Outside the grid the value at the border is used, which is the band's limit: the grid is padded by at least that width.
 FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     vec3 g = toCells(f, p);
     g = vec3(clamp(g.x, 0.0f, TO_FLOAT(f.sizeX)), clamp(g.y, 0.0f, TO_FLOAT(f.sizeY)), clamp(g.z, 0.0f, TO_FLOAT(f.sizeZ)));
@@ -38,7 +38,7 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     float high = e01 + (e11 - e01) * y;
     float alongX0 = (d100 - d000) + ((d110 - d010) - (d100 - d000)) * y;
     float alongX1 = (d101 - d001) + ((d111 - d011) - (d101 - d001)) * y;
-    // What the distance gains along an axis differs from one edge of the cell to the next by:
+    // The increase of the distance along an axis differs between the edges of the cell by:
     float bendXY = max(max((d110 - d010) - (d100 - d000), (d111 - d011) - (d101 - d001)),
                        max((d100 - d000) - (d110 - d010), (d101 - d001) - (d111 - d011)));
     float bendXZ = max(max((d101 - d001) - (d100 - d000), (d111 - d011) - (d110 - d010)),
@@ -52,20 +52,20 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     return s;
 }
 
-// Unit length towards larger distance; zero where the field says nothing (far away, or midway between two walls).
+// Unit vector towards larger distance; zero where the field has no gradient (far away, or midway between two walls).
 FN vec3 fieldNormal(FieldSample s) {
     float slope = length(s.gradient);
     return slope > 0.1f ? s.gradient * (1.0f / slope) : vec3(0.0f, 0.0f, 0.0f);
 }
 
-// False where walls meet, and the interpolant blends their distances: then the gradient is none of their normals.
+// False where walls meet and the interpolant blends their distances: then the gradient is not a normal of a wall.
 FN bool loneWall(FieldSample s) {
     float square = dot(s.gradient, s.gradient);
     return s.bend < 0.15f && square > 0.9f && square < 1.1f;
 }
 
-// True if nothing on the way from `a` to `b` can come within contact of the mesh: one look. Distance changes by no more than
-// one moves, so the nearest grid point's value, less the way to it, bounds it from below all along.
+// True if no point between `a` and `b` can be within contact distance of the mesh; reads one value. The distance changes by at most
+// the length moved, so that the value of the nearest grid point minus the distance to it is a lower bound.
 FN bool farFromField(GLOBAL(float, bandDistance) FieldParams f, vec3 a, vec3 b) {
     vec3 ga = toCells(f, a);
     vec3 gb = toCells(f, b);

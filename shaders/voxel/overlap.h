@@ -1,8 +1,8 @@
-// Triangle-box overlap by separating axes (Akenine-Möller 2001), solved for a row of voxels along x at a time (in the manner of Schwarz and
-// Seidel 2010), in double, bit for bit the same on every device: no division, nothing contracted.
+// Triangle-box overlap by separating axes (Akenine-Möller 2001), solved for a row of voxels along x at a time (similar to Schwarz and
+// Seidel 2010), in double, identical bit for bit on every device: no division, no fused multiply-add.
 //
-// A slab is what one axis says: a voxel whose centre is q (voxels, from the triangle's corner a) overlaps as far as it can tell iff
-// low <= axis . q <= high. The host reckons the slabs; a level one has no x, a sloped one bounds the row at both ends.
+// A slab is the condition of one axis: a voxel whose centre is q (voxels, from the triangle's corner a) may overlap iff
+// low <= axis . q <= high. The host computes the slabs; a level one has no x, a sloped one bounds the row at both ends.
 //
 // Include after BUFFERS; the buffers are `numbers` and `bounds`.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
@@ -23,7 +23,7 @@ FN OverlapRun overlapRow(GLOBAL(double, numbers) GLOBAL(int, bounds) uint triang
     double ax = numbers[at];
     EXACT double qy = TO_DOUBLE(y) + 0.5 - numbers[at + 1u];
     EXACT double qz = TO_DOUBLE(z) + 0.5 - numbers[at + 2u];
-    // A voxel more at both ends: rounding must not cut off the outermost, and whole numbers bound the run in the end.
+    // One more voxel at both ends, so that rounding does not cut off the outermost; the integer bounds limit the run.
     EXACT double from = TO_DOUBLE(bounds[box]) - 0.5 - ax;
     EXACT double to = TO_DOUBLE(bounds[box + 3u]) + 1.5 - ax;
     OverlapRun none;

@@ -1,4 +1,4 @@
-// What the kernel of overlaps and the host share: how triangles and work items are laid out. See shaders/voxel/overlap.h.
+// The layout of triangles and work items that the kernel of overlaps shares with the host. See shaders/voxel/overlap.h.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"

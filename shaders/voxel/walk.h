@@ -1,8 +1,8 @@
-// The walk through every voxel a segment pierces (Amanatides and Woo 1987), made proof against rounding. Include after BUFFERS;
+// Traverses every voxel that a segment touches (Amanatides and Woo 1987), robust against rounding. Include after BUFFERS;
 // the buffer is `surfaceBits`.
-// Every voxel that a segment touches holds one of the segment's ends or one of the points where it crosses a plane between voxels.
-// So the walk goes from crossing to crossing, each computed afresh from the segment's start, and at each asks all voxels
-// within `nudge`: two as a rule, four by an edge, eight by a corner. Ties, grazing along a face and boundaries need no case of their own.
+// Every voxel that a segment touches contains an end of the segment or a point where it crosses a plane between voxels.
+// So the traversal goes from crossing to crossing, each computed from the start of the segment, and tests all voxels
+// within `nudge` of it: usually two, four at an edge, eight at a corner. Ties, grazing along a face and boundaries need no special case.
 
 // Voxels outside the grid are not set.
 FN bool voxelSet(GLOBAL(uint, surfaceBits) FieldParams f, int x, int y, int z) {
@@ -27,7 +27,7 @@ FN bool setVoxelNear(GLOBAL(uint, surfaceBits) FieldParams f, vec3 p) {
 }
 
 // From `a` to `b`, cell coordinates, within a million voxels of the grid. Returns the fraction of the way at which the first
-// set voxel is touched, 0 if `a` touches one already; 2 if none is touched. No motion asks the voxels at `a`.
+// set voxel is touched, 0 if `a` touches one already; 2 if none is touched. Without motion only the voxels at `a` are tested.
 FN float walkVoxels(GLOBAL(uint, surfaceBits) FieldParams f, vec3 a, vec3 b) {
     if (setVoxelNear(PASS(surfaceBits) f, a)) return 0.0f;
     vec3 d = b - a;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kMostParticles = 2000;
 constexpr int kFrames = 60, kFew = 4;
-// Steps in a frame unless the case says otherwise: the program's own limit, so that stiff settings slow simulated time and not the test.
+// Default number of steps per frame: the program's own limit, so that stiff settings slow simulated time and not the test.
 constexpr int kSubsteps = 12;
 
 VisitFn visiting(SceneFile& scene) {
@@ -55,13 +55,14 @@ SceneFile forces() {
     s.fluid.viscosity = 1.0e-3F;
     s.fluid.collision.friction = 0.2F;
     s.fluid.collision.walls = "no-slip";
-    s.fluid.forces = {.tension = 0.05F,
-                      .adhesion = 0.05F,
-                      .thesisTension = -1,
-                      .normals = "gradient",
-                      .vorticity = 0.5F,
-                      .airDrag = 0.5F,
-                      .wind = vec3(1, 0, 0)};
+    ForcesParams& f = s.fluid.forces;
+    f.tension = 0.05F;
+    f.adhesion = 0.05F;
+    f.thesisTension = -1;
+    f.normals = "gradient";
+    f.vorticity = 0.5F;
+    f.airDrag = 0.5F;
+    f.wind = vec3(1, 0, 0);
     return s;
 }
 
@@ -98,7 +99,7 @@ SceneFile solids() {
     return s;
 }
 
-// What floats, and a wall of boundary particles.
+// Floating bodies, and a wall of boundary particles.
 SceneFile bodies() {
     SceneFile s;
     s.fluid.maxSubsteps = kSubsteps;
@@ -116,7 +117,7 @@ SceneFile bodies() {
     return s;
 }
 
-// The thesis's method refuses bodies, whatever else there is.
+// The thesis's method refuses bodies in every scene.
 bool fits(const std::string& base, const std::string& method) { return base != "bodies" || method != "wcsph_thesis"; }
 
 Status set(Case& c, const std::string& assignment) {
@@ -249,7 +250,7 @@ Status combination(Case& c, const std::string& method, const std::string& number
     return ok();
 }
 
-// Paths below fluid and in the lists; what is drawn, said and looked at has no part in a step.
+// Paths below fluid and in the lists; rendering and interface parameters have no effect on a step.
 bool isSimulated(const Slider& s) { return s.path.starts_with("fluid.") || s.path.find('[') != std::string::npos; }
 
 // One of the methods.

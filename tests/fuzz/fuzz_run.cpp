@@ -189,7 +189,7 @@ class Runner {
     uint64_t sweeps_ = 0;
 };
 
-// What a child writes home.
+// The result that a child process sends to its parent.
 std::string packed(const Outcome& o) {
     return fmt::format("{} {} {} {} {}", static_cast<int>(o.verdict), o.refusedDrags, o.slowed, o.limited, o.sentence);
 }

@@ -1,5 +1,5 @@
-// The slider fuzzer: whatever a panel permits, nothing becomes NaN, nothing is lost, no speed passes the step's limit, nothing crashes.
-// test_fuzz alone runs a sample. RIVULET_FUZZ in the environment asks for more:
+// The slider fuzzer: for every value that a panel permits, nothing becomes NaN, nothing is lost, no speed passes the step's limit, nothing
+// crashes. test_fuzz alone runs a sample. RIVULET_FUZZ in the environment asks for more:
 //   full             every Param's ends and middle, all pairs of ends, 2,000 combinations, each with every method
 //   full 3/16        the third of sixteen parts of that
 //   pbf random 17    one case, as a failure names it (fuzz_case.h: the names)
@@ -51,7 +51,7 @@ std::string kindOf(const std::string& sentence) {
     return kind.substr(0, 110);
 }
 
-// Runs them one after the other, fails for each that fails, and says how many were refused, so that not everything is.
+// Runs the cases one after the other, fails for each that fails, and reports how many were refused, so that not all can be refused.
 void runAll(const std::vector<std::string>& names, size_t leastRun) {
     constexpr size_t kShown = 12;
     size_t ran = 0, refused = 0, failed = 0, slowed = 0, limited = 0, drags = 0;

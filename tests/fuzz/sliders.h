@@ -17,7 +17,7 @@ size_t below(Random& random, size_t count);  // 0 .. count - 1
 bool oneIn(Random& random, size_t times);
 uint64_t hashOf(std::string_view text);  // FNV-1a
 
-// A Param with all that its visit says of it. Values are texts, as --set takes them.
+// A Param with the information from its visit. Values are texts, as --set takes them.
 struct Slider {
     enum class Kind { real, whole, vector, words };
     std::string path;

@@ -5,7 +5,7 @@
 
 #include "tests/golden/look_fixture.h"
 
-namespace rivulet::look_drops_test::look_drops_test {
+namespace rivulet::look_drops_test {
 namespace {
 
 constexpr int kSize = 200;
@@ -109,4 +109,4 @@ TEST_F(LookDrops, AreHiddenByWhatStandsBeforeThem) {
 }
 
 }  // namespace
-}  // namespace rivulet::look_drops_test::look_drops_test
+}  // namespace rivulet::look_drops_test

@@ -8,7 +8,7 @@
 #include "tests/golden/look_fixture.h"
 #include "tests/unit/gltf_file.h"
 
-namespace rivulet::look_file_test::look_file_test {
+namespace rivulet::look_file_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -145,4 +145,4 @@ TEST_F(LookFile, ALampShinesAsItsFileSaysInTheDark) {
 }
 
 }  // namespace
-}  // namespace rivulet::look_file_test::look_file_test
+}  // namespace rivulet::look_file_test

@@ -11,7 +11,7 @@
 #include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 
-namespace rivulet::look_model_test::look_model_test {
+namespace rivulet::look_model_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -403,4 +403,4 @@ TEST_F(LookModel, goldenHead) {
 }
 
 }  // namespace
-}  // namespace rivulet::look_model_test::look_model_test
+}  // namespace rivulet::look_model_test

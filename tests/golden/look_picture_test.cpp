@@ -8,7 +8,7 @@
 #include "engine/scene/transform.h"
 #include "tests/golden/look_fixture.h"
 
-namespace rivulet::look_picture_test::look_picture_test {
+namespace rivulet::look_picture_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -182,4 +182,4 @@ TEST_F(LookPicture, goldenPoints) {
 }
 
 }  // namespace
-}  // namespace rivulet::look_picture_test::look_picture_test
+}  // namespace rivulet::look_picture_test

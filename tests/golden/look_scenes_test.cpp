@@ -9,7 +9,7 @@
 #include "fluid/sim/world/cpu_kernels.h"
 #include "tests/golden/look_fixture.h"
 
-namespace rivulet::look_scenes_test::look_scenes_test {
+namespace rivulet::look_scenes_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -232,4 +232,4 @@ TEST_F(LookScenes, goldenCove) { compareScene("cove", 0.7, {"fluid.spacing=0.09"
 TEST_F(LookScenes, goldenSplashCrown) { compareScene("splash_crown", 0.012, {"fluid.spacing=0.0007", "timeScale=0.05"}, 0.8); }
 
 }  // namespace
-}  // namespace rivulet::look_scenes_test::look_scenes_test
+}  // namespace rivulet::look_scenes_test

@@ -9,7 +9,7 @@
 #include "fluid/render/filters.h"
 #include "tests/golden/look_fixture.h"
 
-namespace rivulet::look_surface_test::look_surface_test {
+namespace rivulet::look_surface_test {
 namespace {
 
 constexpr float kNothing = 1.0e6F;
@@ -399,4 +399,4 @@ INSTANTIATE_TEST_SUITE_P(Rows, LookFilters,
                          [](const auto& row) { return std::string(row.param.name) + (row.param.ellipsoids ? "_ellipsoids" : ""); });
 
 }  // namespace
-}  // namespace rivulet::look_surface_test::look_surface_test
+}  // namespace rivulet::look_surface_test

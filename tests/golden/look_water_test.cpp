@@ -5,7 +5,7 @@
 
 #include "tests/golden/look_fixture.h"
 
-namespace rivulet::look_water_test::look_water_test {
+namespace rivulet::look_water_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -257,4 +257,4 @@ TEST_F(LookWater, foamIsDrawnWithoutParticles) {
 }
 
 }  // namespace
-}  // namespace rivulet::look_water_test::look_water_test
+}  // namespace rivulet::look_water_test

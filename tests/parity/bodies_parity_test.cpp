@@ -7,7 +7,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::bodies_parity_test::bodies_parity_test {
+namespace rivulet::bodies_parity_test {
 namespace {
 
 struct After {
@@ -110,4 +110,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, BodiesParity,
                          });
 
 }  // namespace
-}  // namespace rivulet::bodies_parity_test::bodies_parity_test
+}  // namespace rivulet::bodies_parity_test

@@ -7,7 +7,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::collide_parity_test::collide_parity_test {
+namespace rivulet::collide_parity_test {
 namespace {
 
 constexpr uint32_t kCount = 3000;
@@ -121,4 +121,4 @@ TEST_P(CollideParity, AgreesWithTheCpuAndLetsNothingIn) {
 INSTANTIATE_TEST_SUITE_P(Devices, CollideParity, ::testing::Values("cl", "gl"), [](const auto& p) { return std::string(p.param); });
 
 }  // namespace
-}  // namespace rivulet::collide_parity_test::collide_parity_test
+}  // namespace rivulet::collide_parity_test

@@ -1,4 +1,4 @@
-// Who simulates while who draws: whatever the plan, the water is the same, and a plan that overlaps does overlap.
+// Cooperation: with every plan the water is the same, and a plan that overlaps work does overlap it.
 #include "fluid/session/autotune.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "tests/parity/devices.h"
 
-namespace rivulet::cooperation_test::cooperation_test {
+namespace rivulet::cooperation_test {
 namespace {
 
 SceneFile dam(const char* method = "wcsph") {
@@ -75,7 +75,7 @@ TEST_P(CooperationOn, CellsFoundOnTheCpuAreThoseThatTheDeviceFinds) {
 }
 
 // What was found of the particles as they lay is void when they have been moved.
-TEST_P(CooperationOn, CellsOfAWorldThatBeganAnewAreNotUsed) {
+TEST_P(CooperationOn, CellsOfAWorldThatWasResetAreNotUsed) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     const SceneFile scene = dam();
@@ -87,7 +87,7 @@ TEST_P(CooperationOn, CellsOfAWorldThatBeganAnewAreNotUsed) {
     EXPECT_EQ(anew, after(3, scene, *gpu->device, Plan::alone));
 }
 
-TEST_P(CooperationOn, AMethodThatMovesBeforeItSortsIsToldSo) {
+TEST_P(CooperationOn, AMethodThatMovesBeforeItSortsGetsANotice) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     const SceneFile scene = dam("pbf");
@@ -100,7 +100,7 @@ TEST_P(CooperationOn, AMethodThatMovesBeforeItSortsIsToldSo) {
 }
 
 // A plan that could do nothing is not named as the one that is followed.
-TEST_P(CooperationOn, APlanThatCanDoNothingIsNone) {
+TEST_P(CooperationOn, APlanWithNothingToDoBecomesAlone) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     SceneFile bodies = dam(), linked = dam("wcsph_thesis");
@@ -121,7 +121,7 @@ TEST_P(CooperationOn, APlanThatCanDoNothingIsNone) {
 }
 
 // And none when the cpu has taken over.
-TEST_P(CooperationOn, TheCpuThatTakesOverIsAlone) {
+TEST_P(CooperationOn, AfterAFallbackThePlanIsAlone) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     const std::unique_ptr<Device> cpu = makeTestCpu();
@@ -161,7 +161,7 @@ TEST_P(CooperationOn, AStepAloneReadsNothingBack) {
     EXPECT_FALSE(work.helped());
 }
 
-TEST_P(CooperationOn, SteppingAsideIsForTheCpu) {
+TEST_P(CooperationOn, SteppingInTheBackgroundIsForTheCpu) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     Said said;
@@ -196,7 +196,7 @@ TEST(CooperationOfTheCpu, StepsWhileAnotherWorks) {
 }
 
 // Means are of the frames that the timeline still knows, and of no session but their own.
-TEST(CooperationOfTheCpu, FiguresAreOfTheFramesThatAreRemembered) {
+TEST(CooperationOfTheCpu, FiguresAreOfTheFramesThatTheTimelineHolds) {
     const std::unique_ptr<Device> cpu = makeTestCpu();
     Timeline timeline(24);
     const auto run = [&](int frames) {
@@ -228,11 +228,11 @@ TEST(CooperationOfTheCpu, FiguresAreOfTheFramesThatAreRemembered) {
         EXPECT_LE(stats.overlapMs, stats.aheadMs * (1 + 1e-9));
     };
     run(100);
-    EXPECT_GT(timeline.remembersSince(), 0);
+    EXPECT_GT(timeline.completeSince(), 0);
     run(3);
 }
 
-TEST(CooperationOfTheCpu, ATraceThatIsNotAllOfTheRunIsSaidToBe) {
+TEST(CooperationOfTheCpu, ATruncatedTraceIsReported) {
     const std::string path = (std::filesystem::temp_directory_path() / "rivulet_trace_test.json").string();
     Said said;
     Timeline timeline(10);
@@ -243,7 +243,7 @@ TEST(CooperationOfTheCpu, ATraceThatIsNotAllOfTheRunIsSaidToBe) {
     timeline.add("main", {"step", begin, begin + 0.001});
     ASSERT_TRUE(writeTrace(path, timeline, said.log()));
     ASSERT_EQ(said.notices.size(), 1U);
-    EXPECT_NE(said.notices[0].find("missing"), std::string::npos) << said.notices[0];
+    EXPECT_NE(said.notices[0].find("only the last"), std::string::npos) << said.notices[0];
     std::filesystem::remove(path);
     EXPECT_FALSE(writeTrace("/nowhere/at/all.json", timeline, {}));
 }
@@ -258,7 +258,7 @@ TEST(CooperationOfTheCpu, HasNoGpuToHelp) {
 }
 
 // Every plan on every device, the fastest first; what is not there is left out.
-TEST(CooperationOfTheCpu, AutoTriesThePlansThatThereAre) {
+TEST(CooperationOfTheCpu, AutoTriesAllAvailablePlans) {
     const DrawFrame draw = [](Session&, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
         uploaded();
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -286,8 +286,8 @@ TEST(CooperationOfTheCpu, AutoTriesThePlansThatThereAre) {
     EXPECT_GE(cpus, 1U) << "alone, and behind unless it was far behind";
     EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
     EXPECT_LT(shares.back(), 1);
-    EXPECT_NE(sentenceOf(*tried, "gl").find("--backend gl is left for it"), std::string::npos) << sentenceOf(*tried, "gl");
+    EXPECT_NE(sentenceOf(*tried, "gl").find("it replaces --backend gl"), std::string::npos) << sentenceOf(*tried, "gl");
 }
 
 }  // namespace
-}  // namespace rivulet::cooperation_test::cooperation_test
+}  // namespace rivulet::cooperation_test

@@ -1,4 +1,4 @@
-// A device that has no memory for a scene, or is lost while it runs: the cpu goes on, nothing of the water is lost, and it is said once.
+// A device is out of memory for a scene, or is lost during a run: the cpu continues, no water is lost, and one notice reports it.
 #include "fluid/session/cpu_fallback.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "fluid/validate/physics_case.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::cpu_fallback_test::cpu_fallback_test {
+namespace rivulet::cpu_fallback_test {
 namespace {
 
 struct Said {
@@ -137,7 +137,7 @@ TEST_F(CpuFallback, ADeviceThatWorksIsLeftAlone) {
 }
 
 // A scene that makes no sense is no fault of the device.
-TEST_F(CpuFallback, WhatIsWrongWithASceneIsSaidAsEver) {
+TEST_F(CpuFallback, ErrorsOfASceneAreReportedAsOnAnyDevice) {
     SceneFile scene = dam("wcsph");
     scene.fluid.method = "none";
     const std::unique_ptr<Device> device = clWith({});
@@ -182,13 +182,13 @@ TEST_F(CpuFallback, NoMemoryMidway) {
     EXPECT_EQ(session.world().time(), then);
     EXPECT_EQ(byId(session.world(), *session.world().particles().position), x);
     EXPECT_EQ(byId(session.world(), *session.world().particles().velocity), v);
-    EXPECT_EQ(said_.of("the cpu goes on"), 1U);
+    EXPECT_EQ(said_.of("the cpu continues"), 1U);
     for (int k = 51; k < 200; ++k) {
         session.step(kFrame, true);
         EXPECT_FALSE(*keepRunning(session, device, said_.log()));
     }
     EXPECT_NE(session.world().particles().normal, nullptr) << "what there was no memory for is there now";
-    EXPECT_EQ(said_.of("the cpu goes on"), 1U);
+    EXPECT_EQ(said_.of("the cpu continues"), 1U);
     expectAlike(waterOf(session.world()), undisturbed(scene, 200));
 }
 
@@ -219,9 +219,9 @@ TEST_P(CpuFallbackOf, LostMidway) {
     EXPECT_GT(from, 0.0) << "from a snapshot, not from the start";
     EXPECT_LT(from, lostAt);
     EXPECT_EQ(device->backend(), Backend::cpu);
-    EXPECT_EQ(said_.of("the cpu goes on"), 1U);
+    EXPECT_EQ(said_.of("the cpu continues"), 1U);
     const std::string notice =
-        *std::find_if(said_.notices.begin(), said_.notices.end(), [](const auto& s) { return s.find("goes on") != s.npos; });
+        *std::find_if(said_.notices.begin(), said_.notices.end(), [](const auto& s) { return s.find("continues") != s.npos; });
     char expected[32];
     std::snprintf(expected, sizeof expected, "from %.3f s", from);
     EXPECT_NE(notice.find(expected), std::string::npos) << notice;
@@ -234,7 +234,7 @@ TEST_P(CpuFallbackOf, LostMidway) {
 INSTANTIATE_TEST_SUITE_P(Methods, CpuFallbackOf, testing::Values("wcsph", "pbf", "dfsph"),
                          [](const auto& row) { return std::string(row.param); });
 
-TEST_F(CpuFallback, LostBeforeAnythingWasKept) {
+TEST_F(CpuFallback, LostBeforeTheFirstSnapshot) {
     const SceneFile scene = dam("wcsph");
     std::unique_ptr<Device> device = clWith({.failAfter = 3});
     auto opened = openSession(scene, *device, said_.log());
@@ -257,7 +257,7 @@ SceneFile linked() {
     return scene;
 }
 
-TEST_F(CpuFallback, LinkedListsGoOnSorted) {
+TEST_F(CpuFallback, LinkedListsContinueSorted) {
     SceneFile sorted = linked();
     sorted.fluid.grid = "sorted";
     const Water calm = undisturbed(sorted, 200);
@@ -311,7 +311,7 @@ TEST_F(CpuFallback, LinkedListsWithoutMemoryAreSorted) {
 }
 
 // What a scene's cpu stands in for: another backend that is not there. Where the cpu was asked for, lists make no sense.
-TEST(TakeoverOfNothing, AnAbsentGpuLeavesLinkedListsSorted) {
+TEST(CpuFallbackWithoutGpu, AnAbsentGpuLeavesLinkedListsSorted) {
     const std::unique_ptr<Device> cpu = makeTestCpu();
     for (const char* asked : {"gl", "cl", "auto"}) {
         Said said;
@@ -330,7 +330,7 @@ TEST(TakeoverOfNothing, AnAbsentGpuLeavesLinkedListsSorted) {
 }
 
 // A budget tries settings, and one of them may be too large for the device: it is left out, and the device goes on with another.
-TEST_F(CpuFallback, ABudgetsTrialThatIsTooLargeIsNoFaultOfTheDevice) {
+TEST_F(CpuFallback, ABudgetsTrialThatIsTooLargeLeavesTheDeviceUsable) {
     const auto needs = [&](const char* method, float spacing) {
         SceneFile scene = dam(method);
         scene.fluid.spacing = spacing;
@@ -382,7 +382,7 @@ TEST_F(CpuFallback, ACaseOnADeviceThatFailsIsAnError) {
         const Result<Outcome> none = runCase(*physicsCases().find("momentum"), settings, compared ? cpu.get() : nullptr);
         ASSERT_FALSE(none);
         EXPECT_EQ(none.error().fault, Fault::failed);
-        EXPECT_NE(none.error().message.find("means nothing"), std::string::npos) << none.error().message;
+        EXPECT_NE(none.error().message.find("results are invalid"), std::string::npos) << none.error().message;
         settings.device = works.get();
         const Result<Outcome> some = runCase(*physicsCases().find("momentum"), settings, compared ? cpu.get() : nullptr);
         ASSERT_TRUE(some) << some.error().message;
@@ -391,7 +391,7 @@ TEST_F(CpuFallback, ACaseOnADeviceThatFailsIsAnError) {
 }
 
 // A headless run as a whole: stepped, drawn and recorded frame by frame, the CPU finding cells meanwhile, on a device that fails midway.
-TEST_F(CpuFallback, ARunGoesToItsEndWhateverFails) {
+TEST_F(CpuFallback, ARunReachesItsEndWhateverFails) {
     const SceneFile scene = dam("wcsph");
     const Water calm = undisturbed(scene, 120);
     for (const ClOptions& fault : {ClOptions{.failAfter = 901}, ClOptions{.eventFailsAfter = 901}}) {
@@ -426,7 +426,7 @@ TEST_F(CpuFallback, ARunGoesToItsEndWhateverFails) {
         work.drop();
         EXPECT_EQ(moves, 1);
         EXPECT_TRUE(helped);
-        EXPECT_EQ(said.of("the cpu goes on"), 1U);
+        EXPECT_EQ(said.of("the cpu continues"), 1U);
         EXPECT_EQ(said.of("--cooperate thesis"), 1U);
         EXPECT_EQ(said.notices.size(), 2U);
         const RunStats stats = recorder.finish("dam");
@@ -446,7 +446,7 @@ TEST_F(CpuFallback, ARunGoesToItsEndWhateverFails) {
 }
 
 // All that a scene can have beside water: what was thrown, what turns and bends, what comes in and goes out.
-TEST_F(CpuFallback, SolidsBodiesAndSourcesGoOnWhereTheyWere) {
+TEST_F(CpuFallback, SolidsBodiesAndSourcesContinue) {
     const auto lively = [](const std::vector<std::string>& more) {
         std::vector<std::string> set = {"fluid.spacing=0.025",       "colliders.0.resolution=32",       "fluid.foam.most=500",
                                         "bodies.0.size=0.1,0.1,0.1", "bodies.0.position=0.15,0.25,0.2", "emitters.0.position=0.8,0.6,0.2",
@@ -505,7 +505,7 @@ TEST_F(CpuFallback, SolidsBodiesAndSourcesGoOnWhereTheyWere) {
 }
 
 // Drops on a skin, in its brims and in the air: none is lost or made, and each is where it was.
-TEST_F(CpuFallback, FlowsOnSkinsGoOnWhereTheyWere) {
+TEST_F(CpuFallback, FlowsOnSkinsContinue) {
     auto scene = loadScene(
         "window_rain",
         std::vector<std::string>{"flow.0.mapSize=64", "flow.0.liquid.capacity=2048", "flow.0.liquid.filmCell=0.003",
@@ -579,11 +579,11 @@ TEST_F(CpuFallback, FlowsOnSkinsWhenADeviceIsLost) {
         moves += *moved ? 1 : 0;
     }
     EXPECT_EQ(moves, 1);
-    EXPECT_EQ(said_.of("the cpu goes on"), 1U);
+    EXPECT_EQ(said_.of("the cpu continues"), 1U);
     const SkinFlows::Ledger end = session.flows().ledger();
     EXPECT_EQ(end.error, 0.0);
     EXPECT_GT(end.onSurface, 0.0);
 }
 
 }  // namespace
-}  // namespace rivulet::cpu_fallback_test::cpu_fallback_test
+}  // namespace rivulet::cpu_fallback_test

@@ -8,10 +8,10 @@
 #include "engine/scene/skin.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::deform_parity_test::deform_parity_test {
+namespace rivulet::deform_parity_test {
 namespace {
 
-// A ball of radius 1 whose seam has two vertices a place, as a chart needs; the morph makes it an ellipsoid, two bones bend it.
+// A ball of radius 1 whose seam has two vertices per position, as UV charts need; the morph makes it an ellipsoid, two bones bend it.
 constexpr vec3 kAxes(1.6F, 0.7F, 1.1F);
 ModelPart ball(uint32_t rows = 48) {
     ModelPart part;
@@ -157,4 +157,4 @@ TEST_P(DeformParity, TheSameSkin) {
 INSTANTIATE_TEST_SUITE_P(Devices, DeformParity, testing::Values("gl", "cl"), [](const auto& of) { return std::string(of.param); });
 
 }  // namespace
-}  // namespace rivulet::deform_parity_test::deform_parity_test
+}  // namespace rivulet::deform_parity_test

@@ -1,4 +1,4 @@
-// Device cl on whatever OpenCL this machine has; and what is said where there is none.
+// Device cl on the OpenCL devices of this machine; and the error without one.
 #include "engine/compute/device_cl.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <numeric>
 #include <thread>
 
-namespace rivulet::device_cl_test::device_cl_test {
+namespace rivulet::device_cl_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,7 +77,7 @@ class ClDeviceTest : public testing::Test {
     std::unique_ptr<Device> device_;
 };
 
-TEST_F(ClDeviceTest, saysWhatItIs) {
+TEST_F(ClDeviceTest, infoNamesTheDevice) {
     EXPECT_EQ(device_->backend(), Backend::cl);
     EXPECT_FALSE(device_->info().name.empty());
     EXPECT_NE(device_->info().driver.find("OpenCL"), std::string::npos);
@@ -232,8 +232,8 @@ TEST_F(ClDeviceTest, compileErrorsNameTheFileAndLineTheyComeFrom) {
     EXPECT_FALSE(device_->kernel("test/none"));
 }
 
-// What another start has kept is run as it was built; what does not fit the text any more is not.
-TEST_F(ClDeviceTest, aKeptProgramDoesWhatItsSourceSays) {
+// A cached program of an earlier start runs as built; one whose source has changed is not used.
+TEST_F(ClDeviceTest, aCachedProgramBehavesAsItsSource) {
     const std::string cache = (root_ / "cache").string();
     const auto scaled = [&](const char* offset) {
         Result<std::unique_ptr<Device>> made = makeClDevice(ShaderFiles(root_.string()), {}, {.cache = cache});
@@ -274,7 +274,7 @@ TEST_F(ClDeviceTest, aKeptProgramDoesWhatItsSourceSays) {
     EXPECT_EQ(scaled("1"), (std::vector<float>{0, 1, 2}));
     ASSERT_TRUE(DiskCache(cache).find(key));
     EXPECT_GT(DiskCache(cache).find(key)->size(), junk.size());
-    // A mistake in the text is said by its file and line, whatever is kept.
+    // An error in the source is reported with file and line, independent of the cache.
     file("scale", std::string(kScale) + "\n\nnonsense\n");
     Result<std::unique_ptr<Device>> made = makeClDevice(ShaderFiles(root_.string()), {}, {.cache = cache});
     const Define defines[] = {{"OFFSET", "1"}};
@@ -298,8 +298,8 @@ TEST_F(ClDeviceTest, aLogIsNoLongerThanAScreenAndHasNoWarnings) {
     EXPECT_LE(std::count(said.begin(), said.end(), '\n'), 42) << said;
 }
 
-// No buffer: the device says so, and does all else. A dispatch refused: what is read back means nothing, and that stays so.
-TEST_F(ClDeviceTest, healthSaysWhatWasNotDone) {
+// A failed allocation is reported, and the device keeps working. After a refused dispatch the device is lost for good.
+TEST_F(ClDeviceTest, healthReportsTheFailedCommand) {
     EXPECT_EQ(device_->health().state, DeviceHealth::works);
     Result<std::unique_ptr<Device>> small = makeClDevice(ShaderFiles(root_.string()), {}, {.memoryLimit = 100});
     ASSERT_TRUE(small);
@@ -411,8 +411,8 @@ TEST_F(ClDeviceTest, aDispatchThatDoesNotFitItsKernelIsAProgrammersMistake) {
     testing::FLAGS_gtest_death_test_style = "threadsafe";
     const Kernel scale = scaleBy("0");
     const Buffer one = floats({1});
-    EXPECT_DEATH(device_->run(scale, FactorParams{}, {&one}, 1), "hand a buffer for every row");
-    EXPECT_DEATH(device_->run(Kernel{}, FactorParams{}, {&one, &one}, 1), "ask this device for the kernel");
+    EXPECT_DEATH(device_->run(scale, FactorParams{}, {&one}, 1), "pass a buffer for every row");
+    EXPECT_DEATH(device_->run(Kernel{}, FactorParams{}, {&one, &one}, 1), "get the kernel from this device");
 }
 
 // Each in a process of its own: the OpenCL loader looks for drivers once.
@@ -438,4 +438,4 @@ TEST(ClDeviceDeathTest, withoutADriverThereIsAPlainSentence) {
 }
 
 }  // namespace
-}  // namespace rivulet::device_cl_test::device_cl_test
+}  // namespace rivulet::device_cl_test

@@ -7,7 +7,7 @@
 #include "engine/gpu/device_gl.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::device_gl_test::device_gl_test {
+namespace rivulet::device_gl_test {
 namespace {
 
 struct alignas(16) ScaleParams {
@@ -143,7 +143,7 @@ TEST_F(DeviceGl, CopiesFillsAndWritesInOrder) {
     EXPECT_EQ(device_->readAll<float>(a, 4), (std::vector<float>{0, 0, 0, 0}));
 }
 
-TEST_F(DeviceGl, TooLargeABufferSaysWhatWasAskedForAndWhatIsAllowed) {
+TEST_F(DeviceGl, ATooLargeBufferIsRefusedWithBothSizes) {
     const size_t most = device_->info().maxBufferBytes;
     const Result<Buffer> buffer = device_->allocate(most + 1);
     ASSERT_FALSE(buffer);
@@ -226,4 +226,4 @@ TEST_F(DeviceGl, AThousandBuffersLeaveNothingBehind) {
 }
 
 }  // namespace
-}  // namespace rivulet::device_gl_test::device_gl_test
+}  // namespace rivulet::device_gl_test

@@ -8,7 +8,7 @@
 #include "shaders/fluid/surface/anisotropy_params.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::ellipsoids_parity_test::ellipsoids_parity_test {
+namespace rivulet::ellipsoids_parity_test {
 namespace {
 
 using glm::dmat3;
@@ -82,7 +82,7 @@ Found foundBy(Device& device, const std::vector<vec4>& position, uint32_t sample
     return found;
 }
 
-// As anisotropy_params.h says, its eigenvectors turned by angles, in doubles. The squared half axes as a matrix, and the centre.
+// The formulas of anisotropy_params.h in double precision, with eigenvectors by angles. The squared half axes as a matrix, and the centre.
 std::pair<dmat3, dvec3> exact(const std::vector<vec4>& position, size_t i, size_t fluid) {
     const double support = std::min(double{ANISOTROPY_SUPPORT}, 2.0) * double{kSpacing};
     double all = 0;
@@ -152,4 +152,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, EllipsoidsParity, testing::Values("cpu", "cl",
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::ellipsoids_parity_test::ellipsoids_parity_test
+}  // namespace rivulet::ellipsoids_parity_test

@@ -8,7 +8,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::emitter_parity_test::emitter_parity_test {
+namespace rivulet::emitter_parity_test {
 namespace {
 
 struct Seen {
@@ -65,7 +65,7 @@ Seen twelveFrames(Device& device) {
 
 class EmitterParity : public testing::TestWithParam<const char*> {};
 
-TEST_P(EmitterParity, AsManyAreBornAndDrainedAndInTheSamePlaces) {
+TEST_P(EmitterParity, TheSameParticlesAreEmittedAndDrained) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();
@@ -91,8 +91,8 @@ TEST_P(EmitterParity, AsManyAreBornAndDrainedAndInTheSamePlaces) {
     EXPECT_LT(worst, 0.1 * 0.025);  // a tenth of a spacing, after 120 steps of splashing
 }
 
-// What DFSPH remembers of a particle by its id goes with it, there as here.
-TEST_P(EmitterParity, WhoIsDrainedIsForgotten) {
+// The state that DFSPH stores per particle id is removed with the particle, on all devices.
+TEST_P(EmitterParity, TheStateOfADrainedParticleIsCleared) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     Device& device = *gpu->device;
@@ -135,4 +135,4 @@ TEST_P(EmitterParity, WhoIsDrainedIsForgotten) {
 INSTANTIATE_TEST_SUITE_P(Devices, EmitterParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::emitter_parity_test::emitter_parity_test
+}  // namespace rivulet::emitter_parity_test

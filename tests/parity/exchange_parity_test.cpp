@@ -1,10 +1,10 @@
-// Water that others hold beside the world, on cl and gl: as many taken, as many born of what is poured.
+// Exchange of water with a world on cl and gl: the same numbers of particles are removed and spawned as on the cpu.
 #include <gtest/gtest.h>
 
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::exchange_parity_test::exchange_parity_test {
+namespace rivulet::exchange_parity_test {
 namespace {
 
 constexpr double kOne = 0x1p-15;  // m^3, of a particle
@@ -25,15 +25,15 @@ TEST_P(ExchangeParity, TheSameOnAGpu) {
         p.blocks = {{vec3(0.0F), vec3(0.5F, 0.2F, 0.5F), vec3(0.0F)}};
         p.method = "pbf";
         p.pbf.minSubsteps = 4;
-        auto made = FluidWorld::create(*devices[d], p, {}, {}, {.poured = 100 * kOne});
+        auto made = FluidWorld::create(*devices[d], p, {}, {}, {.expectedDeposit = 100 * kOne});
         ASSERT_TRUE(made) << made.error().message;
         FluidWorld& world = **made;
         for (int k = 0; k < 2; ++k) world.step({}, 1.0 / 60);
         std::vector<uint32_t> slots;
         for (const WorldParticle& particle : world.within({vec3(0.1F, 0.05F, 0.1F), vec3(0.3F, 0.5F, 0.3F)}))
             slots.push_back(particle.slot);
-        world.take(slots);
-        world.pour(vec3(0.4F, 0.3F, 0.4F), vec3(0, -1, 0), 1.5 * kOne);
+        world.withdraw(slots);
+        world.deposit(vec3(0.4F, 0.3F, 0.4F), vec3(0, -1, 0), 1.5 * kOne);
         world.step({}, 1.0 / 60);
         devices[d]->finish();
         devices[d]->poll();
@@ -41,14 +41,14 @@ TEST_P(ExchangeParity, TheSameOnAGpu) {
         stats[d] = world.stats();
     }
     EXPECT_EQ(left[0].size(), left[1].size());
-    EXPECT_GT(stats[0].taken, 0.0);
-    EXPECT_EQ(stats[0].taken, stats[1].taken);
-    EXPECT_EQ(stats[0].poured, kOne);
-    EXPECT_EQ(stats[1].poured, kOne);
-    EXPECT_NEAR(stats[1].debt, 0.5 * kOne, 1e-15);
+    EXPECT_GT(stats[0].withdrawn, 0.0);
+    EXPECT_EQ(stats[0].withdrawn, stats[1].withdrawn);
+    EXPECT_EQ(stats[0].deposited, kOne);
+    EXPECT_EQ(stats[1].deposited, kOne);
+    EXPECT_NEAR(stats[1].pendingVolume, 0.5 * kOne, 1e-15);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, ExchangeParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::exchange_parity_test::exchange_parity_test
+}  // namespace rivulet::exchange_parity_test

@@ -11,7 +11,7 @@
 #include "tests/parity/devices.h"
 #include "tests/physics/charted_skins.h"
 
-namespace rivulet::flow_maps_parity_test::flow_maps_parity_test {
+namespace rivulet::flow_maps_parity_test {
 namespace {
 
 constexpr int kSize = 128;
@@ -41,7 +41,7 @@ std::vector<vec4> run(Device& device, std::vector<std::vector<vec4>>* layer) {
     std::vector<vec4> texels;
     for (size_t k = 0; k < words.size(); k += 2) texels.emplace_back(glm::unpackHalf2x16(words[k]), glm::unpackHalf2x16(words[k + 1]));
     if (made) {
-        // What a device sends later has come by now; once more asks for the last.
+        // Delayed results have arrived; one more call requests the last ones.
         for (int k = 0; k < 2; ++k) {
             device.finish();
             maps->draw(*flow);
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, FlowLayerTest, testing::Values("cpu", "cl", "g
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::flow_maps_parity_test::flow_maps_parity_test
+}  // namespace rivulet::flow_maps_parity_test

@@ -8,7 +8,7 @@
 #include "fluid/validate/flow_shapes.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::flow_parity_test::flow_parity_test {
+namespace rivulet::flow_parity_test {
 namespace {
 
 Result<FlowMesh> bumpyBall() {
@@ -67,7 +67,7 @@ TEST_P(FlowParity, TheSameDropsAtTheSamePlaces) {
     EXPECT_GT(here.ledger.merges, 5U);
     ASSERT_EQ(there.drops.size(), here.drops.size());
     EXPECT_GT(here.drops.size(), 10U);
-    // Which free slot a drop is born into, and so its id, is a GPU's own affair.
+    // The free slot of a new drop, and so its id, may differ on a GPU.
     for (const SkinDrop& d : here.drops)
         EXPECT_TRUE(std::any_of(there.drops.begin(), there.drops.end(),
                                 [&](const SkinDrop& o) {
@@ -116,4 +116,4 @@ TEST_P(FlowParity, ThesisModeToo) {
 INSTANTIATE_TEST_SUITE_P(Gpus, FlowParity, testing::Values("cl", "gl"));
 
 }  // namespace
-}  // namespace rivulet::flow_parity_test::flow_parity_test
+}  // namespace rivulet::flow_parity_test

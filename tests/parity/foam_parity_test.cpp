@@ -6,7 +6,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::foam_parity_test::foam_parity_test {
+namespace rivulet::foam_parity_test {
 namespace {
 
 struct Cloud {
@@ -58,4 +58,4 @@ TEST_P(FoamParity, AsMuchInTheSamePlaces) {
 INSTANTIATE_TEST_SUITE_P(Devices, FoamParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::foam_parity_test::foam_parity_test
+}  // namespace rivulet::foam_parity_test

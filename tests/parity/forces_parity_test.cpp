@@ -10,7 +10,7 @@
 #include "fluid/sim/methods/smoothing.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::forces_parity_test::forces_parity_test {
+namespace rivulet::forces_parity_test {
 namespace {
 
 constexpr float kSpacing = 0.03F;
@@ -228,4 +228,4 @@ TEST(ForcesParity, ImplicitViscosityIsTheExplicitOneInShortSteps) {
 }
 
 }  // namespace
-}  // namespace rivulet::forces_parity_test::forces_parity_test
+}  // namespace rivulet::forces_parity_test

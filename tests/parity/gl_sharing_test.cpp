@@ -1,4 +1,4 @@
-// Memory that OpenCL shares with OpenGL: refused where the driver has no word for it or does not keep it, and used as it says where it
+// Memory that OpenCL shares with OpenGL: refused if the driver has no extension for it or fails the test, and used as documented if it
 // does. The driver that shares is played: OpenCL's own memory beside each OpenGL buffer, brought up to date when it is acquired and
 // released.
 #define CL_TARGET_OPENCL_VERSION 120
@@ -18,12 +18,12 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::gl_sharing_test::gl_sharing_test {
+namespace rivulet::gl_sharing_test {
 namespace {
 
 enum class Lie { none, blind, mute, once, whole, elsewhere, noContext, noWrap, noAcquire, noRelease };
 
-// What the played driver knows. Functions that a driver offers have no place for it but here.
+// The state of the simulated driver. It is global, because driver functions take no user data.
 struct Played {
     Lie lie = Lie::none;
     std::string extensions = "cl_khr_byte_addressable_store cl_khr_gl_sharing cl_khr_fp64";
@@ -210,7 +210,7 @@ TEST_F(GlSharingTest, AnExtensionIsAWholeWord) {
         EXPECT_TRUE(hasExtension(words, "cl_khr_gl_sharing")) << words;
 }
 
-TEST_F(GlSharingTest, ADriverThatLiesIsNotTrusted) {
+TEST_F(GlSharingTest, SharingIsRefusedIfTheDriverFailsItsTest) {
     const struct {
         Lie lie;
         const char* said;
@@ -282,7 +282,7 @@ TEST_F(GlSharingTest, ABufferThatGrowsIsWrappedAnewAndTheOldOneLetGoFirst) {
     }
 }
 
-TEST_F(GlSharingTest, WhatFailsInTheMiddleOfARunGoesThroughTheRingFromThatFrameOn) {
+TEST_F(GlSharingTest, AfterAFailureDuringARunTheRingIsUsed) {
     const std::unique_ptr<Device> device = playing();
     const auto session = sessionOn(*device, block(8));
     FluidUpload upload;
@@ -323,7 +323,7 @@ TEST_F(GlSharingTest, WhenTheCpuTakesOverNothingIsLeftWrapped) {
 }
 
 // A device may go before what draws it, as in a run without a window, or after it, as in the window.
-TEST_F(GlSharingTest, WhicheverOfDeviceAndUploadGoesFirstNothingIsLeft) {
+TEST_F(GlSharingTest, NothingLeaksInEitherOrderOfDestruction) {
     for (const bool deviceFirst : {true, false}) {
         SCOPED_TRACE(deviceFirst);
         played = {};
@@ -357,4 +357,4 @@ TEST_F(GlSharingTest, AnotherDeviceIsNotTakenForTheLastOne) {
 }
 
 }  // namespace
-}  // namespace rivulet::gl_sharing_test::gl_sharing_test
+}  // namespace rivulet::gl_sharing_test

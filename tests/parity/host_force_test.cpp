@@ -12,7 +12,7 @@
 #include "tests/parity/devices.h"
 #include "tests/parity/host_force_kernels.h"
 
-namespace rivulet::host_force_test::host_force_test {
+namespace rivulet::host_force_test {
 namespace {
 
 // The host's part: its Params and four functions.
@@ -185,4 +185,4 @@ TEST(HostForceRows, ParamsAreVisibleAndNamesUnique) {
 }
 
 }  // namespace
-}  // namespace rivulet::host_force_test::host_force_test
+}  // namespace rivulet::host_force_test

@@ -8,11 +8,11 @@
 #include <map>
 #include <set>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/session/session.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::kernels_cl_test::kernels_cl_test {
+namespace rivulet::kernels_cl_test {
 namespace {
 
 // A kernel's figures over all its dispatches.
@@ -21,7 +21,7 @@ struct Compared {
     double worst = 0;  // of the largest value in the buffer
 };
 
-// cl, which does on the cpu, too, what it is told to dispatch.
+// Device cl, which repeats each dispatch on the cpu.
 class TwinDevice final : public Device {
   public:
     TwinDevice(Device& cl, Device& cpu) : cl_(cl), cpu_(cpu) {}
@@ -208,4 +208,4 @@ TEST_F(KernelsOfCl, EachDispatchIsTheCpus) {
 }
 
 }  // namespace
-}  // namespace rivulet::kernels_cl_test::kernels_cl_test
+}  // namespace rivulet::kernels_cl_test

@@ -14,7 +14,7 @@
 #include "shaders/fluid/world/stats_row.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::linked_list_test::linked_list_test {
+namespace rivulet::linked_list_test {
 namespace {
 
 constexpr float kSpacing = 0.03F, kReach = 2 * kSpacing;
@@ -44,7 +44,7 @@ Cloud strewn() {
     return cloud;
 }
 
-// What a world of the thesis has, without the world.
+// The buffers of a world in thesis mode, without the world.
 struct Bench {
     Device& device;
     FluidParams params;
@@ -251,7 +251,7 @@ TEST_P(LinkedList, AStepIsTheSortedGridsToOnePartInAHundredThousand) {
     for (uint32_t i = 0; i < linked.step.count; ++i)
         if (linked.cloud.inside(i)) worst = std::max(worst, double{glm::length(float3(at, i) - float3(then, i))});
     EXPECT_LT(worst, 3.0e-7) << "places are floats of up to 1.5 m";
-    // Who is in no list stays as it is.
+    // Particles in no list do not change.
     for (const uint32_t i : {kBelow, kFar, kFree}) {
         EXPECT_EQ(at[i], linked.cloud.position[i]) << i;
         EXPECT_EQ(linked.byId<vec4>(linked.particles.velocityNext)[i], linked.cloud.velocity[i]) << i;
@@ -271,7 +271,7 @@ TEST_P(LinkedList, AStepIsTheSortedGridsToOnePartInAHundredThousand) {
     EXPECT_EQ(sums[1][6], 1.0) << "of them NaN";
 }
 
-// What is found for drawing goes through the lists, too.
+// The neighbour search for drawing uses the lists too.
 TEST_P(LinkedList, EllipsoidsAreTheSortedGrids) {
     std::array<std::vector<vec4>, 3> found[2];
     for (const bool linked : {false, true}) {
@@ -419,7 +419,7 @@ TEST_P(LinkedList, NothingEntersASphereOfVoxels) {
 
 INSTANTIATE_TEST_SUITE_P(Devices, LinkedList, testing::Values("gl", "cl"), [](const auto& row) { return std::string(row.param); });
 
-// What linked lists do not know is refused in a sentence that names the key.
+// Features that linked lists do not support are refused with an error that names the key.
 TEST(LinkedListRefusal, NamesTheKeyAndTheRemedy) {
     const auto sentence = [](Device& device, const FluidParams& p, const Sources& sources = {}) {
         const auto world = FluidWorld::create(device, p, {}, {}, sources);
@@ -445,7 +445,7 @@ TEST(LinkedListRefusal, NamesTheKeyAndTheRemedy) {
     Sources emitters, sinks, poured;
     emitters.emitters.emplace_back();
     sinks.sinks.emplace_back();
-    poured.poured = 1.0e-3;
+    poured.expectedDeposit = 1.0e-3;
     for (const Sources& s : {emitters, sinks, poured}) refused("emitters", s, asItIs);
     refused("fluid.foam.most", {}, [](FluidParams& p) { p.foam.most = 100; });
     refused("tension", {}, [](FluidParams& p) { p.forces.tension = 0.07F; });
@@ -466,4 +466,4 @@ TEST(LinkedListRefusal, NamesTheKeyAndTheRemedy) {
 }
 
 }  // namespace
-}  // namespace rivulet::linked_list_test::linked_list_test
+}  // namespace rivulet::linked_list_test

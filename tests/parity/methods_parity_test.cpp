@@ -9,7 +9,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::methods_parity_test::methods_parity_test {
+namespace rivulet::methods_parity_test {
 namespace {
 
 struct After {
@@ -70,8 +70,8 @@ TEST_P(MethodsParity, AgreeWithinAHundredthAfter200Steps) {
 INSTANTIATE_TEST_SUITE_P(All, MethodsParity, testing::Combine(testing::Values("wcsph", "pbf", "dfsph"), testing::Values("cl", "gl")),
                          [](const auto& row) { return std::string(std::get<0>(row.param)) + "_" + std::get<1>(row.param); });
 
-// dfsph stops where the cpu does, though the host knows nothing of it: as many iterations a step, from the first frame on, and the water is
-// as dense. With iterations planned by the host, a pool began with three times the compression, and had three times as many later.
+// dfsph on a GPU stops at the same iteration as on the cpu, without the host: as many iterations per step from the first frame, and the
+// water is as dense. With iterations planned by the host, a pool began with three times the compression, and had three times as many later.
 class SolverStops : public testing::TestWithParam<const char*> {};
 
 TEST_P(SolverStops, WhereTheCpuDoes) {
@@ -93,7 +93,7 @@ TEST_P(SolverStops, WhereTheCpuDoes) {
             device.finish();
             device.poll();
             compression[which] += (*world)->stats().avgCompression / 12;
-            // What the host knows of a GPU's iterations it knows a frame later.
+            // The host receives a GPU's iteration counts one frame later.
             if (k >= 1) iterations[which] += (*world)->stats().iterations / 11;
         }
     }
@@ -101,8 +101,8 @@ TEST_P(SolverStops, WhereTheCpuDoes) {
     EXPECT_NEAR(iterations[1] / iterations[0], 1, 0.2);
 }
 
-// Water that falls into a pool, and nobody waits for the device: figures are late, and iterations queued are first too many, then too few.
-TEST_P(SolverStops, AndDoesSoWhenNobodyWaits) {
+// Water falls into a pool, without waiting for the device: results are late, so that first too many and then too few iterations are queued.
+TEST_P(SolverStops, AndDoesSoWithoutWaiting) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();
@@ -132,4 +132,4 @@ TEST_P(SolverStops, AndDoesSoWhenNobodyWaits) {
 INSTANTIATE_TEST_SUITE_P(Gpus, SolverStops, testing::Values("cl", "gl"));
 
 }  // namespace
-}  // namespace rivulet::methods_parity_test::methods_parity_test
+}  // namespace rivulet::methods_parity_test

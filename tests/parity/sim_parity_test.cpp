@@ -13,7 +13,7 @@
 #include "shaders/fluid/world/stats_row.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::sim_parity_test::sim_parity_test {
+namespace rivulet::sim_parity_test {
 namespace {
 
 constexpr float kSpacing = 0.03F;
@@ -67,7 +67,7 @@ VoxelField ball() {
     return field ? std::move(*field) : VoxelField{};
 }
 
-// What one step leaves, by particle id.
+// The state after one step, by particle id.
 using Fields = std::map<std::string, std::vector<vec4>>;
 
 std::vector<vec4> byId(const std::vector<uint32_t>& id, const std::vector<vec4>& values) {
@@ -316,4 +316,4 @@ TEST(SimSameness, ACpuRunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_parity_test::sim_parity_test
+}  // namespace rivulet::sim_parity_test

@@ -6,7 +6,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::solids_parity_test::solids_parity_test {
+namespace rivulet::solids_parity_test {
 namespace {
 
 constexpr float kSpacing = 0.05F;
@@ -105,4 +105,4 @@ TEST_P(SolidsParity, TheSameWaterAmongSolidsOfEveryKind) {
 INSTANTIATE_TEST_SUITE_P(Devices, SolidsParity, ::testing::Values("cl", "gl"), [](const auto& p) { return std::string(p.param); });
 
 }  // namespace
-}  // namespace rivulet::solids_parity_test::solids_parity_test
+}  // namespace rivulet::solids_parity_test

@@ -12,7 +12,7 @@
 #include "shaders/fluid/world/step_params.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::sort_test::sort_test {
+namespace rivulet::sort_test {
 namespace {
 
 const Define kScanDefines[] = {{"LOCAL_SIZE", "256"}};
@@ -178,7 +178,8 @@ TEST_P(SortTest, orderIsThatOfAStableSortByCellAndId) {
 }
 
 TEST_P(SortTest, allParticlesInOneCell) {
-    // llvmpipe ends all loops of a shader after 65,535 rounds in total: there the larger cell stays partly unsorted, but nobody is lost.
+    // llvmpipe ends all loops of a shader after 65,535 rounds in total: there the larger cell stays partly unsorted, but no particle is
+    // lost.
     const bool loopsEnd = device_->backend() == Backend::gl && device_->info().software;
     for (const uint32_t count : {1000U, 65537U}) {
         Particles all = randomParticles(count, count);
@@ -187,7 +188,7 @@ TEST_P(SortTest, allParticlesInOneCell) {
     }
 }
 
-TEST_P(SortTest, whatIsOutsideOrNotANumberGoesToLimbo) {
+TEST_P(SortTest, outsideAndNanParticlesAreSortedBehindTheGrid) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
     Particles all = randomParticles(5000, 4);
     uint32_t lost = 0;
@@ -226,4 +227,4 @@ TEST_P(SortTest, twoRunsGiveTheSameOrder) {
 INSTANTIATE_TEST_SUITE_P(Gpu, SortTest, testing::Values("cl", "gl"), [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
-}  // namespace rivulet::sort_test::sort_test
+}  // namespace rivulet::sort_test

@@ -6,7 +6,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::state_parity_test::state_parity_test {
+namespace rivulet::state_parity_test {
 namespace {
 
 FluidParams block(const char* method) {
@@ -68,7 +68,7 @@ TEST_P(StateParity, SavedOnTheCpuResumedThere) {
     }
 }
 
-// Figures that are still on their way when their world goes come to nobody: neither to it nor to the next world of that device.
+// Results that are pending when their world is destroyed are dropped: neither it nor the next world of that device receives them.
 TEST_P(StateParity, AWorldMayGoBeforeItsFiguresCome) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -96,4 +96,4 @@ TEST_P(StateParity, AWorldMayGoBeforeItsFiguresCome) {
 INSTANTIATE_TEST_SUITE_P(Devices, StateParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::state_parity_test::state_parity_test
+}  // namespace rivulet::state_parity_test

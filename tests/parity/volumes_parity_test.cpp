@@ -4,7 +4,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::volumes_parity_test::volumes_parity_test {
+namespace rivulet::volumes_parity_test {
 namespace {
 
 class VolumesParity : public testing::TestWithParam<const char*> {};
@@ -62,4 +62,4 @@ TEST_P(VolumesParity, CountsAreWhatLiesInThem) {
 INSTANTIATE_TEST_SUITE_P(Devices, VolumesParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::volumes_parity_test::volumes_parity_test
+}  // namespace rivulet::volumes_parity_test

@@ -5,7 +5,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::voxel_depth_devices_test::voxel_depth_devices_test {
+namespace rivulet::voxel_depth_devices_test {
 namespace {
 
 using test::Mesh;
@@ -66,4 +66,4 @@ TEST_P(VoxelDepthDevices, GiveTheBitsOfTheCpu) {
 INSTANTIATE_TEST_SUITE_P(Gpu, VoxelDepthDevices, testing::Values("gl", "cl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::voxel_depth_devices_test::voxel_depth_devices_test
+}  // namespace rivulet::voxel_depth_devices_test

@@ -1,4 +1,5 @@
-// What cl and gl say of the water at places and along rays is what the cpu says, sorted or in linked lists, at t = 0 and later.
+// Queries of the water at points and along rays give the same results on cl and gl as on the cpu, sorted or in linked lists, at t = 0 and
+// later.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +7,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::water_query_parity_test::water_query_parity_test {
+namespace rivulet::water_query_parity_test {
 namespace {
 
 class WaterQueryParity : public testing::TestWithParam<const char*> {};
@@ -72,4 +73,4 @@ TEST_P(WaterQueryParity, TheSameOnAGpu) {
 INSTANTIATE_TEST_SUITE_P(Devices, WaterQueryParity, testing::Values("cl", "gl"), [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::water_query_parity_test::water_query_parity_test
+}  // namespace rivulet::water_query_parity_test

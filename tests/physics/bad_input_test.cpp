@@ -1,4 +1,5 @@
-// What a program hands to a world and no file could have said: an error that names it, and never a crash, a hang or a world of nonsense.
+// Invalid input of a host that no file could contain: it is refused with an error that names it, and never causes a crash, a hang or a
+// corrupt world.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::bad_input_test::bad_input_test {
+namespace rivulet::bad_input_test {
 namespace {
 
 FluidParams sound() {
@@ -56,7 +57,7 @@ TEST(BadInput, AParamOutOfItsRangeIsNamed) {
     EXPECT_EQ(refusal(sound()), "");
 }
 
-TEST(BadInput, AWorldKeepsWhatItWasWhenItIsToldNonsense) {
+TEST(BadInput, InvalidInputLeavesAWorldUnchanged) {
     auto device = cpu();
     auto world = make(*device, sound());
     FluidParams p = sound();
@@ -85,7 +86,7 @@ TEST(BadInput, EmittersAndSinksAreNamed) {
     EXPECT_TRUE(refusal(sound(), {}, {.emitters = {{EmitterParams{}, {}}, {lost, {}}}}).starts_with("emitters[1].position "));
     EXPECT_TRUE(refusal(sound(), {}, {.sinks = {{.radius = -1}}}).starts_with("sinks[0].radius "));
     EXPECT_NE(refusal(sound(), {}, {.seconds = std::numeric_limits<double>::quiet_NaN()}), "");
-    EXPECT_NE(refusal(sound(), {}, {.poured = -1}), "");
+    EXPECT_NE(refusal(sound(), {}, {.expectedDeposit = -1}), "");
 }
 
 TEST(BadInput, SolidsAreNamed) {
@@ -135,4 +136,4 @@ TEST(BadInput, BodiesAndTheirHostAreNamed) {
 }
 
 }  // namespace
-}  // namespace rivulet::bad_input_test::bad_input_test
+}  // namespace rivulet::bad_input_test

@@ -15,7 +15,7 @@
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 
-namespace rivulet::bodies_test::bodies_test {
+namespace rivulet::bodies_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu(int threads = 0) {
@@ -167,7 +167,7 @@ TEST(Samples, AMeshIsTheBoxItShows) {
     EXPECT_FALSE(meshShape({corners, inverted, {}, {}}, 700, s)) << "inside out";
 }
 
-// A free body turns as Euler says: angular momentum stays, energy too, while the spin wanders about the middle axis.
+// A free body obeys Euler's equations: angular momentum and energy are conserved, while the spin moves around the middle axis.
 TEST(FreeBody, TumblesWithItsAngularMomentum) {
     Body body;
     body.shape = boxShape(vec3(0.3F, 0.2F, 0.1F), 500, 0.02F);
@@ -477,7 +477,7 @@ TEST(Contact, ABoxOnASlopeStaysOrSlidesAsCoulombSays) {
     }
 }
 
-// What bends would be passed through: that is said, not done.
+// Bodies would pass through a deforming mesh: such a scene is refused with an error.
 TEST(Contact, AScenesBendingColliderIsRefusedBesideBodies) {
     auto device = cpu();
     SceneFile scene;
@@ -502,4 +502,4 @@ TEST(Contact, AScenesBendingColliderIsRefusedBesideBodies) {
 }
 
 }  // namespace
-}  // namespace rivulet::bodies_test::bodies_test
+}  // namespace rivulet::bodies_test

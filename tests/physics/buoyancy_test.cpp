@@ -1,4 +1,5 @@
-// Bodies that float on sampled water, integrated by a host of a few lines: as deep as Archimedes has it, and the water knows nothing of it.
+// Bodies that float on sampled water, integrated by a host of a few lines: their draught is that of Archimedes, and the water is not
+// affected.
 #include "fluid/sim/solids/buoyancy.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,7 @@
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::buoyancy_test::buoyancy_test {
+namespace rivulet::buoyancy_test {
 namespace {
 
 constexpr float kSpacing = 0.025F;
@@ -90,7 +91,7 @@ TEST(Buoyancy, ForcesAreThoseOfArchimedesAndMorison) {
     BodyLoad load = buoyancy(points, state, water, params, 4, 1e-6);
     EXPECT_NEAR(load.force.y, weight, 1e-4 * weight);
     EXPECT_LT(glm::length(load.torque), 1e-4);
-    // Denser than at rest it bears no more.
+    // Water above rest density gives no more buoyancy.
     for (FluidSample& s : water) s.density = 1.3F;
     EXPECT_NEAR(buoyancy(points, state, water, params, 4, 1e-6).force.y, weight, 1e-4 * weight);
     // One half under: half the force, half of half the width beside the middle.
@@ -135,4 +136,4 @@ TEST(Buoyancy, ACubeOfHalfTheDensityFloatsHalfUnder) {
 }
 
 }  // namespace
-}  // namespace rivulet::buoyancy_test::buoyancy_test
+}  // namespace rivulet::buoyancy_test

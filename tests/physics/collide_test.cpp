@@ -6,7 +6,7 @@
 #include "tests/physics/collide_unit.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::collide_test::collide_test {
+namespace rivulet::collide_test {
 namespace {
 
 // Free particles (no pressure) under gravity and the collide kernel, as a step of the fluid would run them.
@@ -32,7 +32,7 @@ struct World {
         for (uint32_t word : surfaceWords({}, {friction, restitution})) field.normal.push_back(word);
     }
 
-    // Only where a particle may be born: at contact or further.
+    // Only positions where a particle may be spawned: at contact distance or further away.
     bool add(const vec3& p, const vec3& v) {
         if (field.clearance(p) < params.contact) return false;
         position.emplace_back(p, 0.25F);
@@ -330,7 +330,7 @@ TEST(Collide, FlowsThroughANarrowChannel) {
     }
 }
 
-// Born nearer than contact, where distances tell little: only the walk through the voxels holds, and it does.
+// Spawned nearer than the contact distance, where distances are inexact: the traversal of the voxels alone must stop the particle.
 TEST(Collide, TheWalkHoldsWhereDistancesDoNot) {
     random_.seed(8);
     World channel(
@@ -393,4 +393,4 @@ TEST(Collide, LeavesAloneWhatIsNotItsBusiness) {
 }
 
 }  // namespace
-}  // namespace rivulet::collide_test::collide_test
+}  // namespace rivulet::collide_test

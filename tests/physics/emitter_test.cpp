@@ -11,7 +11,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::emitter_test::emitter_test {
+namespace rivulet::emitter_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -86,7 +86,7 @@ TEST(Emitter, LitresASecondAreExactToAParticle) {
     }
 }
 
-// A nozzle that has been blocked lets out what it owes faster: what step length is chosen by knows of it.
+// A nozzle that was blocked emits its pending volume faster: the choice of the time step includes that speed.
 TEST(Emitter, NothingComesOutFasterThanItSays) {
     EmitterFeed feed(nozzle(0.5F, 0.0F, 0.05F), 0, 0.02F);
     std::vector<Candidate> out;
@@ -257,7 +257,7 @@ TEST(Emitter, NothingIsBornInABody) {
     EXPECT_EQ(world->stats().lost, 0U);
 }
 
-// What a method remembers of a particle goes with it: whoever is born with its id begins without.
+// The solver state of a particle is removed with it: a new particle with the same id starts without.
 TEST(Emitter, WhoIsBornWithAnotherParticlesIdRemembersNothing) {
     auto device = makeTestCpu();
     FluidParams p = boxWorld(0.03F, "dfsph");
@@ -273,7 +273,7 @@ TEST(Emitter, WhoIsBornWithAnotherParticlesIdRemembersNothing) {
         EXPECT_TRUE(pressure);
         return *pressure;
     };
-    // Whoever stood at the bottom of the pool at first was pressed, and is let out later.
+    // Particles that were at the bottom of the pool at the start had pressure, and are drained later.
     SinkParams away = sink;
     away.position.y = -5;
     ASSERT_TRUE(world->setSources({.sinks = {away}}));
@@ -332,7 +332,7 @@ TEST(Emitter, WhatMakesNoSenseIsRefusedInWords) {
     }
 }
 
-// The same bits for any threads and instruction set: who is born where depends on no race.
+// The same bits for any threads and instruction set: the positions of new particles depend on no race.
 TEST(Emitter, ARunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
     uint64_t first = 0;
     for (auto [threads, isa] :
@@ -358,4 +358,4 @@ TEST(Emitter, ARunIsBitwiseTheSameForAnyThreadsAndInstructionSet) {
 }
 
 }  // namespace
-}  // namespace rivulet::emitter_test::emitter_test
+}  // namespace rivulet::emitter_test

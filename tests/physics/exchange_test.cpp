@@ -9,7 +9,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::exchange_test::exchange_test {
+namespace rivulet::exchange_test {
 namespace {
 
 constexpr float kSpacing = 0.03125F;  // m: a float, and so is its cube
@@ -27,7 +27,7 @@ FluidParams pool() {
 }
 
 std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, double poured = 100 * kOne) {
-    auto world = FluidWorld::create(device, params, {}, {}, {.poured = poured});
+    auto world = FluidWorld::create(device, params, {}, {}, {.expectedDeposit = poured});
     EXPECT_TRUE(world) << (world ? "" : world.error().message);
     return world ? std::move(*world) : nullptr;
 }
@@ -53,14 +53,14 @@ TEST(Exchange, WhatIsTakenIsGoneAndNothingElse) {
             slots.push_back(found[k].slot);
             gone.insert({found[k].position.x, found[k].position.y, found[k].position.z});
         }
-        world->take(slots);
+        world->withdraw(slots);
         const std::vector<vec3> after = positions(*world);
         EXPECT_EQ(after.size(), before.size() - slots.size());
         for (const vec3& x : after) EXPECT_EQ(gone.count({x.x, x.y, x.z}), 0U);
     }
-    // It closes over them, and its figures say so.
+    // The water closes the gap, which the stats show.
     for (int k = 0; k < 30; ++k) world->step({}, 1.0 / 60);
-    EXPECT_NEAR(world->stats().emitted, static_cast<double>(positions(*world).size()) * kOne + world->stats().taken, 1e-12);
+    EXPECT_NEAR(world->stats().emitted, static_cast<double>(positions(*world).size()) * kOne + world->stats().withdrawn, 1e-12);
     EXPECT_EQ(world->stats().lost, 0U);
 }
 
@@ -71,15 +71,15 @@ TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
     const size_t before = positions(*world).size();
     const vec3 place(0.31F, 0.2F, 0.18F);
     // A tear: less than a particle. It is owed, and nothing is to be seen.
-    world->pour(place, vec3(0, -2, 0), 8.0e-9);
+    world->deposit(place, vec3(0, -2, 0), 8.0e-9);
     for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
     EXPECT_EQ(positions(*world).size(), before);
-    EXPECT_NEAR(world->stats().debt, 8.0e-9, 1e-18);
+    EXPECT_NEAR(world->stats().pendingVolume, 8.0e-9, 1e-18);
     // Many: the first is born near the place, above the water.
     double poured = 8.0e-9;
     size_t now = before;
     for (int k = 0; k < 60; ++k, poured += 0.21 * kOne) {
-        world->pour(place, vec3(0, -2, 0), 0.21 * kOne);
+        world->deposit(place, vec3(0, -2, 0), 0.21 * kOne);
         world->step({}, 1.0 / 60);
         if (const std::vector<vec3> all = positions(*world); all.size() > now) {
             if (now == before) {
@@ -91,18 +91,18 @@ TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
             now = all.size();
         }
         const FluidStats& s = world->stats();
-        EXPECT_NEAR(s.poured + s.debt, poured + 0.21 * kOne, 1e-15);
-        EXPECT_NEAR(s.poured, static_cast<double>(now - before) * kOne, 1e-15);
+        EXPECT_NEAR(s.deposited + s.pendingVolume, poured + 0.21 * kOne, 1e-15);
+        EXPECT_NEAR(s.deposited, static_cast<double>(now - before) * kOne, 1e-15);
     }
     for (int k = 0; k < 30; ++k) world->step({}, 1.0 / 60);
     EXPECT_EQ(positions(*world).size(), before + static_cast<size_t>(poured / kOne));
-    EXPECT_LT(world->stats().debt, kOne);
+    EXPECT_LT(world->stats().pendingVolume, kOne);
     EXPECT_LT(world->stats().maxCompression, 0.05);
     EXPECT_LT(world->stats().maxSpeed, 1.5);  // nobody was squeezed out
     world->reset();
     EXPECT_EQ(positions(*world).size(), before);
-    EXPECT_EQ(world->stats().debt, 0.0);
-    EXPECT_EQ(world->stats().taken, 0.0);
+    EXPECT_EQ(world->stats().pendingVolume, 0.0);
+    EXPECT_EQ(world->stats().withdrawn, 0.0);
 }
 
 // A debt is part of a saved world, and what comes after is the same.
@@ -114,21 +114,21 @@ TEST(Exchange, ASavedWorldKeepsItsDebts) {
     std::vector<uint32_t> slots;
     for (const WorldParticle& p : some) slots.push_back(p.slot);
     ASSERT_FALSE(slots.empty());
-    a->take(slots);
-    a->pour(vec3(0.3F, 0.22F, 0.3F), vec3(0.1F, -1, 0), 2.6 * kOne);
+    a->withdraw(slots);
+    a->deposit(vec3(0.3F, 0.22F, 0.3F), vec3(0.1F, -1, 0), 2.6 * kOne);
     WorldState state;
     a->save(state);
     const Status restored = b->restore(state);
     ASSERT_TRUE(restored) << restored.error().message;
-    EXPECT_EQ(b->stats().debt, a->stats().debt);
-    EXPECT_EQ(b->stats().taken, a->stats().taken);
+    EXPECT_EQ(b->stats().pendingVolume, a->stats().pendingVolume);
+    EXPECT_EQ(b->stats().withdrawn, a->stats().withdrawn);
     for (int k = 0; k < 20; ++k) {
         a->step({}, 1.0 / 60);
         b->step({}, 1.0 / 60);
     }
     EXPECT_EQ(positions(*a), positions(*b));
-    EXPECT_EQ(a->stats().poured, 2 * kOne);
-    // One that knows nobody else is no world for it.
+    EXPECT_EQ(a->stats().deposited, 2 * kOne);
+    // A world without a partner refuses the call.
     auto alone = make(*device, pool(), 0);
     WorldState again;
     a->save(again);
@@ -136,4 +136,4 @@ TEST(Exchange, ASavedWorldKeepsItsDebts) {
 }
 
 }  // namespace
-}  // namespace rivulet::exchange_test::exchange_test
+}  // namespace rivulet::exchange_test

@@ -9,7 +9,7 @@
 #include "fluid/validate/draught.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::floating_test::floating_test {
+namespace rivulet::floating_test {
 namespace {
 
 struct Fluid {
@@ -178,4 +178,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, Sticking, testing::Values("wcsph", "pbf", "dfs
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace rivulet::floating_test::floating_test
+}  // namespace rivulet::floating_test

@@ -10,7 +10,7 @@
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::flow_face_test::flow_face_test {
+namespace rivulet::flow_face_test {
 namespace {
 
 struct Way {
@@ -113,4 +113,4 @@ TEST(FlowOnAFace, ADropThatHangsGoesOverToSkinThatItTouches) {
 }
 
 }  // namespace
-}  // namespace rivulet::flow_face_test::flow_face_test
+}  // namespace rivulet::flow_face_test

@@ -17,7 +17,7 @@
 #include "tests/physics/charted_skins.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::flow_maps_test::flow_maps_test {
+namespace rivulet::flow_maps_test {
 namespace {
 
 using test::addSheet;
@@ -517,4 +517,4 @@ TEST(FlowMaps, TheThesissPictureIsStretchedWithItsChart) {
 }
 
 }  // namespace
-}  // namespace rivulet::flow_maps_test::flow_maps_test
+}  // namespace rivulet::flow_maps_test

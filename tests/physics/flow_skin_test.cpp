@@ -10,7 +10,7 @@
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::flow_skin_test::flow_skin_test {
+namespace rivulet::flow_skin_test {
 namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
@@ -47,7 +47,7 @@ TEST(FlowOnAMovingSkin, ADropKeepsItsOwnPlaceOverAPlateThatIsPulledAway) {
 }
 
 // On a plate that turns it goes straight, which is a spiral to the plate: centrifugal and Coriolis forces are nothing else.
-TEST(FlowOnAMovingSkin, ADropThatNothingHoldsGoesStraightOverAPlateThatTurns) {
+TEST(FlowOnAMovingSkin, ADropWithoutRetentionMovesStraightOverARotatingPlate) {
     auto device = cpu();
     const Shape rest = sheetShape(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
     SurfaceFlowParams p;
@@ -79,7 +79,7 @@ TEST(FlowOnAMovingSkin, ADropThatNothingHoldsGoesStraightOverAPlateThatTurns) {
 }
 
 // Nusselt 1916: a film 100 micrometres thick runs down an upright wall at rho g h^2 / (3 mu) = 32.7 mm/s.
-TEST(FlowFilm, RunsAsNusseltSays) {
+TEST(FlowFilm, RunsAtNusseltsSpeed) {
     for (const double jitter : {0.0, 0.3}) {
         auto device = cpu();
         const Shape wall = sheetShape(vec3(0, 0.2F, 0), vec3(0, -0.2F, 0), vec3(0.08F, 0, 0), 40, 16);
@@ -218,4 +218,4 @@ TEST(FlowCase, HoldsItsTolerances) {
 }
 
 }  // namespace
-}  // namespace rivulet::flow_skin_test::flow_skin_test
+}  // namespace rivulet::flow_skin_test

@@ -9,7 +9,7 @@
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::flow_test::flow_test {
+namespace rivulet::flow_test {
 namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
@@ -358,4 +358,4 @@ TEST(Flow, LosesNothing) {
 }
 
 }  // namespace
-}  // namespace rivulet::flow_test::flow_test
+}  // namespace rivulet::flow_test

@@ -1,4 +1,4 @@
-// Thesis mode: the walker on the UV layout does what (11)-(21) say where they are mended, and what is printed does not.
+// Thesis mode: flow in UV obeys (11)-(21) with the corrections; the printed formulas fail.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "tests/physics/skins.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::flow_thesis_test::flow_thesis_test {
+namespace rivulet::flow_thesis_test {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
@@ -21,7 +21,7 @@ constexpr uint32_t kMicrolitre = 1000000;  // picolitres
 constexpr double kGravity = 9.81;
 constexpr double kStep = 1.0 / 60;
 
-// A tangential force alone, nothing that holds, nobody who pushes.
+// A tangential force only, without retention and without neighbours.
 ThesisParams bare() {
     ThesisParams p;
     p.friction = p.adhesive = p.curvature = p.stiffness = p.viscosity = 0;
@@ -91,7 +91,7 @@ TEST(ThesisForms, ThePrintedNormalPutsAnAreaIntoTheForceAwayFromTheSkin) {
     }
 }
 
-TEST(ThesisForms, ThePrintedSignThrowsOffWhatLiesAndTheLoneDropIsHeldForEver) {
+TEST(ThesisForms, ThePrintedSignDetachesRestingDropsAndASingleDropIsHeldForEver) {
     const double weight = 1.0e-5;
     // Lying on a floor its weight is away from the skin by -weight.
     EXPECT_LT(printedHold(-weight, 1.0e-6, 0, 1), 0);
@@ -103,7 +103,7 @@ TEST(ThesisForms, ThePrintedSignThrowsOffWhatLiesAndTheLoneDropIsHeldForEver) {
     EXPECT_DOUBLE_EQ(correctedHold(0, 0, 1.0e-8, 0, 1.0e-6), 1.0e-6);
 }
 
-TEST(FlowThesis, AStepsVelocityIsGravityAlongTheSkinWhateverTheLayout) {
+TEST(FlowThesis, AStepsVelocityIsGravityAlongTheSkinInEveryLayout) {
     for (const float shear : {0.0F, 0.7F})
         for (const Layout layout : {Layout::own, Layout::stretched, Layout::turned, Layout::pieces}) {
             Shape shape = wall(shear);
@@ -200,7 +200,7 @@ TEST(FlowThesis, WhetherADropIsHeldDependsOnTheLayout) {
     EXPECT_TRUE(slides(2));
 }
 
-TEST(FlowThesis, WhatHangsWithoutAdhesionLetsGoAndWhatLiesStays) {
+TEST(FlowThesis, WithoutAdhesionHangingDropsDetachAndLyingDropsStay) {
     for (const bool under : {false, true}) {
         Thesis t(lying(under).view(), bare());
         t.add(vec3(0.1F, 0, 0.1F), kMicrolitre, vec3(0.02F, 0, 0.01F));
@@ -266,7 +266,7 @@ TEST(FlowThesis, WhatRunsOverASeamDrainsAndTheLedgerCloses) {
     EXPECT_EQ(l.film, 0U);
 }
 
-TEST(FlowThesis, ParticlesPushAndDragAsTheSumsSay) {
+TEST(FlowThesis, PressureAndViscosityMatchTheirSums) {
     ThesisParams p = bare();
     p.reach = 0.05F;
     p.restDensity = 0.004F;
@@ -314,7 +314,7 @@ TEST(FlowThesis, ParticlesPushAndDragAsTheSumsSay) {
         }
         const dvec2 expected = all[i].v + a / std::max(rho[i], rest) * kShort;
         fastest = std::max(fastest, glm::length(expected - all[i].v));
-        // Drops are told by id: find it by its mass.
+        // Drops are reported by id: this one is found by its mass.
         const auto same = std::min_element(drops.begin(), drops.end(), [&](const SkinDrop& x, const SkinDrop& y) {
             return std::abs(x.volume * 1005 - all[i].mass) < std::abs(y.volume * 1005 - all[i].mass);
         });
@@ -340,14 +340,14 @@ TEST(FlowThesis, ALoneDropIsHeldByACappedTensionOnly) {
     EXPECT_EQ(speed(1.5 * pull * mass), 0);
 }
 
-TEST(FlowThesis, BadUvsAreRefusedOrLeftOutInPlainWords) {
+TEST(FlowThesis, InvalidUvsAreRefusedOrSkippedWithAMessage) {
     auto device = cpu();
     const Shape shape = wall();
     Result<FlowMesh> mesh = makeFlowMesh(shape.view());
     ASSERT_TRUE(mesh);
     const auto made = [&](const std::vector<vec2>& uvs) { return SurfaceFlow::createThesis(*device, FlowMesh(*mesh), uvs, {}, {}); };
     std::vector<vec2> uvs = cornerUvs(*mesh, shape.view());
-    EXPECT_EQ(made({}).error().message, "thesis mode was given 0 UVs for 384 corners: give each corner of each triangle its own");
+    EXPECT_EQ(made({}).error().message, "thesis mode has 0 UVs for 384 corners: give one for each corner of each triangle");
     EXPECT_EQ(made(std::vector<vec2>(uvs.size(), vec2(0.5F))).error().message,
               "no triangle of the skin has an area in UV, which thesis mode flows in: give it UVs, or mode drops");
     for (size_t k = 0; k < 30; ++k) uvs[k * 5] = vec2(k % 2 == 0 ? std::nanf("") : 1.0e30F, 0);
@@ -398,4 +398,4 @@ TEST(FlowThesis, ItsPictureLeansWithTheWind) {
 }
 
 }  // namespace
-}  // namespace rivulet::flow_thesis_test::flow_thesis_test
+}  // namespace rivulet::flow_thesis_test

@@ -10,7 +10,7 @@
 #include "tests/parity/devices.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::foam_test::foam_test {
+namespace rivulet::foam_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -73,7 +73,7 @@ TEST(Foam, CalmWaterMakesNone) {
         world->step({}, kFrame);
         EXPECT_EQ(flecks(*world).size(), 0U) << k;
     }
-    // And where nobody asked for it there is none.
+    // Without the option there is no foam.
     EXPECT_EQ(make(*device, boxOf(0.3F, false, 0))->particles().foam, nullptr);
 }
 
@@ -251,7 +251,7 @@ TEST(Foam, BornBehindAWallItStaysThere) {
     EXPECT_GT(near, 100U) << "where the wall has been";
 }
 
-// What comes down where it is dry does not stay there for good.
+// Spray that lands on a dry place disappears after some time.
 TEST(Foam, SprayOnADryShelfAges) {
     auto device = makeTestCpu();
     const test::Mesh shelf = test::makeBox(vec3(0.3F, 0.4F, 0.1F), vec3(0.7F, 0.5F, 0.4F));
@@ -291,7 +291,7 @@ TEST(Foam, OnCalmWaterItLiesAndAges) {
     EXPECT_EQ(flecks(*world).size(), 0U);
 }
 
-// Who is born, and where, depends on no thread; and a saved world goes on with what it had.
+// Number and positions of new foam do not depend on threads; a saved world continues with its foam.
 TEST(Foam, TheSameRunMakesTheSame) {
     auto device = makeTestCpu();
     const auto sorted = [](FluidWorld& world) {
@@ -376,4 +376,4 @@ TEST(Foam, AStateOfOtherSlotsIsRefusedAndNothingIsLost) {
 }
 
 }  // namespace
-}  // namespace rivulet::foam_test::foam_test
+}  // namespace rivulet::foam_test

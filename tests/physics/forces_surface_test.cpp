@@ -8,7 +8,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::forces_surface_test::forces_surface_test {
+namespace rivulet::forces_surface_test {
 namespace {
 
 struct State {
@@ -237,4 +237,4 @@ TEST(Vorticity, ConfinementKeepsAWhirlUp) {
 }
 
 }  // namespace
-}  // namespace rivulet::forces_surface_test::forces_surface_test
+}  // namespace rivulet::forces_surface_test

@@ -10,7 +10,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::forces_viscosity_test::forces_viscosity_test {
+namespace rivulet::forces_viscosity_test {
 namespace {
 
 struct State {
@@ -321,4 +321,4 @@ TEST(NoSlip, CouetteFlowUnderAMovingPlate) {
 }
 
 }  // namespace
-}  // namespace rivulet::forces_viscosity_test::forces_viscosity_test
+}  // namespace rivulet::forces_viscosity_test

@@ -8,7 +8,7 @@
 #include "fluid/sim/world/host_particles.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::go_on_test::go_on_test {
+namespace rivulet::go_on_test {
 namespace {
 
 // A column of water beside a ball on the floor.
@@ -85,7 +85,7 @@ TEST(GoOn, OnlyWhatIsInTheMovedBallIsTakenAway) {
     EXPECT_EQ(two->world().stats().particles, open(*device, after)->world().stats().particles) << "the scene's own beginning";
 }
 
-// A state that is saved after it can be resumed by a session that knows nothing of the first.
+// A state that is saved after it can be resumed by another session.
 TEST(GoOn, FoamStaysOnTheWater) {
     auto device = cpu();
     SceneFile before = scene();
@@ -223,4 +223,4 @@ TEST(GoOn, AnotherSpacingStartsAnew) {
 }
 
 }  // namespace
-}  // namespace rivulet::go_on_test::go_on_test
+}  // namespace rivulet::go_on_test

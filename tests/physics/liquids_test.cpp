@@ -1,4 +1,4 @@
-// Liquids: the table, and two of them in one world against what hydrostatics says.
+// Liquids: the table, and two of them in one world against hydrostatics.
 #include "fluid/sim/sources/liquids.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/parity/devices.h"
 
-namespace rivulet::liquids_test::liquids_test {
+namespace rivulet::liquids_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 60;
@@ -216,4 +216,4 @@ TEST(Liquids, DyeStaysWithItsParticles) {
 }
 
 }  // namespace
-}  // namespace rivulet::liquids_test::liquids_test
+}  // namespace rivulet::liquids_test

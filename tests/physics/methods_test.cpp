@@ -10,7 +10,7 @@
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
 
-namespace rivulet::methods_test::methods_test {
+namespace rivulet::methods_test {
 namespace {
 
 class Methods : public testing::TestWithParam<const char*> {
@@ -55,7 +55,8 @@ TEST_P(Methods, APoolAtRestKeepsItsLevelAndIsStill) {
     EXPECT_LT(highest, 0.5F + 0.05F) << "a particle climbed";
 }
 
-// A block with jitter: nobody further than that from his place, nobody outside, all over the range, and the same every time.
+// A block with jitter: no particle is further than that from its lattice point or outside the block; all of the range occurs; runs are
+// identical.
 TEST(Block, JitterStrewsParticlesAboutTheirLattice) {
     BlockParams b;
     b.min = vec3(0.1F);
@@ -90,7 +91,7 @@ TEST(Block, JitterStrewsParticlesAboutTheirLattice) {
     }
 }
 
-// A ball holds what an ellipsoid's volume does, and nobody stands outside it.
+// A ball has the particle count of its volume, and no particle is outside it.
 TEST(Block, ABallIsTheEllipsoidBetweenItsCorners) {
     BlockParams b;
     b.shape = "ball";
@@ -339,7 +340,7 @@ TEST(Pbf, CorrectsDownToItsTolerance) {
             EXPECT_LE(*(*world)->stats().residual, double{tolerance}) << frame;
             mean += (*world)->stats().avgCompression / 20;
         }
-        // What is left is measured before walls have their say.
+        // The residual is measured before the walls act.
         EXPECT_LT(mean, 2 * double{tolerance});
         EXPECT_LT(mean, last);
         last = mean;
@@ -347,4 +348,4 @@ TEST(Pbf, CorrectsDownToItsTolerance) {
 }
 
 }  // namespace
-}  // namespace rivulet::methods_test::methods_test
+}  // namespace rivulet::methods_test

@@ -1,4 +1,4 @@
-// What a hand pours in: as much as the jet lets out, where the hand points, and no more than there is room for.
+// Pouring by mouse: the rate is that of the jet, the place that of the pointer, and no more than there is room for.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "fluid/viewer/pour_brush.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::pour_test::pour_test {
+namespace rivulet::pour_test {
 namespace {
 
 // A dry ball on the floor of a box.
@@ -90,7 +90,7 @@ TEST(Pour, WhereTheMousePoints) {
     EXPECT_NEAR(inside->z, 0.6F, 1.0e-5F) << "from within: its far side";
 }
 
-// The place is taken as near as the box allows: nothing is born outside.
+// The place is moved into the box: no particle is spawned outside.
 TEST(Pour, AtTheLidAndInACorner) {
     auto device = cpu();
     auto session = open(*device, scene());
@@ -104,7 +104,7 @@ TEST(Pour, AtTheLidAndInACorner) {
     }
 }
 
-// A dyed jet into a run that knows no dye.
+// A dyed jet into a run without dye.
 TEST(Pour, IntoWaterThatGoesOn) {
     auto device = cpu();
     SceneFile before = scene();
@@ -131,4 +131,4 @@ TEST(Pour, IntoWaterThatGoesOn) {
 }
 
 }  // namespace
-}  // namespace rivulet::pour_test::pour_test
+}  // namespace rivulet::pour_test

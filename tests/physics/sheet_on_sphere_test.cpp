@@ -8,7 +8,7 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
-namespace rivulet::sheet_on_sphere_test::sheet_on_sphere_test {
+namespace rivulet::sheet_on_sphere_test {
 namespace {
 
 // Bit k of byte b is voxel 8 b + k, x fastest (voxel_grid.h says so; read here from the bytes alone).
@@ -56,4 +56,4 @@ TEST(SheetOnSphere, NoCentreIsEverInASetVoxel) {
 }
 
 }  // namespace
-}  // namespace rivulet::sheet_on_sphere_test::sheet_on_sphere_test
+}  // namespace rivulet::sheet_on_sphere_test

@@ -1,4 +1,5 @@
-// A state with bodies, emitters and sinks goes on bit for bit, whoever moves the bodies; and what makes no sense changes nothing.
+// A state with bodies, emitters and sinks continues bit for bit, with bodies moved by the world or by a host; an invalid state changes
+// nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +10,7 @@
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::sim_state_bodies_test::sim_state_bodies_test {
+namespace rivulet::sim_state_bodies_test {
 namespace {
 
 constexpr float kSpacing = 0.03F;
@@ -298,4 +299,4 @@ TEST(StateOfAHost, IsKeptWhereItSaysWhatItRemembers) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_state_bodies_test::sim_state_bodies_test
+}  // namespace rivulet::sim_state_bodies_test

@@ -1,4 +1,4 @@
-// A state that is saved and resumed goes on as if nothing had happened: bit for bit on the cpu, whatever moves.
+// A run resumed from a saved state equals the uninterrupted run: bit for bit on the cpu, for all moving parts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::sim_state_test::sim_state_test {
+namespace rivulet::sim_state_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu() {
@@ -202,4 +202,4 @@ TEST(StateOfAWorld, TimeThatWaitsIsKept) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_state_test::sim_state_test
+}  // namespace rivulet::sim_state_test

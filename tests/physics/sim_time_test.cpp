@@ -12,7 +12,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::sim_time_test::sim_time_test {
+namespace rivulet::sim_time_test {
 namespace {
 
 FluidParams column(const char* method) {
@@ -64,18 +64,18 @@ TEST_P(Time, ASpikeIsNoLargeStep) {
     const double fall = 9.81 * (0.04 * 0.1 + 0.5 * 0.1 * 0.1);
     EXPECT_LT(furthest, 4 * fall) << "no farther than pressure and gravity throw it in a tenth of a second";
     EXPECT_GT(furthest, 0.25 * fall);
-    // What a steady run has come to at that time, the spike has, too.
+    // After the spike the simulated time equals that of a steady run.
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(world->stats().centreOfMass[axis], steady->stats().centreOfMass[axis], 0.01);
     EXPECT_NEAR(world->stats().kinetic, steady->stats().kinetic, 0.15 * steady->stats().kinetic);
 
-    // After a breakpoint it goes on; said once.
+    // After a breakpoint it continues; reported once.
     world->step({.gravity = p.gravity}, 10);
     EXPECT_NEAR(world->time() + world->dropped(), 0.04 + 0.25 + 10, 1e-9);
     EXPECT_NEAR(world->time(), 0.24, 1e-8);
     EXPECT_EQ(saying(*world, "longestFrame"), 1U);
 }
 
-// A budget that nothing can keep: one substep a frame, time slows, one sentence says so; without it, it recovers.
+// A budget that cannot be met: one substep per frame, slower simulated time, one notice; without the budget it recovers.
 TEST_P(Time, ABudgetSlowsTimeAndNotTheProgram) {
     auto device = cpu();
     FluidParams p = column(GetParam());
@@ -220,7 +220,7 @@ TEST(Drawn, LiesBetweenTheLastTwoStates) {
     }
 }
 
-// What wraps round in a periodic box does not fly back across the picture.
+// A particle that wraps around in a periodic box is not interpolated across the image.
 TEST(Drawn, NobodyFliesAcrossAPeriodicBox) {
     auto device = cpu();
     FluidParams p;
@@ -339,4 +339,4 @@ TEST(Origin, FloatAloneLosesMotionFarAway) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_time_test::sim_time_test
+}  // namespace rivulet::sim_time_test

@@ -13,7 +13,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::sim_wcsph_test::sim_wcsph_test {
+namespace rivulet::sim_wcsph_test {
 namespace {
 
 FluidParams boxOfWater(float spacing, vec3 min, vec3 max) {
@@ -306,7 +306,7 @@ TEST(Wcsph, APlaneHoldsWaterOnItsNormalsSide) {
         EXPECT_GT(glm::dot(n, vec3(x) - slope.position), 0.4F * p.spacing);
 }
 
-// A block over a closed box: no particle is born in its walls or in its hollow, and all others are.
+// A block over a closed box: no particle is spawned in its walls or inside it, and all others are.
 TEST(Wcsph, WhatAClosedMeshEnclosesStaysEmpty) {
     std::vector<vec3> corners;
     for (int k = 0; k < 8; ++k) corners.emplace_back((k & 1) != 0 ? 0.7F : 0.3F, (k & 2) != 0 ? 0.7F : 0.3F, (k & 4) != 0 ? 0.7F : 0.3F);
@@ -392,4 +392,4 @@ TEST(Wcsph, ABoxTooLargeForItsSpacingIsRefusedWithTheSpacingThatFits) {
 }
 
 }  // namespace
-}  // namespace rivulet::sim_wcsph_test::sim_wcsph_test
+}  // namespace rivulet::sim_wcsph_test

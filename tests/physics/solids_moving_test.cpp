@@ -13,7 +13,7 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::solids_moving_test::solids_moving_test {
+namespace rivulet::solids_moving_test {
 namespace {
 
 std::unique_ptr<CpuDevice> cpu() {
@@ -383,7 +383,7 @@ TEST(MovingSolid, AThinHollowBallKeepsEveryParticle) {
     Solids solids{.rigid = {{&field, pose}}};
     auto world = FluidWorld::create(*device, p, solids, {});
     ASSERT_TRUE(world) << world.error().message;
-    // The block reaches beyond the ball: those born outside fall away and do not count.
+    // The block is larger than the ball: particles spawned outside fall away and do not count.
     const HostParticles first = readParticles(**world);
     std::vector<bool> ours(first.id.size());
     size_t count = 0;
@@ -435,4 +435,4 @@ TEST(ShippedScenes, RunWithNothingLost) {
 }
 
 }  // namespace
-}  // namespace rivulet::solids_moving_test::solids_moving_test
+}  // namespace rivulet::solids_moving_test

@@ -111,7 +111,7 @@ TEST(Unwrap, EveryTestMeshIsLaidFlat) {
     }
 }
 
-// What can be wrong with UVs is found, by number, and told from what is not.
+// Defects of UVs are found and counted; valid UVs are not reported.
 TEST(Unwrap, BadUvsAreFoundAndReplaced) {
     const Skin good = test::cubeBall(0.04F, 10);
     const auto judged = [&](const Skin& skin) {
@@ -119,12 +119,12 @@ TEST(Unwrap, BadUvsAreFoundAndReplaced) {
         EXPECT_TRUE(mesh);
         Result<SkinUvs> uvs = skinUvs(*mesh, skin.view(), 512);
         EXPECT_TRUE(uvs);
-        EXPECT_EQ(uvs->unwrapped, uvs->said.find("unwrapped anew") != std::string::npos);
+        EXPECT_EQ(uvs->unwrapped, uvs->notice.find("unwrapped anew") != std::string::npos);
         EXPECT_TRUE(checkUvs(*mesh, uvs->uvs, 512).usable());
         return *uvs;
     };
     EXPECT_FALSE(judged(good).unwrapped);
-    EXPECT_EQ(judged(good).said, "");
+    EXPECT_EQ(judged(good).notice, "");
 
     Skin mirrored = good;
     for (vec2& uv : mirrored.uvs) uv.x = 1 - uv.x;
@@ -153,7 +153,7 @@ TEST(Unwrap, BadUvsAreFoundAndReplaced) {
     const SkinUvs overlapping = judged(folded);
     EXPECT_GT(overlapping.given.overlap, 0.3);
     EXPECT_TRUE(overlapping.unwrapped);
-    EXPECT_NE(overlapping.said.find("% of overlap"), std::string::npos) << overlapping.said;
+    EXPECT_NE(overlapping.notice.find("% of overlap"), std::string::npos) << overlapping.notice;
 
     Skin none = good;
     none.uvs.clear();

@@ -1,4 +1,4 @@
-// Volumes that are watched: what they hold is what lies in them, and what has come less what has gone, whatever happens.
+// Watched volumes: their count equals the particles inside, and those that entered minus those that left, at all times.
 #include "fluid/sim/query/volumes.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "tests/parity/devices.h"
 
-namespace rivulet::volumes_test::volumes_test {
+namespace rivulet::volumes_test {
 namespace {
 
 constexpr float kSpacing = 0.03125F;
@@ -94,11 +94,11 @@ TEST(Volumes, CountsAreWhatLiesInThemStepByStep) {
     EXPECT_TRUE(world->takeVolumeEvents().empty());
 }
 
-// Emitters, sinks and others who take water: what is born or gone has come or left.
+// Emitters, sinks and exchange: a spawned or removed particle counts as entered or left.
 TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
     auto device = makeTestCpu();
     Sources sources;
-    sources.poured = 100 * kOne;
+    sources.expectedDeposit = 100 * kOne;
     sources.sinks.push_back({.shape = "box", .position = vec3(0.45F, 0.05F, 0.25F), .size = vec3(0.1F, 0.1F, 0.5F)});
     sources.emitters.push_back(
         {.params = {.litresPerSecond = 4.0F, .position = vec3(0.4F, 0.45F, 0.25F), .radius = 0.06F}, .triangles = {}});
@@ -108,7 +108,7 @@ TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
         if (frame % 10 == 5) {
             std::vector<uint32_t> slots;
             for (const WorldParticle& p : world->within({vec3(0.0F), vec3(0.2F, 0.1F, 0.3F)})) slots.push_back(p.slot);
-            world->take(slots);
+            world->withdraw(slots);
         }
         world->step({}, 1.0 / 60);
         const std::vector<VolumeCount> counts = world->volumes();
@@ -118,9 +118,9 @@ TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
         }
     }
     EXPECT_GT(world->stats().drained, 10 * kOne);
-    EXPECT_GT(world->stats().taken, 10 * kOne);
+    EXPECT_GT(world->stats().withdrawn, 10 * kOne);
     const VolumeCount all = world->volumes()[2];
-    EXPECT_NEAR(static_cast<double>(all.inside) * kOne, world->stats().emitted - world->stats().drained - world->stats().taken, 1e-12);
+    EXPECT_NEAR(static_cast<double>(all.inside) * kOne, world->stats().emitted - world->stats().drained - world->stats().withdrawn, 1e-12);
     EXPECT_GT(all.left, 20U);
 }
 
@@ -207,4 +207,4 @@ TEST(Volumes, ASavedWorldKeepsItsCounts) {
 }
 
 }  // namespace
-}  // namespace rivulet::volumes_test::volumes_test
+}  // namespace rivulet::volumes_test

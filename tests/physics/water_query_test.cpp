@@ -1,4 +1,4 @@
-// What a world says of its water: at places, along rays. Against sums over all particles in double, and against water whose shape is known.
+// Queries of the water at points and along rays. Against sums over all particles in double, and against water whose shape is known.
 #include "fluid/sim/query/water_query.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 #include "tests/physics/worlds.h"
 
-namespace rivulet::water_query_test::water_query_test {
+namespace rivulet::water_query_test {
 namespace {
 
 constexpr float kSpacing = 0.03125F;  // m
@@ -295,4 +295,4 @@ TEST(WaterQuery, WaterEndsAtItsWalls) {
 }
 
 }  // namespace
-}  // namespace rivulet::water_query_test::water_query_test
+}  // namespace rivulet::water_query_test

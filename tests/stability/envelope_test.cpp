@@ -1,5 +1,5 @@
-// The stability envelope, a test a row: with the limits on all is finite, bounded and there, and the program says what it cut; with them
-// off it fails where the literature's predictor says, within the factor that its margin explains. Predictors are sufficient conditions, so
+// The stability envelope, one test per row: with the limits on, all is finite, bounded and present, and the limits are reported; with them
+// off it fails where the literature predicts, within the factor that its margin explains. Predictors are sufficient conditions, so
 // a ratio below 1 (less the tenth to which a threshold is known) needs a reason, and is given one.
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "fluid/validate/envelope.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::envelope_test::envelope_test {
+namespace rivulet::envelope_test {
 namespace {
 
 constexpr double kKnown = 0.9;  // a threshold is known to a tenth
@@ -84,7 +84,7 @@ TEST(Envelope, LargeSteps) {
     }
 }
 
-// PBF fails a little before a fall of a whole diameter: its three corrections bear steps of 17 ms at this height (see Pbf), not of 45.
+// PBF fails a little before a fall of a whole diameter: its three corrections permit steps of 17 ms at this height (see Pbf), not of 45.
 TEST(Envelope, FrameSpike) {
     for (const EnvelopeFinding& f : findings("frame_spike")) {
         expectFailsAt(f, f.method == "pbf" ? 0.7 : kKnown, 4);
@@ -158,7 +158,7 @@ TEST(Envelope, Tunnelling) {
     }
 }
 
-// Finite and all there, however many are born in one place.
+// Finite and complete, for any number of particles spawned at one place.
 // What pbf and wcsph throw apart is slowed; dfsph throws it less far, and its steps are cut.
 TEST(Envelope, Spawning) {
     for (const EnvelopeFinding& f : findings("spawning")) {
@@ -177,4 +177,4 @@ TEST(Envelope, Coupling) {
 }
 
 }  // namespace
-}  // namespace rivulet::envelope_test::envelope_test
+}  // namespace rivulet::envelope_test

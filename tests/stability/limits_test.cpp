@@ -6,12 +6,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/validate/envelope_run.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet::limits_test::limits_test {
+namespace rivulet::limits_test {
 namespace {
 
 bool says(const FluidWorld& world, const char* words) {
@@ -92,7 +92,7 @@ TEST_P(Limits, NoneOneAndTwoAtTheSamePoint) {
         }
 }
 
-// PBF: a metre of water, as it comes, at any spacing. Its corrections bear no more weight than they can: with steps of 4 ms a column of
+// PBF: a metre of water, with default settings, at any spacing. Its corrections support a limited weight: with steps of 4 ms a column of
 // fifty layers boiled (18 m/s).
 TEST(PbfWeight, AMetreOfWaterRestsAtAnySpacing) {
     for (const float spacing : {0.05F, 0.02F}) {
@@ -275,4 +275,4 @@ TEST(EnvelopePage, IsWrittenWithItsTableAndItsPicture) {
 }
 
 }  // namespace
-}  // namespace rivulet::limits_test::limits_test
+}  // namespace rivulet::limits_test

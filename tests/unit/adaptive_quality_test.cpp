@@ -1,9 +1,9 @@
-// The picture gives way before the frame rate does, comes back when there is room, and does not swing to and fro.
+// Quality drops before the frame rate does, returns when there is spare time, and does not oscillate.
 #include <gtest/gtest.h>
 
 #include "fluid/session/adaptive_quality.h"
 
-namespace rivulet::adaptive_quality_test::adaptive_quality_test {
+namespace rivulet::adaptive_quality_test {
 namespace {
 
 void frames(AdaptiveQuality& quality, int count, double ms) {
@@ -22,7 +22,7 @@ TEST(AdaptiveQuality, SlowFramesMakeItFastAndOneDoesNot) {
     EXPECT_TRUE(quality.fast());
 }
 
-TEST(AdaptiveQuality, RoomMakesItFineAgain) {
+TEST(AdaptiveQuality, SpareTimeMakesItFineAgain) {
     AdaptiveQuality quality;
     quality.begin(true);
     EXPECT_TRUE(quality.fast());
@@ -33,7 +33,7 @@ TEST(AdaptiveQuality, RoomMakesItFineAgain) {
 }
 
 // A machine on which fast has room and fine has none: the longer it lasts, the rarer the changes.
-TEST(AdaptiveQuality, ItDoesNotSwing) {
+TEST(AdaptiveQuality, ItDoesNotOscillate) {
     AdaptiveQuality quality;
     int changes[4] = {};
     for (int part = 0; part < 4; ++part)
@@ -47,4 +47,4 @@ TEST(AdaptiveQuality, ItDoesNotSwing) {
 }
 
 }  // namespace
-}  // namespace rivulet::adaptive_quality_test::adaptive_quality_test
+}  // namespace rivulet::adaptive_quality_test

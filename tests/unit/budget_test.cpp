@@ -1,4 +1,4 @@
-// A budget: what is picked from a table whose answer is known, and what is done about a run that misses it. No clock is read.
+// Budgets: the pick from a chart with a known answer, and the reaction to a run that exceeds its limits. No clock is read.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 
-namespace rivulet::budget_test::budget_test {
+namespace rivulet::budget_test {
 namespace {
 
 // Two settings of pbf and two of dfsph, in a case where the fastest goes 1 m/s over spacings of 1 cm: 60 steps a second where it is not
@@ -45,7 +45,7 @@ TEST(Budget, CostsAreParticlesTimesSweeps) {
     SceneSize slow = kSize;
     slow.fastest = 0.01;
     EXPECT_NEAR(*frameCost(chart(), kCosts, slow, *chartSettings().find("pbf"), 0.01), 4 * 5 * 8000 * 50e-6, 1e-9);
-    EXPECT_FALSE(frameCost(chart(), kCosts, kSize, *chartSettings().find("wcsph"), 0.01)) << "nobody has measured it";
+    EXPECT_FALSE(frameCost(chart(), kCosts, kSize, *chartSettings().find("wcsph"), 0.01)) << "it was not measured";
 }
 
 TEST(Budget, TheCheapestThatHoldsBothIsPicked) {
@@ -69,7 +69,7 @@ TEST(Budget, TheCheapestThatHoldsBothIsPicked) {
     EXPECT_DOUBLE_EQ(pickSetting(chart(), kCosts, finer, budget(1000, 0.01F))->spacing, 0.005);
 }
 
-TEST(Budget, WhatCannotBeHeldIsSaid) {
+TEST(Budget, LimitsThatCannotBeHeldAreReported) {
     const BudgetPick strict = *pickSetting(chart(), kCosts, kSize, budget(100, 1e-5F));
     EXPECT_STREQ(strict.setting->name, "dfsph") << "comes nearest";
     EXPECT_FALSE(strict.holdsError);
@@ -100,7 +100,7 @@ TEST(Budget, ARunThatHoldsIsLeftAlone) {
     EXPECT_NE(w.budget.report().find(": held"), std::string::npos) << w.budget.report();
 }
 
-TEST(Budget, ARunOfLessThanASecondIsJudgedByWhatThereIs) {
+TEST(Budget, ARunOfLessThanASecondIsJudgedByItsFrames) {
     Watched w(30, 0.01F);
     std::string sentence;
     for (int k = 0; k < 5; ++k) EXPECT_FALSE(w.budget.frame(50, 1.0 / 60, 0.001, sentence));
@@ -116,7 +116,7 @@ TEST(Budget, SlowerTimeHoldsNothing) {
     EXPECT_NE(w.budget.report().find(": not held"), std::string::npos) << w.budget.report();
 }
 
-TEST(Budget, DensityThatIsOffIsMendedWithinTheMethod) {
+TEST(Budget, ADensityErrorIsCorrectedWithinTheMethod) {
     Watched w(30, 0.05F);
     EXPECT_STREQ(w.budget.setting().name, "pbf 2");
     int changes = 0;
@@ -135,7 +135,7 @@ TEST(Budget, DensityThatIsOffIsMendedWithinTheMethod) {
     EXPECT_NE(off.second(10, 0.08).find("smaller budget.maxDensityError"), std::string::npos);
 }
 
-TEST(Budget, ASettingSetsWhatSettingsNameAndNothingElse) {
+TEST(Budget, ASettingSetsOnlyTheParamsThatSettingsName) {
     SceneFile scene;
     scene.fluid.pbf.iterations = 20;
     scene.fluid.pbf.tolerance = 0.01F;
@@ -152,7 +152,7 @@ TEST(Budget, ASettingSetsWhatSettingsNameAndNothingElse) {
     EXPECT_FLOAT_EQ(scene.fluid.cfl, FluidParams().cfl);
 }
 
-TEST(Budget, ParticlesThatThereMayBeAreTheMost) {
+TEST(Budget, TheCostIsOfMaxParticlesAtMost) {
     SceneSize capped = kSize;
     capped.most = 4000;
     EXPECT_DOUBLE_EQ(capped.particles(0.01), 4000);
@@ -226,7 +226,7 @@ TEST(Budget, MakesDoWithAnyScene) {
     auto dry = open({"budget.frameMs=5", "fluid.blocks.0.max=0.001,0.001,0.001"}, said);
     ASSERT_TRUE(dry) << dry.error().message;
     EXPECT_FALSE((*dry)->budget());
-    EXPECT_NE(said.find("picks nothing"), std::string::npos) << said;
+    EXPECT_NE(said.find("is ignored"), std::string::npos) << said;
     // What every method refuses is refused in its sentence.
     EXPECT_FALSE(open({"budget.frameMs=5", "colliders.0.mesh=nowhere.obj"}, said));
     for (const char* wrong : {"budget.frameMs=-1", "budget.maxDensityError=0", "budget.frameMs=x", "budget.frame=3"})
@@ -234,4 +234,4 @@ TEST(Budget, MakesDoWithAnyScene) {
 }
 
 }  // namespace
-}  // namespace rivulet::budget_test::budget_test
+}  // namespace rivulet::budget_test

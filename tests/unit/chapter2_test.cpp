@@ -1,4 +1,4 @@
-// The thesis's chapter 2: what its page says is what its table holds, and a short run of it measures what it says it does.
+// The thesis's chapter 2: the page agrees with the table, and a short run measures the documented quantities.
 #include "fluid/validate/chapter2.h"
 
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <set>
 
 #include "engine/app/context_egl.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::chapter2_test::chapter2_test {
+namespace rivulet::chapter2_test {
 namespace {
 
 Chapter2Row row(int particles, const char* backend, Plan plan, double stepMs, double drawMs, double overlapMs = 0) {
@@ -60,7 +60,7 @@ TEST(Chapter2, ThePageComparesTheTableWithTheThesis) {
     EXPECT_EQ(page->find("(chapter2.svg)") != std::string::npos, static_cast<bool>(written));
 }
 
-// Runs that are slow for both say nothing of either: 10 % beyond, in the middle.
+// Runs that are slow for both give no comparison: 10 % tolerance of the median.
 TEST(Chapter2, PlansAreComparedRunByRun) {
     const PlanTried other{.backend = "cpu", .turns = {10, 20, 40, 10, 10}}, own{.backend = "gl", .turns = {11, 22, 44, 9, 15}};
     EXPECT_NEAR(beyond(own, other), 0.1, 1.0e-12);
@@ -100,4 +100,4 @@ TEST(Chapter2, AShortRunMeasuresEveryPlanThatThereIs) {
 }
 
 }  // namespace
-}  // namespace rivulet::chapter2_test::chapter2_test
+}  // namespace rivulet::chapter2_test

@@ -1,16 +1,16 @@
-// The thesis's chapter 4: what its page says is what its table holds, and a short run of it measures what it says it does.
+// The thesis's chapter 4: the page agrees with the table, and a short run measures the documented quantities.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <set>
 
 #include "engine/app/context_egl.h"
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/validate/chapter4.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::chapter4_test::chapter4_test {
+namespace rivulet::chapter4_test {
 namespace {
 
 Chapter4Row row(int particles, const char* grid, const char* walk, double stepMs, double drawMs, int workGroup = 128, bool sizes = false) {
@@ -97,7 +97,7 @@ TEST(Chapter4, AShortRunMeasuresAllThatTakesTurns) {
     EXPECT_EQ(chapter->rows[5].workGroup, 32);
     EXPECT_TRUE(chapter->rows[5].sizes);
 
-    // Stopped between runs, it says so.
+    // A stop between runs is reported.
     request.goOn = [] { return false; };
     const Result<Chapter4> none = runChapter4(request);
     ASSERT_TRUE(none) << none.error().message;
@@ -106,4 +106,4 @@ TEST(Chapter4, AShortRunMeasuresAllThatTakesTurns) {
 }
 
 }  // namespace
-}  // namespace rivulet::chapter4_test::chapter4_test
+}  // namespace rivulet::chapter4_test

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/validate/chart.h"
 
-namespace rivulet::chart_test::chart_test {
+namespace rivulet::chart_test {
 namespace {
 
 ChartRow row(const char* name, const char* setting, double error, double cost) {
@@ -67,4 +67,4 @@ TEST(Chart, IsReadAsItWasWritten) {
 }
 
 }  // namespace
-}  // namespace rivulet::chart_test::chart_test
+}  // namespace rivulet::chart_test

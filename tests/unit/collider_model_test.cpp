@@ -1,4 +1,4 @@
-// Model files as colliders: parts, animations that water meets, what is only drawn, cameras and lights. Against places computed by hand.
+// Model files as colliders: parts, animations, models that are only drawn, cameras and lights. Compared with places computed by hand.
 #include "fluid/scene/collider_model.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "tests/unit/gltf_file.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::collider_model_test::collider_model_test {
+namespace rivulet::collider_model_test {
 namespace {
 
 using testing::Scratch;
@@ -158,7 +158,7 @@ TEST_F(ColliderModelTest, AClipThatMovesAPartBendsTheSolidAndItsNodes) {
     EXPECT_LT(glm::distance(transformPoint(place, vec3(0.1F, 0, 0)), centre + vec3(0.1F, 0, 0)), 1e-5F);
 }
 
-TEST_F(ColliderModelTest, WhatIsOnlyDrawnIsInNoOnesWay) {
+TEST_F(ColliderModelTest, AModelThatIsOnlyDrawnIsNotSolid) {
     SceneFile scene = sceneWith(turnstile(scratch_, true));
     scene.colliders[0].position.y = -0.2F;  // its bar lies in the water
     const auto solid = Session::create(scene, *device_, {});
@@ -195,7 +195,7 @@ TEST_F(ColliderModelTest, WhatIsOnlyDrawnIsInNoOnesWay) {
               1e-4F);
 }
 
-TEST_F(ColliderModelTest, MaterialsAreTheFilesUnlessTheSceneSaysSo) {
+TEST_F(ColliderModelTest, MaterialsAreTheFilesUnlessTheSceneSetsThem) {
     SceneFile scene = sceneWith(turnstile(scratch_, true));
     scene.colliders[0].colour = vec3(0.9F, 0.1F, 0.1F);
     std::vector<std::string> said;
@@ -232,7 +232,7 @@ TEST_F(ColliderModelTest, ACameraAndALightComeFromAFile) {
     EXPECT_EQ(taken.light.intensity, LightParams().intensity);
 }
 
-TEST_F(ColliderModelTest, WhatMakesNoSenseIsOneSentence) {
+TEST_F(ColliderModelTest, AContradictionIsOneSentence) {
     const std::string file = turnstile(scratch_, true);
     SceneFile scene = sceneWith(file);
     scene.colliders[0].animation = {"turm", 1, true};
@@ -243,7 +243,7 @@ TEST_F(ColliderModelTest, WhatMakesNoSenseIsOneSentence) {
     scene = sceneWith(file);
     scene.colliders[0].solid = false;
     scene.colliders[0].wave.amplitude = 0.1F;
-    refused(scene, "has a wave, which must be solid");
+    refused(scene, "has a wave and is not solid");
     scene = sceneWith(file);
     scene.camera.from = "eyes";
     refused(scene, "camera.from is `eyes`, which no collider's file has; there is eye; did you mean eye?");
@@ -264,4 +264,4 @@ TEST_F(ColliderModelTest, WhatMakesNoSenseIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace rivulet::collider_model_test::collider_model_test
+}  // namespace rivulet::collider_model_test

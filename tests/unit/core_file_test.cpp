@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/core/file.h"
 #include "tests/unit/core_sample.h"
 
 namespace rivulet {
@@ -51,7 +52,7 @@ TEST_F(FileTest, AnExistingFileKeepsItsModeAndALinkStaysALink) {
     EXPECT_EQ(static_cast<unsigned>(fs::status(path("a")).permissions()), 0640U);
 }
 
-TEST_F(FileTest, AWriteThatFailsSaysWhyAndLeavesNothing) {
+TEST_F(FileTest, AFailedWriteReportsTheReasonAndLeavesNoFile) {
     EXPECT_EQ(errorOf(writeFileAtomic(path("none/a"), "x")), path("none/a") + " cannot be written: its folder does not exist");
     EXPECT_EQ(errorOf(writeFileAtomic(path(""), "x")), path("") + " cannot be written: it is a folder");
     const std::string longName = path(std::string(300, 'n'));
@@ -85,7 +86,7 @@ TEST_F(FileTest, AFolderWithoutPermissionIsNotWritten) {
     EXPECT_EQ(errorOf(writeFileAtomic(path("locked/a"), "x")), path("locked/a") + " cannot be written: permission is denied");
 }
 
-TEST_F(FileTest, AReadThatFailsSaysWhy) {
+TEST_F(FileTest, AFailedReadReportsTheReason) {
     EXPECT_EQ(errorOf(readFile(path("none"))), path("none") + " cannot be read: it does not exist");
     EXPECT_EQ(errorOf(readFile(path(""))), path("") + " cannot be read: it is a folder");
     EXPECT_EQ(errorOf(readFile(path("none/a"))), path("none/a") + " cannot be read: it does not exist");

@@ -64,7 +64,7 @@ Sample anySample(std::mt19937& random) {
     return s;
 }
 
-// What a German user's engine may have set for all of C++.
+// A locale with a decimal comma, which a host may have set for the whole process.
 struct CommaNumbers : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
     char do_thousands_sep() const override { return '.'; }
@@ -160,12 +160,12 @@ TEST(Json, RefusesValuesWithPlacePathAndRemedy) {
 
 TEST(Json, RefusesWhatIsNoJson) {
     const Refusal refusals[] = {
-        {"", "x.json:1:1: the file is empty; the smallest one is {}"},
-        {" \n\t ", "x.json:1:1: the file is empty; the smallest one is {}"},
-        {"{\n\"free\": NaN}", "x.json:2:9: this is not JSON: NaN is not a value in JSON; text and keys stand in double quotes"},
+        {"", "x.json:1:1: the file is empty; it must contain at least {}"},
+        {" \n\t ", "x.json:1:1: the file is empty; it must contain at least {}"},
+        {"{\n\"free\": NaN}", "x.json:2:9: this is not JSON: NaN is not a value in JSON; strings and keys must be in double quotes"},
         {R"({"free": -Infinity})", "x.json:1:10: this is not JSON: -Infinity is not a number in JSON"},
-        {"{free: 1}", "x.json:1:2: this is not JSON: free is not a value in JSON; text and keys stand in double quotes"},
-        {R"({"free": True})", "x.json:1:10: this is not JSON: True is not a value in JSON; text and keys stand in double quotes"},
+        {"{free: 1}", "x.json:1:2: this is not JSON: free is not a value in JSON; strings and keys must be in double quotes"},
+        {R"({"free": True})", "x.json:1:10: this is not JSON: True is not a value in JSON; strings and keys must be in double quotes"},
         {"{'free': 1}", "x.json:1:2: this is not JSON: unexpected '''"},
         {R"({"free": 01})", "x.json:1:10: this is not JSON: 01 is not a number in JSON"},
         {R"({"free": 1.})", "x.json:1:10: this is not JSON: 1. is not a number in JSON"},
@@ -177,15 +177,15 @@ TEST(Json, RefusesWhatIsNoJson) {
         {R"({"free": 1-2})", "x.json:1:10: this is not JSON: 1-2 is not a number in JSON"},
         {"// scene\n{}", "x.json:1:1: this is not JSON: comments are not allowed in JSON"},
         {"{\"free\": 1 /* one */}", "x.json:1:12: this is not JSON: comments are not allowed in JSON"},
-        {"{\"name\": \"a\nb\"}", "x.json:1:10: this is not JSON: the text that starts here has no closing quote on its line"},
-        {"{\"name\": \"a", "x.json:1:10: this is not JSON: the text that starts here has no closing quote on its line"},
+        {"{\"name\": \"a\nb\"}", "x.json:1:10: this is not JSON: the string that starts here has no closing quote on its line"},
+        {"{\"name\": \"a", "x.json:1:10: this is not JSON: the string that starts here has no closing quote on its line"},
         {R"({"free": 1, "free": 2})", "x.json:1:13: this is not JSON: Duplicate key: 'free'"},
         {R"({"free": 1,})", "x.json:1:12: this is not JSON: Missing '}' or object member name"},
         {R"({"free": 1 "name": 2})", "x.json:1:12: this is not JSON: Missing ',' or '}' in object declaration"},
         {R"({"free" 1})", "x.json:1:9: this is not JSON: Missing ':' after object member name"},
         {R"({"free": 1)", "x.json:1:11: this is not JSON: Missing ',' or '}' in object declaration"},
         {"{}\n{}", "x.json:2:1: this is not JSON: Extra non-whitespace after JSON value"},
-        {"{} x", "x.json:1:4: this is not JSON: x is not a value in JSON; text and keys stand in double quotes"},
+        {"{} x", "x.json:1:4: this is not JSON: x is not a value in JSON; strings and keys must be in double quotes"},
         {R"({"name": "\x"})", "x.json:1:10: this is not JSON: Bad escape sequence in string"},
     };
     for (const Refusal& r : refusals) EXPECT_EQ(errorOf(r.text), r.error) << r.text;

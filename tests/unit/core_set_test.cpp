@@ -77,7 +77,7 @@ TEST(SetParam, RefusesWithPathAndRemedy) {
         {"colliders=x", "colliders is a list; name an item and its parameter, as in colliders.0.name=value"},
         {"colliders.0=x", "colliders is a list; name an item and its parameter, as in colliders.0.name=value"},
         {"fluid=x", "fluid is a group of parameters; name one of them"},
-        {"fluid.spacing.x=1", "fluid.spacing is a single value; nothing stands below it"},
+        {"fluid.spacing.x=1", "fluid.spacing is a single value; it has no members"},
         {"fluid.spacing=2", "fluid.spacing is 2 m, must be between 0.0005 and 1 m"},
         {"fluid.spacing=nan", "fluid.spacing is nan, must be a number between 0.0005 and 1 m"},
         {"fluid.spacing=", "fluid.spacing is empty, must be a number between 0.0005 and 1 m"},

@@ -1,4 +1,4 @@
-// What is kept on the disk: what is there comes back whole, and nothing that is damaged or another's does.
+// The disk cache returns complete entries, and never a damaged one or that of another key.
 #include "engine/compute/disk_cache.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ std::string fileText(const std::string& path) {
 
 void writeText(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary | std::ios::trunc) << text; }
 
-TEST(DiskCacheTest, WhatWasKeptComesBackByItsKeyAlone) {
+TEST(DiskCacheTest, AnEntryIsFoundByItsExactKeyOnly) {
     const Scratch scratch;
     const DiskCache cache((scratch.path() / "not/there/yet").string());
     EXPECT_FALSE(cache.find("a"));
@@ -46,7 +46,7 @@ TEST(DiskCacheTest, WhatWasKeptComesBackByItsKeyAlone) {
     EXPECT_TRUE(DiskCache(cache).find("a")) << "another start finds it, too";
 }
 
-// Whatever is done to the file, it is a miss and no more, and what is kept next replaces it.
+// A damaged file is a miss without an error, and the next entry replaces it.
 TEST(DiskCacheTest, EveryDamageIsAMiss) {
     const Scratch scratch;
     const DiskCache cache(scratch.path().string());
@@ -75,7 +75,7 @@ TEST(DiskCacheTest, EveryDamageIsAMiss) {
     EXPECT_EQ(*cache.find(key), bytesOf("good again"));
 }
 
-// Two keys whose names are one: the file says whose it is.
+// Two keys with the same hash: the file stores the whole key.
 TEST(DiskCacheTest, AnothersFileUnderThisNameIsAMiss) {
     const Scratch scratch;
     const DiskCache cache(scratch.path().string());
@@ -99,7 +99,7 @@ TEST(DiskCacheTest, AFolderThatCannotBeIsNoTrouble) {
     EXPECT_FALSE(cache.find("key"));
 }
 
-TEST(DiskCacheTest, WhatWasUsedLongestAgoGoesFirst) {
+TEST(DiskCacheTest, TheLeastRecentlyUsedEntryIsDeletedFirst) {
     const Scratch scratch;
     const DiskCache cache(scratch.path().string());
     const auto now = fs::file_time_type::clock::now();

@@ -27,7 +27,7 @@ bool same(const Environment& a, const Environment& b) {
     return std::memcmp(a.matte.data(), b.matte.data(), sizeof a.matte) == 0;
 }
 
-TEST(EnvironmentCache, WhatComesBackIsWhatWasMadeBitForBit) {
+TEST(EnvironmentCache, ACachedResultIsIdenticalBitForBit) {
     const Scratch scratch;
     const DiskCache cache(scratch.path().string());
     const HdrImage image = sky(0.5F);

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "engine/core/file.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/io/export.h"
 #include "fluid/io/mesh_file.h"
@@ -257,7 +258,7 @@ TEST(ExportParticles, SaysWhatIsWrong) {
     RunOptions in;
     in.folder = scratch.path();
     expectRefusal(runProgram({"export", "s.json", "--format", "vtp"}, in), 2, "did you mean 'vtk'");
-    expectRefusal(runProgram({"export", "s.json", "--format", "alembic"}, in), 2, "there are: ply, vtk, csv");
+    expectRefusal(runProgram({"export", "s.json", "--format", "alembic"}, in), 2, "use one of: ply, vtk, csv");
     expectRefusal(runProgram({"export", "s.json", "--format", "csv", "--up", "x"}, in), 2, "unknown axis 'x'");
     expectRefusal(runProgram({"export", "s.json", "--format", "csv", "--every", "0"}, in), 2, "--every");
     expectRefusal(runProgram({"export", "s.json", "--format", "csv", "--out", "file/here"}, in), 1, "file/here");

@@ -1,4 +1,4 @@
-// What tests of panels and windows share: an OpenGL context whose complaints fail the test, a framebuffer to draw into, and the InputEvents
+// Shared by tests of panels and windows: an OpenGL context whose errors fail the test, a framebuffer to draw into, and the InputEvents
 // of a person who begins with the mouse elsewhere.
 #pragma once
 

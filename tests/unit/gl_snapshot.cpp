@@ -13,7 +13,7 @@ namespace {
 constexpr GLenum kFirst = 0x0B00, kLast = 0x9400;  // where OpenGL 4.5 has the numbers of pieces of state
 constexpr double kUntouched = -12345.678;
 
-// What moves by itself: clocks, and what a driver says of its memory.
+// Values that change by themselves: clocks, and the free memory of a driver.
 const std::set<GLenum> kMoving = {GL_TIMESTAMP, 0x87FB, 0x87FC, 0x87FD, 0x9047, 0x9048, 0x9049, 0x904A, 0x904B};
 
 std::vector<double> trimmed(const std::array<double, 1024>& values) {

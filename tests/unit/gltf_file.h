@@ -1,4 +1,4 @@
-// A glTF file that a test writes: numbers go into one buffer beside it, the rest is said in JSON.
+// A glTF file that a test writes: numbers are in one buffer beside it, the rest is JSON.
 #pragma once
 
 #include <fmt/format.h>

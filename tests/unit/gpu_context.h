@@ -1,4 +1,4 @@
-// What every test with OpenGL needs: a headless context, and that the driver has no errors to report.
+// Shared by tests with OpenGL: a headless context, and a check that the driver reports no errors.
 #pragma once
 
 #include <gtest/gtest.h>

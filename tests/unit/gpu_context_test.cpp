@@ -16,7 +16,7 @@
 #include "engine/gpu/buffer.h"
 #include "tests/unit/gpu_context.h"
 
-namespace rivulet::gpu_context_test::gpu_context_test {
+namespace rivulet::gpu_context_test {
 namespace {
 
 TEST(GpuContext, IsCoreAtLeast45AndCurrent) {
@@ -192,4 +192,4 @@ TEST(GpuWindow, HasItsSizeItsPixelsAndItsEvents) {
 }
 
 }  // namespace
-}  // namespace rivulet::gpu_context_test::gpu_context_test
+}  // namespace rivulet::gpu_context_test

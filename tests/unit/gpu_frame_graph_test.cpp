@@ -34,7 +34,7 @@ class GpuFrameGraph : public GpuTest {
     std::optional<TransientPool> pool_;
 };
 
-TEST_F(GpuFrameGraph, LeavesOutWhatNobodyNeeds) {
+TEST_F(GpuFrameGraph, CullsPassesWhoseResultsAreNotUsed) {
     FrameGraph graph(*pool_);
     std::string order;
     const TextureHandle a = graph.texture("a", square(4)), b = graph.texture("b", square(4)), c = graph.texture("c", square(4)),
@@ -74,7 +74,7 @@ TEST_F(GpuFrameGraph, TexturesThatNeverMeetShareMemory) {
     EXPECT_EQ(pool_->bytes(), 2U * 4 * 4 * 4);
 }
 
-// What is shown of a graph is what it did: who was left out, who used what, from when to when, and what shared memory with what.
+// describe() matches the execution: culled passes, uses of resources, lifetimes, and shared memory.
 TEST_F(GpuFrameGraph, DescribesWhatItDid) {
     const Texture outside = std::move(*Texture::create(square(8)));
     FrameGraph graph(*pool_);

@@ -81,7 +81,7 @@ TEST_F(GpuObjects, ARingOfStagingBringsEachFrameOver) {
     }
 }
 
-TEST_F(GpuObjects, NamesAreGivenBack) {
+TEST_F(GpuObjects, NamesAreDeletedWithTheirOwners) {
     GLuint buffer = 0, texture = 0, sampler = 0, framebuffer = 0, array = 0;
     {
         Result<Buffer> b = Buffer::create(64);
@@ -212,7 +212,7 @@ TEST_F(GpuObjects, AFramebufferClearsEachOfItsTexturesAndScalesOntoAnother) {
     both.blitTo(target.name(), 0, 0);  // a minimised window: nothing
 }
 
-TEST_F(GpuObjects, TheDebugCallbackHearsMistakes) {
+TEST_F(GpuObjects, TheDebugCallbackReportsErrors) {
     glEnable(GL_TEXTURE_2D + 12345);
     EXPECT_EQ(messages_->errors(), 1);
     EXPECT_NE(messages_->lastError().find("OpenGL"), std::string::npos);

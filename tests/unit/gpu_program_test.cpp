@@ -123,7 +123,7 @@ TEST_F(GpuProgram, ProgramsAreReloadedAllOrNone) {
     EXPECT_EQ(paint(*other), vec4(2.0F));
 }
 
-TEST_F(GpuProgram, SettingAUniformThatNobodyDeclaresIsAMistake) {
+TEST_F(GpuProgram, SettingAnUndeclaredUniformIsAProgrammingError) {
     writeFile(
         "shaders/paint.frag",
         "out vec4 result; uniform float v; // uniform float onlyInAComment;\nvoid main() { float local = v; result = vec4(local); }\n");

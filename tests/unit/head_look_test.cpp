@@ -1,4 +1,4 @@
-// What dressHead finds in the head's meshes is what head.json says of them, which make_head wrote from its own formulas.
+// dressHead finds in the head's meshes the values in head.json, which make_head computed from its own formulas.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include "engine/scene/import_model.h"
 #include "fluid/scene/head_look.h"
 
-namespace rivulet::head_look_test::head_look_test {
+namespace rivulet::head_look_test {
 namespace {
 
 const std::string kHead = std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/head/";
@@ -77,4 +77,4 @@ TEST(HeadLook, aMeshThatIsNoHeadIsLeftAsItIs) {
 }
 
 }  // namespace
-}  // namespace rivulet::head_look_test::head_look_test
+}  // namespace rivulet::head_look_test

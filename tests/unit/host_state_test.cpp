@@ -1,4 +1,4 @@
-// What we do to a host's OpenGL: nothing that it could tell afterwards, whatever state it was in.
+// HostState restores a host's OpenGL state exactly, for many different states.
 #include "engine/gpu/host_state.h"
 
 #include <EGL/egl.h>
@@ -17,7 +17,7 @@
 #include "tests/unit/gl_snapshot.h"
 #include "tests/unit/host_fixture.h"
 
-namespace rivulet::host_state_test::host_state_test {
+namespace rivulet::host_state_test {
 namespace {
 
 using testing::difference;
@@ -152,7 +152,7 @@ TEST_P(HostStateIn, IsPutBackToTheBit) {
     }
     EXPECT_EQ(difference(before, glSnapshot()), "");
 
-    // Whatever we do in it.
+    // Any changes inside the scope.
     auto renderer = WaterRenderer::create({});
     ASSERT_TRUE(renderer) << renderer.error().message;
     EXPECT_EQ(difference(before, glSnapshot()), "") << "create()";
@@ -184,4 +184,4 @@ INSTANTIATE_TEST_SUITE_P(Contexts, HostStateIn, ::testing::Bool(),
                          [](const ::testing::TestParamInfo<bool>& old) { return old.param ? "compatibility" : "core"; });
 
 }  // namespace
-}  // namespace rivulet::host_state_test::host_state_test
+}  // namespace rivulet::host_state_test

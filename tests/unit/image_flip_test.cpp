@@ -1,4 +1,4 @@
-// FLIP by what the paper says of it, and by colours whose difference can be worked out by hand.
+// FLIP against values in the paper, and colours whose difference can be computed by hand.
 #include "fluid/validate/image_flip.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace rivulet::image_flip_test::image_flip_test {
+namespace rivulet::image_flip_test {
 namespace {
 
 constexpr int kSize = 64;  // pixels
@@ -65,7 +65,7 @@ TEST(Flip, GrowsWithAShift) {
     }
 }
 
-// What is too fine to be seen at a distance does not count: a chequerboard of pixels and its mean, from near and from far.
+// Details too fine to be seen at a distance do not count: a chequerboard of pixels and its mean, from near and from far.
 TEST(Flip, FineDetailFadesWithDistance) {
     const auto board = picture([](int x, int y) { return (x + y) % 2 == 0 ? Colour{150, 150, 150} : Colour{100, 100, 100}; });
     const auto grey = plain({128, 128, 128});
@@ -83,4 +83,4 @@ TEST(Flip, EdgesCount) {
 }
 
 }  // namespace
-}  // namespace rivulet::image_flip_test::image_flip_test
+}  // namespace rivulet::image_flip_test

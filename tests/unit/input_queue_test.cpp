@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rivulet::input_queue_test::input_queue_test {
+namespace rivulet::input_queue_test {
 namespace {
 
 TEST(InputQueue, AClickWithinAFrameIsTwoFramesAndWhereThePointerWas) {
@@ -121,4 +121,4 @@ TEST(InputQueue, WhatIsTypedAfterAClickIsOfALaterFrame) {
 }
 
 }  // namespace
-}  // namespace rivulet::input_queue_test::input_queue_test
+}  // namespace rivulet::input_queue_test

@@ -13,7 +13,7 @@
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::inspector_test::inspector_test {
+namespace rivulet::inspector_test {
 namespace {
 
 class Watching : public testing::ViewerFixture {
@@ -261,7 +261,7 @@ TEST_F(Watching, TheFrameGraphIsWhatWasDrawnAndTimed) {
     std::set<std::string> timed, left, shown, shownLeft;
     for (const PassTime& pass : viewer_->renderer().times()) (pass.calls > 0 ? timed : left).insert(pass.name);
     for (const FrameGraphPanel::Row& row : viewer_->watch().frameGraph().rows())
-        (row.figure == "left out" ? shownLeft : shown).insert(row.name);
+        (row.figure == "culled" ? shownLeft : shown).insert(row.name);
     EXPECT_GT(timed.size(), 5U);
     EXPECT_EQ(shown, timed);
     EXPECT_TRUE(std::includes(shownLeft.begin(), shownLeft.end(), left.begin(), left.end()));
@@ -315,4 +315,4 @@ TEST_F(EachTab, LiesWithinASmallWindow) { liesWithin({1280, 720}); }
 TEST_F(EachTab, LiesWithinALargeWindow) { liesWithin({1920, 1080}); }
 
 }  // namespace
-}  // namespace rivulet::inspector_test::inspector_test
+}  // namespace rivulet::inspector_test

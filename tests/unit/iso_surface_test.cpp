@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace rivulet::iso_surface_test::iso_surface_test {
+namespace rivulet::iso_surface_test {
 namespace {
 
 constexpr float kSpacing = 0.02F;  // m
@@ -16,7 +16,7 @@ struct Random {
     double operator()(double low, double high) { return low + (high - low) * (bits() / 4294967296.0); }
 };
 
-// A cubic lattice, jittered by `jitter` spacings along each axis, where `inside` (in spacings) says so.
+// A cubic lattice, jittered by `jitter` spacings along each axis, where `inside` (in spacings) is true.
 template <class Inside>
 std::vector<vec4> lattice(int reach, double jitter, const Inside& inside) {
     Random random;
@@ -143,4 +143,4 @@ TEST(IsoSurface, LeavesOutWhatIsNoParticle) {
 }
 
 }  // namespace
-}  // namespace rivulet::iso_surface_test::iso_surface_test
+}  // namespace rivulet::iso_surface_test

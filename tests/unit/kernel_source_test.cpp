@@ -14,7 +14,7 @@
 #include "engine/compute/embedded_shaders.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::kernel_source_test::kernel_source_test {
+namespace rivulet::kernel_source_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -313,4 +313,4 @@ TEST_F(CompileKernelsTest, ATextWithoutALineOrWithAWrongOneIsRefused) {
 }
 
 }  // namespace
-}  // namespace rivulet::kernel_source_test::kernel_source_test
+}  // namespace rivulet::kernel_source_test

@@ -15,7 +15,7 @@
 #include <set>
 #include <tuple>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/core/math.h"
 #include "tests/unit/program_runner.h"
 
@@ -284,7 +284,7 @@ TEST_F(Head, LidsLieOnTheEyesOpenAndShut) {
     }
 }
 
-// What a simulation finds in head.json lies on the mesh that lies beside it.
+// The points in head.json are on the mesh beside it.
 TEST_F(Head, NamesEyesTearsAndMarginsWhereTheyAre) {
     Result<std::string> text = readFile((kShipped / "head.json").string());
     ASSERT_TRUE(text) << text.error().message;

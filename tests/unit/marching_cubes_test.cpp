@@ -7,13 +7,13 @@
 #include <map>
 #include <random>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/io/mesh_file.h"
 #include "tests/unit/mesh_volume.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::marching_cubes_test::marching_cubes_test {
+namespace rivulet::marching_cubes_test {
 namespace {
 
 constexpr float kSpacing = 0.02F;  // m
@@ -144,4 +144,4 @@ TEST(MarchingCubes, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace rivulet::marching_cubes_test::marching_cubes_test
+}  // namespace rivulet::marching_cubes_test

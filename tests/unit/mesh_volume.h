@@ -1,4 +1,4 @@
-// What a closed mesh holds.
+// The volume of a closed mesh.
 #pragma once
 
 #include "engine/core/mesh_view.h"

@@ -1,11 +1,11 @@
-// What graphs share: round axes that hold what they show, figures of three digits, colours apart.
+// Shared by graphs: round axis limits that contain the data, three-digit numbers, distinct colours.
 #include "engine/ui/plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace rivulet::plot_test::plot_test {
+namespace rivulet::plot_test {
 namespace {
 
 TEST(Plot, AxesHoldTheirValuesAndEndAtRoundNumbers) {
@@ -79,4 +79,4 @@ TEST(Plot, ColoursAreSeenOnThePanel) {
 }
 
 }  // namespace
-}  // namespace rivulet::plot_test::plot_test
+}  // namespace rivulet::plot_test

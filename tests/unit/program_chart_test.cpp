@@ -8,7 +8,7 @@
 namespace rivulet::testing::program_chart_test {
 namespace {
 
-TEST(ProgramChart, WhatMakesNoSenseIsSaidInASentence) {
+TEST(ProgramChart, InvalidArgumentsAreRefusedWithAMessage) {
     expectRefusal(runProgram({"chart", "hydrostatics"}), 2, "did you mean 'hydrostatic'");
     expectRefusal(runProgram({"chart", "stabilty"}), 2, "did you mean 'stability'");
     expectRefusal(runProgram({"chart", "--out", "/proc/nowhere"}), 1, "/proc/nowhere");
@@ -26,7 +26,7 @@ TEST(ProgramChart, StopsWhenItIsAskedTo) {
     EXPECT_EQ(scratch.contents(), std::vector<std::string>{"docs"});
 }
 
-TEST(ProgramBudget, IsPickedSaidAndReported) {
+TEST(ProgramBudget, ChoosesSettingsAndReportsThem) {
     Scratch scratch;
     RunOptions in;
     in.folder = scratch.path();
@@ -35,7 +35,7 @@ TEST(ProgramBudget, IsPickedSaidAndReported) {
     const Outcome outcome = runProgram({"run", "s.json", "--no-render", "--frames", "3", "--explain", "--stats", "o.json"}, in);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("rivulet: budget of 5000 ms and 5 %: "), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.out.find("  budget of 5000 ms a frame and 5 % of density: "), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("  budget of 5000 ms per frame and 5 % of density: "), std::string::npos) << outcome.out;
     EXPECT_NE(outcome.out.find("measured over 0.05 s"), std::string::npos) << outcome.out;
     expectRefusal(runProgram({"run", "s.json", "--no-render", "--set", "budget.frameMs=-1"}, in), 2, "budget.frameMs");
     expectRefusal(runProgram({"run", "s.json", "--no-render", "--set", "budget.frames=1"}, in), 2, "budget");

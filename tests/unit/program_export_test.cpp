@@ -48,16 +48,16 @@ TEST(ProgramExport, SaysWhatIsWrong) {
     scratch.file("file", "not a folder");
     expectRefusal(runProgram({"export", "s.json"}, in(scratch)), 2, "--surface obj or ply");
     expectRefusal(runProgram({"export", "s.json", "--surface", "objj"}, in(scratch)), 2, "did you mean 'obj'");
-    expectRefusal(runProgram({"export", "s.json", "--surface", "stl"}, in(scratch)), 2, "there are: obj, ply");
+    expectRefusal(runProgram({"export", "s.json", "--surface", "stl"}, in(scratch)), 2, "use one of: obj, ply");
     expectRefusal(runProgram({"export", "none.json", "--surface", "obj"}, in(scratch)), 2, "none.json");
     expectRefusal(runProgram({"export", "s.json", "--surface", "obj", "--every", "0"}, in(scratch)), 2, "--every");
     expectRefusal(runProgram({"export", "s.json", "--surface", "obj", "--out", "file/meshes"}, in(scratch)), 1, "file/meshes");
     expectRefusal(runProgram({"export", "s.json", "--surface", "obj", "--seconds", "3600", "--set", "timeScale=1e-4"}, in(scratch)), 2,
-                  "--seconds: 3600 s at timeScale 0.0001 are 2.16e+09 frames");
+                  "--seconds: 3600 s at timeScale 0.0001 need 2.16e+09 frames");
     scratch.file("dry.json", R"({"name": "dry", "fluid": {"spacing": 0.02, "box": {"min": [0, 0, 0], "max": [0.4, 0.4, 0.4]}}})");
     const Outcome dry = runProgram({"export", "dry.json", "--surface", "obj", "--seconds", "0.05", "--backend", "cpu"}, in(scratch));
     EXPECT_EQ(dry.code, 1);
-    EXPECT_NE(dry.err.find("dry has no particles within 0.05 s"), std::string::npos) << dry.err;
+    EXPECT_NE(dry.err.find("dry has no particles in its first 0.05 s"), std::string::npos) << dry.err;
 }
 
 }  // namespace

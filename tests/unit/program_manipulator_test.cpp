@@ -15,7 +15,7 @@
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_manipulator_test::program_manipulator_test {
+namespace rivulet::program_manipulator_test {
 namespace {
 
 TEST(ScenePick, ARayMeetsTheNearestVisibleTriangleFromEitherSide) {
@@ -303,4 +303,4 @@ TEST_F(Hand, ADragBesideAllTurnsTheViewAndAClickThereChoosesNothing) {
 }
 
 }  // namespace
-}  // namespace rivulet::program_manipulator_test::program_manipulator_test
+}  // namespace rivulet::program_manipulator_test

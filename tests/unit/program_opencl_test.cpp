@@ -66,15 +66,15 @@ TEST_F(ProgramOpenCl, ADeviceIsChosenByANumberOrAPartOfItsName) {
     expectRefusal(runProgram({"export", scene_, "--surface", "obj", "--device", "no such device"}), 2, first.name);
 }
 
-// PoCL offers the processor as often as it is told to.
-TEST_F(ProgramOpenCl, OfSeveralThatFitTheFirstIsTakenAndSaid) {
+// PoCL can offer the processor several times.
+TEST_F(ProgramOpenCl, IfSeveralDevicesMatchTheFirstIsUsedAndReported) {
     RunOptions two;
     two.environment["POCL_DEVICES"] = "basic pthread";
     const Outcome list = runProgram({"list", "devices"}, two);
     if (list.out.find("cl --device 2") == std::string::npos) GTEST_SKIP() << "one device, whatever is asked for";
     const Outcome run = runProgram(simulate(scene_, scratch_, {"--device", "Portable"}, "0"), two);
     EXPECT_EQ(run.code, 0) << run.err;
-    EXPECT_NE(run.err.find("names 2 OpenCL devices: basic"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("matches 2 OpenCL devices: using basic"), std::string::npos) << run.err;
     EXPECT_NE(statsOf(scratch_).find("\"device\": \"basic"), std::string::npos) << statsOf(scratch_);
     for (const char* text : {"2", "PTHREAD"}) {
         const Outcome second = runProgram(simulate(scene_, scratch_, {"--device", text}, "0"), two);
@@ -84,9 +84,9 @@ TEST_F(ProgramOpenCl, OfSeveralThatFitTheFirstIsTakenAndSaid) {
     }
 }
 
-// PoCL shares no memory with OpenGL: the ring carries the frame, figures say why, and nobody is bothered with it. What is not drawn is not
-// brought over.
-TEST_F(ProgramOpenCl, WhereNothingIsSharedTheRingCarriesTheFrameAndFiguresSayWhy) {
+// PoCL shares no memory with OpenGL: the staging ring is used, stats report the reason, and no notice is printed. Data that is not drawn is
+// not brought over.
+TEST_F(ProgramOpenCl, WithoutSharingTheRingIsUsedAndStatsReportTheReason) {
     if (runProgram({"list", "devices"}).out.find("Portable") == std::string::npos) GTEST_SKIP() << "this machine has no PoCL";
     const Outcome drawn = runProgram(
         {"run", scene_, "--headless", "--device", "Portable", "--size", "64x48", "--frames", "2", "--out", scratch_.file("out")});
@@ -116,7 +116,7 @@ TEST_F(ProgramOpenCl, TheSecondStartFindsTheProgramsOfTheFirst) {
     ASSERT_TRUE(fs::exists(folder));
     const auto first = programs();
     EXPECT_GT(first.size(), 5U);
-    // What is damaged or foreign is built anew, and nobody is told.
+    // A damaged or foreign cache entry is rebuilt without a notice.
     const std::string cut = first.begin()->first, foreign = std::next(first.begin())->first;
     fs::resize_file(cut, first.begin()->second.second / 2);
     fs::copy_file(std::next(first.begin(), 2)->first, foreign, fs::copy_options::overwrite_existing);
@@ -166,7 +166,7 @@ TEST(ProgramWithoutOpenCl, EverythingElseWorks) {
         EXPECT_NE(info.out.find("OpenCL   none"), std::string::npos) << info.out;
         EXPECT_EQ(list.code, 0) << list.err;
         EXPECT_EQ(list.out.find("--device"), std::string::npos) << list.out;
-        // What was asked for and is not there is said, in a sentence, and the cpu does it.
+        // An absent backend is reported with a notice, and the cpu is used.
         for (const std::vector<std::string>& asked : {std::vector<std::string>{"--backend", "cl"}, {"--device", "some GPU"}}) {
             const Outcome run = runProgram(simulate(scene, scratch, asked), none);
             EXPECT_EQ(run.code, 0) << run.err;

@@ -8,13 +8,14 @@
 #include <fstream>
 #include <thread>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "engine/scene/load_image.h"
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_opening_test::program_opening_test {
+namespace rivulet::program_opening_test {
 namespace {
 
 class Opening : public testing::ViewerFixture, public ::testing::WithParamInterface<const char*> {
@@ -77,7 +78,7 @@ TEST_P(Opening, TheFirstIsOpenedBehindAPicture) {
     scene.colliders[0].resolution = 191;  // in no cache yet
     auto closed = open(scene, 1);
     ASSERT_FALSE(closed);
-    EXPECT_NE(closed.error().message.find("given up"), std::string::npos) << closed.error().message;
+    EXPECT_NE(closed.error().message.find("cancelled"), std::string::npos) << closed.error().message;
     auto opened = open(scene, 100000);
     ASSERT_TRUE(opened) << opened.error().message;
     EXPECT_GT(shown, 0);
@@ -402,4 +403,4 @@ TEST_P(Opening, APictureIsTakenOfWhatIsShown) {
 INSTANTIATE_TEST_SUITE_P(Devices, Opening, ::testing::Values("cpu", "gl", "cl"), [](const auto& each) { return std::string(each.param); });
 
 }  // namespace
-}  // namespace rivulet::program_opening_test::program_opening_test
+}  // namespace rivulet::program_opening_test

@@ -11,13 +11,14 @@
 #include <memory>
 
 #include "engine/compute/device_cl.h"
+#include "engine/core/file.h"
 #include "engine/core/file_watch.h"
 #include "engine/gpu/device_gl.h"
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_reload_test::program_reload_test {
+namespace rivulet::program_reload_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -397,4 +398,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, ReloadKernels, ::testing::Values(Backend::gl, 
                          [](const auto& each) { return std::string(backendName(each.param)); });
 
 }  // namespace
-}  // namespace rivulet::program_reload_test::program_reload_test
+}  // namespace rivulet::program_reload_test

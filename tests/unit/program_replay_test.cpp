@@ -7,12 +7,12 @@
 #include <imgui_internal.h>
 #include <signal.h>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/viewer/viewer.h"
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_replay_test::program_replay_test {
+namespace rivulet::program_replay_test {
 namespace {
 
 using testing::expectRefusal;
@@ -91,18 +91,18 @@ TEST(ProgramReplay, SaysWhatIsWrong) {
     };
     refused({"--replay", "none.rrec"}, 2, "none.rrec cannot be read");
     refused({"--replay", "foreign.rrec"}, 2, "foreign.rrec: this is not the beginning of a recording");
-    refused({"--replay", "s.rrec", "--stats", "x.json"}, 2, "--stats makes no sense");
-    refused({"--replay", "s.rrec", "--record", "t.rrec"}, 2, "--record makes no sense");
-    refused({"--replay", "s.rrec", "--no-render"}, 2, "--no-render makes no sense");
+    refused({"--replay", "s.rrec", "--stats", "x.json"}, 2, "--stats cannot be used with --replay");
+    refused({"--replay", "s.rrec", "--record", "t.rrec"}, 2, "--record cannot be used with --replay");
+    refused({"--replay", "s.rrec", "--no-render"}, 2, "--no-render cannot be used with --replay");
     refused({"--replay", "s.rrec", "--still", "0.5"}, 2, "s.rrec ends with frame 3, at 0.0667 s");
     refused({"--record", "nowhere/s.rrec"}, 1, "nowhere/s.rrec cannot be written");
     expectRefusal(runProgram({"run", "other.json", "--headless", "--replay", "s.rrec"}, in(scratch)), 2,
                   "s.rrec: it was recorded with name = small, this scene has name = other");
     expectRefusal(runProgram({"run", kScenes + "crying.json", "--headless", "--record", "c.rrec"}, in(scratch)), 2,
-                  "a recording holds no skins");
+                  "a recording cannot store flow on skins");
 }
 
-// Ctrl-C leaves a file with an end; what is cut off is shown as far as it goes, and said.
+// Ctrl-C leaves a complete file; a truncated file is shown as far as it goes, with a notice.
 TEST(ProgramReplay, ARunThatWasCutIsShown) {
     const Scratch scratch;
     scratch.file("s.json", testing::smallScene());
@@ -178,7 +178,7 @@ TEST_F(ReplayPerson, KeysPauseStepAndReset) {
     EXPECT_NE(viewer_->session().replaying()->sentence().find("frame 6 of 6"), std::string::npos);
 }
 
-// Every row of the panel is pressed and dragged. What was settled when the run was recorded is refused with a sentence.
+// Every row of the panel is pressed and dragged. Changes of recorded settings are refused with a message.
 TEST_F(ReplayPerson, WhatWasSettledIsRefused) {
     input_.framebuffer = ivec2(0);  // the panel alone
     frame(0);
@@ -205,9 +205,9 @@ TEST_F(ReplayPerson, WhatWasSettledIsRefused) {
         key(GLFW_KEY_ESCAPE);
         ASSERT_NE(viewer_->session().replaying(), nullptr) << y;
     }
-    EXPECT_NE(said.find("replaying: this was settled"), std::string::npos) << said;
+    EXPECT_NE(said.find("replaying a recording, which fixes this value"), std::string::npos) << said;
     EXPECT_EQ(viewer_->scene().fluid.spacing, spacing);
 }
 
 }  // namespace
-}  // namespace rivulet::program_replay_test::program_replay_test
+}  // namespace rivulet::program_replay_test

@@ -6,7 +6,7 @@
 
 #include "fluid/session/run_stats.h"
 
-namespace rivulet::program_run_stats_test::program_run_stats_test {
+namespace rivulet::program_run_stats_test {
 namespace {
 
 constexpr float kSpacing = 0.02F;
@@ -128,4 +128,4 @@ TEST(RunStatsJson, HasNoNumberThatJsonHasNot) {
 }
 
 }  // namespace
-}  // namespace rivulet::program_run_stats_test::program_run_stats_test
+}  // namespace rivulet::program_run_stats_test

@@ -1,4 +1,4 @@
-// `rivulet run` headless: what it leaves behind, what it says, and how it ends when things go wrong.
+// `rivulet run` headless: its output files, its messages, and its exit status after errors.
 #include <gtest/gtest.h>
 #include <json/json.h>
 #include <signal.h>
@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "tests/unit/program_runner.h"
 
@@ -53,7 +54,7 @@ TEST(ProgramRun, HeadlessLeavesVideoPicturesAndFigures) {
     EXPECT_GT(stats["renderMs"]["median"].asDouble(), 0);
 }
 
-// The cpu steps while OpenGL draws: the pictures are the same, the trace shows both at work at once, and figures say how it went.
+// The cpu steps while OpenGL draws: the images are the same, the trace shows the overlap, and stats report it.
 // Ten thousand particles: a step is long beside a turn of the scheduler, so both work at once on a busy machine as well.
 TEST(ProgramRun, SteppingBehindDrawingChangesNoPicture) {
     Scratch scratch;
@@ -130,7 +131,7 @@ TEST(ProgramRun, WhatIsSavedIsWhatWasDrawnLast) {
     EXPECT_EQ(saved("stopped"), saved("again"));
 }
 
-TEST(ProgramRun, PlansThatMakeNoSenseAreSaid) {
+TEST(ProgramRun, InvalidPlansAreRefused) {
     Scratch scratch;
     const std::string scene = scratch.file("small.json", smallScene());
     const Outcome typo = runProgram({"run", scene, "--cooperate", "thesi"}, in(scratch));
@@ -150,7 +151,7 @@ TEST(ProgramRun, PlansThatMakeNoSenseAreSaid) {
     EXPECT_EQ(readJson(scratch.path() / "out/stats.json")["cooperation"]["plan"], "off");
 }
 
-// Ten times slower than life: a frame is a tenth of the time, and moments are still told in simulated seconds.
+// Ten times slower than real time: a frame is a tenth of the time, and times are still in simulated seconds.
 TEST(ProgramRun, SlowMotionTakesShorterStepsBetweenFrames) {
     Scratch scratch;
     const std::string scene = scratch.file("small.json", smallScene());
@@ -163,7 +164,7 @@ TEST(ProgramRun, SlowMotionTakesShorterStepsBetweenFrames) {
     EXPECT_EQ(readJson(scratch.path() / "out/stats.json")["frames"].asInt(), 7) << "the frame at a hundredth is the seventh";
 }
 
-// More frames than an int counts are refused, by whoever asks for them, before anything is written.
+// More frames than the limit are refused, for every option that sets them, before a file is written.
 TEST(ProgramRun, MoreFramesThanCanBeCountedAreRefused) {
     Scratch scratch;
     scratch.file("s.json", smallScene());
@@ -209,8 +210,8 @@ TEST(ProgramRun, StillsAreTheFramesOfTheWholeRun) {
     EXPECT_EQ(run("none", {"--still", "0", "--no-render"}).code, 2);
 }
 
-// A solver that iterates says how often, and what it left; one that does not says 0 and null.
-TEST(ProgramRun, StatsSayWhatThePressureSolverDid) {
+// An iterative solver reports its iterations and residual; other methods report 0 and null.
+TEST(ProgramRun, StatsReportTheWorkOfThePressureSolver) {
     Scratch scratch;
     const std::string scene = scratch.file("small.json", smallScene());
     const auto stats = [&](const std::string& method) {
@@ -279,7 +280,7 @@ TEST(ProgramRun, WithoutPicturesItWritesFiguresAlone) {
     EXPECT_EQ(scratch.contents(), (std::vector<std::string>{"here", "here/stats.json", "small.json"}));
 }
 
-// No error: said, and gone on with.
+// Not an error: a notice, and the run continues.
 TEST(ProgramRun, NoneOneAndCoincidentParticles) {
     Scratch scratch;
     auto sceneOf = [&](const std::string& blocks) {
@@ -386,7 +387,7 @@ TEST(ProgramRun, NoOpenGlWhereAPictureWasAskedForIsAFailure) {
     EXPECT_EQ(readJson(scratch.path() / "s.json")["backend"].asString(), "cpu");
 }
 
-TEST(ProgramRun, AForcedBackendThatIsAbsentIsSaidAndTheCpuRuns) {
+TEST(ProgramRun, AnAbsentBackendIsReportedAndTheCpuRuns) {
     Scratch scratch;
     std::string scene = scratch.file("small.json", smallScene());
     RunOptions options = in(scratch);

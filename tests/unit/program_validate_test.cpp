@@ -125,7 +125,7 @@ TEST(ProgramValidate, AHurriedSurfaceIsStillToo) {
     EXPECT_EQ(found, 1);
 }
 
-TEST(ProgramValidate, WhatMakesNoSenseIsSaidInASentence) {
+TEST(ProgramValidate, InvalidArgumentsAreRefusedWithAMessage) {
     expectRefusal(runProgram({"validate", "hydrostatics"}), 2, "did you mean 'hydrostatic'");
     expectRefusal(runProgram({"validate", "--method", "dfshp"}), 2, "did you mean 'dfsph'");
     expectRefusal(runProgram({"validate", "--backend", "vulkan"}), 2, "backend");

@@ -11,7 +11,7 @@
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_viewer_test::program_viewer_test {
+namespace rivulet::program_viewer_test {
 namespace {
 
 // A person at a window of 900 x 1600: the panels lie in its left part, the scene is to be seen at its right. The picture has few pixels,
@@ -470,4 +470,4 @@ TEST_F(Person, ATraceIsOfTheRunFromItsFirstFrameToItsLast) {
 }
 
 }  // namespace
-}  // namespace rivulet::program_viewer_test::program_viewer_test
+}  // namespace rivulet::program_viewer_test

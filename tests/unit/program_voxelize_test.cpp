@@ -1,4 +1,4 @@
-// `rivulet voxelize`: what it leaves behind, what it says, and how it ends when things go wrong.
+// `rivulet voxelize`: its output files, its messages, and its exit status after errors.
 #include <gtest/gtest.h>
 #include <json/json.h>
 #include <signal.h>

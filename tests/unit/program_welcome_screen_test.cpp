@@ -8,7 +8,7 @@
 #include "tests/unit/program_runner.h"
 #include "tests/unit/viewer_fixture.h"
 
-namespace rivulet::program_welcome_screen_test::program_welcome_screen_test {
+namespace rivulet::program_welcome_screen_test {
 namespace {
 
 class WelcomeScreenTest : public testing::ViewerFixture {
@@ -81,4 +81,4 @@ TEST(SeenFile, LiesWhereSettingsLie) {
 }
 
 }  // namespace
-}  // namespace rivulet::program_welcome_screen_test::program_welcome_screen_test
+}  // namespace rivulet::program_welcome_screen_test

@@ -1,11 +1,11 @@
-// The ray-marched truth against balls, slabs and the iso-surface itself.
+// The ray-marched reference against balls, slabs and the iso-surface itself.
 #include "fluid/render/raymarch.h"
 
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace rivulet::raymarch_test::raymarch_test {
+namespace rivulet::raymarch_test {
 namespace {
 
 constexpr float kSpacing = 0.02F;  // m
@@ -151,4 +151,4 @@ TEST(Raymarch, TellsOfItsProgressAndStops) {
 }
 
 }  // namespace
-}  // namespace rivulet::raymarch_test::raymarch_test
+}  // namespace rivulet::raymarch_test

@@ -1,4 +1,4 @@
-// The file of a recorded run: what was recorded bit for bit, or one plain sentence, whatever the bytes are.
+// Recording files: the recorded data bit for bit, or an error message, for all file contents.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/io/recording.h"
 #include "fluid/voxel/packed_array.h"
 #include "tests/unit/program_runner.h"
@@ -134,7 +134,7 @@ TEST(Recording, GivesBackEachFrameInAnyOrder) {
     }
 }
 
-// A run that was killed, a copy that was cut off: all frames that are whole are there, and it says so.
+// A killed run or a truncated copy: all complete frames can be read, with a notice.
 TEST(Recording, EveryCutLeavesTheFramesBeforeIt) {
     const Scratch scratch;
     std::vector<uint64_t> begins;
@@ -152,7 +152,7 @@ TEST(Recording, EveryCutLeavesTheFramesBeforeIt) {
     }
 }
 
-// Whatever bit is wrong: each frame is what was recorded, or refused.
+// After any bit error, each frame is as recorded or refused.
 TEST(Recording, NoFlippedBitPasses) {
     const Scratch scratch;
     const std::string bytes = recorded(scratch, true);
@@ -165,7 +165,7 @@ TEST(Recording, NoFlippedBitPasses) {
     }
 }
 
-// Heads and contents whose checksums are right but which make no sense: what a program of somebody else may have written.
+// Headers and contents with valid checksums but invalid values, as another program may write them.
 TEST(Recording, WhatMakesNoSenseIsRefusedWithoutMuchMemory) {
     const Scratch scratch;
     std::vector<uint64_t> begins;
@@ -220,7 +220,7 @@ TEST(Recording, ForeignFilesAreNamed) {
     }
 }
 
-TEST(Recording, AFullDiskIsSaid) {
+TEST(Recording, AFullDiskIsReported) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
     const Result<RecordingWriter> writer = RecordingWriter::open("/dev/full", kAbout);
     ASSERT_FALSE(writer);

@@ -1,4 +1,4 @@
-// What moves in a model file, its cameras and lights: against places computed by hand. And what FBX and OBJ files say.
+// Animations, cameras and lights of a model file, against positions computed by hand; also FBX and OBJ files.
 #include "engine/scene/animation.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "tests/unit/gltf_file.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::scene_animation_test::scene_animation_test {
+namespace rivulet::scene_animation_test {
 namespace {
 
 using testing::Scratch;
@@ -49,7 +49,7 @@ std::string crane(const Scratch& scratch) {
                                   mesh, t3, way, t2, turn, kHalf));
 }
 
-TEST(SceneAnimation, ANodeIsWhereItsKeysAndItsParentsSay) {
+TEST(SceneAnimation, ANodeHasTheTransformOfItsKeysAndParents) {
     const Scratch scratch;
     const Result<Model> model = importModel(crane(scratch));
     ASSERT_TRUE(model) << model.error().message;
@@ -68,7 +68,7 @@ TEST(SceneAnimation, ANodeIsWhereItsKeysAndItsParentsSay) {
     }
 }
 
-// A lift whose ways between keys are said by `interpolation`; `output` has a key's numbers in a row.
+// A lift with the given `interpolation` between keys; `output` has a key's numbers in a row.
 std::string lift(const Scratch& scratch, const std::string& interpolation, const std::vector<float>& output) {
     GltfFile file;
     const std::string mesh = file.box(0, 1, 0, 1, 0, 1);
@@ -103,7 +103,7 @@ TEST(SceneAnimation, KeysAreExactWhateverIsBetween) {
     }
 }
 
-// The weights that a mesh has while no clip says others.
+// The weights of a mesh while no clip sets others.
 TEST(SceneAnimation, AMeshRestsWithItsFilesMorphs) {
     const Scratch scratch;
     GltfFile file;
@@ -328,7 +328,7 @@ TEST(SceneAnimation, AnFbxFileHasItsNodesMaterialsAndAnimations) {
     const ModelPart& part = model->parts[0];
     EXPECT_EQ(part.name, "door");
     EXPECT_EQ(part.materialName, "oak");
-    EXPECT_TRUE(part.dressed);
+    EXPECT_TRUE(part.hasMaterial);
     expectNear(part.material.baseColour, vec3(0.5F, 0.25F, 0.125F));
     EXPECT_EQ(part.mesh.indices.size(), 6U);
     EXPECT_EQ(part.mesh.bounds().max, vec3(2, 1, 0));
@@ -350,7 +350,7 @@ TEST(SceneAnimation, AnObjFileHasTheMaterialsOfItsMtl) {
     ASSERT_TRUE(model) << model.error().message;
     ASSERT_EQ(model->parts.size(), 2U);
     for (const ModelPart& part : model->parts) {
-        EXPECT_TRUE(part.dressed);
+        EXPECT_TRUE(part.hasMaterial);
         expectNear(part.material.baseColour, part.materialName == "clay" ? vec3(1, 0.5F, 0.25F) : vec3(0.125F, 0.25F, 0.5F));
         EXPECT_EQ(part.mesh.bounds().max.z, part.materialName == "clay" ? 0.0F : 1.0F);
     }
@@ -358,9 +358,9 @@ TEST(SceneAnimation, AnObjFileHasTheMaterialsOfItsMtl) {
     const Result<Model> plain = importWhole(scratch.file("plain.obj", triangles + "f 1 2 3\nf 1 2 4\n"));
     ASSERT_TRUE(plain);
     ASSERT_EQ(plain->parts.size(), 1U);
-    EXPECT_FALSE(plain->parts[0].dressed) << "assimp's own material is none of the file's";
-    EXPECT_EQ(importWhole(crane(scratch))->parts.at(0).dressed, false) << "nor is the one it gives a glTF part";
+    EXPECT_FALSE(plain->parts[0].hasMaterial) << "assimp's own material is none of the file's";
+    EXPECT_EQ(importWhole(crane(scratch))->parts.at(0).hasMaterial, false) << "nor is the one it gives a glTF part";
 }
 
 }  // namespace
-}  // namespace rivulet::scene_animation_test::scene_animation_test
+}  // namespace rivulet::scene_animation_test

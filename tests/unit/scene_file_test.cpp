@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "engine/core/file.h"
 #include "engine/core/json.h"
 #include "fluid/sim/sources/block.h"
 
@@ -91,7 +92,7 @@ TEST_F(SceneTest, EveryShippedSceneLoadsIsDescribedAndFindsItsMeshes) {
     EXPECT_GE(count, 4);
 }
 
-TEST_F(SceneTest, ShippedScenesHoldAsManyParticlesAsTheySay) {
+TEST_F(SceneTest, ShippedScenesHoldAsManyParticlesAsTheirDocSays) {
     EXPECT_NEAR(particles(load("falling_cube.json")), 16384, 0.05 * 16384);
     EXPECT_EQ(particles(load("dam_break.json")), 8192);
     const SceneFile sheet = load("sheet_on_sphere.json");
@@ -130,7 +131,7 @@ TEST_F(SceneTest, EveryAssetHasItsOriginAndLicenceWrittenDown) {
     }
 }
 
-TEST_F(SceneTest, WhatMakesNoSenseTogetherIsRefusedByName) {
+TEST_F(SceneTest, ContradictingValuesAreRefusedByName) {
     const std::pair<const char*, const char*> refusals[] = {
         {R"({"fluid": {"foam": {"airTo": 0.25}}})", "x.json: fluid.foam.airFrom is 0.3: it must lie below airTo, which is 0.25"},
         {R"({"fluid": {"box": {"min": [0, 2, 0]}}})",
@@ -140,21 +141,23 @@ TEST_F(SceneTest, WhatMakesNoSenseTogetherIsRefusedByName) {
         {R"({"fluid": {"blocks": [{}, {"min": [0.5, 0, 0], "max": [0.2, 1, 1]}]}})",
          "x.json: fluid.blocks[1].min (0.5, 0, 0) must not lie above its max (0.2, 1, 1)"},
         {R"({"fluid": {"blocks": [{"max": [0.5, 1.25, 0.5]}]}})",
-         "x.json: fluid.blocks[0] from (0, 0, 0) to (0.5, 1.25, 0.5) reaches out of fluid.box from (0, 0, 0) to (1, 1, 1)"},
+         "x.json: fluid.blocks[0] from (0, 0, 0) to (0.5, 1.25, 0.5) reaches outside fluid.box from (0, 0, 0) to (1, 1, 1)"},
         {R"({"colliders": [{"shape": "plane"}, {"shape": "plane", "normal": [0, 0, 0]}]})",
-         "x.json: colliders[1].normal is (0, 0, 0), must have a length"},
-        {R"({"colliders": [{}]})", "x.json: colliders[0].mesh is empty: name a mesh file, or make its shape a plane"},
+         "x.json: colliders[1].normal is (0, 0, 0): its length must not be 0"},
+        {R"({"colliders": [{}]})", "x.json: colliders[0].mesh is empty: name a mesh file, or set another shape"},
         {R"({"bodies": [{}, {"shape": "hull", "position": [0.5, 0.5, 0.5]}]})",
-         "x.json: bodies[1].mesh is empty: name a mesh file, or make its shape a box or a sphere"},
+         "x.json: bodies[1].mesh is empty: name a mesh file, or set shape to box or sphere"},
         {R"({"bodies": [{"position": [0.5, 2, 0.5]}]})",
          "x.json: bodies[0].position (0.5, 2, 0.5) must lie in fluid.box from (0, 0, 0) to (1, 1, 1)"},
-        {R"({"bodies": [{"parts": [{"mesh": "a.obj"}]}]})", "x.json: bodies[0] is a box: parts are drawn with a hull or mesh alone"},
-        {R"({"camera": {"position": [0, 1, 2], "target": [0, 1, 2]}})", "x.json: camera.target (0, 1, 2) must not be where the camera is"},
-        {R"({"light": {"direction": [0, 0, 0]}})", "x.json: light.direction is (0, 0, 0), must have a length"},
+        {R"({"bodies": [{"parts": [{"mesh": "a.obj"}]}]})", "x.json: bodies[0] is a box: only a hull or mesh can have parts"},
+        {R"({"camera": {"position": [0, 1, 2], "target": [0, 1, 2]}})", "x.json: camera.target (0, 1, 2) must differ from camera.position"},
+        {R"({"light": {"direction": [0, 0, 0]}})", "x.json: light.direction is (0, 0, 0): its length must not be 0"},
         {R"({"fluid": {"spacingg": 0.1}})", "x.json:1:12: fluid.spacingg is not a parameter; did you mean fluid.spacing?"},
         {R"({"fluid": {"spacing": -1}})", "x.json:1:23: fluid.spacing is -1 m, must be between 1e-05 and 1 m"},
         {R"({"fluid": {"method": "wcsp"}})",
          "x.json:1:22: fluid.method is \"wcsp\", must be one of pbf, dfsph, wcsph, wcsph_thesis; did you mean wcsph?"},
+        {R"({"look": {"renderer": "truth"}})",
+         "x.json:1:23: look.renderer is \"truth\", must be one of points, screen_space, reference; truth is the earlier name of reference"},
     };
     for (const auto& [text, error] : refusals) EXPECT_EQ(errorOf(text), error) << text;
 }
@@ -187,7 +190,7 @@ TEST_F(SceneTest, AssetsAreFoundAsGivenThenBesideTheSceneThenInTheVariableThenIn
 TEST_F(SceneTest, AnAssetThatIsNowhereNamesEveryPlace) {
     ::setenv("RIVULET_ASSETS", "/one:/two", 1);
     const std::string error = findAsset("cow.obj", "/scene").error().message;
-    EXPECT_TRUE(error.starts_with("cow.obj does not exist; looked at cow.obj, /scene/cow.obj, /one/cow.obj, /two/cow.obj, ")) << error;
+    EXPECT_TRUE(error.starts_with("cow.obj does not exist; searched cow.obj, /scene/cow.obj, /one/cow.obj, /two/cow.obj, ")) << error;
     EXPECT_NE(error.find((kRoot / "assets/cow.obj").string()), std::string::npos) << error;
     EXPECT_EQ(findAsset("/nowhere/cow.obj", "").error().message, "/nowhere/cow.obj does not exist");
     EXPECT_EQ(findAsset(folder(), "").error().message, folder() + " is a folder, not a file");
@@ -210,7 +213,7 @@ TEST_F(SceneTest, AListedSceneIsFoundByItsNameAndAMistypedOneIsAnsweredWithTheNe
     EXPECT_TRUE(error.ends_with("did you mean the scene teapot_of_ours?")) << error;
 }
 
-TEST_F(SceneTest, TheListHasEverySceneOnceAndSaysWhatIsWrongWithABrokenOne) {
+TEST_F(SceneTest, TheListHasEverySceneOnceAndTheErrorOfABrokenOne) {
     ::setenv("RIVULET_ASSETS", (folder() + ":" + folder() + "/scenes/..").c_str(), 1);
     write("scenes/good.json", R"({"name": "Good", "doc": "All well."})");
     write("scenes/bad.json", "{");

@@ -1,4 +1,4 @@
-// Transforms, cameras and the scene graph against what geometry says.
+// Transforms, cameras and the scene graph against exact geometry.
 #include <gtest/gtest.h>
 
 #include "engine/scene/camera.h"
@@ -6,7 +6,7 @@
 #include "engine/scene/scene.h"
 #include "engine/scene/transform.h"
 
-namespace rivulet::scene_graph_test::scene_graph_test {
+namespace rivulet::scene_graph_test {
 namespace {
 
 void expectNear(const vec3& a, const vec3& b, float tolerance) {
@@ -118,4 +118,4 @@ TEST(SceneGraph, childrenFollowTheirParentsAndHideWithThem) {
 }
 
 }  // namespace
-}  // namespace rivulet::scene_graph_test::scene_graph_test
+}  // namespace rivulet::scene_graph_test

@@ -1,4 +1,4 @@
-// What a mesh file may do to importMesh: be right, or be refused in one plain sentence that names it.
+// importMesh: every file is read correctly, or refused with a message that names it.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 #include "engine/scene/import_assimp.h"
 
-namespace rivulet::scene_import_test::scene_import_test {
+namespace rivulet::scene_import_test {
 namespace {
 
 class SceneImport : public ::testing::Test {
@@ -133,4 +133,4 @@ TEST_F(SceneImport, anIndexOutOfRangeIsRefused) {
 }
 
 }  // namespace
-}  // namespace rivulet::scene_import_test::scene_import_test
+}  // namespace rivulet::scene_import_test

@@ -1,4 +1,4 @@
-// What importModel makes of glTF: parts, materials, textures, morphs and bones, or one plain sentence.
+// importModel of glTF: parts, materials, textures, morphs and bones, or an error message.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -13,7 +13,7 @@
 #include "engine/scene/import_model.h"
 #include "engine/scene/load_image.h"
 
-namespace rivulet::scene_model_test::scene_model_test {
+namespace rivulet::scene_model_test {
 namespace {
 
 const std::string kHead = std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/head/";
@@ -173,4 +173,4 @@ TEST_F(SceneModel, aPlainMeshIsAModelOfOnePart) {
 }
 
 }  // namespace
-}  // namespace rivulet::scene_model_test::scene_model_test
+}  // namespace rivulet::scene_model_test

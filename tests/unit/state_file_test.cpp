@@ -1,4 +1,4 @@
-// The file of a saved state: exactly what was packed, or one plain sentence, whatever the bytes are. And `rivulet run --save, --resume`.
+// The file of a saved state gives back exactly its content, or one plain sentence, for any bytes. And `rivulet run --save, --resume`.
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
@@ -83,7 +83,7 @@ TEST(StateFile, EveryFlippedBitIsRefused) {
 }
 
 // With the header's checksum made right again, the table is still not believed.
-TEST(StateFile, ATableThatLiesIsRefused) {
+TEST(StateFile, AWrongTableIsRefused) {
     const std::string bytes = packed();
     std::mt19937 random(11);
     for (int k = 0; k < 400; ++k) {
@@ -141,7 +141,7 @@ TEST(ProgramState, TwiceNFramesAreNFramesTwice) {
 }
 
 // With bodies on Bullet, and with emitters and a sink: a duck on a box, and the shipped fountain, coarser.
-TEST(ProgramState, BodiesEmittersAndSinksGoOnToo) {
+TEST(ProgramState, BodiesEmittersAndSinksContinueToo) {
     const Scratch scratch;
     const std::string duck = scratch.file("duck.json", R"({
         "name": "duck", "duration": 1,

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace rivulet::surface_metrics_test::surface_metrics_test {
+namespace rivulet::surface_metrics_test {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 90;
@@ -84,7 +84,7 @@ TEST(SurfaceMetrics, FiguresAreWhatWasDone) {
         off.normal[i] = i % 5 == 0 ? vec3(0, 0, 1) : i % 5 == 1 ? vec3(0, 0, -1) : vec3(tilted(10));
     EXPECT_NEAR(compareSurfaces(off, exact, 0.01F).normalMedian, 10, 1e-4);
 
-    // Two fifths are spray, 30 radii off, and behind; the rest is one radius off, and before: the median knows nothing of the spray.
+    // Two fifths are spray, 30 radii off, and behind; the rest is one radius off, and in front: the median ignores the spray.
     off.depth = exact.depth;
     for (size_t i = 0; i < off.depth.size(); ++i) off.depth[i] += i % 5 < 2 ? 0.3F : -0.01F;
     e = compareSurfaces(off, exact, 0.01F);
@@ -113,4 +113,4 @@ TEST(SurfaceMetrics, FlickerIsTheSpreadInTime) {
 }
 
 }  // namespace
-}  // namespace rivulet::surface_metrics_test::surface_metrics_test
+}  // namespace rivulet::surface_metrics_test

@@ -1,4 +1,4 @@
-// Who worked when: what is added is written, what overlaps is measured, and more than it may hold costs the oldest.
+// The timeline: added spans are written, overlaps are measured, and above its capacity the oldest spans are dropped.
 #include "engine/core/timeline.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <memory>
 #include <thread>
 
-namespace rivulet::timeline_test::timeline_test {
+namespace rivulet::timeline_test {
 namespace {
 
 Json::Value parsed(const std::string& text) {
@@ -51,8 +51,8 @@ TEST(Timeline, TheOldestAreForgotten) {
     Timeline timeline(100);
     for (int k = 0; k < 250; ++k) timeline.add("cpu", {"", double(k), k + 0.5});
     const std::vector<PassSpan> kept = timeline.lanes().front().spans;
-    // What ended later is all there; nothing of what is there ended before.
-    const double since = timeline.remembersSince();
+    // All spans that ended later are stored, and none that ended before.
+    const double since = timeline.completeSince();
     EXPECT_EQ(since, kept.front().begin - 0.5);
     EXPECT_LE(kept.size(), 100U);
     EXPECT_GE(kept.size(), 50U);
@@ -61,14 +61,14 @@ TEST(Timeline, TheOldestAreForgotten) {
     EXPECT_EQ(timeline.lanes(248.2).front().spans.size(), 2U);
 }
 
-TEST(Timeline, SaysFromWhenOnNothingIsForgotten) {
+TEST(Timeline, CompleteSinceIsTheEndOfTheLastDroppedSpan) {
     Timeline timeline(100);
-    EXPECT_EQ(timeline.remembersSince(), 0);
-    // Two lanes, of which one hears late and in no order.
+    EXPECT_EQ(timeline.completeSince(), 0);
+    // Two lanes, one of which receives spans late and unordered.
     for (int k = 0; k < 100; ++k) timeline.add(k % 2 == 0 ? "cpu" : "gpu", {"", double(k ^ 3), (k ^ 3) + 0.5});
-    EXPECT_EQ(timeline.remembersSince(), 0);
+    EXPECT_EQ(timeline.completeSince(), 0);
     timeline.add("cpu", {"", 100, 100.5});
-    const double since = timeline.remembersSince();
+    const double since = timeline.completeSince();
     EXPECT_GT(since, 0);
     std::vector<bool> there(101);
     for (const Timeline::Lane& lane : timeline.lanes(since))
@@ -77,12 +77,12 @@ TEST(Timeline, SaysFromWhenOnNothingIsForgotten) {
         if (static_cast<double>(k) + 0.5 > since) EXPECT_TRUE(there[k]) << k;
 }
 
-TEST(Timeline, StartedAnewItHearsNothingOfWhatBeganBefore) {
+TEST(Timeline, AfterARestartEarlierSpansAreIgnored) {
     Timeline timeline(10);
     for (int k = 0; k < 20; ++k) timeline.add("cpu", {"", double(k), k + 0.5});
     const double early = hostSeconds();
     timeline.restart();
-    EXPECT_EQ(timeline.remembersSince(), 0);
+    EXPECT_EQ(timeline.completeSince(), 0);
     timeline.add("gpu", {"a late one", early, hostSeconds()});
     EXPECT_TRUE(timeline.lanes().empty());
     timeline.add("gpu", {"its own", hostSeconds(), hostSeconds()});
@@ -103,4 +103,4 @@ TEST(Timeline, TakesSpansFromManyThreads) {
 }
 
 }  // namespace
-}  // namespace rivulet::timeline_test::timeline_test
+}  // namespace rivulet::timeline_test

@@ -5,14 +5,14 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "engine/core/json.h"
+#include "engine/core/file.h"
 #include "fluid/session/reference_data.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/draught.h"
 #include "fluid/validate/trial.h"
 #include "fluid/validate/virial.h"
 
-namespace rivulet::validate_test::validate_test {
+namespace rivulet::validate_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,7 +76,7 @@ TEST(VirialPressure, OfALatticeIsWhatItsPairsPassOn) {
     // Of its own pressure it passes on half, of its neighbours' half.
     pressures[middle] = 0;
     EXPECT_NEAR(virialPressures(positions, pressures, p)[middle], 350 * passed / shape, 0.01);
-    // A free slot is nobody.
+    // A free slot does not count.
     positions[middle].w = -1;
     EXPECT_EQ(virialPressures(positions, pressures, p)[middle], 0);
 }
@@ -185,7 +185,7 @@ TEST(PhysicsCases, AFindingWithoutToleranceIsOnlyReported) {
     EXPECT_FALSE((Finding{"x", "", 1, 0, std::nan(""), 0.01}).pass());
 }
 
-TEST(PhysicsCases, APlotBecomesASvgWhateverItsWordsAre) {
+TEST(PhysicsCases, APlotWithAnyTextIsAValidSvg) {
     const std::string path = (fs::temp_directory_path() / "rivulet_plot_test.svg").string();
     fs::remove(path);
     const Plot plot{
@@ -208,4 +208,4 @@ TEST(PhysicsCases, APlotBecomesASvgWhateverItsWordsAre) {
 }
 
 }  // namespace
-}  // namespace rivulet::validate_test::validate_test
+}  // namespace rivulet::validate_test

@@ -79,7 +79,7 @@ class ViewerFixture : public FramebufferFixture {
         press(false, button);
         frame();
     }
-    // Once the widget there knows of the mouse.
+    // After the widget has received the mouse position.
     void clickAt(vec2 place) {
         moveTo(place);
         frame();

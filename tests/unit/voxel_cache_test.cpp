@@ -16,7 +16,7 @@
 #include "tests/unit/program_runner.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::voxel_cache_test::voxel_cache_test {
+namespace rivulet::voxel_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -278,4 +278,4 @@ TEST_F(VoxelCache, TheLeastRecentlyUsedFileIsRemoved) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_cache_test::voxel_cache_test
+}  // namespace rivulet::voxel_cache_test

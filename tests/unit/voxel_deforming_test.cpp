@@ -9,7 +9,7 @@
 #include "fluid/voxel/distance_band.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::voxel_deforming_test::voxel_deforming_test {
+namespace rivulet::voxel_deforming_test {
 namespace {
 
 using test::Mesh;
@@ -263,4 +263,4 @@ TEST(VoxelDeforming, BadInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_deforming_test::voxel_deforming_test
+}  // namespace rivulet::voxel_deforming_test

@@ -14,7 +14,7 @@
 #include "fluid/voxel/packed_array.h"
 #include "tests/unit/program_runner.h"
 
-namespace rivulet::voxel_file_test::voxel_file_test {
+namespace rivulet::voxel_file_test {
 namespace {
 
 constexpr size_t kHeaderBytes = 80, kSectionBytes = 40;
@@ -502,4 +502,4 @@ TEST(VoxelFile, LargeClaimsTakeNoMemory) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_file_test::voxel_file_test
+}  // namespace rivulet::voxel_file_test

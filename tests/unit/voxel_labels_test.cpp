@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-namespace rivulet::voxel_labels_test::voxel_labels_test {
+namespace rivulet::voxel_labels_test {
 namespace {
 
 VoxelGrid emptyGrid(const ivec3& size, float voxel = 0.5F) {
@@ -216,4 +216,4 @@ TEST(VoxelLabels, ColoursHaveOneLightnessAndNeighboursDiffer) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_labels_test::voxel_labels_test
+}  // namespace rivulet::voxel_labels_test

@@ -13,7 +13,7 @@
 #include "tests/unit/framebuffer_fixture.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::voxel_panel_test::voxel_panel_test {
+namespace rivulet::voxel_panel_test {
 namespace {
 
 class VoxelPanelTest : public testing::FramebufferFixture {
@@ -185,4 +185,4 @@ TEST_F(VoxelPanelTest, OneOfSeveralFieldsMayBeChosen) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_panel_test::voxel_panel_test
+}  // namespace rivulet::voxel_panel_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace rivulet::voxel_picture_test::voxel_picture_test {
+namespace rivulet::voxel_picture_test {
 namespace {
 
 // A closed box of surface voxels, one thick, in a grid with `air` voxels around it; all within is one material.
@@ -160,4 +160,4 @@ TEST(VoxelPicture, GridsOfAnyShape) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_picture_test::voxel_picture_test
+}  // namespace rivulet::voxel_picture_test

@@ -7,7 +7,7 @@
 #include "fluid/voxel/voxelize_surface.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::voxel_voxelize_test::voxel_voxelize_test {
+namespace rivulet::voxel_voxelize_test {
 namespace {
 
 using test::Mesh;
@@ -281,4 +281,4 @@ TEST(VoxelizeMesh, TakesTenMillionTriangles) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_voxelize_test::voxel_voxelize_test
+}  // namespace rivulet::voxel_voxelize_test

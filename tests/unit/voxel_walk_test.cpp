@@ -9,7 +9,7 @@
 #include "tests/unit/voxel_kernels.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet::voxel_walk_test::voxel_walk_test {
+namespace rivulet::voxel_walk_test {
 namespace {
 
 // The fraction t of the path at which a + d t enters the box low..high grown by `grow`, all in double; 2 if it misses.
@@ -325,4 +325,4 @@ TEST(VoxelBand, FarMeansFar) {
 }
 
 }  // namespace
-}  // namespace rivulet::voxel_walk_test::voxel_walk_test
+}  // namespace rivulet::voxel_walk_test

@@ -13,7 +13,7 @@
 #include "fluid/render/renderers.h"
 #include "tests/unit/host_fixture.h"
 
-namespace rivulet::water_renderer_test::water_renderer_test {
+namespace rivulet::water_renderer_test {
 namespace {
 
 using testing::HostScene;
@@ -254,4 +254,4 @@ TEST_F(WaterInAHostsPicture, MayBeDrawnByAHostsOwnRow) {
 }
 
 }  // namespace
-}  // namespace rivulet::water_renderer_test::water_renderer_test
+}  // namespace rivulet::water_renderer_test

@@ -8,19 +8,43 @@
 
 namespace rivulet {
 
-// Adds to particles.acceleration (m/s^2) of the fluid and of the samples on bodies. What it owns lives in the closure; of earlier steps it
-// remembers nothing that its sums depend on: a saved state would lack it.
+// Adds to particles.acceleration (m/s^2) of the fluid and of the samples on bodies. Its buffers live in the closure; its sums must not
+// depend on earlier steps: a saved state would lack them.
 using ForcePass = std::function<void(StepContext&)>;
 
+// The longest step that is stable, s, and what limits it: the end of "their length limited by ...".
+struct StepLimit {
+    double dt = 1.0e30;
+    const char* why = "";
+};
+
+// What a force's step limit may depend on.
+struct ForceLimitInputs {
+    const FluidParams& params;
+    float h;             // m, support radius
+    bool doesViscosity;  // MethodRow::doesViscosity
+    float mostViscous;   // m^2/s, the largest of a pair of the world's liquids; 0: all particles are alike
+    float artificial;    // m^2/s, StepParams::artificial: the method's artificial viscosity
+};
+
+// A force is a pair of files force_NAME.h and .cpp and its kernels. The header has a namespace force_NAME with its Params, which become
+// keys of fluid.forces, and row(). CMakeLists.txt lists the headers; nothing else names a force.
 struct ForceRow {
     const char* name;
     const char* doc;
-    // Whether these Params ask for it; `doesViscosity`: the method has explicit viscosity among its own pair forces. Asked before every
-    // frame; a pass is made the first time it is on.
+    int order;           // forces run from the smallest on
+    const char* remedy;  // how it is turned off, as a half sentence of an error: "set fluid.forces.tension to 0"
+    // Whether these Params turn it on; `doesViscosity`: MethodRow::doesViscosity. Called before every frame; the pass is made when it is
+    // first on.
     bool (*on)(const FluidParams& params, bool doesViscosity);
     Result<ForcePass> (*make)(Device& device, const MethodSetup& setup);
+    StepLimit (*limit)(const ForceLimitInputs& inputs) = nullptr;  // none: it limits no step. Called whether it is on or not
+    float (*fastest)(const FluidParams& params) = nullptr;         // m/s, as HostForce::fastest
 };
-Table<ForceRow> forces();
+Table<ForceRow> forces();  // by `order`
+
+// StepParams of a force's kernels: the factors of Wendland's kernel, whichever kernel the method has, and `force`.
+StepParams forceParams(const StepContext& context, const vec4& force);
 
 // A force of the host's own, handed to FluidWorld::create: it runs beside the rows of forces(), before viscosity. Its kernel is a text like
 // any other (shaders/common/lang.h): a GPU's device is made with ShaderFiles to which it was added, the cpu's with a CpuKernelRow of the
@@ -33,18 +57,10 @@ struct HostForce {
     bool (*on)(void* self, const FluidParams& params) = nullptr;
     // As ForceRow::make. Pass: it adds to particles.acceleration from position and velocity, sorted; StepParams::force is free for it.
     Result<ForcePass> (*make)(void* self, Device& device, const MethodSetup& setup) = nullptr;
-    // m/s, the fastest that it drives water; none: no faster than a fall. Beyond ten times what all give speeds are limited, and that is
-    // said.
+    // m/s, the fastest that it drives water; none: no faster than a fall. Speeds are limited to ten times the largest of all these, and
+    // that is reported.
     float (*fastest)(void* self) = nullptr;
     void (*visit)(void* self, ParamVisitor& v) = nullptr;  // its Params; none: it has none
 };
-
-// The longest step (s) with which explicit viscosity is stable: 0.125 hs^2 / nu (Morris et al. 1997).
-double explicitViscousLimit(const FluidParams& params);
-// The viscosity (m^2/s) whose explicit limit a step must keep; 0 where it is solved for implicitly, or left out. `doesViscosity`: see
-// above.
-double explicitViscosity(const FluidParams& params, bool doesViscosity);
-// The longest step (s) with which surface tension is stable: 0.25 sqrt(rho hs^3 / (2 pi sigma)) (Brackbill et al. 1992).
-double capillaryLimit(const FluidParams& params);
 
 }  // namespace rivulet

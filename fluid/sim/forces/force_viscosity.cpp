@@ -7,9 +7,17 @@
 #include <cmath>
 #include <memory>
 
+#include "fluid/sim/forces/force.h"
 #include "shaders/fluid/world/stats_row.h"
 
 namespace rivulet {
+
+double explicitViscousLimit(const FluidParams& p) {
+    const double hs = 0.5 * double{p.supportSpacings} * double{p.spacing};
+    return p.viscosity > 0 ? 0.125 * hs * hs / double{p.viscosity} : 1.0e30;
+}
+
+namespace force_viscosity {
 
 namespace {
 
@@ -119,27 +127,16 @@ class Viscosity {
     std::shared_ptr<Left> last_ = std::make_shared<Left>();
 };
 
-}  // namespace
-
-double explicitViscousLimit(const FluidParams& p) {
-    const double hs = 0.5 * double{p.supportSpacings} * double{p.spacing};
-    return p.viscosity > 0 ? 0.125 * hs * hs / double{p.viscosity} : 1.0e30;
-}
-
-double explicitViscosity(const FluidParams& p, bool doesViscosity) {
-    return doesViscosity || p.forces.viscosity == "explicit" ? double{p.viscosity} : 0.0;
-}
-
-bool viscosityOn(const FluidParams& p, bool doesViscosity) {
+bool on(const FluidParams& p, bool doesViscosity) {
     if (!(p.viscosity > 0)) return false;
     if (doesViscosity) return p.collision.walls == "no-slip";
     if (p.forces.viscosity != "auto") return p.forces.viscosity != "none";
-    // Within a second it evens out what lies less than a tenth of the support radius apart: nobody would see it.
+    // Within a second it evens out what lies less than a tenth of the support radius apart: that is not visible.
     const double h = double{p.supportSpacings} * double{p.spacing};
     return double{p.viscosity} > 0.01 * h * h;
 }
 
-Result<ForcePass> makeViscosity(Device& device, const MethodSetup& setup) {
+Result<ForcePass> make(Device& device, const MethodSetup& setup) {
     auto v = std::make_shared<Viscosity>();
     v->doesViscosity = setup.doesViscosity;
     v->samples = setup.traits.matter && setup.traits.samples > 0;
@@ -188,4 +185,44 @@ Result<ForcePass> makeViscosity(Device& device, const MethodSetup& setup) {
     return ForcePass([v](StepContext& c) { v->run(c); });
 }
 
+// Explicit viscosity alone has a limit, that of the method's own pair forces included; an implicit solver has none.
+StepLimit limit(const ForceLimitInputs& in) {
+    const FluidParams& p = in.params;
+    const double laminar = in.doesViscosity || p.forces.viscosity == "explicit" ? double{p.viscosity} : 0.0;
+    const double nu = (laminar > 0 ? std::max(laminar, double{in.mostViscous}) : laminar) + 0.1 * double{in.artificial};
+    if (!(nu > 0)) return {};
+    const double hs = 0.5 * double{in.h};
+    return {0.125 * hs * hs / nu, "viscosity"};
+}
+
+}  // namespace
+
+void Params::visit(ParamVisitor& v) {
+    constexpr bool kLog = true;
+    static const std::vector<std::string> ways = {"auto", "explicit", "implicit", "none"};
+    v.choice(
+        {.name = "viscosity",
+         .doc =
+             "of methods pbf and dfsph. explicit: a sweep a step, and steps no longer than 0.125 hs^2 / viscosity; implicit: solved for, "
+             "steps "
+             "of any length; auto: explicit where the step keeps that limit anyhow, else implicit, and none where viscosity evens out less "
+             "than a tenth of the support radius in a second"},
+        viscosity, ways);
+    v.value({"viscosityTolerance", "", "what the implicit solver may leave, as a share of the velocities and of what viscosity changes",
+             1.0e-5, 0.5, kLog},
+            viscosityTolerance);
+    v.value({"viscosityIterations", "", "of the implicit solver in a step, at most", 1, 1000, kLog}, viscosityIterations);
+}
+
+ForceRow row() {
+    return {.name = "viscosity",
+            .doc = "friction inside the fluid, explicit or implicit, and at walls that do not slip",
+            .order = 100,  // last: the implicit solver needs the sum of all other forces
+            .remedy = "set fluid.forces.viscosity to none and let fluid.collision.walls slip",
+            .on = on,
+            .make = make,
+            .limit = limit};
+}
+
+}  // namespace force_viscosity
 }  // namespace rivulet

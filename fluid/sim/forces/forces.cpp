@@ -1,21 +1,30 @@
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 #include "fluid/sim/forces/force.h"
-#include "fluid/sim/forces/force_surface.h"
-#include "fluid/sim/forces/force_viscosity.h"
+#include "fluid/sim/methods/smoothing.h"
 
 namespace rivulet {
 
 Table<ForceRow> forces() {
-    static constexpr ForceRow rows[] = {
-        {"normals", "normals of the surface, to look at", normalsOn, makeNormals},
-        {"thesis_tension", "the thesis's surface tension (8) from its normals (7)", thesisTensionOn, makeThesisTension},
-        {"tension", "surface tension as a stress along the surface, adhesion to walls and bodies (Akinci et al. 2013)", cohesionOn,
-         makeCohesion},
-        {"vorticity", "vorticity confinement (Macklin and Mueller 2013)", vorticityOn, makeVorticity},
-        {"air", "drag of the air and push of the wind on what is open to them (Gissler et al. 2017, simplified)", airOn, makeAir},
-        // Last: solved for implicitly it wants to know where all the others lead.
-        {"viscosity", "friction inside the fluid, explicit or implicit, and at walls that do not slip", viscosityOn, makeViscosity},
-    };
+    static const auto rows = [] {
+        auto all = std::to_array<ForceRow>({RIVULET_FORCE_ROWS});
+        std::sort(all.begin(), all.end(), [](const ForceRow& a, const ForceRow& b) {
+            return a.order != b.order ? a.order < b.order : std::string_view(a.name) < b.name;
+        });
+        return all;
+    }();
     return {rows};
+}
+
+StepParams forceParams(const StepContext& context, const vec4& force) {
+    FluidParams wendland = context.fluid;
+    wendland.kernel = "wendland";
+    StepParams s = context.params;
+    fillSmoothing(wendland, s);
+    s.force = force;
+    return s;
 }
 
 }  // namespace rivulet

@@ -68,6 +68,7 @@ struct NeighborGrid::Impl {
     Status allocate();
     Status findKernels();
     CpuGridJob job(Particles& p) const;
+    Status growLists(uint32_t needed);
     Status buildCpu(Particles& p);
     void buildGroups();
     void buildGpu(const StepParams& params, Particles& p);
@@ -195,6 +196,18 @@ void NeighborGrid::Impl::buildGroups() {
     if (traits.samples == 0) fluidGroups = groupCount;
 }
 
+// Makes room for `needed` entries and a quarter more. On an Error the lists and their capacity stay as they were.
+Status NeighborGrid::Impl::growLists(uint32_t needed) {
+    if (needed > UINT32_MAX / 2)
+        return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
+    const uint32_t capacity = needed + needed / 4;
+    Result<Buffer> larger = device->allocate(size_t{capacity} * sizeof(uint32_t));
+    if (!larger) return failed("there is no memory for the neighbour lists: " + larger.error().message);
+    list = std::move(*larger);
+    listCapacity = capacity;
+    return ok();
+}
+
 Status NeighborGrid::Impl::buildCpu(Particles& p) {
     CpuDevice& cpu = *static_cast<CpuDevice*>(device);
     auto run = [&](Kernel k, const CpuGridJob& j, uint32_t threads) { cpu.dispatch(k, std::as_bytes(std::span(&j, 1)), {}, threads); };
@@ -211,12 +224,10 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
         run(neighborList, j, groupCount);
         const uint32_t taken = *hostPointer<uint32_t>(listCursor);
         if (taken <= listCapacity) break;
-        if (taken > UINT32_MAX / 2)
-            return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
-        listCapacity = taken + taken / 4;
-        Result<Buffer> larger = device->allocate(size_t{listCapacity} * sizeof(uint32_t));
-        if (!larger) return larger.error();
-        list = std::move(*larger);
+        if (Status grown = growLists(taken); !grown) {
+            p.id.swap(p.idNext);  // ids go with the newest state, which stays as it was
+            return grown;
+        }
     }
     *hostPointer<CpuNeighborLists>(lists) = {hostPointer<CpuGroup>(groups), hostPointer<uint32_t>(list),
                                              hostPointer<CpuGroup>(groups) + fluidGroups};

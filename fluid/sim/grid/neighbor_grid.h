@@ -24,8 +24,8 @@ struct PairTraits {
     uint32_t samples = 0;    // on bodies: the last ids
     bool walls = true;       // else the box wraps round along all axes and there are no colliders
     bool linked = false;     // fluid.grid linked_list
-    uint32_t workGroup = 0;  // threads, of a GPU; 0 = as the device has it
-    // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that knows who takes part.
+    uint32_t workGroup = 0;  // threads, of a GPU; 0 = the device's default
+    // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that tests which particles take part.
     std::vector<Define> threadDefines() const;
     std::vector<Define> defines() const;  // MATTER, PERIODIC and those above: of every kernel with FOR_NEIGHBORS
     // OPEN where there are no walls: of every kernel that asks for them. `extra`: others.
@@ -42,13 +42,13 @@ class NeighborGrid {
     ~NeighborGrid();
 
     void fill(StepParams& params) const;  // the grid's part of it
-    // For who moves particles before the next build: lists reach this times h.
+    // Lists reach this times h: for methods that move particles between builds.
     void setMargin(float margin);
-    // GPU, sorted: the cells of the particles as they lie, as fluid/grid/cell_of finds them: the next build takes them instead of finding
-    // them itself. Whoever moves particles before then calls with none.
+    // GPU, sorted: the cells of the particles in their present order, as fluid/grid/cell_of finds them; the next build uses them. If
+    // particles move before it, call this with none.
     void give(std::span<const uint32_t> cells);
-    // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error: out of
-    // memory for the lists.
+    // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error (failed): out
+    // of memory for the lists; the newest state is then as it was, and a later build may succeed.
     Status build(const StepParams& params, Particles& particles);
 
     const Buffer& neighbors() const;   // binding 1 of a kernel with FOR_NEIGHBORS

@@ -1,5 +1,4 @@
-// A Method advances particles by one substep: where they would be, and how fast, if no solid were in the way. Methods are rows of
-// methods().
+// A Method advances particles by one substep: their positions and velocities as if there were no solids. Methods are rows of methods().
 #pragma once
 
 #include <memory>
@@ -15,14 +14,14 @@ struct MethodSetup {
     const FluidParams& params;
     uint32_t count;  // slots of particles
     PairTraits traits;
-    bool doesViscosity = false;  // of forces: whether the method has viscosity among its own pair forces
+    bool doesViscosity = false;  // of forces: MethodRow::doesViscosity
 };
 
-// What a method remembers of earlier steps, by a name of its own: at most 20 letters.
+// A buffer that a method keeps between steps, with a name of its own: at most 20 letters.
 struct NamedBuffer {
     const char* name;
     Buffer* buffer;    // of floats
-    bool byId = true;  // of the particles: 0 for one that is born; else in no particle's order
+    bool byId = true;  // one value a particle, 0 for a new one; else not per particle
 };
 
 class Method {
@@ -32,9 +31,7 @@ class Method {
     virtual void fill(const FluidParams& params, float fastest, StepParams& step) const = 0;
     // Speed of sound of its equation of state, m/s, 0 where there is none.
     virtual float soundSpeed(const FluidParams& params, float fastest) const = 0;
-    // Whether it does explicit viscosity among its own pair forces; else the row of forces() does.
-    virtual bool doesViscosity() const { return false; }
-    // How far the fastest particle may go in a step, in spacings, and the longest step, s, with what says so. `fastest`: as in fill.
+    // How far the fastest particle may go in a step, in spacings, and the longest step, s, with the reason. `fastest`: as in fill.
     struct StepLimit {
         float reach = 1;
         double longest = 1;
@@ -49,18 +46,30 @@ class Method {
     virtual bool predicts() const { return false; }
     // The pressures of the last step, Pa, slot by slot in the order of the newest state; reads them back and waits. `step`: its params.
     virtual std::vector<float> pressures(Device& device, const Particles& particles, const StepParams& step) const = 0;
-    // All that a step depends on beside particles, params and solids. The world saves it, puts it back, and fills it with 0 at t = 0.
+    // All that a step depends on beside particles, params and solids. The world saves it, restores it, and fills it with 0 at t = 0.
     virtual std::vector<NamedBuffer> remembered() { return {}; }
-    // What was learnt of a solver's pace: the world begins again.
+    // Resets the estimates of a solver's iterations: the world begins at t = 0.
     virtual void forget() {}
 };
 
+// A method is a pair of files method_NAME.h (its Params and its row's function) and .cpp, and its kernels; a line of methods.cpp, and where
+// it has Params a member of FluidParams. What the program asks of a method is here: its name is compared nowhere.
 struct MethodRow {
     const char* name;
     const char* doc;
     // Error (badInput): it cannot do what the world asks for.
     Result<std::unique_ptr<Method>> (*make)(Device& device, const MethodSetup& setup);
+    // It computes explicit viscosity among its own pair forces; else the force viscosity does.
+    bool doesViscosity = false;
+    // An equation of state gives it a speed of sound, which limits its steps (fluid.cfl) and how far bodies push the fluid in one.
+    bool hasSound = false;
+    bool linkedLists = false;  // it runs on fluid.grid linked_list
+    // The least substeps in a sixtieth of a second.
+    int (*leastSubsteps)(const FluidParams& params) = [](const FluidParams&) { return 1; };
+    // Its own Params, a group of the "fluid" section; none: it has none.
+    void (*visit)(FluidParams& params, ParamVisitor& v) = nullptr;
 };
 Table<MethodRow> methods();
+const MethodRow& methodOf(const FluidParams& params);  // params.method must be a name of methods()
 
 }  // namespace rivulet

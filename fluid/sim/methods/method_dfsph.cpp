@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "fluid/sim/methods/method.h"
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/methods/solver_residual.h"
 
@@ -98,11 +99,9 @@ class Dfsph final : public Method {
             pushOn(c, k, vec3(0.0F));
             if (residual.enough(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
         }
-        if (!cpu) residual.tellLater(c);
+        if (!cpu) residual.readLater(c);
     }
 };
-
-}  // namespace
 
 Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& setup) {
     if (setup.params.kernel != "wendland")
@@ -138,6 +137,35 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         *buffer = std::move(*made);
     }
     return std::unique_ptr<Method>(std::move(m));
+}
+
+}  // namespace
+
+void DfsphParams::visit(ParamVisitor& v) {
+    constexpr bool kLog = true;
+    v.value(
+        {"tolerance", "",
+         "mean compression that a step may add, as a fraction, where the fastest particle goes its reach; less in slower water, down to a "
+         "twentieth",
+         1.0e-6, 0.1, kLog},
+        tolerance);
+    v.value({"correction", "",
+             "share of a density that is off which a step puts right: 1 keeps it best and heats water at rest, 0 lets it drift", 0, 1},
+            correction);
+    v.value({"maxIterations", "", "in a step", 1, 1000, kLog}, maxIterations);
+    v.value({"warmStart", "", "share of the last step's pressure that the next begins with", 0, 1}, warmStart);
+    v.value({"relaxation", "", "share of a Jacobi correction that is made; above 0.6 it may not converge", 0.05, 1}, relaxation);
+    v.value({"momentum", "", "share of the last iteration's change that is made once more where it still helps", 0, 0.95}, momentum);
+    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
+    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: density keeps better with more", 1, 100}, minSubsteps);
+}
+
+MethodRow dfsphMethod() {
+    return {.name = "dfsph",
+            .doc = "divergence-free SPH: pressures solved for to a tolerance, density kept in the same solve; the accurate one",
+            .make = makeDfsph,
+            .leastSubsteps = [](const FluidParams& p) { return p.dfsph.minSubsteps; },
+            .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "dfsph", .doc = "of method dfsph"}, p.dfsph); }};
 }
 
 }  // namespace rivulet

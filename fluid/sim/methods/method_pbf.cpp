@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "fluid/sim/methods/method.h"
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/methods/solver_residual.h"
 
@@ -52,7 +53,10 @@ class Pbf final : public Method {
         Particles& p = c.particles;
         c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
         c.grid.setMargin(1.05F);  // as pbf_lambda keeps
-        if (!c.build(true)) return;
+        if (!c.build(true)) {
+            takeBack(c);
+            return;
+        }
         // p.position: predicted; p.velocity: where each particle comes from.
         const uint32_t threads = c.grid.pairThreads();
         const Buffer& neighbors = c.grid.neighbors();
@@ -94,6 +98,25 @@ class Pbf final : public Method {
         p.position.swap(p.velocity);  // what follows walks from where the step began
     }
 
+    // After a failed sort: the newest state has predicted positions, and where particles come from in place of velocities. Particles return
+    // there, with the velocity that led to the prediction. On the cpu alone, where a sort can fail.
+    void takeBack(StepContext& c) const {
+        Particles& p = c.particles;
+        const StepParams& s = c.params;
+        std::vector<vec4> at = c.device.readAll<vec4>(p.positionNext, p.count), from = c.device.readAll<vec4>(p.velocityNext, p.count);
+        const float farthest = 1.001F * s.maxSpeed * s.dt;
+        for (uint32_t i = 0; i < p.count; ++i) {
+            const vec3 start(from[i]), cell = (start - vec3(s.gridOrigin)) * vec3(s.gridScale), end(s.cellsX, s.cellsY, s.cellsZ);
+            const bool inGrid = glm::all(glm::greaterThanEqual(cell, vec3(1.0F))) && glm::all(glm::lessThan(cell, end - 1.0F));
+            // What is free, lost or a sample was not predicted.
+            if (at[i].w < 0 || !inGrid || !(glm::distance(vec3(at[i]), start) <= farthest)) continue;
+            from[i] = vec4((vec3(at[i]) - start) / s.dt - vec3(s.gravity) * s.dt, 0.0F);
+            at[i] = vec4(start, at[i].w);
+        }
+        c.device.writeAll<vec4>(p.positionNext, at);
+        c.device.writeAll<vec4>(p.velocityNext, from);
+    }
+
     void measure(StepContext& c) override {
         Particles& p = c.particles;
         c.boundary(p.positionNext);
@@ -103,8 +126,6 @@ class Pbf final : public Method {
         c.device.run(setRatio, c.params, {&c.grid.cellStart(), &p.density, &p.positionNext}, p.count);
     }
 };
-
-}  // namespace
 
 Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
     if (setup.params.kernel != "wendland")
@@ -136,6 +157,28 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
         *buffer = std::move(*made);
     }
     return std::unique_ptr<Method>(std::move(m));
+}
+
+}  // namespace
+
+void PbfParams::visit(ParamVisitor& v) {
+    constexpr bool kLog = true;
+    v.value({"iterations", "", "corrections a step, where tolerance is 0: more is stiffer and slower", 1, 50}, iterations);
+    v.value(
+        {"tolerance", "", "mean compression, as a fraction, down to which a step corrects; 0: always as often as iterations says", 0, 0.1},
+        tolerance);
+    v.value({"maxIterations", "", "corrections a step at most, where tolerance is not 0", 1, 1000, kLog}, maxIterations);
+    v.value({"relaxation", "", "share of a correction that is made: more converges faster, too much trembles", 0.05, 1.5}, relaxation);
+    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
+    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: water is stiffer with more", 1, 100}, minSubsteps);
+}
+
+MethodRow pbfMethod() {
+    return {.name = "pbf",
+            .doc = "position based fluids: a few corrections of positions a step; the fast one",
+            .make = makePbf,
+            .leastSubsteps = [](const FluidParams& p) { return p.pbf.minSubsteps; },
+            .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "pbf", .doc = "of method pbf"}, p.pbf); }};
 }
 
 }  // namespace rivulet

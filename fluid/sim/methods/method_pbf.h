@@ -2,10 +2,22 @@
 // little soft.
 #pragma once
 
-#include "fluid/sim/methods/method.h"
+#include "engine/core/params.h"
 
 namespace rivulet {
 
-Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup);
+struct MethodRow;
+
+struct PbfParams {
+    int iterations = 3;       // a step, where tolerance is 0
+    float tolerance = 0.0F;   // mean compression, a fraction; 0 = none
+    int maxIterations = 20;   // where there is one
+    float relaxation = 1.0F;  // of a correction
+    float reach = 0.6F;       // spacings a step
+    int minSubsteps = 4;      // a frame of 1/60 s
+    void visit(ParamVisitor& v);
+};
+
+MethodRow pbfMethod();
 
 }  // namespace rivulet

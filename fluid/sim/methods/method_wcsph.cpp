@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/assert.h"
+#include "fluid/sim/methods/method.h"
 #include "fluid/sim/methods/smoothing.h"
 
 namespace rivulet {
@@ -18,7 +19,6 @@ class Wcsph final : public Method {
     PairKernel density, forces;
     Kernel integrate;
 
-    bool doesViscosity() const override { return true; }
     StepLimit stepLimit(const FluidParams&, float) const override { return {}; }  // sound's is far shorter
 
     float soundSpeed(const FluidParams& p, float fastest) const override {
@@ -111,7 +111,21 @@ Result<std::unique_ptr<Method>> make(Device& device, const MethodSetup& setup, b
 
 }  // namespace
 
-Result<std::unique_ptr<Method>> makeWcsph(Device& device, const MethodSetup& setup) { return make(device, setup, false); }
-Result<std::unique_ptr<Method>> makeWcsphThesis(Device& device, const MethodSetup& setup) { return make(device, setup, true); }
+MethodRow wcsphMethod() {
+    return {.name = "wcsph",
+            .doc = "weakly compressible SPH: Tait's equation, walls by signed distance",
+            .make = [](Device& device, const MethodSetup& setup) { return make(device, setup, false); },
+            .doesViscosity = true,
+            .hasSound = true};
+}
+
+MethodRow wcsphThesisMethod() {
+    return {.name = "wcsph_thesis",
+            .doc = "the thesis's SPH: poly6 and spiky kernels, linear equation of state, a box that turns velocities round",
+            .make = [](Device& device, const MethodSetup& setup) { return make(device, setup, true); },
+            .doesViscosity = true,
+            .hasSound = true,
+            .linkedLists = true};
+}
 
 }  // namespace rivulet

@@ -2,11 +2,11 @@
 // (Mueller et al. 2003: poly6, spiky, linear equation of state).
 #pragma once
 
-#include "fluid/sim/methods/method.h"
-
 namespace rivulet {
 
-Result<std::unique_ptr<Method>> makeWcsph(Device& device, const MethodSetup& setup);
-Result<std::unique_ptr<Method>> makeWcsphThesis(Device& device, const MethodSetup& setup);
+struct MethodRow;
+
+MethodRow wcsphMethod();
+MethodRow wcsphThesisMethod();
 
 }  // namespace rivulet

@@ -92,7 +92,7 @@ void SolverResidual::forget() {
     last_ = std::make_shared<Known>();  // what is still on its way is of the world before
 }
 
-void SolverResidual::tellLater(StepContext& c) {
+void SolverResidual::readLater(StepContext& c) {
     c.device.readLater(progress_, progress_.bytes(), [last = last_](std::span<const std::byte> bytes) {
         const vec4& p = *reinterpret_cast<const vec4*>(bytes.data());
         last->value = double{p.x};

@@ -32,7 +32,7 @@ class SolverResidual {
     // A GPU: how many iterations, 1 to `most`, are worth queueing.
     int worthQueueing(int most);
     // A GPU, after the last of them: so that the host knows later.
-    void tellLater(StepContext& context);
+    void readLater(StepContext& context);
     // As new, for a world that begins again.
     void forget();
 

@@ -55,7 +55,7 @@ Status VolumePasses::prepare(Device& device, uint32_t slots) {
 }
 
 void VolumePasses::write() {
-    // A bit that is nobody's: a box in which nothing is.
+    // A bit of no volume: a box in which no particle is.
     std::vector<SinkVolume> shapes(kMost, {vec4(1.0F, 1.0F, 1.0F, 0.0F), vec4(0.0F)});
     for (size_t k = 0; k < volumes_.size(); ++k) shapes[bits_[k]] = shapeOf(volumes_[k]);
     device_->writeAll<SinkVolume>(shapes_, shapes);
@@ -110,12 +110,12 @@ void VolumePasses::count(const StepParams& step, const Particles& particles, dou
         for (size_t b = 0; b < kMost; ++b) {
             Row& row = (*rows)[b];
             if (row.serial == 0 || row.serial != serials[b]) continue;
-            row.count.entered += words[2 * b] - row.heardEntered;
-            row.count.left += words[2 * b + 1] - row.heardLeft;
+            row.count.entered += words[2 * b] - row.lastEntered;
+            row.count.left += words[2 * b + 1] - row.lastLeft;
             row.count.inside = row.count.entered - row.count.left;
             row.count.time = time;
-            row.heardEntered = words[2 * b];
-            row.heardLeft = words[2 * b + 1];
+            row.lastEntered = words[2 * b];
+            row.lastLeft = words[2 * b + 1];
         }
     });
 }

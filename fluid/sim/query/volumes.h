@@ -1,9 +1,9 @@
-// Volumes that a game watches: how much water is in each, and what has come and gone, step by step.
+// Volumes that a game watches: how much water is in each, and how much has entered and left, step by step.
 //
 // Counted once at the end of each FluidWorld::step that steps, where particles then are: one that passes through within a step is not seen.
-// A particle is in a volume if its centre is. Whatever begins or ends there counts too: what is born in a volume has entered it; what a
-// sink or take() takes out of it, what is lost, and what reset() or restore() put elsewhere has left. Where a slot that is freed is taken
-// by a newborn within the same step, both are as one. So `inside` is `entered` less `left`, always.
+// A particle is in a volume if its centre is. Whatever begins or ends there counts too: a particle spawned in a volume has entered it; one
+// that a sink or withdraw() removes, that is lost, or that reset() or restore() put elsewhere has left. Where a freed slot is filled again
+// within the same step, both count as one. So `inside` is `entered` less `left`, always.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ class VolumePasses {
     void save(WorldState& state) const;
     struct Saved {
         std::vector<Volume> volumes;
-        std::vector<uint64_t> numbers;  // 5 a volume: its bit; entered, left; of these, told of
+        std::vector<uint64_t> numbers;  // 5 a volume: its bit; entered, left; of these, reported
         std::vector<double> times;
         std::vector<uint32_t> inside;
     };
@@ -69,9 +69,9 @@ class VolumePasses {
   private:
     struct Row {
         VolumeCount count;
-        uint64_t entered = 0, left = 0;            // told of
-        uint32_t heardEntered = 0, heardLeft = 0;  // the device's counters when last read: they turn over
-        uint64_t serial = 0;                       // unlike all others'; 0: this bit is no volume's
+        uint64_t entered = 0, left = 0;          // reported by takeEvents
+        uint32_t lastEntered = 0, lastLeft = 0;  // the device's counters when last read: they turn over
+        uint64_t serial = 0;                     // unlike all others'; 0: this bit is no volume's
     };
     using Rows = std::array<Row, kMost>;  // by bit
     Status prepare(Device& device, uint32_t slots);

@@ -1,10 +1,10 @@
-// What a game asks of the water: what it is at a place, and where a ray meets it. FluidWorld hands these on, in batches.
+// Queries of a game: the water at a place, and where a ray meets it. FluidWorld passes them on, in batches.
 //
 // The field is that of the particles as they are now: the density ratio they make by Wendland's kernel, about 1 amid water, 0 in the air;
 // its surface is where that is 0.5, as IsoSurface::kLevel: on a lattice half a spacing beyond the outermost centres. A drop of fewer than
 // about four particles is thinner than that everywhere: it can be sampled, and rays pass it. Water that walls hold ends at them.
 //
-// Cost: what is asked goes to the device and the answer comes back, which waits for all that was asked of it before; a thread a place or
+// Cost: a query goes to the device and its answer comes back, which waits for all work queued before; a thread a place or
 // ray, and a sum over the particles around at each place, at each half spacing of a ray and 16 times where it hits. In 62,500 particles
 // 1,000 places took 0.8 ms, 1,000 rays of some 50 half spacings 15 ms (two shared cpu cores).
 #pragma once

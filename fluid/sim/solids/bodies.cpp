@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "engine/core/assert.h"
+#include "fluid/sim/methods/method.h"
 
 namespace rivulet {
 
@@ -131,7 +132,7 @@ BodyLoads::BodyLoads(std::span<const Body> bodies, const FluidParams& params) {
     for (const Body& b : bodies) {
         const double mass = b.shape.mass, density = params.restDensity;
         const double layer = density * particle * static_cast<double>(b.shape.samples.size());
-        const double with = params.method == "wcsph" ? std::max(layer - mass, 0.0) : density * movedAlong(b.shape);
+        const double with = methodOf(params).hasSound ? std::max(layer - mass, 0.0) : density * movedAlong(b.shape);
         own_.push_back({mass > 0 ? with / mass : 0.0, {}});
     }
 }

@@ -1,4 +1,4 @@
-// Bodies that the fluid pushes, and that push it: boundary particles on their surface (Akinci et al. 2012), and who moves them.
+// Bodies that the fluid pushes, and that push it: boundary particles on their surface (Akinci et al. 2012), and the host that moves them.
 #pragma once
 
 #include <cstddef>
@@ -42,25 +42,25 @@ struct BodyLoad {
     dvec3 impulseOwed{0.0}, turnOwed{0.0};  // N s, N m s: done to it already, to be handed over in later substeps, see BodyLoads
 };
 
-// Who moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither.
+// Moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither.
 struct BodyHost {
     void* self = nullptr;
-    // Moves all bodies on by `seconds` under the fluid's `loads`, its own contacts and `gravity` (m/s^2). `states`: as they are -> as they
+    // Moves all bodies by `seconds` under the fluid's `loads`, its own contacts and `gravity` (m/s^2). `states`: as they are -> as they
     // are then.
     void (*advance)(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds,
                     std::span<BodyState> states) = nullptr;
     // Back to `states`, those at t = 0.
     void (*reset)(void* self, std::span<const BodyState> states) = nullptr;
-    // For a world that is saved. Whether advance depends on nothing but what it is given; else the host has the other two, or its world
-    // cannot be saved.
+    // For a world that is saved: whether advance depends on its arguments alone. Else the host needs the other two, or its world cannot be
+    // saved.
     bool remembersNothing = false;
-    // All that advance depends on beside what it is given.
+    // All that advance depends on beside its arguments.
     std::vector<std::byte> (*save)(void* self) = nullptr;
-    // Goes on from there; the bodies are in `states`. Error (badInput): the bytes make no sense; then nothing has changed.
+    // Continues from there; the bodies are in `states`. Error (badInput): the bytes are not valid; then nothing has changed.
     Status (*restore)(void* self, std::span<const std::byte> bytes, std::span<const BodyState> states) = nullptr;
 };
 
-// A host for worlds where bodies meet nothing but fluid: rigid motion, symplectic Euler, momentum and angular momentum kept.
+// A host for worlds where bodies touch nothing but fluid: rigid motion, symplectic Euler, momentum and angular momentum kept.
 class FreeBodies {
   public:
     explicit FreeBodies(std::span<const Body> bodies);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/assert.h"
+#include "fluid/sim/methods/method.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
@@ -62,8 +63,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
         b.free_ = std::make_shared<FreeBodies>(bodies);
         b.host_ = b.free_->host();
     }
-    // Method wcsph has viscosity among its own pair terms, and is the only one with a choice of kernels.
-    b.friction_ = params.method == "wcsph";
+    b.friction_ = methodOf(params).doesViscosity;
     std::vector<Define> cubic, periodic, push;
     if (b.friction_ && params.kernel == "cubic_spline") cubic.push_back({"CUBIC", "1"});
     if (glm::any(traits.periodic)) periodic.push_back({"PERIODIC", "1"});
@@ -109,7 +109,7 @@ Status BodyPasses::allocate(uint32_t slots) {
     return ok();
 }
 
-bool BodyPasses::mayBeBorn(const vec3& p, float spacing, float near) const {
+bool BodyPasses::maySpawn(const vec3& p, float spacing, float near) const {
     for (size_t k = 0; k < bodies_.size(); ++k) {
         if (!bodies_[k].shape.distance) continue;
         const vec3 own = states_[k].pose.toOwn(p);
@@ -253,7 +253,7 @@ Result<BodyPasses::Saved> BodyPasses::take(WorldState& state) const {
     for (size_t k = 0; k < bodies_.size(); ++k) {
         const BodyLoad& l = (*loads)[k];
         if (!isFinite((*states)[k]) || !isFinite(l.force) || !isFinite(l.torque) || !isFinite(l.impulseOwed) || !isFinite(l.turnOwed))
-            return badInput(fmt::format("the saved state of body {} is none: save it again", k));
+            return badInput(fmt::format("the saved state of body {} is not finite or its rotation has no unit length: save it again", k));
     }
     Saved saved{std::move(*states), std::move(*loads), {}};
     if (host_.save != nullptr) {

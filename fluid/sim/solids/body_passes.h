@@ -28,8 +28,8 @@ class BodyPasses {
 
     bool any() const { return !states_.empty(); }
     uint32_t sampleCount() const { return sampleCount_; }
-    // Whether a particle may be born at `p`: outside of every body, and not nearer than it would rest.
-    bool mayBeBorn(const vec3& p, float spacing, float near = 1) const;  // `near` as of SolidPasses
+    // Whether a particle may be spawned at `p`: outside of every body, and not nearer than it would rest.
+    bool maySpawn(const vec3& p, float spacing, float near = 1) const;  // `near` as of SolidPasses
     // What Particles::matterOf holds of the samples.
     std::vector<vec4> matter() const;
 

@@ -58,7 +58,7 @@ std::array<uint32_t, 2 * kMostSurfaces> surfaceWords(std::span<const Surface> su
 }
 
 Status SolidPasses::Field::upload(Device& device) {
-    // Where a mesh is not closed nobody knows which side of it is inside: what cannot be reached from the border counts as that.
+    // Where a mesh is not closed no side of it is known to be inside: what cannot be reached from the border counts as that.
     if (!field->closed) outside = reachableFromBorder(field->surface);
     if (Status s = hold<uint8_t>(device, bits, field->surface.bits); !s) return s;
     if (Status s = hold<float>(device, distance, field->distance); !s) return s;
@@ -193,21 +193,21 @@ Status SolidPasses::addMoving(Moving m) {
     return ok();
 }
 
-bool SolidPasses::Field::mayBeBorn(const vec3& p, float spacing, float near) const {
+bool SolidPasses::Field::maySpawn(const vec3& p, float spacing, float near) const {
     const float contact = fieldParams(*field, FieldContact{.spacing = spacing}).contact;
     if ((near > 0 && field->clearance(p) < near * contact) || field->inside(p)) return false;
     const ivec3 voxel = field->surface.cellOf(p);
     return field->closed || !field->surface.contains(voxel) || outside[field->surface.index(voxel)] != 0;
 }
 
-bool SolidPasses::mayBeBorn(const vec3& p, float spacing, float near) const {
+bool SolidPasses::maySpawn(const vec3& p, float spacing, float near) const {
     for (const PlaneSolid& plane : planeSolids_)
         if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * near * spacing) return false;
     for (size_t k = 0; k < rigid_.size(); ++k)
-        if (!rigid_[k].on.mayBeBorn(poses_[k].toOwn(p), spacing, near)) return false;
+        if (!rigid_[k].on.maySpawn(poses_[k].toOwn(p), spacing, near)) return false;
     for (const Moving& m : deforming_)
-        if (!m.on.mayBeBorn(p, spacing, near)) return false;
-    return static_.field == nullptr || static_.mayBeBorn(p, spacing, near);
+        if (!m.on.maySpawn(p, spacing, near)) return false;
+    return static_.field == nullptr || static_.maySpawn(p, spacing, near);
 }
 
 Status SolidPasses::setSurfaces(std::span<const Surface> surfaces) {

@@ -25,20 +25,20 @@ class SolidPasses {
     static Result<SolidPasses> create(Device& device, const Solids& solids, const FluidParams& params,
                                       std::span<const Define> threads = {});
 
-    // Whether a particle may be born at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not nearer
-    // than it would rest. Of one that is there already, and is pushed out where it is only near, `near` is how near that may be, in shares
-    // of where it would rest.
-    bool mayBeBorn(const vec3& p, float spacing, float near = 1) const;
+    // Whether a particle may be spawned at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not
+    // nearer than it would rest. For one that is there already `near` is the least distance, as a share of the distance at which it would
+    // rest: a wall pushes it out.
+    bool maySpawn(const vec3& p, float spacing, float near = 1) const;
     bool any() const { return planeCount() > 0 || static_.field != nullptr || !rigid_.empty() || !deforming_.empty(); }
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
     const Buffer& planes() const { return planes_; }  // as integrate.kernel wants them
 
     // Error (badInput): as create; nothing has changed then.
     Status setSurfaces(std::span<const Surface> surfaces);
-    // Back to where everything stood at t = 0.
+    // Back to the places at t = 0.
     Status reset();
 
-    // Where everything stands.
+    // The places of all solids.
     struct Places {
         std::vector<Pose> poses;
         std::vector<std::vector<vec3>> shapes;
@@ -84,7 +84,7 @@ class SolidPasses {
         Buffer bits, distance, normal;
         std::vector<uint8_t> outside;  // of its voxels: reachable from the grid's border; empty where the mesh is closed
         Status upload(Device& device);
-        bool mayBeBorn(const vec3& p, float spacing, float near) const;  // in the field's frame
+        bool maySpawn(const vec3& p, float spacing, float near) const;  // in the field's frame
     };
     struct Moving {
         Field on;

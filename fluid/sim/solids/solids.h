@@ -1,4 +1,4 @@
-// The solids a world is made among: walls that stand still, solids that move as a whole, meshes that change their shape, floating bodies.
+// The solids of a world: walls that stand still, rigid solids that move, meshes that change their shape, floating bodies.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace rivulet {
 
-// How a wall meets a particle. Fields name surfaces by number: VoxelFieldOptions::surfaces.
+// How a wall responds to a particle. Fields name surfaces by number: VoxelFieldOptions::surfaces.
 struct Surface {
     float friction = -1;     // Coulomb coefficient, >= 0; negative: as fluid.collision says
     float restitution = -1;  // 0..1; negative: as fluid.collision says
@@ -40,7 +40,7 @@ struct Solids {
     std::vector<DeformingField*> deforming = {};  // in the world's frame; the world updates them. Must outlive it
     std::vector<Surface> surfaces = {};           // kMostSurfaces at most; those left out are as fluid.collision says
     std::vector<Body> bodies = {};                // floating, or made of boundary particles and standing still
-    BodyHost bodyHost = {};                       // who moves them; empty: they move freely
+    BodyHost bodyHost = {};                       // moves them; empty: they move freely
 };
 
 // What follows a field's normals in their buffer: friction and restitution of every surface, as float bits.

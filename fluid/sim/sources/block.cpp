@@ -10,7 +10,7 @@ namespace {
 double along(float lo, float hi, float spacing) { return std::max(std::floor((double{hi} - double{lo}) / spacing + 1e-3), 0.0); }
 
 // -1..1, evenly, of any two numbers (the finalizer of MurmurHash3, Appleby 2011).
-float strewn(uint32_t place, uint32_t axis) {
+float jittered(uint32_t place, uint32_t axis) {
     uint64_t k = (uint64_t{place} << 2U | axis) + 1;
     for (const uint64_t factor : {0xff51afd7ed558ccdULL, 0xc4ceb9fe1a85ec53ULL}) {
         k ^= k >> 33U;
@@ -41,7 +41,8 @@ void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to
                 vec3 at = first + vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * spacing;
                 if (ball && glm::length((at - middle) / half) > 1) continue;
                 if (b.jitter > 0)
-                    at = glm::clamp(at + b.jitter * spacing * vec3(strewn(place, 0), strewn(place, 1), strewn(place, 2)), first, last);
+                    at =
+                        glm::clamp(at + b.jitter * spacing * vec3(jittered(place, 0), jittered(place, 1), jittered(place, 2)), first, last);
                 to.push_back({at, b.velocity});
             }
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/core/param_fixed.h"
+
 namespace rivulet {
 
 namespace {
@@ -107,14 +109,14 @@ EmitterFeed::EmitterFeed(const Emitter& emitter, uint32_t index, float spacing) 
 }
 
 void EmitterFeed::take(const EmitterParams& params) {
-    const std::string shape = emitter_.params.shape;
-    emitter_.params = params;
-    emitter_.params.shape = shape;
+    EmitterParams next = params;
+    keepFixed(next, emitter_.params);
+    emitter_.params = next;
     layOut();
 }
 
 float EmitterFeed::fastest() const {
-    return !poured_ && emitter_.params.shape == "nozzle" ? static_cast<float>(kCatchUp) * speed_ : speed_;
+    return !deposits_ && emitter_.params.shape == "nozzle" ? static_cast<float>(kCatchUp) * speed_ : speed_;
 }
 
 void EmitterFeed::reset() { restore({}, {}); }
@@ -122,16 +124,16 @@ void EmitterFeed::reset() { restore({}, {}); }
 void EmitterFeed::restore(const Account& account, const Flight& flight) {
     account_ = account;
     flight_ = flight;
-    if (poured_) speed_ = glm::length(flight_.velocity);
+    if (deposits_) speed_ = glm::length(flight_.velocity);
 }
 
-EmitterFeed EmitterFeed::ofPoured(uint32_t index, float spacing) {
+EmitterFeed EmitterFeed::ofDeposits(uint32_t index, float spacing) {
     EmitterFeed feed(index, spacing);
-    feed.poured_ = true;
+    feed.deposits_ = true;
     return feed;
 }
 
-void EmitterFeed::pour(const vec3& place, const vec3& velocity, double volume) {
+void EmitterFeed::deposit(const vec3& place, const vec3& velocity, double volume) {
     const double share = volume / std::pow(double{spacing_}, 3);
     account_.due += share;
     flight_.places[flight_.next] = place;
@@ -143,7 +145,7 @@ void EmitterFeed::pour(const vec3& place, const vec3& velocity, double volume) {
 }
 
 // A particle at each place at most, above the water that it came down on: where that is full, at another height the next time.
-void EmitterFeed::offerPoured(const vec3& gravity, size_t most, std::vector<Candidate>& to) {
+void EmitterFeed::offerDeposits(const vec3& gravity, size_t most, std::vector<Candidate>& to) {
     const double want = std::floor(account_.due + 1.0e-6) - static_cast<double>(account_.offered - account_.refused);
     const uint64_t places = flight_.count;
     if (!(want >= 1) || places == 0) return;
@@ -158,8 +160,8 @@ void EmitterFeed::offerPoured(const vec3& gravity, size_t most, std::vector<Cand
 }
 
 // The closest packing of spheres as layers across the jet, stretched by a hair: the smoothing kernel finds that lattice 1.3 % denser than
-// the cubic one it is calibrated on, and a jet that is born compressed bursts. So many a layer that at the jet's speed layers follow each
-// other as the packing wants.
+// the cubic one it is calibrated on, and a jet that is spawned compressed bursts. So many a layer that at the jet's speed layers follow
+// each other as the packing wants.
 void EmitterFeed::layOut() {
     const EmitterParams& p = emitter_.params;
     speed_ = p.speed;
@@ -226,7 +228,7 @@ void EmitterFeed::onMesh(uint64_t k, vec3& at, vec3& normal) const {
 }
 
 void EmitterFeed::offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to) {
-    if (poured_) return offerPoured(gravity, most, to);
+    if (deposits_) return offerDeposits(gravity, most, to);
     const EmitterParams& p = emitter_.params;
     const double perSecond = 1.0e-3 * double{p.litresPerSecond} / std::pow(double{spacing_}, 3);
     const double regular = (volumeAfter(p, time + seconds) - volumeAfter(p, time)) / std::pow(double{spacing_}, 3);

@@ -1,5 +1,4 @@
-// Emitters and sinks: what comes into a world and what leaves it. Here is what a scene says of them, and the candidates an emitter makes;
-// source_passes.* puts those among the particles.
+// Emitters and sinks of a world: their Params, and the candidates that an emitter makes; source_passes.* turns those into particles.
 #pragma once
 
 #include <array>
@@ -32,7 +31,7 @@ struct EmitterParams {
     void visit(ParamVisitor& v);
 };
 
-// A volume in which particles vanish.
+// A volume in which particles are removed.
 struct SinkParams {
     std::string shape = "box";  // box | sphere
     vec3 position{0.0F};        // m, its centre
@@ -44,23 +43,24 @@ struct SinkParams {
 // An emitter with what it needs beyond its Params.
 struct Emitter {
     EmitterParams params;
-    std::vector<vec3> triangles;  // m, world: three corners each, of shape mesh; it lets water out on the side that sees them anticlockwise
+    std::vector<vec3>
+        triangles;  // m, world: three corners each, of shape mesh; water comes out on the side from which they are anticlockwise
 };
 
 struct Sources {
     std::vector<Emitter> emitters = {};
     std::vector<SinkParams> sinks = {};
-    double seconds = 10;  // how long emitters are expected to run: what fluid.maxParticles = 0 makes room for
-    // m^3 that FluidWorld::pour() is expected to bring in that time, beyond what take() has taken. 0: nobody holds water but the world.
-    double poured = 0;
+    double seconds = 10;  // how long emitters are expected to run: fluid.maxParticles = 0 makes room for that
+    // m^3 that FluidWorld::deposit() is expected to bring in that time, beyond what withdraw() removes. 0: there is no such exchange.
+    double expectedDeposit = 0;
     double more = 0;     // m^3 there is room for beyond all that
     uint32_t least = 0;  // particles there is room for at least, wherever they come from
 };
 
-// Volume an emitter has let out after `seconds`, m^3, if nothing is in its way.
+// Volume an emitter has let out after `seconds`, m^3, if nothing blocks it.
 double volumeAfter(const EmitterParams& params, double seconds);
 
-// "", or why it cannot be: a nozzle too narrow for its rate at its speed, a direction without length.
+// "", or the contradiction: a nozzle too narrow for its rate at its speed, a direction without length.
 std::string contradiction(const EmitterParams& params);
 
 // Particles that a nozzle lets out side by side; 0 of another shape.
@@ -70,15 +70,15 @@ double layerOf(const EmitterParams& params, float spacing);
 class EmitterFeed {
   public:
     EmitterFeed(const Emitter& emitter, uint32_t index, float spacing);
-    // Of water that others pour in, wherever they do.
-    static EmitterFeed ofPoured(uint32_t index, float spacing);
-    void pour(const vec3& place, const vec3& velocity, double volume);
+    // Of water that others deposit, at any place.
+    static EmitterFeed ofDeposits(uint32_t index, float spacing);
+    void deposit(const vec3& place, const vec3& velocity, double volume);
 
-    // Appends what is due when `seconds` more have gone by since `time` (s), at most `most`, as the end of that time finds it.
+    // Appends the particles that are due `seconds` after `time` (s), at most `most`, with their state at the end of that time.
     void offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to);
     // `count` of the offered were not taken: they stay owed.
     void refuse(uint64_t count) { account_.refused += count; }
-    void take(const EmitterParams& params);  // what can change while it runs: all but shape and mesh
+    void take(const EmitterParams& params);  // live values; fixed ones stay
     void reset();
 
     // Its accounts, for a saved state.
@@ -87,7 +87,7 @@ class EmitterFeed {
         uint64_t offered = 0, refused = 0;
     };
     const Account& account() const { return account_; }
-    // Of what is poured: where it came down, and how fast on the whole.
+    // Of deposits: their places, and their mean velocity.
     struct Flight {
         std::array<vec3, 32> places{};  // m
         uint32_t count = 0, next = 0;   // of them; which is the oldest
@@ -99,11 +99,11 @@ class EmitterFeed {
     const Emitter& emitter() const { return emitter_; }
     vec4 matter{1.0F, 1.0F, 0.0F, 0.0F}, absorption{0.0F};  // of its particles
     double due() const { return account_.due; }             // particles, since the start
-    float fastest() const;                                  // m/s, where they come out, in a hurry
+    float fastest() const;                                  // m/s, of particles at the opening, at most
 
   private:
     EmitterFeed(uint32_t index, float spacing) : index_(index), spacing_(spacing) {}
-    void offerPoured(const vec3& gravity, size_t most, std::vector<Candidate>& to);
+    void offerDeposits(const vec3& gravity, size_t most, std::vector<Candidate>& to);
     void layOut();
     vec3 onBox(uint64_t k) const;
     void onMesh(uint64_t k, vec3& p, vec3& normal) const;
@@ -115,7 +115,7 @@ class EmitterFeed {
     Account account_;
     std::vector<vec3> layers_[2];  // m, nozzle: offsets of a layer's particles in the opening, one layer after the other in turn
     std::vector<double> areas_;    // mesh: running sum over the triangles
-    bool poured_ = false;
+    bool deposits_ = false;
     Flight flight_;
 };
 

@@ -25,9 +25,9 @@ constexpr float kCrowded = 1.01F;
 Status check(const Sources& sources, float spacing) {
     for (size_t k = 0; k < sources.sinks.size(); ++k)
         if (Status s = checkParams(pathOf("sinks", k), sources.sinks[k]); !s) return s;
-    if (!(sources.seconds >= 0) || !(sources.poured >= 0) || !(sources.more >= 0))
+    if (!(sources.seconds >= 0) || !(sources.expectedDeposit >= 0) || !(sources.more >= 0))
         return badInput(fmt::format("sources run for {} s, are poured {} m^3 and have room for {} more: each must be 0 or more",
-                                    sources.seconds, sources.poured, sources.more));
+                                    sources.seconds, sources.expectedDeposit, sources.more));
     for (size_t k = 0; k < sources.emitters.size(); ++k) {
         const Emitter& e = sources.emitters[k];
         if (Status s = checkParams(pathOf("emitters", k), e.params); !s) return s;
@@ -66,9 +66,9 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
         feed.absorption = dyed(liquid, e.dye, e.dyeAmount, e.dyeScattering);
         s.feeds_.push_back(std::move(feed));
     }
-    s.poured_ = sources.poured > 0;
-    if (s.poured_) {
-        EmitterFeed feed = EmitterFeed::ofPoured(static_cast<uint32_t>(s.feeds_.size()), params.spacing);
+    s.deposits_ = sources.expectedDeposit > 0;
+    if (s.deposits_) {
+        EmitterFeed feed = EmitterFeed::ofDeposits(static_cast<uint32_t>(s.feeds_.size()), params.spacing);
         const LiquidOf liquid = liquidOf(params, "");
         feed.matter = vec4(1.0F, 1.0F, liquid.viscosity, liquid.row);
         feed.absorption = liquid.absorption;
@@ -102,7 +102,7 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
 
 double SourcePasses::slotsFor(const Sources& sources, const FluidParams& params) {
     const double volume = std::pow(double{params.spacing}, 3);
-    double slots = sources.poured > 0 ? std::ceil(sources.poured / volume) + 1 : 0;
+    double slots = sources.expectedDeposit > 0 ? std::ceil(sources.expectedDeposit / volume) + 1 : 0;
     slots += std::ceil(sources.more / volume);
     for (const Emitter& e : sources.emitters) slots += std::ceil(volumeAfter(e.params, sources.seconds) / volume) + 1;
     const dvec3 size(params.box.max - params.box.min);
@@ -122,7 +122,7 @@ void SourcePasses::writeSinks(const std::vector<SinkParams>& sinks) {
 }
 
 Status SourcePasses::set(const Sources& sources) {
-    if (sources.emitters.size() + (poured_ ? 1 : 0) != feeds_.size() || sources.sinks.size() != sinkCount_)
+    if (sources.emitters.size() + (deposits_ ? 1 : 0) != feeds_.size() || sources.sinks.size() != sinkCount_)
         return badInput("emitters and sinks were added or taken away: that needs a new world");
     if (Status s = check(sources, spacing_); !s) return s;
     for (size_t k = 0; k < sources.emitters.size(); ++k) feeds_[k].take(sources.emitters[k].params);
@@ -132,7 +132,7 @@ Status SourcePasses::set(const Sources& sources) {
 
 void SourcePasses::reset() {
     for (EmitterFeed& feed : feeds_) feed.reset();
-    heard_.assign(feeds_.size(), 0);
+    reported_.assign(feeds_.size(), 0);
     late_ = std::make_shared<Late>();
     late_->counters.assign(feeds_.size() * EMITTER_COUNTERS + sinkCount_, 0);
     waited_ = 0;
@@ -145,16 +145,16 @@ float SourcePasses::fastest() const {
     return v;
 }
 
-void SourcePasses::hearCounts() {
+void SourcePasses::readCounts() {
     for (size_t k = 0; k < feeds_.size(); ++k) {
         const uint32_t* c = &late_->counters[k * EMITTER_COUNTERS];
         const uint32_t refused = c[1] + c[2];
-        feeds_[k].refuse(refused - heard_[k]);
-        heard_[k] = refused;
+        feeds_[k].refuse(refused - reported_[k]);
+        reported_[k] = refused;
     }
 }
 
-// Takes from the list what would be born in a wall or a body, or too near to another of the list.
+// Removes from the list what would be spawned in a wall or a body, or too near to another of the list.
 void SourcePasses::dropUnfit(const World& world) {
     const FluidParams& params = world.params;
     const float contact = 0.5F * spacing_, nearest2 = kNearest * kNearest * spacing_ * spacing_;
@@ -177,7 +177,7 @@ void SourcePasses::dropUnfit(const World& world) {
                 const auto [from, to] = taken.equal_range(keyOf(cell + ivec3(k % 3, k / 3 % 3, k / 9) - 1));
                 for (auto it = from; it != to && fits; ++it) fits = glm::dot(it->second - p, it->second - p) >= nearest2;
             }
-            fits = fits && world.solids.mayBeBorn(p, spacing_) && world.bodies.mayBeBorn(p, spacing_);
+            fits = fits && world.solids.maySpawn(p, spacing_) && world.bodies.maySpawn(p, spacing_);
             if (fits) taken.emplace(keyOf(cell), p);
         }
         if (!fits) feeds_[static_cast<size_t>(c.position.w)].refuse(1);
@@ -207,7 +207,7 @@ void SourcePasses::run(const World& world, double time, double dt, bool last) {
     waited_ += dt;
     // Often enough that nothing comes out further than a spacing from where it should, give or take.
     if (feeds_.empty() || (!last && static_cast<double>(fastest()) * waited_ < static_cast<double>(spacing_))) return;
-    hearCounts();
+    readCounts();
     list_.clear();
     for (EmitterFeed& feed : feeds_) feed.offer(time - waited_, waited_, vec3(step.gravity), kMostCandidates - list_.size(), list_);
     waited_ = 0;
@@ -223,9 +223,9 @@ void SourcePasses::run(const World& world, double time, double dt, bool last) {
     if (device_->backend() == Backend::cpu) report();
 }
 
-void SourcePasses::pour(const vec3& place, const vec3& velocity, double volume) {
-    ASSERT(poured_, "say by Sources::poured that there is water from others");
-    feeds_.back().pour(place, velocity, volume);
+void SourcePasses::deposit(const vec3& place, const vec3& velocity, double volume) {
+    ASSERT(deposits_, "say by Sources::expectedDeposit that there is water from others");
+    feeds_.back().deposit(place, velocity, volume);
 }
 
 void SourcePasses::report() {
@@ -236,15 +236,15 @@ void SourcePasses::report() {
     });
 }
 
-uint64_t SourcePasses::given() const {
+uint64_t SourcePasses::emitted() const {
     uint64_t sum = 0;
     for (size_t k = 0; k < feeds_.size(); ++k) sum += late_->counters[k * EMITTER_COUNTERS];
     return sum;
 }
 
-uint64_t SourcePasses::born() const { return poured_ ? late_->counters[(feeds_.size() - 1) * EMITTER_COUNTERS] : 0; }
+uint64_t SourcePasses::deposited() const { return deposits_ ? late_->counters[(feeds_.size() - 1) * EMITTER_COUNTERS] : 0; }
 
-double SourcePasses::debt() const { return poured_ ? feeds_.back().due() - static_cast<double>(born()) : 0; }
+double SourcePasses::pending() const { return deposits_ ? feeds_.back().due() - static_cast<double>(deposited()) : 0; }
 
 uint64_t SourcePasses::drained() const {
     uint64_t sum = 0;
@@ -261,7 +261,7 @@ bool SourcePasses::full() const {
 double SourcePasses::owed() const {
     double sum = 0;
     for (const EmitterFeed& feed : feeds_) sum += feed.due();
-    return sum - static_cast<double>(given());
+    return sum - static_cast<double>(emitted());
 }
 
 uint64_t SourcePasses::meshesHash() const {
@@ -277,10 +277,10 @@ void SourcePasses::save(WorldState& state) const {
     std::vector<EmitterFeed::Account> accounts;
     for (const EmitterFeed& feed : feeds_) accounts.push_back(feed.account());
     state.put<EmitterFeed::Account>("sources.accounts", accounts);
-    state.put<uint32_t>("sources.heard", heard_);
+    state.put<uint32_t>("sources.heard", reported_);
     state.put<uint32_t>("sources.counters", late_->counters);
     state.put<double>("sources.waited", std::span(&waited_, 1));
-    if (poured_) state.put<EmitterFeed::Flight>("sources.poured", std::span(&feeds_.back().flight(), 1));
+    if (deposits_) state.put<EmitterFeed::Flight>("sources.poured", std::span(&feeds_.back().flight(), 1));
 }
 
 Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
@@ -295,15 +295,15 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
         return badInput("the state was saved with another mesh to let water out of: resume it with the scene it is of");
     Result<std::vector<EmitterFeed::Account>> accounts = state.take<EmitterFeed::Account>("sources.accounts", feeds_.size());
     if (!accounts) return accounts.error();
-    Result<std::vector<uint32_t>> heard = state.take<uint32_t>("sources.heard", feeds_.size());
-    if (!heard) return heard.error();
+    Result<std::vector<uint32_t>> reported = state.take<uint32_t>("sources.heard", feeds_.size());
+    if (!reported) return reported.error();
     Result<std::vector<uint32_t>> counters = state.take<uint32_t>("sources.counters", late_->counters.size());
     if (!counters) return counters.error();
     Result<std::vector<double>> waited = state.take<double>("sources.waited", 1);
     if (!waited) return waited.error();
     bool sound = std::isfinite((*waited)[0]) && (*waited)[0] >= 0;
     EmitterFeed::Flight flight;
-    if (poured_) {
+    if (deposits_) {
         Result<std::vector<EmitterFeed::Flight>> saved = state.take<EmitterFeed::Flight>("sources.poured", 1);
         if (!saved) return saved.error();
         flight = (*saved)[0];
@@ -312,19 +312,19 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
     for (size_t k = 0; k < feeds_.size(); ++k) {
         const EmitterFeed::Account& a = (*accounts)[k];
         const uint32_t* c = &(*counters)[k * EMITTER_COUNTERS];
-        // What was offered has been taken or refused: the feed knows of it, or will when it next hears.
-        const auto taken = static_cast<uint32_t>(a.offered - a.refused) - (c[1] + c[2] - (*heard)[k]);
+        // What was offered has been taken or refused: the feed has counted it, or will when it next reads the counters.
+        const auto taken = static_cast<uint32_t>(a.offered - a.refused) - (c[1] + c[2] - (*reported)[k]);
         sound = sound && std::isfinite(a.due) && a.due >= 0 && a.refused <= a.offered && a.offered < uint64_t{1} << 53U && taken == c[0];
     }
     if (!sound) return badInput("the saved state's accounts of the emitters do not add up: save it again");
-    return Saved{std::move(*accounts), std::move(*heard), std::move(*counters), (*waited)[0], flight};
+    return Saved{std::move(*accounts), std::move(*reported), std::move(*counters), (*waited)[0], flight};
 }
 
 void SourcePasses::restore(const Saved& saved) {
     if (!any()) return;
     reset();
     for (size_t k = 0; k < feeds_.size(); ++k) feeds_[k].restore(saved.accounts[k], saved.flight);
-    heard_ = saved.heard;
+    reported_ = saved.reported;
     late_->counters = saved.counters;
     waited_ = saved.waited;
     device_->writeAll<uint32_t>(counters_, saved.counters);

@@ -43,23 +43,23 @@ class SourcePasses {
     };
     // After a substep of `dt` that ended at `time`; `last` of its frame.
     void run(const World& world, double time, double dt, bool last);
-    // m^3 from others, that become particles at `place` (m) with the steps to come. sources.poured was more than 0.
-    void pour(const vec3& place, const vec3& velocity, double volume);
+    // m^3 from others, that become particles at `place` (m) with the steps to come. sources.expectedDeposit was more than 0.
+    void deposit(const vec3& place, const vec3& velocity, double volume);
     // Has the counts read, late on a GPU.
     void report();
 
     // As far as is known.
-    uint64_t given() const;    // particles, by all emitters, and of what was poured
-    uint64_t born() const;     // of these, of what was poured
-    uint64_t drained() const;  // particles
-    bool full() const;         // whether one had to wait because no slot was free
-    double owed() const;       // particles due, and not taken yet
-    double debt() const;       // of these, of what was poured
+    uint64_t emitted() const;    // particles, by all emitters, and of what was poured
+    uint64_t deposited() const;  // of these, of what was poured
+    uint64_t drained() const;    // particles
+    bool full() const;           // whether one had to wait because no slot was free
+    double owed() const;         // particles due, and not taken yet
+    double pending() const;      // of these, of what was poured
 
     // The emitters' accounts and what is counted. Before save, report and wait for the device.
     struct Saved {
         std::vector<EmitterFeed::Account> accounts;
-        std::vector<uint32_t> heard, counters;
+        std::vector<uint32_t> reported, counters;
         double waited = 0;
         EmitterFeed::Flight flight;
     };
@@ -72,7 +72,7 @@ class SourcePasses {
     struct Late {
         std::vector<uint32_t> counters;
     };
-    void hearCounts();
+    void readCounts();
     void writeSinks(const std::vector<SinkParams>& sinks);
     void dropUnfit(const World& world);
     uint64_t meshesHash() const;
@@ -81,8 +81,8 @@ class SourcePasses {
     bool matter_ = false, absorption_ = false;
     float spacing_ = 0;
     std::vector<EmitterFeed> feeds_;  // of the emitters; behind them that of what is poured, if others do
-    bool poured_ = false;
-    std::vector<uint32_t> heard_;  // refused by the device, of each, that its feed knows of; it turns over with the counters
+    bool deposits_ = false;
+    std::vector<uint32_t> reported_;  // refused by the device, of each, that its feed knows of; it turns over with the counters
     size_t sinkCount_ = 0;
     Kernel emit_, drain_, forget_;
     Buffer candidates_, sinks_, counters_;

@@ -13,7 +13,7 @@ namespace {
 // Density ratios between which foam lies on water: below it flies, above it is a bubble. Ihmsen et al. count 6 and 20 neighbours of 30.
 constexpr float kSprayBelow = 0.2F, kBubbleAbove = 0.7F;
 constexpr float kSprayDrag = 0.15F;  // 1/m: of a drop of 3 mm
-// Full up to this share of its slots, foam is born as ever; from there on less, so that none has to go before its time.
+// Up to this share of its slots foam is spawned in full; from there on less, so that none is removed before its time.
 constexpr float kRoomy = 0.7F;
 
 // Sums over a cubic lattice without its middle: of 1 - r/h, and over its half y > 0 of y times what slope() is.
@@ -51,7 +51,7 @@ Result<FoamPasses> FoamPasses::create(Device& device, const FluidParams& params,
         *kernel = *found;
     }
     for (auto [kernel, path] : {std::pair(&f.move_, "fluid/surface/foam_move"), std::pair(&f.wanted_, "fluid/surface/foam_wanted"),
-                                std::pair(&f.born_, "fluid/surface/foam_born"), std::pair(&f.back_, "fluid/surface/foam_drawn")}) {
+                                std::pair(&f.spawn_, "fluid/surface/foam_born"), std::pair(&f.back_, "fluid/surface/foam_drawn")}) {
         Result<Kernel> found = device.kernel(path);
         if (!found) return found.error();
         *kernel = *found;
@@ -66,13 +66,13 @@ Result<FoamPasses> FoamPasses::create(Device& device, const FluidParams& params,
         *buffer = std::move(*made);
     }
     device.fill(f.most_, f.slots_);
-    device.fill(f.airs_, 0);  // of samples on bodies nobody writes it
+    device.fill(f.airs_, 0);  // no pass writes that of samples on bodies
     return f;
 }
 
 void FoamPasses::reset() {
     device_->fill(foam_, 0);
-    told_ = std::make_shared<Told>();
+    counts_ = std::make_shared<Counts>();
     frame_ = 0;
     drawNewest();
 }
@@ -87,7 +87,7 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
     f.slots = slots_;
     f.seed = frame_;
     f.seconds = static_cast<float>(seconds);
-    const float used = static_cast<float>(told_->alive) / static_cast<float>(std::max(slots_, 1U));
+    const float used = static_cast<float>(counts_->alive) / static_cast<float>(std::max(slots_, 1U));
     f.births = std::clamp((1 - used) / (1 - kRoomy), 0.0F, 1.0F);
     f.life = p.life;
     f.buoyancy = p.buoyancy;
@@ -114,15 +114,15 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
     device_->fill(births_, 0);
     crest_.run(*device_, particles, crest, {&grid.neighbors(), position, velocity, &airs_, &births_}, threads);
     device_->run(wanted_, f, {&particles.id, position, &births_, &lists_}, particles.count);
-    device_->run(born_, f, {&particles.id, position, velocity, &births_, &lists_, &before_, &foam_, &velocity_}, particles.count);
-    // What is born comes from where its particle is now, and what has moved since the frame's start is no longer in its way.
+    device_->run(spawn_, f, {&particles.id, position, velocity, &births_, &lists_, &before_, &foam_, &velocity_}, particles.count);
+    // New foam starts where its particle is now: solids keep it out where they are now, not along their way in the frame.
     solids.keepOut(step, flecks, 0);
-    device_->readLater(lists_, FOAM_LISTS * sizeof(uint32_t), [told = std::weak_ptr(told_)](std::span<const std::byte> bytes) {
-        const std::shared_ptr<Told> t = told.lock();
+    device_->readLater(lists_, FOAM_LISTS * sizeof(uint32_t), [counts = std::weak_ptr(counts_)](std::span<const std::byte> bytes) {
+        const std::shared_ptr<Counts> t = counts.lock();
         if (!t) return;  // begun anew meanwhile
         const auto* words = reinterpret_cast<const uint32_t*>(bytes.data());
-        const uint32_t born = std::min(words[1], words[3]);
-        t->alive = words[0] + born;
+        const uint32_t spawned = std::min(words[1], words[3]);
+        t->alive = words[0] + spawned;
     });
 }
 
@@ -143,7 +143,7 @@ Status FoamPasses::drawEarlier(double seconds) {
 void FoamPasses::save(WorldState& state) const {
     state.put<vec4>("foam.slots", device_->readAll<vec4>(foam_, slots_));
     state.put<vec4>("foam.velocity", device_->readAll<vec4>(velocity_, slots_));
-    const uint32_t numbers[] = {told_->alive, frame_};
+    const uint32_t numbers[] = {counts_->alive, frame_};
     state.put<uint32_t>("foam.numbers", numbers);
 }
 
@@ -161,7 +161,7 @@ void FoamPasses::restore(const Saved& saved) {
     reset();
     device_->writeAll<vec4>(foam_, std::span<const vec4>(saved.foam));
     device_->writeAll<vec4>(velocity_, std::span<const vec4>(saved.velocity));
-    told_->alive = saved.alive;
+    counts_->alive = saved.alive;
     frame_ = saved.frame;
 }
 

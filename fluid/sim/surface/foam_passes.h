@@ -41,21 +41,21 @@ class FoamPasses {
     const Buffer& foam() const { return foam_; }  // see shaders/fluid/surface/foam_params.h
     const Buffer& drawn() const { return earlier_ ? drawn_ : foam_; }
     const Buffer& velocity() const { return velocity_; }  // as it says
-    uint32_t alive() const { return told_->alive; }       // on a GPU some frames ago
+    uint32_t alive() const { return counts_->alive; }     // on a GPU some frames ago
 
   private:
-    struct Told {
+    struct Counts {
         uint32_t alive = 0;
     };
     Device* device_ = nullptr;
     uint32_t slots_ = 0, frame_ = 0;
     float hat_ = 0, flat_ = 0, fullness_ = 0;
     PairKernel air_, crest_;
-    Kernel move_, wanted_, born_, back_;
+    Kernel move_, wanted_, spawn_, back_;
     Buffer airs_, births_, before_, foam_, velocity_, lists_, most_;
     Buffer drawn_;  // made when it is first asked for
     bool earlier_ = false;
-    std::shared_ptr<Told> told_ = std::make_shared<Told>();
+    std::shared_ptr<Counts> counts_ = std::make_shared<Counts>();
 };
 
 }  // namespace rivulet

@@ -46,35 +46,6 @@ void BoxParams::visit(ParamVisitor& v) {
     v.value({.name = "periodicZ", .doc = "the same along z", .fixed = kFixed}, periodicZ);
 }
 
-void PbfParams::visit(ParamVisitor& v) {
-    v.value({"iterations", "", "corrections a step, where tolerance is 0: more is stiffer and slower", 1, 50}, iterations);
-    v.value(
-        {"tolerance", "", "mean compression, as a fraction, down to which a step corrects; 0: always as often as iterations says", 0, 0.1},
-        tolerance);
-    v.value({"maxIterations", "", "corrections a step at most, where tolerance is not 0", 1, 1000, kLog}, maxIterations);
-    v.value({"relaxation", "", "share of a correction that is made: more converges faster, too much trembles", 0.05, 1.5}, relaxation);
-    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
-    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: water is stiffer with more", 1, 100}, minSubsteps);
-}
-
-void DfsphParams::visit(ParamVisitor& v) {
-    v.value(
-        {"tolerance", "",
-         "mean compression that a step may add, as a fraction, where the fastest particle goes its reach; less in slower water, down to a "
-         "twentieth",
-         1.0e-6, 0.1, kLog},
-        tolerance);
-    v.value({"correction", "",
-             "share of a density that is off which a step puts right: 1 keeps it best and heats water at rest, 0 lets it drift", 0, 1},
-            correction);
-    v.value({"maxIterations", "", "in a step", 1, 1000, kLog}, maxIterations);
-    v.value({"warmStart", "", "share of the last step's pressure that the next begins with", 0, 1}, warmStart);
-    v.value({"relaxation", "", "share of a Jacobi correction that is made; above 0.6 it may not converge", 0.05, 1}, relaxation);
-    v.value({"momentum", "", "share of the last iteration's change that is made once more where it still helps", 0, 0.95}, momentum);
-    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
-    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: density keeps better with more", 1, 100}, minSubsteps);
-}
-
 void CollisionParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> walks = {"exact", "thesis"};
     v.value({"friction", "", "Coulomb friction of walls, and of colliders that name none: 0 = slips", 0, 10}, friction);
@@ -87,40 +58,6 @@ void CollisionParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> kinds = {"slip", "no-slip"};
     v.choice({.name = "walls", .doc = "what viscosity does at walls: slip: nothing; no-slip: the fluid's velocity there is the wall's"},
              walls, kinds);
-}
-
-void ForcesParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> ways = {"auto", "explicit", "implicit", "none"};
-    v.choice(
-        {.name = "viscosity",
-         .doc =
-             "of methods pbf and dfsph. explicit: a sweep a step, and steps no longer than 0.125 hs^2 / viscosity; implicit: solved for, "
-             "steps "
-             "of any length; auto: explicit where the step keeps that limit anyhow, else implicit, and none where viscosity evens out less "
-             "than a tenth of the support radius in a second"},
-        viscosity, ways);
-    v.value({"viscosityTolerance", "", "what the implicit solver may leave, as a share of the velocities and of what viscosity changes",
-             1.0e-5, 0.5, kLog},
-            viscosityTolerance);
-    v.value({"viscosityIterations", "", "of the implicit solver in a step, at most", 1, 1000, kLog}, viscosityIterations);
-    v.value({"tension", "N/m", "surface tension: 0 = none; water 0.072; steps are kept shorter than capillary waves need", 0, 100},
-            tension);
-    v.value(
-        {"adhesion", "N/m", "how walls and bodies pull the fluid, in the measure of tension: about the same value makes it stick", 0, 100},
-        adhesion);
-    v.value({"thesisTension", "m/s^2",
-             "the thesis's surface tension (8), as the acceleration at a flat surface: < 0 pulls inward, 0 = none", -1000, 1000},
-            thesisTension);
-    static const std::vector<std::string> kinds = {"none", "thesis", "gradient"};
-    v.choice({.name = "normals",
-              .doc = "normals of the surface, to look at (look.colourBy normal or surface): thesis: its (7), which sees walls as air; "
-                     "gradient: of the "
-                     "density, walls counted as fluid"},
-             normals, kinds);
-    v.value({"vorticity", "1/s", "vorticity confinement (Macklin and Mueller 2013): how strongly whirls are kept up; 0 = none", 0, 100},
-            vorticity);
-    v.value({"airDrag", "", "drag coefficient of drops in air of 1.2 kg/m^3: a sphere 0.47; 0 = there is no air", 0, 10}, airDrag);
-    v.value({"wind", "m/s", "velocity of the air; does nothing where airDrag is 0", -kFast, kFast}, wind);
 }
 
 void FoamParams::visit(ParamVisitor& v) {
@@ -202,8 +139,8 @@ void FluidParams::visit(ParamVisitor& v) {
              "room for so many; what more would come in waits. 0 = what blocks hold and emitters let out in the scene's duration", 0,
              64.0e6, kLog, kFixed},
             maxParticles);
-    v.group({.name = "pbf", .doc = "of method pbf"}, pbf);
-    v.group({.name = "dfsph", .doc = "of method dfsph"}, dfsph);
+    for (const MethodRow& row : methods().rows)
+        if (row.visit != nullptr) row.visit(*this, v);
     v.group({.name = "forces", .doc = "beside pressure and gravity"}, forces);
     v.group({.name = "foam", .doc = "what the water carries, and is white"}, foam);
     v.group({.name = "box", .doc = "walls around the fluid; what leaves them is lost"}, box);

@@ -1,10 +1,14 @@
 // The "fluid" section of a scene: what a FluidWorld is made from. SI units.
 #pragma once
 
+#include <rivulet_lists/forces.h>
+
 #include <string>
 #include <vector>
 
 #include "engine/core/params.h"
+#include "fluid/sim/methods/method_dfsph.h"
+#include "fluid/sim/methods/method_pbf.h"
 
 namespace rivulet {
 
@@ -38,41 +42,12 @@ struct CollisionParams {
     void visit(ParamVisitor& v);
 };
 
-struct PbfParams {
-    int iterations = 3;       // a step, where tolerance is 0
-    float tolerance = 0.0F;   // mean compression, a fraction; 0 = none
-    int maxIterations = 20;   // where there is one
-    float relaxation = 1.0F;  // of a correction
-    float reach = 0.6F;       // spacings a step
-    int minSubsteps = 4;      // a frame of 1/60 s
-    void visit(ParamVisitor& v);
+// The Params of all forces as keys of fluid.forces (force.h).
+template <class... Forces>
+struct ParamsOfAll : Forces... {
+    void visit(ParamVisitor& v) { (Forces::visit(v), ...); }
 };
-
-struct DfsphParams {
-    float tolerance = 3.0e-4F;  // mean compression that a step adds where the fastest goes as far as it may, a fraction
-    float correction = 0.2F;    // of a density that is off, a step
-    int maxIterations = 100;
-    float warmStart = 1.0F;   // 0..1
-    float relaxation = 0.6F;  // of an iteration
-    float momentum = 0.7F;
-    float reach = 0.3F;   // spacings a step
-    int minSubsteps = 8;  // a frame of 1/60 s
-    void visit(ParamVisitor& v);
-};
-
-struct ForcesParams {
-    std::string viscosity = "auto";    // auto | explicit | implicit | none
-    float viscosityTolerance = 0.01F;  // of the implicit solver, a share
-    int viscosityIterations = 100;     // at most, a step
-    float tension = 0.0F;              // N/m; 0 = none
-    float adhesion = 0.0F;             // N/m, to walls and bodies; 0 = none
-    float thesisTension = 0.0F;        // m/s^2 at a flat surface; < 0 pulls inward; 0 = none
-    std::string normals = "none";      // none | thesis | gradient
-    float vorticity = 0.0F;            // 1/s; 0 = none
-    float airDrag = 0.0F;              // drag coefficient; 0 = no air
-    vec3 wind{0.0F};                   // m/s
-    void visit(ParamVisitor& v);
-};
+using ForcesParams = ParamsOfAll<RIVULET_FORCE_PARAMS>;
 
 // Spray, foam and bubbles. Defaults after Ihmsen et al. 2012, in SI units.
 struct FoamParams {
@@ -105,7 +80,7 @@ struct FluidParams {
     float longestFrame = 0.1F;  // s
     float fixedStep = 0.0F;     // s; 0 = none
     float frameBudget = 0.0F;   // ms; 0 = none
-    bool limits = true;         // steps no longer than is stable, nobody faster than a spacing a step
+    bool limits = true;         // steps no longer than is stable, no particle faster than a spacing a step
     dvec3 origin{0.0};          // m: where the scene's (0, 0, 0) is in the host's world. A scene file gives it as floats
     bool ellipsoids = false;    // found for drawing
     int maxParticles = 0;       // 0 = what blocks and emitters need

@@ -7,6 +7,7 @@
 
 #include "engine/core/assert.h"
 #include "engine/core/param_check.h"
+#include "engine/core/param_fixed.h"
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 #include "shaders/fluid/world/stats_row.h"
@@ -26,56 +27,17 @@ const FluidParams& FluidWorld::params() const { return impl_->params; }
 std::vector<float> FluidWorld::pressures() const { return impl_->method->pressures(*impl_->device, impl_->particles, impl_->step); }
 const FluidStats& FluidWorld::stats() const { return *impl_->figures; }
 float FluidWorld::fastestFall() const { return impl_->fastestFall(); }
-double FluidWorld::time() const { return impl_->time; }
+double FluidWorld::time() const { return impl_->clock.time; }
 double FluidWorld::pending() const { return impl_->stepper.pending(); }
-double FluidWorld::dropped() const { return impl_->dropped; }
+double FluidWorld::dropped() const { return impl_->clock.dropped; }
 const dvec3& FluidWorld::origin() const { return impl_->params.origin; }
 void FluidWorld::setOrigin(const dvec3& origin) { impl_->params.origin = origin; }
-int FluidWorld::lastSubsteps() const { return impl_->lastSubsteps; }
+int FluidWorld::lastSubsteps() const { return impl_->clock.lastSubsteps; }
 const std::vector<Pose>& FluidWorld::poses() const { return impl_->solids.poses(); }
 const std::vector<BodyState>& FluidWorld::bodies() const { return impl_->bodies.states(); }
 const std::vector<BodyLoad>& FluidWorld::bodyLoads() const { return impl_->bodies.loads(); }
 uint64_t FluidWorld::voxelsRewritten() const { return impl_->solids.voxelsRewritten(); }
 Device& FluidWorld::device() const { return *impl_->device; }
-
-// The speed water of this scene reaches by falling from its highest block to the far side of the box, with what it starts with.
-float FluidWorld::Impl::fastestFall() const {
-    const float g = glm::length(gravity);
-    float fastest = 0.0F;
-    for (const BlockParams& b : params.blocks) {
-        float fall = 0.0F;
-        if (g > 0.0F) {
-            const vec3 down = gravity / g;
-            for (int k = 0; k < 3; ++k)
-                fall += std::abs(down[k]) * (down[k] < 0 ? b.max[k] - params.box.min[k] : params.box.max[k] - b.min[k]);
-        }
-        fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
-    }
-    for (const Emitter& e : asked.emitters) {
-        float fall = 0.0F;
-        for (int k = 0; k < 3; ++k)
-            fall += std::abs(gravity[k]) *
-                    (gravity[k] < 0 ? e.params.position[k] - params.box.min[k] : params.box.max[k] - e.params.position[k]);
-        fastest = std::max(fastest, std::sqrt(2.0F * std::max(fall, 0.0F) + sources.fastest() * sources.fastest()));
-    }
-    fastest = std::max(fastest, fastestWall);
-    // Still water without gravity has no speed of its own: the length it could be pushed over in a tenth of a second.
-    return std::max(fastest, 10.0F * params.spacing);
-}
-
-// No water of this scene is faster, m/s: ten times what a fall across the whole box, walls, wind, a skin or its own start give, or twice
-// the speed of sound. Where something goes wrong, speeds would else grow as steps shrink, and steps shrink as speeds grow.
-float FluidWorld::Impl::fastestPossible() const {
-    const float fall = std::sqrt(2.0F * glm::length(gravity) * glm::length(params.box.max - params.box.min));
-    const float skin = std::sqrt((params.forces.tension + params.forces.adhesion) / (params.restDensity * params.spacing));
-    const float wind = params.forces.airDrag > 0 ? glm::length(params.forces.wind) : 0.0F;
-    const float thrown = time == 0 ? static_cast<float>(bodies.fastest()) : 0.0F;  // later it may be what has gone wrong
-    float hosts = 0;
-    for (const HostForce& f : hostForces)
-        if (f.fastest != nullptr) hosts = std::max(hosts, f.fastest(f.self));
-    const float most = 10.0F * (std::max({fall, fastestStart, sources.fastest(), thrown, wind, skin, hosts}) + fastestFall());
-    return std::max(most, 2.0F * method->soundSpeed(params, fastestFall()));
-}
 
 void FluidWorld::Impl::gatherColours() {
     if (!coloured) return;
@@ -84,72 +46,41 @@ void FluidWorld::Impl::gatherColours() {
     device->run(gatherAbsorption, all, {&particles.id, &particles.absorptionOf, &particles.absorption}, particles.count);
 }
 
-void FluidWorld::Impl::say(const std::string& sentence) {
+void FluidWorld::Impl::report(const std::string& sentence) {
     if (std::find(figures->limited.begin(), figures->limited.end(), sentence) != figures->limited.end()) return;
     figures->limited.push_back(sentence);
     log.notice(sentence);
 }
 
-// What is known to go wrong, before it does.
+// Reports settings that are known to fail.
 void FluidWorld::Impl::warn() {
-    if (!params.limits) say("fluid.limits is off: steps are as long as asked for, stable or not");
+    if (!params.limits) report("fluid.limits is off: steps are as long as asked for, stable or not");
     const vec3 reach = glm::max(glm::abs(params.box.min), glm::abs(params.box.max));
     const float most = std::max({reach.x, reach.y, reach.z}), apart = std::nextafter(most, 2.0F * most) - most;
     if (apart > 2.0e-3F * params.spacing)
-        say(fmt::format(
-            "fluid.box lies so far from its zero that floats there are {:.2g} m apart and slow motion is lost: say where it is by "
-            "fluid.origin",
-            apart));
+        report(
+            fmt::format("fluid.box lies so far from its zero that floats there are {:.2g} m apart and slow motion is lost: give its place "
+                        "by fluid.origin",
+                        apart));
     const float support = params.supportSpacings, neighbours = 4.18879F * support * support * support;
     if (params.kernel == "cubic_spline" && neighbours > 55.0F)
-        say(fmt::format(
+        report(fmt::format(
             "fluid.supportSpacings = {} gives particles {:.0f} neighbours: with more than 55 those of the cubic spline go in pairs",
             support, neighbours));
 }
 
-// The largest stable step: acoustic CFL or how far the fastest may go, viscous and body-force limits (Monaghan 1992, with the constants of
-// Morris et al. 1997).
-StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
-    if (!params.limits) return {frameSeconds, "the frame"};
-    const double hs = 0.5 * step.h, g = glm::length(gravity);
-    const double c0 = method->soundSpeed(params, fastestFall());
-    // On a GPU figures come some frames late: speeds may have grown by gravity since.
-    const double late = std::max(now - figures->time, 0.0);
-    double fastest = std::max({figures->maxSpeed, double{solids.fastestWall()}, double{sources.fastest()}, double{bodies.fastest()}}) +
-                     g * (late < 1.0e-9 ? frameSeconds : late + frameSeconds);
-    StepLimit limit{frameSeconds, "the frame"};
-    const auto atMost = [&limit](double dt, const char* why) {
-        if (dt < limit.dt) limit = {dt, why};
-    };
-    const Method::StepLimit own = method->stepLimit(params, fastestFall());
-    if (c0 > 0) atMost(params.cfl * hs / (c0 + fastest), "the speed of sound (fluid.cfl)");
-    atMost(double{own.reach} * params.spacing / std::max(fastest, 1.0e-9), "the speed of the fastest particle or wall");
-    atMost(own.longest, own.why);
-    // Explicit viscosity alone has a limit; an implicit solver has none.
-    const double laminar = explicitViscosity(params, method->doesViscosity());
-    const double nu = (laminar > 0 && traits.matter ? std::max(laminar, double{mostViscous}) : laminar) + 0.1 * double{step.artificial};
-    if (nu > 0) atMost(0.125 * hs * hs / nu, "viscosity");
-    atMost(capillaryLimit(params), "surface tension");
-    if (g > 0) atMost(0.25 * std::sqrt(hs / g), "gravity");
-    return limit;
+StepLimits::Inputs FluidWorld::Impl::limitInputs() const {
+    return {params, *method, forces, sourceSetup.emitters, gravity, sources.fastest(), bodies.fastest(), clock.time == 0};
 }
 
-// Passes of what is on from now; one that cannot be made stays off, and is said.
-void FluidWorld::Impl::findForces() {
-    for (ForceState& f : forcePasses) {
-        f.on = f.wanted(params, method->doesViscosity());
-        if (f.on && traits.linked) {  // a slider: create() has refused what was on
-            say(linkedWithout(f.name));
-            f.on = false;
-        }
-        if (!f.on || f.pass) continue;
-        Result<ForcePass> made = f.make(*device, {params, particles.count, traits, method->doesViscosity()});
-        if (made)
-            f.pass = std::move(*made);
-        else
-            say(made.error().message);
-        f.on = static_cast<bool>(made);
-    }
+StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
+    return limits.longest(limitInputs(),
+                          {.late = std::max(now - figures->time, 0.0),
+                           .maxSpeed = figures->maxSpeed,
+                           .fastestWall = solids.fastestWall(),
+                           .mostViscous = traits.matter ? mostViscous : 0.0F,
+                           .step = step},
+                          frameSeconds);
 }
 
 bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
@@ -157,21 +88,21 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
         device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, particles.count);
     bodies.place(step, particles);
     if (Status built = grid->build(step, particles); !built) {
-        say(built.error().message);
+        report(built.error().message);
         return false;
     }
     if (traits.matter)
         device->run(gatherMatter, step, {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure},
                     particles.count);
     bodies.index(step, *grid, particles);
-    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) say(moved.error().message);
+    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) report(moved.error().message);
     return true;
 }
 
 // `from`, `to`: the shares of the frame's time at which it begins and ends.
-void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
+bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
-    step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), fastestEver) : kAnySpeed;
+    step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), limits.fastestEver) : kAnySpeed;
     bool built = false;
     StepContext context{.device = *device,
                         .fluid = params,
@@ -189,32 +120,31 @@ void FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .forces = {},
                         .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
                         .wallAdhesion = [&](const StepParams& s) { solids.adhesion(s, *grid, particles); }};
-    for (const ForceState& f : forcePasses) context.hasForces |= f.on;
-    context.forces = [&] {
-        for (const ForceState& f : forcePasses)
-            if (f.on) f.pass(context);
-    };
+    context.hasForces = forces.anyOn();
+    particles.hasNormals = false;
+    context.forces = [&] { forces.run(context); };
     method->step(context);
     iterations += solve.iterations;
     sorted = built;
-    if (!built) return;
+    if (!built) return false;
     solids.collide(step, *grid, particles);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
     bodies.advance(step, particles, dt);
     if (const std::optional<size_t> body = bodies.misled())
-        say(fmt::format("the host of the bodies gave body {} a state that is not finite: it stayed where it was", *body));
+        report(fmt::format("the host of the bodies gave body {} a state that is not finite: it stayed where it was", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
-    sources.run({step, params, *grid, particles, solids, bodies, remembered}, time + to * frameLength, dt, last);
+    sources.run({step, params, *grid, particles, solids, bodies, remembered}, clock.time + to * clock.frameLength, dt, last);
+    return true;
 }
 
-double FluidWorld::taken(double seconds) {
+double FluidWorld::acceptedSeconds(double seconds) {
     Impl& w = *impl_;
     if (!(seconds > 0)) return 0;
     const double most = w.params.longestFrame;
     if (seconds <= most || !w.params.limits) return seconds;
-    w.dropped += seconds - most;
-    w.say(fmt::format("a frame was longer than fluid.longestFrame = {} s: what was beyond it has been dropped", w.params.longestFrame));
+    w.clock.dropped += seconds - most;
+    w.report(fmt::format("a frame was longer than fluid.longestFrame = {} s: what was beyond it has been dropped", w.params.longestFrame));
     return most;
 }
 
@@ -222,36 +152,37 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     Impl& w = *impl_;
     w.device->poll();
     if (!(seconds > 0)) return;
-    const double now = taken(seconds);
-    ++w.frame;
-    w.sortedToAsk = false;
+    const double now = acceptedSeconds(seconds);
+    ++w.clock.frame;
+    w.sortedForQuery = false;
     if (w.particles.count == 0) {
-        w.time += now;
+        w.clock.time += now;
         return;
     }
     const FluidParams& p = w.params;
     const bool cpu = w.device->backend() == Backend::cpu;
-    if (!cpu) w.stepper.know(inputs.deviceMs, w.lastSubsteps);
+    if (!cpu) w.stepper.know(inputs.deviceMs, w.clock.lastSubsteps);
     const FrameStepper::Frame frame = w.stepper.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
     w.warn();
     const double span = frame.before + seconds;  // until the solids are where they are to be
-    w.frameLength = span;
-    if (isFinite(inputs.gravity))
-        w.gravity = inputs.gravity;
+    w.clock.frameLength = span;
+    const vec3 gravity = inputs.gravity.value_or(p.gravity);
+    if (isFinite(gravity))
+        w.gravity = gravity;
     else
-        w.say("the gravity that a step was given is not finite: it stayed as it was");
-    if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.say(asked.error().message);
-    // Remembered for a while: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
+        w.report("the gravity that a step was given is not finite: it stayed as it was");
+    if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.report(asked.error().message);
+    // It decays slowly: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
     constexpr double kForget = 0.5;  // s
-    w.fastestWall = std::max(w.fastestWall * static_cast<float>(std::exp(-now / kForget)), w.solids.fastestWall());
-    w.findForces();
+    w.limits.fastestWall = std::max(w.limits.fastestWall * static_cast<float>(std::exp(-now / kForget)), w.solids.fastestWall());
+    for (const std::string& off : w.forces.update(*w.device, {p, w.particles.count, w.traits, methodOf(p).doesViscosity})) w.report(off);
     w.iterations = 0;
     double stepped = 0;
     int substeps = 0, done = 0;
     bool stop = false;
     while (done < frame.pieces && !stop) {
         if (p.fixedStep > 0) {
-            if (Status ready = w.drawn.prepare(*w.device, w.particles.count); !ready) w.say(ready.error().message);
+            if (Status ready = w.drawn.prepare(*w.device, w.particles.count); !ready) w.report(ready.error().message);
             w.drawn.remember(*w.device, w.particles);
             w.posesBefore = w.solids.poses();
         }
@@ -259,44 +190,44 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         ++done;
         if (done == frame.pieces || stop) break;
         if (p.fixedStep > 0)
-            stop = !(cpu ? w.stepper.mayGoOn(done) : w.stepper.mayPlan(substeps + w.lastPiece - 1));
+            stop = !(cpu ? w.stepper.mayGoOn(done) : w.stepper.mayPlan(substeps + w.clock.lastPiece - 1));
         else
             stop = !(cpu ? w.stepper.mayGoOn(substeps) : w.stepper.mayPlan(substeps));
     }
-    w.lastSubsteps = substeps;
-    w.time += stepped;
+    w.clock.lastSubsteps = substeps;
+    w.clock.time += stepped;
     w.gatherColours();
-    if (stepped > 0) w.volumes.count(w.step, w.particles, w.time);
+    if (stepped > 0) w.volumes.count(w.step, w.particles, w.clock.time);
     if (p.ellipsoids && substeps > 0) {
-        if (Status ready = w.ellipsoids.prepare(*w.device, w.traits, w.particles.count); !ready) w.say(ready.error().message);
+        if (Status ready = w.ellipsoids.prepare(*w.device, w.traits, w.particles.count); !ready) w.report(ready.error().message);
         w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
     }
     if (!p.ellipsoids) w.ellipsoids.forget();
     if (w.foam && stepped > 0) w.foam->run(p, w.step, *w.grid, w.particles, w.solids, stepped);
     const double lost = w.stepper.end(stepped);
-    // What rounding leaves of a whole frame is no loss.
+    // The rounding of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
-        w.dropped += lost;
-        if (substeps < p.maxSubsteps && p.frameBudget > 0 && !w.budgetSaid) {
-            w.budgetSaid = true;
-            w.say(
+        w.clock.dropped += lost;
+        if (substeps < p.maxSubsteps && p.frameBudget > 0 && !w.clock.budgetReported) {
+            w.clock.budgetReported = true;
+            w.report(
                 fmt::format("a frame's steps take longer than fluid.frameBudget = {} ms, their length limited by {}: simulated time runs "
                             "slower than asked",
-                            p.frameBudget, w.stepLimit(w.time, frame.length).why));
+                            p.frameBudget, w.stepLimit(w.clock.time, frame.length).why));
         }
     }
     if (p.fixedStep > 0) {
-        w.drawn.draw(*w.device, w.particles, w.stepper.share(), static_cast<float>(std::max(w.lastPiece, 1) + 1) * p.spacing);
+        w.drawn.draw(*w.device, w.particles, w.stepper.share(), static_cast<float>(std::max(w.clock.lastPiece, 1) + 1) * p.spacing);
         if (w.foam)
             if (Status back = w.foam->drawEarlier((1.0 - double{w.stepper.share()}) * double{p.fixedStep}); !back)
-                w.say(back.error().message);
+                w.report(back.error().message);
     } else {
         w.drawn.forget();
         if (w.foam) w.foam->drawNewest();
     }
 }
 
-// What a step knows beside its length.
+// StepParams without the step's length.
 void FluidWorld::Impl::fillStep() {
     const FluidParams& p = params;
     step = StepParams{};
@@ -322,15 +253,15 @@ void FluidWorld::Impl::fillStep() {
     step.planeCount = solids.planeCount();
     grid->fill(step);
     method->fill(p, fastestFall(), step);
-    // What it was driven to under other params it keeps for a while, and that is no fault.
-    fastestEver = std::max(fastestEver, fastestPossible());
+    // Water keeps for a while the speed that it had under other params, and that is no fault.
+    limits.fastestEver = std::max(limits.fastestEver, limits.fastestPossible(limitInputs()));
 }
 
-// Steps `length` s on, from `begin` s after the start of a frame whose solids need `span` s for their way. Returns how far it came:
-// less where maxSubsteps or the budget end it, and then nothing more of the frame is to be stepped.
+// Steps `length` s, from `begin` s after the start of a frame whose solids move for `span` s. Returns the time that it stepped:
+// less where maxSubsteps, the budget or a lack of memory end it, and then nothing more of the frame is to be stepped.
 double FluidWorld::Impl::stepPiece(double length, double begin, double span, int& substeps, bool& stop) {
     fillStep();
-    const StepLimit limit = stepLimit(time + begin, length);
+    const StepLimit limit = stepLimit(clock.time + begin, length);
     int count = static_cast<int>(std::min(std::ceil(length / limit.dt - 1e-6), 1.0e9));
     count = std::max(count, 1);
     double dt = length / count;
@@ -338,54 +269,67 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         count = params.maxSubsteps - substeps;
         dt = limit.dt;
         stop = true;
-        say(
+        report(
             fmt::format("a frame needed more than fluid.maxSubsteps = {} steps, their length limited by {}: simulated time runs slower "
                         "than asked",
                         params.maxSubsteps, limit.why));
     }
     if (params.fixedStep > 0 && count > 1)
-        say(fmt::format("fluid.fixedStep = {} s is cut into shorter steps, their length limited by {}", params.fixedStep, limit.why));
+        report(fmt::format("fluid.fixedStep = {} s is cut into shorter steps, their length limited by {}", params.fixedStep, limit.why));
     const bool cpu = device->backend() == Backend::cpu;
     int done = 0;
     while (done < count) {
-        substep(dt, (begin + done * dt) / span, (begin + (done + 1) * dt) / span, done + 1 == count);
+        if (!substep(dt, (begin + done * dt) / span, (begin + (done + 1) * dt) / span, done + 1 == count)) {
+            stop = true;
+            break;
+        }
         ++done;
         ++substeps;
-        // A fixed step is not left half done.
+        // A fixed step is always completed.
         if (!(params.fixedStep > 0) && done < count && !(cpu ? stepper.mayGoOn(substeps) : stepper.mayPlan(substeps))) {
             stop = true;
             break;
         }
     }
     if (done == 0) return 0;
-    lastPiece = done;
-    dtMin = dtMin == 0 ? dt : std::min(dtMin, dt);
-    dtMax = std::max(dtMax, dt);
+    clock.lastPiece = done;
+    clock.dtMin = clock.dtMin == 0 ? dt : std::min(clock.dtMin, dt);
+    clock.dtMax = std::max(clock.dtMax, dt);
     sources.report();
-    gatherStats(substeps, time + begin + dt * done);
+    gatherStats(substeps, clock.time + begin + dt * done);
     return dt * done;
+}
+
+void FluidWorld::Impl::fillLedger(FluidStats& f) const {
+    const double volume = std::pow(double{params.spacing}, 3);
+    f.emitted = (static_cast<double>(startCount) + static_cast<double>(sources.emitted())) * volume;
+    f.drained = static_cast<double>(sources.drained()) * volume;
+    f.owed = sources.owed() * volume;
+    f.deposited = static_cast<double>(sources.deposited()) * volume;
+    f.pendingVolume = sources.pending() * volume;
+    f.withdrawn = static_cast<double>(withdrawn) * volume;
 }
 
 void FluidWorld::Impl::gatherStats(int substeps, double until) {
     std::vector<const Buffer*> buffers = {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows};
     if (traits.matter) buffers.insert(buffers.end(), {&particles.id, &particles.matterOf});
     device->dispatch(stats, std::as_bytes(std::span(&step, 1)), buffers, STATS_THREADS);
-    const FluidStats now{.frame = frame,
+    const FluidStats now{.frame = clock.frame,
                          .time = until,
                          .particles = particles.count,
                          .substeps = substeps,
                          .iterations = iterations / substeps,
                          .sweeps = solve.sweeps,
                          .residual = solve.residual,
-                         .dtMin = dtMin,
-                         .dtMax = dtMax,
+                         .dtMin = clock.dtMin,
+                         .dtMax = clock.dtMax,
                          .limited = {}};
     device->readLater(
         statsRows, STATS_THREADS * sizeof(StatsRow),
-        [now, weak = std::weak_ptr(figures), count = begun, volume = std::pow(double{params.spacing}, 3), mass = double{step.mass},
-         g = gravity, maxSpeed = step.maxSpeed, spacingAStep = params.spacing / step.dt, this](std::span<const std::byte> bytes) {
+        [now, weak = std::weak_ptr(figures), mass = double{step.mass}, g = gravity, maxSpeed = step.maxSpeed,
+         spacingAStep = params.spacing / step.dt, this](std::span<const std::byte> bytes) {
             const std::shared_ptr<FluidStats> into = weak.lock();
-            if (!into) return;  // the world was reset meanwhile, or is no more
+            if (!into) return;  // the world was reset meanwhile, or destroyed
             const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
             FluidStats f = now;
             double centre[3] = {0, 0, 0}, inside = 0, masses = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
@@ -415,23 +359,19 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                 }
             }
             f.limited = std::move(into->limited);
-            f.emitted = (static_cast<double>(count) + static_cast<double>(sources.given())) * volume;
-            f.drained = static_cast<double>(sources.drained()) * volume;
-            f.owed = sources.owed() * volume;
-            f.poured = static_cast<double>(sources.born()) * volume;
-            f.debt = sources.debt() * volume;
-            f.taken = static_cast<double>(takenOut) * volume;
+            fillLedger(f);
             *into = std::move(f);
             if (sources.full())
-                say(fmt::format(
-                    "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles says how many", slots));
-            if (into->lost > 0) say("particles left the grid or became NaN: they are frozen and counted as lost");
+                report(fmt::format(
+                    "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles sets how many there are",
+                    slots));
+            if (into->lost > 0) report("particles left the grid or became NaN: they are frozen and counted as lost");
             if (into->speedLimited == 0) return;
             if (maxSpeed < 0.999F * spacingAStep)
-                say(fmt::format("the fastest particles were slowed to {:.3g} m/s: nothing in this scene should make them so fast",
-                                maxSpeed));
+                report(fmt::format("the fastest particles were slowed to {:.3g} m/s: nothing in this scene should make them so fast",
+                                   maxSpeed));
             else
-                say("the fastest particles were slowed to one spacing a step");
+                report("the fastest particles were slowed to one spacing a step");
         });
 }
 
@@ -444,44 +384,44 @@ bool FluidWorld::knowsCells() const {
 std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
     Impl& w = *impl_;
     if (!w.sorted || !knowsCells()) return std::nullopt;
-    w.untouched = true;
+    w.cellsValid = true;
     return CellWork{w.step, &w.particles.positionNext, &w.particles.id};
 }
 
-void FluidWorld::Impl::touch() {
-    untouched = sortedToAsk = false;
+void FluidWorld::Impl::invalidateCells() {
+    cellsValid = sortedForQuery = false;
     if (grid) grid->give({});
 }
 
 void FluidWorld::giveCells(std::span<const uint32_t> cells) {
-    if (impl_->untouched) impl_->grid->give(cells);
+    if (impl_->cellsValid) impl_->grid->give(cells);
 }
 
 void FluidWorld::reset() {
-    if (Status back = impl_->solids.reset(); !back) impl_->say(back.error().message);
+    if (Status back = impl_->solids.reset(); !back) impl_->report(back.error().message);
     impl_->bodies.reset();
-    impl_->fastestWall = 0;
+    impl_->limits.fastestWall = 0;
     impl_->writeStart();
 }
 
-void FluidWorld::pour(const vec3& place, const vec3& velocity, double volume) {
-    impl_->sources.pour(place, velocity, volume);
-    impl_->figures->debt = impl_->sources.debt() * std::pow(double{impl_->params.spacing}, 3);
+void FluidWorld::deposit(const vec3& place, const vec3& velocity, double volume) {
+    impl_->sources.deposit(place, velocity, volume);
+    impl_->figures->pendingVolume = impl_->sources.pending() * std::pow(double{impl_->params.spacing}, 3);
 }
 
 std::vector<WorldParticle> FluidWorld::within(const Bounds& box, float faster, float looser) {
-    ASSERT(impl_->exchange.any(), "say by Sources::poured that others hold water");
+    ASSERT(impl_->exchange.any(), "set Sources::expectedDeposit where others hold water");
     return impl_->exchange.within(impl_->step, impl_->particles, box, faster, looser);
 }
 
-void FluidWorld::take(std::span<const uint32_t> slots) {
+void FluidWorld::withdraw(std::span<const uint32_t> slots) {
     Impl& w = *impl_;
-    ASSERT(w.exchange.any(), "say by Sources::poured that others hold water");
-    w.touch();
+    ASSERT(w.exchange.any(), "set Sources::expectedDeposit where others hold water");
+    w.invalidateCells();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);
-    w.takenOut += slots.size();
-    w.figures->taken = static_cast<double>(w.takenOut) * std::pow(double{w.params.spacing}, 3);
+    w.withdrawn += slots.size();
+    w.figures->withdrawn = static_cast<double>(w.withdrawn) * std::pow(double{w.params.spacing}, 3);
 }
 
 Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) { return impl_->solids.setSurfaces(surfaces); }
@@ -489,37 +429,21 @@ Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) { return impl_
 Status FluidWorld::setSources(const Sources& next) {
     Impl& w = *impl_;
     if (Status s = w.sources.set(next); !s) return s;
-    for (size_t k = 0; k < next.emitters.size(); ++k) w.asked.emitters[k].params = next.emitters[k].params;
+    for (size_t k = 0; k < next.emitters.size(); ++k) w.sourceSetup.emitters[k].params = next.emitters[k].params;
     return ok();
 }
 
 Status FluidWorld::setParams(const FluidParams& params) {
     if (Status s = checkParams("fluid", params); !s) return s;
     FluidParams next = params;
-    // What sizes arrays or picks kernels stays as it was made.
     const FluidParams& old = impl_->params;
-    next.method = old.method;
-    next.kernel = old.kernel;
-    next.grid = old.grid;
-    next.workGroup = old.workGroup;
-    next.spacing = old.spacing;
-    next.supportSpacings = old.supportSpacings;
-    next.box.min = old.box.min;
-    next.box.max = old.box.max;
-    next.box.periodicX = old.box.periodicX;
-    next.box.periodicY = old.box.periodicY;
-    next.box.periodicZ = old.box.periodicZ;
-    next.blocks = old.blocks;
-    next.liquid = old.liquid;
-    next.maxParticles = old.maxParticles;
-    next.foam.most = old.foam.most;
+    keepFixed(next, old);
     if (Status s = takeLiquid(next); !s) return s;
-    if (impl_->traits.matter) {  // particles have theirs for life
+    if (impl_->traits.matter) {  // particles keep the liquid they were spawned with
         next.restDensity = old.restDensity;
         next.viscosity = old.viscosity;
     }
-    next.collision.walk = old.collision.walk;
-    // A scene gives the origin in floats: it says nothing new of a double that rounds to them.
+    // A scene gives the origin in floats: a double that rounds to them stays.
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
     impl_->params = next;
     return ok();
@@ -538,7 +462,7 @@ ParticleView FluidWorld::particles() const {
     return {.position = &w.particles.positionNext,
             .velocity = &w.particles.velocityNext,
             .id = &w.particles.id,
-            .normal = w.params.forces.normals != "none" && w.particles.normal ? &w.particles.normal : nullptr,
+            .normal = w.particles.hasNormals ? &w.particles.normal : nullptr,
             .count = w.slots,
             .slots = w.particles.count,
             .absorption = w.coloured ? &w.particles.absorption : nullptr,
@@ -564,9 +488,10 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
-    w.asked = sources;
-    w.hostForces.assign(forces.begin(), forces.end());
-    if (Status s = w.listForces(); !s) return s.error();
+    w.sourceSetup = sources;
+    Result<WorldForces> worldForces = WorldForces::create(forces);
+    if (!worldForces) return worldForces.error();
+    w.forces = std::move(*worldForces);
     if (Status s = takeLiquid(w.params); !s) return s.error();
     if (device.backend() != Backend::cpu && params.workGroup != FluidParams{}.workGroup)
         w.traits.workGroup = static_cast<uint32_t>(params.workGroup);

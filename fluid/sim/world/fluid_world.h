@@ -47,20 +47,20 @@ struct ParticleView {
     uint32_t foamSlots = 0;
 };
 
-// What the scene says to the fluid each frame.
+// The inputs of a frame.
 struct FluidInputs {
-    vec3 gravity{0.0F, -9.81F, 0.0F};  // m/s^2
-    // Where solids are when the frame's time has gone by; on the way there they move evenly. Empty: they stay.
+    std::optional<vec3> gravity = {};  // m/s^2; absent: params().gravity
+    // The solids at the end of the frame; until then they move evenly. Empty: they stay.
     std::span<const Pose> poses = {};                    // of Solids::rigid
     std::span<const std::span<const vec3>> shapes = {};  // m, the vertices of Solids::deforming
-    // Of a GPU, for fluid.frameBudget: what the passes of a frame took, some frames ago (Device::takeTimes), ms; 0: not known.
+    // Of a GPU, for fluid.frameBudget: the time of a frame's passes some frames ago (Device::takeTimes), ms; 0: not known.
     double deviceMs = 0;
 };
 
 class FluidWorld {
   public:
-    // Error (badInput): a value out of its range (docs/parameters.md) or that makes no sense together with another; (failed): out of
-    // memory. `device` must outlive the world, `forces` are the host's.
+    // Error (badInput): a value out of its range (docs/parameters.md) or in conflict with another; (failed): out of memory.
+    // `device` must outlive the world, `forces` are the host's.
     static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                       const Sources& sources = {}, std::span<const HostForce> forces = {});
     ~FluidWorld();
@@ -68,93 +68,94 @@ class FluidWorld {
     FluidWorld& operator=(const FluidWorld&) = delete;
 
     // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits ask. 0 or less: nothing happens.
-    // A frame longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited says so: simulated time
-    // slows, steps do not grow. time() + pending() + dropped() is all that was asked for.
+    // A frame longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited gives the reason:
+    // simulated time slows, steps do not grow. time() + pending() + dropped() is the sum of all `seconds`.
     void step(const FluidInputs& inputs, double seconds);
-    // What step would simulate of a frame, s: what is beyond fluid.longestFrame is dropped, and said. For hosts that cut frames.
-    double taken(double seconds);
-    // The next step's first work is to find each particle's cell. Who does that elsewhere while this device does something else (the
-    // thesis's cooperation, 2.3) runs the kernel fluid/grid/cell_of with this, and gives what it found before the next step. Nothing:
-    // before the first step, and where no step's cells are known before it: on the cpu, with bodies, periodic axes, linked lists, or a
-    // method that moves particles before it sorts them.
+    // The part of a frame that step() would simulate, s: time beyond fluid.longestFrame is dropped, and reported. For hosts that cut
+    // frames.
+    double acceptedSeconds(double seconds);
+    // The first work of the next step is to find each particle's cell. Another device can do it meanwhile (cooperation, thesis 2.3): it
+    // runs the kernel fluid/grid/cell_of with this, and the host passes the result to giveCells before the next step. Nothing: before the
+    // first step, and where cells are not known before a step: on the cpu, with bodies, periodic axes, linked lists, or a method that
+    // moves particles before it sorts them.
     struct CellWork {
         StepParams step;
         const Buffer *position, *id;  // vec4, uint: as they lie until the next step; step.count of them
     };
     bool knowsCells() const;  // whether there is such work at all
     std::optional<CellWork> cellWork();
-    void giveCells(std::span<const uint32_t> cells);  // void where the world has been changed since cellWork()
+    void giveCells(std::span<const uint32_t> cells);  // ignored if the world has changed since cellWork()
     void reset();                                     // back to t = 0
-    // Takes what can change between steps; `fixed` values wait for a new world. Error (badInput): a value out of its range; nothing
-    // changed.
+    // Takes values that can change between steps; `fixed` values stay as they are. Error (badInput): a value out of its range; nothing
+    // has changed then.
     Status setParams(const FluidParams&);
     Status setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces. Error: as create
     void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, a group each
     // As many emitters and sinks as there are; shapes and meshes stay as they were. Error (badInput): as setParams.
     Status setSources(const Sources& sources);
 
-    // Water that others hold too, as skins do: Sources::poured says there are such, else these must not be called. Places m, velocities
-    // m/s. pour: `volume` m^3 has come down there. It is a debt, and whenever that is as much as a particle, one is born above the place.
-    // Volume is what is kept: poured water is of the world's own liquid.
-    void pour(const vec3& place, const vec3& velocity, double volume);
-    // The particles in a box now that are faster (m/s) or of a lower density ratio than that, 16,384 at most; and those of them that go to
-    // others, spacing^3 m^3 each. Wait.
+    // Exchange with others that hold water, as skins do; only where Sources::expectedDeposit is above 0. Places m, velocities m/s.
+    // deposit: `volume` m^3 lands there. It is pending until it is as much as a particle; then one is spawned above the place. Volume is
+    // conserved; deposited water is of the world's own liquid.
+    void deposit(const vec3& place, const vec3& velocity, double volume);
+    // within: the particles now in a box that are faster (m/s) or of a lower density ratio than given, 16,384 at most. withdraw: removes
+    // some of them, spacing^3 m^3 each. Both wait.
     std::vector<WorldParticle> within(const Bounds& box, float faster = 0, float looser = 1.0e9F);
-    void take(std::span<const uint32_t> slots);
+    void withdraw(std::span<const uint32_t> slots);
 
-    // What the water is at places, and where rays meet it (water_query.h), as of now: at t = 0, and after each step. What a step's end gave
-    // birth to is known from the next on. Nothing of the world changes. They wait. Error (failed): out of memory.
+    // The water at places, and where rays meet it (water_query.h), as of now: at t = 0, and after each step. Particles that a step's end
+    // spawned are found from the next step on. Nothing of the world changes. They wait. Error (failed): out of memory.
     Result<std::vector<FluidSample>> sample(std::span<const vec3> places);
     Result<std::vector<FluidHit>> cast(std::span<const FluidRay> rays);
     // y (m) of the highest surface over (or under) each x, z, looking down from above the box; NaN where there is no water.
     Result<std::vector<float>> heights(std::span<const vec2> places);
-    // As sample(), without waiting: `then` hears of it once, 2 to 3 frames later on a GPU (within Device::poll(), which step() calls), on
-    // the cpu before this returns; it may outlive the world. Error: as sample(); then nothing is heard.
+    // As sample(), without waiting: `then` is called once, 2 to 3 frames later on a GPU (within Device::poll(), which step() calls), on
+    // the cpu before this returns; it may outlive the world. Error: as sample(); then it is not called.
     Status sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then);
 
-    // Volumes to watch (volumes.h), 32 at most, whose counts each step brings up to date; late on a GPU. They are saved and restored, and
-    // reset() empties them. Errors as VolumePasses::set.
+    // Volumes to watch (volumes.h), 32 at most; each step updates their counts, late on a GPU. They are saved and restored, and reset()
+    // empties them. Errors as VolumePasses::set.
     Status setVolumes(std::span<const Volume> volumes);
     std::vector<VolumeCount> volumes() const;
-    // What has entered and left each since the last call, where something has.
+    // The particles that entered and left each since the last call, of volumes where any did.
     std::vector<VolumeCount> takeVolumeEvents();
 
     const FluidParams& params() const;
     ParticleView particles() const;
     const FluidStats& stats() const;  // late on a GPU
-    float fastestFall() const;        // m/s, what its water reaches by falling, with what it starts with
+    float fastestFall() const;        // m/s, the speed that its water reaches by falling, with its speed at the start
     double time() const;              // s simulated
-    double pending() const;           // s asked for that wait for a whole fluid.fixedStep
-    double dropped() const;           // s asked for that were not and will not be simulated
+    double pending() const;           // s passed to step() that wait for a whole fluid.fixedStep
+    double dropped() const;           // s passed to step() that will not be simulated
     int lastSubsteps() const;         // of the last step(), not late
-    // The pressures of the last substep, Pa, slot by slot as particles(); of pbf, what its corrections would take. They are what pairs
-    // press with: on a lattice with a support of 2 spacings 5 % more than they pass on, and one by one 10 to 20 % off. Reads back and
-    // waits.
+    // The pressures of the last substep, Pa, slot by slot as particles(); of pbf, the pressure that would make its corrections. They enter
+    // the pair forces: on a lattice with a support of 2 spacings they are 5 % above the pressure transmitted, and 10 to 20 % off for a
+    // single particle. Reads back and waits.
     std::vector<float> pressures() const;
-    const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, short of what was asked
+    const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, not yet at FluidInputs::poses
     const std::vector<BodyState>& bodies() const;
     const std::vector<BodyLoad>& bodyLoads() const;  // of the last substep
     std::vector<Pose> drawnPoses() const;            // the same, as ParticleView::drawn
     uint64_t voxelsRewritten() const;                // of deforming solids, since the start
     Device& device() const;
 
-    // Everything in a world is float and relative to its origin, a place (m) in the host's world. Moving it moves all there is.
+    // Everything in a world is float and relative to its origin, a place (m) in the host's world. Moving the origin moves everything.
     const dvec3& origin() const;
     void setOrigin(const dvec3& origin);
     dvec3 toHost(const vec3& p) const { return origin() + dvec3(p); }
     vec3 fromHost(const dvec3& p) const { return {p - origin()}; }
 
-    // All that the next step depends on, into sections of `state`; bit for bit what a cpu goes on with. Waits for the device.
-    // Error (failed): the host of the bodies remembers something that it cannot save.
+    // All that the next step depends on, into sections of `state`; a cpu continues from it bit for bit. Waits for the device.
+    // Error (failed): the host of the bodies has a state that it cannot save.
     Status savable() const;
     void save(WorldState& state);  // of a savable world
-    // Goes on from there, on whichever device. Others who have sections in `state` take theirs before. Error: as WorldState::take and
-    // allTaken; the params that are `fixed` or the solids are others. The world is then as it was.
+    // Continues from there, on any device. Other owners of sections in `state` take theirs before. Error: as WorldState::take and
+    // allTaken; the params that are `fixed` or the solids differ. The world is then as it was.
     Status restore(WorldState& state);
-    // Goes on where another world is that has the same box and spacing, among solids that stand at `poses` and have `shapes` now (as
-    // FluidInputs; all of them): with its time, its particles, but for those that are inside a solid here, and its bodies, if they are
-    // the same, and its foam, where as many flecks may be here. What emitters and sinks have done is counted anew. Waits for both. Error
-    // (badInput): another box or spacing, liquids that this world does not know, more particles than it has room for.
+    // Continues from another world with the same box and spacing, among solids that stand at `poses` and have `shapes` now (as
+    // FluidInputs; all of them): with its time, its particles except those inside a solid here, its bodies if they are the same, and its
+    // foam if this world has as many slots for it. The counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another
+    // box or spacing, liquids that this world does not have, more particles than it has room for.
     Status goOnFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 
   private:

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fluid/sim/forces/force.h"
+#include "fluid/sim/forces/world_forces.h"
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/methods/method.h"
 #include "fluid/sim/query/volumes.h"
@@ -22,13 +22,19 @@
 #include "fluid/sim/world/fluid_world.h"
 #include "fluid/sim/world/frame_stepper.h"
 #include "fluid/sim/world/particles.h"
+#include "fluid/sim/world/step_limits.h"
 
 namespace rivulet {
 
-// The longest step that is stable, s, and what says so.
-struct StepLimit {
-    double dt;
-    const char* why;
+// The time of a world since t = 0, and how it was stepped.
+struct WorldClock {
+    double time = 0, dropped = 0;  // s
+    double frameLength = 0;        // s, of the current frame: the substeps' shares refer to it
+    uint64_t frame = 0;
+    double dtMin = 0, dtMax = 0;  // s
+    int lastSubsteps = 0;         // of the last frame
+    int lastPiece = 0;            // substeps of its last piece (FrameStepper)
+    bool budgetReported = false;
 };
 
 struct FluidWorld::Impl {
@@ -39,15 +45,15 @@ struct FluidWorld::Impl {
     std::unique_ptr<NeighborGrid> grid;
     Particles particles;
     std::vector<NewParticle> start;
-    uint32_t begun = 0;  // particles that were there when counting began: those of `start`, or of the world that this one goes on from
+    uint32_t startCount = 0;  // particles that were there when counting began: those of `start`, or of the world that this one goes on from
     SolidPasses solids;
-    Sources asked;  // emitters and sinks
+    Sources sourceSetup;  // emitters and sinks
     SourcePasses sources;
     ExchangePasses exchange;  // where others hold water, too
-    uint64_t takenOut = 0;    // particles, by them
+    uint64_t withdrawn = 0;   // particles, by them
     VolumePasses volumes;
-    WaterQuery query;          // made when it is first asked
-    bool sortedToAsk = false;  // as `sorted`, of position and velocity where a step has not been yet
+    WaterQuery query;             // made when it is first asked
+    bool sortedForQuery = false;  // as `sorted`, of position and velocity where a step has not been yet
     std::optional<FoamPasses> foam;
     bool sorted = false;    // the grid is of the particles as they lie
     uint32_t slots = 0;     // of particles: those of the blocks and room for more
@@ -57,15 +63,8 @@ struct FluidWorld::Impl {
     Buffer statsRows, corner;
     Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
     PairTraits traits;
-    struct ForceState {
-        std::string name;
-        std::function<bool(const FluidParams& params, bool doesViscosity)> wanted;
-        std::function<Result<ForcePass>(Device& device, const MethodSetup& setup)> make;
-        ForcePass pass = {};  // made when it is first on
-        bool on = false;
-    };
-    std::vector<HostForce> hostForces;
-    std::vector<ForceState> forcePasses;
+    WorldForces forces;
+    StepLimits limits;
     SolveFigures solve;
     double iterations = 0;  // of this frame's substeps, all of them
     FrameStepper stepper;
@@ -75,44 +74,33 @@ struct FluidWorld::Impl {
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
     StepParams step{};
     vec3 gravity{0.0F};
-    double time = 0, dropped = 0;
-    double frameLength = 0;  // s, of the frame under way: what the substeps' shares are of
-    uint64_t frame = 0;
-    bool untouched = false;  // since cellWork()
-    int lastSubsteps = 0;
-    double dtMin = 0, dtMax = 0;
-    float fastestWall = 0;   // m/s, of moving solids, lately
-    float fastestStart = 0;  // m/s, of particles as they were put in, or taken up from a saved state
-    float fastestEver = 0;   // m/s, the largest fastestPossible() since t = 0
-    bool budgetSaid = false;
-    int lastPiece = 0;  // substeps
+    WorldClock clock;
+    bool cellsValid = false;  // since cellWork()
 
     Status prepare();
-    Status mayLink() const;                                    // whether fluid.grid linked_list knows all that is asked for
-    static std::string linkedWithout(std::string_view force);  // a sentence
+    Status mayLink() const;  // whether fluid.grid linked_list knows all that is asked for
     Status checkPrecision() const;
     void fillStart();
     Status findSlots();
     void findLiquids();
     void writeStart();
     void gatherColours();
-    float fastestFall() const;
-    void knowFastest(double speed);  // m/s: where nothing has been measured yet
-    float fastestPossible() const;
+    StepLimits::Inputs limitInputs() const;
+    float fastestFall() const { return limits.fastestFall(limitInputs()); }
+    void assumeFastest(double speed);  // m/s: where nothing has been measured yet
     void warn();
     StepLimit stepLimit(double now, double frameSeconds) const;  // s
     void fillStep();
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
-    void say(const std::string& sentence);
-    void touch();  // particles are moved between steps
+    void report(const std::string& sentence);
+    void invalidateCells();  // particles are moved between steps
     template <class Answer, class Ask>
     Result<std::vector<Answer>> ask(size_t count, const Ask& how);
-    Status prepareToAsk(StepParams& params);
-    Status listForces();
-    void findForces();
+    Status prepareQuery(StepParams& params);
     bool build(bool fromPositions, double from, double to);
-    // `last`: of a piece of its frame.
-    void substep(double dt, double from, double to, bool last);
+    // `last`: of a piece of its frame. false: out of memory; the newest state is as it was.
+    bool substep(double dt, double from, double to, bool last);
+    void fillLedger(FluidStats& stats) const;
     void gatherStats(int substeps, double until);
 };
 

@@ -1,4 +1,4 @@
-// What a world does for a game: it says what the water is at places, where rays meet it, and what volumes hold.
+// Queries of a game: the water at places, where rays meet it, and the counts of volumes.
 #include <cmath>
 #include <limits>
 
@@ -7,7 +7,7 @@
 namespace rivulet {
 
 // `params`: what the grid has to say. Where no step has sorted the particles yet they are, aside: the next step finds them as they were.
-Status FluidWorld::Impl::prepareToAsk(StepParams& s) {
+Status FluidWorld::Impl::prepareQuery(StepParams& s) {
     if (!query.any()) {
         Result<WaterQuery> made = WaterQuery::create(*device, params, traits);
         if (!made) return made.error();
@@ -19,7 +19,7 @@ Status FluidWorld::Impl::prepareToAsk(StepParams& s) {
     s.invH = 1.0F / s.h;
     s.spacing = params.spacing;
     grid->fill(s);
-    if (sorted || sortedToAsk) return ok();
+    if (sorted || sortedForQuery) return ok();
     if (Status built = grid->build(s, particles); !built) return built;
     if (traits.linked) {  // it takes them as they lie
         particles.position.swap(particles.positionNext);
@@ -27,7 +27,7 @@ Status FluidWorld::Impl::prepareToAsk(StepParams& s) {
     } else {
         particles.id.swap(particles.idNext);
     }
-    sortedToAsk = true;
+    sortedForQuery = true;
     return ok();
 }
 
@@ -35,7 +35,7 @@ template <class Answer, class Ask>
 Result<std::vector<Answer>> FluidWorld::Impl::ask(size_t count, const Ask& how) {
     if (particles.count == 0) return std::vector<Answer>(count);
     StepParams s;
-    if (Status ready = prepareToAsk(s); !ready) return ready.error();
+    if (Status ready = prepareQuery(s); !ready) return ready.error();
     const bool aside = !sorted && !traits.linked;
     return how({s, *grid, aside ? particles.position : particles.positionNext, aside ? particles.velocity : particles.velocityNext});
 }
@@ -64,16 +64,7 @@ Status FluidWorld::sampleLater(std::span<const vec3> places, std::function<void(
     return ok();
 }
 
-void FluidWorld::visitForces(ParamVisitor& v) {
-    struct Own {
-        const HostForce& force;
-        void visit(ParamVisitor& visitor) { force.visit(force.self, visitor); }
-    };
-    for (const HostForce& f : impl_->hostForces) {
-        Own own{f};
-        if (f.visit != nullptr) v.group({.name = f.name, .doc = f.doc}, own);
-    }
-}
+void FluidWorld::visitForces(ParamVisitor& v) { impl_->forces.visit(v); }
 
 Status FluidWorld::setVolumes(std::span<const Volume> volumes) {
     Impl& w = *impl_;

@@ -1,4 +1,4 @@
-// How a world begins: room for its particles, its kernels, and what is there at t = 0.
+// Creation of a world: room for its particles, its kernels, and its state at t = 0.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,14 +13,12 @@ namespace rivulet {
 
 namespace {
 
-// Above this a device's memory is surely exceeded; said before anything is allocated.
+// More than any device's memory holds; refused before anything is allocated.
 constexpr double kMostParticles = 64.0e6;
 
 }  // namespace
 
 Status FluidWorld::Impl::prepare() {
-    const MethodRow* row = methods().find(params.method);
-    if (row == nullptr) return badInput(fmt::format("fluid.method '{}' is not known", params.method));
     const float h = params.supportSpacings * params.spacing;
     double wanted = 0;
     for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
@@ -58,7 +56,7 @@ Status FluidWorld::Impl::prepare() {
         *w.kernel = *found;
     }
     const uint32_t count = slots + traits.samples;
-    Result<std::unique_ptr<Method>> made = row->make(*device, {params, count, traits});
+    Result<std::unique_ptr<Method>> made = methodOf(params).make(*device, {params, count, traits});
     if (!made) return made.error();
     method = std::move(*made);
     if (Status s = checkPrecision(); !s) return s;
@@ -80,10 +78,10 @@ Status FluidWorld::Impl::prepare() {
     if (!rows) return rows.error();
     statsRows = std::move(*rows);
     if (Status room = bodies.allocate(count); !room) return room.error();
-    Result<SourcePasses> passes = SourcePasses::create(*device, asked, params, traits.matter, coloured);
+    Result<SourcePasses> passes = SourcePasses::create(*device, sourceSetup, params, traits.matter, coloured);
     if (!passes) return passes.error();
     sources = std::move(*passes);
-    if (asked.poured > 0) {
+    if (sourceSetup.expectedDeposit > 0) {
         Result<ExchangePasses> handed = ExchangePasses::create(*device);
         if (!handed) return handed.error();
         exchange = std::move(*handed);
@@ -98,41 +96,21 @@ Status FluidWorld::Impl::prepare() {
     return ok();
 }
 
-// The host's own first: of the others the last wants to know where all lead.
-Status FluidWorld::Impl::listForces() {
-    for (const HostForce& f : hostForces) {
-        if (f.make == nullptr) return badInput(fmt::format("the host's force '{}' has no function make: give it one", f.name));
-        for (const ForceState& other : forcePasses)
-            if (other.name == f.name) return badInput(fmt::format("the host has two forces '{}': give each a name of its own", f.name));
-        if (forces().find(f.name) != nullptr)
-            return badInput(fmt::format("there is a force '{}' already: give the host's another name", f.name));
-        forcePasses.push_back({f.name, [f](const FluidParams& p, bool) { return f.on == nullptr || f.on(f.self, p); },
-                               [f](Device& d, const MethodSetup& setup) { return f.make(f.self, d, setup); }});
-    }
-    for (const ForceRow& force : forces().rows) forcePasses.push_back({force.name, force.on, force.make});
-    return ok();
-}
-
-std::string FluidWorld::Impl::linkedWithout(std::string_view force) {
-    return fmt::format(
-        "fluid.grid linked_list knows no force '{}': turn it off in fluid.forces, let fluid.collision.walls slip, or choose fluid.grid "
-        "sorted",
-        force);
-}
-
 Status FluidWorld::Impl::mayLink() const {
     if (device->backend() == Backend::cpu)
+        return badInput("fluid.grid linked_list needs the atomics of a GPU: simulate with --backend gl or cl, or choose fluid.grid sorted");
+    if (!methodOf(params).linkedLists) {
+        std::string able;
+        for (const MethodRow& row : methods().rows)
+            if (row.linkedLists) able += able.empty() ? row.name : std::string(", ") + row.name;
         return badInput(
-            "fluid.grid linked_list is built by a GPU's atomics: simulate with --backend gl or cl, or choose fluid.grid sorted");
-    if (params.method != "wcsph_thesis")
-        return badInput(fmt::format("fluid.grid linked_list is for method wcsph_thesis, not {}: choose that method, or fluid.grid sorted",
-                                    params.method));
-    if (!asked.emitters.empty() || !asked.sinks.empty() || asked.poured > 0)
-        return badInput("fluid.grid linked_list knows no emitters, sinks and skins: take them away, or choose fluid.grid sorted");
-    if (params.foam.most > 0) return badInput("fluid.grid linked_list knows no foam: make fluid.foam.most 0, or choose fluid.grid sorted");
-    for (const ForceState& force : forcePasses)
-        if (force.wanted(params, true)) return badInput(linkedWithout(force.name));
-    return ok();
+            fmt::format("fluid.grid linked_list is for method {}, not {}: choose that method, or fluid.grid sorted", able, params.method));
+    }
+    if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || sourceSetup.expectedDeposit > 0)
+        return badInput("fluid.grid linked_list does not support emitters, sinks and skins: remove them, or choose fluid.grid sorted");
+    if (params.foam.most > 0)
+        return badInput("fluid.grid linked_list does not support foam: set fluid.foam.most to 0, or choose fluid.grid sorted");
+    return forces.refuseForLinkedLists(params, methodOf(params).doesViscosity);
 }
 
 // Factors of the smoothing kernels go with the eighth or ninth power of the support radius: those of a very small one are no floats.
@@ -145,10 +123,10 @@ Status FluidWorld::Impl::checkPrecision() const {
         s.invH = 1.0F / s.h;
         s.contact = 0.5F * spacing;
         method->fill(p, 1.0F, s);
-        FluidParams forces = p;  // they have Wendland's kernel, whatever the method has
-        forces.kernel = "wendland";
+        FluidParams ofForces = p;  // they have Wendland's kernel, whatever the method has
+        ofForces.kernel = "wendland";
         StepParams f = s;
-        fillSmoothing(forces, f);
+        fillSmoothing(ofForces, f);
         return std::isfinite(s.kernelK) && std::isfinite(s.gradientK) && std::isfinite(f.kernelK) && std::isfinite(f.gradientK);
     };
     float least = params.spacing;
@@ -160,7 +138,7 @@ Status FluidWorld::Impl::checkPrecision() const {
                     params.spacing, params.method, params.supportSpacings, 1.1F * least));
 }
 
-// The blocks' particles, without those that would be born inside or too near a mesh or behind a plane.
+// The particles of the blocks, without those that would start inside or too near a mesh or behind a plane.
 void FluidWorld::Impl::fillStart() {
     for (size_t k = 0; k < params.blocks.size(); ++k) {
         const size_t first = start.size();
@@ -169,45 +147,45 @@ void FluidWorld::Impl::fillStart() {
     }
     size_t left = 0;
     std::erase_if(start, [&](const NewParticle& p) {
-        const bool may = solids.mayBeBorn(p.position, params.spacing) && bodies.mayBeBorn(p.position, params.spacing);
+        const bool may = solids.maySpawn(p.position, params.spacing) && bodies.maySpawn(p.position, params.spacing);
         if (!may && !params.blocks[p.block].cut) ++left;
         return !may;
     });
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }
 
-// How many particles there is room for.
+// The number of slots.
 Status FluidWorld::Impl::findSlots() {
-    const double held = static_cast<double>(start.size()), wanted = SourcePasses::slotsFor(asked, params);
+    const double held = static_cast<double>(start.size()), wanted = SourcePasses::slotsFor(sourceSetup, params);
     double room = held + wanted;
     if (params.maxParticles > 0) {
         room = params.maxParticles;
         if (room < held)
             return badInput(fmt::format("fluid.maxParticles is {}, but the blocks hold {} particles: raise it, or 0 makes room for all",
                                         params.maxParticles, start.size()));
-    } else if (!asked.emitters.empty() || asked.poured > 0) {
+    } else if (!sourceSetup.emitters.empty() || sourceSetup.expectedDeposit > 0) {
         room = std::min(room, kMostParticles);
-        const bool lets = asked.poured > 0 || std::any_of(asked.emitters.begin(), asked.emitters.end(),
-                                                          [](const Emitter& e) { return e.params.litresPerSecond > 0; });
+        const bool lets = sourceSetup.expectedDeposit > 0 || std::any_of(sourceSetup.emitters.begin(), sourceSetup.emitters.end(),
+                                                                         [](const Emitter& e) { return e.params.litresPerSecond > 0; });
         if (lets)
             log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
-                                   static_cast<uint64_t>(room), start.size(), asked.seconds));
+                                   static_cast<uint64_t>(room), start.size(), sourceSetup.seconds));
     }
-    slots = std::max(static_cast<uint32_t>(room), asked.least);
+    slots = std::max(static_cast<uint32_t>(room), sourceSetup.least);
     return ok();
 }
 
-// Whether particles differ, in what they are or in what they look like.
+// Whether particles differ in their liquid or in their colour.
 void FluidWorld::Impl::findLiquids() {
     std::vector<LiquidOf> all = {liquidOf(params, "")};
     const auto add = [&](const std::string& name, const vec3& dye, float amount, float scattering) {
-        if (liquids().find(name) == nullptr && !name.empty()) return;  // said when sources are made
+        if (liquids().find(name) == nullptr && !name.empty()) return;  // refused when the sources are created
         all.push_back(liquidOf(params, name));
         if (all.back().row != 0) traits.matter = coloured = true;
         if ((dye != vec3(1.0F) && amount > 0) || scattering > 0) coloured = true;
     };
     for (const BlockParams& b : params.blocks) add(b.liquid, b.dye, b.dyeAmount, b.dyeScattering);
-    for (const Emitter& e : asked.emitters) add(e.params.liquid, e.params.dye, e.params.dyeAmount, e.params.dyeScattering);
+    for (const Emitter& e : sourceSetup.emitters) add(e.params.liquid, e.params.dye, e.params.dyeAmount, e.params.dyeScattering);
     // A pair has the harmonic mean of the two.
     mostViscous = 0;
     for (const LiquidOf& a : all)
@@ -256,17 +234,17 @@ void FluidWorld::Impl::writeStart() {
     device->writeAll<vec4>(particles.velocityNext, velocity);
     device->writeAll<uint32_t>(particles.id, id);
     sources.reset();
-    takenOut = 0;
+    withdrawn = 0;
     if (foam) foam->reset();
     volumes.reset();
     sorted = false;
-    touch();
+    invalidateCells();
     gatherColours();
-    time = dropped = 0;
-    frame = 0;
-    dtMin = dtMax = 0;
-    fastestEver = fastestStart = 0;
-    budgetSaid = false;
+    clock.time = clock.dropped = 0;
+    clock.frame = 0;
+    clock.dtMin = clock.dtMax = 0;
+    limits.fastestEver = limits.fastestStart = 0;
+    clock.budgetReported = false;
     stepper.reset();
     drawn.forget();
     ellipsoids.forget();
@@ -274,15 +252,15 @@ void FluidWorld::Impl::writeStart() {
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
     method->forget();
     figures = std::make_shared<FluidStats>();
-    begun = static_cast<uint32_t>(start.size());
-    figures->particles = begun;
+    startCount = static_cast<uint32_t>(start.size());
+    figures->particles = startCount;
     // The first step must know, too.
-    for (const NewParticle& p : start) fastestStart = std::max(fastestStart, glm::length(p.velocity));
-    knowFastest(double{fastestStart});
-    figures->emitted = static_cast<double>(begun) * std::pow(double{params.spacing}, 3);
+    for (const NewParticle& p : start) limits.fastestStart = std::max(limits.fastestStart, glm::length(p.velocity));
+    assumeFastest(double{limits.fastestStart});
+    figures->emitted = static_cast<double>(startCount) * std::pow(double{params.spacing}, 3);
 }
 
-void FluidWorld::Impl::knowFastest(double speed) {
+void FluidWorld::Impl::assumeFastest(double speed) {
     figures->maxSpeed = speed;
     std::vector<StatsRow> rows(STATS_THREADS);
     rows[0].speed2Max = static_cast<float>(speed * speed);

@@ -1,4 +1,4 @@
-// A world's state, put away and taken up again.
+// The state of a world, saved and restored.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -21,11 +21,12 @@ void FluidWorld::save(WorldState& state) {
     w.device->poll();
     state.putText("world.params", fixedValues([&w](ParamVisitor& v) { w.params.visit(v); }));
     const FluidStats& f = *w.figures;
-    const double numbers[] = {
-        w.time,        w.stepper.pending(),          w.dropped,         w.dtMin,           w.dtMax,          f.maxSpeed, w.fastestWall,
-        w.fastestEver, static_cast<double>(w.frame), w.params.origin.x, w.params.origin.y, w.params.origin.z};
+    const double numbers[] = {w.clock.time,         w.stepper.pending(),  w.clock.dropped,
+                              w.clock.dtMin,        w.clock.dtMax,        f.maxSpeed,
+                              w.limits.fastestWall, w.limits.fastestEver, static_cast<double>(w.clock.frame),
+                              w.params.origin.x,    w.params.origin.y,    w.params.origin.z};
     state.put<double>("world.numbers", numbers);
-    if (w.begun != w.start.size()) state.put<uint32_t>("world.begun", std::span(&w.begun, 1));
+    if (w.startCount != w.start.size()) state.put<uint32_t>("world.begun", std::span(&w.startCount, 1));
     state.putText("world.limited", fmt::format("{}", fmt::join(f.limited, "\n")));
     w.particles.save(*w.device, state);
     for (const NamedBuffer& b : w.method->remembered())
@@ -33,7 +34,7 @@ void FluidWorld::save(WorldState& state) {
     w.solids.save(state);
     w.sources.save(state);
     if (w.foam) w.foam->save(state);
-    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.takenOut, 1));
+    if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.withdrawn, 1));
     w.volumes.save(state);
     w.bodies.save(state);
 }
@@ -41,7 +42,7 @@ void FluidWorld::save(WorldState& state) {
 Status FluidWorld::restore(WorldState& state) {
     Impl& w = *impl_;
     if (Status can = savable(); !can) return can;
-    // All of it is taken and judged before anything changes.
+    // All of it is read and checked before anything changes.
     Result<std::string> params = state.takeText("world.params");
     if (!params) return params.error();
     if (Status same = sameFixedValues(*params, fixedValues([&w](ParamVisitor& v) { w.params.visit(v); })); !same) return same;
@@ -50,16 +51,16 @@ Status FluidWorld::restore(WorldState& state) {
     const std::vector<double>& n = *numbers;
     if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
         std::any_of(n.begin(), n.begin() + 9, [](double v) { return v < 0; }))
-        return badInput("the saved state's numbers make no sense: save it again");
-    std::optional<uint32_t> begun;
+        return badInput("the saved state's numbers are not finite or negative: save it again");
+    std::optional<uint32_t> startCount;
     if (state.sections().contains("world.begun")) {
         Result<std::vector<uint32_t>> count = state.take<uint32_t>("world.begun", 1);
         if (!count) return count.error();
-        begun = (*count)[0];
+        startCount = (*count)[0];
     }
     Result<std::string> limited = state.takeText("world.limited");
     if (!limited) return limited.error();
-    Result<Particles::Saved> saved = w.particles.take(state);
+    Result<Particles::Saved> saved = w.particles.take(state, w.bodies.matter());
     if (!saved) return saved.error();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     std::vector<std::vector<float>> memory;
@@ -89,40 +90,35 @@ Status FluidWorld::restore(WorldState& state) {
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
     if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
-    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the last host that can object
+    if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the host is the last that can refuse
 
     w.writeStart();
-    if (begun) w.begun = *begun;
+    if (startCount) w.startCount = *startCount;
     w.particles.restore(*w.device, *saved);
     w.gatherColours();
     w.sources.restore(*sources);
-    w.takenOut = taken;
+    w.withdrawn = taken;
     if (w.foam) w.foam->restore(foam);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
-    w.time = n[0];
+    w.clock.time = n[0];
     w.stepper.reset(n[1]);
-    w.dropped = n[2];
-    w.dtMin = n[3];
-    w.dtMax = n[4];
-    w.knowFastest(n[5]);
+    w.clock.dropped = n[2];
+    w.clock.dtMin = n[3];
+    w.clock.dtMax = n[4];
+    w.assumeFastest(n[5]);
     for (const vec4& v : saved->velocity)
-        if (isFinite(vec3(v))) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(v)));
-    w.fastestWall = static_cast<float>(n[6]);
-    w.fastestEver = static_cast<float>(n[7]);
-    w.frame = static_cast<uint64_t>(n[8]);
+        if (isFinite(vec3(v))) w.limits.fastestStart = std::max(w.limits.fastestStart, glm::length(vec3(v)));
+    w.limits.fastestWall = static_cast<float>(n[6]);
+    w.limits.fastestEver = static_cast<float>(n[7]);
+    w.clock.frame = static_cast<uint64_t>(n[8]);
     w.params.origin = dvec3(n[9], n[10], n[11]);
     FluidStats& f = *w.figures;
     const double volume = std::pow(double{w.params.spacing}, 3);
-    f.frame = w.frame;
-    f.time = w.time;
+    f.frame = w.clock.frame;
+    f.time = w.clock.time;
     f.particles =
         static_cast<uint32_t>(std::count_if(saved->position.begin(), saved->position.end(), [](const vec4& p) { return !(p.w < 0); }));
-    f.emitted = (static_cast<double>(w.begun) + static_cast<double>(w.sources.given())) * volume;
-    f.drained = static_cast<double>(w.sources.drained()) * volume;
-    f.owed = w.sources.owed() * volume;
-    f.poured = static_cast<double>(w.sources.born()) * volume;
-    f.debt = w.sources.debt() * volume;
-    f.taken = static_cast<double>(w.takenOut) * volume;
+    w.fillLedger(f);
     for (size_t at = 0; at < limited->size();) {
         const size_t end = std::min(limited->find('\n', at), limited->size());
         f.limited.push_back(limited->substr(at, end - at));
@@ -136,9 +132,9 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
     Impl &w = *impl_, &o = *other.impl_;
     const BoxParams &box = w.params.box, &then = o.params.box;
     if (w.params.spacing != o.params.spacing || box.min != then.min || box.max != then.max || box.periodic() != then.periodic())
-        return badInput("the box or the spacing is another: the water starts anew");
+        return badInput("the box or the spacing is not the same: the water restarts at t = 0");
     if ((o.coloured && !w.coloured) || (o.traits.matter && !w.traits.matter && !o.bodies.any()))
-        return badInput("there are liquids in the water that this scene no longer knows: the water starts anew");
+        return badInput("the water holds liquids that this scene no longer has: the water restarts at t = 0");
     SolidPasses::Places places{.poses = {poses.begin(), poses.end()}, .shapes = {}, .voxelsRewritten = 0};
     for (const std::span<const vec3>& shape : shapes) places.shapes.emplace_back(shape.begin(), shape.end());
     if (Status sound = w.solids.beginFrame(poses, shapes, 0); !sound) return sound;
@@ -160,15 +156,15 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
     for (size_t k = 0; k < position.size(); ++k) {
         const vec3 at(position[k]);
         if (position[k].w < 0 || id[k] >= o.slots || !isFinite(at)) continue;
-        const bool may = w.solids.mayBeBorn(at, w.params.spacing, 0) && (sameBodies || w.bodies.mayBeBorn(at, w.params.spacing, 0));
+        const bool may = w.solids.maySpawn(at, w.params.spacing, 0) && (sameBodies || w.bodies.maySpawn(at, w.params.spacing, 0));
         if (may)
             kept.push_back(k);
         else
             ++met;
     }
     if (kept.size() > w.slots)
-        return badInput(fmt::format("there is room for {} particles, and there are {}: the water starts anew", w.slots, kept.size()));
-    if (met > 0) w.log.notice(fmt::format("{} particles were where a solid is now: they were taken away", met));
+        return badInput(fmt::format("there are {1} particles and room for {0}: the water restarts at t = 0", w.slots, kept.size()));
+    if (met > 0) w.log.notice(fmt::format("{} particles were removed: a solid is now where they were", met));
 
     w.writeStart();
     std::vector<vec4> positions = w.device->readAll<vec4>(w.particles.positionNext, w.particles.count),
@@ -195,20 +191,20 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
         o.foam->save(state);
         if (const auto saved = w.foam->take(state)) w.foam->restore(*saved);  // else another number may be: it begins without
     }
-    w.begun = static_cast<uint32_t>(kept.size());
-    w.time = o.time;
+    w.startCount = static_cast<uint32_t>(kept.size());
+    w.clock.time = o.clock.time;
     w.stepper.reset(o.stepper.pending());
-    w.dropped = o.dropped;
-    w.frame = o.frame;
+    w.clock.dropped = o.clock.dropped;
+    w.clock.frame = o.clock.frame;
     w.params.origin = o.params.origin;
-    w.knowFastest(o.figures->maxSpeed);
-    for (const size_t k : kept) w.fastestStart = std::max(w.fastestStart, glm::length(vec3(velocity[k])));
-    w.fastestEver = o.fastestEver;
+    w.assumeFastest(o.figures->maxSpeed);
+    for (const size_t k : kept) w.limits.fastestStart = std::max(w.limits.fastestStart, glm::length(vec3(velocity[k])));
+    w.limits.fastestEver = o.limits.fastestEver;
     FluidStats& f = *w.figures;
-    f.frame = w.frame;
-    f.time = w.time;
-    f.particles = w.begun;
-    f.emitted = w.begun * std::pow(double{w.params.spacing}, 3);
+    f.frame = w.clock.frame;
+    f.time = w.clock.time;
+    f.particles = w.startCount;
+    f.emitted = w.startCount * std::pow(double{w.params.spacing}, 3);
     return ok();
 }
 

@@ -1,4 +1,4 @@
-// How the time of a host's frames becomes steps: fixed steps and what is left over of them, and the budget that a frame's steps have.
+// Divides the time of a host's frames into steps: fixed steps and their remainder, and the time budget of a frame's steps.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@ namespace rivulet {
 
 class FrameStepper {
   public:
-    // A frame as it is stepped: so many pieces of the same length, each with a step limit of its own.
+    // A frame as it is stepped: pieces of the same length, each with a step limit of its own.
     struct Frame {
         int pieces = 0;
         double length = 0;  // s, of a piece
@@ -16,12 +16,12 @@ class FrameStepper {
     // `seconds` > 0; `fixedStep` s, 0: none, and the whole frame is stepped. `budgetMs`: what its steps may take, 0: as long as they do.
     // `whole`: a frame without fixed steps is one piece, however long.
     Frame begin(double seconds, double fixedStep, double budgetMs, bool whole = false);
-    // Whether another piece of work may follow `done` (>= 1) pieces alike; asked between them, on the cpu.
+    // Whether another piece of work may follow `done` (>= 1) equal pieces; called between them, on the cpu.
     bool mayGoOn(int done) const { return budgetMs_ <= 0 || fits(elapsedMs(), done); }
     // The same before the work, from what is known of earlier frames' substeps: of a GPU, whose work is not done when it has been asked
     // for.
     bool mayPlan(int done) const { return budgetMs_ <= 0 || workSubsteps_ <= 0 || (done + 1) * workMs_ <= budgetMs_ * workSubsteps_; }
-    // What a Device took for so many substeps, ms. They need not be the same frame's: a share of each frame is forgotten.
+    // Records that a Device took `ms` for `substeps`. They need not be of the same frame: older frames fade.
     void know(double ms, int substeps);
     // `stepped` s of the frame were. Of fixed steps a part stays for the next frame; whole ones that were not made are dropped.
     // Returns what was dropped, s.

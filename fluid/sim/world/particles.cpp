@@ -1,9 +1,34 @@
 #include "fluid/sim/world/particles.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
+#include "fluid/sim/sources/liquids.h"
+
 namespace rivulet {
+
+namespace {
+
+// By id: first those of the fluid, then the samples. A row is that of a liquid, or names the body that a sample is on.
+Status checkMatter(std::span<const vec4> matter, std::span<const vec4> samples) {
+    const auto rows = static_cast<float>(liquids().rows.size());
+    const size_t fluid = matter.size() - std::min(samples.size(), matter.size());
+    for (size_t k = 0; k < matter.size(); ++k) {
+        const vec4& m = matter[k];
+        const bool finite = isFinite(vec3(m)) && std::isfinite(m.w);
+        const bool ofFluid = finite && m.x > 0 && m.y > 0 && m.z >= 0 && m.w >= 0 && m.w <= rows && m.w == std::floor(m.w);
+        if (k < fluid ? !ofFluid : !finite || m.w != samples[k - fluid].w)
+            return badInput(
+                fmt::format("the saved state gives particle {} a liquid or a body that this scene does not have: save it again", k));
+    }
+    return ok();
+}
+
+}  // namespace
 
 Result<Particles> Particles::create(Device& device, uint32_t count, bool matter, bool absorption) {
     Particles p;
@@ -41,7 +66,7 @@ void Particles::save(Device& device, WorldState& state) const {
     if (absorptionOf.bytes() > 0) state.put<vec4>("particles.absorption", device.readAll<vec4>(absorptionOf, count));
 }
 
-Result<Particles::Saved> Particles::take(WorldState& state) const {
+Result<Particles::Saved> Particles::take(WorldState& state, std::span<const vec4> samples) const {
     Saved saved;
     for (auto [name, values] : {std::pair("particles.position", &saved.position), std::pair("particles.velocity", &saved.velocity),
                                 std::pair("particles.matter", &saved.matter), std::pair("particles.absorption", &saved.absorption)}) {
@@ -56,9 +81,10 @@ Result<Particles::Saved> Particles::take(WorldState& state) const {
     saved.id = std::move(*ids);
     std::vector<bool> seen(count);  // kernels write to where ids say
     for (const uint32_t one : saved.id) {
-        if (one >= count || seen[one]) return badInput("the saved state's particles are not each there once: save it again");
+        if (one >= count || seen[one]) return badInput("the saved state's particle ids are not unique: save it again");
         seen[one] = true;
     }
+    if (Status sound = checkMatter(saved.matter, samples); !sound) return sound.error();
     return saved;
 }
 

@@ -18,7 +18,8 @@ struct Particles {
     Buffer pressure;                    // float, what the method makes of it
     Buffer acceleration;                // vec4, m/s^2; of a sample: what it would be for a particle of the fluid
     Buffer boundary;                    // vec4: gradient (1/m) and share of the walls
-    Buffer normal;                      // vec4: of the surface (fluid/forces/normals), w its length; empty while no force row makes them
+    Buffer normal;                      // vec4: of the surface (fluid/forces/normals), w its length; see hasNormals
+    bool hasNormals = false;            // whether a force of the last substep filled `normal`
     // Where particles differ (PairTraits::matter). vec4: x volume / spacing^3; y reference rest density / own; z dynamic viscosity, Pa s;
     // w the liquid's row, or of a sample on body k: -1 - k.
     Buffer matterOf;  // by id
@@ -36,7 +37,9 @@ struct Particles {
         std::vector<uint32_t> id;
     };
     void save(Device& device, WorldState& state) const;
-    Result<Saved> take(WorldState& state) const;  // error: as WorldState::take; ids that are not each there once
+    // `samples`: the matter of the samples on bodies (BodyPasses::matter). Error (badInput): as WorldState::take; ids that are not each
+    // there once; matter that no particle of this world can have.
+    Result<Saved> take(WorldState& state, std::span<const vec4> samples) const;
     void restore(Device& device, const Saved& saved);
 };
 

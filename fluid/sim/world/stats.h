@@ -1,4 +1,4 @@
-// What a world says of itself. GPU figures come two or three frames late.
+// The figures of a world. On a GPU they are two or three frames late.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ struct FluidStats {
     uint32_t particles = 0;     // all of them, frozen ones too; not free slots
     uint32_t lost = 0;          // left the grid or NaN: counted, frozen, indexed nowhere
     uint32_t nan = 0;           // of those, NaN or infinite
-    double emitted = 0;         // m^3, put in so far: blocks, what emitters let out, and what was born of what others poured
-    double poured = 0;          // m^3, of that: of what others poured
-    double debt = 0;            // m^3, poured and not yet born
-    double taken = 0;           // m^3, by others
+    double emitted = 0;         // m^3, put in so far: blocks, what emitters let out, and particles spawned from deposits
+    double deposited = 0;       // m^3, of that: particles spawned from deposits
+    double pendingVolume = 0;   // m^3, deposited and not yet spawned
+    double withdrawn = 0;       // m^3, by others
     double drained = 0;         // m^3, taken by sinks
-    double owed = 0;            // m^3, due from emitters and held back: no room where they let it out, or no slot
+    double owed = 0;            // m^3, due from emitters and held back: their opening is blocked, or there is no slot
     double avgCompression = 0;  // mean of max(rho / rho0 - 1, 0) over particles
     double maxCompression = 0;
     double kinetic = 0;    // J
@@ -32,9 +32,9 @@ struct FluidStats {
     int substeps = 0;                  // of that frame
     double iterations = 0;             // of the pressure solver, mean over those substeps; on a GPU over some frames earlier
     uint64_t sweeps = 0;               // over all neighbours, since the start: what a step costs, whatever the machine
-    std::optional<double> residual;    // mean compression that the last of them left, as the solver predicts it; nothing: it does not
+    std::optional<double> residual;    // mean compression after the last of them, as the solver predicts it; nothing: it predicts none
     double dtMin = 0, dtMax = 0;       // s, since the start
-    std::vector<std::string> limited;  // plain sentences: what the program limited, each once
+    std::vector<std::string> limited;  // sentences: what the program limited and why, each once
 };
 
 }  // namespace rivulet

@@ -67,7 +67,7 @@ struct PairKernel {
     // `extra`: further defines.
     static Result<PairKernel> find(Device& device, std::string_view path, const PairTraits& traits, std::span<const Define> extra = {});
     void run(StepContext& context, const StepParams& params, std::initializer_list<const Buffer*> buffers, uint32_t threads) const;
-    // The same outside a world's substep: nobody counts it.
+    // The same outside a world's substep: the sweep is not counted.
     void run(Device& device, const Particles& particles, const StepParams& params, std::initializer_list<const Buffer*> buffers,
              uint32_t threads) const;
 };

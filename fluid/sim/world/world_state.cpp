@@ -6,6 +6,7 @@
 #include <new>
 
 #include "engine/core/assert.h"
+#include "engine/core/file.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {

@@ -1,5 +1,5 @@
 // The whole state of a world as named sections of plain numbers, and as a file (.rstate): what is saved is what the next step depends on.
-// Each part puts sections under names of its own and takes them back; what nobody takes, or nobody put, is an Error.
+// Each part puts sections under names of its own and takes them back; a section that is missing or remains is an Error.
 //
 // The file: 40 bytes of header, 64 a section, then the sections one after the other, each one zstd frame (packed_array.h), in the byte
 // order of the machine that wrote it. XXH3 checks the header with the table, and each section.
@@ -43,7 +43,7 @@ class WorldState {
         return items;
     }
     Result<std::string> takeText(const std::string& name);
-    // Error (badInput): a section that nobody took, of a part that this world does not have.
+    // Error (badInput): a section that was not taken, of a part that this world does not have.
     Status allTaken() const;
 
     const std::map<std::string, Bytes>& sections() const { return sections_; }

@@ -1,5 +1,5 @@
-// The pair term of laminar viscosity as the explicit and the implicit pass share it. Include after fluid/world/matter.h and
-// fluid/methods/shape.h. VISCOUS_OWN, before the loop: what belongs to i. An acceleration is viscousFactor_ * sum d
+// The pair term of laminar viscosity, shared by the explicit and the implicit pass. Include after fluid/world/matter.h and
+// fluid/methods/shape.h. VISCOUS_OWN goes before the loop and loads the values of i. The acceleration is viscousFactor_ * sum d
 // VOLUME(VISCOUS_PAIR(v_ij . d) slope).
 #undef VISCOUS_OWN
 #undef VISCOUS_PAIR

@@ -1,7 +1,7 @@
-// The 27 cells around a place, for whoever is no particle of the sort.
+// The 27 cells around any point; for kernels whose threads are not sorted particles.
 #if !defined(RIVULET_AROUND_H)
 #define RIVULET_AROUND_H
-// The k-th of the cells around c along an axis of n, or -1; where the axis is periodic they wrap round, and none comes twice.
+// The k-th of the cells around c along an axis of n cells, or -1; on a periodic axis they wrap around, and no cell occurs twice.
 FN int cellAround(int c, int k, int n, float period) {
     int at = c + k - 1;
     if (period > 0.0f) at = k == 2 && n == 4 ? -1 : at < 1 ? n - 2 : at > n - 2 ? 1 : at;

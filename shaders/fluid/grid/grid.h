@@ -1,11 +1,11 @@
-// The padded grid: which cell a position is in. One empty cell on every side, so that a particle's 27 cells always exist.
-// Particles are sorted by cell: first those of the fluid, then the samples on bodies in cells of their own, then, from cell totalCells on,
+// The padded grid: the cell of a position. One empty cell on every side, so that the 27 cells around a particle always exist.
+// Particles are sorted by cell: first those of the fluid, then body samples in cells of their own, then, from cell totalCells on,
 // samples outside the grid (+ 0), lost particles (+ 1: outside, NaN or infinite), free slots (+ 2), and at + 3 the count of all.
 #if !defined(RIVULET_GRID_H)
 #define RIVULET_GRID_H
-// The cell of `x` (m), x fastest, or cellCount where x is outside the unpadded cells, NaN or infinite. (The cpu's sort has finer cells of
-// its own: there only whether it is cellCount means anything.) The conditions are true for what is inside, so that a NaN, of which every
-// comparison is false, is outside.
+// The cell of `x` (m), x fastest, or cellCount if x is outside the unpadded cells, NaN or infinite. (The cpu's sort has finer cells; there
+// only the test against cellCount is meaningful.) The conditions are true inside, so that NaN, for which every comparison is false,
+// counts as outside.
 FN uint cellOf(vec3 x, StepParams p) {
     float gx = (x.x - p.gridOrigin.x) * p.gridScale.x;
     float gy = (x.y - p.gridOrigin.y) * p.gridScale.y;
@@ -15,7 +15,7 @@ FN uint cellOf(vec3 x, StepParams p) {
         cell = TO_UINT((TO_INT(gz) * p.cellsY + TO_INT(gy)) * p.cellsX + TO_INT(gx));
     return cell;
 }
-// Where the particle is sorted to. A slot is free where w, the density ratio of everything else, is negative.
+// The cell that a particle is sorted to. A slot is free if w is negative; else w is the density ratio.
 FN uint sortedCell(vec4 x, uint id, StepParams p) {
     uint cell = cellOf(x.xyz, p);
     bool inside = cell < p.cellCount;

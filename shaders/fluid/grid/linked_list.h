@@ -1,11 +1,11 @@
-// fluid.grid linked_list: a list of particles a cell (thesis 4.2) in the buffer that holds cellStart elsewhere: the first particle of each
-// cell, then the count of slots, then, a slot each, the next particle in its list. Nothing is sorted: who is in no list says so itself.
+// fluid.grid linked_list: one list of particles per cell (thesis 4.2), in the buffer that otherwise holds cellStart: the first particle of each
+// cell, then the number of slots, then for each slot the next particle in its list. Nothing is sorted; slots in no list are marked.
 #if !defined(RIVULET_LINKED_LIST_H)
 #define RIVULET_LINKED_LIST_H
 #define LIST_END 0xffffffffu
-#define LIST_NONE 0xfffffffeu  // in place of the next: in no list, as it is lost or a free slot
+#define LIST_NONE 0xfffffffeu  // instead of the next particle: the slot is in no list, because it is lost or free
 #define NEXT_OF(cells, i) ((cells) + 1u + (i))
-// Whether slot i takes no part in a step. `start`: cellStart or the lists; `cells`: StepParams.cellCount.
+// Whether slot i is not simulated (lost or free). `start`: cellStart or the lists; `cells`: StepParams.cellCount.
 #if defined(LINKED_LIST)
 #define STANDS_BY(start, cells, i) (i >= start[cells] || start[NEXT_OF(cells, i)] == LIST_NONE)
 #else

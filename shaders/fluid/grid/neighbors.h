@@ -1,7 +1,7 @@
-// The neighbours of a particle on a GPU: the nine rows of cells around its own, each row's three cells contiguous in memory; with MATTER
-// the same rows of body samples; with PERIODIC cell by cell, so that rows may wrap round; with LINKED_LIST the list of each of the 27
-// cells. (On the CPU lang_lanes.h defines the same macros over a list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1,
-// Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart, or the lists. `home`: where the particle was when the grid was built.
+// The loop over a particle's neighbours on a GPU: the nine rows of cells around it, each with three cells contiguous in memory; with MATTER
+// also the same rows of body samples; with PERIODIC cell by cell, because rows may wrap around; with LINKED_LIST the lists of the 27
+// cells. (On the CPU, lang_lanes.h defines the same macros over a neighbour list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1,
+// Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart or the lists. `home`: the particle's position when the grid was built.
 // j includes the particle itself.
 #include "shaders/fluid/grid/linked_list.h"
 #if !defined(FOR_NEIGHBORS)
@@ -15,7 +15,7 @@
     }                 \
     }                 \
     }
-// In a step's first sweep: KEEP says which neighbours later sweeps need; a GPU keeps no list.
+// In the first sweep of a step, KEEP marks the neighbours that later sweeps need; a GPU keeps no list.
 #define FOR_ALL_NEIGHBORS(i, home, j) FOR_NEIGHBORS(i, home, j)
 #define KEEP(condition)
 #define END_ALL_NEIGHBORS(i) END_NEIGHBORS
@@ -41,7 +41,7 @@
             int cell_ = ((cz_ + k_ / 9 - 1) * PARAMS.cellsY + cy_ + k_ / 3 % 3 - 1) * PARAMS.cellsX + cx_ + k_ % 3 - 1; \
             for (uint j = neighbors[cell_]; j != LIST_END; j = neighbors[NEXT_OF(PARAMS.cellCount, j)]) {
 #elif defined(PERIODIC)
-// On a periodic axis cells 1 .. n - 2 wrap round; where there are two of them, the one below and the one above are the same.
+// On a periodic axis cells 1 .. n - 2 wrap around; if there are only two of them, the lower and the upper neighbour are the same cell.
 FN int wrapped_(int c, int n, float period) { return period > 0.0f ? (c < 1 ? n - 2 : c > n - 2 ? 1 : c) : c; }
 FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 3; }
 #define FOR_NEIGHBORS(i, home, j)                                                                                           \
@@ -68,7 +68,7 @@ FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 
             for (uint j = neighbors[cell_ - 1]; j < end_; ++j) {
 #endif
 #endif
-// The vector from b to a, with PERIODIC the shortest of its images.
+// The vector from b to a; with PERIODIC the shortest of its periodic images.
 #undef APART
 #if defined(PERIODIC)
 FN real3 wrapApart(real3 d, vec3 period, vec3 inv) {

@@ -1,5 +1,5 @@
-// An exclusive prefix sum of uints in three dispatches, of any length: scan_reduce, scan_blocks, scan_apply, all with LOCAL_SIZE 256.
-// A work group takes a block of SCAN_BLOCK elements; one work group sums up the blocks in a loop. Nothing waits for another group.
+// An exclusive prefix sum of uints of any length in three dispatches: scan_reduce, scan_blocks, scan_apply, all with LOCAL_SIZE 256.
+// A work group processes a block of SCAN_BLOCK elements; one work group sums the blocks in a loop. No group waits for another.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"

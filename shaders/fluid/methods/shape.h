@@ -27,7 +27,7 @@ FN real slope(real r, float h) {
     return t * t * t;
 }
 #endif
-// Both at once, of Wendland C2: slope(r) is h^3 times the second.
+// Both at once, for Wendland C2: slope(r) is h^3 times the second.
 #define SHAPE_AND_SLOPE(r, invH, w, g) \
     real q_ = (r) * (invH);            \
     real a_ = max0(1.0f - q_);         \

@@ -1,5 +1,5 @@
-// When a pressure solver may stop: asked by the host on the cpu (fluid/sim/methods/solver_residual.cpp), by fluid/methods/solver_progress
-// on a GPU.
+// The stop criterion of the pressure solvers: used by the host for the cpu (fluid/sim/methods/solver_residual.cpp), and by
+// fluid/methods/solver_progress on a GPU.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include <algorithm>
@@ -9,8 +9,8 @@ inline
 #else
 FN
 #endif
-    // The residual after what has just been applied, from the one found before it: about as much of it is left as the iteration before
-    // left.
+    // Estimates the residual after the last change of the pressures from the one before it: it is assumed to fall by the same factor as in the
+    // previous iteration.
     float
     residualAhead(float found, float before, uint iteration) {
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
@@ -19,8 +19,8 @@ FN
 #endif
     return found * (iteration > 0u && before > 0.0f ? min(max(found / before, 0.3f), 0.95f) : 0.6f);
 }
-// The compression a step may add, of what it may add where the fastest goes as far as it may. `way`: what it goes, of that. What is left
-// trembles: it is to be little beside what moves.
+// The tolerance of a step as a share of the tolerance at the largest step distance. `way`: the distance of the fastest particle as a share
+// of that distance. The remaining error causes jitter, which must be small against the motion.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 inline
 #else

@@ -8,8 +8,8 @@ namespace rivulet {
 #endif
 STRUCT(VolumeParams) {
     StepParams step;
-    uint count;  // of volumes
-    uint keep;   // bits of those that were watched before
+    uint count;  // number of volumes
+    uint keep;   // bits of the volumes that were watched in the last step
     uint unused0;
     uint unused1;
 };

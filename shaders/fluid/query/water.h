@@ -1,4 +1,4 @@
-// What the water is at any place: the density ratio that particles make there by Wendland's kernel (1995), and what they do. After BUFFERS.
+// The water at any point: the density ratio of the particles around it (Wendland 1995), their velocity and the gradient. After BUFFERS.
 #if !defined(RIVULET_WATER_H)
 #define RIVULET_WATER_H
 STRUCT(Water) {
@@ -15,7 +15,7 @@ FN Water waterAt(GLOBAL(uint, cellStart) GLOBAL(vec4, position) GLOBAL(vec4, vel
     int cx = TO_INT((at.x - s.gridOrigin.x) * s.gridScale.x);
     int cy = TO_INT((at.y - s.gridOrigin.y) * s.gridScale.y);
     int cz = TO_INT((at.z - s.gridOrigin.z) * s.gridScale.z);
-    // The cpu's rows have two cells where a GPU's have one.
+    // On the cpu the grid has two cells along x for one of a GPU.
     uint perCell = s.cellCount / TO_UINT(s.cellsX * s.cellsY * s.cellsZ);
     for (int c = 0; c < 27; ++c) {
         int x = cellAround(cx, c % 3, s.cellsX, s.period.x);

@@ -1,4 +1,4 @@
-// Where a body is, and how it moves; and one thread's partial sums of what the fluid does to it.
+// The state of a rigid body, and one thread's partial sums of the fluid's load on it.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
@@ -6,13 +6,13 @@ namespace rivulet {
 #endif
 CONSTANT(uint, LOAD_THREADS, 64u);  // a body
 STRUCT(DeviceBody) {
-    vec4 position;     // m, of the centre of mass
+    vec4 position;     // m, centre of mass
     vec4 rotation;     // unit quaternion, w last
     vec4 velocity;     // m/s
     vec4 spin;         // rad/s
-    uint firstSample;  // of all samples
+    uint firstSample;  // index into all samples
     uint endSample;
-    uint bodyCount;  // of all
+    uint bodyCount;  // number of bodies
     uint padding;
 };
 STRUCT(LoadRow) {

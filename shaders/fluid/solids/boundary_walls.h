@@ -9,7 +9,7 @@ FN WallShare noWall() {
     s.open = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     return s;
 }
-// `n`: unit normal into the fluid; `d` m; beyond h nothing changes, behind the wall the share stays one half.
+// `n`: unit normal into the fluid; `d` m; beyond h the share is 0, behind the wall it stays 1/2.
 FN WallShare addWall(WallShare sum, vec3 n, float d, float invH) {
     float s = min(1.0f - d * invH, 1.0f);
     if (!(s > 0.0f)) return sum;

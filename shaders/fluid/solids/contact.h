@@ -1,12 +1,12 @@
-// How a particle meets the static field: it advances until contact, loses what goes into the wall, slides on with the rest,
-// and every stretch of its way is walked through the voxels, so that nothing passes. Include after voxel/field.h and voxel/walk.h.
-#define CONTACT_STRETCHES 64   // at most, a step; a particle that needs more stops where it got to, and goes on next step
-#define CONTACT_SLACK 1.0e-4f  // voxels: nearer than contact by less than this is let be
-#define CONTACT_VOXELS 1.735f  // above sqrt(3); a little below kContactVoxels of fluid/voxel/voxel_field.h, which says what it is good for
+// Contact of a particle with the static field: it advances until contact, loses the velocity into the wall, slides on with the rest,
+// and every segment of its path is traced through the voxels, so that it cannot pass a wall. Include after voxel/field.h and voxel/walk.h.
+#define CONTACT_STRETCHES 64   // maximum per step; a particle that needs more stops and continues in the next step
+#define CONTACT_SLACK 1.0e-4f  // voxels: a smaller violation of the contact distance is ignored
+#define CONTACT_VOXELS 1.735f  // above sqrt(3); slightly below kContactVoxels of fluid/voxel/voxel_field.h, which explains it
 
 #include "shaders/fluid/solids/contact_walls.h"
 
-// A way that ended `depth` beyond contact with a wall: the share of it that lay beyond answers to the wall.
+// The path ended `depth` beyond contact with a wall: the part of it beyond contact responds to the wall.
 FN vec3 respondBeyond(vec3 way, vec3 n, float depth, float friction, float bounce) {
     float into = -dot(way, n);
     if (!(into > 0.0f && depth > 0.0f)) return way;
@@ -14,16 +14,16 @@ FN vec3 respondBeyond(vec3 way, vec3 n, float depth, float friction, float bounc
     return way * (1.0f - share) + respond(way * share, n, friction, bounce);
 }
 
-// Out of a wall that `moved` has not yet left by `depth`, half a voxel at most.
+// Moves out of a wall by the part of `depth` that `moved` has not covered yet, at most half a voxel.
 FN vec3 pushOut(vec3 moved, vec3 n, float depth, float most) { return moved + n * clamp(depth - dot(moved, n), 0.0f, most); }
 
 STRUCT(Slid) {
     vec3 position;  // m
     vec3 velocity;  // m/s
-    bool touched;   // false: the way was free, position and velocity are to be left as they were
+    bool touched;   // false: the path was free; position and velocity must not be changed
 };
 
-// The fraction of the way at which a + d t, in cell coordinates, first is inside the grid; 2 if it never is.
+// The fraction t at which a + d t, in cell coordinates, enters the grid; 2 if it never does.
 FN float enterGrid(FieldParams f, vec3 a, vec3 d) {
     vec3 size = vec3(TO_FLOAT(f.sizeX), TO_FLOAT(f.sizeY), TO_FLOAT(f.sizeZ));
     if ((d.x == 0.0f && (a.x < 0.0f || a.x > size.x)) || (d.y == 0.0f && (a.y < 0.0f || a.y > size.y)) ||
@@ -40,7 +40,7 @@ FN float enterGrid(FieldParams f, vec3 a, vec3 d) {
     return tIn <= tOut ? tIn : 2.0f;
 }
 
-// `start` touches no set voxel; nor does the position returned. MOVING: unless it did at the start.
+// Requires that `start` touches no set voxel; then the returned position touches none. MOVING: `start` may touch one.
 FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 start, vec3 end,
                    vec3 velocity) {
     Slid s;
@@ -50,17 +50,17 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
     vec3 rest = end - start;
     float enters = enterGrid(f, toCells(f, start), rest * f.origin.w);
     if (enters > 1.0f) return s;
-    s.position = start + rest * enters;  // the grid's border is free of the mesh: it is padded
+    s.position = start + rest * enters;  // the border of the grid contains no part of the mesh: it is padded
     rest = rest * (1.0f - enters);
     FieldSample here = fieldAt(PASS(bandDistance) f, s.position);
 #if defined(MOVING)
-    // Overrun by its wall, or squeezed into it by another: no way is walked; out, half a voxel a step, and no further in. Within a closed
-    // mesh, where the sign says so, out is through the wall.
+    // The wall has moved over the particle, or another wall pushed it in: no path is traced; it moves out by half a voxel per step and
+    // never further in. Inside a closed mesh, where the sign of the distance is negative, out is through the wall.
     bool within = bandDistance[nearestPoint(f, toCells(f, s.position))] < 0.0f;
     if (within || setVoxelNear(PASS(surfaceBits) f, toCells(f, s.position))) {
         vec3 n = within ? fieldNormal(here) * -1.0f : fieldNormal(here);
         s.position = s.position + n * min(within ? f.contact + here.distance : f.contact - here.distance, 0.5f * f.voxel);
-        // Deep within, where no distance says which way is out, it goes with the solid.
+        // Deep inside, where no distance gives a direction, the particle moves with the solid.
         s.velocity = dot(n, n) > 0.0f ? respond(velocity, n, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 0.0f);
         s.touched = true;
         return s;
@@ -69,7 +69,7 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
     for (int k = 0; k < CONTACT_STRETCHES; ++k) {
         float left = length(rest);
         if (!(left > 0.0f)) break;
-        // As far as is free, and half a voxel at least: from contact that is still on the near side of the wall.
+        // The free distance, but at least half a voxel: from contact distance that does not reach the wall.
         float share = min(max(here.distance - f.contact, 0.5f * f.voxel) / left, 1.0f);
         vec3 stretch = rest * share;
         vec3 next = s.position + stretch;
@@ -95,7 +95,7 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
                 rest = respondToAll(rest, w, bounces);
                 s.velocity = respondToAll(s.velocity, w, bounces);
             }
-            // Still nearer than contact, by curvature or from the start. In a corner: out of each wall.
+            // Still nearer than the contact distance, because of curvature or from the start. In a corner: out of each wall.
             if (w.corner) {
                 for (int r = 0; r < 3; ++r) {
                     change = pushOut(change, w.normalA, depthA, 0.5f * f.voxel);
@@ -106,8 +106,8 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
             }
             next = next + change;
             there = fieldAt(PASS(bandDistance) f, next);
-            // Else along the gradient, while that helps. Midway between two walls the gradient is short and the push with it, so that in
-            // a channel too narrow for contact nothing is thrown to and fro.
+            // Else along the gradient, while that increases the distance. Midway between two walls the gradient is short, and so is the correction:
+            // in a channel that is too narrow for contact, particles do not oscillate.
             for (int r = 0; r < 2 && !w.corner; ++r) {
                 float depth = f.contact - there.distance;
                 if (depth < CONTACT_SLACK * f.voxel) break;
@@ -119,8 +119,8 @@ FN Slid slideAlong(GLOBAL(uint, surfaceBits) GLOBAL(float, bandDistance) GLOBAL(
                 s.touched = true;
             }
         }
-        // A stretch within one voxel whose end is CONTACT_VOXELS from the mesh is within a voxel that no triangle touches; any other is
-        // walked.
+        // A segment inside one voxel whose end is CONTACT_VOXELS from the mesh is inside a voxel that no triangle touches; every other segment
+        // is traced.
         vec3 a = toCells(f, s.position);
         vec3 b = toCells(f, next);
         vec3 across = floor(a) - floor(b);

@@ -1,10 +1,10 @@
-// The thesis's collision with voxels [4.3], kept as the baseline: one rounded sample a step of the longest axis, which slips through walls
-// at their corners; normals from smoothed voxels (24)(25), which are as jagged as the voxels; the velocity into the wall removed (26); back
-// along the way by a voxel. Include after fluid/solids/contact.h.
+// The thesis's collision with voxels (thesis 4.3), kept as the baseline: one rounded sample per step of the longest axis, which misses walls
+// at their corners; normals from smoothed voxels (24)(25), which are as uneven as the voxels; the velocity into the wall is removed (26); the
+// particle moves back by one voxel along its path. Include after fluid/solids/contact.h.
 #define THESIS_BACK 1.0f  // voxels
 #define THESIS_REACH 3    // voxels, h of the spiky kernel
 
-// As walkVoxels, but asks what the thesis asks.
+// As walkVoxels, with the samples of the thesis.
 FN float walkThesis(GLOBAL(uint, surfaceBits) FieldParams f, vec3 a, vec3 b) {
     vec3 d = b - a;
     float longest = max(max(abs(d.x), abs(d.y)), abs(d.z));
@@ -17,7 +17,7 @@ FN float walkThesis(GLOBAL(uint, surfaceBits) FieldParams f, vec3 a, vec3 b) {
     return 2.0f;
 }
 
-// (24)(25): the gradient of the voxels' density with the spiky kernel, turned towards the fluid. Zero where voxels lie evenly around.
+// (24)(25): the gradient of the voxels' density with the spiky kernel, pointing into the fluid. Zero where voxels are all around.
 FN vec3 thesisNormal(GLOBAL(uint, surfaceBits) FieldParams f, vec3 p) {
     vec3 n = vec3(0.0f, 0.0f, 0.0f);
     int x0 = TO_INT(floor(p.x));

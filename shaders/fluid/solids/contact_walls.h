@@ -1,7 +1,7 @@
-// The walls of a static field at a point: which way they face, how far they are, how they answer. Include after voxel/field.h.
+// The walls of a static field at a point: their normals, distances and surface parameters. Include after voxel/field.h.
 #include "shaders/fluid/solids/respond.h"
 
-// The walls at a point: one; or, where walls face each other, up to three. A zero normal is no wall.
+// The walls at a point: one, or, where walls face each other, up to three. A zero normal means no wall.
 STRUCT(Walls) {
     vec3 normalA;
     vec3 normalB;
@@ -15,7 +15,7 @@ STRUCT(Walls) {
     bool corner;
 };
 
-// Response to all of them, bouncing where `bounces` is 1; what the answer to one pushes into another goes next time round.
+// Response to all walls, with restitution where `bounces` is 1; velocity that one response adds into another wall is removed in the next round.
 FN vec3 respondToAll(vec3 u, Walls w, float bounces) {
     vec3 v = respond(u, w.normalA, w.surfaceA.x, w.surfaceA.y * bounces);
     v = respond(v, w.normalB, w.surfaceB.x, w.surfaceB.y * bounces);
@@ -35,10 +35,10 @@ FN vec3 unpackNormal(uint code) {
     return n * (1.0f / length(n));
 }
 
-// Which collider's wall it is, 0..15: the `surfaces` of VoxelFieldOptions.
+// The index of the collider, 0..15, in `surfaces` of VoxelFieldOptions.
 FN uint wallSurface(uint code) { return code >> 28u; }
 
-// The index of the grid point nearest to `g`, cell coordinates; of the grid's border where `g` is beyond it.
+// The index of the grid point nearest to `g` (cell coordinates), clamped to the border of the grid.
 FN uint nearestPoint(FieldParams f, vec3 g) {
     uint x = TO_UINT(clamp(g.x + 0.5f, 0.0f, TO_FLOAT(f.sizeX)));
     uint y = TO_UINT(clamp(g.y + 0.5f, 0.0f, TO_FLOAT(f.sizeY)));
@@ -46,16 +46,16 @@ FN uint nearestPoint(FieldParams f, vec3 g) {
     return (z * (TO_UINT(f.sizeY) + 1u) + y) * (TO_UINT(f.sizeX) + 1u) + x;
 }
 
-// What lies behind the distances of the surface that a grid point's normal names: friction and restitution.
+// Friction and restitution of the surface whose index is stored in a grid point's normal; they follow the normals in the buffer.
 FN vec2 surfaceOf(GLOBAL(uint, bandNormal) FieldParams f, uint code) {
     uint at = f.surfacesAt + 2u * wallSurface(code);
     return vec2(BITS_FLOAT(bandNormal[at]), BITS_FLOAT(bandNormal[at + 1u]));
 }
 
-// Near where walls face each other the interpolated distance blends them: its gradient points between them, and a particle would be
-// led round the corner as in a bowl. The cell's own grid points tell the walls apart: each knows the direction to its nearest
-// triangle. From there the wall is extended as a plane. Round an outer edge such planes come nearer to the point than the mesh
-// is, and are not walls.
+// Where walls face each other, the interpolated distance blends them: its gradient points between them, and a particle would follow a
+// rounded corner. The grid points of the cell separate the walls: each stores the direction to its nearest triangle, from which the wall is
+// extended as a plane. Around an outer edge such planes are nearer to the point than the mesh
+// is, and are not counted as walls.
 FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParams f, vec3 p, FieldSample here) {
     Walls w;
     w.normalA = vec3(0.0f, 0.0f, 0.0f);
@@ -82,7 +82,7 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
             vec3 n = unpackNormal(code);
             float distance_ = there + dot(n, g - vec3(TO_FLOAT(x), TO_FLOAT(y), TO_FLOAT(z))) * f.voxel;
             if (there >= f.band || distance_ < here.distance - 0.02f * f.voxel) continue;
-            // The nearest of each direction, in the order they come.
+            // Keeps the nearest wall of each direction, in the order of the grid points.
             if (dot(w.normalA, w.normalA) == 0.0f || dot(w.normalA, n) > 0.9f) {
                 if (distance_ < w.distanceA) {
                     w.normalA = n;
@@ -102,7 +102,7 @@ FN Walls wallsAt(GLOBAL(float, bandDistance) GLOBAL(uint, bandNormal) FieldParam
             }
         }
     }
-    // Blending takes less than half a voxel off the distance of the nearest; if more is missing, there is a wall that was not found.
+    // Blending reduces the distance of the nearest wall by less than half a voxel; a larger difference means that a wall was not found.
     w.corner = dot(w.normalB, w.normalB) > 0.0f && min(min(w.distanceA, w.distanceB), w.distanceC) < here.distance + 0.5f * f.voxel;
     if (!w.corner) {
         w.normalB = vec3(0.0f, 0.0f, 0.0f);

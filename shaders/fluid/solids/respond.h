@@ -1,5 +1,5 @@
-// Response (26) of the thesis with friction and bounce: the part of `u` into the wall turns back `bounce` times,
-// the part along it loses Coulomb's share of that impulse, and never turns round.
+// The response (26) of the thesis with friction and restitution: the part of `u` into the wall is reversed times `bounce`,
+// the tangential part is reduced by Coulomb friction of that impulse and is never reversed.
 FN vec3 respond(vec3 u, vec3 n, float friction, float bounce) {
     float into = -dot(u, n);
     if (!(into > 0.0f)) return u;

@@ -1,4 +1,4 @@
-// What walls add at particle i, from the buffer `boundary`; in a world without walls (OPEN) there is nothing to add, and nothing is read.
+// The walls' contribution at particle i, from the buffer `boundary`; in a world without walls (OPEN) it is 0 and nothing is read.
 #undef WALL_SHARE
 #undef WALL_SLOPE
 #if defined(OPEN)

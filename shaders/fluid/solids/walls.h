@@ -1,6 +1,6 @@
-// The box and the planes: a particle's centre stays `contact` away from them; the velocity into a wall answers to it (respond.h).
-// In a world without walls (OPEN) there is nothing to answer to. Include after BUFFERS and fluid/solids/respond.h; the buffer is `planes`,
-// two vec4 a plane: unit normal, w m; friction, restitution.
+// The box and the planes: a particle's centre keeps the distance `contact` from them; the velocity into a wall gets the response of respond.h.
+// In a world without walls (OPEN) there is no response. Include after BUFFERS and fluid/solids/respond.h; the buffer is `planes`,
+// two vec4 per plane: unit normal, w m; friction, restitution.
 STRUCT(Walled) {
     vec3 position;  // m
     vec3 velocity;  // m/s
@@ -16,7 +16,7 @@ FN Walled withinWalls_(GLOBAL(vec4, planes) StepParams p, vec3 x, vec3 v) {
     vec3 hi = p.boxMax.xyz - vec3(p.contact, p.contact, p.contact);
     float e = p.restitution;
     float mu = p.friction;
-    // A comparison with NaN is false: a NaN passes through to be counted by the next grid build, never turned into a wall's coordinate.
+    // A comparison with NaN is false: NaN is kept, so that the next grid build counts it, and is not replaced by a wall's coordinate.
     if (x.x < lo.x) {
         x.x = lo.x;
         v = respond(v, vec3(1.0f, 0.0f, 0.0f), mu, e);

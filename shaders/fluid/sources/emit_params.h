@@ -1,4 +1,4 @@
-// What emitters and sinks tell their kernels. Layout shared by C++, GLSL (std140, std430) and OpenCL: scalars and vec4 only, size % 16 ==
+// The parameters of emission and sinks. Layout shared by C++, GLSL (std140, std430) and OpenCL: scalars and vec4 only, size % 16 ==
 // 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
@@ -8,17 +8,17 @@ namespace rivulet {
 #endif
 STRUCT(EmitParams) {
     StepParams step;
-    uint candidates;  // of emission
+    uint candidates;  // number of candidates
     uint sinks;
-    uint sinkCounters;  // where in the counters those of sinks begin
-    float nearest;      // m, a candidate keeps this far from every particle
-    float weight;       // a particle's share of the density ratio at distance 0
-    float crowded;      // the density ratio from which on a place is full
+    uint sinkCounters;  // index of the sinks' first counter
+    float nearest;      // m, minimum distance of a candidate to all particles
+    float weight;       // contribution of a particle to the density ratio at distance 0
+    float crowded;      // maximum density ratio at a candidate and its neighbours
     float unused1;
     float unused2;
 };
 STRUCT(Candidate) {
-    vec4 position;    // xyz m; w which emitter
+    vec4 position;    // xyz m; w index of the emitter
     vec4 velocity;    // xyz m/s
     vec4 matter;      // as Particles::matterOf
     vec4 absorption;  // as ParticleView::absorption

@@ -1,4 +1,4 @@
-// What passes between a world and others who hold water. Layout shared by C++, GLSL (std140, std430) and OpenCL: size % 16 == 0.
+// Transfer of particles between a world and flow on skins or hosts. Layout shared by C++, GLSL (std140, std430) and OpenCL: size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/fluid/world/step_params.h"
@@ -7,12 +7,12 @@ namespace rivulet {
 #endif
 STRUCT(ExchangeParams) {
     StepParams step;
-    vec4 low;  // xyz m: the box that is asked about
+    vec4 low;  // xyz m: low corner of the box
     vec4 high;
-    uint count;    // of slots taken
-    uint most;     // how many particles fit into the answer
-    float faster;  // m/s: only what is, or
-    float looser;  // has less than this density ratio
+    uint count;    // number of slots to free
+    uint most;     // capacity of the result, particles
+    float faster;  // m/s: selects particles that are faster, or
+    float looser;  // that have a smaller density ratio
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(ExchangeParams) % 16 == 0);

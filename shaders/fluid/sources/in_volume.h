@@ -1,4 +1,4 @@
-// Whether a place is in a box or a sphere. After emit_params.h.
+// Whether a point is inside a box or a sphere. After emit_params.h.
 #if !defined(RIVULET_IN_VOLUME_H)
 #define RIVULET_IN_VOLUME_H
 FN bool inVolume(vec3 x, SinkVolume v) {

@@ -1,10 +1,10 @@
-// What makes an ellipsoid of a particle and its neighbours (Yu & Turk 2013). The constants are shared by kernels and C++: what is drawn in
-// real time and the reference that it is measured against have the same ellipsoids.
+// The ellipsoid of a particle from its neighbours (Yu and Turk 2013). Kernels and C++ share the constants, so that
+// real-time rendering and the reference that it is compared with use the same ellipsoids.
 //   w_ij = 1 - (r / R)^3 of neighbours nearer than R, the particle itself included; mean_i = sum w x / sum w.
 //   Axes: the eigenvectors of sum w (x - mean)(x - mean)^T / sum w. Half axes, relative to those of a round particle: the square roots of
 //   the eigenvalues over ANISOTROPY_FULL R^2, none shorter than the longest over ANISOTROPY_RATIO. share_i = sum w / (ANISOTROPY_CROWD (R /
-//   spacing)^3): 1 amid the water, 0.5 on a level surface. From MANY down to FEW the half axes go over to ANISOTROPY_ALONE evenly: where
-//   the paper counts neighbours and switches, drops would pop.
+// spacing)^3): 1 inside the water, 0.5 on a flat surface. From MANY down to FEW the half axes are blended to ANISOTROPY_ALONE: the paper
+// counts neighbours and switches at a threshold, which makes drops change size abruptly.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"

@@ -1,4 +1,4 @@
-// What foam's kernels know. Layout shared by C++, GLSL (std140, std430) and OpenCL: scalars and vec4 only, size % 16 == 0.
+// The parameters of the foam kernels. Layout shared by C++, GLSL (std140, std430) and OpenCL: scalars and vec4 only, size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/fluid/world/step_params.h"
@@ -7,17 +7,17 @@ namespace rivulet {
 #endif
 STRUCT(FoamStep) {
     StepParams step;
-    vec4 wind;          // m/s; w 1/m: how soon it carries spray along, 1/s, over the spray's speed in it
-    uint slots;         // of foam
-    uint seed;          // of this frame
-    float seconds;      // of this frame
-    float births;       // share of what would be born that there is room for
-    float life;         // s, the longest that foam lies on water
-    float buoyancy;     // of a bubble, over gravity
-    float drag;         // 1/s, how soon a bubble goes with the water
-    float fullness;     // a particle's share of the density ratio at distance 0
-    float sprayBelow;   // density ratio up to which it flies
-    float bubbleAbove;  // and from which on it is under water
+    vec4 wind;          // xyz m/s; w 1/m: drag rate of spray (1/s) over its speed relative to the wind
+    uint slots;         // number of foam slots
+    uint seed;          // random seed of this frame
+    float seconds;      // s, duration of this frame
+    float births;       // share of the wanted foam particles that there is room for
+    float life;         // s, maximum lifetime of foam
+    float buoyancy;     // upward acceleration of a bubble over gravity
+    float drag;         // 1/s, drag rate of a bubble towards the velocity of the water
+    float fullness;     // contribution of a particle to the density ratio at distance 0
+    float sprayBelow;   // density ratio below which it is spray
+    float bubbleAbove;  // density ratio above which it is a bubble
     float unused1;
     float unused2;
 };

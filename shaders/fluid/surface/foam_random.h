@@ -1,7 +1,7 @@
-// Chance for foam: by a particle's id and the frame, neither by slot nor by thread. Include after BUFFERS; births.
+// Random numbers for foam: they depend on a particle's id and the frame only, not on slots or threads. Include after BUFFERS.
 #if !defined(RIVULET_FOAM_RANDOM_H)
 #define RIVULET_FOAM_RANDOM_H
-// Numbers in [0, 1), spread evenly (the finaliser of MurmurHash3, Appleby 2011).
+// Uniform random numbers in [0, 1) (the finaliser of MurmurHash3, Appleby 2011).
 FN float random01(uint a, uint b, uint c) {
     uint x = a * 0x9E3779B9u + b * 0x85EBCA6Bu + c * 0xC2B2AE35u + 1u;
     x = x ^ (x >> 16u);
@@ -11,7 +11,7 @@ FN float random01(uint a, uint b, uint c) {
     x = x ^ (x >> 16u);
     return TO_FLOAT(x >> 8u) * (1.0f / 16777216.0f);
 }
-// How many particle `who` makes in the frame, at `births` a second.
+// The number of foam particles that particle `who` spawns in the frame, at `births` per second.
 FN uint bornOf(float births, uint who, float seconds, float share, uint seed) {
     return TO_UINT(min(births * seconds * share, 64.0f) + random01(who, seed, 0u));
 }

@@ -1,4 +1,4 @@
-// Between two states. Layout shared by C++, GLSL (std140) and OpenCL: scalars and vec4 only, size % 16 == 0.
+// Interpolation between two states. Layout shared by C++, GLSL (std140) and OpenCL: scalars and vec4 only, size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
@@ -6,7 +6,7 @@ namespace rivulet {
 #endif
 STRUCT(BlendParams) {
     float share;   // 0: the earlier state, 1: the newest
-    float reach2;  // m^2: what has come further between the two has not gone that way
+    float reach2;  // m^2: a particle with a larger squared displacement is not interpolated
     uint count;
     uint padding0;
 };

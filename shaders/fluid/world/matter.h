@@ -1,5 +1,5 @@
-// What neighbours are where particles differ (MATTER): of several liquids (number density: Solenthaler and Pajarola 2008), or samples on
-// bodies (Akinci et al. 2012), which have a volume of their own and, in their entry of any pressure, 0. Without MATTER every particle is
+// Neighbours in worlds with different particles (MATTER): several liquids (number density: Solenthaler and Pajarola 2008), or body samples
+// (Akinci et al. 2012), which have their own volume, and pressure 0 in their entry. Without MATTER every particle is
 // one of the reference liquid, and all of this is nothing. Include before ARGS; MATTER_ARG is its last row. Particle and neighbour are i
 // and j; MATTER_OTHER begins the loop.
 #undef MATTER_ARG
@@ -17,18 +17,18 @@
 #define MATTER_ARG(b, RO) RO(b, Matter, vec4, matter)
 #define MATTER_OTHER vec4 other_ = matter[j];
 #define VOLUME(term) ((term)*other_.x)
-// How often a pair counts a particle's own pressure: at a sample for the sample, too.
+// The factor of a particle's own pressure in a pair: at a sample it counts for the sample too.
 #define MIRRORED(own) ((own) * (other_.w < 0.0f ? 2.0f : 1.0f))
-// What more there is at a sample, where the pressure goes on as gravity has it (Adami et al. 2012): `rise` from the sample to the particle,
-// at most as much as there is. push_samples does the same.
+// The additional pressure at a sample, extrapolated hydrostatically (Adami et al. 2012): `rise` from the sample to the particle,
+// limited by the pressure itself. push_samples does the same.
 #define FOLLOWED(rise, own) SELECT(other_.w < 0.0f, max(min(-(rise), max0(own)), -max0(own)), 0.0f)
-// Nothing at a sample.
+// 0 at a sample.
 #define FLUID_ONLY(term) ((term) * (other_.w < 0.0f ? 0.0f : 1.0f))
-// Times how readily the other one moves.
+// Multiplied by the reference rest density over that of the neighbour; 0 for samples.
 #define INERT(term) ((term)*other_.y)
-// What a force over the mass of a particle of the reference liquid is multiplied with to be this one's acceleration.
+// Factor from a force over the mass of a particle of the reference liquid to the acceleration of this particle.
 #define LIGHTNESS LOADY(matter, i)
-// Of a pair: the harmonic mean of dynamic viscosities; at a sample the fluid's own, where it sticks.
+// The viscosity of a pair: the harmonic mean of dynamic viscosities; at a no-slip sample the viscosity of the fluid.
 #define PAIR_VISCOSITY(own) ((own)*other_.z * (other_.w < 0.0f ? 1.0f : 2.0f) / SELECT(other_.w < 0.0f, 1.0f, (own) + other_.z + 1.0e-30f))
 #else
 #define MATTER_ARG(b, RO)

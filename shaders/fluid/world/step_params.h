@@ -1,4 +1,4 @@
-// What every kernel of a step knows. Layout shared by C++, GLSL (std140) and OpenCL: scalars and vec4 only, size % 16 == 0.
+// The parameter block of all kernels of a step. Layout shared by C++, GLSL (std140) and OpenCL: scalars and vec4 only, size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
@@ -7,18 +7,18 @@ namespace rivulet {
 STRUCT(StepParams) {
     vec4 gravity;     // m/s^2, w unused
     vec4 gridOrigin;  // m, the low corner of the padded grid's cell (0,0,0)
-    vec4 gridScale;   // 1/m, cells a metre along x, y, z: an edge is h, or a little more on a periodic axis
+    vec4 gridScale;   // 1/m, cells per metre along x, y, z: the cell edge is h, or slightly more on a periodic axis
     vec4 period;      // m; 0 = the axis is not periodic
     vec4 invPeriod;   // 1/m; 0 = the axis is not periodic
     vec4 boxMin;      // m, the walls; w = 1 if there are walls, else 0
     vec4 boxMax;      // m
-    vec4 force;       // what a row of forces() wants to know: its kernels say
+    vec4 force;       // parameters of a row of forces(); its kernels document them
     int cellsX;       // padded: one empty cell on every side
     int cellsY;
     int cellsZ;
     uint cellCount;     // of fluid: cellsX * cellsY * cellsZ (cpu: twice that); cellStart[cellCount] = fluid particles inside the grid
-    uint totalCells;    // with those of body samples: cellCount, or twice it. Behind them in cellStart: see grid.h
-    uint count;         // slots of particles, body samples with them
+    uint totalCells;    // including those of body samples: cellCount, or twice it. For the entries of cellStart after them see grid.h
+    uint count;         // slots of particles and body samples
     uint firstSample;   // ids from here on are samples on the surface of bodies
     float h;            // m, support radius = cell edge
     float invH;         // 1/m
@@ -30,21 +30,21 @@ STRUCT(StepParams) {
     float stiffness;    // Tait: c0^2 rho0 / 7 (Pa). Thesis (4): k (m^2/s^2). DFSPH: c^2 (m^2/s^2)
     float viscosity;    // m^2/s, kinematic
     float artificial;   // alpha c0 hs, m^2/s: Monaghan's artificial viscosity (approaching pairs only)
-    float contact;      // m, a particle's centre keeps this far from walls
+    float contact;      // m, minimum distance of a particle's centre from walls
     float restitution;  // 0..1, of the box walls
     float spacing;      // m
-    float maxSpeed;     // m/s, above which the step would tunnel: speeds are limited to it and counted
+    float maxSpeed;     // m/s, above which a particle could pass a wall in one step: higher speeds are limited and counted
     uint planeCount;    // of the array of collider planes
-    float wallOffset;   // m, added to a wall's distance in the density: a lattice half a spacing off a wall is then at rest density
-    float friction;     // Coulomb's, of the box
-    float relaxation;   // of an iteration of the pressure solvers
-    float warmStart;    // share of the last step's pressures that the next begins with
+    float wallOffset;   // m, added to a wall's distance in the density, so that a lattice half a spacing from a wall has rest density
+    float friction;     // Coulomb friction of the box walls
+    float relaxation;   // relaxation factor of the pressure solvers
+    float warmStart;    // share of the last step's pressures that the next step starts with
     uint iteration;     // of a solver, from 0; dfsph: 1 of all but the first
-    float correction;   // of a density that is off: the share that a step puts right
-    float wallShare;    // of a wall at the distance at which particles rest on it, less a hair: above it none moves nearer
+    float correction;   // share of a density error that a step corrects
+    float wallShare;    // wall share at the distance at which particles rest, slightly reduced: above it, particles do not move nearer
     float sampleScale;  // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)
     float padding2;
-    float momentum;  // share of the last iteration's change that is made again (heavy ball)
+    float momentum;  // share of the last iteration's change that is repeated (heavy ball)
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StepParams) % 16 == 0);

@@ -10,6 +10,57 @@ static rivulet_error why;
 enum { WIDTH = 96, HEIGHT = 72 };
 static unsigned char dry[4 * WIDTH * HEIGHT], wet[4 * WIDTH * HEIGHT];
 
+/* The y component of each velocity in the buffers of a block that has fallen for 0.1 s: -0.98 m/s. Normals have other values. */
+static void velocities_are_velocities(rivulet_context* context, const char* look) {
+    char json[400];
+    snprintf(json, sizeof json,
+             "{\"fluid\": {\"spacing\": 0.05, \"box\": {\"max\": [1, 1.5, 1]}, \"forces\": {\"normals\": \"thesis\"},"
+             " \"blocks\": [{\"min\": [0.3, 1, 0.3], \"max\": [0.7, 1.4, 0.7]}]}, \"look\": {%s}}",
+             look);
+    rivulet_world* world = NULL;
+    const rivulet_world_options o = {.size = sizeof o, .json = json};
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    for (int k = 0; k < 6; ++k) DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+    rivulet_buffers buffers = {.size = sizeof buffers};
+    DONE(rivulet_world_buffers(world, &buffers, &why));
+    float* velocity = malloc(16 * (size_t)buffers.count);
+    float* position = malloc(16 * (size_t)buffers.count);
+    glGetNamedBufferSubData(buffers.velocity, 0, 16 * (GLsizeiptr)buffers.count, velocity);
+    glGetNamedBufferSubData(buffers.position, 0, 16 * (GLsizeiptr)buffers.count, position);
+    double sum = 0;
+    int there = 0;
+    for (uint32_t k = 0; k < buffers.count; ++k) {
+        if (position[4 * k + 3] < 0) continue;
+        ++there;
+        sum += (double)velocity[4 * k + 1];
+    }
+    CHECK(there == 512 && fabs(sum / there + 0.981) < 0.02);
+    free(velocity);
+    free(position);
+    rivulet_world_destroy(world);
+}
+
+/* Points coloured by normals, of a world that was not told to find normals: as where it was told. */
+static void normals_are_found_where_they_are_drawn(rivulet_context* context, const rivulet_view* from, const rivulet_target* to) {
+    const char* scenes[2] = {
+        "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"max\": [1, 0.4, 1]}]},"
+        " \"look\": {\"renderer\": \"points\", \"colourBy\": \"normal\"}}",
+        "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"max\": [1, 0.4, 1]}], \"forces\": {\"normals\": \"thesis\"}},"
+        " \"look\": {\"renderer\": \"points\", \"colourBy\": \"normal\"}}"};
+    unsigned char* pictures[2] = {dry, wet};
+    for (int k = 0; k < 2; ++k) {
+        rivulet_world* world = NULL;
+        const rivulet_world_options o = {.size = sizeof o, .json = scenes[k]};
+        DONE(rivulet_world_create(context, &o, &world, &why));
+        DONE(rivulet_world_step(world, NULL, 1.0 / 60, &why));
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        DONE(rivulet_world_draw(world, from, to, &why));
+        glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, pictures[k]);
+        rivulet_world_destroy(world);
+    }
+    CHECK(memcmp(dry, wet, sizeof dry) == 0);
+}
+
 int main(void) {
     rivulet_context* context = NULL;
     rivulet_context_options options = {.size = sizeof options, .find = eglGetProcAddress};
@@ -92,6 +143,11 @@ int main(void) {
     free(drawn);
     CHECK(there == stats.particles && fabs(middle / there - stats.centre_of_mass[1]) < 1e-4);
     REFUSED(rivulet_world_buffers(world, NULL, &why), "buffers is NULL");
+
+    velocities_are_velocities(context, "\"colourBy\": \"speed\"");
+    velocities_are_velocities(context, "\"colourBy\": \"normal\"");
+    velocities_are_velocities(context, "\"colourBy\": \"surface\"");
+    normals_are_found_where_they_are_drawn(context, &from, &to);
 
     rivulet_view wrong = from;
     wrong.projection = NULL;

@@ -120,6 +120,12 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
             world.step(1 / 60, poses=[[0, height, 0, 0, 0, 0, 1]])
         low = world.particles().positions[:, 1].min()
         assert 0.6 < low < 0.65, low
+    plate = rivulet.Mesh([[-0.2, 0, -0.2], [1.2, 0, -0.2], [1.2, 0, 1.2], [-0.2, 0, 1.2]], [[0, 2, 1], [0, 3, 2]], moves=True, position=(0, 0.5, 0))
+    with context.world(DROP, walls=[plate]) as world:
+        for _ in range(90):
+            world.step(1 / 60)
+        low = world.particles().positions[:, 1].min()
+        assert 0.5 < low < 0.55, low
     refused(lambda: rivulet.Mesh([[0, 0, 0]], [[0, 0]]), "shape")
     refused(lambda: context.world(DROP, walls=[rivulet.Mesh([[0, 0, 0]], [[0, 0, 5]])]), "walls[0]")
 

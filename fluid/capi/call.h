@@ -1,0 +1,103 @@
+// What each call of rivulet.h has around it: nothing is thrown, one call at a time, OpenGL's state is kept.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+
+#include "engine/gpu/current_context.h"
+#include "engine/gpu/host_state.h"
+#include "fluid/capi/handles.h"
+
+namespace rivulet::capi {
+
+// What a call uses: host memory alone, the device, or the renderer.
+enum class Needs { memory, device, drawing };
+
+inline bool needsGl(const rivulet_context& context, Needs needs) {
+    return context.gl.present() && (needs == Needs::drawing || (needs == Needs::device && context.device->backend() == Backend::gl));
+}
+
+// Error (badInput): another call of the same context is running; OpenGL is needed, and the context's OpenGL context is not current.
+inline Status ready(const rivulet_context& context, Needs needs) {
+    if (context.busy)
+        return badInput("the context is in use: callbacks must not call back into it, and only one thread at a time may use it");
+    if (needsGl(context, needs) && context.current != nullptr && gpu::currentContext().context != context.current)
+        return badInput("the OpenGL context that this was created in is not current on this thread: make it current first");
+    return ok();
+}
+
+// One call: the context is busy and, if the call needs OpenGL, the host's OpenGL state is restored at the end.
+class CallScope {
+  public:
+    CallScope(rivulet_context& context, Needs needs) : context_(context) {
+        context_.busy = true;
+        if (needsGl(context, needs)) state_.emplace();
+    }
+    ~CallScope() { context_.busy = false; }
+    CallScope(const CallScope&) = delete;
+    CallScope& operator=(const CallScope&) = delete;
+
+  private:
+    rivulet_context& context_;
+    std::optional<gpu::HostState> state_;
+};
+
+inline rivulet_status statusOf(const Status& status, rivulet_error* why) {
+    if (why != nullptr) why->message[0] = '\0';
+    if (status) return RIVULET_OK;
+    if (why != nullptr) {
+        const std::string& text = status.error().message;
+        const size_t n = std::min(text.size(), sizeof why->message - 1);
+        std::memcpy(why->message, text.data(), n);
+        why->message[n] = '\0';
+    }
+    return status.error().fault == Fault::badInput ? RIVULET_BAD_INPUT : RIVULET_FAILED;
+}
+
+// Runs `work`, which returns a Status; an exception becomes one.
+template <class Work>
+rivulet_status guarded(rivulet_error* why, const Work& work) {
+    try {
+        return statusOf(work(), why);
+    } catch (const std::bad_alloc&) {
+        return statusOf(failed("out of memory"), why);
+    } catch (const std::exception& e) {
+        return statusOf(failed(e.what()), why);
+    } catch (...) {
+        return statusOf(failed("an unknown exception was thrown"), why);
+    }
+}
+
+inline const char* kindOf(const rivulet_world*) { return "world"; }
+inline const char* kindOf(const rivulet_skin*) { return "skin"; }
+
+// Runs `work` in the CallScope of a world or a skin. Error (badInput): NULL, or as ready().
+template <class Handle, class Work>
+rivulet_status with(Handle* handle, rivulet_error* why, Needs needs, const Work& work) {
+    return guarded(why, [&]() -> Status {
+        if (handle == nullptr) return badInput(fmt::format("{} is NULL", kindOf(handle)));
+        if (Status can = ready(*handle->context, needs); !can) return can;
+        const CallScope scope(*handle->context, needs);
+        return work();
+    });
+}
+
+// If it cannot be destroyed now, this is logged.
+template <class Handle>
+void destroy(Handle* handle) {
+    if (handle == nullptr) return;
+    rivulet_context& context = *handle->context;
+    if (Status can = ready(context, Needs::drawing); !can)
+        return context.log.error(fmt::format("a {} was not destroyed: {}", kindOf(handle), can.error().message));
+    const CallScope scope(context, Needs::drawing);
+    --context.children;
+    delete handle;
+}
+
+}  // namespace rivulet::capi

@@ -1,0 +1,66 @@
+#include "fluid/flow/placed_flow.h"
+
+#include <utility>
+
+namespace rivulet {
+
+PlacedFlow::PlacedFlow(SurfaceFlow& flow, Motion motion) : flow_(&flow), motion_(std::move(motion)), search_(flow.mesh()) { moveTo(0); }
+
+void PlacedFlow::moveTo(double time) {
+    time_ = time;
+    toWorld_ = motion_(time);
+}
+
+void PlacedFlow::restore(double time, const dmat4& toWorld) {
+    time_ = time;
+    toWorld_ = toWorld;
+    seen_ = UINT64_MAX;
+}
+
+void PlacedFlow::look() {
+    const FlowView view = flow_->view();
+    if (seen_ == view.moved) return;
+    seen_ = view.moved;
+    search_.follow(view.device->readAll<vec4>(*view.point, flow_->mesh().rest.size()));
+}
+
+std::optional<SkinSearch::Hit> PlacedFlow::meets(const dvec3& from, const dvec3& to, double then) {
+    look();
+    const dmat4 now = glm::inverse(toWorld_), later = then == time_ ? now : glm::inverse(motion_(then));
+    return search_.first(vec3(now * glm::dvec4(from, 1)), vec3(later * glm::dvec4(to, 1)));
+}
+
+void PlacedFlow::land(const SkinSearch::Hit& where, const AirDrop& drop) {
+    // The drop keeps its velocity along the skin, relative to the skin's rigid motion, limited to the speed of a drop that runs by itself.
+    constexpr double kMoment = 1.0e-4;  // s
+    const glm::dvec4 at(dvec3(where.position), 1);
+    const dvec3 carried = dvec3(motion_(time_ + kMoment) * at - motion_(time_) * at) / kMoment;
+    vec3 v = vec3(glm::transpose(glm::dmat3(toWorld_)) * (drop.velocity - carried));
+    v -= where.normal * glm::dot(v, where.normal);
+    constexpr float kMost = 0.2F;  // m/s
+    if (const float speed = glm::length(v); speed > kMost) v *= kMost / speed;
+    flow_->add(where.at, drop.picolitres, v);
+}
+
+Bounds PlacedFlow::bounds() const {
+    Bounds own, all;
+    for (const vec3& p : search_.places()) own.add(p);
+    if (own.empty()) return all;
+    const mat4 m(toWorld_);
+    for (int k = 0; k < 8; ++k) {
+        const vec3 corner((k & 1) != 0 ? own.max.x : own.min.x, (k & 2) != 0 ? own.max.y : own.min.y, (k & 4) != 0 ? own.max.z : own.min.z);
+        all.add(vec3(m * vec4(corner, 1.0F)));
+    }
+    return all;
+}
+
+FirstMet firstMet(std::span<PlacedFlow* const> skins, const dvec3& from, const dvec3& to, double then) {
+    FirstMet first{.skin = skins.size(), .where = {}};
+    for (size_t k = 0; k < skins.size(); ++k)
+        if (const std::optional<SkinSearch::Hit> hit = skins[k]->meets(from, to, then);
+            hit && (first.skin == skins.size() || hit->share < first.where.share))
+            first = {k, *hit};
+    return first;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,63 @@
+// PlacedFlow: a SurfaceFlow in a world: where its skin is, where a drop in the air meets it, and how the drop lands.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "fluid/flow/skin_search.h"
+#include "fluid/flow/surface_flow.h"
+
+namespace rivulet {
+
+// A drop in the air: a ball.
+struct AirDrop {
+    dvec3 position{0.0}, velocity{0.0};  // m, m/s, in the world
+    uint32_t picolitres = 0;
+    uint32_t skin = 0;  // the index of the skin whose liquid it is, and whose wind it meets
+};
+
+class PlacedFlow {
+  public:
+    // The skin's frame -> the world at a time (s): turned and moved, not scaled.
+    using Motion = std::function<dmat4(double time)>;
+    // The skin is where `motion` has it at t = 0. `flow` and what `motion` reads must outlive it.
+    PlacedFlow(SurfaceFlow& flow, Motion motion);
+
+    void moveTo(double time);  // s: the skin is where its motion has it then
+    // Where a saved one was, of a flow that was restored, too.
+    void restore(double time, const dmat4& toWorld);
+
+    // Where a path through the world first meets the skin. Nothing: nowhere. The skin has the shape that it has now; as a whole it is where
+    // it is now when the path begins, and where its motion has it at `then` (s) when it ends. Once for each shape it reads the skin's
+    // vertices back: on a GPU this waits.
+    std::optional<SkinSearch::Hit> meets(const dvec3& from, const dvec3& to, double then);
+    // A drop that comes to rest on the skin there.
+    void land(const SkinSearch::Hit& where, const AirDrop& drop);
+
+    SurfaceFlow& flow() { return *flow_; }
+    const SurfaceFlow& flow() const { return *flow_; }
+    const SkinSearch& search() const { return search_; }  // the skin as meets() last saw it, at first as it is at rest; in its own frame
+    const dmat4& toWorld() const { return toWorld_; }
+    double time() const { return time_; }  // s, at which it is there
+    Bounds bounds() const;                 // m, in the world, of search()
+
+  private:
+    void look();
+
+    SurfaceFlow* flow_;
+    Motion motion_;
+    SkinSearch search_;
+    dmat4 toWorld_{1.0};
+    double time_ = 0;
+    uint64_t seen_ = UINT64_MAX;  // FlowView::moved of the shape that search_ has; UINT64_MAX: not known
+};
+
+// The first of `skins` that a path meets. skin: its index there; skins.size(): none.
+struct FirstMet {
+    size_t skin = 0;
+    SkinSearch::Hit where;
+};
+FirstMet firstMet(std::span<PlacedFlow* const> skins, const dvec3& from, const dvec3& to, double then);
+
+}  // namespace rivulet

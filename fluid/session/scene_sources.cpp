@@ -1,0 +1,51 @@
+#include "fluid/session/scene_sources.h"
+
+#include "engine/scene/import_assimp.h"
+#include "engine/scene/transform.h"
+#include "fluid/scene/skin_flows.h"
+
+namespace rivulet {
+
+Status SceneSources::create(const SceneFile& scene) {
+    start_ = {.sinks = scene.sinks, .seconds = static_cast<double>(scene.duration), .least = scene.room};
+    start_.expectedDeposit = SkinFlows::expectedDeposit(scene, start_.seconds);
+    for (const EmitterParams& params : scene.emitters) {
+        Emitter emitter{params, {}};
+        if (params.shape == "mesh") {
+            Result<std::string> path = findAsset(params.mesh, scene.folder);
+            if (!path) return path.error();
+            Result<Mesh> mesh = importMesh(*path);
+            if (!mesh) return mesh.error();
+            const mat4 place = params.fitSize > 0 ? Transform::fitted(mesh->bounds(), params.fitSize, params.position, params.rotation)
+                                                  : Transform{params.position, params.rotation, 1.0F}.matrix();
+            const Mesh placed = transformed(*mesh, place);
+            for (const uint32_t i : placed.indices) emitter.triangles.push_back(placed.positions[i]);
+        }
+        start_.emitters.push_back(std::move(emitter));
+    }
+    if (scene.pour.litres > 0) {
+        start_.emitters.push_back({pouring(scene.pour, scene.fluid, std::nullopt), {}});
+        start_.more = 1.0e-3 * double{scene.pour.litres};
+    }
+    return ok();
+}
+
+Sources SceneSources::now(const SceneFile& scene) const {
+    Sources sources{.sinks = scene.sinks};
+    for (const EmitterParams& params : scene.emitters) sources.emitters.push_back({params, {}});
+    if (scene.pour.litres > 0) sources.emitters.push_back({pouring(scene.pour, scene.fluid, target_), {}});
+    return sources;
+}
+
+bool SceneSources::needsNew(const SceneFile& before, const SceneFile& scene) {
+    return scene.emitters.size() != before.emitters.size() || scene.sinks.size() != before.sinks.size() ||
+           (scene.pour.litres > 0) != (before.pour.litres > 0);
+}
+
+bool SceneSources::pourOnto(const SceneFile& scene, const std::optional<vec3>& place) {
+    if (scene.pour.litres <= 0 || place == target_) return false;
+    target_ = place;
+    return true;
+}
+
+}  // namespace rivulet

@@ -1,0 +1,43 @@
+#include "fluid/viewer/scene_picture.h"
+
+#include <optional>
+#include <utility>
+
+#include "fluid/session/cooperation.h"
+
+namespace rivulet {
+
+void ScenePicture::adopt(std::unique_ptr<SceneRenderer> renderer, Timeline& timeline) {
+    renderer_ = std::move(renderer);
+    renderer_->onSpan(timeline.lane(kDrawingLane));
+    renderer_->hurry(adaptiveQuality_.fast());
+}
+
+void ScenePicture::begin(bool software) {
+    adaptiveQuality_.begin(software);
+    renderer_->hurry(adaptiveQuality_.fast());
+}
+
+Status ScenePicture::draw(Session& session, int width, int height, Timeline& timeline, const std::function<void()>& uploaded) {
+    const SceneFile& scene = session.scene();
+    std::optional<TimedSpan> span(std::in_place, &timeline, "main", "upload");
+    Result<FluidView> fluid = viewOf(upload_, session);
+    if (!fluid) return fluid.error();
+    if (Status wet = session.flows().draw(); !wet) return wet;
+    Camera camera = cameraOf(scene.camera, session.bounds());
+    FrameView view = frameViewOf(camera, scene.light, width, height, session.time());
+    span.reset();
+    uploaded();
+    const TimedSpan drawing(&timeline, "main", "draw");
+    return renderer_->draw(view, *fluid, session.solids(), scene);
+}
+
+void ScenePicture::adaptQuality(const FluidLookParams& look) {
+    if (!look.split.empty() || look.quality != "auto") return;  // a half that is ray-marched says nothing of the other
+    double ms = 0;
+    for (const PassTime& pass : renderer_->times()) ms += pass.ms;
+    adaptiveQuality_.frame(ms);
+    renderer_->hurry(adaptiveQuality_.fast());
+}
+
+}  // namespace rivulet

@@ -1,0 +1,33 @@
+// ScenePicture: the picture of a session: its particles brought to OpenGL, drawn, in the quality that the frame rate allows.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "engine/core/timeline.h"
+#include "fluid/render/fluid_upload.h"
+#include "fluid/session/adaptive_quality.h"
+#include "fluid/session/scene_renderer.h"
+#include "fluid/session/session.h"
+
+namespace rivulet {
+
+class ScenePicture {
+  public:
+    // Goes on with this renderer, whose passes go into `timeline`.
+    void adopt(std::unique_ptr<SceneRenderer> renderer, Timeline& timeline);
+    void begin(bool software);  // quality auto is fast at first where software draws
+    SceneRenderer& renderer() const { return *renderer_; }
+    const TransferFacts& facts() const { return upload_.facts(); }
+    // `uploaded` is called when nothing more is read of the world. Error (failed): out of GPU memory; (badInput): as SceneRenderer::draw.
+    Status draw(Session& session, int width, int height, Timeline& timeline, const std::function<void()>& uploaded);
+    // Quality auto follows the times of the last pictures.
+    void adaptQuality(const FluidLookParams& look);
+
+  private:
+    std::unique_ptr<SceneRenderer> renderer_;
+    FluidUpload upload_;
+    AdaptiveQuality adaptiveQuality_;
+};
+
+}  // namespace rivulet

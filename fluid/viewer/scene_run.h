@@ -1,0 +1,80 @@
+// SceneRun: the session that is shown: stepped at the pace of the wall clock, while the picture is drawn where the plan says so, and
+// recorded where it is asked for.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fluid/render/fluid_upload.h"
+#include "fluid/session/cooperation.h"
+#include "fluid/session/run_stats.h"
+#include "fluid/session/scene_opening.h"
+#include "fluid/session/session.h"
+
+namespace rivulet {
+
+class SceneRun {
+  public:
+    // A plan, and the trials that --cooperate auto chose it by.
+    void begin(Plan plan, std::vector<CooperationStats::Tried> tried, const Log& log);
+    // Goes on with this session, on `device`; null: on the same device as before.
+    void adopt(std::unique_ptr<Session> session, std::unique_ptr<Device> device);
+    void drop() { work_.reset(); }  // what is under way, before the session is replaced
+    Session& session() const { return *session_; }
+    Device& device() const { return *device_; }
+    Timeline& timeline() { return timeline_; }
+    Plan plan() const { return work_->plan(); }
+
+    bool paused() const { return paused_; }
+    void pause(bool yes) { paused_ = yes; }
+    void stepOnce() { paused_ = stepOnce_ = true; }
+    uint64_t steps() const { return steps_; }
+    void stepAtMost(uint64_t steps) { mostSteps_ = steps; }
+
+    struct Stepped {
+        double ms = 0;                 // on the wall
+        double deviceMs = 0;           // of the passes below
+        std::vector<PassTime> passes;  // that ended since the last step
+        bool toCpu = false;            // the device failed: the cpu goes on
+        bool repicked = false;         // a budget has picked other values
+    };
+    using Result = rivulet::Result<std::optional<Stepped>>;  // nothing: there was no step
+    // `seconds`: on the wall, since the last frame. `drawn`: the times of the last picture, for the record. Error: the cpu failed too; what
+    // onStepped() returned.
+    Result step(double seconds, const std::vector<PassTime>& drawn);
+    // Ends a step that another thread has made meanwhile. With `drop` a plan that only prepares one gives it up.
+    Result finish(double seconds, const std::vector<PassTime>& drawn, bool drop);
+    void stepOn();  // the picture reads no more of the session: another thread may step on
+
+    void onStepped(std::function<Status(const Session&)> call) { onStepped_ = std::move(call); }
+    bool endOnStepped() { return std::exchange(onStepped_, {}) != nullptr; }  // whether there was one
+    void record();
+    bool recording() const { return recorder_.has_value(); }
+    void transferred(const TransferFacts& facts);
+    RunStats finishRecord();
+    // All times have arrived that the device owes.
+    const Timeline& wholeTimeline();
+
+  private:
+    Result stepped(double ms, double seconds, const std::vector<PassTime>& drawn);
+
+    Log log_;
+    Timeline timeline_{size_t{1} << 16};
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<Session> session_;
+    Plan plan_ = Plan::alone;
+    std::vector<CooperationStats::Tried> tried_;
+    std::unique_ptr<Cooperation> work_;
+    double waiting_ = 0;   // s on the wall that the water has not been stepped for
+    double due_ = 0;       // s simulated, that are to be stepped while this frame is drawn
+    double deviceMs_ = 0;  // of the last step's passes
+    int repicked_ = 0;     // by the session's budget
+    bool paused_ = false, stepOnce_ = false;
+    uint64_t steps_ = 0, mostSteps_ = UINT64_MAX;
+    std::function<Status(const Session&)> onStepped_;
+    std::optional<RunRecorder> recorder_;
+};
+
+}  // namespace rivulet

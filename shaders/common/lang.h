@@ -30,8 +30,7 @@ typedef float3 real3;
 #define TO_FLOAT(x) ((float)(x))
 #define TO_DOUBLE(x) ((double)(x))
 #define CONSTANT(T, n, v) __constant T n = v
-#define EXACT /* before a declaration: its value is computed as written, without contraction; in OpenCL a pragma does this, see \
-                 voxel/crossing.h */
+#define EXACT /* before a declaration: its value is computed as written, without contraction; in OpenCL a pragma does this, see voxel/crossing.h */
 #define FLOAT_BITS(f) as_uint(f)
 #define BITS_FLOAT(u) as_float(u)
 #define ATOMIC_ADD(x, v) atomic_add(&(x), v)
@@ -95,8 +94,7 @@ typedef float3 real3;
 #define SHARED_IN(T, n, count)
 #define KERNEL(name, P) void main()
 #define PARAMS params_
-#define THREAD_ID \
-    (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE) /* a dispatch has at most 65535 groups: device gl splits larger ones */
+#define THREAD_ID (gl_GlobalInvocationID.x + groupBase_ * LOCAL_SIZE) /* a dispatch has at most 65535 groups: device gl splits larger ones */
 #define LOCAL_ID gl_LocalInvocationID.x
 #define GROUP_ID (gl_WorkGroupID.x + groupBase_)
 #define BARRIER                \

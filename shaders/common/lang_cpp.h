@@ -81,8 +81,7 @@ struct ivec3 {
     INLINE vec3 operator op(const vec3& a, float b) { return vec3(a.x op b, a.y op b, a.z op b); }             \
     INLINE vec3 operator op(float a, const vec3& b) { return vec3(a op b.x, a op b.y, a op b.z); }
 RIVULET_VEC_OP(+)
-RIVULET_VEC_OP(-)
-RIVULET_VEC_OP(*) RIVULET_VEC_OP(/)
+RIVULET_VEC_OP(-) RIVULET_VEC_OP(*) RIVULET_VEC_OP(/)
 #undef RIVULET_VEC_OP
     INLINE vec3
     operator-(const vec3& a) {

@@ -1,5 +1,5 @@
-// The parameter block of the kernels of flow on a skin, and the layout of a drop. Shared by C++, GLSL and OpenCL. Lengths in m, in the
-// skin's frame.
+// The parameter block of the kernels of flow on a skin, and the layout of a drop. Shared by C++, GLSL and OpenCL. Lengths in m, in the skin's
+// frame.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
 #include "shaders/common/lang.h"
@@ -8,15 +8,14 @@ namespace rivulet {
 CONSTANT(float, PICOLITRE, 1.0e-15f);  // m^3
 // A drop, by id: five uints. Its volume is a whole number, so that none is lost to rounding; 0 is a free slot.
 CONSTANT(uint, DROP_TRIANGLE, 0u);  // its number, and flags
-CONSTANT(uint, DROP_B1, 1u);        // float bits: barycentric coordinates of corners 1 and 2
+CONSTANT(uint, DROP_B1, 1u);  // float bits: barycentric coordinates of corners 1 and 2
 CONSTANT(uint, DROP_B2, 2u);
 CONSTANT(uint, DROP_VOLUME, 3u);  // picolitres
-CONSTANT(uint, DROP_SHARE, 4u);   // float bits, 0 a drop, 1 part of a film
+CONSTANT(uint, DROP_SHARE, 4u);  // float bits, 0 a drop, 1 part of a film
 CONSTANT(uint, DROP_UINTS, 5u);
 CONSTANT(uint, DROP_LEFT, 0x80000000u);  // has let go, or run over an edge: the triangle is the last one
 CONSTANT(uint, DROP_FILM, 0x40000000u);  // part of a film: runs into nobody
-CONSTANT(uint, DROP_BRIM,
-         0x20000000u);  // part of a brim: stays where it is. In a birth: the number is a brim's place, which the volume is added to
+CONSTANT(uint, DROP_BRIM, 0x20000000u);  // part of a brim: stays where it is. In a birth: the number is a brim's place, which the volume is added to
 CONSTANT(uint, DROP_NEW, 0x10000000u);  // born in this step: its velocity is as it was given
 CONSTANT(uint, DROP_NUMBER, 0x0FFFFFFFu);
 CONSTANT(uint, SKIN_OPEN, 0xFFFFFFFFu);
@@ -83,7 +82,7 @@ STRUCT(FlowLeft) {
     uint spare0;
     uint spare1;
 };
-CONSTANT(uint, MOST_LEFT, 256u);    // in a step; the others wait for the next
+CONSTANT(uint, MOST_LEFT, 256u);  // in a step; the others wait for the next
 CONSTANT(uint, FLOW_COUNTERS, 8u);  // see born, merge, leave, dry
 // Not of the language: a positive number's cube root, to rounding (Newton, from a guess by its bits).
 #if !defined(__cplusplus) || defined(RIVULET_KERNEL_UNIT)

@@ -13,11 +13,11 @@ namespace rivulet {
 #define TEXEL_TURN_V 29u
 #define TEXEL_FOLD 0x80000000u
 #define TILE_TEXELS 64u
-// A tile: its position in tiles, x | y << 16; its first piece and the one past its last; and the offset of its texels. A piece is a
-// connected part of the skin. Texels are 64 uints of four bytes: the index of the word that the texel shows, and the three cells of the
-// film around it. They are followed by the number of words and of blocks (from bit PACKED_BLOCKS), of one cell each or, with PACKED_FOURS,
-// of four; then the words; then the first cell of each block, as in flow/map_thick. A byte is an index into the cells of the blocks. A
-// texel without skin has the first byte PACKED_NONE.
+// A tile: its position in tiles, x | y << 16; its first piece and the one past its last; and the offset of its texels. A piece is a connected
+// part of the skin. Texels are 64 uints of four bytes: the index of the word that the texel shows, and the three cells of the film
+// around it. They are followed by the number of words and of blocks (from bit PACKED_BLOCKS), of one cell each or, with
+// PACKED_FOURS, of four; then the words; then the first cell of each block, as in flow/map_thick. A byte is an index into the cells of the
+// blocks. A texel without skin has the first byte PACKED_NONE.
 #define TILE_UINTS 4u
 #define PACKED_NONE 255u
 #define PACKED_BLOCKS 8u

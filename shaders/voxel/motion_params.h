@@ -3,8 +3,8 @@
 // without scale.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/common/lang.h"
 #include "shaders/voxel/field_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(MotionParams) {

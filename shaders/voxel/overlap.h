@@ -7,8 +7,8 @@
 // Include after BUFFERS; the buffers are `numbers` and `bounds`.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/common/lang.h"
 #include "shaders/voxel/overlap_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 // Voxels first <= x <= last of a row.

@@ -1,8 +1,8 @@
 // Queries of a host about the water. Layout shared by C++, GLSL (std140, std430) and OpenCL: size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/common/lang.h"
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 // Flags of a ray: it enters the grid from outside; it leaves the grid.

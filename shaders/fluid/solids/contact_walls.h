@@ -15,8 +15,7 @@ STRUCT(Walls) {
     bool corner;
 };
 
-// Response to all walls, with restitution where `bounces` is 1; velocity that one response adds into another wall is removed in the next
-// round.
+// Response to all walls, with restitution where `bounces` is 1; velocity that one response adds into another wall is removed in the next round.
 FN vec3 respondToAll(vec3 u, Walls w, float bounces) {
     vec3 v = respond(u, w.normalA, w.surfaceA.x, w.surfaceA.y * bounces);
     v = respond(v, w.normalB, w.surfaceB.x, w.surfaceB.y * bounces);

@@ -1,8 +1,8 @@
 // Transfer of particles between a world and flow on skins or hosts. Layout shared by C++, GLSL (std140, std430) and OpenCL: size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/common/lang.h"
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(ExchangeParams) {

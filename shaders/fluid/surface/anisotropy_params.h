@@ -10,15 +10,14 @@
 #include "shaders/common/lang.h"
 namespace rivulet {
 #endif
-CONSTANT(float, ANISOTROPY_SUPPORT,
-         2.0f);  // spacings: R on a GPU, where the neighbours at hand reach no further; the reference's is ANISOTROPY_SUPPORT_HOST
+CONSTANT(float, ANISOTROPY_SUPPORT, 2.0f);  // spacings: R on a GPU, where the neighbours at hand reach no further; the reference's is ANISOTROPY_SUPPORT_HOST
 CONSTANT(float, ANISOTROPY_SUPPORT_HOST, 3.0f);
 CONSTANT(float, ANISOTROPY_SMOOTHING, 0.9f);  // lambda: share of the way to the mean of its neighbours that a centre goes
-CONSTANT(float, ANISOTROPY_FULL, 0.15f);      // variance along each axis amid the water, R^2: 1 / ks
+CONSTANT(float, ANISOTROPY_FULL, 0.15f);  // variance along each axis amid the water, R^2: 1 / ks
 CONSTANT(float, ANISOTROPY_CROWD, 2.0943951f);
 CONSTANT(float, ANISOTROPY_RATIO, 4.0f);  // kr
 CONSTANT(float, ANISOTROPY_ALONE, 0.5f);  // kn: half axes of a particle by itself
-CONSTANT(float, ANISOTROPY_FEW, 0.1f);    // shares
+CONSTANT(float, ANISOTROPY_FEW, 0.1f);  // shares
 CONSTANT(float, ANISOTROPY_MANY, 0.25f);
 CONSTANT(float, ANISOTROPY_KERNEL, 2.75f);  // spacings: support of a round particle's kernel, Wendland C2
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)

@@ -1,8 +1,8 @@
 // The parameters of the foam kernels. Layout shared by C++, GLSL (std140, std430) and OpenCL: scalars and vec4 only, size % 16 == 0.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/common/lang.h"
 #include "shaders/fluid/world/step_params.h"
+#include "shaders/common/lang.h"
 namespace rivulet {
 #endif
 STRUCT(FoamStep) {

@@ -152,7 +152,8 @@ for page in linked:
         is_path = re.fullmatch(rf"({'|'.join(TOPS)})/[\w./*-]+", code) and re.search(r"/$|\*|\.\w+$", code)
         if is_path and not re.search("[A-Z]{4}", code) and not any(root.glob(code.rstrip("/"))):
             wrong.append(f"{name}: there is no file {code}")
-        elif re.fullmatch(r"[\w*]+\.(h|cpp|kernel|cmake|glsl|frag|vert)", code) and not fnmatch.filter(files, code):
+        elif (re.fullmatch(r"[\w*]+\.(h|cpp|kernel|cmake|glsl|frag|vert)", code) and not re.search("[A-Z]{4}", code)
+              and not fnmatch.filter(files, code)):
             wrong.append(f"{name}: there is no file called {code}")
 
 for page in pages:

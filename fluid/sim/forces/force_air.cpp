@@ -39,7 +39,7 @@ void Params::visit(ParamVisitor& v) {
 
 ForceRow row() {
     return {.name = "air",
-            .doc = "drag of the air and push of the wind on what is open to them (Gissler et al. 2017, simplified)",
+            .doc = "air drag and wind on particles that are exposed to air (Gissler et al. 2017, simplified)",
             .order = 50,
             .remedy = "set fluid.forces.airDrag to 0",
             .on = on,

@@ -40,7 +40,7 @@ void Params::visit(ParamVisitor& v) {
 
 ForceRow row() {
     return {.name = "normals",
-            .doc = "normals of the surface, to look at",
+            .doc = "surface normals, for display",
             .order = 10,
             .remedy = "set fluid.forces.normals to none",
             .on = on,

@@ -213,9 +213,9 @@ void Params::visit(ParamVisitor& v) {
 
 ForceRow row() {
     return {.name = "viscosity",
-            .doc = "friction inside the fluid, explicit or implicit, and at walls that do not slip",
+            .doc = "viscosity of the fluid, explicit or implicit, and at no-slip walls",
             .order = 100,  // last: the implicit solver needs the sum of all other forces
-            .remedy = "set fluid.forces.viscosity to none and let fluid.collision.walls slip",
+            .remedy = "set fluid.forces.viscosity to none and fluid.collision.walls to slip",
             .on = on,
             .make = make,
             .limit = limit};

@@ -165,7 +165,7 @@ void DfsphParams::visit(ParamVisitor& v) {
 
 MethodRow dfsphMethod() {
     return {.name = "dfsph",
-            .doc = "divergence-free SPH: pressures solved for to a tolerance, density kept in the same solve; the accurate one",
+            .doc = "divergence-free SPH: one pressure solve to a tolerance corrects divergence and density; the accurate method",
             .make = makeDfsph,
             .leastSubsteps = [](const FluidParams& p) { return p.dfsph.minSubsteps; },
             .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "dfsph", .doc = "settings of method dfsph"}, p.dfsph); }};

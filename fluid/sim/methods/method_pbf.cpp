@@ -176,7 +176,7 @@ void PbfParams::visit(ParamVisitor& v) {
 
 MethodRow pbfMethod() {
     return {.name = "pbf",
-            .doc = "position based fluids: a few corrections of positions a step; the fast one",
+            .doc = "position based fluids: a few position corrections per substep; the fast method",
             .make = makePbf,
             .leastSubsteps = [](const FluidParams& p) { return p.pbf.minSubsteps; },
             .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "pbf", .doc = "settings of method pbf"}, p.pbf); }};

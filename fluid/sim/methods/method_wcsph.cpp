@@ -121,7 +121,7 @@ MethodRow wcsphMethod() {
 
 MethodRow wcsphThesisMethod() {
     return {.name = "wcsph_thesis",
-            .doc = "the thesis's SPH: poly6 and spiky kernels, linear equation of state, a box that turns velocities round",
+            .doc = "the thesis's SPH: poly6 and spiky kernels, linear equation of state, box walls that reverse the velocity",
             .make = [](Device& device, const MethodSetup& setup) { return make(device, setup, true); },
             .doesViscosity = true,
             .hasSound = true,

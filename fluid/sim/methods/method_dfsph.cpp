@@ -105,7 +105,7 @@ class Dfsph final : public Method {
 
 Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& setup) {
     if (setup.params.kernel != "wendland")
-        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method dfsph works with wendland");
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is only for method wcsph: use wendland with method dfsph");
     auto m = std::make_unique<Dfsph>();
     const double support = setup.params.supportSpacings;
     m->coupling = static_cast<float>(std::max(wendlandCoupling(support) / wendlandCoupling(2), 1.0));

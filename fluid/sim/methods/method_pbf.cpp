@@ -31,7 +31,7 @@ class Pbf final : public Method {
         const double beyond = std::max(r - 0.7, 0.0) / k, h = double{p.supportSpacings} * double{p.spacing};
         const double holds = kShare / (1 + 20 * beyond * beyond) * h * std::sqrt(k * r / kDiagonal) / std::max(double{fastest}, 1.0e-9);
         const double asked = 1.0 / (60 * p.pbf.minSubsteps);
-        if (holds < asked) return {p.pbf.reach, holds, "the weight that its iterations can bear (fluid.pbf.iterations)"};
+        if (holds < asked) return {p.pbf.reach, holds, "the weight that fluid.pbf.iterations can support"};
         return {p.pbf.reach, asked};
     }
 
@@ -129,7 +129,7 @@ class Pbf final : public Method {
 
 Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
     if (setup.params.kernel != "wendland")
-        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method pbf works with wendland");
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is only for method wcsph: use wendland with method pbf");
     auto m = std::make_unique<Pbf>();
     const std::vector<Define> walls = setup.traits.wallDefines();
     for (auto [kernel, path, defines] :

@@ -89,7 +89,8 @@ std::string contradiction(const EmitterParams& p) {
     const double most = 1.0e3 * openingArea(p) * nozzleSpeed(p);
     if (p.shape == "nozzle" && p.speed > 0 && double{p.litresPerSecond} > 1.05 * most)
         return fmt::format(
-            "litresPerSecond is {}, but at a speed of {} m/s an opening of radius {} m lets out {:.3g} l/s: widen it, or make it faster",
+            "litresPerSecond is {}, but at a speed of {} m/s an opening of radius {} m lets out {:.3g} l/s: use a larger radius or a "
+            "higher speed",
             p.litresPerSecond, p.speed, p.radius, most);
     if (p.stop > 0 && p.stop < p.start) return fmt::format("stop is {} s, before start, {} s", p.stop, p.start);
     return "";

@@ -122,7 +122,7 @@ TextureHandle addNone(const FilterRow& own, FrameGraph& graph, FluidPrograms& pr
 }
 
 constexpr FilterRow kRows[] = {
-    {"narrow_range", "treats depths near a straight line as one surface (Truong & Yuksel 2018), in levels with holes",
+    {"narrow_range", "treats depths near a straight line as one surface (Truong & Yuksel 2018), in levels with gaps between samples",
      "screen_space/narrow_range.frag", true, addNarrowRange},
     {"bilateral",
      "the thesis's filter, weighted by distance in the picture and in depth (Tomasi & Manduchi 1998), one axis after the other",

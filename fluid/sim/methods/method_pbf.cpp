@@ -167,8 +167,8 @@ void PbfParams::visit(ParamVisitor& v) {
     v.value({"tolerance", "", "mean compression, as a fraction, at which corrections stop; 0 = always the number of iterations", 0, 0.1},
             tolerance);
     v.value({"maxIterations", "", "limit on corrections per substep if tolerance is not 0", 1, 1000, kLog}, maxIterations);
-    v.value({"relaxation", "", "share of each correction that is applied: larger converges faster, too large makes particles tremble", 0.05,
-             1.5},
+    v.value({"relaxation", "", "share of each correction that is applied: larger converges faster, too large makes particles oscillate",
+             0.05, 1.5},
             relaxation);
     v.value({"reach", "", "longest path of the fastest particle in one substep, in spacings", 0.05, 1}, reach);
     v.value({"minSubsteps", "", "minimum of substeps per 1/60 s: more makes water stiffer", 1, 100}, minSubsteps);

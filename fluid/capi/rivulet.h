@@ -77,7 +77,7 @@ typedef struct rivulet_context_options {
     size_t size;
     /* Finds OpenGL's functions in the current OpenGL context. NULL: no OpenGL; worlds are simulated and cannot be drawn. */
     rivulet_find_function find;
-    const char* backend; /* auto (NULL), cpu, gl or cl. auto: gl where OpenGL runs on a GPU, else cpu */
+    const char* backend; /* auto (NULL), cpu, gl or cl. auto: gl if OpenGL runs on a GPU, else cpu */
     const char* device;  /* for backend cl: its number or a part of its name; NULL: the first */
     void (*log)(void* user, rivulet_level level, const char* sentence); /* NULL: silent */
     void* log_user;

@@ -14,9 +14,9 @@ namespace rivulet::capi {
 
 void WorldParams::visit(ParamVisitor& v) {
     v.group({.name = "fluid", .doc = "the water"}, fluid);
-    v.list({.name = "emitters", .doc = "where water comes in"}, emitters);
-    v.list({.name = "sinks", .doc = "where water leaves"}, sinks);
-    v.group({.name = "look", .doc = "how the water looks"}, look);
+    v.list({.name = "emitters", .doc = "sources of water"}, emitters);
+    v.list({.name = "sinks", .doc = "regions that remove water"}, sinks);
+    v.group({.name = "look", .doc = "look of the water"}, look);
 }
 
 namespace {

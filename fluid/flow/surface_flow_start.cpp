@@ -13,34 +13,35 @@ namespace rivulet {
 
 void SurfaceFlowParams::visit(ParamVisitor& v) {
     constexpr bool kLog = true, kLinear = false, kFixed = true;
-    v.value({"surfaceTension", "N/m", "", 0.001, 1, kLog}, surfaceTension);
-    v.value({"viscosity", "Pa s", "dynamic", 1.0e-5, 100, kLog}, viscosity);
-    v.value({"density", "kg/m^3", "", 1, 20000, kLog}, density);
+    v.value({"surfaceTension", "N/m", "surface tension", 0.001, 1, kLog}, surfaceTension);
+    v.value({"viscosity", "Pa s", "dynamic viscosity", 1.0e-5, 100, kLog}, viscosity);
+    v.value({"density", "kg/m^3", "density", 1, 20000, kLog}, density);
     v.value({"advancing", "deg", "contact angle at a drop's front", 1, 175, kLinear, kFixed}, advancing);
-    v.value(
-        {"receding", "deg", "contact angle at its back; where it is the larger one, the front's holds for both", 1, 175, kLinear, kFixed},
-        receding);
-    v.value({"hold", "", "of the force that holds a drop, over that of a disc with these angles", 0, 10}, hold);
-    v.value({"drag", "", "of the force that slows it, over its width times viscosity times speed", 0, 10000}, drag);
-    v.value({"adhesion", "", "of the force that keeps a drop on a skin it hangs from", 0, 10}, adhesion);
+    v.value({"receding", "deg", "contact angle at a drop's back; if it is larger than advancing, advancing is used for both", 1, 175,
+             kLinear, kFixed},
+            receding);
+    v.value({"hold", "", "factor on the force that holds a drop; 1 = that of a disc with these angles", 0, 10}, hold);
+    v.value({"drag", "", "force that slows a drop, over its width times viscosity times speed", 0, 10000}, drag);
+    v.value({"adhesion", "", "factor on the force that keeps a drop on a skin from which it hangs", 0, 10}, adhesion);
     v.value({"airDrag", "", "drag coefficient of a drop in the wind", 0, 10}, airDrag);
-    v.value({"largestDrop", "ul", "what would be more together stays several drops", 0.01, 100, kLog, kFixed}, largestDrop);
-    v.value({"touch", "", "of the sum of their radii: drops as near are one", 0.1, 1, kLinear, kFixed}, touch);
-    v.value({"footprint", "m", "over which a drop's weight is spread", 0, 0.1, kLinear, kFixed}, footprint);
+    v.value({"largestDrop", "ul", "limit on the volume of a drop: drops that would exceed it do not merge", 0.01, 100, kLog, kFixed},
+            largestDrop);
+    v.value({"touch", "", "distance at which two drops merge, over the sum of their radii", 0.1, 1, kLinear, kFixed}, touch);
+    v.value({"footprint", "m", "width over which a drop's weight is spread", 0, 0.1, kLinear, kFixed}, footprint);
     v.value({"trail", "m", "thickness of the film that a drop leaves behind; 0 = none", 0, 1.0e-4}, trail);
-    v.value({"trailWidth", "", "of the trail, over the drop's", 0, 1}, trailWidth);
-    v.value({"slip", "", "share of what holds a drop that a wet way takes", 0, 1}, slip);
-    v.value({"steer", "", "how strongly a trail beside its way pulls a drop in, of what holds it", 0, 2}, steer);
-    v.value({"evaporation", "m/s", "of the film", 0, 1.0e-5}, evaporation);
-    v.value({"filmCell", "m", "cells of what drops leave behind are no wider", 1.0e-5, 0.1, kLog, kFixed}, filmCell);
-    v.value({"filmReach", "m", "support radius of the sum that a film's height is", 1.0e-4, 0.1, kLog, kFixed}, filmReach);
-    v.value({.name = "contact", .doc = "whether drops go over to skin that faces them and that they touch: between lips, between lids"},
+    v.value({"trailWidth", "", "width of the trail, over the drop's", 0, 1}, trailWidth);
+    v.value({"slip", "", "share of the force that holds a drop which a wet trail removes", 0, 1}, slip);
+    v.value({"steer", "", "sideways pull of a trail next to a drop's path, over the force that holds the drop", 0, 2}, steer);
+    v.value({"evaporation", "m/s", "evaporation rate of the film", 0, 1.0e-5}, evaporation);
+    v.value({"filmCell", "m", "limit on the width of the film's cells", 1.0e-5, 0.1, kLog, kFixed}, filmCell);
+    v.value({"filmReach", "m", "support radius of the sum that gives the film's height", 1.0e-4, 0.1, kLog, kFixed}, filmReach);
+    v.value({.name = "contact", .doc = "whether drops pass to skin that faces them and that they touch: between lips, between lids"},
             contact);
-    v.value({"brimHolds", "ul", "what an eyelid's brim holds before it spills", 0.1, 100, kLog}, brimHolds);
-    v.value({"brimStarts", "ul", "what an eyelid's brim has in it at the start", 0.001, 100, kLog, kFixed}, brimStarts);
-    v.value({"brimWidth", "m", "radius of what lies in a brim", 1.0e-4, 0.01, kLog}, brimWidth);
-    v.value({"tear", "ul", "of a drop that spills over a brim", 0.1, 30, kLog}, tear);
-    v.value({"capacity", "", "drops at most", 1, 1 << 20, kLog, kFixed}, capacity);
+    v.value({"brimHolds", "ul", "volume that an eyelid's brim holds before it overflows", 0.1, 100, kLog}, brimHolds);
+    v.value({"brimStarts", "ul", "volume in an eyelid's brim at the start", 0.001, 100, kLog, kFixed}, brimStarts);
+    v.value({"brimWidth", "m", "radius of the liquid in a brim", 1.0e-4, 0.01, kLog}, brimWidth);
+    v.value({"tear", "ul", "volume of a drop that overflows a brim", 0.1, 30, kLog}, tear);
+    v.value({"capacity", "", "limit on the number of drops", 1, 1 << 20, kLog, kFixed}, capacity);
 }
 
 Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {

@@ -22,15 +22,17 @@ bool somewhere(const vec2& uv) { return std::abs(uv.x) < kFarUv && std::abs(uv.y
 void ThesisParams::visit(ParamVisitor& v) {
     constexpr bool kLog = true, kFixed = true;
     v.value({"reach", "UV", "support radius of the sums over neighbours", 1.0e-3, 1, kLog, kFixed}, reach);
-    v.value({"restDensity", "kg/UV^2", "density without pressure", 1.0e-6, 100, kLog}, restDensity);
+    v.value({"restDensity", "kg/UV^2", "density at which the pressure is 0", 1.0e-6, 100, kLog}, restDensity);
     v.value({"stiffness", "UV^2/s^2", "k of the pressure k (density - rest density)", 0, 10}, stiffness);
-    v.value({"viscosity", "UV^2/s", "how much particles take each other along", 0, 0.1}, viscosity);
-    v.value({"friction", "", "mu of the friction with the skin; it grows with what presses a particle on", 0, 100}, friction);
+    v.value({"viscosity", "UV^2/s", "viscosity between particles", 0, 0.1}, viscosity);
+    v.value({"friction", "", "mu of the friction with the skin; friction grows with the normal force on a particle", 0, 100}, friction);
     v.value({"adhesive", "N", "force that holds a particle on the skin", 0, 1, kLog}, adhesive);
-    v.value({"curvature", "N kg/UV^3", "the same by surface tension, times the density's gradient", 0, 1, kLog}, curvature);
-    v.value({"curvatureMost", "N", "what surface tension adds at most: a lone particle's is endless else", 0, 1, kLog}, curvatureMost);
-    v.value({"windPush", "1/s", "acceleration by each m/s of wind", 0, 100}, windPush);
-    v.value({"disc", "UV", "radius of the disc that the largest particle is drawn as", 1.0e-4, 0.5, kLog}, disc);
+    v.value({"curvature", "N kg/UV^3", "surface tension that holds a particle on the skin, times the density's gradient", 0, 1, kLog},
+            curvature);
+    v.value({"curvatureMost", "N", "limit on the force of surface tension, which would be infinite for a single particle", 0, 1, kLog},
+            curvatureMost);
+    v.value({"windPush", "1/s", "acceleration per m/s of wind", 0, 100}, windPush);
+    v.value({"disc", "UV", "drawn radius of the largest particle", 1.0e-4, 0.5, kLog}, disc);
 }
 
 std::vector<uint32_t> acrossInUv(const FlowMesh& mesh, std::span<const vec2> uvs) {

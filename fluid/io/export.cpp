@@ -17,7 +17,7 @@ namespace {
 constexpr ParticleFormat kRows[] = {
     {"ply", "Stanford PLY: binary; for Blender, MeshLab, CloudCompare", "ply", writeParticlesPly},
     {"vtk", "VTK's XML (.vtp), and a .pvd that gives each file its time; for ParaView", "vtp", writeParticlesVtp},
-    {"csv", "text, a line a particle, with units; for tables and scripts", "csv", writeParticlesCsv},
+    {"csv", "text, one line per particle, with units; for tables and scripts", "csv", writeParticlesCsv},
 };
 constexpr Table<ParticleFormat> kFormats{kRows};
 

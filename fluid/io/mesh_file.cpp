@@ -11,7 +11,7 @@ namespace rivulet {
 namespace {
 
 constexpr MeshFormat kRows[] = {
-    {"obj", "Wavefront OBJ: text, read by everything", writeObj},
+    {"obj", "Wavefront OBJ: text, read by most programs", writeObj},
     {"ply", "Stanford PLY: binary, about a quarter of the size", writePly},
 };
 constexpr Table<MeshFormat> kFormats{kRows};

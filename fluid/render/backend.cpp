@@ -18,8 +18,8 @@ namespace rivulet {
 
 Table<BackendRow> backends() {
     static constexpr BackendRow rows[] = {
-        {"auto", "gl where OpenGL runs on a GPU, else cpu"},
-        {"cpu", "all cores of the processor, 8 particles an instruction"},
+        {"auto", "gl if OpenGL runs on a GPU, else cpu"},
+        {"cpu", "all cores of the processor, 8 particles per instruction"},
         {"gl", "OpenGL 4.5 compute shaders"},
         {"cl", "OpenCL 1.2"},
     };

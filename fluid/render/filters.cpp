@@ -122,13 +122,14 @@ TextureHandle addNone(const FilterRow& own, FrameGraph& graph, FluidPrograms& pr
 }
 
 constexpr FilterRow kRows[] = {
-    {"narrow_range", "depths near a straight line are one surface (Truong & Yuksel 2018), in levels with holes",
+    {"narrow_range", "treats depths near a straight line as one surface (Truong & Yuksel 2018), in levels with gaps between samples",
      "screen_space/narrow_range.frag", true, addNarrowRange},
-    {"bilateral", "the thesis's: near in the picture and near in depth (Tomasi & Manduchi 1998), one axis after the other",
+    {"bilateral",
+     "the thesis's filter, weighted by distance in the picture and in depth (Tomasi & Manduchi 1998), one axis after the other",
      "screen_space/bilateral.frag", true, addBilateral},
-    {"curvature_flow", "the surface moves by its mean curvature (van der Laan et al. 2009)", "screen_space/curvature_flow.frag", true,
+    {"curvature_flow", "moves the surface by its mean curvature (van der Laan et al. 2009)", "screen_space/curvature_flow.frag", true,
      addCurvatureFlow},
-    {"none", "the particles' depth as it is", "screen_space/unfiltered.frag", false, addNone},
+    {"none", "no smoothing: the particles' depth", "screen_space/unfiltered.frag", false, addNone},
 };
 constexpr Table<FilterRow> kFilters{kRows};
 

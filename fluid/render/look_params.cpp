@@ -14,41 +14,40 @@ namespace rivulet {
 
 void FluidLookParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> rendererNames = renderers().names(), colourNames = colourings().names();
-    v.choice({.name = "renderer", .doc = "how the water is drawn; rivulet list renderers says what each is"}, renderer, rendererNames);
-    v.choice({.name = "colourBy",
-              .doc = "what the colour of points shows; normal: its parts along x, y, z as red, green, blue; surface: blue what lies there"},
-             colourBy, colourNames);
+    v.choice({.name = "renderer", .doc = "water renderer; rivulet list renderers describes each"}, renderer, rendererNames);
+    v.choice(
+        {.name = "colourBy",
+         .doc =
+             "quantity shown by the colour of points; normal: its x, y, z as red, green, blue; surface: blue for particles of the surface"},
+        colourBy, colourNames);
     static const std::vector<std::string> splatKinds = {"spheres", "ellipsoids"}, qualities = {"auto", "fast", "fine"};
     static const std::vector<std::string> viewNames = waterViews().names();
     v.choice(
         {.name = "splats",
-         .doc = "what a particle of the surface is drawn as; ellipsoids lie along the surface, and cost a sweep over neighbours a frame"},
+         .doc = "shape of a drawn particle of the surface; ellipsoids lie along the surface and cost one pass over neighbours per frame"},
         splats, splatKinds);
-    v.choice({.name = "view", .doc = "the water, or what its surface is made from"}, view, viewNames);
-    v.value({.name = "split", .doc = "the renderer of the picture's right half, to compare; none = the whole picture is look.renderer's"},
+    v.choice({.name = "view", .doc = "the finished water, or one of the images that its surface is made from"}, view, viewNames);
+    v.value({.name = "split", .doc = "renderer of the picture's right half, for comparison; empty = look.renderer for the whole picture"},
             split);
-    v.choice(
-        {.name = "quality",
-         .doc = "fast: spheres, the surface at half the resolution, coarser light in the water, no reflection of the picture in itself; "
-                "auto: in a window as its frames allow, else fine"},
-        quality, qualities);
+    v.choice({.name = "quality",
+              .doc = "fast: spheres, the surface at half the resolution, coarser light in the water, no screen-space reflection; fine: "
+                     "full quality; auto: in a window by the frame time, else fine"},
+             quality, qualities);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
     static const std::vector<std::string> filterNames = filters().names();
-    v.choice({.name = "filter", .doc = "how a surface is made of the particles' depth; rivulet list filters says what each is"}, filter,
-             filterNames);
-    v.value({"smoothing", "m", "reach of the surface's smoothing, two standard deviations; 0 = 1.8 spacings", 0, 10}, smoothing);
-    v.value({"smoothingRange", "m", "how far apart depths of one surface may be; 0 = 4.2 spacings", 0, 100}, smoothingRange);
+    v.choice({.name = "filter", .doc = "filter that smooths the particles' depth to a surface; rivulet list filters describes each"},
+             filter, filterNames);
+    v.value({"smoothing", "m", "width of the surface filter, two standard deviations; 0 = 1.8 spacings", 0, 10}, smoothing);
+    v.value({"smoothingRange", "m", "largest depth difference within one surface; 0 = 4.2 spacings", 0, 100}, smoothingRange);
     v.value({"absorption", "1/m",
-             "how fast red, green and blue fade in the fluid (Beer-Lambert); -1 = as the row of fluid.liquid says, or 4.5, 1.1, 0.5 where "
-             "none is named",
+             "absorption coefficient for red, green and blue (Beer-Lambert); -1 = that of fluid.liquid, or 4.5, 1.1, 0.5 if it is empty",
              -1, 1.0e5},
             absorption);
-    v.value({"scattering", "1/m",
-             "how much of red, green and blue is thrown to all sides on its way (reduced); -1 = as the row of fluid.liquid says, or 0.05, "
-             "0.3, 0.27 where none is named",
-             -1, 1.0e5},
-            scattering);
-    v.value({"refractiveIndex", "", "of the fluid; 0 = as the row of fluid.liquid says, or 1.333 where none is named", 0, 3},
+    v.value(
+        {"scattering", "1/m",
+         "reduced scattering coefficient for red, green and blue; -1 = that of fluid.liquid, or 0.05, 0.3, 0.27 if it is empty", -1, 1.0e5},
+        scattering);
+    v.value({"refractiveIndex", "", "refractive index of the fluid; 0 = that of fluid.liquid, or 1.333 if it is empty", 0, 3},
             refractiveIndex);
 }
 

@@ -99,7 +99,7 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
 
 RendererRow referenceRenderer() {
     return {.name = "reference",
-            .doc = "the same shading of the particles' iso-surface, ray-marched at full precision: seconds a frame",
+            .doc = "the same shading of the particles' iso-surface, ray-marched at full precision: takes seconds per frame",
             .opaque = false,
             .add = addReference};
 }

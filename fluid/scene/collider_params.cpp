@@ -24,9 +24,9 @@ std::string docOfKinds() {
 }  // namespace
 
 void ColliderKey::visit(ParamVisitor& v) {
-    v.value({"time", "s", "when it is reached", 0, 3600}, time);
-    v.value({"position", "m", "added to the collider's own", -kFar, kFar}, position);
-    v.value({"rotation", "deg", "about x, then y, then z, applied after the collider's own", -36000, 36000}, rotation);
+    v.value({"time", "s", "time at which the pose is reached", 0, 3600}, time);
+    v.value({"position", "m", "translation, added to the collider's own position", -kFar, kFar}, position);
+    v.value({"rotation", "deg", "rotation about x, then y, then z, applied after the collider's own", -36000, 36000}, rotation);
 }
 
 void ColliderMotion::visit(ParamVisitor& v) {
@@ -38,9 +38,10 @@ void ColliderMotion::visit(ParamVisitor& v) {
 }
 
 void ColliderWave::visit(ParamVisitor& v) {
-    v.value({"amplitude", "m", "of the wave; 0 = none; a scene with bodies cannot have one", 0, 100, kLinear, kFixed}, amplitude);
-    v.value({"length", "m", "from crest to crest", 0.001, kFar, kLog}, length);
-    v.value({"period", "s", "from crest to crest; the amplitude grows to its full height in the first one", 0.01, 3600, kLog}, period);
+    v.value({"amplitude", "m", "amplitude of the wave; 0 = none; not allowed in a scene with bodies", 0, 100, kLinear, kFixed}, amplitude);
+    v.value({"length", "m", "wavelength, from crest to crest", 0.001, kFar, kLog}, length);
+    v.value({"period", "s", "period, from crest to crest; the amplitude grows to its full value during the first one", 0.01, 3600, kLog},
+            period);
     v.value({"along", "", "direction of travel, of any length", -1.0e6, 1.0e6}, along);
     v.value({"direction", "", "direction of the displacement, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, direction);
 }
@@ -56,19 +57,19 @@ void ColliderParams::visit(ParamVisitor& v) {
     static const std::string kinds = docOfKinds();
     v.choice({.name = "shape", .doc = kinds.c_str(), .fixed = kFixed}, shape, shapes);
     v.value({.name = "mesh",
-             .doc = "mesh file, searched in this order: the path itself, beside the scene, in RIVULET_ASSETS, in assets/",
+             .doc = "mesh file, searched in this order: the path itself, the scene's folder, RIVULET_ASSETS, assets/",
              .fixed = kFixed},
             mesh);
     v.value({"resolution", "", "voxels along the mesh's longest side; 0 = voxels of a quarter of the fluid's spacing", 0, 2048, kLinear,
              kFixed},
             resolution);
-    v.value({"position", "m", "of a mesh: of its origin (with fitSize: of its centre); of a plane: a point on it", -kFar, kFar, kLinear,
-             kFixed},
-            position);
-    v.value({"rotation", "deg", "of a mesh, about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
-    v.value({"scale", "", "of a mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
+    v.value(
+        {"position", "m", "position of a mesh's origin (with fitSize: of its centre), or a point on a plane", -kFar, kFar, kLinear, kFixed},
+        position);
+    v.value({"rotation", "deg", "rotation of a mesh about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
+    v.value({"scale", "", "scale factor of a mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
     v.value({"fitSize", "m", "length that a mesh's longest side is scaled to; 0 = use scale", 0, kFar, kLog, kFixed}, fitSize);
-    v.value({"normal", "", "of a plane, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, normal);
+    v.value({"normal", "", "normal of a plane, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, normal);
     v.value({"friction", "", "Coulomb friction; -1 = that of fluid.collision", -1, 10}, friction);
     v.value({"restitution", "", "share of the normal speed after the impact; -1 = that of fluid.collision", -1, 1}, restitution);
     v.group({.name = "motion", .doc = "rigid motion of a mesh"}, motion);
@@ -76,8 +77,9 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.group({.name = "animation", .doc = "an animation of the mesh file, instead of a motion or a wave"}, animation);
     v.value({.name = "solid", .doc = "whether water and bodies collide with it; off: a mesh is only drawn", .fixed = kFixed}, solid);
     static const std::vector<std::string> looks = {"file", "scene"};
-    v.choice({.name = "materials", .doc = "of a mesh: file = those of its file, if it has any; scene = the values below for all parts"},
-             materials, looks);
+    v.choice(
+        {.name = "materials", .doc = "materials of a mesh; file: those of its file, if it has any; scene: the values below for all parts"},
+        materials, looks);
     v.colour({"colour", "", "linear red, green, blue; used where the file has no material, or materials is scene", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
     v.value({"metallic", "", "0 = stone or paint, 1 = metal", 0, 1}, metallic);

@@ -26,40 +26,39 @@ dmat4 FlowMotionParams::at(double time) const {
 
 void FlowSourceParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> kinds = {"corner", "brim", "spot", "strewn", "rain"}, sides = {"left", "right", "both"};
-    v.choice(
-        {.name = "kind",
-         .doc = "corner: below an eye's inner corner; brim: into the lower lid, which fills and overflows; spot: around a point; strewn: "
-                "jittered over the whole skin; rain: from the air"},
-        kind, kinds);
-    v.choice({.name = "side", .doc = "which eye, of corner and brim; left as the face sees it"}, side, sides);
+    v.choice({.name = "kind",
+              .doc = "corner: below an eye's inner corner; brim: into the lower lid, which fills and overflows; spot: around a point; "
+                     "strewn: jittered over the whole skin; rain: from the air"},
+             kind, kinds);
+    v.choice({.name = "side", .doc = "eye of a corner or brim; left as the face sees it"}, side, sides);
     v.value(
-        {"rate", "ul/min", "volume of all drops per minute, the first drop at once; 0 = off; of corner and brim 100,000 at most", 0, 1.0e7},
+        {"rate", "ul/min", "volume of all drops per minute, the first drop at once; 0 = off; corner and brim: 100,000 at most", 0, 1.0e7},
         rate);
     v.value({"drop", "ul", "volume of each drop", 1.0e-4, 100, kLog}, drop);
-    v.value({"start", "s", "when it begins", 0, 3600}, start);
-    v.value({"stop", "s", "when it ends", 0, 3600}, stop);
-    v.value({"swell", "", "modulation: 0 = steady, 1 = between 0 and the full rate", 0, 1}, swell);
-    v.value({"period", "s", "of the modulation", 0.05, 3600, kLog}, period);
-    v.value({"position", "m", "of a spot, or the centre of strewn drops or rain; in the skin's own frame", -kFar, kFar}, position);
-    v.value({"radius", "m", "around the position; 0 = a point; of strewn and rain: everywhere", 0, kFar}, radius);
-    v.value({"speed", "m/s", "of rain", 0, 100}, speed);
+    v.value({"start", "s", "time at which the source starts", 0, 3600}, start);
+    v.value({"stop", "s", "time at which the source stops", 0, 3600}, stop);
+    v.value({"swell", "", "modulation of the rate: 0 = steady, 1 = between 0 and the full rate", 0, 1}, swell);
+    v.value({"period", "s", "period of the modulation", 0.05, 3600, kLog}, period);
+    v.value({"position", "m", "position of a spot, or centre of strewn drops or rain, in the skin's frame", -kFar, kFar}, position);
+    v.value({"radius", "m", "radius around the position; 0 = a point, or everywhere for strewn and rain", 0, kFar}, radius);
+    v.value({"speed", "m/s", "speed of rain", 0, 100}, speed);
     v.value({"along", "", "direction of rain, in the world, of any length", -1.0e6, 1.0e6}, along);
-    v.value({.name = "film", .doc = "a film that spreads, instead of single drops"}, film);
+    v.value({.name = "film", .doc = "whether the source makes a film that spreads, instead of single drops"}, film);
 }
 
 void ExpressionParams::visit(ParamVisitor& v) {
-    v.value({.name = "morph", .doc = "a morph target of the mesh", .fixed = kFixed}, morph);
+    v.value({.name = "morph", .doc = "name of a morph target of the mesh", .fixed = kFixed}, morph);
     v.value({"weight", "", "mean weight", 0, 1}, weight);
     v.value({"swing", "", "amplitude of an oscillation of the weight", 0, 1}, swing);
-    v.value({"period", "s", "of the oscillation", 0.05, 3600, kLog}, period);
-    v.value({"phase", "", "in periods", 0, 1}, phase);
+    v.value({"period", "s", "period of the oscillation", 0.05, 3600, kLog}, period);
+    v.value({"phase", "", "phase of the oscillation, in periods", 0, 1}, phase);
 }
 
 void FlowMotionParams::visit(ParamVisitor& v) {
     v.value({"pivot", "m", "centre of rotation, in the skin's frame", -kFar, kFar}, pivot);
-    v.value({"turn", "deg", "about x, then y, then z", -360, 360}, turn);
-    v.value({"swing", "deg", "amplitude of an oscillation", -180, 180}, swing);
-    v.value({"period", "s", "of the oscillation", 0.05, 3600, kLog}, period);
+    v.value({"turn", "deg", "rotation about x, then y, then z", -360, 360}, turn);
+    v.value({"swing", "deg", "amplitude of an oscillation about x, y and z", -180, 180}, swing);
+    v.value({"period", "s", "period of the oscillation", 0.05, 3600, kLog}, period);
 }
 
 void RegionParams::visit(ParamVisitor& v) {
@@ -68,22 +67,23 @@ void RegionParams::visit(ParamVisitor& v) {
              .fixed = kFixed},
             mask);
     v.value({"oily", "", "factor on the force that holds a drop, where the mask is red", 0, 10, kLinear, kFixed}, oily);
-    v.value({"dry", "", "the same, where it is green", 0, 10, kLinear, kFixed}, dry);
-    v.value({"hair", "", "the same of brows and lashes, where it is blue", 0, 10, kLinear, kFixed}, hair);
-    v.value({"lip", "", "the same, by its alpha", 0, 10, kLinear, kFixed}, lip);
+    v.value({"dry", "", "factor on the force that holds a drop, where the mask is green", 0, 10, kLinear, kFixed}, dry);
+    v.value({"hair", "", "factor on the force that holds a drop in brows and lashes, where the mask is blue", 0, 10, kLinear, kFixed},
+            hair);
+    v.value({"lip", "", "factor on the force that holds a drop, by the alpha of the mask", 0, 10, kLinear, kFixed}, lip);
 }
 
 void FlowParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> modes = {"drops", "thesis"};
     v.choice({.name = "mode",
-              .doc = "drops: they move on the mesh, independent of its UVs; thesis: particles in UV space (thesis, chapter 4)",
+              .doc = "drops: drops move on the mesh, independent of its UVs; thesis: particles in UV space (thesis, chapter 4)",
               .fixed = kFixed},
              mode, modes);
     v.value({.name = "mesh",
-             .doc = "model file, searched in this order: the path itself, beside the scene, in RIVULET_ASSETS, in assets/",
+             .doc = "model file, searched in this order: the path itself, the scene's folder, RIVULET_ASSETS, assets/",
              .fixed = kFixed},
             mesh);
-    v.value({.name = "part", .doc = "the wet part of a file with several parts; the others are drawn", .fixed = kFixed}, part);
+    v.value({.name = "part", .doc = "wet part of a file with several parts; the other parts are only drawn", .fixed = kFixed}, part);
     v.value({.name = "instead",
              .doc = "JSON file of another skin, with the keys that differ from this one; used if its mesh is found",
              .fixed = kFixed},
@@ -98,13 +98,14 @@ void FlowParams::visit(ParamVisitor& v) {
     v.value(
         {.name = "marks", .doc = "JSON file of a face's eyes and lids; none = the file beside the mesh, if there is one", .fixed = kFixed},
         marks);
-    v.value({"position", "m", "of the mesh's origin (with fitSize: of its centre)", -kFar, kFar, kLinear, kFixed}, position);
-    v.value({"rotation", "deg", "about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
-    v.value({"scale", "", "of the mesh: the unit of its file in m", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
-    v.value({"fitSize", "m", "length that its longest side is scaled to; 0 = use scale", 0, kFar, kLog, kFixed}, fitSize);
-    v.value({"mapSize", "", "texels along a side of the map that it is drawn into: a power of two", 16, 8192, kLog, kFixed}, mapSize);
-    v.value({"wind", "m/s", "of the air, in the world", -1.0e6, 1.0e6}, wind);
-    v.group({.name = "liquid", .doc = "the liquid, and how it adheres"}, liquid);
+    v.value({"position", "m", "position of the mesh's origin (with fitSize: of its centre)", -kFar, kFar, kLinear, kFixed}, position);
+    v.value({"rotation", "deg", "rotation about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
+    v.value({"scale", "", "scale factor of the mesh: the unit of its file in m", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
+    v.value({"fitSize", "m", "length that the mesh's longest side is scaled to; 0 = use scale", 0, kFar, kLog, kFixed}, fitSize);
+    v.value({"mapSize", "", "texels along a side of the map that the liquid is drawn into: a power of two", 16, 8192, kLog, kFixed},
+            mapSize);
+    v.value({"wind", "m/s", "velocity of the air, in the world", -1.0e6, 1.0e6}, wind);
+    v.group({.name = "liquid", .doc = "properties of the liquid and its adhesion"}, liquid);
     v.group({.name = "thesis", .doc = "the forces of mode thesis"}, thesis);
     v.group({.name = "motion", .doc = "rigid motion of the skin"}, motion);
     v.value({"expressive", "", "factor on all of expression; 0 = none", 0, 1}, expressive);
@@ -112,12 +113,12 @@ void FlowParams::visit(ParamVisitor& v) {
     v.list({.name = "sources", .doc = "sources of drops"}, sources);
     v.group({.name = "regions", .doc = "parts of the skin that hold drops more or less strongly"}, regions);
     v.group({.name = "look", .doc = "look of the liquid"}, look);
-    v.group({.name = "material", .doc = "of a mesh whose file has no material"}, material);
+    v.group({.name = "material", .doc = "material of a mesh whose file has none"}, material);
 }
 
 void PresetParams::visit(ParamVisitor& v) {
     v.value({.name = "name", .doc = "label of its button, and value of --preset"}, name);
-    v.value({.name = "doc", .doc = "one sentence"}, doc);
+    v.value({.name = "doc", .doc = "one sentence about the preset"}, doc);
     v.value({.name = "set", .doc = "values in the form of --set, separated by '; '"}, set);
 }
 

@@ -15,8 +15,8 @@ void PourParams::visit(ParamVisitor& v) {
     constexpr bool kLog = true, kLinear = false, kFixed = true;
     v.value({"litres", "l", "volume that a person can pour in (key P); memory is reserved for it; 0 = none", 0, 1.0e6, kLog, kFixed},
             litres);
-    v.value({"radius", "m", "of the jet; 0 = three spacings", 0, 100, kLog}, radius);
-    v.value({"speed", "m/s", "of the jet at its start; 0 = that of a fall of three radii", 0, 100}, speed);
+    v.value({"radius", "m", "radius of the jet; 0 = three spacings", 0, 100, kLog}, radius);
+    v.value({"speed", "m/s", "speed of the jet at its start; 0 = that of a fall of three radii", 0, 100}, speed);
     v.value({.name = "liquid", .doc = "liquid of the jet, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
             liquid);
     v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);

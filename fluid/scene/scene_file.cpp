@@ -108,20 +108,20 @@ VisitFn visiting(SceneFile& scene) {
 
 void CameraParams::visit(ParamVisitor& v) {
     v.value({.name = "from",
-             .doc = "a camera of a collider's file, by name, instead of position, target and fieldOfView; without roll",
+             .doc = "name of a camera in a collider's file, used instead of position, target and fieldOfView; without roll",
              .fixed = kFixed},
             from);
-    v.value({"position", "m", "of the eye", -kFar, kFar}, position);
-    v.value({"target", "m", "the point at the centre of the picture", -kFar, kFar}, target);
+    v.value({"position", "m", "position of the eye", -kFar, kFar}, position);
+    v.value({"target", "m", "point at the centre of the picture", -kFar, kFar}, target);
     v.value({"fieldOfView", "deg", "vertical angle of view", 5, 120}, fieldOfView);
 }
 
 void LightParams::visit(ParamVisitor& v) {
     v.value({.name = "from",
-             .doc = "a directional light of a collider's file, by name: its direction and tint, with the intensity below",
+             .doc = "name of a directional light in a collider's file: its direction and tint are used, with the intensity below",
              .fixed = kFixed},
             from);
-    v.value({"direction", "", "towards the light, of any length", -1.0e6, 1.0e6}, direction);
+    v.value({"direction", "", "direction towards the light, of any length", -1.0e6, 1.0e6}, direction);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"intensity", "", "factor on the colour", 0, 100}, intensity);
 }
@@ -135,7 +135,7 @@ void BackgroundParams::visit(ParamVisitor& v) {
     v.value({.name = "showBox", .doc = "whether the edges of the fluid's box are drawn"}, showBox);
     static const std::vector<std::string> skies = {"studio", "clouds"};
     v.choice({.name = "sky",
-              .doc = "a gradient and lamps, or the sun's glow and clouds outdoors, made when the scene is loaded",
+              .doc = "studio: a gradient and lamps; clouds: the sun's glow and clouds outdoors; made when the scene is loaded",
               .fixed = kFixed},
              sky, skies);
     v.value({"clouds", "", "share of the sky that is covered", 0, 1, kLinear, kFixed}, clouds);
@@ -143,7 +143,7 @@ void BackgroundParams::visit(ParamVisitor& v) {
              .doc = "equirectangular picture (.hdr) that lights the scene and is its background, searched as a mesh is; none = use sky",
              .fixed = kFixed},
             surroundings);
-    v.value({"surroundingsLevel", "", "factor on its light", 0, 1000, kLinear, kFixed}, surroundingsLevel);
+    v.value({"surroundingsLevel", "", "factor on the light of surroundings", 0, 1000, kLinear, kFixed}, surroundingsLevel);
 }
 
 void BudgetParams::visit(ParamVisitor& v) {

@@ -19,9 +19,9 @@ constexpr const char* kAheadLane = "cpu: ahead";
 
 Table<PlanRow> plans() {
     static constexpr PlanRow rows[] = {
-        {"off", "a frame is stepped, then drawn", Plan::alone},
-        {"thesis", "the CPU finds the next step's cells while the GPU draws the last step", Plan::thesis},
-        {"behind", "the cpu steps on while OpenGL draws the frame before", Plan::behind},
+        {"off", "each frame is simulated, then drawn", Plan::alone},
+        {"thesis", "the CPU builds the next step's grid cells while the GPU draws the last step", Plan::thesis},
+        {"behind", "the cpu simulates the next frame while OpenGL draws the previous one", Plan::behind},
     };
     return {rows};
 }

@@ -15,8 +15,8 @@
 namespace rivulet {
 
 enum class Plan {
-    alone,   // a frame is stepped, then drawn
-    thesis,  // the CPU finds the next step's cells while the GPU draws the last step (thesis 2.3)
+    alone,   // each frame is simulated, then drawn
+    thesis,  // the CPU builds the next step's grid cells while the GPU draws the last step (thesis 2.3)
     behind,  // the cpu steps on while gl draws the frame before
 };
 struct PlanRow {

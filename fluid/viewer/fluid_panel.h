@@ -14,7 +14,7 @@ struct FluidPanelState {
     bool paused = false, filming = false, pouring = false;
     std::string backend;   // the device that simulates: "cpu: Intel(R) ..."
     std::string transfer;  // how particles reach OpenGL: sentenceOf(TransferFacts)
-    std::string plan;      // of simulating and drawing: "off: a frame is stepped, then drawn"
+    std::string plan;      // of simulating and drawing: "off: each frame is simulated, then drawn"
     std::string renderer;  // of OpenGL: "llvmpipe (LLVM 15.0.6, 256 bits)"
     double simulateMs = 0, frameMs = 0;
     std::string message;  // why an edit was refused; "": none

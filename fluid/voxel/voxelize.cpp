@@ -18,7 +18,7 @@ namespace rivulet {
 namespace {
 
 constexpr std::array<VoxelModeRow, 3> kModes{{
-    {"depth", "the thesis's depth images: surface where lines of sight end; materials are connected regions, for any mesh",
+    {"depth", "the thesis's depth images: surface voxels where lines of sight end, connected regions as materials; for any mesh",
      VoxelMode::depth},
     {"solid", "inside by winding number, also of open meshes, and every voxel that a triangle touches", VoxelMode::solid},
     {"surface", "only voxels that a triangle touches", VoxelMode::surface},

@@ -110,7 +110,7 @@ TEST_P(Time, WhatLimitsTheStepIsNamed) {
     for (int k = 0; k < 2; ++k) world->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_GE(saying(*world, "maxSubsteps"), 1U);
     const std::string method = GetParam();
-    EXPECT_GE(saying(*world, method == "wcsph" ? "speed of sound" : method == "pbf" ? "weight that its iterations" : "fastest"), 1U);
+    EXPECT_GE(saying(*world, method == "wcsph" ? "speed of sound" : method == "pbf" ? "weight that fluid.pbf.iterations" : "fastest"), 1U);
     EXPECT_NEAR(world->time() + world->dropped(), 2.0 / 60, 1e-12);
 }
 

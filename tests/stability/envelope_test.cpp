@@ -122,7 +122,7 @@ TEST(Envelope, Pairing) {
     ASSERT_EQ(all.size(), 2U);
     expectFailsAt(all[0], kKnown, 1.3);
     EXPECT_TRUE(all[0].limited.nothingLost && all[0].limited.finite);
-    EXPECT_NE(all[0].limited.notice.find("go in pairs"), std::string::npos) << all[0].limited.notice;
+    EXPECT_NE(all[0].limited.notice.find("form pairs"), std::string::npos) << all[0].limited.notice;
     EXPECT_FALSE(all[1].measured) << "Wendland C2 pairs at " << all[1].measured.value_or(0);
     EXPECT_GT(all[1].reached, 260);
     expectHolds(all[1]);

@@ -183,7 +183,7 @@ TEST(ProgramState, BodiesEmittersAndSinksContinueToo) {
     scratch.file("changed.rstate", bytes);
     refused("cut.rstate", "cut off");
     refused("changed.rstate", "damaged");
-    refused("duck.rstate", "resume it with the scene it is of");
+    refused("duck.rstate", "resume it with the scene it was saved from");
 }
 
 TEST(ProgramState, RefusalsArePlain) {

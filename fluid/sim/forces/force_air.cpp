@@ -33,13 +33,13 @@ float fastest(const FluidParams& p) { return p.forces.airDrag > 0 ? glm::length(
 }  // namespace
 
 void Params::visit(ParamVisitor& v) {
-    v.value({"airDrag", "", "drag coefficient of drops in air of 1.2 kg/m^3: a sphere 0.47; 0 = there is no air", 0, 10}, airDrag);
-    v.value({"wind", "m/s", "velocity of the air; does nothing where airDrag is 0", -kFast, kFast}, wind);
+    v.value({"airDrag", "", "drag coefficient of drops in air of 1.2 kg/m^3: a sphere 0.47; 0 = no air", 0, 10}, airDrag);
+    v.value({"wind", "m/s", "velocity of the air; no effect if airDrag is 0", -kFast, kFast}, wind);
 }
 
 ForceRow row() {
     return {.name = "air",
-            .doc = "drag of the air and push of the wind on what is open to them (Gissler et al. 2017, simplified)",
+            .doc = "air drag and wind on particles that are exposed to air (Gissler et al. 2017, simplified)",
             .order = 50,
             .remedy = "set fluid.forces.airDrag to 0",
             .on = on,

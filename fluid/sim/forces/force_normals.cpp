@@ -33,15 +33,14 @@ Result<ForcePass> make(Device& device, const MethodSetup& setup) {
 void Params::visit(ParamVisitor& v) {
     static const std::vector<std::string> kinds = {"none", "thesis", "gradient"};
     v.choice({.name = "normals",
-              .doc = "normals of the surface, to look at (look.colourBy normal or surface): thesis: its (7), which sees walls as air; "
-                     "gradient: of the "
-                     "density, walls counted as fluid"},
+              .doc = "surface normals, for display (look.colourBy normal or surface); thesis: its (7), which treats walls as air; "
+                     "gradient: from the density, walls counted as fluid"},
              normals, kinds);
 }
 
 ForceRow row() {
     return {.name = "normals",
-            .doc = "normals of the surface, to look at",
+            .doc = "surface normals, for display",
             .order = 10,
             .remedy = "set fluid.forces.normals to none",
             .on = on,

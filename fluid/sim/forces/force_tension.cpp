@@ -93,11 +93,11 @@ float fastest(const FluidParams& p) { return std::sqrt((p.forces.tension + p.for
 }  // namespace
 
 void Params::visit(ParamVisitor& v) {
-    v.value({"tension", "N/m", "surface tension: 0 = none; water 0.072; steps are kept shorter than capillary waves need", 0, 100},
+    v.value({"tension", "N/m", "surface tension: 0 = none; water 0.072; substeps become as short as capillary waves need", 0, 100},
             tension);
-    v.value(
-        {"adhesion", "N/m", "how walls and bodies pull the fluid, in the measure of tension: about the same value makes it stick", 0, 100},
-        adhesion);
+    v.value({"adhesion", "N/m",
+             "attraction of the fluid by walls and bodies, on the scale of tension: about the same value makes fluid stick", 0, 100},
+            adhesion);
 }
 
 ForceRow row() {

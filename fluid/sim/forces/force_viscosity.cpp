@@ -200,25 +200,22 @@ StepLimit limit(const ForceLimitInputs& in) {
 void Params::visit(ParamVisitor& v) {
     constexpr bool kLog = true;
     static const std::vector<std::string> ways = {"auto", "explicit", "implicit", "none"};
-    v.choice(
-        {.name = "viscosity",
-         .doc =
-             "of methods pbf and dfsph. explicit: a sweep a step, and steps no longer than 0.125 hs^2 / viscosity; implicit: solved for, "
-             "steps "
-             "of any length; auto: explicit where the step keeps that limit anyhow, else implicit, and none where viscosity evens out less "
-             "than a tenth of the support radius in a second"},
-        viscosity, ways);
-    v.value({"viscosityTolerance", "", "what the implicit solver may leave, as a share of the velocities and of what viscosity changes",
-             1.0e-5, 0.5, kLog},
+    v.choice({.name = "viscosity",
+              .doc = "viscosity of methods pbf and dfsph; explicit: one pass per substep, which is limited to 0.125 hs^2 / viscosity; "
+                     "implicit: a solver, for any substep; auto: explicit if the substep is within that limit anyway, else implicit, and "
+                     "none if viscosity acts over less than a tenth of the support radius in a second"},
+             viscosity, ways);
+    v.value({"viscosityTolerance", "",
+             "error that the implicit solver may leave, as a share of the velocities and of their change by viscosity", 1.0e-5, 0.5, kLog},
             viscosityTolerance);
-    v.value({"viscosityIterations", "", "of the implicit solver in a step, at most", 1, 1000, kLog}, viscosityIterations);
+    v.value({"viscosityIterations", "", "limit on iterations of the implicit solver per substep", 1, 1000, kLog}, viscosityIterations);
 }
 
 ForceRow row() {
     return {.name = "viscosity",
-            .doc = "friction inside the fluid, explicit or implicit, and at walls that do not slip",
+            .doc = "viscosity of the fluid, explicit or implicit, and at no-slip walls",
             .order = 100,  // last: the implicit solver needs the sum of all other forces
-            .remedy = "set fluid.forces.viscosity to none and let fluid.collision.walls slip",
+            .remedy = "set fluid.forces.viscosity to none and fluid.collision.walls to slip",
             .on = on,
             .make = make,
             .limit = limit};

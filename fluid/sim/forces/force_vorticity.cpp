@@ -32,8 +32,9 @@ Result<ForcePass> make(Device& device, const MethodSetup& setup) {
 }  // namespace
 
 void Params::visit(ParamVisitor& v) {
-    v.value({"vorticity", "1/s", "vorticity confinement (Macklin and Mueller 2013): how strongly whirls are kept up; 0 = none", 0, 100},
-            vorticity);
+    v.value(
+        {"vorticity", "1/s", "strength of vorticity confinement (Macklin and Mueller 2013), which preserves vortices; 0 = none", 0, 100},
+        vorticity);
 }
 
 ForceRow row() {

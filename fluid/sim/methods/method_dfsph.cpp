@@ -105,7 +105,7 @@ class Dfsph final : public Method {
 
 Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& setup) {
     if (setup.params.kernel != "wendland")
-        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method dfsph works with wendland");
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is only for method wcsph: use wendland with method dfsph");
     auto m = std::make_unique<Dfsph>();
     const double support = setup.params.supportSpacings;
     m->coupling = static_cast<float>(std::max(wendlandCoupling(support) / wendlandCoupling(2), 1.0));
@@ -143,29 +143,32 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
 
 void DfsphParams::visit(ParamVisitor& v) {
     constexpr bool kLog = true;
+    v.value({"tolerance", "",
+             "mean compression that one substep may add, as a fraction, if the fastest particle moves by reach; smaller in slower water, "
+             "down to a twentieth",
+             1.0e-6, 0.1, kLog},
+            tolerance);
     v.value(
-        {"tolerance", "",
-         "mean compression that a step may add, as a fraction, where the fastest particle goes its reach; less in slower water, down to a "
-         "twentieth",
-         1.0e-6, 0.1, kLog},
-        tolerance);
-    v.value({"correction", "",
-             "share of a density that is off which a step puts right: 1 keeps it best and heats water at rest, 0 lets it drift", 0, 1},
-            correction);
-    v.value({"maxIterations", "", "in a step", 1, 1000, kLog}, maxIterations);
-    v.value({"warmStart", "", "share of the last step's pressure that the next begins with", 0, 1}, warmStart);
-    v.value({"relaxation", "", "share of a Jacobi correction that is made; above 0.6 it may not converge", 0.05, 1}, relaxation);
-    v.value({"momentum", "", "share of the last iteration's change that is made once more where it still helps", 0, 0.95}, momentum);
-    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
-    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: density keeps better with more", 1, 100}, minSubsteps);
+        {"correction", "",
+         "share of the density error that one substep corrects: 1 is most accurate and heats water at rest, 0 lets density drift", 0, 1},
+        correction);
+    v.value({"maxIterations", "", "limit on solver iterations per substep", 1, 1000, kLog}, maxIterations);
+    v.value({"warmStart", "", "share of the last substep's pressure that the solver starts from", 0, 1}, warmStart);
+    v.value({"relaxation", "", "share of each Jacobi correction that is applied; above 0.6 the solver may not converge", 0.05, 1},
+            relaxation);
+    v.value({"momentum", "",
+             "momentum of the Jacobi iteration: share of the last change that is added again, unless it points the wrong way", 0, 0.95},
+            momentum);
+    v.value({"reach", "", "longest path of the fastest particle in one substep, in spacings", 0.05, 1}, reach);
+    v.value({"minSubsteps", "", "minimum of substeps per 1/60 s: more keeps the density more accurate", 1, 100}, minSubsteps);
 }
 
 MethodRow dfsphMethod() {
     return {.name = "dfsph",
-            .doc = "divergence-free SPH: pressures solved for to a tolerance, density kept in the same solve; the accurate one",
+            .doc = "divergence-free SPH: one pressure solve to a tolerance corrects divergence and density; the accurate method",
             .make = makeDfsph,
             .leastSubsteps = [](const FluidParams& p) { return p.dfsph.minSubsteps; },
-            .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "dfsph", .doc = "of method dfsph"}, p.dfsph); }};
+            .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "dfsph", .doc = "settings of method dfsph"}, p.dfsph); }};
 }
 
 }  // namespace rivulet

@@ -31,7 +31,7 @@ class Pbf final : public Method {
         const double beyond = std::max(r - 0.7, 0.0) / k, h = double{p.supportSpacings} * double{p.spacing};
         const double holds = kShare / (1 + 20 * beyond * beyond) * h * std::sqrt(k * r / kDiagonal) / std::max(double{fastest}, 1.0e-9);
         const double asked = 1.0 / (60 * p.pbf.minSubsteps);
-        if (holds < asked) return {p.pbf.reach, holds, "the weight that its iterations can bear (fluid.pbf.iterations)"};
+        if (holds < asked) return {p.pbf.reach, holds, "the weight that fluid.pbf.iterations can support"};
         return {p.pbf.reach, asked};
     }
 
@@ -129,7 +129,7 @@ class Pbf final : public Method {
 
 Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup) {
     if (setup.params.kernel != "wendland")
-        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is for method wcsph: method pbf works with wendland");
+        return badInput("fluid.kernel \"" + setup.params.kernel + "\" is only for method wcsph: use wendland with method pbf");
     auto m = std::make_unique<Pbf>();
     const std::vector<Define> walls = setup.traits.wallDefines();
     for (auto [kernel, path, defines] :
@@ -163,22 +163,23 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
 
 void PbfParams::visit(ParamVisitor& v) {
     constexpr bool kLog = true;
-    v.value({"iterations", "", "corrections a step, where tolerance is 0: more is stiffer and slower", 1, 50}, iterations);
-    v.value(
-        {"tolerance", "", "mean compression, as a fraction, down to which a step corrects; 0: always as often as iterations says", 0, 0.1},
-        tolerance);
-    v.value({"maxIterations", "", "corrections a step at most, where tolerance is not 0", 1, 1000, kLog}, maxIterations);
-    v.value({"relaxation", "", "share of a correction that is made: more converges faster, too much trembles", 0.05, 1.5}, relaxation);
-    v.value({"reach", "", "how far the fastest particle may go in a step, in spacings", 0.05, 1}, reach);
-    v.value({"minSubsteps", "", "steps in a sixtieth of a second at least: water is stiffer with more", 1, 100}, minSubsteps);
+    v.value({"iterations", "", "corrections per substep if tolerance is 0: more is stiffer and slower", 1, 50}, iterations);
+    v.value({"tolerance", "", "mean compression, as a fraction, at which corrections stop; 0 = always the number of iterations", 0, 0.1},
+            tolerance);
+    v.value({"maxIterations", "", "limit on corrections per substep if tolerance is not 0", 1, 1000, kLog}, maxIterations);
+    v.value({"relaxation", "", "share of each correction that is applied: larger converges faster, too large makes particles oscillate",
+             0.05, 1.5},
+            relaxation);
+    v.value({"reach", "", "longest path of the fastest particle in one substep, in spacings", 0.05, 1}, reach);
+    v.value({"minSubsteps", "", "minimum of substeps per 1/60 s: more makes water stiffer", 1, 100}, minSubsteps);
 }
 
 MethodRow pbfMethod() {
     return {.name = "pbf",
-            .doc = "position based fluids: a few corrections of positions a step; the fast one",
+            .doc = "position based fluids: a few position corrections per substep; the fast method",
             .make = makePbf,
             .leastSubsteps = [](const FluidParams& p) { return p.pbf.minSubsteps; },
-            .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "pbf", .doc = "of method pbf"}, p.pbf); }};
+            .visit = [](FluidParams& p, ParamVisitor& v) { v.group({.name = "pbf", .doc = "settings of method pbf"}, p.pbf); }};
 }
 
 }  // namespace rivulet

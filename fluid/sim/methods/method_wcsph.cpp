@@ -87,7 +87,7 @@ class Wcsph final : public Method {
 Result<std::unique_ptr<Method>> make(Device& device, const MethodSetup& setup, bool thesis) {
     if (thesis && (setup.traits.matter || glm::any(setup.traits.periodic)))
         return badInput(
-            "method wcsph_thesis knows one liquid, no floating bodies and no periodic axes: choose another method for this scene");
+            "method wcsph_thesis supports one liquid, no floating bodies and no periodic axes: choose another method for this scene");
     const bool moves = setup.traits.linked;
     ASSERT(!moves || thesis, "only wcsph_thesis moves particles on in its sweep of forces");
     auto method = std::make_unique<Wcsph>(thesis, moves);
@@ -121,7 +121,7 @@ MethodRow wcsphMethod() {
 
 MethodRow wcsphThesisMethod() {
     return {.name = "wcsph_thesis",
-            .doc = "the thesis's SPH: poly6 and spiky kernels, linear equation of state, a box that turns velocities round",
+            .doc = "the thesis's SPH: poly6 and spiky kernels, linear equation of state, box walls that reverse the velocity",
             .make = [](Device& device, const MethodSetup& setup) { return make(device, setup, true); },
             .doesViscosity = true,
             .hasSound = true,

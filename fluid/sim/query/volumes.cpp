@@ -28,7 +28,7 @@ Status check(std::span<const Volume> volumes) {
                                ? v.radius >= 0 && std::isfinite(v.radius)
                                : v.shape == Volume::box && isFinite(v.size) && glm::all(glm::greaterThanEqual(v.size, vec3(0.0F)));
         if (!sound || !isFinite(v.position))
-            return badInput(fmt::format("volume {} has a place or a size that makes no sense: give metres, none negative", v.id));
+            return badInput(fmt::format("volume {} has a position or size that is invalid: use metres, none negative", v.id));
         for (size_t j = 0; j < k; ++j)
             if (volumes[j].id == v.id) return badInput(fmt::format("two volumes have the id {}: give each its own", v.id));
     }
@@ -197,7 +197,7 @@ Result<VolumePasses::Saved> VolumePasses::take(WorldState& state, uint32_t slots
         const auto in = std::count_if(saved.inside.begin(), saved.inside.end(), [n](uint32_t bits) { return (bits >> n[0] & 1U) != 0; });
         sound = n[1] - n[2] == static_cast<uint64_t>(in);
     }
-    if (!sound) return badInput("the saved state's counts of its volumes do not add up: save it again");
+    if (!sound) return badInput("the saved state's counts of its volumes are inconsistent: save it again");
     return saved;
 }
 

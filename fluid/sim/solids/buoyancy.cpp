@@ -8,9 +8,9 @@
 namespace rivulet {
 
 void BuoyancyParams::visit(ParamVisitor& v) {
-    v.value({"restDensity", "kg/m^3", "of the water", 1, 20000}, restDensity);
-    v.value({"gravity", "m/s^2", "what pulls at water and bodies", -1000, 1000}, gravity);
-    v.value({"linearDrag", "1/s", "drag over the displaced water's momentum", 0, 1000}, linearDrag);
+    v.value({"restDensity", "kg/m^3", "rest density of the water", 1, 20000}, restDensity);
+    v.value({"gravity", "m/s^2", "gravitational acceleration", -1000, 1000}, gravity);
+    v.value({"linearDrag", "1/s", "linear drag, over the momentum of the displaced water", 0, 1000}, linearDrag);
     v.value({"quadraticDrag", "", "drag coefficient: about 1 of a cube, 0.5 of a ball", 0, 10}, quadraticDrag);
 }
 

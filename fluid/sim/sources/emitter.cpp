@@ -47,33 +47,36 @@ std::pair<vec3, vec3> across(const vec3& n) {
 
 void EmitterParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"nozzle", "box", "mesh"};
-    v.choice({.name = "shape", .doc = "a round opening, a volume that fills, or the surface of a mesh", .fixed = kFixed}, shape, shapes);
-    v.value({"litresPerSecond", "l/s", "how much comes in", 0, 1.0e6, kLog}, litresPerSecond);
-    v.value({"speed", "m/s", "how fast it comes in; of a nozzle 0 = as fast as the rate needs through its opening", 0, 1000}, speed);
-    v.value({"position", "m", "the opening's middle, the box's, or where the mesh's origin goes (with fitSize: its middle)", -kFar, kFar},
+    v.choice({.name = "shape", .doc = "nozzle: a round opening; box: a volume that fills; mesh: the surface of a mesh", .fixed = kFixed},
+             shape, shapes);
+    v.value({"litresPerSecond", "l/s", "flow rate", 0, 1.0e6, kLog}, litresPerSecond);
+    v.value({"speed", "m/s", "speed of the new fluid; 0 for a nozzle = the speed that the rate needs through its opening", 0, 1000}, speed);
+    v.value({"position", "m", "centre of the opening or box, or position of the mesh's origin (with fitSize: of its centre)", -kFar, kFar},
             position);
-    v.value({"direction", "", "the way it comes out of a nozzle or box, of any length", -1.0e6, 1.0e6}, direction);
-    v.value({"radius", "m", "of a nozzle's opening; a jet that needs less is thinner", 1.0e-4, 100, kLog}, radius);
-    v.value({"size", "m", "of a box", 0, kFar}, size);
-    v.value({.name = "mesh", .doc = "mesh file, as of a collider", .fixed = kFixed}, mesh);
-    v.value({"fitSize", "m", "length that the mesh's longest side is scaled to; 0 = it is as it is", 0, kFar, kLog, kFixed}, fitSize);
-    v.value({"rotation", "deg", "of the mesh, about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
-    v.value({"start", "s", "when it begins", 0, 3600}, start);
-    v.value({"stop", "s", "when it ends; 0 = never", 0, 3600}, stop);
-    v.value({.name = "liquid", .doc = "what comes in, a row of rivulet list liquids; empty = as fluid.liquid", .fixed = kFixed}, liquid);
-    v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
-    v.value({"dyeAmount", "1/m", "how much dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed}, dyeAmount);
+    v.value({"direction", "", "direction of the fluid from a nozzle or box, of any length", -1.0e6, 1.0e6}, direction);
+    v.value({"radius", "m", "radius of a nozzle's opening; the jet is thinner if the rate needs less", 1.0e-4, 100, kLog}, radius);
+    v.value({"size", "m", "edge lengths of a box", 0, kFar}, size);
+    v.value({.name = "mesh", .doc = "mesh file, searched as a collider's", .fixed = kFixed}, mesh);
+    v.value({"fitSize", "m", "length that the mesh's longest side is scaled to; 0 = not scaled", 0, kFar, kLog, kFixed}, fitSize);
+    v.value({"rotation", "deg", "rotation of the mesh about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
+    v.value({"start", "s", "time at which the emitter starts", 0, 3600}, start);
+    v.value({"stop", "s", "time at which the emitter stops; 0 = never", 0, 3600}, stop);
     v.value(
-        {"dyeScattering", "1/m", "how cloudy the dye makes it, on top: milk scatters about 3000; 0 = clear as ink", 0, 1.0e4, kLog, kFixed},
-        dyeScattering);
+        {.name = "liquid", .doc = "liquid of the emitter, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
+        liquid);
+    v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
+    v.value({"dyeAmount", "1/m", "concentration of the dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed},
+            dyeAmount);
+    v.value({"dyeScattering", "1/m", "scattering that the dye adds: milk about 3000; 0 = clear, like ink", 0, 1.0e4, kLog, kFixed},
+            dyeScattering);
 }
 
 void SinkParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"box", "sphere"};
-    v.choice({.name = "shape", .doc = "of the volume in which particles vanish"}, shape, shapes);
-    v.value({"position", "m", "its middle", -kFar, kFar}, position);
-    v.value({"size", "m", "of a box", 0, kFar}, size);
-    v.value({"radius", "m", "of a sphere", 0, kFar}, radius);
+    v.choice({.name = "shape", .doc = "shape of the volume in which particles are removed"}, shape, shapes);
+    v.value({"position", "m", "centre of the volume", -kFar, kFar}, position);
+    v.value({"size", "m", "edge lengths of a box", 0, kFar}, size);
+    v.value({"radius", "m", "radius of a sphere", 0, kFar}, radius);
 }
 
 double volumeAfter(const EmitterParams& p, double seconds) {
@@ -86,7 +89,8 @@ std::string contradiction(const EmitterParams& p) {
     const double most = 1.0e3 * openingArea(p) * nozzleSpeed(p);
     if (p.shape == "nozzle" && p.speed > 0 && double{p.litresPerSecond} > 1.05 * most)
         return fmt::format(
-            "litresPerSecond is {}, but at a speed of {} m/s an opening of radius {} m lets out {:.3g} l/s: widen it, or make it faster",
+            "litresPerSecond is {}, but at a speed of {} m/s an opening of radius {} m lets out {:.3g} l/s: use a larger radius or a "
+            "higher speed",
             p.litresPerSecond, p.speed, p.radius, most);
     if (p.stop > 0 && p.stop < p.start) return fmt::format("stop is {} s, before start, {} s", p.stop, p.start);
     return "";

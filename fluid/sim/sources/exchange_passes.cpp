@@ -57,7 +57,7 @@ std::vector<WorldParticle> ExchangePasses::within(const StepParams& step, const 
 void ExchangePasses::take(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
                           std::span<const uint32_t> slots, bool sorted) {
     if (slots.empty()) return;
-    ASSERT(slots.size() <= kMostFound, "take no more than within() gives");
+    ASSERT(slots.size() <= kMostFound, "the slots must be those of within()");
     device_->write(slots_, std::as_bytes(slots));
     ExchangeParams block{};
     block.step = step;

@@ -19,7 +19,7 @@ constexpr LiquidRow kRows[] = {
     {"water", "fresh water, 20 degC", 998.2F, 1.002e-3F, 0.07275F, kPureWater, kFresh, 1.333F,
      "CRC Handbook of Chemistry and Physics (density, viscosity, index); IAPWS R1-76(2014) (tension); Pope and Fry 1997 (absorption); "
      "Smith and Baker 1981 (scattering)"},
-    {"seawater", "35 g of salt a kilogram, 20 degC", 1024.8F, 1.077e-3F, 0.0735F, kPureWater, kPureSea, 1.339F,
+    {"seawater", "35 g of salt per kilogram, 20 degC", 1024.8F, 1.077e-3F, 0.0735F, kPureWater, kPureSea, 1.339F,
      "ITTC 7.5-02-01-03 (density, viscosity); Nayar et al. 2014 (tension); Quan and Fry 1995 (index); absorption as of fresh water, "
      "scattering as of the clearest sea"},
     {"honey", "17 % of water, 20 degC", 1420.0F, 10.0F, 0.06F, vec3(6.0F, 32.0F, 160.0F), vec3(4.0F), 1.494F,
@@ -28,11 +28,11 @@ constexpr LiquidRow kRows[] = {
     {"oil", "olive oil, 20 degC", 911.0F, 0.084F, 0.032F, vec3(3.0F, 6.0F, 60.0F), vec3(0.5F), 1.469F,
      "CRC Handbook of Chemistry and Physics (density, viscosity, tension); Codex Alimentarius CXS 33 (index); absorption and scattering by "
      "eye"},
-    {"blood", "whole human blood, 37 degC, as it flows fast: a Newtonian liquid", 1060.0F, 3.5e-3F, 0.056F,
-     vec3(500.0F, 23000.0F, 33600.0F), vec3(1500.0F, 1800.0F, 1900.0F), 1.36F,
+    {"blood", "whole human blood, 37 degC, at high shear: a Newtonian liquid", 1060.0F, 3.5e-3F, 0.056F, vec3(500.0F, 23000.0F, 33600.0F),
+     vec3(1500.0F, 1800.0F, 1900.0F), 1.36F,
      "Kenner 1989 (density); Merrill 1969 (viscosity); Hrncir and Rosina 1997 (tension); Prahl 1998 (absorption: oxygenated, 150 g/l); "
      "Bosschaart et al. 2014 (scattering, rounded)"},
-    {"tear", "of a healthy eye, 34 degC, at high shear", 1005.0F, 1.73e-3F, 0.0436F, kPureWater, kFresh, 1.337F,
+    {"tear", "tears of a healthy eye, 34 degC, at high shear", 1005.0F, 1.73e-3F, 0.0436F, kPureWater, kFresh, 1.337F,
      "Munoz et al. 2024 (viscosity); Tiffany et al. 1989 (tension); Craig et al. 1995 (index); density as of a dilute saline"},
     {"milk", "whole cow's milk, 20 degC", 1030.0F, 2.0e-3F, 0.0465F, vec3(1.1F, 2.4F, 14.0F), vec3(2550.0F, 3210.0F, 3770.0F), 1.347F,
      "Walstra et al. 2006 (density, viscosity, tension, index; rounded); Jensen et al. 2001 (absorption, scattering)"},

@@ -26,19 +26,20 @@ Status check(const Sources& sources, float spacing) {
     for (size_t k = 0; k < sources.sinks.size(); ++k)
         if (Status s = checkParams(pathOf("sinks", k), sources.sinks[k]); !s) return s;
     if (!(sources.seconds >= 0) || !(sources.expectedDeposit >= 0) || !(sources.more >= 0))
-        return badInput(fmt::format("sources run for {} s, are poured {} m^3 and have room for {} more: each must be 0 or more",
+        return badInput(fmt::format("Sources::seconds is {} s, expectedDeposit {} m^3 and more {} m^3: each must be 0 or more",
                                     sources.seconds, sources.expectedDeposit, sources.more));
     for (size_t k = 0; k < sources.emitters.size(); ++k) {
         const Emitter& e = sources.emitters[k];
         if (Status s = checkParams(pathOf("emitters", k), e.params); !s) return s;
         if (!std::all_of(e.triangles.begin(), e.triangles.end(), [](const vec3& p) { return isFinite(p); }))
-            return badInput(fmt::format("emitters[{}] has a mesh with corners that are NaN or infinite", k));
+            return badInput(fmt::format("the mesh of emitters[{}] has coordinates that are NaN or infinite: correct them", k));
         if (const std::string wrong = contradiction(e.params); !wrong.empty()) return badInput(fmt::format("emitters[{}].{}", k, wrong));
         // They are laid out as one layer, and that would take all the memory there is.
         if (const double layer = layerOf(e.params, spacing); layer > kMostCandidates)
-            return badInput(fmt::format(
-                "emitters[{}] lets {:.3g} particles out side by side, there may be {}: narrow its radius, make it faster, or let less out",
-                k, layer, kMostCandidates));
+            return badInput(
+                fmt::format("emitters[{}] needs {:.3g} particles in one layer of its jet, more than {}: use a smaller radius, a higher "
+                            "speed or a lower rate",
+                            k, layer, kMostCandidates));
         if (!e.params.liquid.empty() && liquids().find(e.params.liquid) == nullptr)
             return badInput(fmt::format("emitters[{}].liquid '{}' is not a liquid; there are {}", k, e.params.liquid,
                                         fmt::join(liquids().names(), ", ")));
@@ -52,7 +53,7 @@ Result<SourcePasses> SourcePasses::create(Device& device, const Sources& sources
     if (Status s = check(sources, params.spacing); !s) return s.error();
     for (size_t k = 0; k < sources.emitters.size(); ++k)
         if (sources.emitters[k].params.shape == "mesh" && sources.emitters[k].triangles.size() < 3)
-            return badInput(fmt::format("emitters[{}] has a mesh without triangles", k));
+            return badInput(fmt::format("the mesh of emitters[{}] has no triangles: use another mesh", k));
     SourcePasses s;
     s.device_ = &device;
     s.matter_ = matter;
@@ -123,7 +124,7 @@ void SourcePasses::writeSinks(const std::vector<SinkParams>& sinks) {
 
 Status SourcePasses::set(const Sources& sources) {
     if (sources.emitters.size() + (deposits_ ? 1 : 0) != feeds_.size() || sources.sinks.size() != sinkCount_)
-        return badInput("emitters and sinks were added or taken away: that needs a new world");
+        return badInput("the number of emitters or sinks has changed: create a new world");
     if (Status s = check(sources, spacing_); !s) return s;
     for (size_t k = 0; k < sources.emitters.size(); ++k) feeds_[k].take(sources.emitters[k].params);
     writeSinks(sources.sinks);
@@ -224,7 +225,7 @@ void SourcePasses::run(const World& world, double time, double dt, bool last) {
 }
 
 void SourcePasses::deposit(const vec3& place, const vec3& velocity, double volume) {
-    ASSERT(deposits_, "say by Sources::expectedDeposit that there is water from others");
+    ASSERT(deposits_, "deposits need Sources::expectedDeposit > 0");
     feeds_.back().deposit(place, velocity, volume);
 }
 
@@ -291,8 +292,7 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
     if (n[0] != feeds_.size() || n[1] != sinkCount_)
         return badInput(fmt::format("the state was saved with {} emitters and {} sinks, this scene has {} and {}", n[0], n[1],
                                     feeds_.size(), sinkCount_));
-    if (n[2] != meshesHash())
-        return badInput("the state was saved with another mesh to let water out of: resume it with the scene it is of");
+    if (n[2] != meshesHash()) return badInput("the state was saved with another emitter mesh: resume it with the scene it was saved from");
     Result<std::vector<EmitterFeed::Account>> accounts = state.take<EmitterFeed::Account>("sources.accounts", feeds_.size());
     if (!accounts) return accounts.error();
     Result<std::vector<uint32_t>> reported = state.take<uint32_t>("sources.heard", feeds_.size());
@@ -316,7 +316,7 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
         const auto taken = static_cast<uint32_t>(a.offered - a.refused) - (c[1] + c[2] - (*reported)[k]);
         sound = sound && std::isfinite(a.due) && a.due >= 0 && a.refused <= a.offered && a.offered < uint64_t{1} << 53U && taken == c[0];
     }
-    if (!sound) return badInput("the saved state's accounts of the emitters do not add up: save it again");
+    if (!sound) return badInput("the saved state's counts of the emitters are inconsistent: save it again");
     return Saved{std::move(*accounts), std::move(*reported), std::move(*counters), (*waited)[0], flight};
 }
 

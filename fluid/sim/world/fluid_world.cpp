@@ -54,18 +54,18 @@ void FluidWorld::Impl::report(const std::string& sentence) {
 
 // Reports settings that are known to fail.
 void FluidWorld::Impl::warn() {
-    if (!params.limits) report("fluid.limits is off: steps are as long as asked for, stable or not");
+    if (!params.limits) report("fluid.limits is off: steps have the requested length and may be unstable");
     const vec3 reach = glm::max(glm::abs(params.box.min), glm::abs(params.box.max));
     const float most = std::max({reach.x, reach.y, reach.z}), apart = std::nextafter(most, 2.0F * most) - most;
     if (apart > 2.0e-3F * params.spacing)
         report(
-            fmt::format("fluid.box lies so far from its zero that floats there are {:.2g} m apart and slow motion is lost: give its place "
-                        "by fluid.origin",
+            fmt::format("fluid.box is so far from (0, 0, 0) that positions there are rounded to {:.2g} m and slow motion is lost: set "
+                        "fluid.origin to its position",
                         apart));
     const float support = params.supportSpacings, neighbours = 4.18879F * support * support * support;
     if (params.kernel == "cubic_spline" && neighbours > 55.0F)
         report(fmt::format(
-            "fluid.supportSpacings = {} gives particles {:.0f} neighbours: with more than 55 those of the cubic spline go in pairs",
+            "fluid.supportSpacings = {} gives particles {:.0f} neighbours: with more than 55, particles with the cubic spline form pairs",
             support, neighbours));
 }
 
@@ -132,7 +132,7 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     if (last) method->measure(context);
     bodies.advance(step, particles, dt);
     if (const std::optional<size_t> body = bodies.misled())
-        report(fmt::format("the host of the bodies gave body {} a state that is not finite: it stayed where it was", *body));
+        report(fmt::format("the host's solver gave body {} a state that is not finite: the body keeps its last state", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
     sources.run({step, params, *grid, particles, solids, bodies, remembered}, clock.time + to * clock.frameLength, dt, last);
     return true;
@@ -144,7 +144,7 @@ double FluidWorld::acceptedSeconds(double seconds) {
     const double most = w.params.longestFrame;
     if (seconds <= most || !w.params.limits) return seconds;
     w.clock.dropped += seconds - most;
-    w.report(fmt::format("a frame was longer than fluid.longestFrame = {} s: what was beyond it has been dropped", w.params.longestFrame));
+    w.report(fmt::format("a frame was longer than fluid.longestFrame = {} s: the rest of it was dropped", w.params.longestFrame));
     return most;
 }
 
@@ -170,7 +170,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     if (isFinite(gravity))
         w.gravity = gravity;
     else
-        w.report("the gravity that a step was given is not finite: it stayed as it was");
+        w.report("the gravity given to a step is not finite: the last gravity is kept");
     if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.report(asked.error().message);
     // It decays slowly: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
     constexpr double kForget = 0.5;  // s
@@ -212,7 +212,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
             w.clock.budgetReported = true;
             w.report(
                 fmt::format("a frame's steps take longer than fluid.frameBudget = {} ms, their length limited by {}: simulated time runs "
-                            "slower than asked",
+                            "slower than requested",
                             p.frameBudget, w.stepLimit(w.clock.time, frame.length).why));
         }
     }
@@ -269,10 +269,9 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         count = params.maxSubsteps - substeps;
         dt = limit.dt;
         stop = true;
-        report(
-            fmt::format("a frame needed more than fluid.maxSubsteps = {} steps, their length limited by {}: simulated time runs slower "
-                        "than asked",
-                        params.maxSubsteps, limit.why));
+        report(fmt::format(
+            "a frame needed more than fluid.maxSubsteps = {} steps, their length limited by {}: simulated time runs slower than requested",
+            params.maxSubsteps, limit.why));
     }
     if (params.fixedStep > 0 && count > 1)
         report(fmt::format("fluid.fixedStep = {} s is cut into shorter steps, their length limited by {}", params.fixedStep, limit.why));
@@ -362,14 +361,12 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
             fillLedger(f);
             *into = std::move(f);
             if (sources.full())
-                report(fmt::format(
-                    "there is room for no more than {} particles: emitters wait for free slots; fluid.maxParticles sets how many there are",
-                    slots));
+                report(fmt::format("the limit of {} particles is reached: emitters wait for free slots; fluid.maxParticles sets the limit",
+                                   slots));
             if (into->lost > 0) report("particles left the grid or became NaN: they are frozen and counted as lost");
             if (into->speedLimited == 0) return;
             if (maxSpeed < 0.999F * spacingAStep)
-                report(fmt::format("the fastest particles were slowed to {:.3g} m/s: nothing in this scene should make them so fast",
-                                   maxSpeed));
+                report(fmt::format("the fastest particles were slowed to {:.3g} m/s: no speed in this scene should be higher", maxSpeed));
             else
                 report("the fastest particles were slowed to one spacing a step");
         });
@@ -410,13 +407,13 @@ void FluidWorld::deposit(const vec3& place, const vec3& velocity, double volume)
 }
 
 std::vector<WorldParticle> FluidWorld::within(const Bounds& box, float faster, float looser) {
-    ASSERT(impl_->exchange.any(), "set Sources::expectedDeposit where others hold water");
+    ASSERT(impl_->exchange.any(), "an exchange of water needs Sources::expectedDeposit > 0");
     return impl_->exchange.within(impl_->step, impl_->particles, box, faster, looser);
 }
 
 void FluidWorld::withdraw(std::span<const uint32_t> slots) {
     Impl& w = *impl_;
-    ASSERT(w.exchange.any(), "set Sources::expectedDeposit where others hold water");
+    ASSERT(w.exchange.any(), "an exchange of water needs Sources::expectedDeposit > 0");
     w.invalidateCells();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);

@@ -161,15 +161,17 @@ Status FluidWorld::Impl::findSlots() {
     if (params.maxParticles > 0) {
         room = params.maxParticles;
         if (room < held)
-            return badInput(fmt::format("fluid.maxParticles is {}, but the blocks hold {} particles: raise it, or 0 makes room for all",
-                                        params.maxParticles, start.size()));
+            return badInput(
+                fmt::format("fluid.maxParticles is {}, but the blocks hold {} particles: increase it, or set 0 to reserve memory for all",
+                            params.maxParticles, start.size()));
     } else if (!sourceSetup.emitters.empty() || sourceSetup.expectedDeposit > 0) {
         room = std::min(room, kMostParticles);
         const bool lets = sourceSetup.expectedDeposit > 0 || std::any_of(sourceSetup.emitters.begin(), sourceSetup.emitters.end(),
                                                                          [](const Emitter& e) { return e.params.litresPerSecond > 0; });
         if (lets)
-            log.notice(fmt::format("room for {} particles: {} of the blocks, and what emitters let out in {} s, as far as the box holds it",
-                                   static_cast<uint64_t>(room), start.size(), sourceSetup.seconds));
+            log.notice(fmt::format(
+                "memory for {} particles: {} of the blocks, and those that emitters spawn in {} s, as far as the box holds them",
+                static_cast<uint64_t>(room), start.size(), sourceSetup.seconds));
     }
     slots = std::max(static_cast<uint32_t>(room), sourceSetup.least);
     return ok();

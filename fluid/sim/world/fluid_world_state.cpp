@@ -163,7 +163,8 @@ Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std:
             ++met;
     }
     if (kept.size() > w.slots)
-        return badInput(fmt::format("there are {1} particles and room for {0}: the water restarts at t = 0", w.slots, kept.size()));
+        return badInput(
+            fmt::format("the state holds {1} particles, more than the limit of {0}: the water restarts at t = 0", w.slots, kept.size()));
     if (met > 0) w.log.notice(fmt::format("{} particles were removed: a solid is now where they were", met));
 
     w.writeStart();

@@ -95,7 +95,7 @@ class Reader {
             const std::string title(s.name.data(), strnlen(s.name.data(), s.name.size()));
             const bool named = !title.empty() && title > before && title.size() <= WorldState::kLongestName;
             if (!named || s.offset != at || s.packedBytes > bytes_.size() - at || s.bytes / kMostBytesPerPackedByte > s.packedBytes)
-                return damaged("its table of sections makes no sense");
+                return damaged("its table of sections is invalid");
             held += s.bytes;
             if (held > memoryLimit_) return failed(fmt::format("{}: it holds more than {} bytes of memory", name_, memoryLimit_));
             const auto packed = bytes_.subspan(at, s.packedBytes);
@@ -129,10 +129,10 @@ class Reader {
         if (header.version != kVersion)
             return damaged(fmt::format("its version is {}, this program reads version {}", header.version, kVersion));
         if (header.fileBytes > bytes_.size())
-            return damaged(fmt::format("it is cut off: {} of its {} bytes are there", bytes_.size(), header.fileBytes));
+            return damaged(fmt::format("it is cut off: it has {} of its {} bytes", bytes_.size(), header.fileBytes));
         if (header.fileBytes < bytes_.size()) return damaged("there is more after its end");
         if (header.sections > kMostSections || header.zero != 0 || bytes_.size() < sizeof(Header) + header.sections * sizeof(Section))
-            return damaged(fmt::format("{} sections cannot be", header.sections));
+            return damaged(fmt::format("{} sections are not possible", header.sections));
         if (checksumOfHead(bytes_, header.sections) != header.checksum) return damaged("its header was damaged: the checksum is wrong");
         table_.resize(header.sections);
         if (!table_.empty()) std::memcpy(table_.data(), bytes_.data() + sizeof(Header), table_.size() * sizeof(Section));
@@ -155,7 +155,8 @@ void WorldState::putBytes(const std::string& name, Bytes bytes) {
 
 Result<WorldState::Bytes> WorldState::takeBytes(const std::string& name) {
     auto node = sections_.extract(name);
-    if (node.empty()) return badInput(fmt::format("the saved state has no section {}: it is of another scene, or another version", name));
+    if (node.empty())
+        return badInput(fmt::format("the saved state has no section {}: it belongs to another scene or another version", name));
     return std::move(node.mapped());
 }
 
@@ -166,14 +167,16 @@ Result<std::string> WorldState::takeText(const std::string& name) {
 }
 
 Error WorldState::otherSize(const std::string& name, size_t bytes, size_t expected) {
-    return badInput(fmt::format("section {} of the saved state holds {} bytes, this scene needs {}: resume it with the scene it is of",
-                                name, bytes, expected));
+    return badInput(
+        fmt::format("section {} of the saved state holds {} bytes, this scene needs {}: resume it with the scene it was saved from", name,
+                    bytes, expected));
 }
 
 Status WorldState::allTaken() const {
     if (sections_.empty()) return ok();
-    return badInput(fmt::format("the saved state has a section {}, which this scene has no use for: resume it with the scene it is of",
-                                sections_.begin()->first));
+    return badInput(
+        fmt::format("the saved state has a section {}, which this scene does not need: resume it with the scene it was saved from",
+                    sections_.begin()->first));
 }
 
 std::string fixedValues(const VisitFn& visit) {
@@ -192,7 +195,8 @@ Status sameFixedValues(std::string_view saved, std::string_view now) {
     while (!saved.empty() || !now.empty()) {
         const std::string_view was = next(saved), is = next(now);
         if (was != is)
-            return badInput(fmt::format("the state was saved with {}, this scene has {}: resume it with the scene it is of", was, is));
+            return badInput(
+                fmt::format("the state was saved with {}, this scene has {}: resume it with the scene it was saved from", was, is));
     }
     return ok();
 }
@@ -226,7 +230,7 @@ Result<WorldState> unpackState(std::span<const std::byte> bytes, std::string_vie
     try {
         return Reader(bytes, name, memoryLimit).read();
     } catch (const std::bad_alloc&) {
-        return failed(fmt::format("{}: there is not enough memory for what it holds", name));
+        return failed(fmt::format("{}: there is not enough memory for its content", name));
     }
 }
 

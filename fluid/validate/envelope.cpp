@@ -49,7 +49,8 @@ constexpr EnvelopeRow kRows[] = {
      envelopeOfSpawning},
     {"coupling", "a body lighter than the water that it displaces oscillates with growing amplitude, because it responds one step late",
      "density ratio 0.5: a ball's added mass (Causin, Gerbeau and Nobile 2005)",
-     "The load acts through a fictitious mass, and the remainder is applied later (see fluid/sim/README.md): the added-mass instability "
+     "The load acts through a fictitious mass, and the remainder is applied later (see fluid/sim/solids/README.md): the added-mass "
+     "instability "
      "does not occur.",
      envelopeOfCoupling},
 };

@@ -48,7 +48,7 @@ class ArgumentReader {
     // Arguments by position; `name` is the name in the help text.
     void positional(const std::string& name, const std::string& doc, std::string& value, bool required);
     void positional(const std::string& name, const std::string& doc, std::vector<std::string>& values);
-    // Options by name ("--out"); `type` is the placeholder in the help text: "FILE", "N". An empty text is refused.
+    // Options by name ("--out"); `type` is the word for the value in the help text: "FILE", "N". An empty text is refused.
     void flag(const std::string& name, const std::string& doc, bool& value);
     void option(const std::string& name, const std::string& type, const std::string& doc, std::string& value);
     void option(const std::string& name, const std::string& type, const std::string& doc,

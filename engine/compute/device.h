@@ -111,7 +111,7 @@ class Device {
     Result<Kernel> kernel(std::string_view path) { return kernel(path, {}); }
 
     // Reads the files of its kernels again and compiles the changed ones. Returns how many changed; 0 if kernels are compiled in (cpu).
-    // Error: the compiler's message, or a kernel whose arguments no longer fit its caller; then no kernel changes.
+    // Error: the compiler's message, or a kernel has other arguments than its caller passes; no kernel changes then.
     virtual Result<size_t> reload() { return size_t{0}; }
 
     // The kernels made so far, with their defines: "fluid/methods/wcsph_density;MATTER=1;PERIODIC=1".

@@ -14,7 +14,7 @@ namespace rivulet {
 struct AirDrop {
     dvec3 position{0.0}, velocity{0.0};  // m, m/s, in the world
     uint32_t picolitres = 0;
-    uint32_t skin = 0;  // the index of the skin whose liquid it is, and whose wind it meets
+    uint32_t skin = 0;  // index of the skin that it left: it has that skin's liquid and wind
 };
 
 class PlacedFlow {

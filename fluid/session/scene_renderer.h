@@ -79,7 +79,7 @@ class SceneRenderer {
     std::array<gpu::Texture, 2> shadowSharp_, shadowSoft_;  // and those of fast quality
     std::vector<mat4> shadowOf_;  // the content of the shadow maps: the light's projection, then a matrix per mesh
     std::vector<const GpuMesh*> shadowMeshes_;
-    gpu::Texture nothing_;                  // placeholder for a missing map of the light
+    gpu::Texture nothing_;                  // bound where the scene has no light map
     std::vector<uint64_t> shadowVersions_;  // of their deformers
     struct MeshKey {
         std::shared_ptr<const Mesh> mesh;

@@ -21,7 +21,7 @@ c++ -std=c++20 -O1 "$here/main.cpp" "${flags[@]}" -o "$work/by_pkg_config"
     cd "$work"
     unset DISPLAY WAYLAND_DISPLAY
     export RIVULET_SHADERS="$work/no_such_folder"
-    "$work/prefix/bin/rivulet" list scenes | grep -q "$work/prefix" || { echo "the installed program does not find its own scenes"; exit 1; }
+    "$work/prefix/bin/rivulet" list scenes >"$work/scenes.txt" && grep -q "$work/prefix" "$work/scenes.txt" || { echo "the installed program does not find its own scenes"; exit 1; }
     "$work/prefix/bin/rivulet" run "$work/prefix/share/rivulet/assets/scenes/sheet_on_sphere.json" --headless --frames 1 --size 64x48
     [ -s "$work/out/sheet_on_sphere.mp4" ]
 )

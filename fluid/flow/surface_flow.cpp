@@ -310,7 +310,7 @@ Status SurfaceFlow::Impl::moveThesis(const FlowStep& step, const StepParams& s) 
     if (Status pressed = thesis->press(forThesis(), f, s); !pressed) return pressed;
     device->run(steer, f, {&drops.id, &layout, &flat, &film, &merged, &drop, &motion}, f.count);
     device->run(walk, f, {&drops.id, &layout, &flat, &shift, &drop, &motion}, f.count);
-    thesis->letGo(forThesis(), f);
+    thesis->releaseDrops(forThesis(), f);
     device->run(leave, f, {&drops.id, &frames, &motion, &drop, &counter, &left}, f.count);
     return ok();
 }

@@ -184,7 +184,7 @@ Status ThesisTables::press(const Of& of, const FlowStep& f, StepParams s) {
     return ok();
 }
 
-void ThesisTables::letGo(const Of& of, const FlowStep& f) {
+void ThesisTables::releaseDrops(const Of& of, const FlowStep& f) {
     device_->run(leave_, stepOf(f), {&of.particles.id, &of.basis, &flat_, &of.drop, &of.motion}, f.count);
 }
 

@@ -59,7 +59,7 @@ class ThesisTables {
     int parts(double seconds) const;  // substeps that pressure and viscosity need
     // Up to the law: `motion` is q, `merged` the holding force. Error (failed): no memory for the sort.
     Status press(const Of& of, const FlowStep& f, StepParams s);
-    void letGo(const Of& of, const FlowStep& f);  // after the walk
+    void releaseDrops(const Of& of, const FlowStep& f);  // after the walk
 
   private:
     ThesisStep stepOf(const FlowStep& f) const;

@@ -84,7 +84,7 @@ Cooperation::Cooperation(Session& session, Plan plan, Timeline* timeline, const 
         log.notice("--cooperate thesis needs a backend on the GPU, which the CPU assists: here the cpu simulates alone");
         plan_ = Plan::alone;
     }
-    if (plan_ == Plan::thesis && !session.world().knowsCells()) {
+    if (plan_ == Plan::thesis && !session.world().hasCellWork()) {
         log.notice(
             "--cooperate thesis is not possible with bodies, periodic axes, linked lists or a method that moves particles before sorting "
             "(pbf): cells are unknown before the next step, and the device finds them alone");
@@ -107,7 +107,7 @@ void Cooperation::begin(double seconds, bool wait, double deviceMs) {
     wait_ = wait;
     deviceMs_ = deviceMs;
     aheadMs_ = 0;
-    if (plan_ != Plan::thesis || session_->world().knowsCells()) return;
+    if (plan_ != Plan::thesis || session_->world().hasCellWork()) return;
     log_.notice("--cooperate thesis is for a GPU that simulates while the cpu helps: from here on the cpu simulates, alone");
     plan_ = Plan::alone;
 }
@@ -166,7 +166,7 @@ double Cooperation::finish() {
         helped_ = true;
         const TimedSpan span(timeline_, "main", "cells go up");
         const double before = hostSeconds();
-        session_->world().giveCells(std::span(hostPointer<const uint32_t>(cells_->cell), cells_->step.count));
+        session_->world().setCells(std::span(hostPointer<const uint32_t>(cells_->cell), cells_->step.count));
         aheadMs_ += 1000 * (hostSeconds() - before);
     }
     return advance();

@@ -132,8 +132,8 @@ RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, co
     // The world counts particles, skins picolitres: the balance is in each unit, so that rounding is no error.
     double missing = std::abs(std::round((l.emitted - l.inWorld - l.drained - late.withdrawn) / one)) * one;
     if (skins != nullptr) {
-        l.debt = late.pendingVolume;
-        l.inWorld += l.debt;
+        l.pending = late.pendingVolume;
+        l.inWorld += l.pending;
         // The volume from skins to the world, less what became particles, is pending; the volume back is what skins received, up to
         // rounding.
         constexpr double kPicolitre = 1.0e-15;  // m^3
@@ -299,7 +299,7 @@ std::string writeRunStats(const RunStats& stats) {
     v["dt"]["max"] = number(stats.dtMax);
     const RunStats::Ledger& l = stats.ledger;
     for (const auto& [name, value] : {std::pair("emitted", l.emitted), std::pair("onSurface", l.onSurface), std::pair("inAir", l.inAir),
-                                      std::pair("inWorld", l.inWorld), std::pair("debt", l.debt), std::pair("evaporated", l.evaporated),
+                                      std::pair("inWorld", l.inWorld), std::pair("debt", l.pending), std::pair("evaporated", l.evaporated),
                                       std::pair("drained", l.drained), std::pair("error", l.error)})
         v["ledger"][name] = number(value);
     v["limited"] = Json::Value(Json::arrayValue);

@@ -79,10 +79,10 @@ struct RunStats {
     double dropped = 0;              // s requested but not simulated
     double dtMin = 0, dtMax = 0;     // s
     std::vector<std::string> limited;
-    // m^3. emitted: blocks, emitters and sources. debt: the part of inWorld that came from skins and is not yet a particle. error: the
-    // imbalance over emitted.
+    // m^3. emitted: blocks, emitters and sources. pending (key `debt`): the part of inWorld that came from skins and is not yet a particle.
+    // error: the imbalance over emitted.
     struct Ledger {
-        double emitted = 0, onSurface = 0, inAir = 0, inWorld = 0, debt = 0, evaporated = 0, drained = 0, error = 0;
+        double emitted = 0, onSurface = 0, inAir = 0, inWorld = 0, pending = 0, evaporated = 0, drained = 0, error = 0;
     } ledger;
 };
 // The balance of volumes. `late`: of the world; `inWorld`: m^3, of its particles, of `one` m^3 each; `skins`: null where there are none.

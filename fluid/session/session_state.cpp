@@ -115,11 +115,11 @@ bool Session::sameWater(const SceneFile& before, const SceneFile& after) {
     return fixed(before) == fixed(after);
 }
 
-Status Session::goOnFrom(Session& other) {
+Status Session::continueFrom(Session& other) {
     if (replay_ || other.replay_) return badInput("a recording cannot be continued");
     solids_.setTurned(scene_, other.solids_, other.scene_);
     const SceneSolids::Motion motion = solids_.motionAt(scene_, other.world_->time(), 0);
-    if (Status gone = world_->goOnFrom(*other.world_, motion.poses, motion.shapes); !gone) {
+    if (Status gone = world_->continueFrom(*other.world_, motion.poses, motion.shapes); !gone) {
         world_->reset();
         toStart();
         return gone;

@@ -19,7 +19,7 @@ Result<Outcome> runFloating(const CaseSettings& settings) {
     // Along x and z only water and bodies interact: there are no walls, and the floor has no friction.
     const auto level = [](const dvec3& v) { return dvec3(v.x, 0.0, v.z); };
     const auto momentumOfBody = [&](size_t k) {
-        return level(massOf(bodies[k]) * dvec3(trial->world().bodies()[k].velocity) + trial->world().bodyLoads()[k].impulseOwed);
+        return level(massOf(bodies[k]) * dvec3(trial->world().bodies()[k].velocity) + trial->world().bodyLoads()[k].pendingImpulse);
     };
     const auto momentum = [&](const HostParticles& all) {
         dvec3 sum(0.0);

@@ -230,7 +230,7 @@ bool Manipulator::undo(SceneFile& draft, Asks& asks) {
     return true;
 }
 
-void Manipulator::letGo() { held_.reset(); }
+void Manipulator::release() { held_.reset(); }
 
 void Manipulator::draw(const InputEvents& input, const Camera& camera, const Session& session, const SceneFile& draft) const {
     const vec2 size(glm::max(input.size, ivec2(1)));

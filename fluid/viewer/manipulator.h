@@ -39,7 +39,7 @@ class Manipulator {
     void choose(const Thing& thing) { chosen_ = thing; }
     bool holds() const { return held_ || move_; }  // it uses the mouse, also over a panel
     // The session is replaced: a body is no longer held. A move by handles goes on.
-    void letGo();
+    void release();
 
   private:
     struct Handles {

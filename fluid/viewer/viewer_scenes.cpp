@@ -147,8 +147,8 @@ void Viewer::adopt(OpenedScene opened, Cause cause) {
     const bool other = cause == Cause::otherScene;
     run_.drop();
     if (!other && Session::sameWater(scene(), opened.session->scene()))
-        if (Status gone = opened.session->goOnFrom(session()); !gone) log_.notice(gone.error().message);
-    hand_.letGo();
+        if (Status gone = opened.session->continueFrom(session()); !gone) log_.notice(gone.error().message);
+    hand_.release();
     if (other) {
         if (draft_.edited(session().budget().has_value())) {
             left_ = draft_.scene;

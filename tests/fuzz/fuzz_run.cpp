@@ -44,7 +44,7 @@ bool plainSentence(const std::string& s) { return s.size() > 10 && s.find('\n') 
 // "", or what is not finite.
 std::string notFinite(const FluidStats& s) {
     for (const auto& [name, value] :
-         {std::pair("emitted", s.emitted), std::pair("drained", s.drained), std::pair("owed", s.owed),
+         {std::pair("emitted", s.emitted), std::pair("drained", s.drained), std::pair("backlog", s.backlog),
           std::pair("avgCompression", s.avgCompression), std::pair("maxCompression", s.maxCompression), std::pair("kinetic", s.kinetic),
           std::pair("potential", s.potential), std::pair("centreOfMass.x", s.centreOfMass[0]),
           std::pair("centreOfMass.y", s.centreOfMass[1]), std::pair("centreOfMass.z", s.centreOfMass[2]), std::pair("maxSpeed", s.maxSpeed),

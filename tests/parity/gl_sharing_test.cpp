@@ -268,7 +268,7 @@ TEST_F(GlSharingTest, WhatIsSharedIsWhatTheWorldHoldsAcquiredAndReleasedOnceAFra
     }
 }
 
-TEST_F(GlSharingTest, ABufferThatGrowsIsWrappedAnewAndTheOldOneLetGoFirst) {
+TEST_F(GlSharingTest, AGrownBufferIsWrappedAgainAfterTheOldOneIsReleased) {
     const std::unique_ptr<Device> device = playing();
     FluidUpload upload;
     for (const int sides : {4, 9, 6, 12}) {

@@ -27,8 +27,8 @@ struct Cloud {
     bool inside(uint32_t i) const { return i != kNaN && i != kBelow && i != kFar && i != kFree; }
 };
 
-// Strewn at random through a box of (10, 6.7, 8.3) support radii: about five a cell, in some none.
-Cloud strewn() {
+// Random positions in a box of (10, 6.7, 8.3) support radii: about five a cell, in some none.
+Cloud jittered() {
     Cloud cloud;
     std::mt19937 random(11);
     const auto uniform = [&](float lo, float hi) { return lo + (hi - lo) * static_cast<float>(random() >> 8U) * 0x1p-24F; };
@@ -48,7 +48,7 @@ Cloud strewn() {
 struct Bench {
     Device& device;
     FluidParams params;
-    Cloud cloud = strewn();
+    Cloud cloud = jittered();
     PairTraits traits;
     std::unique_ptr<Method> method;
     std::unique_ptr<NeighborGrid> grid;
@@ -284,7 +284,7 @@ TEST_P(LinkedList, EllipsoidsAreTheSortedGrids) {
         ellipsoids.find(b.device, b.step, *b.grid, b.particles);
         for (size_t k = 0; k < 3; ++k) found[linked][k] = b.byId<vec4>(*ellipsoids.buffers()[k]);
     }
-    const Cloud cloud = strewn();
+    const Cloud cloud = jittered();
     for (uint32_t i = 0; i < cloud.id.size(); ++i)
         for (size_t k = 0; k < 3 && cloud.inside(i); ++k)
             ASSERT_LT(glm::length(found[1][k][i] - found[0][k][i]), 1.0e-4F) << "of particle " << i << ", part " << k;

@@ -226,7 +226,7 @@ TEST(TwoWay, NothingIsLostBetweenFluidAndBody) {
         dvec3 impulse(0.0);
         for (int frame = 0; frame < 12; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
         sum(after, afterTurning);
-        after += world->bodyLoads()[0].impulseOwed;
+        after += world->bodyLoads()[0].pendingImpulse;
         const double all = mass * world->particles().count + double{body.shape.mass};
         const dvec3 fallen = world->time() * dvec3(p.gravity);
         after -= all * fallen;

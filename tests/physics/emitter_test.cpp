@@ -164,7 +164,7 @@ TEST(Emitter, ACapIsKeptSaidAndItsSlotsComeBackFromSinks) {
     EXPECT_EQ(found(*world).position.size(), 200U);
     ASSERT_EQ(world->stats().limited.size(), 1U);
     EXPECT_NE(world->stats().limited[0].find("200"), std::string::npos);
-    EXPECT_NEAR(world->stats().owed, 2.0e-3 - 200 * 8.0e-6, 2 * 8.0e-6);
+    EXPECT_NEAR(world->stats().backlog, 2.0e-3 - 200 * 8.0e-6, 2 * 8.0e-6);
     // With a sink they are used again and again.
     world = make(*device, p, both);
     run(*world, 3.0);
@@ -218,7 +218,7 @@ TEST(Emitter, NothingIsBornInASolid) {
     auto world = make(*device, p, {.emitters = {nozzle(1.0F, 0.5F, 0.08F, vec3(0.0F))}}, {.field = &*field});
     run(*world, 0.5);
     EXPECT_EQ(found(*world).position.size(), 0U);
-    EXPECT_NEAR(world->stats().owed, 0.5e-3, 8.0e-6) << "it is still due";
+    EXPECT_NEAR(world->stats().backlog, 0.5e-3, 8.0e-6) << "it is still due";
     world = make(*device, p, {.emitters = {nozzle(1.0F, 0.5F, 0.08F, vec3(0.2F, 0.0F, 0.0F))}}, {.field = &*field});
     run(*world, 0.5);
     const Found f = found(*world);
@@ -240,7 +240,7 @@ TEST(Emitter, NothingIsBornInABody) {
     auto world = make(*device, p, {.emitters = {nozzle(1.0F, 0.5F, 0.08F, vec3(0.0F))}}, {.bodies = {ball}});
     run(*world, 0.5);
     EXPECT_EQ(found(*world).position.size(), 0U);
-    EXPECT_NEAR(world->stats().owed, 0.5e-3, 8.0e-6) << "it is still due";
+    EXPECT_NEAR(world->stats().backlog, 0.5e-3, 8.0e-6) << "it is still due";
     // One that moves on makes room: after 0.2 m of 1 m/s the nozzle's places are out of it.
     ball.shape = sphereShape(0.12F, 1.0e5, p.spacing);
     ball.state.velocity = vec3(1.0F, 0, 0);
@@ -317,7 +317,7 @@ TEST(Emitter, SpawningInsideWaterIsRefusedNotExploded) {
         EXPECT_EQ(world->stats().lost, 0U) << method;
         EXPECT_LT(world->stats().avgCompression, 0.02) << method;
         const double placed = static_cast<double>(found(*world).position.size()) * 2.7e-5;
-        EXPECT_NEAR(placed + world->stats().owed, 16 * 10 * 16 * 2.7e-5 + 1.2e-3, 2.7e-5) << method;
+        EXPECT_NEAR(placed + world->stats().backlog, 16 * 10 * 16 * 2.7e-5 + 1.2e-3, 2.7e-5) << method;
     }
 }
 

@@ -70,7 +70,7 @@ TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
     for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
     const size_t before = positions(*world).size();
     const vec3 place(0.31F, 0.2F, 0.18F);
-    // A tear: less than a particle. It is owed, and nothing is to be seen.
+    // A tear: less than a particle. It stays pending, and no particle appears.
     world->deposit(place, vec3(0, -2, 0), 8.0e-9);
     for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
     EXPECT_EQ(positions(*world).size(), before);
@@ -105,8 +105,8 @@ TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
     EXPECT_EQ(world->stats().withdrawn, 0.0);
 }
 
-// A debt is part of a saved world, and what comes after is the same.
-TEST(Exchange, ASavedWorldKeepsItsDebts) {
+// Pending volume is part of a saved world, and a restored world continues identically.
+TEST(Exchange, ASavedWorldKeepsItsPendingVolume) {
     auto device = makeTestCpu();
     auto a = make(*device, pool()), b = make(*device, pool());
     for (int k = 0; k < 4; ++k) a->step({}, 1.0 / 60);

@@ -182,11 +182,11 @@ TEST(Flow, IsHeldUntilItIsTooHeavy) {
             p.receding = row.receding;
             SurfaceFlow flow = flowOn(*device, shape, p);
             std::mt19937 random(7);
-            std::uniform_real_distribution<float> strewn(-2e-4F, 2e-4F);
+            std::uniform_real_distribution<float> offset(-2e-4F, 2e-4F);
             double grown = 0, first = 0;
             for (int k = 0; k < 60 && first == 0; ++k) {
                 const auto birth = static_cast<uint32_t>(row.microlitres * 1e6 / 50);
-                flow.add(nearestPoint(flow.mesh(), vec3(0.05F + strewn(random), 0.05F + strewn(random), 0)), birth);
+                flow.add(nearestPoint(flow.mesh(), vec3(0.05F + offset(random), 0.05F + offset(random), 0)), birth);
                 for (int step = 0; step < 6; ++step) EXPECT_TRUE(flow.step({}, 1.0 / 60));
                 grown += birth * 1e-6;
                 for (const SkinDrop& d : flow.drops())

@@ -47,7 +47,7 @@ TEST(GoOn, OnlyWhatIsInTheMovedBallIsTakenAway) {
     after.room = one->world().particles().count;
     std::vector<std::string> said;
     auto two = open(*device, after, Log{[&](LogLevel, std::string_view text) { said.emplace_back(text); }});
-    ASSERT_TRUE(two->goOnFrom(*one));
+    ASSERT_TRUE(two->continueFrom(*one));
     EXPECT_EQ(two->time(), one->time());
     const HostParticles had = readParticles(one->world()), has = readParticles(two->world());
     // The ball is closed: what stays is what is outside it, to a voxel, exactly where and as fast as it was.
@@ -110,14 +110,14 @@ TEST(GoOn, FoamStaysOnTheWater) {
     after.colliders[0].position = vec3(0.6F, 0.15F, 0.3F);
     after.room = one->world().particles().count;
     auto two = open(*device, after);
-    ASSERT_TRUE(two->goOnFrom(*one));
+    ASSERT_TRUE(two->continueFrom(*one));
     EXPECT_EQ(flecks(*two), had);
     run(*two, 1);
     EXPECT_GT(flecks(*two).size(), had.size() / 2) << "they live on";
 
     after.fluid.foam.most = 1000;
     auto three = open(*device, after);
-    ASSERT_TRUE(three->goOnFrom(*one));
+    ASSERT_TRUE(three->continueFrom(*one));
     EXPECT_TRUE(flecks(*three).empty()) << "another number of them begins anew";
 }
 
@@ -130,7 +130,7 @@ TEST(GoOn, ASavedStateBringsItsRoom) {
     SceneFile after = inTheWater;
     after.room = one->world().particles().count;
     auto two = open(*device, after);
-    ASSERT_TRUE(two->goOnFrom(*one));
+    ASSERT_TRUE(two->continueFrom(*one));
     run(*two, 3);
     auto three = open(*device, inTheWater);
     ASSERT_LT(three->world().particles().count, two->world().particles().count) << "this is what is tested";
@@ -183,7 +183,7 @@ TEST(GoOn, WhatParticlesAreAndWhenItIs) {
     after.room = one->world().particles().count;
     after.colliders[0].position.x = 0.9F;
     auto two = open(*device, after);
-    ASSERT_TRUE(two->goOnFrom(*one));
+    ASSERT_TRUE(two->continueFrom(*one));
     EXPECT_EQ(honey(*one), honey(*two));
     EXPECT_GT(honey(*two), 100);
     EXPECT_NEAR(glm::dot(two->world().poses()[0].rotation, one->world().poses()[0].rotation), 1, 1.0e-5);
@@ -204,7 +204,7 @@ TEST(GoOn, WhereNothingWasMovedNothingIsTakenAway) {
     after.sinks.push_back({.position = vec3(5)});
     after.room = one->world().particles().count;
     auto two = open(*device, after);
-    ASSERT_TRUE(two->goOnFrom(*one));
+    ASSERT_TRUE(two->continueFrom(*one));
     EXPECT_EQ(readParticles(two->world()).position.size(), readParticles(one->world()).position.size());
 }
 
@@ -216,7 +216,7 @@ TEST(GoOn, AnotherSpacingStartsAnew) {
     finer.fluid.spacing = 0.05F;
     EXPECT_FALSE(Session::sameWater(scene(), finer));
     auto two = open(*device, finer);
-    const Status gone = two->goOnFrom(*one);
+    const Status gone = two->continueFrom(*one);
     ASSERT_FALSE(gone);
     EXPECT_EQ(two->time(), 0);
     EXPECT_GT(two->world().stats().particles, 0U);

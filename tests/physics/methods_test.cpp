@@ -57,21 +57,21 @@ TEST_P(Methods, APoolAtRestKeepsItsLevelAndIsStill) {
 
 // A block with jitter: no particle is further than that from its lattice point or outside the block; all of the range occurs; runs are
 // identical.
-TEST(Block, JitterStrewsParticlesAboutTheirLattice) {
+TEST(Block, JitterMovesParticlesAboutTheirLattice) {
     BlockParams b;
     b.min = vec3(0.1F);
     b.max = vec3(0.1F + 20 * 0.05F);
-    std::vector<NewParticle> still, strewn, again;
+    std::vector<NewParticle> still, jittered, again;
     fillBlock(b, 0.05F, still);
     b.jitter = 0.3F;
-    fillBlock(b, 0.05F, strewn);
+    fillBlock(b, 0.05F, jittered);
     fillBlock(b, 0.05F, again);
     ASSERT_EQ(still.size(), 8000U);
-    ASSERT_EQ(strewn.size(), 8000U);
+    ASSERT_EQ(jittered.size(), 8000U);
     glm::dvec3 sum(0.0), squares(0.0), product(0.0);
     int inside = 0;
     for (size_t i = 0; i < still.size(); ++i) {
-        const vec3 off = (strewn[i].position - still[i].position) / 0.05F, x = strewn[i].position, s = still[i].position;
+        const vec3 off = (jittered[i].position - still[i].position) / 0.05F, x = jittered[i].position, s = still[i].position;
         EXPECT_EQ(x, again[i].position);
         for (int k = 0; k < 3; ++k) {
             EXPECT_LE(std::abs(off[k]), 0.3001F);
@@ -171,7 +171,7 @@ TEST_P(Methods, CollidingDropsKeepMomentum) {
     EXPECT_LT(glm::length(after[1] * scale - before[1]), 3 * tolerance);
 }
 
-// Particles strewn at random, many of them on top of each other, are pushed apart; nothing becomes infinite, nothing is lost.
+// Particles placed at random, many of them on top of each other, are pushed apart; nothing becomes infinite, nothing is lost.
 TEST_P(Methods, AHeapOfOverlappingParticlesComesApart) {
     FluidParams p = params(0.05F);
     p.box.max = vec3(1.0F);
@@ -240,8 +240,8 @@ TEST_P(Methods, APeriodicBoxKnowsNoBorder) {
 
 // With a tolerance, PBF corrects until that little compression is left; fewer corrections leave more.
 
-// A closed box without walls, strewn: nothing can give way, and with more neighbours each Jacobi correction meets more of the others'. At a
-// support of three spacings the iteration for two diverges: particles fall upon each other.
+// A closed box without walls, with jittered particles: nothing can give way, and with more neighbours each Jacobi correction meets more of
+// the others'. At a support of three spacings the iteration for two diverges: particles fall upon each other.
 TEST(Dfsph, ConvergesWithAnyNumberOfNeighbours) {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     const std::unique_ptr<CpuDevice> device = makeCpuDevice(rows);

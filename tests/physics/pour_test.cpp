@@ -117,7 +117,7 @@ TEST(Pour, IntoWaterThatGoesOn) {
     after.room = one->world().particles().count;
     ASSERT_TRUE(Session::sameWater(before, after));
     auto two = open(*device, after);
-    ASSERT_TRUE(two->goOnFrom(*one));
+    ASSERT_TRUE(two->continueFrom(*one));
     const uint32_t held = one->world().stats().particles;
     EXPECT_EQ(readParticles(two->world()).position.size(), held);
     two->pourOnto(vec3(0.8F, 0, 0.3F));

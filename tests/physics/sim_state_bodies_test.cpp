@@ -129,7 +129,7 @@ TEST_P(WholeState, WithBodiesEmittersAndSinksGoesOnBitForBit) {
     EXPECT_EQ(a.kinetic, b.kinetic);
     EXPECT_EQ(a.emitted, b.emitted);
     EXPECT_EQ(a.drained, b.drained);
-    EXPECT_EQ(a.owed, b.owed);
+    EXPECT_EQ(a.backlog, b.backlog);
 
     // It is what the test is about: bodies that touch and move, slots that were used again.
     const auto bodies = items<BodyState>(half, "bodies.states");

@@ -132,10 +132,10 @@ TEST_P(State, WhatIsLeftOutOrOfAnotherSceneIsRefused) {
     }
     {
         WorldState more = saved;
-        more.putText("emitter.debt", "1");
+        more.putText("emitter.pending", "1");
         const Status done = session->restore(more);
         ASSERT_FALSE(done);
-        EXPECT_NE(done.error().message.find("emitter.debt"), std::string::npos);
+        EXPECT_NE(done.error().message.find("emitter.pending"), std::string::npos);
     }
     for (const auto& [what, change] : std::initializer_list<std::pair<const char*, void (*)(SceneFile&)>>{
              {"spacing", [](SceneFile& s) { s.fluid.spacing = 0.045F; }},

@@ -272,16 +272,16 @@ TEST(Drawn, SolidsKeepStepWithFixedSteps) {
 TEST(FrameStepper, PlansFromWhatEarlierFramesTook) {
     FrameStepper stepper;
     (void)stepper.begin(1.0 / 60, 0, 8);
-    EXPECT_TRUE(stepper.mayPlan(1000)) << "nothing is known yet";
-    for (int k = 0; k < 50; ++k) stepper.know(k % 2 == 0 ? 24 : 0, 6);  // 24 ms that come every second frame: 2 ms a substep
+    EXPECT_TRUE(stepper.fitsPredicted(1000)) << "nothing is known yet";
+    for (int k = 0; k < 50; ++k) stepper.recordTime(k % 2 == 0 ? 24 : 0, 6);  // 24 ms that come every second frame: 2 ms a substep
     (void)stepper.begin(1.0 / 60, 0, 8);
-    EXPECT_TRUE(stepper.mayPlan(2));
-    EXPECT_TRUE(stepper.mayPlan(3));
-    EXPECT_FALSE(stepper.mayPlan(4)) << "five of 2 ms are more than 8";
-    for (int k = 0; k < 50; ++k) stepper.know(3, 6);
-    EXPECT_TRUE(stepper.mayPlan(14)) << "recovers";
+    EXPECT_TRUE(stepper.fitsPredicted(2));
+    EXPECT_TRUE(stepper.fitsPredicted(3));
+    EXPECT_FALSE(stepper.fitsPredicted(4)) << "five of 2 ms are more than 8";
+    for (int k = 0; k < 50; ++k) stepper.recordTime(3, 6);
+    EXPECT_TRUE(stepper.fitsPredicted(14)) << "recovers";
     (void)stepper.begin(1.0 / 60, 0, 0);
-    EXPECT_TRUE(stepper.mayPlan(100000)) << "no budget";
+    EXPECT_TRUE(stepper.fitsPredicted(100000)) << "no budget";
 }
 
 TEST(FrameStepper, WholeStepsThatWereNotMadeAreDropped) {

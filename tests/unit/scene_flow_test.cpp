@@ -165,7 +165,7 @@ TEST(SceneFlow, TheSameWaterIsInBothWorlds) {
     EXPECT_GT(world.stats().withdrawn, 0.75 * jet);
     EXPECT_LT(world.stats().withdrawn, 1.25 * jet + world.stats().deposited);
     EXPECT_GT(world.stats().deposited, 0.2 * jet);
-    EXPECT_LT(l.debt, 8 * std::pow(0.008, 3));
+    EXPECT_LT(l.pending, 8 * std::pow(0.008, 3));
     EXPECT_EQ(stats.lost, 0U);
     for (const SkinDrop& d : (*session)->flows().skins()[0]->flow().drops()) EXPECT_TRUE(isFinite(d.position));
     (*session)->reset();

@@ -172,7 +172,7 @@ TEST(VoxelSolid, OpenMeshesByWindingNumber) {
 }
 
 // Triangles about as long as `size` each, that share no vertex: jittered in space, or along a ball.
-Mesh strewn(int count, float size, bool ball) {
+Mesh looseTriangles(int count, float size, bool ball) {
     std::mt19937 random(17);
     std::uniform_real_distribution<float> at(-1.0F, 1.0F);
     const auto point = [&] { return vec3(at(random), at(random), at(random)); };
@@ -201,7 +201,7 @@ TEST(VoxelSolid, ManyLoosePieces) {
     // The first three are exact; above 1,024 pieces the result has a limited accuracy.
     for (const Case& c : {Case{400, 0.5F, false, 16, 1e-7}, Case{1000, 0.3F, false, 16, 1e-7}, Case{1000, 0.08F, true, 20, 1e-7},
                           Case{6000, 0.3F, false, 24, 0.02}, Case{20000, 0.018F, true, 32, 0.02}}) {
-        const Mesh mesh = strewn(c.count, c.size, c.ball);
+        const Mesh mesh = looseTriangles(c.count, c.size, c.ball);
         const CleanMesh clean = cleaned(mesh);
         VoxelGrid grid = gridAround(mesh, c.resolution, 1.0F);
         voxelizeSolid(clean, grid);
@@ -221,7 +221,7 @@ TEST(VoxelSolid, ManyHolesAndLoosePieces) {
     const Mesh ball = test::makeSphere(vec3(0.1F), 1.0F, 16);
     const Mesh holes = without(ball, [](size_t t) { return t % 3 == 0; });
     expectRight(holes, gridAround(holes, 18), "many holes");
-    Mesh both = joined(holes, strewn(400, 0.1F, false));
+    Mesh both = joined(holes, looseTriangles(400, 0.1F, false));
     const auto centre = static_cast<uint32_t>(both.positions.size());
     both.positions.emplace_back(0.0F);
     for (uint32_t k = 0; k < 30; ++k) both.indices.insert(both.indices.end(), {centre, 7 * k, 7 * k + 3});
@@ -229,7 +229,7 @@ TEST(VoxelSolid, ManyHolesAndLoosePieces) {
 }
 
 TEST(VoxelSolid, ManyLoosePiecesCanBeCancelled) {
-    const Mesh mesh = strewn(1000, 0.2F, false);
+    const Mesh mesh = looseTriangles(1000, 0.2F, false);
     VoxelGrid grid = gridAround(mesh, 24);
     double last = 0;
     int calls = 0;
@@ -283,7 +283,7 @@ TEST(VoxelSolid, TheSameForAnyNumberOfThreads) {
     }
     voxelizeSolid(cleaned(mesh), many);
     EXPECT_EQ(one.bits, many.bits);
-    const Mesh loose = strewn(1500, 0.1F, false);
+    const Mesh loose = looseTriangles(1500, 0.1F, false);
     VoxelGrid oneOfLoose = gridAround(loose, 20), manyOfLoose = oneOfLoose;
     {
         const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);

@@ -320,7 +320,7 @@ NeighborGrid::NeighborGrid(NeighborGrid&&) noexcept = default;
 NeighborGrid& NeighborGrid::operator=(NeighborGrid&&) noexcept = default;
 NeighborGrid::~NeighborGrid() = default;
 
-void NeighborGrid::give(std::span<const uint32_t> cells) {
+void NeighborGrid::setCells(std::span<const uint32_t> cells) {
     ASSERT(cells.empty() || (cells.size() == impl_->count && impl_->cellCountGiven.index != UINT32_MAX), "give a GPU's sort a cell a slot");
     impl_->given = !cells.empty();
     if (impl_->given) impl_->device->writeAll<uint32_t>(impl_->cellOf, cells);

@@ -44,9 +44,9 @@ class NeighborGrid {
     void fill(StepParams& params) const;  // the grid's part of it
     // Lists reach this times h: for methods that move particles between builds.
     void setMargin(float margin);
-    // GPU, sorted: the cells of the particles in their present order, as fluid/grid/cell_of finds them; the next build uses them. If
-    // particles move before it, call this with none.
-    void give(std::span<const uint32_t> cells);
+    // GPU, sorted: sets the cells of the particles in their present order, as fluid/grid/cell_of computes them; the next build uses them.
+    // If particles move before the build, call this with none.
+    void setCells(std::span<const uint32_t> cells);
     // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error (failed): out
     // of memory for the lists; the newest state is then as it was, and a later build may succeed.
     Status build(const StepParams& params, Particles& particles);

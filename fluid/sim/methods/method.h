@@ -49,7 +49,7 @@ class Method {
     // All that a step depends on beside particles, params and solids. The world saves it, restores it, and fills it with 0 at t = 0.
     virtual std::vector<NamedBuffer> remembered() { return {}; }
     // Resets the estimates of a solver's iterations: the world begins at t = 0.
-    virtual void forget() {}
+    virtual void reset() {}
 };
 
 // A method is a pair of files method_NAME.h (its Params and its row's function) and .cpp, and its kernels; a line of methods.cpp, and where

@@ -44,7 +44,7 @@ class Dfsph final : public Method {
     }
 
     std::vector<NamedBuffer> remembered() override { return {{"pressure", &kept}}; }
-    void forget() override { residual.forget(); }
+    void reset() override { residual.reset(); }
 
     std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
         const std::vector<uint32_t> id = device.readAll<uint32_t>(p.id, p.count);
@@ -89,7 +89,7 @@ class Dfsph final : public Method {
         Particles& p = c.particles;
         const DfsphParams& d = c.fluid.dfsph;
         const bool cpu = c.device.backend() == Backend::cpu;
-        const int most = cpu ? d.maxIterations : residual.worthQueueing(d.maxIterations);
+        const int most = cpu ? d.maxIterations : residual.iterationsToQueue(d.maxIterations);
         StepParams s = c.params;
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         for (int k = 0; k < most; ++k) {
@@ -97,7 +97,7 @@ class Dfsph final : public Method {
             rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress()},
                      c.grid.pairThreads());
             pushOn(c, k, vec3(0.0F));
-            if (residual.enough(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
+            if (residual.converged(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
         }
         if (!cpu) residual.readLater(c);
     }

@@ -46,7 +46,7 @@ class Pbf final : public Method {
         return pascal;
     }
 
-    void forget() override { residual.forget(); }
+    void reset() override { residual.reset(); }
 
     bool predicts() const override { return true; }
     void step(StepContext& c) override {
@@ -68,7 +68,7 @@ class Pbf final : public Method {
         const bool toTolerance = pbf.tolerance > 0, cpu = c.device.backend() == Backend::cpu;
         const int most = !toTolerance ? pbf.iterations
                          : cpu        ? pbf.maxIterations
-                                      : residual.planned(double{pbf.tolerance}, pbf.maxIterations);
+                                      : residual.plannedIterations(double{pbf.tolerance}, pbf.maxIterations);
         int k = 0;
         StepParams s = c.params;
         for (; k < most; ++k) {

@@ -43,10 +43,10 @@ double SolverResidual::measure(StepContext& c, const Buffer& of) {
     return last_->value;
 }
 
-int SolverResidual::planned(double tolerance, int most) {
+int SolverResidual::plannedIterations(double tolerance, int most) {
     if (last_->fresh) {
-        // An iteration leaves about seven tenths of what it finds: three for each factor of e; down again by a quarter of that, as what is
-        // known is some frames old and several tell the same.
+        // An iteration reduces the residual to about 0.7: three iterations for each factor of e. The number decreases by a quarter of that,
+        // because the residual is some frames old and several frames report the same one.
         const double over = std::clamp(last_->value / tolerance, 1e-9, 1e30);
         if (over > 1) planned_ += static_cast<int>(std::ceil(std::min(3 * std::log(over), 100.0)));
         if (over < 0.5) planned_ -= std::max(static_cast<int>(-0.75 * std::log(over)), 1);
@@ -55,8 +55,8 @@ int SolverResidual::planned(double tolerance, int most) {
     return planned_ = std::clamp(planned_, 1, most);
 }
 
-bool SolverResidual::enough(StepContext& c, const Buffer& of, double tolerance, double reach, int k) {
-    // Not its number: a device keeps few different blocks of params at hand.
+bool SolverResidual::converged(StepContext& c, const Buffer& of, double tolerance, double reach, int k) {
+    // A flag, not the iteration's number: a device caches few different blocks of params.
     const uint32_t iteration = k > 0 ? 1 : 0;
     const double wayOf1 = double{c.params.dt} / reach;  // of a speed of 1 m/s
     if (c.device.backend() == Backend::cpu) {
@@ -74,9 +74,9 @@ bool SolverResidual::enough(StepContext& c, const Buffer& of, double tolerance, 
     return false;
 }
 
-int SolverResidual::worthQueueing(int most) {
-    // A quarter and eight more than any of the steps needed that are known since, a tenth less than before at most; twice as many where
-    // those queued were too few.
+int SolverResidual::iterationsToQueue(int most) {
+    // A quarter and eight more than the largest number that a step has needed since the last call, but at most a tenth less than before;
+    // twice as many if those queued were too few.
     if (last_->steps > 0) {
         queued_ = last_->tooFew ? 2 * queued_ : std::max(static_cast<int>(1.25 * last_->most) + 8, 9 * queued_ / 10);
         iterations_ = last_->iterations / last_->steps;
@@ -85,11 +85,11 @@ int SolverResidual::worthQueueing(int most) {
     return queued_ = std::clamp(queued_, 1, most);
 }
 
-void SolverResidual::forget() {
+void SolverResidual::reset() {
     planned_ = kPlanned;
     queued_ = kQueued;
     before_ = iterations_ = 0;
-    last_ = std::make_shared<Known>();  // what is still on its way is of the world before
+    last_ = std::make_shared<Readback>();  // results in flight belong to the state before the reset
 }
 
 void SolverResidual::readLater(StepContext& c) {

@@ -1,6 +1,5 @@
-// What an iterative pressure solver leaves, and how many iterations that asks for: known at once on the cpu. On a GPU, where nothing waits
-// for it, the device itself finds out when they are enough, and what was queued beyond that skips its sweeps over particles; here it is
-// known some frames late.
+// Residual of an iterative pressure solver, and the number of iterations that it needs. The cpu has both at once. A GPU decides on the
+// device when to stop: queued iterations beyond that skip their sweeps over particles, and the host reads the result some frames late.
 #pragma once
 
 #include <memory>
@@ -11,46 +10,46 @@ namespace rivulet {
 
 class SolverResidual {
   public:
-    // `defines`: of fluid/methods/residual, which says what it sums.
+    // `defines`: of fluid/methods/residual; they select the quantity that it sums.
     static Result<SolverResidual> create(Device& device, std::span<const Define> defines);
 
-    // What the last step known left, the mean over all particles, a fraction; and the iterations of a step. A GPU: those are the mean over
-    // the steps that came to be known together.
+    // Residual of the last step that was read, the mean over all particles, a fraction; and the iterations of a step. A GPU: the mean over
+    // the steps that were read together.
     double value() const { return last_->value; }
     double iterations() const { return iterations_; }
 
-    // Measures `of` (see fluid/methods/residual). cpu: and returns it. A GPU: it is known later, and what is returned is older.
+    // Measures `of` (see fluid/methods/residual). Returns the residual; on a GPU an older one.
     double measure(StepContext& context, const Buffer& of);
-    // A GPU: how many iterations, 1 to `most`, the last one known asks for.
-    int planned(double tolerance, int most);
+    // A GPU: the number of iterations, 1 to `most`, that the last residual read requires.
+    int plannedIterations(double tolerance, int most);
 
-    // For kernels that do nothing once iterations are enough: see fluid/methods/solver_progress. On the cpu it never says so.
+    // For kernels that return at once after the solver has converged: see fluid/methods/solver_progress. On the cpu it is never set.
     const Buffer& progress() const { return progress_; }
-    // After iteration `k`, from 0: whether `of` after what has just been applied is at its goal, see goalAt() of solver_stop.h; `reach`:
-    // how far the fastest may go in a step, m. A GPU: the device knows.
-    bool enough(StepContext& context, const Buffer& of, double tolerance, double reach, int k);
-    // A GPU: how many iterations, 1 to `most`, are worth queueing.
-    int worthQueueing(int most);
-    // A GPU, after the last of them: so that the host knows later.
+    // After iteration `k`, from 0: true if the residual of `of` has reached its goal, see goalAt() of solver_stop.h; `reach`: the longest
+    // path of a particle in a step, m. A GPU: always false; the device decides.
+    bool converged(StepContext& context, const Buffer& of, double tolerance, double reach, int k);
+    // A GPU: the number of iterations to queue, 1 to `most`.
+    int iterationsToQueue(int most);
+    // A GPU, after the last iteration: requests the result for the host.
     void readLater(StepContext& context);
-    // As new, for a world that begins again.
-    void forget();
+    // Returns to the initial state, for a world that is reset.
+    void reset();
 
   private:
-    struct Known {
+    struct Readback {
         double value = 0;
-        int steps = 0;                    // since the host last asked
-        double iterations = 0, most = 0;  // of them: the sum, of any
+        int steps = 0;                    // since the host last read them
+        double iterations = 0, most = 0;  // sum and maximum over these steps
         bool fresh = false, tooFew = false;
     };
     Kernel kernel_, advance_;
     Buffer rows_, progress_;
-    // Until one is known: pressure begins from nothing.
+    // Until a residual is read: pressure begins at zero.
     static constexpr int kPlanned = 30, kQueued = 1000;
     int planned_ = kPlanned, queued_ = kQueued;
-    double before_ = 0;  // cpu: of the iteration before
+    double before_ = 0;  // cpu: residual of the previous iteration
     double iterations_ = 0;
-    std::shared_ptr<Known> last_ = std::make_shared<Known>();
+    std::shared_ptr<Readback> last_ = std::make_shared<Readback>();
 };
 
 }  // namespace rivulet

@@ -137,11 +137,11 @@ BodyLoads::BodyLoads(std::span<const Body> bodies, const FluidParams& params) {
     }
 }
 
-BodyLoad BodyLoads::give(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds) {
+BodyLoad BodyLoads::transfer(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds) {
     Own& own = own_[body];
     BodyLoad& l = own.last;
     const double share = 1.0 / (1.0 + own.added * wet);
-    const dvec3 impulse = force * seconds + l.impulseOwed, turn = torque * seconds + l.turnOwed;
+    const dvec3 impulse = force * seconds + l.pendingImpulse, turn = torque * seconds + l.pendingAngularImpulse;
     l = {impulse * (share / seconds), turn * (share / seconds), impulse * (1 - share), turn * (1 - share)};
     return l;
 }

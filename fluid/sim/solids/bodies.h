@@ -39,7 +39,7 @@ struct Body {
 // What the fluid does to a body in a substep: force, N, and torque about the centre of mass, N m, in the world's axes.
 struct BodyLoad {
     dvec3 force{0.0}, torque{0.0};
-    dvec3 impulseOwed{0.0}, turnOwed{0.0};  // N s, N m s: done to it already, to be handed over in later substeps, see BodyLoads
+    dvec3 pendingImpulse{0.0}, pendingAngularImpulse{0.0};  // N s, N m s: transferred in later substeps, see BodyLoads
 };
 
 // Moves the bodies: functions that a host fills in. advance, called once a substep, and reset: both or neither.
@@ -74,19 +74,19 @@ class FreeBodies {
     std::vector<Own> own_;
 };
 
-// What bodies are given of what the fluid does to them. Fluid that has to be moved along with a body answers to the body's acceleration of
-// the step before (added mass), and a body lighter than about that fluid would swing ever farther (Causin, Gerbeau and Nobile 2005). So a
-// body is given as much less as if it had that fluid's mass a besides, and what it was not given it is owed (a fictitious mass, as Baek and
-// Karniadakis 2012): (m + a) F' = m (F + owed), owed = F + owed - F'. Nothing is lost, and where the load is steady F' = F.
-// Where water is let compress (wcsph), only what sound reaches in a step answers a step late: the layer of particles before the samples. A
-// fictitious mass beyond what that needs makes the body answer late, too, and it then shakes water off: a box half as dense as water had
-// 0.44 of itself under instead of 0.5.
+// Filters the loads of the fluid on bodies. The load depends on the body's acceleration in the step before (added mass). Without a filter,
+// a body lighter than about the fluid that moves with it oscillates with growing amplitude (Causin, Gerbeau and Nobile 2005). Therefore a
+// fictitious mass a is added (Baek and Karniadakis 2012), and the rest of the load is pending: (m + a) F' = m (F + pending),
+// pending = F + pending - F'. Momentum is conserved, and for a steady load F' = F.
+// With a compressible method (wcsph) only the fluid that sound reaches in a step responds one step late: the layer of particles next to the
+// samples. A larger fictitious mass delays the body, too, and it then throws water off: a box half as dense as water had 0.44 of itself
+// under water instead of 0.5.
 class BodyLoads {
   public:
     BodyLoads(std::span<const Body> bodies, const FluidParams& params);
-    // Of a substep of `seconds`; `wet`: share of the surface that is in the fluid, 0..1.
-    BodyLoad give(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds);
-    void restore(std::span<const BodyLoad> last);  // what give returned last, of each
+    // Returns the filtered load of a substep of `seconds`; `wet`: share of the surface that is in the fluid, 0..1.
+    BodyLoad transfer(size_t body, const dvec3& force, const dvec3& torque, double wet, double seconds);
+    void restore(std::span<const BodyLoad> last);  // what transfer returned last, of each
     void reset();
 
   private:

@@ -57,7 +57,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
     }
     b.loads_.resize(bodies.size());
     b.sampleCount_ = static_cast<uint32_t>(b.volumes_.size());
-    b.giving_ = BodyLoads(bodies, params);
+    b.filter_ = BodyLoads(bodies, params);
     b.host_ = host;
     if (host.advance == nullptr) {
         b.free_ = std::make_shared<FreeBodies>(bodies);
@@ -195,7 +195,7 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
             force = torque = dvec3(0.0);
             wet = 0;
         }
-        loads_[k] = giving_.give(k, force, torque, wet / static_cast<double>(bodies_[k].shape.samples.size()), seconds);
+        loads_[k] = filter_.transfer(k, force, torque, wet / static_cast<double>(bodies_[k].shape.samples.size()), seconds);
     }
     std::vector<BodyState> next = states_;
     host_.advance(host_.self, loads_, vec3(step.gravity), seconds, next);
@@ -210,7 +210,7 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
 void BodyPasses::reset() {
     for (size_t k = 0; k < bodies_.size(); ++k) states_[k] = bodies_[k].state;
     std::fill(loads_.begin(), loads_.end(), BodyLoad{});
-    giving_.reset();
+    filter_.reset();
     if (any()) host_.reset(host_.self, states_);
 }
 
@@ -252,7 +252,8 @@ Result<BodyPasses::Saved> BodyPasses::take(WorldState& state) const {
     if (!loads) return loads.error();
     for (size_t k = 0; k < bodies_.size(); ++k) {
         const BodyLoad& l = (*loads)[k];
-        if (!isFinite((*states)[k]) || !isFinite(l.force) || !isFinite(l.torque) || !isFinite(l.impulseOwed) || !isFinite(l.turnOwed))
+        if (!isFinite((*states)[k]) || !isFinite(l.force) || !isFinite(l.torque) || !isFinite(l.pendingImpulse) ||
+            !isFinite(l.pendingAngularImpulse))
             return badInput(fmt::format("the saved state of body {} is not finite or its rotation has no unit length: save it again", k));
     }
     Saved saved{std::move(*states), std::move(*loads), {}};
@@ -270,7 +271,7 @@ Status BodyPasses::restore(const Saved& saved) {
         if (Status done = host_.restore(host_.self, saved.host, saved.states); !done) return done;
     states_ = saved.states;
     loads_ = saved.loads;
-    giving_.restore(loads_);
+    filter_.restore(loads_);
     return ok();
 }
 

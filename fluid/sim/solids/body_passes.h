@@ -52,7 +52,7 @@ class BodyPasses {
     // Back to t = 0.
     void reset();
 
-    // Where bodies are, what they are still owed, and what their host remembers.
+    // Poses of bodies, their pending loads, and the state of their host.
     struct Saved {
         std::vector<BodyState> states;
         std::vector<BodyLoad> loads;
@@ -75,7 +75,7 @@ class BodyPasses {
     std::vector<BodyLoad> loads_;
     std::optional<size_t> misled_;
     std::vector<float> reach_;  // m, of each body's farthest sample
-    BodyLoads giving_{{}, FluidParams{}};
+    BodyLoads filter_{{}, FluidParams{}};
     std::shared_ptr<FreeBodies> free_;  // where there is no other host
     BodyHost host_;
     uint32_t sampleCount_ = 0;

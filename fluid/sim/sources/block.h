@@ -1,4 +1,4 @@
-// A block of particles: the cubic lattice that fills a box or a ball at rest spacing, strewn a little where it is to be no crystal.
+// A block of particles: the cubic lattice that fills a box or a ball at rest spacing, with optional jitter.
 #pragma once
 
 #include <vector>

@@ -76,7 +76,7 @@ class EmitterFeed {
 
     // Appends the particles that are due `seconds` after `time` (s), at most `most`, with their state at the end of that time.
     void offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to);
-    // `count` of the offered were not taken: they stay owed.
+    // `count` of the offered were not taken: they stay in the backlog.
     void refuse(uint64_t count) { account_.refused += count; }
     void take(const EmitterParams& params);  // live values; fixed ones stay
     void reset();

@@ -259,7 +259,7 @@ bool SourcePasses::full() const {
     return false;
 }
 
-double SourcePasses::owed() const {
+double SourcePasses::backlog() const {
     double sum = 0;
     for (const EmitterFeed& feed : feeds_) sum += feed.due();
     return sum - static_cast<double>(emitted());

@@ -53,7 +53,7 @@ class SourcePasses {
     uint64_t deposited() const;  // of these, of what was poured
     uint64_t drained() const;    // particles
     bool full() const;           // whether one had to wait because no slot was free
-    double owed() const;         // particles due, and not taken yet
+    double backlog() const;      // particles due, and not taken yet
     double pending() const;      // of these, of what was poured
 
     // The emitters' accounts and what is counted. Before save, report and wait for the device.

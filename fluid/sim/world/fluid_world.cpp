@@ -161,7 +161,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
     const FluidParams& p = w.params;
     const bool cpu = w.device->backend() == Backend::cpu;
-    if (!cpu) w.stepper.know(inputs.deviceMs, w.clock.lastSubsteps);
+    if (!cpu) w.stepper.recordTime(inputs.deviceMs, w.clock.lastSubsteps);
     const FrameStepper::Frame frame = w.stepper.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
     w.warn();
     const double span = frame.before + seconds;  // until the solids are where they are to be
@@ -190,9 +190,9 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         ++done;
         if (done == frame.pieces || stop) break;
         if (p.fixedStep > 0)
-            stop = !(cpu ? w.stepper.mayGoOn(done) : w.stepper.mayPlan(substeps + w.clock.lastPiece - 1));
+            stop = !(cpu ? w.stepper.fitsMeasured(done) : w.stepper.fitsPredicted(substeps + w.clock.lastPiece - 1));
         else
-            stop = !(cpu ? w.stepper.mayGoOn(substeps) : w.stepper.mayPlan(substeps));
+            stop = !(cpu ? w.stepper.fitsMeasured(substeps) : w.stepper.fitsPredicted(substeps));
     }
     w.clock.lastSubsteps = substeps;
     w.clock.time += stepped;
@@ -285,7 +285,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         ++done;
         ++substeps;
         // A fixed step is always completed.
-        if (!(params.fixedStep > 0) && done < count && !(cpu ? stepper.mayGoOn(substeps) : stepper.mayPlan(substeps))) {
+        if (!(params.fixedStep > 0) && done < count && !(cpu ? stepper.fitsMeasured(substeps) : stepper.fitsPredicted(substeps))) {
             stop = true;
             break;
         }
@@ -303,7 +303,7 @@ void FluidWorld::Impl::fillLedger(FluidStats& f) const {
     const double volume = std::pow(double{params.spacing}, 3);
     f.emitted = (static_cast<double>(startCount) + static_cast<double>(sources.emitted())) * volume;
     f.drained = static_cast<double>(sources.drained()) * volume;
-    f.owed = sources.owed() * volume;
+    f.backlog = sources.backlog() * volume;
     f.deposited = static_cast<double>(sources.deposited()) * volume;
     f.pendingVolume = sources.pending() * volume;
     f.withdrawn = static_cast<double>(withdrawn) * volume;
@@ -372,7 +372,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
         });
 }
 
-bool FluidWorld::knowsCells() const {
+bool FluidWorld::hasCellWork() const {
     const Impl& w = *impl_;
     return w.device->backend() != Backend::cpu && !w.traits.linked && w.traits.samples == 0 && !glm::any(w.traits.periodic) &&
            !w.method->predicts();
@@ -380,18 +380,18 @@ bool FluidWorld::knowsCells() const {
 
 std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
     Impl& w = *impl_;
-    if (!w.sorted || !knowsCells()) return std::nullopt;
+    if (!w.sorted || !hasCellWork()) return std::nullopt;
     w.cellsValid = true;
     return CellWork{w.step, &w.particles.positionNext, &w.particles.id};
 }
 
 void FluidWorld::Impl::invalidateCells() {
     cellsValid = sortedForQuery = false;
-    if (grid) grid->give({});
+    if (grid) grid->setCells({});
 }
 
-void FluidWorld::giveCells(std::span<const uint32_t> cells) {
-    if (impl_->cellsValid) impl_->grid->give(cells);
+void FluidWorld::setCells(std::span<const uint32_t> cells) {
+    if (impl_->cellsValid) impl_->grid->setCells(cells);
 }
 
 void FluidWorld::reset() {

@@ -75,17 +75,17 @@ class FluidWorld {
     // frames.
     double acceptedSeconds(double seconds);
     // The first work of the next step is to find each particle's cell. Another device can do it meanwhile (cooperation, thesis 2.3): it
-    // runs the kernel fluid/grid/cell_of with this, and the host passes the result to giveCells before the next step. Nothing: before the
+    // runs the kernel fluid/grid/cell_of with this, and the host passes the result to setCells before the next step. Nothing: before the
     // first step, and where cells are not known before a step: on the cpu, with bodies, periodic axes, linked lists, or a method that
     // moves particles before it sorts them.
     struct CellWork {
         StepParams step;
         const Buffer *position, *id;  // vec4, uint: as they lie until the next step; step.count of them
     };
-    bool knowsCells() const;  // whether there is such work at all
+    bool hasCellWork() const;  // whether there is such work at all
     std::optional<CellWork> cellWork();
-    void giveCells(std::span<const uint32_t> cells);  // ignored if the world has changed since cellWork()
-    void reset();                                     // back to t = 0
+    void setCells(std::span<const uint32_t> cells);  // ignored if the world has changed since cellWork()
+    void reset();                                    // back to t = 0
     // Takes values that can change between steps; `fixed` values stay as they are. Error (badInput): a value out of its range; nothing
     // has changed then.
     Status setParams(const FluidParams&);
@@ -156,7 +156,7 @@ class FluidWorld {
     // FluidInputs; all of them): with its time, its particles except those inside a solid here, its bodies if they are the same, and its
     // foam if this world has as many slots for it. The counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another
     // box or spacing, liquids that this world does not have, more particles than it has room for.
-    Status goOnFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
+    Status continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 
   private:
     FluidWorld();

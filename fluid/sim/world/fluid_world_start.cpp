@@ -252,7 +252,7 @@ void FluidWorld::Impl::writeStart() {
     ellipsoids.forget();
     posesBefore.clear();
     for (const NamedBuffer& b : method->remembered()) device->fill(*b.buffer, 0);
-    method->forget();
+    method->reset();
     figures = std::make_shared<FluidStats>();
     startCount = static_cast<uint32_t>(start.size());
     figures->particles = startCount;

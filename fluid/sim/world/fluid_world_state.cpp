@@ -128,7 +128,7 @@ Status FluidWorld::restore(WorldState& state) {
     return w.solids.restore(*places);
 }
 
-Status FluidWorld::goOnFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes) {
+Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes) {
     Impl &w = *impl_, &o = *other.impl_;
     const BoxParams &box = w.params.box, &then = o.params.box;
     if (w.params.spacing != o.params.spacing || box.min != then.min || box.max != then.max || box.periodic() != then.periodic())

@@ -12,18 +12,18 @@ FrameStepper::Frame FrameStepper::begin(double seconds, double fixedStep, double
     fixedStep_ = fixedStep;
     const double before = pending_;
     if (fixedStep > 0) {
-        // A frame that is a fixed step to the last bits is one, whatever sums have made of it.
+        // The tolerance absorbs rounding: a frame as long as a fixed step is one step.
         const double steps = std::floor((before + seconds) / fixedStep + 1.0e-9);
         return {static_cast<int>(std::min(steps, 1.0e9)), fixedStep, before};
     }
-    // A long frame has several pieces: speeds may grow in it, and each piece is stepped by those it finds.
+    // A long frame has several pieces: speeds may grow in it, and each piece has a step limit from its own speeds.
     constexpr double kLongestPiece = 1.0 / 60;  // s
     const double pieces = whole ? 1 : std::clamp(std::ceil(seconds / kLongestPiece - 1.0e-6), 1.0, 1.0e9);
     return {static_cast<int>(pieces), (before + seconds) / pieces, before};
 }
 
-void FrameStepper::know(double ms, int substeps) {
-    if (!(ms >= 0)) return;  // none in a frame, two frames' in the next: that is how they come
+void FrameStepper::recordTime(double ms, int substeps) {
+    if (!(ms >= 0)) return;  // NaN or negative: no measurement
     constexpr double kKept = 0.9;
     workMs_ = kKept * workMs_ + ms;
     workSubsteps_ = kKept * workSubsteps_ + substeps;

@@ -7,28 +7,27 @@ namespace rivulet {
 
 class FrameStepper {
   public:
-    // A frame as it is stepped: pieces of the same length, each with a step limit of its own.
+    // Division of a frame: pieces of the same length, each with its own step limit.
     struct Frame {
         int pieces = 0;
         double length = 0;  // s, of a piece
-        double before = 0;  // s, what was left over of frames before: the frame's end is before + seconds from the newest state
+        double before = 0;  // s, remainder of earlier frames: the frame ends before + seconds after the newest state
     };
-    // `seconds` > 0; `fixedStep` s, 0: none, and the whole frame is stepped. `budgetMs`: what its steps may take, 0: as long as they do.
-    // `whole`: a frame without fixed steps is one piece, however long.
+    // `seconds` > 0; `fixedStep` s, 0: none, and the whole frame is stepped. `budgetMs`: limit for the time of its steps, 0: no limit.
+    // `whole`: a frame without fixed steps is one piece of any length.
     Frame begin(double seconds, double fixedStep, double budgetMs, bool whole = false);
-    // Whether another piece of work may follow `done` (>= 1) equal pieces; called between them, on the cpu.
-    bool mayGoOn(int done) const { return budgetMs_ <= 0 || fits(elapsedMs(), done); }
-    // The same before the work, from what is known of earlier frames' substeps: of a GPU, whose work is not done when it has been asked
-    // for.
-    bool mayPlan(int done) const { return budgetMs_ <= 0 || workSubsteps_ <= 0 || (done + 1) * workMs_ <= budgetMs_ * workSubsteps_; }
-    // Records that a Device took `ms` for `substeps`. They need not be of the same frame: older frames fade.
-    void know(double ms, int substeps);
-    // `stepped` s of the frame were. Of fixed steps a part stays for the next frame; whole ones that were not made are dropped.
-    // Returns what was dropped, s.
+    // True if one more piece of work fits the budget after `done` (>= 1) equal pieces, by the time measured in this frame; for the cpu.
+    bool fitsMeasured(int done) const { return budgetMs_ <= 0 || fits(elapsedMs(), done); }
+    // The same by the times of earlier frames' substeps: for a GPU, which has not finished the work when it is queued.
+    bool fitsPredicted(int done) const { return budgetMs_ <= 0 || workSubsteps_ <= 0 || (done + 1) * workMs_ <= budgetMs_ * workSubsteps_; }
+    // Records that a Device took `ms` for `substeps`. They may belong to different frames: the weight of older frames decreases.
+    void recordTime(double ms, int substeps);
+    // Ends a frame of which `stepped` s were simulated. A part of a fixed step stays for the next frame; whole steps that were not made are
+    // dropped. Returns the dropped time, s.
     double end(double stepped);
 
-    double pending() const { return pending_; }  // s asked for, and kept for the next frame
-    // 0..1: how far the present lies between the last fixed step's start and its end, seen one step late. 1 without fixed steps.
+    double pending() const { return pending_; }  // s requested, and kept for the next frame
+    // 0..1: position of the displayed time between the start and the end of the last fixed step, one step late. 1 without fixed steps.
     float share() const { return fixedStep_ > 0 ? static_cast<float>(pending_ / fixedStep_) : 1.0F; }
     void reset(double pending = 0) {
         pending_ = pending;

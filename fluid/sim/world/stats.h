@@ -21,7 +21,7 @@ struct FluidStats {
     double pendingVolume = 0;   // m^3, deposited and not yet spawned
     double withdrawn = 0;       // m^3, by others
     double drained = 0;         // m^3, taken by sinks
-    double owed = 0;            // m^3, due from emitters and held back: their opening is blocked, or there is no slot
+    double backlog = 0;         // m^3, due from emitters and held back: their opening is blocked, or there is no slot
     double avgCompression = 0;  // mean of max(rho / rho0 - 1, 0) over particles
     double maxCompression = 0;
     double kinetic = 0;    // J

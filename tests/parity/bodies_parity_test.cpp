@@ -40,7 +40,7 @@ After run(Device& device, const std::string& method, bool periodic) {
     EXPECT_TRUE(world) << (world ? "" : world.error().message);
     After after;
     if (!world) return after;
-    // Without sound water pushes only where it has been compressed: a while later.
+    // A method without sound pushes only after the fluid has been compressed, which takes some frames.
     const int steps = method == "wcsph" ? 1 : 3;
     for (int k = 0; k < steps; ++k) {
         (*world)->step({.gravity = p.gravity}, 2.0e-3);
@@ -87,11 +87,11 @@ TEST_P(BodiesParity, AStepLeavesParticlesAndBodiesWhereTheCpuDoes) {
     ASSERT_GT(expected.position.size(), 3000U);
     EXPECT_LT(difference(got.position, expected.position), 1e-4);
     EXPECT_LT(difference(got.velocity, expected.velocity), 1e-4);
-    // PBF's forces are differences of positions over the square of the step: a last digit (3e-8 m) of a particle (0.027 kg).
+    // PBF's forces are differences of positions over dt^2; the tolerance is the rounding of a position (3e-8 m) of one particle (0.027 kg).
     const double rounding = std::string_view(GetParam().method) == "pbf" ? 3.0e-8 * 0.027 / (2.0e-3 * 2.0e-3) : 0.0;
     double largest = 0;
     for (const BodyLoad& load : expected.loads) largest = std::max(largest, glm::length(load.force));
-    EXPECT_GT(largest, 0.1) << "the fluid pushes";
+    EXPECT_GT(largest, 0.1) << "the fluid exerts a force";
     for (size_t k = 0; k < expected.bodies.size(); ++k) {
         const BodyState &a = got.bodies[k], &b = expected.bodies[k];
         EXPECT_LT(glm::length(a.pose.position - b.pose.position), 1e-5F);

@@ -1,5 +1,5 @@
-// collide on cl and gl against the cpu: the same answer for particles in flight, at walls, in corners; and none in a set voxel on any
-// device.
+// The kernel collide on cl and gl agrees with the cpu for particles in flight, at walls and in corners; on no device is a particle in a set
+// voxel.
 #include <gtest/gtest.h>
 
 #include "fluid/sim/solids/solids.h"
@@ -72,7 +72,7 @@ State flown(const State& s, float dt) {
 
 class CollideParity : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(CollideParity, AgreesWithTheCpuAndLetsNothingIn) {
+TEST_P(CollideParity, AgreesWithTheCpuAndNoParticleEntersAVoxel) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     const std::unique_ptr<Device> cpu = makeTestCpu();
@@ -97,7 +97,7 @@ TEST_P(CollideParity, AgreesWithTheCpuAndLetsNothingIn) {
     State onCpu = start, onGpu = start;
     size_t touched = 0, apart = 0;
     for (int step = 0; step < 120; ++step) {
-        // Both from where the cpu stands, to compare; and the GPU by itself, to see that it holds.
+        // One GPU run starts each step from the cpu's state, for comparison; another runs on its own, to test that no particle enters.
         const State moved = flown(onCpu, 0.006F);
         const State a = here.run(onCpu.position, moved), b = there.run(onCpu.position, moved);
         for (uint32_t i = 0; i < kCount; ++i) {
@@ -114,7 +114,7 @@ TEST_P(CollideParity, AgreesWithTheCpuAndLetsNothingIn) {
             for (const vec4& p : s->position) ASSERT_FALSE(field.surface.test(field.surface.cellOf(vec3(p)))) << "step " << step;
     }
     EXPECT_GT(touched, kCount * 10U);
-    // Where a wall is left or met within rounding, two compilers may decide differently.
+    // Within rounding of a contact, two compilers may decide differently.
     EXPECT_LT(apart, touched / 200) << "of " << touched << " contacts";
 }
 

@@ -1,4 +1,4 @@
-// Cooperation: with every plan the water is the same, and a plan that overlaps work does overlap it.
+// Cooperation: the result is the same with every plan, and a plan that overlaps work does so.
 #include "fluid/session/autotune.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ struct Said {
     }
 };
 
-// The particles by id after so many frames, and between step and step what `meanwhile` does.
+// Returns the particles by id after a number of frames; `meanwhile` is called between steps.
 std::vector<vec4> after(
     int frames, const SceneFile& scene, Device& device, Plan plan, Timeline* timeline = nullptr,
     const std::function<void(Session&)>& meanwhile = [](Session&) {}, const Log& log = {}) {
@@ -54,7 +54,7 @@ std::vector<vec4> after(
 
 class CooperationOn : public testing::TestWithParam<const char*> {};
 
-TEST_P(CooperationOn, CellsFoundOnTheCpuAreThoseThatTheDeviceFinds) {
+TEST_P(CooperationOn, CellsFoundOnTheCpuEqualThoseOfTheDevice) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     for (const char* method : {"wcsph", "wcsph_thesis", "dfsph"}) {
@@ -74,7 +74,7 @@ TEST_P(CooperationOn, CellsFoundOnTheCpuAreThoseThatTheDeviceFinds) {
     }
 }
 
-// What was found of the particles as they lay is void when they have been moved.
+// Cells are invalid after the particles have moved.
 TEST_P(CooperationOn, CellsOfAWorldThatWasResetAreNotUsed) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -99,7 +99,7 @@ TEST_P(CooperationOn, AMethodThatMovesBeforeItSortsGetsANotice) {
     EXPECT_NE(said.notices[0].find("pbf"), std::string::npos) << said.notices[0];
 }
 
-// A plan that could do nothing is not named as the one that is followed.
+// A plan that has no work to overlap is not reported as the active plan.
 TEST_P(CooperationOn, APlanWithNothingToDoBecomesAlone) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -120,7 +120,7 @@ TEST_P(CooperationOn, APlanWithNothingToDoBecomesAlone) {
     }
 }
 
-// And none when the cpu has taken over.
+// After a fallback to the cpu the plan is alone.
 TEST_P(CooperationOn, AfterAFallbackThePlanIsAlone) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -147,7 +147,7 @@ TEST_P(CooperationOn, AfterAFallbackThePlanIsAlone) {
     EXPECT_EQ(said.notices.size(), 1U);
 }
 
-// A step that nothing is drawn beside brings nothing down to find cells in.
+// A step without concurrent drawing reads nothing back for the cells.
 TEST_P(CooperationOn, AStepAloneReadsNothingBack) {
     const Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
@@ -195,7 +195,7 @@ TEST(CooperationOfTheCpu, StepsWhileAnotherWorks) {
     EXPECT_GT(overlapSeconds(steps, pictures), 0.1 * worked);
 }
 
-// Means are of the frames that the timeline still knows, and of no session but their own.
+// Means cover the frames that the timeline still holds, of the session's own work only.
 TEST(CooperationOfTheCpu, FiguresAreOfTheFramesThatTheTimelineHolds) {
     const std::unique_ptr<Device> cpu = makeTestCpu();
     Timeline timeline(24);
@@ -203,7 +203,7 @@ TEST(CooperationOfTheCpu, FiguresAreOfTheFramesThatTheTimelineHolds) {
         auto session = Session::create(dam("pbf"), *cpu, {});
         EXPECT_TRUE(session);
         Cooperation work(**session, Plan::behind, &timeline, {});
-        EXPECT_EQ(work.stats().aheadMs, 0) << "what another session did is not its own";
+        EXPECT_EQ(work.stats().aheadMs, 0) << "work of another session does not count";
         const double begun = hostSeconds();
         for (int f = 0; f < frames; ++f) {
             work.start(1.0 / 240, true);
@@ -257,7 +257,7 @@ TEST(CooperationOfTheCpu, HasNoGpuToHelp) {
     ASSERT_EQ(said.notices.size(), 1U);
 }
 
-// Every plan on every device, the fastest first; what is not there is left out.
+// Every plan on every available device, the fastest first.
 TEST(CooperationOfTheCpu, AutoTriesAllAvailablePlans) {
     const DrawFrame draw = [](Session&, const std::function<void()>& uploaded, std::vector<PassTime>& passes) -> Status {
         uploaded();
@@ -279,11 +279,11 @@ TEST(CooperationOfTheCpu, AutoTriesAllAvailablePlans) {
         cpus += t.backend == "cpu" ? 1 : 0;
         EXPECT_GE(t.frameMs.median, 2);
         EXPECT_FALSE(t.passes.empty()) << nameOf(t);
-        EXPECT_NEAR(t.drawing.at("sleep"), 2, 1.0e-9) << nameOf(t) << ": of a frame, though several were counted";
-        EXPECT_NE(t.plan, Plan::thesis) << "pbf leaves it nothing to do";
+        EXPECT_NEAR(t.drawing.at("sleep"), 2, 1.0e-9) << nameOf(t) << ": per frame, though several frames were counted";
+        EXPECT_NE(t.plan, Plan::thesis) << "pbf has no cells to find before a step";
         if (k > 0) EXPECT_GE(t.frameMs.median, (*tried)[k - 1].frameMs.median);
     }
-    EXPECT_GE(cpus, 1U) << "alone, and behind unless it was far behind";
+    EXPECT_GE(cpus, 1U) << "alone, and behind unless it was much slower";
     EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
     EXPECT_LT(shares.back(), 1);
     EXPECT_NE(sentenceOf(*tried, "gl").find("it replaces --backend gl"), std::string::npos) << sentenceOf(*tried, "gl");

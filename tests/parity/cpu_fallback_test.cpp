@@ -28,7 +28,7 @@ struct Said {
     }
 };
 
-// A breaking dam as MethodsParity has it: a frame is a step, on every device.
+// The dam break of MethodsParity: a frame is one step on every device.
 SceneFile dam(const char* method) {
     SceneFile scene;
     scene.name = "dam";
@@ -136,7 +136,7 @@ TEST_F(CpuFallback, ADeviceThatWorksIsLeftAlone) {
     EXPECT_TRUE(said_.notices.empty());
 }
 
-// A scene that makes no sense is no fault of the device.
+// An invalid scene is reported as such, and not as a failure of the device.
 TEST_F(CpuFallback, ErrorsOfASceneAreReportedAsOnAnyDevice) {
     SceneFile scene = dam("wcsph");
     scene.fluid.method = "none";
@@ -285,7 +285,7 @@ TEST_F(CpuFallback, LinkedListsContinueSorted) {
         session.step(kFrame, true);
         EXPECT_EQ(session.world().stats().nan, 0U);
     }
-    // A device that is full still has them: to the bit.
+    // A device without free memory keeps its data bit for bit.
     const std::unique_ptr<Device> cpu = makeTestCpu();
     std::unique_ptr<Device> device = clWith({});
     auto opened = openSession(linked(), *device, said_.log(), "cl");
@@ -310,7 +310,7 @@ TEST_F(CpuFallback, LinkedListsWithoutMemoryAreSorted) {
     EXPECT_EQ(said_.of("fluid.grid is sorted"), 1U);
 }
 
-// What a scene's cpu stands in for: another backend that is not there. Where the cpu was asked for, lists make no sense.
+// The cpu replaces an absent GPU and sorts the particles instead. If a scene selects the cpu itself, linked lists are refused.
 TEST(CpuFallbackWithoutGpu, AnAbsentGpuLeavesLinkedListsSorted) {
     const std::unique_ptr<Device> cpu = makeTestCpu();
     for (const char* asked : {"gl", "cl", "auto"}) {
@@ -329,7 +329,7 @@ TEST(CpuFallbackWithoutGpu, AnAbsentGpuLeavesLinkedListsSorted) {
     EXPECT_TRUE(said.notices.empty());
 }
 
-// A budget tries settings, and one of them may be too large for the device: it is left out, and the device goes on with another.
+// A frame budget tries settings. A setting that is too large for the device is left out, and the device continues with another.
 TEST_F(CpuFallback, ABudgetsTrialThatIsTooLargeLeavesTheDeviceUsable) {
     const auto needs = [&](const char* method, float spacing) {
         SceneFile scene = dam(method);
@@ -342,9 +342,9 @@ TEST_F(CpuFallback, ABudgetsTrialThatIsTooLargeLeavesTheDeviceUsable) {
     };
     SceneFile scene = dam("dfsph");
     scene.fluid.spacing = 0.05F;
-    scene.budget.frameMs = 1.0e6F;  // whatever the machine: memory alone decides
+    scene.budget.frameMs = 1.0e6F;  // so large that only memory decides, on any machine
     scene.budget.maxDensityError = 0.05F;
-    // pbf, which smooths what it has, takes more of a particle than dfsph.
+    // With smoothing, pbf needs more memory per particle than dfsph.
     const size_t pbf = needs("pbf", scene.fluid.spacing), dfsph = needs("dfsph", scene.fluid.spacing);
     ASSERT_GT(static_cast<double>(pbf), 1.02 * static_cast<double>(dfsph));
     std::unique_ptr<Device> device = clWith({.memoryLimit = (pbf + dfsph) / 2});
@@ -358,7 +358,7 @@ TEST_F(CpuFallback, ABudgetsTrialThatIsTooLargeLeavesTheDeviceUsable) {
         opened->session->step(1.0 / 60, true);
         EXPECT_FALSE(*keepRunning(*opened->session, device, said_.log()));
     }
-    // As many particles as there is memory for.
+    // As many particles as fit into memory.
     opened->session.reset();
     SceneFile fine = scene;
     fine.fluid.spacing = 0.5F * scene.fluid.spacing;
@@ -370,7 +370,7 @@ TEST_F(CpuFallback, ABudgetsTrialThatIsTooLargeLeavesTheDeviceUsable) {
     EXPECT_GT(opened->session->world().particles().count, 1000U);
 }
 
-// What a failed device has found is no figure.
+// Results of a failed device are not reported as measurements.
 TEST_F(CpuFallback, ACaseOnADeviceThatFailsIsAnError) {
     const std::unique_ptr<Device> cpu = makeTestCpu();
     CaseSettings settings;
@@ -390,7 +390,7 @@ TEST_F(CpuFallback, ACaseOnADeviceThatFailsIsAnError) {
     }
 }
 
-// A headless run as a whole: stepped, drawn and recorded frame by frame, the CPU finding cells meanwhile, on a device that fails midway.
+// A complete headless run that steps, draws and records each frame while the cpu finds cells; the device fails midway.
 TEST_F(CpuFallback, ARunReachesItsEndWhateverFails) {
     const SceneFile scene = dam("wcsph");
     const Water calm = undisturbed(scene, 120);
@@ -445,7 +445,7 @@ TEST_F(CpuFallback, ARunReachesItsEndWhateverFails) {
     }
 }
 
-// All that a scene can have beside water: what was thrown, what turns and bends, what comes in and goes out.
+// All other parts of a scene: bodies, moving and deforming colliders, emitters and sinks.
 TEST_F(CpuFallback, SolidsBodiesAndSourcesContinue) {
     const auto lively = [](const std::vector<std::string>& more) {
         std::vector<std::string> set = {"fluid.spacing=0.025",       "colliders.0.resolution=32",       "fluid.foam.most=500",
@@ -481,7 +481,7 @@ TEST_F(CpuFallback, SolidsBodiesAndSourcesContinue) {
         const Bounds bounds = session.bounds();
         const Status moved = session.moveTo(*cpu);
         ASSERT_TRUE(moved) << moved.error().message;
-        device.reset();  // nothing needs it any more
+        device.reset();  // no longer in use
         EXPECT_EQ(session.world().time(), then);
         EXPECT_EQ(byId(session.world(), *session.world().particles().position), x);
         EXPECT_EQ(waterOf(session.world()).particles, there);
@@ -504,7 +504,7 @@ TEST_F(CpuFallback, SolidsBodiesAndSourcesContinue) {
     }
 }
 
-// Drops on a skin, in its brims and in the air: none is lost or made, and each is where it was.
+// Drops on a skin, in its brims and in the air: their number and positions stay the same.
 TEST_F(CpuFallback, FlowsOnSkinsContinue) {
     auto scene = loadScene(
         "window_rain",
@@ -550,7 +550,7 @@ TEST_F(CpuFallback, FlowsOnSkinsContinue) {
     EXPECT_EQ(now.error, 0.0);
     EXPECT_EQ(session.flows().inAir(), inAir);
 
-    // On from there: nothing is lost, and what has come in by the same time is what comes in where nobody disturbs it.
+    // After that no volume is lost, and the emitted volume equals that of an undisturbed run.
     const std::unique_ptr<Device> other = makeTestCpu();
     auto calm = Session::create(*scene, *other, {});
     ASSERT_TRUE(calm);
@@ -562,7 +562,7 @@ TEST_F(CpuFallback, FlowsOnSkinsContinue) {
     EXPECT_NEAR(end.onSurface / calmEnd.onSurface, 1.0, 0.01);
 }
 
-// A device that is lost under a skin: back to a snapshot, and no picolitre is missing.
+// If the device of a skin is lost, the run returns to a snapshot, and no volume is lost.
 TEST_F(CpuFallback, FlowsOnSkinsWhenADeviceIsLost) {
     auto scene = loadScene("window_rain",
                            std::vector<std::string>{"flow.0.mapSize=64", "flow.0.liquid.capacity=2048", "flow.0.liquid.filmCell=0.003"});

@@ -54,7 +54,7 @@ Deformed run(Device& device, const ModelPart& part, std::vector<float> weights, 
     return {device.readAll<vec4>(made->positions(), made->vertices()), device.readAll<vec4>(made->normals(), made->vertices())};
 }
 
-TEST(Deform, anEllipsoidsNormalsAreTheFormulas) {
+TEST(Deform, normalsOfAnEllipsoidEqualTheFormula) {
     auto cpu = makeTestCpu();
     const ModelPart part = ball();
     const Deformed d = run(*cpu, part, {1.0F});
@@ -67,14 +67,14 @@ TEST(Deform, anEllipsoidsNormalsAreTheFormulas) {
     EXPECT_LT(worst * 180.0F / kPi, 1.0F);
 }
 
-TEST(Deform, aBallIsBentByOneOverItsRadius) {
+TEST(Deform, curvatureOfABallIsOneOverItsRadius) {
     auto cpu = makeTestCpu();
     ModelPart part = ball();
     for (vec3& p : part.mesh.positions) p *= 0.25F;
     const Deformed d = run(*cpu, part, {});
     size_t within = 0;
     for (const vec4& n : d.normal) {
-        EXPECT_NEAR(n.w, 4.0F, 0.5F);  // beside the poles triangles are uneven
+        EXPECT_NEAR(n.w, 4.0F, 0.5F);  // near the poles triangles are uneven
         if (std::abs(n.w - 4.0F) < 0.02F) ++within;
     }
     EXPECT_GT(within, d.normal.size() * 9 / 10);
@@ -96,7 +96,7 @@ TEST(Deform, aSeamHasOneNormal) {
     for (uint32_t k = 0; k <= 48; ++k) EXPECT_EQ(d.normal[k * 97], d.normal[k * 97 + 96]) << "row " << k;
 }
 
-TEST(Deform, bonesTurnWhatTheyHold) {
+TEST(Deform, bonesRotateTheirVertices) {
     auto cpu = makeTestCpu();
     const ModelPart part = ball();
     const mat4 turn = glm::rotate(glm::translate(mat4(1.0F), vec3(0.1F, 0.2F, -0.3F)), 0.5F, glm::normalize(vec3(1, 2, 3)));
@@ -108,7 +108,7 @@ TEST(Deform, bonesTurnWhatTheyHold) {
     }
 }
 
-TEST(Deform, boundsHoldWhatIsDeformed) {
+TEST(Deform, boundsContainTheDeformedMesh) {
     auto cpu = makeTestCpu();
     const ModelPart part = ball();
     Result<Deformer> made = Deformer::create(*cpu, part);
@@ -122,7 +122,7 @@ TEST(Deform, boundsHoldWhatIsDeformed) {
         }
 }
 
-TEST(Deform, whatIsNotThereIsRefusedInASentence) {
+TEST(Deform, missingMorphsAndBonesAreRefusedWithAMessage) {
     auto cpu = makeTestCpu();
     ModelPart part = ball(8);
     part.morphs[0].vertices.back() = 100000;

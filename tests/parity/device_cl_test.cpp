@@ -141,7 +141,7 @@ TEST_F(ClDeviceTest, samePathAndDefinesGiveTheSameKernel) {
 }
 
 TEST_F(ClDeviceTest, dispatchesSeeWhatCameBeforeAndTheirOwnParameters) {
-    // More parameter blocks than the device keeps, a thread count that fills no work group, and nothing waits in between.
+    // More parameter blocks than the device caches, a thread count that is no multiple of the work group, and no wait between dispatches.
     const uint32_t count = 1001;
     std::vector<float> expected(count);
     std::iota(expected.begin(), expected.end(), 0.0F);
@@ -258,7 +258,7 @@ TEST_F(ClDeviceTest, aCachedProgramBehavesAsItsSource) {
     file("scale", other);
     EXPECT_EQ(scaled("1"), (std::vector<float>{0, 1, 2}));
     EXPECT_EQ(files(), 3);
-    // A file that is whole, and of this key, but no program: the driver will not have it, and it is replaced.
+    // A complete file with this key whose content is no program: the driver rejects it, and it is replaced.
     std::string key;
     for (const auto& entry : fs::directory_iterator(cache)) {
         std::ifstream stream(entry.path(), std::ios::binary);
@@ -335,7 +335,7 @@ TEST_F(ClDeviceTest, healthReportsTheFailedCommand) {
     EXPECT_EQ((*doomed)->bytesAllocated(), 0U);
 }
 
-// A dispatch that was taken and fails as it runs is heard of late, through its event: once, with the kernel's name.
+// A dispatch that fails while it runs is reported later, through its event: once, with the kernel's name.
 TEST_F(ClDeviceTest, anEventThatFailsIsALostDevice) {
     std::vector<std::string> said;
     Result<std::unique_ptr<Device>> doomed = makeClDevice(
@@ -364,7 +364,7 @@ TEST_F(ClDeviceTest, anEventThatFailsIsALostDevice) {
     }
 }
 
-// A dispatch is where the host was when it was dispatched and done, a second later, too: the clocks are set anew.
+// A span lies between the host's times before and after the dispatch, also a second later, because the clocks are synchronised again.
 TEST_F(ClDeviceTest, spansAreOnTheHostsClock) {
     Buffer in = floats(std::vector<float>(1000, 1.0F)), out = std::move(*device_->allocate(4000));
     std::vector<PassSpan> spans;
@@ -416,13 +416,13 @@ TEST_F(ClDeviceTest, aDispatchThatDoesNotFitItsKernelIsAProgrammersMistake) {
 }
 
 // Each in a process of its own: the OpenCL loader looks for drivers once.
-TEST(ClDeviceDeathTest, withoutADriverThereIsAPlainSentence) {
+TEST(ClDeviceDeathTest, withoutADriverAMessageSaysSo) {
     testing::FLAGS_gtest_death_test_style = "threadsafe";
     const fs::path folder = fs::temp_directory_path() / "rivulet_no_opencl";
     fs::create_directories(folder / "empty");
     fs::create_directories(folder / "broken");
     std::ofstream(folder / "broken/gone.icd") << "/nowhere/libgone.so\n";
-    std::ofstream(folder / "broken/odd.icd") << "libm.so.6\n";  // a library that is no driver
+    std::ofstream(folder / "broken/odd.icd") << "libm.so.6\n";  // a library that is not a driver
     std::ofstream(folder / "broken/blank.icd") << "";
     for (const char* name : {"empty", "broken", "missing"})
         EXPECT_EXIT(

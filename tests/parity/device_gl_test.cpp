@@ -1,4 +1,4 @@
-// Device gl keeps Device's promises, on kernels of its own.
+// Device gl meets the contract of Device, tested with kernels of the test.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -57,7 +57,7 @@ class DeviceGl : public GpuTest {
     std::string told_;
 };
 
-TEST_F(DeviceGl, SaysWhatItIs) {
+TEST_F(DeviceGl, InfoNamesTheDevice) {
     EXPECT_EQ(device_->backend(), Backend::gl);
     EXPECT_EQ(device_->info().name, context_->renderer());
     EXPECT_NE(device_->info().driver.find("4.5"), std::string::npos);
@@ -91,7 +91,7 @@ TEST_F(DeviceGl, DispatchesSeeWhatEarlierOnesDidEachWithItsOwnParameters) {
     Buffer a = make({1}), b = make({0});
     const Kernel kernel = scale();
     float expected = 1;
-    // Large blocks, as many as fill the device's pages of them several times.
+    // Large parameter blocks, enough to fill the device's pages several times.
     std::array<ScaleParams, 64> block{};
     for (int k = 0; k < 400; ++k) {
         block[0] = {1, k % 2 == 0 ? 2.0F : 0.5F + static_cast<float>(k) * 1.0e-6F};
@@ -214,7 +214,7 @@ TEST_F(DeviceGl, AKernelThatDoesNotCompileNamesFileAndLine) {
 TEST_F(DeviceGl, AThousandBuffersLeaveNothingBehind) {
     size_t before = 0;
     for (int k = 0; k < 1000; ++k) {
-        if (k == 20) before = residentBytes();  // the driver has what it keeps for good
+        if (k == 20) before = residentBytes();  // by now the driver has made its permanent allocations
         Result<Buffer> buffer = device_->allocate(size_t{1} << 20U);
         ASSERT_TRUE(buffer);
         const auto name = static_cast<GLuint>(buffer->handle());

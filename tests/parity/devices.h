@@ -1,4 +1,4 @@
-// The devices a parity test compares: each by name, made anew; an absent one is an Error that the test reports when it skips.
+// The devices that a parity test compares, created by name. An absent device is an Error, which the test reports when it skips.
 #pragma once
 
 #include <memory>
@@ -18,15 +18,15 @@ inline std::unique_ptr<Device> makeTestCpu(int threads = 0, Isa isa = bestIsa())
     return makeCpuDevice(rows, {.threads = threads, .isa = isa});
 }
 
-// A GPU device with what must outlive it.
+// A GPU device and the context that must outlive it.
 struct TestGpu {
     std::shared_ptr<void> context;  // gl: the OpenGL context
     std::unique_ptr<Device> device;
 };
-// "cl" or "gl". Where RIVULET_TEST_DEVICES is set, as by tests/run.sh, one that is not there is a failure of the test that asks.
+// "cl" or "gl". If RIVULET_TEST_DEVICES is set, as by tests/run.sh, an absent device fails the test.
 Result<TestGpu> makeTestGpu(const std::string& name);
 
-// m, of the particles that there are; waits.
+// Positions of the existing particles, m; waits for the device.
 inline std::vector<vec3> positions(FluidWorld& world) {
     const ParticleView view = world.particles();
     std::vector<vec3> all;

@@ -1,4 +1,4 @@
-// The ellipsoids about particles are what doubles and angles make of them, on every device.
+// Ellipsoids about particles equal a reference in double precision on every device.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct Found {
     std::vector<vec4> centre, spread, slant;  // by id
 };
 
-// A jittered slab, four layers thick, a chain of particles, and one by itself; with `samples` the last 20 are on a body.
+// A jittered slab, four layers thick, a chain of particles, and a lone particle; with `samples` the last 20 are on a body.
 std::vector<vec4> somePositions() {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> jitter(-0.2F, 0.2F);
@@ -119,7 +119,7 @@ std::pair<dmat3, dvec3> exact(const std::vector<vec4>& position, size_t i, size_
 
 class EllipsoidsParity : public testing::TestWithParam<const char*> {};
 
-TEST_P(EllipsoidsParity, theyAreThoseOfAnEigensolverInDoubles) {
+TEST_P(EllipsoidsParity, theyEqualThoseOfAnEigensolverInDouble) {
     std::unique_ptr<Device> cpu = makeTestCpu();
     Result<TestGpu> gpu = failed("not asked for");
     Device* device = cpu.get();
@@ -141,7 +141,7 @@ TEST_P(EllipsoidsParity, theyAreThoseOfAnEigensolverInDoubles) {
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(double{found.centre[i][k]}, centre[k], 1.0e-5 * double{kSpacing} * 10) << i;
         }
     }
-    // Alone it is a ball of half the size; along a chain it is longest that way.
+    // A lone particle is a ball of half the size; in a chain the longest axis lies along the chain.
     const Found found = foundBy(*device, position, 0);
     const size_t alone = position.size() - 1, chain = alone - 3;
     EXPECT_NEAR(found.spread[alone].x, ANISOTROPY_ALONE * ANISOTROPY_ALONE, 1.0e-5F);

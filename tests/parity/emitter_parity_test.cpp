@@ -1,5 +1,5 @@
 // Emitters and sinks on cl and gl: as many particles as on the cpu, and in the same places. Which slot and id a particle gets may differ:
-// on a GPU free slots are in no order.
+// a GPU has free slots in no fixed order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 struct Seen {
     std::vector<vec3> position;
-    std::vector<float> row, red;  // of the liquid; what red fades by
+    std::vector<float> row, red;  // of the liquid; absorption of red
     FluidStats stats;
 };
 
@@ -22,7 +22,7 @@ Seen twelveFrames(Device& device) {
     FluidParams p;
     p.method = "pbf";
     p.spacing = 0.025F;
-    p.pbf.minSubsteps = 10;  // as many on every device: a GPU knows speeds late
+    p.pbf.minSubsteps = 10;  // the same number on every device: a GPU reads speeds back late
     p.blocks = {{vec3(0.0F), vec3(1.0F, 0.1F, 1.0F), vec3(0.0F)}};
     Emitter jet, rain;
     jet.params.litresPerSecond = 3;
@@ -33,7 +33,7 @@ Seen twelveFrames(Device& device) {
     rain.params.shape = "box";
     rain.params.liquid = "oil";
     rain.params.litresPerSecond = 1;
-    rain.params.speed = 1;  // so that no place is taken: what is refused comes again at once on the cpu, frames later on a GPU
+    rain.params.speed = 1;  // slow, so that no place is blocked: the cpu offers a refused particle again at once, a GPU some frames later
     rain.params.size = vec3(0.3F);
     rain.params.position = vec3(0.7F, 0.6F, 0.2F);
     SinkParams sink;

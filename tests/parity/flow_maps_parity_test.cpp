@@ -1,4 +1,4 @@
-// A flow's maps on every device, and the texture that they become.
+// Maps of a flow on every device, and the texture made from them.
 #include <gtest/gtest.h>
 
 #include <glm/packing.hpp>
@@ -16,7 +16,8 @@ namespace {
 
 constexpr int kSize = 128;
 
-// Three drops run down a ball, a fourth lies across a seam; drawn as they go. `layer`: what it becomes, all mips, if asked.
+// Three drops run down a ball, a fourth lies across a seam; the maps are drawn each frame. `layer`: receives the texture with all mips;
+// null: not needed.
 std::vector<vec4> run(Device& device, std::vector<std::vector<vec4>>* layer) {
     const test::Skin skin = test::cubeBall(0.03F, 10);
     Result<FlowMesh> mesh = makeFlowMesh(skin.view());
@@ -73,7 +74,7 @@ TEST_P(FlowMapsParity, TheSameTexels) {
         wet += double{glm::abs(here[k] - there[k]).w};
     }
     EXPECT_GT(largest.z, 0.3F);
-    // At a rim a texel may fall on one side or the other; and at the film's edge a cell may be painted or not.
+    // Rounding decides about a texel on a drop's rim and about a cell at the film's edge.
     for (int k = 0; k < 3; ++k) EXPECT_LT(worst[k], 0.05F * largest[k]) << k;
     EXPECT_LT(high / static_cast<double>(here.size()), 1e-5 * double{largest.z});
     EXPECT_LT(wet / static_cast<double>(here.size()), 1e-4);

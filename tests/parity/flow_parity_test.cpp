@@ -76,7 +76,7 @@ TEST_P(FlowParity, TheSameDropsAtTheSamePlaces) {
             << d.volume * 1e9 << " microlitres";
 }
 
-// Thesis mode on a cone, so many drops that they push each other.
+// Thesis mode on a cone, with enough drops that they interact.
 After runThesis(Device& device) {
     const Shape cone = coneShape(0.05F, 0.03F, 0.1F, 32, 20);
     Result<FlowMesh> mesh = makeFlowMesh(cone.view());

@@ -1,4 +1,4 @@
-// Foam on cl and gl: about as much as on the cpu, and in the same places on the whole.
+// Foam on cl and gl: the amount and its mean position agree with the cpu.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ Cloud afterASplash(Device& device) {
     FluidParams p;
     p.method = "pbf";
     p.spacing = 0.025F;
-    p.pbf.minSubsteps = 8;  // as many on every device: a GPU knows speeds late
+    p.pbf.minSubsteps = 8;  // the same number on every device: a GPU reads speeds back late
     p.box.max = vec3(1.0F, 1.0F, 0.5F);
     p.blocks = {{vec3(0.0F), vec3(1.0F, 0.1F, 0.5F), vec3(0.0F)}, {vec3(0.0F, 0.1F, 0.0F), vec3(0.3F, 0.7F, 0.5F), vec3(0.0F)}};
     p.foam.most = 20000;
@@ -45,7 +45,7 @@ Cloud afterASplash(Device& device) {
 
 class FoamParity : public testing::TestWithParam<const char*> {};
 
-TEST_P(FoamParity, AsMuchInTheSamePlaces) {
+TEST_P(FoamParity, TheSameAmountInTheSamePlaces) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();

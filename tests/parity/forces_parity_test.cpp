@@ -1,4 +1,4 @@
-// Every row of forces() gives on cl and gl what it gives on the cpu, particle by particle, in each form of its kernels.
+// Every row of forces() gives the same result on cl and gl as on the cpu, for each particle and each form of its kernels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -163,7 +163,7 @@ std::vector<vec4> result(Device& device, const Case& c, float dt = 2.0e-3F) {
     (*pass)(context);
     const bool normals = std::string_view(c.row) == "normals";
     std::vector<vec4> values = device.readAll<vec4>(normals ? particles->normal : particles->acceleration, count);
-    // Spray's would be the largest value by far.
+    // Spray is left out: its value would be the largest by far.
     for (vec4& v : values)
         if (normals && v.w == 2.0F) v *= 1.0e-4F;
     return byId(order, values);

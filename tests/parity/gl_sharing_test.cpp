@@ -1,6 +1,5 @@
 // Memory that OpenCL shares with OpenGL: refused if the driver has no extension for it or fails the test, and used as documented if it
-// does. The driver that shares is played: OpenCL's own memory beside each OpenGL buffer, brought up to date when it is acquired and
-// released.
+// does. The sharing driver is simulated: OpenCL memory beside each OpenGL buffer is synchronised when it is acquired and released.
 #define CL_TARGET_OPENCL_VERSION 120
 #include "engine/compute/cl_sharing.h"
 
@@ -28,7 +27,7 @@ struct Played {
     Lie lie = Lie::none;
     std::string extensions = "cl_khr_byte_addressable_store cl_khr_gl_sharing cl_khr_fp64";
     std::map<cl_mem, GLuint> wrapped;
-    std::map<cl_mem, int> acquired;  // how often
+    std::map<cl_mem, int> acquired;  // number of times
     int calls = 0, acquires = 0, releases = 0, live = 0, outlived = 0;
     size_t together = 0;                                // of the last acquire
     int failFrom = 1 << 30;                             // the acquire that fails, and all after it
@@ -146,7 +145,7 @@ class GlSharingTest : public GpuTest {
         glGetNamedBufferSubData(name, 0, static_cast<GLsizeiptr>(count * sizeof(T)), items.data());
         return items;
     }
-    // Whether what is drawn is what the world holds: each particle, by its id.
+    // True if the drawn particles equal those of the world, by id.
     static void expectDrawn(const FluidWorld& world, const FluidView& view) {
         const uint32_t n = world.particles().slots;
         ASSERT_EQ(view.count, n);
@@ -162,7 +161,7 @@ class GlSharingTest : public GpuTest {
     }
 };
 
-TEST_F(GlSharingTest, ADriverWithoutTheExtensionIsNeverAskedAndTheRingCarriesTheFrame) {
+TEST_F(GlSharingTest, ADriverWithoutTheExtensionIsNotCalledAndTheRingIsUsed) {
     auto made = makeClDevice(ShaderFiles::developer(), {}, {.gl = gpu::currentContext()});
     ASSERT_TRUE(made);
     const GlShare share = (*made)->glShare();
@@ -179,7 +178,7 @@ TEST_F(GlSharingTest, ADriverWithoutTheExtensionIsNeverAskedAndTheRingCarriesThe
     EXPECT_NE(sentenceOf(upload.facts()).find(share.whyNot), std::string::npos);
 }
 
-TEST_F(GlSharingTest, WithoutAnOpenGlContextNothingIsAsked) {
+TEST_F(GlSharingTest, WithoutAnOpenGlContextTheDriverIsNotCalled) {
     auto made = makeClDevice(ShaderFiles::developer(), {}, {.glCalls = &kPlayed});
     ASSERT_TRUE(made);
     EXPECT_EQ((*made)->glShare().by, nullptr);
@@ -187,7 +186,7 @@ TEST_F(GlSharingTest, WithoutAnOpenGlContextNothingIsAsked) {
     EXPECT_EQ(played.calls, 0);
 }
 
-TEST_F(GlSharingTest, TheContextThatIsCurrentIsTheOneThatWasMade) {
+TEST_F(GlSharingTest, TheCurrentContextIsTheOneThatWasMade) {
     const GlContext gl = gpu::currentContext();
     EXPECT_TRUE(gl.egl);
     EXPECT_NE(gl.context, nullptr);
@@ -232,7 +231,7 @@ TEST_F(GlSharingTest, SharingIsRefusedIfTheDriverFailsItsTest) {
         EXPECT_EQ(played.live, 0);
         EXPECT_EQ(played.outlived, 0);
         for (const auto& [memory, name] : played.wrapped) EXPECT_FALSE(glIsBuffer(name)) << "the trial's buffer is gone";
-        const auto session = sessionOn(*device, block(6));  // it works all the same
+        const auto session = sessionOn(*device, block(6));  // it works without sharing
         EXPECT_EQ(session->world().stats().nan, 0U);
         FluidUpload upload;
         const auto view = upload.view(session->world(), session->scene().look);
@@ -243,7 +242,7 @@ TEST_F(GlSharingTest, SharingIsRefusedIfTheDriverFailsItsTest) {
     }
 }
 
-TEST_F(GlSharingTest, WhatIsSharedIsWhatTheWorldHoldsAcquiredAndReleasedOnceAFrame) {
+TEST_F(GlSharingTest, SharedBuffersHoldTheWorldAndAreAcquiredAndReleasedOnceAFrame) {
     const std::unique_ptr<Device> device = playing();
     ASSERT_NE(device->glShare().by, nullptr) << device->glShare().whyNot;
     const auto session = sessionOn(*device, block(8));
@@ -298,7 +297,7 @@ TEST_F(GlSharingTest, AfterAFailureDuringARunTheRingIsUsed) {
         EXPECT_EQ(upload.facts().why, "OpenCL could not acquire OpenGL's buffers: CL_OUT_OF_RESOURCES");
         EXPECT_EQ(played.live, 0);
         EXPECT_EQ(played.outlived, 0);
-        played.failFrom = 1 << 30;  // it may work again: nobody asks
+        played.failFrom = 1 << 30;  // it would work again, but is not tried
     }
     EXPECT_EQ(device->health().state, DeviceHealth::works);
 }
@@ -322,7 +321,7 @@ TEST_F(GlSharingTest, WhenTheCpuTakesOverNothingIsLeftWrapped) {
     EXPECT_EQ(played.outlived, 0);
 }
 
-// A device may go before what draws it, as in a run without a window, or after it, as in the window.
+// A device may be destroyed before its renderer, as in a run without a window, or after it, as in the window.
 TEST_F(GlSharingTest, NothingLeaksInEitherOrderOfDestruction) {
     for (const bool deviceFirst : {true, false}) {
         SCOPED_TRACE(deviceFirst);
@@ -341,7 +340,7 @@ TEST_F(GlSharingTest, NothingLeaksInEitherOrderOfDestruction) {
     }
 }
 
-// Another device where the last one was: nothing of the old one may be taken for the new one's.
+// A new device at the same address: no data of the old device is used.
 TEST_F(GlSharingTest, AnotherDeviceIsNotTakenForTheLastOne) {
     FluidUpload upload;
     for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-// A force of the host's own, registered without a fork, on cpu, cl and gl: the motion follows from mechanics.
+// A force that the host registers without a fork of Rivulet, on cpu, cl and gl: the motion equals the analytical solution.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -113,7 +113,7 @@ TEST_P(HostForces, ABlockFallsWithTheHostsAcceleration) {
     EXPECT_GT(glm::length(now - middle), 0.2);
     EXPECT_EQ(world.stats().speedLimited, 0U);
 
-    // Without the force it moves on in a straight line.
+    // Without the force it continues in a straight line.
     swirl.on = false;
     const dvec3 v = dvec3(0.1, 0, 0) + a * t;
     world.step({.gravity = p.gravity}, 1.0 / 60);

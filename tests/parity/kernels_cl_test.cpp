@@ -1,5 +1,6 @@
-// Every kernel that scenes run on cl, one dispatch at a time: from the same memory the cpu makes the same. What looks through neighbours
-// has another form on the cpu (lists, not cells), and is compared by what a step leaves: SimParity, ForcesParity, FoamParity, BodiesParity.
+// Every kernel that scenes run on cl, one dispatch at a time: from the same memory the cpu computes the same result. Kernels over
+// neighbours have another form on the cpu (lists, not cells); SimParity, ForcesParity, FoamParity and BodiesParity compare their results
+// after a step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 namespace rivulet::kernels_cl_test {
 namespace {
 
-// A kernel's figures over all its dispatches.
+// Results of a kernel over all its dispatches.
 struct Compared {
     size_t dispatches = 0, words = 0, apart = 0;
     double worst = 0;  // of the largest value in the buffer
@@ -54,7 +55,7 @@ class TwinDevice final : public Device {
     void dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) override;
 
     std::map<std::string, Compared> all;  // by path
-    std::set<std::string> alone;          // those that the cpu does not have, or has otherwise
+    std::set<std::string> alone;          // kernels that the cpu does not have, or has in another form
 
   private:
     struct Known {
@@ -65,11 +66,11 @@ class TwinDevice final : public Device {
     std::map<uint32_t, Known> known_;
 };
 
-// Whose threads take a place in a list as they come: which is first is another in every run, what stands there is not.
+// Kernels that append to a list in the order of their threads: the order differs from run to run, the set of entries does not.
 const std::set<std::string> kAsTheyCome = {"fluid/surface/foam_born", "fluid/surface/foam_move", "flow/leave", "flow/brim",
                                            "flow/map_touch"};
 
-// A buffer's words in order of what they are worth as floats, so that those that stand in another order are next to each other.
+// Sorts the words of a buffer by their value as floats, so that buffers with another order of entries can be compared.
 std::vector<std::byte> sortedWords(std::span<const std::byte> bytes) {
     std::vector<int32_t> words(bytes.size() / 4);
     std::memcpy(words.data(), bytes.data(), 4 * words.size());
@@ -79,7 +80,7 @@ std::vector<std::byte> sortedWords(std::span<const std::byte> bytes) {
     return sorted;
 }
 
-// Whether the cpu has another form of it: lists of neighbours where a GPU has cells.
+// True if the cpu has another form of the kernel: lists of neighbours where a GPU has cells.
 bool looksThroughNeighbours(const std::string& path) {
     const Result<std::string> text = readFile(std::string(RIVULET_SOURCE_DIR) + "/shaders/" + path + ".kernel");
     EXPECT_TRUE(text) << path;
@@ -107,7 +108,7 @@ void compare(std::span<const std::byte> there, std::span<const std::byte> here, 
         const double a = value(there, i), b = value(here, i);
         if (std::isnan(a) && std::isnan(b)) continue;
         const double off = std::isfinite(a) && std::isfinite(b) && largest > 0 ? std::abs(a - b) / largest : 1.0;
-        // Counts and indices are no floats: as floats they are next to nothing.
+        // Counts and indices read as floats are nearly 0.
         const bool counts = word(there, i) < (1U << 23U) && word(here, i) < (1U << 23U);
         c.worst = std::max(c.worst, counts ? 1.0 : off);
         if (counts || off > 1.0e-5) ++c.apart;
@@ -156,8 +157,8 @@ void TwinDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std:
     }
 }
 
-// Cells are filled in an order that is another in every run until they are sorted (SortTest); a solver's progress is a GPU's alone, as the
-// cpu reads its sums at once (SolverStops).
+// Not compared: cells, whose order differs from run to run until they are sorted (SortTest), and the progress of a solver, which only a GPU
+// has (SolverStops).
 const std::set<std::string> kElsewhere = {"fluid/grid/cell_count",  "fluid/grid/cell_scatter",      "fluid/grid/cell_sort",
                                           "fluid/grid/reorder",     "fluid/grid/scan_apply",        "fluid/grid/scan_blocks",
                                           "fluid/grid/scan_reduce", "fluid/methods/solver_progress"};

@@ -1,4 +1,5 @@
-// fluid.grid linked_list: the thesis's lists hold what they should, and its four dispatches do what the sorted grid's kernels do.
+// fluid.grid linked_list: the thesis's lists hold the right particles, and its four dispatches give the results of the sorted grid's
+// kernels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -161,9 +162,9 @@ TEST_P(LinkedList, EveryParticleIsInTheListOfItsCellOnce) {
             uint32_t length = 0;
             for (uint32_t i = lists[cell]; i != LIST_END; i = lists[NEXT_OF(cells, i)]) {
                 ASSERT_LT(i, count) << "no end in cell " << cell;
-                ASSERT_LE(++length, count) << "a list that bites its tail";
+                ASSERT_LE(++length, count) << "the list is cyclic";
                 found.insert(i);
-                // Padded by a cell; on a cell's face rounding may tell float from double.
+                // Padded by a cell; on a cell's face float and double may round to different cells.
                 const vec3 off = glm::abs(vec3(at - ivec3(1) - referenceCell(b.cloud.position[i])));
                 if (off != vec3(0.0F)) {
                     const vec3 in = (vec3(b.cloud.position[i]) - kBox.min) / kReach;
@@ -199,7 +200,7 @@ TEST_P(LinkedList, TheListsAroundAParticleHoldAllWithinReach) {
                 ASSERT_EQ(around.count(j), 1U) << i << " and " << j;
             }
     }
-    EXPECT_GT(pairs, 15000U) << "the cloud is dense enough to mean something";
+    EXPECT_GT(pairs, 15000U) << "the cloud is dense enough for the test";
 }
 
 // Density by brute force, in double: (3) with poly6.
@@ -239,7 +240,7 @@ TEST_P(LinkedList, AStepIsTheSortedGridsToOnePartInAHundredThousand) {
     const auto scalar = [](float v, uint32_t) { return vec3(v, 0, 0); };
     close("density", linked.byId<float>(linked.particles.density), sorted.byId<float>(sorted.particles.density), scalar);
     close("pressure", linked.byId<float>(linked.particles.pressure), sorted.byId<float>(sorted.particles.pressure), scalar);
-    // What a step changes, so that forces show.
+    // The change in one step, so that forces are visible.
     const auto change = [&](const vec4& v, uint32_t i) { return vec3(v - linked.cloud.velocity[i]); };
     const auto moved = [&](const vec4& x, uint32_t i) { return vec3(x - linked.cloud.position[i]); };
     const auto ratio = [](const vec4& x, uint32_t) { return vec3(x.w, 0, 0); };
@@ -257,7 +258,7 @@ TEST_P(LinkedList, AStepIsTheSortedGridsToOnePartInAHundredThousand) {
         EXPECT_EQ(linked.byId<vec4>(linked.particles.velocityNext)[i], linked.cloud.velocity[i]) << i;
     }
     EXPECT_TRUE(std::isnan(at[kNaN].x));
-    // Stats count as they do there.
+    // The statistics count the same particles.
     double sums[2][7] = {};
     for (Bench* b : {&sorted, &linked})
         for (const StatsRow& r : b->stats()) {
@@ -290,7 +291,7 @@ TEST_P(LinkedList, EllipsoidsAreTheSortedGrids) {
             ASSERT_LT(glm::length(found[1][k][i] - found[0][k][i]), 1.0e-4F) << "of particle " << i << ", part " << k;
 }
 
-// On the sorted grid the order of all sums is known: with work groups of any size the same bits.
+// On the sorted grid the order of all sums is fixed: the bits are the same for work groups of any size.
 TEST_P(LinkedList, AnyWorkGroupGivesTheSameStep) {
     Bench usual(*gpu->device, false);
     ASSERT_TRUE(usual.grid);
@@ -332,7 +333,7 @@ struct Bulk {
     size_t particles = 0;
 };
 
-// From what a host reads of a world, by the code that `--stats` has.
+// Computed from the data that a host reads, by the code of `--stats`.
 Bulk bulkOf(FluidWorld& world) {
     const HostParticles all = readParticles(world);
     Bulk b;
@@ -370,7 +371,7 @@ TEST_P(LinkedList, After200StepsTheWaterIsWhereTheSortedGridsIs) {
     EXPECT_NEAR(bulk[1].density / bulk[0].density, 1.0, 0.01);
 }
 
-TEST_P(LinkedList, ASavedWorldGoesOn) {
+TEST_P(LinkedList, ASavedWorldContinues) {
     const FluidParams p = fallingBlock("linked_list");
     auto first = FluidWorld::create(*gpu->device, p, {}, {}), second = FluidWorld::create(*gpu->device, p, {}, {});
     ASSERT_TRUE(first && second);
@@ -383,7 +384,7 @@ TEST_P(LinkedList, ASavedWorldGoesOn) {
         for (FluidWorld* w : {first->get(), second->get()}) w->step({.gravity = p.gravity}, 1.0e-3);
     const std::vector<vec3> here = positions(**first), there = positions(**second);
     ASSERT_EQ(here.size(), there.size());
-    // Particles keep their slots; sums come in another order every time.
+    // Particles keep their slots; the order of sums differs from run to run.
     for (size_t i = 0; i < here.size(); ++i) ASSERT_LT(glm::length(here[i] - there[i]), 1.0e-5F) << i;
     const FluidParams other = fallingBlock("sorted");
     auto sorted = FluidWorld::create(*gpu->device, other, {}, {});
@@ -452,12 +453,12 @@ TEST(LinkedListRefusal, NamesTheKeyAndTheRemedy) {
     refused("normals", {}, [](FluidParams& p) { p.forces.normals = "gradient"; });
     refused("fluid.collision.walls", {}, [](FluidParams& p) { p.collision.walls = "no-slip"; });
 
-    // A slider later: said, and the rest goes on.
+    // A change of a live parameter: the refusal is reported, and the run continues.
     auto world = FluidWorld::create(*gpu->device, good, {}, {});
     ASSERT_TRUE(world) << world.error().message;
     FluidParams later = good;
     later.forces.vorticity = 1;
-    later.grid = "sorted";  // waits for a new world
+    later.grid = "sorted";  // takes effect in a new world
     ASSERT_TRUE((*world)->setParams(later));
     (*world)->step({.gravity = good.gravity}, 1.0e-3);
     ASSERT_EQ((*world)->stats().limited.size(), 1U);

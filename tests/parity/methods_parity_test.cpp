@@ -1,6 +1,5 @@
-// Every method on cl and gl after 200 steps of a breaking dam of 8,192 particles: where the water is and its front, how
-// fast, and how far compressed.
-// An eighth of a second: later, rounding alone moves the compression of a few hundred particles by more than a hundredth.
+// Every method on cl and gl after 200 steps of a dam break with 8,192 particles agrees with the cpu in position, front, speed and
+// compression. After an eighth of a second, rounding alone moves the compression of a few hundred particles by more than a hundredth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +23,7 @@ After after200Steps(Device& device, const char* method) {
     p.spacing = 0.03125F;
     p.box.max = vec3(1.0F, 1.2F, 1.0F);
     p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
-    // A frame is a step on every device: they know speeds and residuals at different times.
+    // A frame is one step on every device, because devices read speeds and residuals at different times.
     p.soundSpeed = 15;
     p.cfl = 0.8F;
     p.pbf.reach = p.dfsph.reach = 1;
@@ -70,11 +69,11 @@ TEST_P(MethodsParity, AgreeWithinAHundredthAfter200Steps) {
 INSTANTIATE_TEST_SUITE_P(All, MethodsParity, testing::Combine(testing::Values("wcsph", "pbf", "dfsph"), testing::Values("cl", "gl")),
                          [](const auto& row) { return std::string(std::get<0>(row.param)) + "_" + std::get<1>(row.param); });
 
-// dfsph on a GPU stops at the same iteration as on the cpu, without the host: as many iterations per step from the first frame, and the
-// water is as dense. With iterations planned by the host, a pool began with three times the compression, and had three times as many later.
+// dfsph on a GPU stops at the same iteration as on the cpu, without the host: the number of iterations per step and the density agree from
+// the first frame. With iterations planned by the host, a pool began with three times the compression, and had three times as many later.
 class SolverStops : public testing::TestWithParam<const char*> {};
 
-TEST_P(SolverStops, WhereTheCpuDoes) {
+TEST_P(SolverStops, AtTheSameIterationAsTheCpu) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();
@@ -102,7 +101,7 @@ TEST_P(SolverStops, WhereTheCpuDoes) {
 }
 
 // Water falls into a pool, without waiting for the device: results are late, so that first too many and then too few iterations are queued.
-TEST_P(SolverStops, AndDoesSoWithoutWaiting) {
+TEST_P(SolverStops, WithoutWaitingForTheDevice) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();

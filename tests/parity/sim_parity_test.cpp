@@ -1,4 +1,4 @@
-// One text, three compilers: every kernel of a step gives on cl and gl what it gives on the cpu, particle by particle.
+// Every kernel of a step gives the same result on cl and gl as on the cpu, for each particle.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ struct Input {
 };
 
 // A jittered block in a corner of the unit box, around a ball, moving at random; two particles are lost before it begins.
-// `most`: of the jitter, in spacings. Those that would be born nearer to the mesh than contact stand higher up instead.
+// `most`: of the jitter, in spacings. Particles nearer to the mesh than contact are moved up.
 Input disturbedBlock(const VoxelField* field, float most) {
     Input in;
     const float contact = field != nullptr ? fieldParams(*field, {.spacing = kSpacing}).contact : 0.0F;
@@ -45,7 +45,7 @@ Input disturbedBlock(const VoxelField* field, float most) {
     return in;
 }
 
-// A ball of rings and sides: the field needs triangles, not beauty.
+// A ball of rings and segments: shape quality does not matter for the field.
 VoxelField ball() {
     std::vector<vec3> points;
     std::vector<uint32_t> triangles;
@@ -83,8 +83,8 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     p.pbf.iterations = iterations;
     p.dfsph.maxIterations = iterations;
     p.dfsph.tolerance = 1.0e-9F;
-    // A step's corrections are small beside the support: then it matters little that the cpu's lists and a GPU's cells differ in
-    // what they hold just beyond it.
+    // Corrections in a step are small compared with the support. The cpu's lists and a GPU's cells differ only just beyond it, which then
+    // matters little.
     const Input in = disturbedBlock(field, iterations > 1 ? 0.02F : 0.15F);
     const uint32_t count = static_cast<uint32_t>(in.id.size());
     Fields out;
@@ -102,8 +102,8 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     }
     if (!method || !grid || !particles) return out;
     Buffer planes = std::move(*device.allocate(2 * sizeof(vec4)));
-    // The plane cuts into the block. A solver would throw those behind it so far that neighbours are not what they were: it has it a little
-    // lower.
+    // The plane cuts into the block. A solver would move the particles behind it so far that their neighbours change; for solvers the plane
+    // lies a little lower.
     const bool pbf = std::string_view(methodName) == "pbf", solver = pbf || std::string_view(methodName) == "dfsph";
     const vec4 slope[2] = {vec4(0.0F, std::cos(0.2F), std::sin(0.2F),
                                 iterations > 1 ? 0.05F
@@ -122,8 +122,8 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     s.count = count;
     s.h = 2 * kSpacing;
     s.invH = 1 / s.h;
-    // PBF's velocities are differences of positions over dt, DFSPH's answer to density errors over dt: the rounding of those counts for
-    // less in the steps they are made for.
+    // PBF's velocities are differences of positions over dt, DFSPH's correct density errors over dt: rounding matters less in steps of the
+    // usual length.
     s.dt = pbf ? 4.0e-3F : solver ? 2.0e-3F : 2.0e-4F;
     s.mass = 1000 * kSpacing * kSpacing * kSpacing;
     s.restDensity = 1000;
@@ -217,7 +217,7 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     return out;
 }
 
-// Largest difference over largest value, over everything finite; what is NaN on one must be NaN on the other.
+// Largest difference over the largest value, over all finite values; a value that is NaN on one device must be NaN on the other.
 double difference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
     double worst = 0, largest = 0;
     for (size_t i = 0; i < a.size(); ++i)

@@ -1,4 +1,4 @@
-// A small world with a wall of every kind on gl and cl against the cpu: the same water, none of it in a solid.
+// A small world with a wall of every kind: gl and cl agree with the cpu, and no particle is in a solid.
 #include <gtest/gtest.h>
 
 #include "fluid/session/run_stats.h"
@@ -21,7 +21,7 @@ VoxelFieldOptions options(float side) {
     return {.resolution = static_cast<int>(side / (0.25F * kSpacing)), .band = 2 * kSpacing, .padding = 2 * kSpacing};
 }
 
-// A still ball, a turning blade, a heaving sheet below, and a plane; 0.25 s of water falling among them.
+// A fixed ball, a rotating blade, a deforming sheet below and a plane; water falls among them for 0.25 s.
 Outcome run(Device& device, const std::string& walk) {
     Outcome out;
     const test::Mesh ball = test::makeSphere(vec3(0.3F, 0.35F, 0.3F), 0.12F, 16);

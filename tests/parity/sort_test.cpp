@@ -52,7 +52,7 @@ StepParams gridParams(uint32_t count) {
     return p;
 }
 
-// The reference's own reading of "strictly inside the unpadded cells", cell by cell, in the order of the definition.
+// The reference implements "strictly inside the unpadded cells" independently, cell by cell.
 uint32_t referenceCell(const vec4& x, const StepParams& p) {
     const float g[3] = {(x.x - p.gridOrigin.x) * p.gridScale.x, (x.y - p.gridOrigin.y) * p.gridScale.x,
                         (x.z - p.gridOrigin.z) * p.gridScale.x};
@@ -79,7 +79,7 @@ Particles randomParticles(uint32_t count, uint32_t seed) {
 }
 
 // Sorts on the device and compares with a stable sort by (cell, id). Returns how many particles were inside.
-// `byId` false: within a cell any order will do.
+// `byId` false: any order within a cell is accepted.
 uint32_t expectSorted(Device& device, const Particles& in, bool byId = true) {
     const uint32_t count = static_cast<uint32_t>(in.id.size());
     const StepParams params = gridParams(count);
@@ -132,7 +132,7 @@ uint32_t expectSorted(Device& device, const Particles& in, bool byId = true) {
         EXPECT_EQ(std::memcmp(&velocities[slot], &in.velocity[i], sizeof(vec4)), 0) << slot;
         EXPECT_EQ(ids[slot], in.id[i]) << slot;
     }
-    std::sort(got.begin(), got.end());  // limbo's particles are all there, in any order
+    std::sort(got.begin(), got.end());  // all particles outside the grid are present, in any order
     for (uint32_t i = 0; i < count; ++i) EXPECT_EQ(got[i], i);
     return inside;
 }
@@ -203,7 +203,7 @@ TEST_P(SortTest, outsideAndNanParticlesAreSortedBehindTheGrid) {
             put(10 + 17 * lost, x);
         }
     const StepParams p = gridParams(0);
-    for (int axis = 0; axis < 3; ++axis) {  // in the padding, a hair beyond the unpadded cells
+    for (int axis = 0; axis < 3; ++axis) {  // in the padding, just beyond the unpadded cells
         const int cells[3] = {p.cellsX, p.cellsY, p.cellsZ};
         vec4 low = all.position[0], high = low;
         low[axis] = p.gridOrigin[axis] + 0.0999F;

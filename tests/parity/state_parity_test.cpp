@@ -1,4 +1,4 @@
-// A state that was saved on the cpu goes on where it was on a GPU; what is drawn between two steps is the same there.
+// A state that was saved on the cpu continues on a GPU; positions drawn between two steps are the same.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,13 +54,13 @@ TEST_P(StateParity, SavedOnTheCpuResumedThere) {
         EXPECT_EQ((*here)->time(), (*there)->time()) << method;
         EXPECT_EQ((*here)->pending(), (*there)->pending()) << method;
         const double apart = furthest(byId(**here, *(*here)->particles().position), byId(**there, *(*there)->particles().position));
-        // Two steps on: by rounding, and by iterations that a GPU chooses by late figures; not by what they started from.
+        // After two more steps the results differ only by rounding and by the iterations that a GPU chooses from late figures.
         EXPECT_LT(apart, 0.1 * double{p.spacing}) << method;
         // Drawn between the steps, from its own states.
         const double between = furthest(byId(**here, *(*here)->particles().drawn), byId(**there, *(*there)->particles().drawn));
         EXPECT_LE(between, 1.01 * apart + 1e-6) << method;
         EXPECT_GT(furthest(byId(**there, *(*there)->particles().drawn), byId(**there, *(*there)->particles().position)), 1e-3) << method;
-        // And back: what a GPU saved, a cpu takes.
+        // In the other direction, too: the cpu restores a state saved on a GPU.
         WorldState back;
         (*there)->save(back);
         EXPECT_TRUE((*here)->restore(back)) << method;
@@ -69,7 +69,7 @@ TEST_P(StateParity, SavedOnTheCpuResumedThere) {
 }
 
 // Results that are pending when their world is destroyed are dropped: neither it nor the next world of that device receives them.
-TEST_P(StateParity, AWorldMayGoBeforeItsFiguresCome) {
+TEST_P(StateParity, AWorldMayBeDestroyedBeforeItsResultsArrive) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     const FluidParams p = block("wcsph");

@@ -9,7 +9,7 @@ namespace {
 
 class VolumesParity : public testing::TestWithParam<const char*> {};
 
-TEST_P(VolumesParity, CountsAreWhatLiesInThem) {
+TEST_P(VolumesParity, CountsEqualTheParticlesInside) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     FluidParams p;
@@ -28,7 +28,7 @@ TEST_P(VolumesParity, CountsAreWhatLiesInThem) {
     for (int frame = 0; frame < 30; ++frame) {
         volumes[1].position.x += 0.008F;
         ASSERT_TRUE(world.setVolumes(volumes));
-        if (frame == 10) {  // a third comes and goes in the bits that others had
+        if (frame == 10) {  // a third volume is added and removed, and reuses their bits
             volumes.push_back({3, Volume::box, vec3(0.25F), vec3(1.0F)});
             ASSERT_TRUE(world.setVolumes(volumes));
             volumes.pop_back();

@@ -101,7 +101,7 @@ TEST_P(VoxelDevices, TestMeshes) {
     }
 }
 
-TEST_P(VoxelDevices, BitsThatWereSetStay) {
+TEST_P(VoxelDevices, BitsThatWereSetStaySet) {
     const test::Mesh ball = test::makeSphere(vec3(0), 1.0F, 8);
     VoxelGrid grid = test::gridAround(ball, 16);
     std::fill(grid.bits.begin(), grid.bits.end(), uint8_t{0x11});

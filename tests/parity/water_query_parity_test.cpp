@@ -57,7 +57,7 @@ TEST_P(WaterQueryParity, TheSameOnAGpu) {
             for (size_t k = 0; k < x.size(); ++k) {
                 met += x[k].hit ? 1 : 0;
                 inside += x[k].inside ? 1 : 0;
-                // A ray that grazes, or begins on the surface, may go either way by rounding.
+                // For a ray that grazes or begins on the surface, rounding decides whether it hits.
                 const bool same = x[k].hit == y[k].hit && x[k].inside == y[k].inside && std::abs(x[k].distance - y[k].distance) < 1e-3F;
                 other += same ? 0 : 1;
                 if (same && x[k].hit) EXPECT_LT(glm::length(x[k].normal - y[k].normal), 0.02F) << grid << k;

@@ -96,7 +96,7 @@ TEST(BadInput, SolidsAreNamed) {
     EXPECT_NE(refusal(sound(), {.surfaces = {{.friction = NAN}}}), "");
     EXPECT_NE(refusal(sound(), {.deforming = {nullptr}}), "");
 
-    // A band that a particle would be past before it is heard of.
+    // A band so narrow that a particle could cross it between two tests.
     const test::Mesh ball = test::makeSphere(vec3(0.5F), 0.05F);
     const MeshView views[] = {ball.view()};
     Result<VoxelField> field = bakeVoxelField(views, {.resolution = 128});

@@ -1,5 +1,4 @@
-// Bodies in the fluid against what must be: Archimedes, Newton's third law, walls of boundary particles as good as walls, light bodies
-// that stay finite.
+// Bodies in the fluid: Archimedes' principle, Newton's third law, walls of boundary particles, and very light bodies.
 #include "fluid/sim/solids/bodies.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +46,7 @@ FluidParams tank(const std::string& method, float spacing, const vec3& size, flo
     p.blocks = {{vec3(0), vec3(size.x, depth, size.z), vec3(0.0F)}};
     p.soundSpeed = 20;
     p.cfl = 0.8F;
-    p.artificialViscosity = 0.1F;  // with less, noise at the bodies holds the fluid a third of a spacing off them
+    p.artificialViscosity = 0.1F;  // with less, noise keeps the fluid a third of a spacing away from the bodies
     return p;
 }
 
@@ -79,7 +78,7 @@ struct OnFloor {
     }
 };
 
-// Mean height of the highest particle of each column of one spacing, and half a spacing: the surface, where `counts` says so.
+// Height of the surface where `counts` is true: mean height of the highest particle of each column of one spacing, plus half a spacing.
 template <class Counts>
 double surfaceOf(const std::vector<Drop>& drops, float spacing, Counts counts) {
     std::map<std::pair<int, int>, float> top;
@@ -95,8 +94,8 @@ double surfaceOf(const std::vector<Drop>& drops, float spacing, Counts counts) {
 
 // ---- samples ----
 
-// Fluid whose lattice begins half a spacing off a flat surface is at rest density, however it lies beside the samples.
-TEST(Samples, APlaneStandsForWhatLiesBehindIt) {
+// Fluid whose lattice begins half a spacing off a flat surface is at rest density, for any offset along the samples.
+TEST(Samples, APlaneHasTheDensityOfTheFluidThatItReplaces) {
     for (const char* kernel : {"wendland", "cubic_spline"})
         for (const float support : {2.0F, 2.5F, 3.0F}) {
             FluidParams p{.method = "wcsph"};
@@ -126,8 +125,9 @@ TEST(Samples, APlaneStandsForWhatLiesBehindIt) {
         }
 }
 
-// A body's mass, inertia and volume are those of its shape, as a box and as a mesh turned and moved; samples lie half a spacing deep.
-TEST(Samples, AMeshIsTheBoxItShows) {
+// A body's mass, inertia and volume equal those of its shape, for a box and for a rotated and translated mesh; samples lie half a spacing
+// deep.
+TEST(Samples, AMeshOfABoxEqualsTheBox) {
     const vec3 size(0.3F, 0.2F, 0.12F);
     const float s = 0.02F;
     const BodyShape box = boxShape(size, 700, s);
@@ -154,7 +154,7 @@ TEST(Samples, AMeshIsTheBoxItShows) {
         EXPECT_NEAR(box.distance(glm::conjugate(turn) * (mesh->frame.toWorld(p) - vec3(3, -2, 1))), mesh->shape.distance(p), 1e-5F);
     }
     for (const vec3& p : box.samples) EXPECT_NEAR(box.distance(p), -0.5F * s, 1e-6F);
-    // As many as a lattice would have, and no hole between them that fluid could go through.
+    // The number of samples equals that of a lattice, and there is no gap that fluid could pass.
     EXPECT_NEAR(static_cast<double>(mesh->shape.samples.size()), static_cast<double>(box.samples.size()),
                 0.3 * static_cast<double>(box.samples.size()));
     for (const vec3& p : box.samples) {
@@ -171,7 +171,7 @@ TEST(Samples, AMeshIsTheBoxItShows) {
 TEST(FreeBody, TumblesWithItsAngularMomentum) {
     Body body;
     body.shape = boxShape(vec3(0.3F, 0.2F, 0.1F), 500, 0.02F);
-    body.state.spin = vec3(0.01F, 3.0F, 0.0F);  // about the axis of middle inertia: it turns over
+    body.state.spin = vec3(0.01F, 3.0F, 0.0F);  // about the axis of intermediate inertia: the body flips
     FreeBodies free(std::span(&body, 1));
     const BodyHost host = free.host();
     const auto momentum = [&](const BodyState& s) {
@@ -190,11 +190,11 @@ TEST(FreeBody, TumblesWithItsAngularMomentum) {
     EXPECT_LT(least, -0.9F) << "the tennis racket turns over";
 }
 
-// ---- both ways ----
+// ---- two-way coupling ----
 
-// A drop flies against a resting body, off the middle, without gravity or while both fall: what fluid and body have of momentum and angular
-// momentum together stays, but for what gravity gives them, for pressures and friction of every method.
-TEST(TwoWay, NothingIsLostBetweenFluidAndBody) {
+// A drop hits a resting body off centre, without gravity or in free fall. For every method, the total momentum and angular momentum of
+// fluid and body change only by gravity.
+TEST(TwoWay, MomentaOfFluidAndBodyAreConserved) {
     for (const auto& [method, gravity] : {std::pair("wcsph", 0.0F), std::pair("wcsph", 9.81F), std::pair("dfsph", 0.0F),
                                           std::pair("dfsph", 9.81F), std::pair("pbf", 0.0F)}) {
         auto device = cpu();
@@ -242,8 +242,8 @@ TEST(TwoWay, NothingIsLostBetweenFluidAndBody) {
 
 // ---- Archimedes ----
 
-// A ball a hundred times as light as water, and one a hundred times as heavy, dropped from just above it: one ends on top, one on the
-// floor.
+// A ball of a hundredth of the density of water and one of a hundred times that density, dropped from just above the surface: the first
+// ends on top, the second on the floor.
 TEST(Floating, AHundredTimesAsLightAndAsHeavy) {
     for (const char* method : {"wcsph", "pbf", "dfsph"})
         for (const double ratio : {0.01, 100.0}) {
@@ -283,7 +283,8 @@ TEST(Floating, AHundredTimesAsLightAndAsHeavy) {
 
 // ---- walls of boundary particles ----
 
-// A pool over a floor of boundary particles, as deep as over the box's own floor: no gap, nothing through, no climbing where it ends.
+// A pool over a floor of boundary particles is as deep as over the floor of the box: no gap, no particle below the floor, no climbing at
+// its edge.
 TEST(BoundaryParticles, APoolStandsAsOverTheFloor) {
     auto device = cpu();
     const float s = 0.02F;
@@ -315,7 +316,7 @@ TEST(BoundaryParticles, APoolStandsAsOverTheFloor) {
     EXPECT_NEAR(lowest[1], lowest[0], 0.3 * s);
 }
 
-// A gap three spacings wide between walls of boundary particles lets water through: no clog.
+// Water flows through a gap of three spacings between walls of boundary particles.
 class ChannelOfParticles : public testing::TestWithParam<const char*> {};
 TEST_P(ChannelOfParticles, ThreeSpacingsWideLetsWaterThrough) {
     auto device = cpu();
@@ -346,7 +347,7 @@ TEST_P(ChannelOfParticles, ThreeSpacingsWideLetsWaterThrough) {
 INSTANTIATE_TEST_SUITE_P(Methods, ChannelOfParticles, testing::Values("wcsph", "pbf", "dfsph"),
                          [](const auto& row) { return std::string(row.param); });
 
-// ---- sameness ----
+// ---- reproducibility ----
 
 TEST(TwoWay, TheSameBitsForAnyThreads) {
     std::vector<vec4> first;
@@ -381,8 +382,7 @@ TEST(TwoWay, TheSameBitsForAnyThreads) {
 
 // ---- contact ----
 
-// Heavy bodies of every shape in a dry box: a box on the floor, a ball on that, a hull and a mesh beside them. They come to rest on each
-// other.
+// Heavy bodies of every shape in a dry box: a box on the floor, a ball on the box, a hull and a mesh next to them. They come to rest.
 TEST(Contact, BodiesRestOnTheFloorAndOnEachOther) {
     auto device = cpu();
     SceneFile scene;
@@ -405,7 +405,7 @@ TEST(Contact, BodiesRestOnTheFloorAndOnEachOther) {
         body.position = vec3(shape[0] == 'h' ? 0.6F : 0.8F, 0.1F, 0.4F);
         scene.bodies.push_back(body);
     }
-    // The ball's distance is asked for every particle near it: a coarse one does.
+    // The distance of the ball is computed for every particle near it: a coarse mesh is enough.
     auto session = Session::create(scene, *device, {});
     ASSERT_TRUE(session) << session.error().message;
     for (int frame = 0; frame < 60; ++frame) (*session)->step(1.0 / 60, true);
@@ -413,13 +413,13 @@ TEST(Contact, BodiesRestOnTheFloorAndOnEachOther) {
     EXPECT_NEAR(b[0].pose.position.y, 0.05F, 0.002F);
     EXPECT_NEAR(b[1].pose.position.y, 0.15F, 0.004F);
     EXPECT_NEAR(b[2].pose.position.y, 0.06F, 0.004F);
-    EXPECT_NEAR(b[3].pose.position.y, 0.06F, 0.008F);  // of boxes a twelfth of it
+    EXPECT_NEAR(b[3].pose.position.y, 0.06F, 0.008F);  // of the boxes a twelfth of that
     for (const BodyState& s : b) EXPECT_LT(glm::length(s.velocity), 0.1F);
     (*session)->reset();
     EXPECT_EQ((*session)->world().bodies()[1].pose.position, vec3(0.3F, 0.2F, 0.3F));
 }
 
-// Without a fluid in the way: contacts alone. A stack stands, a box on a slope stays or slides as Coulomb says.
+// Contacts without fluid: a stack is stable, and a box on a slope stays or slides by Coulomb's law.
 struct Contacts {
     std::vector<Body> bodies;
     std::vector<BodyForm> forms;
@@ -449,7 +449,7 @@ struct Contacts {
     }
 };
 
-TEST(Contact, AStackStandsThoughNothingOfItIsRemembered) {
+TEST(Contact, AStackIsStableWithoutStoredContacts) {
     for (const double dt : {1.0 / 120, 1.0 / 480, 1.0 / 2000}) {
         Contacts stack;
         for (int k = 0; k < 5; ++k) stack.add(vec3(0, 0.05F + 0.1F * static_cast<float>(k), 0), 0.5F);
@@ -463,7 +463,7 @@ TEST(Contact, AStackStandsThoughNothingOfItIsRemembered) {
     }
 }
 
-TEST(Contact, ABoxOnASlopeStaysOrSlidesAsCoulombSays) {
+TEST(Contact, ABoxOnASlopeObeysCoulombsLaw) {
     const double angle = 20 * M_PI / 180;
     const vec3 normal(static_cast<float>(std::sin(angle)), static_cast<float>(std::cos(angle)), 0);
     for (const float friction : {0.5F, 0.2F}) {  // tan 20 degrees is 0.364
@@ -478,7 +478,7 @@ TEST(Contact, ABoxOnASlopeStaysOrSlidesAsCoulombSays) {
 }
 
 // Bodies would pass through a deforming mesh: such a scene is refused with an error.
-TEST(Contact, AScenesBendingColliderIsRefusedBesideBodies) {
+TEST(Contact, ADeformingColliderIsRefusedInASceneWithBodies) {
     auto device = cpu();
     SceneFile scene;
     scene.fluid.spacing = 0.05F;

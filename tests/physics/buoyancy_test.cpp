@@ -1,5 +1,4 @@
-// Bodies that float on sampled water, integrated by a host of a few lines: their draught is that of Archimedes, and the water is not
-// affected.
+// Bodies that float on sampled water, integrated by a small host: their draught obeys Archimedes' principle, and the water is not affected.
 #include "fluid/sim/solids/buoyancy.h"
 
 #include <gtest/gtest.h>
@@ -69,7 +68,7 @@ TEST(Buoyancy, PointsFillTheShape) {
         }
         EXPECT_NEAR(volume, double{s->volume}, 1e-5 * double{s->volume});
         EXPECT_LT(glm::length(centre / volume), 1e-6);
-        // Its inertia is that of the body, as far as points can have it.
+        // Its inertia equals that of the body, within the accuracy of points.
         EXPECT_NEAR(500 * (squares.y + squares.z), double{s->inertia.x}, 0.05 * double{s->inertia.x});
     }
     EXPECT_EQ(floatPoints(box, 10.0F).size(), 1U);
@@ -79,7 +78,7 @@ TEST(Buoyancy, PointsFillTheShape) {
     EXPECT_EQ(floatPoints(bare, 0.1F)[0].volume, 0.5F);
 }
 
-// Water that is known: all under, half under, moving past.
+// Prescribed water: body submerged, half submerged, and in a stream.
 TEST(Buoyancy, ForcesAreThoseOfArchimedesAndMorison) {
     const BodyShape box = boxShape(vec3(0.2F), 500, kSpacing);
     const std::vector<FloatPoint> points = floatPoints(box, 0.02F);
@@ -94,7 +93,7 @@ TEST(Buoyancy, ForcesAreThoseOfArchimedesAndMorison) {
     // Water above rest density gives no more buoyancy.
     for (FluidSample& s : water) s.density = 1.3F;
     EXPECT_NEAR(buoyancy(points, state, water, params, 4, 1e-6).force.y, weight, 1e-4 * weight);
-    // One half under: half the force, half of half the width beside the middle.
+    // Half submerged: half the force, at a quarter of the width from the centre.
     for (size_t k = 0; k < points.size(); ++k) water[k].density = points[k].place.x > 0 ? 1.0F : 0.0F;
     load = buoyancy(points, state, water, params, 4, 1e-6);
     EXPECT_NEAR(load.force.y, weight / 2, 1e-4 * weight);
@@ -104,7 +103,7 @@ TEST(Buoyancy, ForcesAreThoseOfArchimedesAndMorison) {
     for (FluidSample& s : water) s = {1.0F, vec3(2.0F, 0.0F, 0.0F), vec3(0.0F)};
     load = buoyancy(points, state, water, params, 4, 1e-6);
     EXPECT_NEAR(load.force.x, 0.5 * 1000 * 0.04 * 4 + 1000 * 0.008 * 2, 0.1);
-    // However long it acts it takes no more than the difference.
+    // Over any time it removes at most the velocity difference.
     EXPECT_LE(buoyancy(points, state, water, params, 4, 10.0).force.x * 10.0 / 4, 2.0);
 }
 
@@ -128,11 +127,11 @@ TEST(Buoyancy, ACubeOfHalfTheDensityFloatsHalfUnder) {
     }
     double level = 0;
     const std::vector<vec4> x = device->readAll<vec4>(*world->particles().position, world->particles().count);
-    for (const vec4& p : x) level += 2 * double{p.y} / static_cast<double>(x.size());  // of what fills a box evenly, twice its middle
+    for (const vec4& p : x) level += 2 * double{p.y} / static_cast<double>(x.size());  // twice the mean height of an evenly filled box
     EXPECT_NEAR(mean / counted, level, 0.05 * double{edge});
     EXPECT_LT(glm::length(light.state.velocity), 0.05F);
     EXPECT_LT(heavy.state.pose.position.y, 0.1F) << "it sinks";
-    EXPECT_TRUE(x == device->readAll<vec4>(*alone->particles().position, alone->particles().count)) << "the water does not know";
+    EXPECT_TRUE(x == device->readAll<vec4>(*alone->particles().position, alone->particles().count)) << "the water is not affected";
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ inline void addSheet(Skin& s, const vec3& corner, const vec3& across, const vec3
         }
 }
 
-// A ball as a cube blown up: six charts of n x n quads. Points of the cube are whole numbers, so that faces meet exactly.
+// A ball as an inflated cube: six charts of n x n quads. Points of the cube have integer coordinates, so that faces meet exactly.
 inline Skin cubeBall(float radius, uint32_t n) {
     Skin s;
     const vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -59,7 +59,7 @@ inline Skin shattered(const Skin& of) {
     return s;
 }
 
-// Of a mesh what hangs together and has the most triangles: of the head the skin, without eyes and lashes.
+// The connected part of a mesh with the most triangles: for the head its skin, without eyes and lashes.
 inline Skin largestPart(const Mesh& mesh) {
     Result<FlowMesh> made = makeFlowMesh(mesh.view());
     if (!made) return {};

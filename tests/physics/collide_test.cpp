@@ -1,4 +1,4 @@
-// Particles against the static field: nothing in, nothing through, nothing sticks.
+// Particles against the static field: none enters it, none passes through, none sticks.
 #include <gtest/gtest.h>
 
 #include "fluid/sim/solids/solids.h"
@@ -9,7 +9,7 @@
 namespace rivulet::collide_test {
 namespace {
 
-// Free particles (no pressure) under gravity and the collide kernel, as a step of the fluid would run them.
+// Free particles (no pressure) under gravity and the collide kernel, in the order of a step of the fluid.
 struct World {
     VoxelField field;
     alignas(16) FieldParams params{};
@@ -56,7 +56,7 @@ struct World {
     }
     vec3 at(size_t i) const { return vec3(position[i]); }
     vec3 speed(size_t i) const { return vec3(velocity[i]); }
-    // Counted from the bits, not by the code that collides.
+    // Counted from the bits, independent of the collision code.
     size_t penetrations() const {
         size_t n = 0;
         for (const vec4& p : position) n += field.surface.test(field.surface.cellOf(vec3(p))) ? 1 : 0;
@@ -73,7 +73,7 @@ vec3 direction() {
     }
 }
 
-// Fired at a sphere from all around, at speeds of a crawl to 40 voxels a step.
+// Particles hit a sphere from all directions, at speeds from nearly 0 to 40 voxels a step.
 TEST(Collide, NothingEntersASphere) {
     random_.seed(1);
     World world(test::makeSphere(vec3(0), 0.5F, 40), 96, 0.02F);
@@ -88,7 +88,7 @@ TEST(Collide, NothingEntersASphere) {
         world.step(vec3(0, -9.81F, 0) * (step < 150 ? 1.0F : -1.0F), 0.005F);
         ASSERT_EQ(world.penetrations(), 0U) << "step " << step;
         for (size_t i = 0; i < world.position.size(); ++i) {
-            // The mesh is inside its sphere by the sagitta; contact is measured to the mesh.
+            // The mesh lies inside its sphere by up to the sagitta; contact is measured to the mesh.
             ASSERT_GT(glm::length(world.at(i)), 0.5F * std::cos(kPi / 40) + 0.9F * world.params.contact)
                 << "particle " << i << ", step " << step;
             ASSERT_EQ(world.position[i].w, 0.25F);
@@ -99,7 +99,7 @@ TEST(Collide, NothingEntersASphere) {
     EXPECT_GT(hits, 2000U);
 }
 
-// Inside a room whose walls have no thickness, at any angle to the grid: none ever gets out.
+// Inside a room whose walls have no thickness, at any angle to the grid: no particle leaves.
 TEST(Collide, NothingLeavesARoomOfSheets) {
     random_.seed(2);
     for (int turn = 0; turn < 4; ++turn) {
@@ -133,8 +133,8 @@ TEST(Collide, NothingLeavesARoomOfSheets) {
     }
 }
 
-// A jumble of triangles, needles, slivers: the bits hold whatever the distances look like.
-TEST(Collide, NothingEntersAJumble) {
+// Random triangles, needles and slivers: no particle enters a set voxel, even where distances are inexact.
+TEST(Collide, NothingEntersRandomTriangles) {
     random_.seed(3);
     for (unsigned seed = 1; seed <= 3; ++seed) {
         World world(test::makeJumble(seed, 28), 64, 0.02F);
@@ -147,7 +147,7 @@ TEST(Collide, NothingEntersAJumble) {
     }
 }
 
-// accuracy.md: within 5 % of g sin 7 degrees, whichever way the slope is turned to the grid.
+// accuracy.md: within 5 % of g sin 7 degrees, for any rotation of the slope relative to the grid.
 TEST(Collide, SlidesDownAGentleSlope) {
     const float slope = 7.0F * kPi / 180;
     for (float turn : {0.0F, 0.4F, 0.785398F, 1.3F}) {
@@ -155,7 +155,7 @@ TEST(Collide, SlidesDownAGentleSlope) {
         const vec3 normal(std::cos(turn) * std::sin(slope), std::cos(slope), std::sin(turn) * std::sin(slope));
         World world(test::makeSheet(vec3(0), normal, 3.0F), 128, 0.05F);
         ASSERT_TRUE(world.add(normal * (1.8F * world.params.contact) - 0.8F * down, vec3(0)));
-        // First onto the slope, and to rest.
+        // First the particle falls onto the slope and comes to rest.
         for (int step = 0; step < 100; ++step) world.step(vec3(0, -9.81F, 0), 0.002F);
         const float from = glm::dot(world.speed(0), down);
         for (int step = 0; step < 200; ++step) {
@@ -168,7 +168,8 @@ TEST(Collide, SlidesDownAGentleSlope) {
     }
 }
 
-// The same slope met as the thesis meets it: normals of smoothed voxels are the voxels' stairs, and the particle sticks on one of them.
+// The same slope with the collision of the thesis: normals of smoothed voxels follow the staircase of the voxels, and the particle sticks
+// on a step.
 TEST(Collide, SticksOnAGentleSlopeInThesisMode) {
     const float slope = 7.0F * kPi / 180;
     const vec3 down(std::cos(slope), -std::sin(slope), 0), normal(std::sin(slope), std::cos(slope), 0);
@@ -214,8 +215,8 @@ TEST(Collide, FrictionSlowsAndHolds) {
     }
 }
 
-// A drop from 0.2 m onto a floor rises to restitution^2 of it, and lies still in the end.
-TEST(Collide, BouncesAsFarAsItShould) {
+// A particle dropped from 0.2 m rises to restitution^2 of that height and finally comes to rest.
+TEST(Collide, BounceHeightIsRestitutionSquared) {
     World world(test::makeSheet(vec3(0), vec3(0, 1, 0), 2.0F), 64, 0.05F, 0.0F, 0.6F);
     const float floor = world.params.contact;
     ASSERT_TRUE(world.add(vec3(0.1F, floor + 0.2F, 0.1F), vec3(0)));
@@ -233,7 +234,7 @@ TEST(Collide, BouncesAsFarAsItShould) {
     EXPECT_LT(glm::length(world.speed(0)), 2 * 9.81F * dt);
 }
 
-// In edges and corners of a box, gravity pressing into all walls: at rest, without jitter, at contact from each.
+// In edges and corners of a box, with gravity towards all walls: the particle rests without jitter, at contact distance from each wall.
 TEST(Collide, RestsInCorners) {
     random_.seed(5);
     for (int turn = 0; turn < 3; ++turn) {
@@ -266,7 +267,7 @@ TEST(Collide, RestsInCorners) {
     }
 }
 
-// Along a floor into a wall: it stops dead there, it does not run up the wall as in a bowl.
+// Along a floor into a wall: the particle stops there and does not climb the wall.
 TEST(Collide, StopsAtAWallAcrossItsWay) {
     test::Mesh step = test::makeSheet(vec3(0), vec3(0, 1, 0), 2.0F);
     step.quad(vec3(0.5F, 0, -1), vec3(0.5F, 1, -1), vec3(0.5F, 1, 1), vec3(0.5F, 0, 1));
@@ -292,13 +293,13 @@ TEST(Collide, StopsAtAWallAcrossItsWay) {
     }
 }
 
-// Over the top of a smooth bump: what does not go into the surface is kept.
+// Over the top of a smooth bump: the tangential velocity is kept.
 TEST(Collide, KeepsItsSpeedAroundASphere) {
     World world(test::makeSphere(vec3(0), 0.5F, 90), 100, 0.03F);
     const float r = 0.5F + world.params.contact;
     world.position.emplace_back(0.0F, r, 0.0F, 0.0F);
     world.velocity.emplace_back(1.0F, 0.0F, 0.0F, 0.0F);
-    // Towards the centre, strong enough to hold it on: a circle at constant speed.
+    // A force towards the centre, strong enough to keep contact: a circle at constant speed.
     for (int step = 0; step < 1500; ++step) {
         world.step(-20.0F * glm::normalize(world.at(0)), 0.001F);
         ASSERT_NEAR(glm::length(world.at(0)), r, 0.15F * world.params.voxel);
@@ -306,7 +307,7 @@ TEST(Collide, KeepsItsSpeedAroundASphere) {
     EXPECT_NEAR(glm::length(world.speed(0)), 1.0F, 0.05F);
 }
 
-// A channel too narrow for contact on both sides, but wider than its voxels: flows, does not clog or shake.
+// A channel too narrow for contact distance on both sides, but wider than its voxels: particles flow without clogging or jitter.
 TEST(Collide, FlowsThroughANarrowChannel) {
     test::Mesh channel = test::makeSheet(vec3(0), vec3(0, 1, 0), 2.0F);
     const test::Mesh lid = test::makeSheet(vec3(0, 0.06F, 0), vec3(0, 1, 0), 2.0F);
@@ -314,7 +315,7 @@ TEST(Collide, FlowsThroughANarrowChannel) {
     channel.positions.insert(channel.positions.end(), lid.positions.begin(), lid.positions.end());
     World world(channel, 120, 0.08F);
     ASSERT_GT(2 * world.params.contact, 0.06F);
-    // Born in mid channel, where no particle would be; the contract asks only that it is in no set voxel.
+    // Placed in the middle of the channel, where no particle would be spawned; the contract requires only that it is in no set voxel.
     for (int k = 0; k < 50; ++k) {
         world.position.emplace_back(-0.6F, 0.03F, uniform(-0.5F, 0.5F), 0.0F);
         world.velocity.emplace_back(0.5F, uniform(-0.2F, 0.2F), 0.0F, 0.0F);
@@ -331,7 +332,7 @@ TEST(Collide, FlowsThroughANarrowChannel) {
 }
 
 // Spawned nearer than the contact distance, where distances are inexact: the traversal of the voxels alone must stop the particle.
-TEST(Collide, TheWalkHoldsWhereDistancesDoNot) {
+TEST(Collide, TheTraversalStopsParticlesWhereDistancesAreInexact) {
     random_.seed(8);
     World channel(
         [] {
@@ -367,8 +368,8 @@ TEST(Collide, TheWalkHoldsWhereDistancesDoNot) {
     }
 }
 
-// NaN, infinity, no motion, outside the grid, beyond the active count: left alone.
-TEST(Collide, LeavesAloneWhatIsNotItsBusiness) {
+// Particles with NaN, infinity or no motion, outside the grid or beyond the active count are not changed.
+TEST(Collide, DoesNotChangeInvalidOrInactiveParticles) {
     World world(test::makeSphere(vec3(0), 0.5F, 12), 32, 0.02F);
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
     const vec3 places[] = {vec3(nan), vec3(inf, 0, 0), vec3(1e20F, 0, 0), vec3(0.7F, 0, 0), vec3(5, 5, 5), vec3(0.9F, 0.1F, 0)};

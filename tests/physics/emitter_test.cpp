@@ -1,4 +1,4 @@
-// Emitters and sinks: how much comes in and goes, and that nothing explodes, is lost or appears from nowhere.
+// Emitters and sinks: emitted and drained volumes are exact, the flow stays stable, and volume is conserved.
 #include "fluid/sim/sources/emitter.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ Found found(const FluidWorld& world) {
     return f;
 }
 
-// The independent count: particles that can be seen, against litres a second times seconds.
+// Independent count: visible particles against litres per second times seconds.
 TEST(Emitter, LitresASecondAreExactToAParticle) {
     for (const char* shape : {"nozzle", "box", "mesh"}) {
         auto device = makeTestCpu();
@@ -87,7 +87,7 @@ TEST(Emitter, LitresASecondAreExactToAParticle) {
 }
 
 // A nozzle that was blocked emits its pending volume faster: the choice of the time step includes that speed.
-TEST(Emitter, NothingComesOutFasterThanItSays) {
+TEST(Emitter, NoParticleIsFasterThanItsEmitter) {
     EmitterFeed feed(nozzle(0.5F, 0.0F, 0.05F), 0, 0.02F);
     std::vector<Candidate> out;
     float fastest = 0;
@@ -105,7 +105,7 @@ TEST(Emitter, NothingComesOutFasterThanItSays) {
     EXPECT_LE(fastest, feed.fastest());
 }
 
-TEST(Emitter, ItBeginsAndEndsWhenItShould) {
+TEST(Emitter, StartsAndStopsAtItsTimes) {
     auto device = makeTestCpu();
     Emitter e = nozzle(1.2F, 0.0F, 0.05F);
     e.params.start = 0.25F;
@@ -117,7 +117,7 @@ TEST(Emitter, ItBeginsAndEndsWhenItShould) {
     EXPECT_NEAR(static_cast<double>(found(*world).position.size()), 0.6e-3 / 8.0e-6, 1.0);
 }
 
-// Before anything pushes, a jet is a full body of water: its density is the rest density, and no two particles are nearer than they rest.
+// Before forces act, a jet is filled with water at rest density, and no two particles are nearer than at rest.
 TEST(Emitter, AJetIsContinuousAndAtRestDensity) {
     for (const float speed : {0.7F, 2.0F, 5.0F}) {
         auto device = makeTestCpu();
@@ -137,7 +137,7 @@ TEST(Emitter, AJetIsContinuousAndAtRestDensity) {
         }
         EXPECT_GT(nearest, 0.8F * s) << speed;
         EXPECT_LT(f.fastest, 1.15F * speed) << speed;
-        // Along its way there are as many particles a length as rate and speed say, without gaps and lumps.
+        // Along the jet, the number of particles per length follows from rate and speed, without gaps or clusters.
         const double perMetre = 1.0e-3 * static_cast<double>(rate) / static_cast<double>(speed) / 1.0e-6;
         const int slabs = 6;
         const float from = first + 2 * s, length = (last - 4 * s - from) / slabs;
@@ -150,7 +150,7 @@ TEST(Emitter, AJetIsContinuousAndAtRestDensity) {
     }
 }
 
-TEST(Emitter, ACapIsKeptSaidAndItsSlotsComeBackFromSinks) {
+TEST(Emitter, ALimitIsKeptAndReportedAndSinksFreeItsSlots) {
     auto device = makeTestCpu();
     FluidParams p = boxWorld(0.02F);
     p.maxParticles = 200;
@@ -165,7 +165,7 @@ TEST(Emitter, ACapIsKeptSaidAndItsSlotsComeBackFromSinks) {
     ASSERT_EQ(world->stats().limited.size(), 1U);
     EXPECT_NE(world->stats().limited[0].find("200"), std::string::npos);
     EXPECT_NEAR(world->stats().backlog, 2.0e-3 - 200 * 8.0e-6, 2 * 8.0e-6);
-    // With a sink they are used again and again.
+    // With a sink the slots are reused.
     world = make(*device, p, both);
     run(*world, 3.0);
     const FluidStats& s = world->stats();
@@ -176,7 +176,7 @@ TEST(Emitter, ACapIsKeptSaidAndItsSlotsComeBackFromSinks) {
     EXPECT_LT(std::abs(s.emitted - s.drained - static_cast<double>(there) * 8.0e-6) / s.emitted, 1.0e-5);
 }
 
-TEST(Emitter, SinksTakeWhatIsInThemAndTheLedgerCloses) {
+TEST(Emitter, SinksRemoveParticlesInsideAndVolumesBalance) {
     auto device = makeTestCpu();
     FluidParams p = boxWorld(0.025F);
     p.blocks = {{vec3(0.0F), vec3(1.0F, 0.2F, 1.0F)}};
@@ -199,14 +199,14 @@ TEST(Emitter, SinksTakeWhatIsInThemAndTheLedgerCloses) {
             EXPECT_GT(glm::length(x - ball.position), 0.999F * ball.radius);
         }
     }
-    // And back to the start.
+    // The same after a reset.
     world->reset();
     EXPECT_EQ(found(*world).position.size(), 40U * 8U * 40U);
     EXPECT_EQ(world->stats().drained, 0.0);
 }
 
-// A nozzle within a solid lets nothing out; half within, only what is outside of it.
-TEST(Emitter, NothingIsBornInASolid) {
+// A nozzle inside a solid emits nothing; if half of it is inside, only the outer half emits.
+TEST(Emitter, NoParticleIsSpawnedInASolid) {
     const test::Mesh ball = test::makeSphere(vec3(0.0F), 0.2F);
     const MeshView view = ball.view();
     Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 64, .band = 0.08F, .padding = 0.08F});
@@ -228,8 +228,8 @@ TEST(Emitter, NothingIsBornInASolid) {
     EXPECT_EQ(world->stats().lost, 0U);
 }
 
-// Nor in a body, wherever it has got to.
-TEST(Emitter, NothingIsBornInABody) {
+// The same for a body at its current position.
+TEST(Emitter, NoParticleIsSpawnedInABody) {
     FluidParams p = boxWorld(0.02F);
     p.box.min = vec3(-0.5F);
     p.box.max = vec3(0.5F);
@@ -241,7 +241,7 @@ TEST(Emitter, NothingIsBornInABody) {
     run(*world, 0.5);
     EXPECT_EQ(found(*world).position.size(), 0U);
     EXPECT_NEAR(world->stats().backlog, 0.5e-3, 8.0e-6) << "it is still due";
-    // One that moves on makes room: after 0.2 m of 1 m/s the nozzle's places are out of it.
+    // A moving body frees the nozzle: after 0.2 m at 1 m/s its places lie outside the body.
     ball.shape = sphereShape(0.12F, 1.0e5, p.spacing);
     ball.state.velocity = vec3(1.0F, 0, 0);
     world = make(*device, p, {.emitters = {nozzle(1.0F, 0.5F, 0.03F, vec3(-0.1F, 0, 0))}}, {.bodies = {ball}});
@@ -257,8 +257,8 @@ TEST(Emitter, NothingIsBornInABody) {
     EXPECT_EQ(world->stats().lost, 0U);
 }
 
-// The solver state of a particle is removed with it: a new particle with the same id starts without.
-TEST(Emitter, WhoIsBornWithAnotherParticlesIdRemembersNothing) {
+// The solver state of a particle is removed with it: a new particle with the same id starts without it.
+TEST(Emitter, AReusedIdStartsWithoutSolverState) {
     auto device = makeTestCpu();
     FluidParams p = boxWorld(0.03F, "dfsph");
     p.box.max = vec3(0.48F, 0.6F, 0.48F);
@@ -297,8 +297,8 @@ TEST(Emitter, WhoIsBornWithAnotherParticlesIdRemembersNothing) {
     EXPECT_GT(pressedOnce, 100U);
 }
 
-// Under water there is no room: what is refused stays due, and what comes out does not explode.
-TEST(Emitter, SpawningInsideWaterIsRefusedNotExploded) {
+// Under water there is no room: refused particles stay in the backlog, and emitted ones cause no pressure peak.
+TEST(Emitter, SpawningInsideWaterIsRefusedWithoutPressurePeaks) {
     for (const char* method : {"pbf", "dfsph", "wcsph"}) {
         auto device = makeTestCpu();
         FluidParams p = boxWorld(0.03F, method);
@@ -321,7 +321,7 @@ TEST(Emitter, SpawningInsideWaterIsRefusedNotExploded) {
     }
 }
 
-TEST(Emitter, WhatMakesNoSenseIsRefusedInWords) {
+TEST(Emitter, InvalidParamsAreRefusedWithAMessage) {
     auto device = makeTestCpu();
     Emitter narrow = nozzle(10.0F, 0.5F, 0.01F), astray = nozzle(1.0F, 0.0F, 0.05F, vec3(0.5F), vec3(0.0F)), odd = nozzle(1, 0, 0.05F);
     odd.params.liquid = "lava";

@@ -1,4 +1,4 @@
-// Water that others hold beside the world: what it gives, and that what is poured into it is there.
+// Exchange of water with other owners: withdrawal of particles, and deposit of volume.
 #include "fluid/sim/sources/exchange_passes.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, doub
     return world ? std::move(*world) : nullptr;
 }
 
-TEST(Exchange, WhatIsTakenIsGoneAndNothingElse) {
+TEST(Exchange, WithdrawRemovesOnlyTheChosenParticles) {
     auto device = makeTestCpu();
     auto world = make(*device, pool());
     for (const bool stepped : {false, true}) {
@@ -58,13 +58,13 @@ TEST(Exchange, WhatIsTakenIsGoneAndNothingElse) {
         EXPECT_EQ(after.size(), before.size() - slots.size());
         for (const vec3& x : after) EXPECT_EQ(gone.count({x.x, x.y, x.z}), 0U);
     }
-    // The water closes the gap, which the stats show.
+    // The water closes the gap, and the statistics agree.
     for (int k = 0; k < 30; ++k) world->step({}, 1.0 / 60);
     EXPECT_NEAR(world->stats().emitted, static_cast<double>(positions(*world).size()) * kOne + world->stats().withdrawn, 1e-12);
     EXPECT_EQ(world->stats().lost, 0U);
 }
 
-TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
+TEST(Exchange, DepositsSpawnAParticleWhenTheirVolumeSuffices) {
     auto device = makeTestCpu();
     auto world = make(*device, pool());
     for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
@@ -75,7 +75,7 @@ TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
     for (int k = 0; k < 5; ++k) world->step({}, 1.0 / 60);
     EXPECT_EQ(positions(*world).size(), before);
     EXPECT_NEAR(world->stats().pendingVolume, 8.0e-9, 1e-18);
-    // Many: the first is born near the place, above the water.
+    // Many tears: the first particle is spawned near the place, above the water.
     double poured = 8.0e-9;
     size_t now = before;
     for (int k = 0; k < 60; ++k, poured += 0.21 * kOne) {
@@ -98,7 +98,7 @@ TEST(Exchange, WhatIsPouredIsBornWhenItIsAParticle) {
     EXPECT_EQ(positions(*world).size(), before + static_cast<size_t>(poured / kOne));
     EXPECT_LT(world->stats().pendingVolume, kOne);
     EXPECT_LT(world->stats().maxCompression, 0.05);
-    EXPECT_LT(world->stats().maxSpeed, 1.5);  // nobody was squeezed out
+    EXPECT_LT(world->stats().maxSpeed, 1.5);  // no particle was squeezed out
     world->reset();
     EXPECT_EQ(positions(*world).size(), before);
     EXPECT_EQ(world->stats().pendingVolume, 0.0);

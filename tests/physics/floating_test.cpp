@@ -1,4 +1,4 @@
-// Bodies that float and bodies that stick, against Archimedes, Stokes and Rayleigh.
+// Floating bodies and no-slip bodies against Archimedes, Stokes and Rayleigh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,10 +39,10 @@ void PrintTo(const Dropped& f, std::ostream* out) { *out << f.method << (f.ball 
 
 class Draught : public testing::TestWithParam<Dropped> {};
 
-TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
+TEST_P(Draught, TheDisplacedWaterWeighsAsMuchAsTheBody) {
     const Dropped& what = GetParam();
     const float s = 0.0125F;
-    // A box half as dense as water that is as wide as high lies down: this one is half as wide again.
+    // A cube of half the density of water would tilt: this box is 1.5 times as wide as high.
     const vec3 size = what.ball ? vec3(10 * s) : vec3(12 * s, 8 * s, 12 * s);
     const double height = double{size.y}, volume = what.ball ? M_PI / 6 * height * height * height : double{size.x * size.y * size.z};
     Floater floater{height, volume, 0, what.ball};
@@ -52,7 +52,7 @@ TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
     p.method = what.method;
     p.spacing = s;
     p.box.max = vec3(24 * s, 0.4F, 24 * s);
-    p.box.periodicX = p.box.periodicZ = true;  // no walls that the water could stand off from
+    p.box.periodicX = p.box.periodicZ = true;  // no walls, so no gap between water and walls
     p.soundSpeed = 15;
     p.cfl = 0.8F;
     p.artificialViscosity = 0.05F;
@@ -61,8 +61,8 @@ TEST_P(Draught, WhatIsUnderWeighsAsMuchAsTheBody) {
     p.blocks = {{vec3(0.0F), vec3(p.box.max.x, static_cast<float>(level), p.box.max.z), vec3(0.0F)}};
     Body body;
     body.shape = what.ball ? sphereShape(0.5F * size.y, 1000 * what.ratio, s) : boxShape(size, 1000 * what.ratio, s);
-    // Dropped from six spacings too high: particles at rest lie in layers, and a flat keel set down gently stays on one, as much as half a
-    // spacing too high or too low. The splash melts them.
+    // Dropped from six spacings above equilibrium: particles at rest lie in layers, and a flat keel that is set down gently stays on a
+    // layer, up to half a spacing too high or too low. The splash destroys the layers.
     const float drop = (what.ball ? 2 : 6) * s;
     body.state.pose.position = vec3(0.5F * p.box.max.x, static_cast<float>(level - draught + 0.5 * height) + drop, 0.5F * p.box.max.z);
     auto device = cpu();
@@ -95,8 +95,8 @@ INSTANTIATE_TEST_SUITE_P(Bodies, Draught,
                                     std::to_string(static_cast<int>(100 * row.param.ratio));
                          });
 
-// A ball that weighs what it displaces hangs where it is.
-TEST(Neutral, AsHeavyAsWaterItHangs) {
+// A ball with the density of water keeps its position.
+TEST(Neutral, ABallOfTheDensityOfWaterKeepsItsHeight) {
     for (const char* method : {"wcsph", "dfsph"}) {
         const float s = 0.0125F;
         FluidParams p;
@@ -117,19 +117,19 @@ TEST(Neutral, AsHeavyAsWaterItHangs) {
         for (int frame = 0; frame < 30; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
         const double sunk = 8 - double{world->bodies()[0].pose.position.y / s};
         std::printf("%s: sunk by %.3f spacings\n", method, sunk);
-        // With 3 % of its weight left over it would go two spacings, water moved along with it.
+        // With a net force of 3 % of its weight, and added mass, it would move two spacings.
         EXPECT_LT(std::abs(sunk), 2.0) << method;
         EXPECT_EQ(world->stats().lost, 0U);
     }
 }
 
-// ---- what sticks ----
+// ---- no-slip bodies ----
 
 class Sticking : public testing::TestWithParam<const char*> {};
 
-// A plate at the bottom of water at rest begins to slide (Rayleigh 1911; Stokes's first problem): u = U erfc(y / sqrt(4 nu t)) where it
-// sticks, y from the surface, half a spacing above the samples; nothing where it slips.
-TEST_P(Sticking, APlateDragsWaterAlongAndASlipperyOneDoesNot) {
+// A plate at the bottom of water at rest begins to slide (Rayleigh 1911; Stokes's first problem): without slip u = U erfc(y / sqrt(4 nu
+// t)), y from the surface, half a spacing above the samples; with slip u = 0.
+TEST_P(Sticking, APlateDragsWaterOnlyWithoutSlip) {
     const double nu = 0.05, speed = 0.1;
     for (const float sticks : {1.0F, 0.0F}) {
         FluidParams p;
@@ -149,7 +149,7 @@ TEST_P(Sticking, APlateDragsWaterAlongAndASlipperyOneDoesNot) {
         plate.shape.sticks = sticks;
         plate.state.pose.position = vec3(0.08F, 0.1F, 0.08F);
         plate.state.velocity = vec3(static_cast<float>(speed), 0.0F, 0.0F);
-        BodyHost sliding;  // as it is pushed by somebody stronger
+        BodyHost sliding;  // prescribes the motion
         sliding.reset = [](void*, std::span<const BodyState>) {};
         sliding.advance = [](void*, std::span<const BodyLoad>, const vec3&, double seconds, std::span<BodyState> states) {
             states[0].pose.position += states[0].velocity * static_cast<float>(seconds);

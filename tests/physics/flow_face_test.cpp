@@ -1,4 +1,4 @@
-// Tears on faces: the way they take down a cheek, the same left and right.
+// Tears on faces: their path down a cheek, equal on the left and the right.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,8 @@ struct Way {
     std::vector<vec3> places;
 };
 
-// The largest drop of a tear of `microlitres` that begins below the inner corner of an eye, for four seconds. 0 the left one, 1 the right.
+// Path of the largest drop of a tear of `microlitres` that begins below the inner corner of an eye, for four seconds. 0: left eye, 1: right
+// eye.
 Way tearDown(const Mesh& skin, const vec3& from, double microlitres) {
     auto device = cpu();
     Result<FlowMesh> mesh = makeFlowMesh(skin.view());
@@ -72,9 +73,9 @@ TEST(FlowOnAFace, ATearRunsBesideTheNoseToTheJaw) {
     EXPECT_GT(length, 0.11);
 }
 
-// On the ICT head (where RIVULET_ASSETS has it) it passes the seven points that a person marked, within 4 % of the UVs' width. It goes from
-// the upper lip to the lower, whose corner its cap spans.
-TEST(FlowOnAFace, OnTheIctHeadItTakesTheWayThatWasMarked) {
+// On the ICT head (if RIVULET_ASSETS contains it) the tear passes seven points marked by hand, within 4 % of the UVs' width. It moves from
+// the upper lip to the lower, because its cap spans the corner of the mouth.
+TEST(FlowOnAFace, OnTheIctHeadATearFollowsTheMarkedPath) {
     const Result<std::string> path = findAsset("ict_head/ict_head_full.glb", ""), json = findAsset("ict_head/landmarks.json", "");
     if (!path || !json) GTEST_SKIP() << "the ICT head is not there: assets/fetch_ict_head.sh says where it comes from";
     const Result<Model> model = importModel(*path);
@@ -92,8 +93,8 @@ TEST(FlowOnAFace, OnTheIctHeadItTakesTheWayThatWasMarked) {
     }
 }
 
-// Under a ceiling with a floor within its cap a drop goes over to the floor; where the floor is further off it hangs.
-TEST(FlowOnAFace, ADropThatHangsGoesOverToSkinThatItTouches) {
+// A drop under a ceiling moves to a floor that lies within its cap; if the floor is further away, the drop keeps hanging.
+TEST(FlowOnAFace, AHangingDropMovesToSkinThatItTouches) {
     for (const float gap : {0.0008F, 0.004F}) {
         auto device = cpu();
         // The ceiling's normal points down, the floor's up.

@@ -1,4 +1,5 @@
-// A flow drawn into UV: none of a drop's volume is lost at seams, its height and slopes are the cap's, and it lies on no skin but its own.
+// A flow drawn into UV maps: no volume is lost at seams, heights and slopes equal those of the cap, and a drop is drawn on its own skin
+// only.
 #include <gtest/gtest.h>
 
 #include <glm/packing.hpp>
@@ -97,12 +98,12 @@ struct Drawn {
 SurfaceFlowParams still() {
     SurfaceFlowParams p;
     p.trail = p.evaporation = 0;
-    p.touch = 0.1F;  // drops that overlap stay what they are
+    p.touch = 0.1F;  // drops that overlap do not merge
     return p;
 }
 
-// A drop in the middle of its sheet: the cap's height, 2 V / (pi R^2) (1 - r^2/R^2), its slope along u and v, and one under it is wet.
-TEST(FlowMaps, ACapIsDrawnAsItIs) {
+// A drop in the middle of its sheet: the cap's height 2 V / (pi R^2) (1 - r^2/R^2), its slopes along u and v, and wetness 1 under it.
+TEST(FlowMaps, HeightAndSlopesOfACapAreExact) {
     Skin skin;
     addSheet(skin, vec3(0, 0, 0), vec3(0.02F, 0, 0.01F), vec3(0, 0.03F, 0), 7, vec2(0.1F), vec2(0.7F, 0.1F), vec2(-0.05F, 0.75F));
     Drawn d(skin, 256, still());
@@ -125,7 +126,7 @@ TEST(FlowMaps, ACapIsDrawnAsItIs) {
         if (share < 0.01) continue;
         ++under;
         EXPECT_NEAR(t.z / (1000 * high), share, 2e-3);
-        // In the texel along the rim the skin beside the drop is seen too.
+        // Texels on the rim also cover skin outside the drop.
         if (share * radius / 2 < 1.1 * glm::length(p.alongU) / 256) {
             EXPECT_GT(t.w, 0);
             continue;
@@ -139,7 +140,7 @@ TEST(FlowMaps, ACapIsDrawnAsItIs) {
     EXPECT_NEAR(d.drawnVolume() / volume, 1, 1e-3);
 }
 
-// Slopes against differences of the heights of texels a step apart in space, over a seam too.
+// Slopes equal differences of heights between neighbouring texels, also across a seam.
 TEST(FlowMaps, SlopesAreThoseOfTheHeights) {
     const Skin skin = test::cubeBall(0.03F, 12);
     Drawn d(skin, 1024, still());
@@ -166,12 +167,12 @@ TEST(FlowMaps, SlopesAreThoseOfTheHeights) {
         ++compared;
     }
     EXPECT_GT(compared, 1000U);
-    EXPECT_LT(worst, 0.02);  // of a cap's steepest; halves tell 0.1 % of the height apart
+    EXPECT_LT(worst, 0.02);  // of a cap's steepest slope; half floats resolve 0.1 % of the height
 }
 
-// A drop that runs, at rest, slowly and near the speed at which its back becomes a corner: longer, round in front and drawn out behind, its
-// mass where it was and as much; slopes are those of its heights.
-TEST(FlowMaps, ARunningDropIsDrawnOutBehindIt) {
+// A drop at rest, slow, and near the speed at which its rear becomes a corner: it is longer, round in front and elongated behind. Its mass
+// and centre stay the same, and slopes match heights.
+TEST(FlowMaps, ARunningDropIsElongatedBehind) {
     Skin skin;
     addSheet(skin, vec3(0, 0, 0), vec3(0.02F, 0, 0), vec3(0, 0.02F, 0), 5, vec2(0.0F), vec2(1, 0), vec2(0, 1));
     const dvec3 start(0.009, 0.011, 0), way = glm::normalize(dvec3(0.8, -0.6, 0)), aside(-way.y, way.x, 0);
@@ -194,7 +195,7 @@ TEST(FlowMaps, ARunningDropIsDrawnOutBehindIt) {
             behind = std::max(behind, -glm::dot(dvec3(p.x) - start, way));
             half = std::max(half, std::abs(glm::dot(dvec3(p.x) - start, aside)));
             if (t.z < 0.2F) continue;
-            // What the height gains over four texels is the sum of the slopes on the way.
+            // The height difference over four texels equals the sum of the slopes between them.
             for (const bool across : {true, false}) {
                 const size_t step = across ? 1 : 512;
                 auto slope = [&](size_t at) { return double{across ? texels[at].x : texels[at].y}; };
@@ -233,7 +234,7 @@ TEST(FlowMaps, NoVolumeIsLostAtSeams) {
         std::mt19937 random(5);
         std::uniform_real_distribution<float> any(-1.0F, 1.0F);
         std::uniform_int_distribution<uint32_t> volume(kMicrolitre, 4 * kMicrolitre);
-        // By area; on the head not so near an open edge that a part would hang over it.
+        // Weighted by area; on the head not near an open edge, where a part would lie outside.
         const FlowMesh& m = d.flow->mesh();
         std::vector<double> area;
         double sum = 0;
@@ -261,8 +262,8 @@ TEST(FlowMaps, NoVolumeIsLostAtSeams) {
     }
 }
 
-// A sheet in one chart, and cut into charts that lie elsewhere, turned and mirrored, by whole texels: the same places in space, and so the
-// same mass, whatever lies where.
+// A sheet in one chart, and the same sheet cut into charts that are moved by whole texels, rotated and mirrored: positions in space and the
+// mass are the same.
 TEST(FlowMaps, TheSameMassInEveryLayout) {
     const vec3 across(0.032F, 0, 0), along(0, 0.032F, 0);
     Skin whole, cut;
@@ -287,8 +288,8 @@ TEST(FlowMaps, TheSameMassInEveryLayout) {
     EXPECT_NEAR(volume[0] / 12e-9, 1, 1e-3);
 }
 
-// Two lips a third of a millimetre apart, joined far off: a drop on the one leaves the other dry; so does one on a thin leaf its other
-// side.
+// Two lips a third of a millimetre apart that are connected far away: a drop on one leaves the other dry. A drop on a thin leaf leaves its
+// other side dry.
 TEST(FlowMaps, TheOtherLipStaysDry) {
     Skin lips;
     addSheet(lips, vec3(0, 0.00015F, 0), vec3(0.03F, 0, 0), vec3(0, 0.01485F, 0), 12, vec2(0.05F, 0.52F), vec2(0.9F, 0), vec2(0, 0.43F));
@@ -323,9 +324,9 @@ TEST(FlowMaps, TheOtherLipStaysDry) {
     }
 }
 
-// Two sheets back to back, over a slope: of a skin so fine that one triangle answers for many, each still knows the other to half
-// of the reach, and never thinks it is further than it is; where nothing is near, none does.
-TEST(FlowMaps, AFineSkinKnowsWhatIsNear) {
+// Two sheets at a varying distance. One triangle of the search stands for many of the fine skin: the stored distance is accurate to half of
+// the reach, never too large, and absent where no skin is near.
+TEST(FlowMaps, AFineSkinStoresDistancesToNearSkin) {
     constexpr float kReach = 0.004F;
     Skin skin;
     addSheet(skin, vec3(0), vec3(0.03F, 0, 0), vec3(0, 0.012F, 0), 90, vec2(0), vec2(0.4F, 0), vec2(0, 1));
@@ -353,7 +354,7 @@ TEST(FlowMaps, AFineSkinKnowsWhatIsNear) {
     EXPECT_GT(none, 500U);
 }
 
-// A drop has run down a sheet and off it: the film that it left is drawn, all of it, where it lies, and wet where it is a trail's.
+// A drop has run down a sheet and left it: its film is drawn completely and in place, and is wet where it belongs to the trail.
 TEST(FlowMaps, TheFilmIsDrawnWhereItLies) {
     Skin skin;
     addSheet(skin, vec3(0), vec3(0.02F, 0, 0), vec3(0, 0.04F, 0), 16, vec2(0.05F, 0.05F), vec2(0.45F, 0), vec2(0, 0.9F));
@@ -386,9 +387,8 @@ TEST(FlowMaps, TheFilmIsDrawnWhereItLies) {
     EXPECT_GT(wet / n, 0.95);
 }
 
-// What is drawn after many frames, tile by tile where something changed, is what is drawn at once; and mips are means over the skin in
-// them.
-TEST(FlowMaps, CleanTilesAreAsIfDrawnAnew) {
+// Maps updated tile by tile over many frames equal maps drawn at once, and mips are means over the skin in them.
+TEST(FlowMaps, UnchangedTilesEqualARedraw) {
     const Skin skin = test::cubeBall(0.03F, 12);
     SurfaceFlowParams p;
     p.evaporation = 0;
@@ -440,7 +440,7 @@ TEST(FlowMaps, CleanTilesAreAsIfDrawnAnew) {
     }
 }
 
-TEST(FlowMaps, WhatCannotBeDrawnIsRefused) {
+TEST(FlowMaps, InvalidMapsAreRefused) {
     const Skin skin = test::cubeBall(0.03F, 3);
     auto device = cpu();
     Result<FlowMesh> mesh = makeFlowMesh(skin.view());
@@ -454,7 +454,7 @@ TEST(FlowMaps, WhatCannotBeDrawnIsRefused) {
         EXPECT_NE(maps.error().message.find("power of two"), std::string::npos) << maps.error().message;
     }
     EXPECT_FALSE(FlowMaps::create(*flow, std::span(uvs).first(7), 64));
-    // UVs that are none: their triangles show nothing, the others do.
+    // Triangles with NaN UVs are not drawn; the others are.
     for (size_t k = 0; k < uvs.size() / 2; ++k) uvs[k] = k % 2 == 0 ? vec2(NAN, 1e30F) : vec2(0.3F);
     Result<FlowMaps> half = FlowMaps::create(*flow, uvs, 64);
     ASSERT_TRUE(half);
@@ -476,8 +476,8 @@ TEST(FlowMaps, WhatCannotBeDrawnIsRefused) {
     EXPECT_NE(none.error().message.find("unwrap"), std::string::npos);
 }
 
-// The thesis's picture, (22) and (23): a disc as printed, normals that lean away from its middle; and its defect, told from ours on a chart
-// that is stretched four times along v: there its drop is four times as long as wide, ours is round.
+// The thesis's picture, (22) and (23): a disc as printed, with normals that point away from its centre. Its defect shows on a chart that is
+// stretched four times along v: its drop is four times as long as wide, Rivulet's is round.
 TEST(FlowMaps, TheThesissPictureIsStretchedWithItsChart) {
     const int size = 256;
     const ThesisParticle drop{vec2(128.5F / 256), 1.0F};
@@ -493,7 +493,7 @@ TEST(FlowMaps, TheThesissPictureIsStretchedWithItsChart) {
     const ThesisParticle pair[] = {drop, {drop.uv + vec2(0.01F, 0), 0.5F}};
     EXPECT_GT(thesisPicture(pair, size, 0.05F, 1.0F).height[at(128, 128)], 1.1F);
 
-    // How long a drop is over how wide, in metres: by second moments.
+    // Length over width of a drop in metres, by second moments.
     const auto stretch = [&](const Drawn& d, auto&& heightAt) {
         dvec2 moment(0.0);
         const vec3 middle(0.01F, 0.02F, 0);

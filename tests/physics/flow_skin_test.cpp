@@ -16,9 +16,8 @@ namespace {
 constexpr double kPiD = 3.14159265358979323846;
 constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 
-// What nothing pulls at along the skin stays where it is in the world, whichever way the skin goes away under it: as its frame moves, or as
-// its positions do.
-TEST(FlowOnAMovingSkin, ADropKeepsItsOwnPlaceOverAPlateThatIsPulledAway) {
+// A drop without tangential forces keeps its position in the world while the skin moves below it, by its frame or by its positions.
+TEST(FlowOnAMovingSkin, ADropKeepsItsPlaceOverAPlateThatIsPulledAway) {
     for (const bool bends : {false, true}) {
         auto device = cpu();
         const Shape rest = sheetShape(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
@@ -46,7 +45,7 @@ TEST(FlowOnAMovingSkin, ADropKeepsItsOwnPlaceOverAPlateThatIsPulledAway) {
     }
 }
 
-// On a plate that turns it goes straight, which is a spiral to the plate: centrifugal and Coriolis forces are nothing else.
+// On a rotating plate a drop moves straight in the world, which is a spiral relative to the plate (centrifugal and Coriolis forces).
 TEST(FlowOnAMovingSkin, ADropWithoutRetentionMovesStraightOverARotatingPlate) {
     auto device = cpu();
     const Shape rest = sheetShape(vec3(-0.2F, 0, 0.2F), vec3(0.4F, 0, 0), vec3(0, 0, -0.4F), 16, 16);
@@ -65,7 +64,7 @@ TEST(FlowOnAMovingSkin, ADropWithoutRetentionMovesStraightOverARotatingPlate) {
     };
     inputs.toWorld = pose(-1.0 / 240);
     EXPECT_TRUE(flow.step(inputs, 1.0 / 240));
-    // At rest in the world: against the plate it goes the other way round. A point at x moves with (0, turns, 0) x x.
+    // At rest in the world: relative to the plate it rotates in the opposite direction. A point at x moves with (0, turns, 0) x x.
     flow.add(nearestPoint(flow.mesh(), vec3(start)), kMicrolitres, -vec3(glm::cross(dvec3(0, turns, 0), start)));
     double t = 0;
     for (int k = 0; k < 240; ++k, t += 1.0 / 240) {
@@ -74,11 +73,11 @@ TEST(FlowOnAMovingSkin, ADropWithoutRetentionMovesStraightOverARotatingPlate) {
     }
     const SkinDrop d = flow.drops().at(0);
     const dvec3 world(inputs.toWorld * glm::dvec4(dvec3(d.position), 1));
-    // A step's way is along the plate as it was, so that it is a step's turn late.
+    // The path of a step uses the plate's old pose, so it is late by the rotation of one step.
     EXPECT_LT(glm::distance(world, start), 0.02 * 0.08 * turns) << world.x << ", " << world.z;
 }
 
-// Nusselt 1916: a film 100 micrometres thick runs down an upright wall at rho g h^2 / (3 mu) = 32.7 mm/s.
+// Nusselt 1916: a film 100 micrometres thick runs down a vertical wall at rho g h^2 / (3 mu) = 32.7 mm/s.
 TEST(FlowFilm, RunsAtNusseltsSpeed) {
     for (const double jitter : {0.0, 0.3}) {
         auto device = cpu();
@@ -86,7 +85,7 @@ TEST(FlowFilm, RunsAtNusseltsSpeed) {
         SurfaceFlowParams p;
         p.viscosity = 1e-3F;
         p.density = 1000;
-        p.advancing = p.receding = 1;  // it wets: a film as thin as that would tear else
+        p.advancing = p.receding = 1;  // wetting: otherwise such a thin film would tear
         p.trail = 0;
         SurfaceFlow flow = flowOn(*device, wall, p);
         const double spacing = 1.5e-3, height = 1e-4;
@@ -110,7 +109,7 @@ TEST(FlowFilm, RunsAtNusseltsSpeed) {
     }
 }
 
-// A heap of film on a level plate spreads, and stops where its rim holds it; none of it is lost.
+// A heap of film on a horizontal plate spreads until retention at its rim stops it; its volume is conserved.
 TEST(FlowFilm, AHeapSpreadsAndStops) {
     auto device = cpu();
     const Shape plate = sheetShape(vec3(-0.1F, 0, 0.1F), vec3(0.2F, 0, 0), vec3(0, 0, -0.2F), 20, 20);
@@ -137,8 +136,8 @@ TEST(FlowFilm, AHeapSpreadsAndStops) {
     const double after = spreadOf();
     EXPECT_GT(after, 1.3 * before);
     EXPECT_LT(fastest, 1e-3);
-    // A puddle is as high as its rim and its weight have it: e = 2 sqrt(gamma / rho g) sin(theta / 2), theta between receding and
-    // advancing. 0.6 ml of it are then 9.5 to 11.5 mm wide. What is summed over 5 mm has a rim as wide, and spreads a fifth further.
+    // Thickness of a puddle: e = 2 sqrt(gamma / rho g) sin(theta / 2), theta between receding and advancing; 0.6 ml are then 9.5 to 11.5 mm
+    // wide. A sum over 5 mm widens the rim by as much, and the puddle spreads a fifth further.
     const auto radius = [](double degrees) {
         const double e = 2 * std::sqrt(0.0436 / (1005 * 9.81)) * std::sin(0.5 * degrees * kPiD / 180);
         return std::sqrt(600e-9 / (kPiD * e));
@@ -149,7 +148,7 @@ TEST(FlowFilm, AHeapSpreadsAndStops) {
     EXPECT_EQ(l.added, l.drops + l.film + l.left + l.evaporated);
 }
 
-// A brim that sags in its middle fills there most, keeps what it is given while it can, and spills tears there.
+// A brim that is lowest in its middle fills most there, holds liquid up to its capacity, and spills tears there.
 TEST(FlowBrim, FillsAndSpillsWhereItIsLowest) {
     auto device = cpu();
     const Shape wall = sheetShape(vec3(-0.05F, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), 20, 20);
@@ -195,9 +194,9 @@ TEST(FlowBrim, FillsAndSpillsWhereItIsLowest) {
     EXPECT_EQ(l.added, 1200000U + 2400U * 8333U);
 }
 
-// `rivulet validate flow`, the quick size. One aim is missed: the law of 104 cP says of 10 cP that it slides 1.6 times as fast as it did.
-// What slows a drop and what holds it differ between Le Grand's oils by more than their viscosity and angles explain; each with its own row
-// is exact.
+// `rivulet validate flow`, the quick size. One aim is missed: with the law of the 104 cP oil, the 10 cP oil slides 1.6 times as fast as
+// measured. Drag and retention of Le Grand's oils differ by more than their viscosities and angles explain; with its own row each oil is
+// exact.
 TEST(FlowCase, HoldsItsTolerances) {
     auto device = cpu();
     CaseSettings settings;

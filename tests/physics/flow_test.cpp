@@ -1,4 +1,4 @@
-// Flow on a skin: drops walk straight, are held and slide as drops do, run into each other, and none of their volume is lost.
+// Flow on a skin: straight paths, retention, sliding speed, merging, and conservation of volume.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr double kPiD = 3.14159265358979323846;
 
 constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 
-TEST(FlowMesh, ABallHangsTogetherOverItsSeamAndPoles) {
+TEST(FlowMesh, ABallIsConnectedOverItsSeamAndPoles) {
     const Shape shape = ballShape(0.05F, 24);
     Result<FlowMesh> made = makeFlowMesh(shape.view());
     ASSERT_TRUE(made);
@@ -28,7 +28,7 @@ TEST(FlowMesh, ABallHangsTogetherOverItsSeamAndPoles) {
     for (uint32_t k = 0; k < m.across.size(); ++k) {
         const uint32_t other = 3 * (m.across[k] / 4) + m.across[k] % 4;
         EXPECT_EQ(m.across[other], 4 * (k / 3) + k % 3);
-        // The same two places, the other way round.
+        // The same two corners in the opposite order.
         const uint32_t from = m.corner[k], to = m.corner[k - k % 3 + (k + 1) % 3];
         EXPECT_EQ(m.corner[other], to);
         EXPECT_EQ(m.corner[other - other % 3 + (other + 1) % 3], from);
@@ -55,7 +55,7 @@ Shape band(uint32_t n, bool turned) {
     return s;
 }
 
-TEST(FlowMesh, WhatIsWrongIsCountedMendedOrWalkedRound) {
+TEST(FlowMesh, DefectsAreCountedAndRepairedOrSkipped) {
     const auto report = [](const Shape& shape) {
         Result<FlowMesh> mesh = makeFlowMesh(shape.view());
         EXPECT_TRUE(mesh) << (mesh ? "" : mesh.error().message);
@@ -82,7 +82,7 @@ TEST(FlowMesh, WhatIsWrongIsCountedMendedOrWalkedRound) {
     Result<FlowMesh> onFin = makeFlowMesh(fin.view());
     ASSERT_TRUE(onFin);
     EXPECT_EQ(onFin->report.branchedEdges, 1U);
-    // The sheet goes on under it; of the fin that edge is open.
+    // The sheet continues below the fin; the edge of the fin is open.
     size_t open = 0;
     for (const uint32_t a : onFin->across) open += a == FlowMesh::kOpen ? 1 : 0;
     EXPECT_EQ(open, 16U + 3U);
@@ -97,10 +97,10 @@ TEST(FlowMesh, WhatIsWrongIsCountedMendedOrWalkedRound) {
     }
 }
 
-// A drop passes through triangles without area, which are there where a long edge meets two short ones, as if they were not.
+// A drop passes through triangles without area, which occur where a long edge meets two short ones.
 TEST(Flow, PassesThroughTrianglesWithoutArea) {
     auto device = cpu();
-    // Two rectangles, the upper one cut in two below; in between a triangle whose three corners are in a line.
+    // Two rectangles; the lower edge of the upper one is split in two. Between them lies a triangle with collinear corners.
     const Shape shape{{vec3(0, 0.1F, 0), vec3(0.1F, 0.1F, 0), vec3(0, 0.05F, 0), vec3(0.1F, 0.05F, 0), vec3(0.05F, 0.05F, 0), vec3(0, 0, 0),
                        vec3(0.05F, 0, 0), vec3(0.1F, 0, 0)},
                       {0, 2, 3, 0, 3, 1, 2, 4, 3, 2, 5, 6, 2, 6, 4, 4, 6, 7, 4, 7, 3}};
@@ -118,7 +118,7 @@ TEST(Flow, PassesThroughTrianglesWithoutArea) {
     }
 }
 
-// With nothing that pulls, holds or slows it a drop goes straight: round a ball it comes back to where it began.
+// Without forces a drop moves straight: around a ball it returns to its start.
 TEST(Flow, GoesStraightRoundABall) {
     auto device = cpu();
     const Shape shape = ballShape(0.05F, 64);
@@ -143,7 +143,7 @@ TEST(Flow, GoesStraightRoundABall) {
 }
 
 // Le Grand's law without hysteresis: m v' = m g sin(a) - beta w eta v, solved exactly.
-TEST(Flow, SlidesDownASlopeAsItsLawSays) {
+TEST(Flow, SlidesDownASlopeByLeGrandsLaw) {
     for (const double dt : {1.0 / 240, 1.0 / 60, 1.0 / 15}) {
         auto device = cpu();
         const double a = 35 * kPiD / 180;
@@ -165,9 +165,8 @@ TEST(Flow, SlidesDownASlopeAsItsLawSays) {
     }
 }
 
-// Furmidge 1962: a drop of 60 / 40 degrees on an upright wall lets go at 4.07 microlitres, of 90 / 60 at 7.74: rho g V = w gamma (cos
-// receding
-// - cos advancing), a cap with the mean angle. It grows by fifty others.
+// Furmidge 1962: a drop of 60 / 40 degrees on a vertical wall begins to slide at 4.07 microlitres, of 90 / 60 at 7.74: rho g V = w gamma
+// (cos receding - cos advancing), for a cap with the mean angle. The drop grows by fifty others.
 TEST(Flow, IsHeldUntilItIsTooHeavy) {
     struct Row {
         float advancing, receding;
@@ -197,8 +196,7 @@ TEST(Flow, IsHeldUntilItIsTooHeavy) {
         }
 }
 
-// No cell of a lattice slips through where a drop paints its way: along the middle of a trail the film is as thick as asked, on
-// right-angled, slanting and long triangles, at any speed.
+// A trail has no gaps: along its middle the film has the set thickness, on right-angled, oblique and long triangles, at any speed.
 TEST(Flow, ATrailHasNoGaps) {
     auto device = cpu();
     for (const vec2 quads : {vec2(60, 10), vec2(37, 23), vec2(20, 40)})
@@ -233,8 +231,8 @@ TEST(Flow, ATrailHasNoGaps) {
         }
 }
 
-// A drop on a dry wall leaves a film as thick as asked and as wide as its foot, and stops when it is too light; the next one, begun beside
-// its way, is drawn into the trail and gets further.
+// A drop on a dry wall leaves a film of the set thickness, as wide as its foot, and stops when it is too light. A second drop that starts
+// next to the trail is drawn into it and runs further.
 TEST(Flow, TheSecondTearFollowsTheFirst) {
     auto device = cpu();
     const Shape shape = sheetShape(vec3(0.0F, 0.3F, 0.0F), vec3(0.0F, -0.3F, 0.0F), vec3(0.05F, 0.0F, 0.0F), 60, 10);
@@ -250,17 +248,17 @@ TEST(Flow, TheSecondTearFollowsTheFirst) {
                                  [](const SkinDrop& a, const SkinDrop& b) { return a.position.y < b.position.y; });
     };
     const SkinDrop first = runDown(0.025F);
-    EXPECT_LT(glm::length(first.velocity), 5e-4F);  // all but stopped: it has become too light
+    EXPECT_LT(glm::length(first.velocity), 5e-4F);  // almost stopped: it has become too light
     const double went = 0.29 - double{first.position.y};
     EXPECT_GT(went, 0.01);
     EXPECT_LT(went, 0.25);
     EXPECT_NEAR(first.position.x, 0.025F, 1e-4F);
     SurfaceFlow::Ledger l = flow.ledger();
     EXPECT_EQ(l.added, l.drops + l.film + l.left);
-    // 10 micrometres over its way and 0.7 of its foot, 3.7 mm for 5 microlitres; less as it gets lighter.
+    // 10 micrometres along its path over 0.7 of the width of its foot, 3.7 mm for 5 microlitres; less as the drop gets lighter.
     const double foot = 2 * 1.0836e-3 * std::cbrt(5.0);
     EXPECT_NEAR(l.film * 1e-15 / (1e-5 * 0.7 * foot * went), 1, 0.2);
-    // And where it lay: half way down, on the middle line and beside it.
+    // The film halfway down, on the middle line and next to it.
     const auto thickness = [&](float x, float y) {
         const SkinPoint at = nearestPoint(flow.mesh(), vec3(x, y, 0));
         const std::vector<float> cells = flow.film(at.triangle);
@@ -277,7 +275,7 @@ TEST(Flow, TheSecondTearFollowsTheFirst) {
     EXPECT_EQ(l.added, l.drops + l.film + l.left);
 }
 
-// A skin that stirs, and now and then loses a triangle's area, carries its drops along: they keep their places in it, and none becomes Inf.
+// A deforming skin, whose triangles sometimes lose their area, carries its drops: they keep their places on it, and none becomes infinite.
 TEST(Flow, ASkinThatMovesCarriesItsDrops) {
     auto device = cpu();
     const Shape rest = sheetShape(vec3(-0.05F, 0, 0.05F), vec3(0.1F, 0, 0), vec3(0, 0, -0.1F), 20, 20);
@@ -294,7 +292,7 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
             const vec3& x = rest.positions[i];
             moved[i] = vec3(x.x, 0.01F * std::sin(60 * x.x + 0.2F * static_cast<float>(k)), x.z);
         }
-        if (k % 10 == 5) moved[150] = moved[151];  // four triangles lose their area, their drops their room
+        if (k % 10 == 5) moved[150] = moved[151];  // four triangles lose their area, with drops on them
         EXPECT_TRUE(flow.step({.gravity = vec3(0.0F), .positions = moved}, 1.0 / 60));
         for (const SkinDrop& d : flow.drops()) EXPECT_TRUE(isFinite(d.position) && isFinite(d.velocity));
     }
@@ -307,7 +305,7 @@ TEST(Flow, ASkinThatMovesCarriesItsDrops) {
     }
 }
 
-TEST(Flow, PositionsThatAreNoneAreRefusedAndNothingMoves) {
+TEST(Flow, InvalidPositionsAreRefusedAndNothingMoves) {
     auto device = cpu();
     const Shape shape = sheetShape(vec3(0.0F, 0.1F, 0.0F), vec3(0.0F, -0.1F, 0.0F), vec3(0.1F, 0.0F, 0.0F), 4, 4);
     SurfaceFlow flow = flowOn(*device, shape);
@@ -326,7 +324,7 @@ TEST(Flow, PositionsThatAreNoneAreRefusedAndNothingMoves) {
     EXPECT_EQ(flow.drops().at(0).position, before);
 }
 
-TEST(Flow, LosesNothing) {
+TEST(Flow, ConservesVolume) {
     auto device = cpu();
     const Shape shape = ballShape(0.04F, 40);
     SurfaceFlowParams p;

@@ -61,13 +61,13 @@ Shape wall(float shear = 0) {
     for (vec2& uv : s.uvs) uv.x += shear * uv.y;
     return s;
 }
-// The same lying, facing up; `under`: facing down.
+// The same, horizontal and facing up; `under`: facing down.
 Shape lying(bool under = false) {
     return under ? sheetShape(vec3(0), vec3(0.2F, 0, 0), vec3(0, 0, 0.2F), 8, 8)
                  : sheetShape(vec3(0), vec3(0, 0, 0.2F), vec3(0.2F, 0, 0), 8, 8);
 }
 
-TEST(ThesisForms, ThePrintedFrameTurnsVRoundAndDropsClimb) {
+TEST(ThesisForms, ThePrintedFrameFlipsVAndDropsClimb) {
     // u to the right, v up, 0.2 m a unit: gravity on a wall.
     const std::array<dvec3, 3> x = {dvec3(0), dvec3(0.2, 0, 0), dvec3(0, 0.2, 0)};
     const dmat3 m0 = thesisFrame(x, {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)});
@@ -91,19 +91,19 @@ TEST(ThesisForms, ThePrintedNormalPutsAnAreaIntoTheForceAwayFromTheSkin) {
     }
 }
 
-TEST(ThesisForms, ThePrintedSignDetachesRestingDropsAndASingleDropIsHeldForEver) {
+TEST(ThesisForms, ThePrintedSignDetachesRestingDropsAndHoldsASingleDrop) {
     const double weight = 1.0e-5;
-    // Lying on a floor its weight is away from the skin by -weight.
+    // On a floor the force away from the skin is -weight.
     EXPECT_LT(printedHold(-weight, 1.0e-6, 0, 1), 0);
     EXPECT_GT(correctedHold(-weight, 1.0e-6, 0, 1, 0), 0);
-    // Hanging from a ceiling: the other way.
+    // On a ceiling it is +weight.
     EXPECT_GT(printedHold(weight, 1.0e-6, 0, 1), 0);
     EXPECT_LT(correctedHold(weight, 1.0e-6, 0, 1, 0), 0);
     EXPECT_TRUE(std::isinf(printedHold(0, 0, 1.0e-8, 0)));
     EXPECT_DOUBLE_EQ(correctedHold(0, 0, 1.0e-8, 0, 1.0e-6), 1.0e-6);
 }
 
-TEST(FlowThesis, AStepsVelocityIsGravityAlongTheSkinInEveryLayout) {
+TEST(FlowThesis, AStepAddsGravityAlongTheSkinInEveryLayout) {
     for (const float shear : {0.0F, 0.7F})
         for (const Layout layout : {Layout::own, Layout::stretched, Layout::turned, Layout::pieces}) {
             Shape shape = wall(shear);
@@ -125,7 +125,7 @@ TEST(FlowThesis, AStepsVelocityIsGravityAlongTheSkinInEveryLayout) {
         }
 }
 
-TEST(FlowThesis, TheFieldFollowsASkinThatTurnsAndOneThatStretches) {
+TEST(FlowThesis, TheFieldFollowsARotatingAndAStretchedSkin) {
     const Shape shape = wall();
     const auto falls = [&](const SurfaceFlowInputs& inputs) {
         Thesis t(shape.view(), bare());
@@ -144,11 +144,11 @@ TEST(FlowThesis, TheFieldFollowsASkinThatTurnsAndOneThatStretches) {
     EXPECT_NEAR(glm::distance(falls({.gravity = vec3(0), .wind = vec3(10, 0, 0)}), dvec2(10 / 0.2, 0)), 0, 0.02);
 }
 
-TEST(FlowThesis, FrictionStopsHoldsAndNeverTurnsRound) {
+TEST(FlowThesis, FrictionStopsAndHoldsButNeverReverses) {
     ThesisParams p = bare();
     p.friction = 0.5F;
     Thesis t(lying().view(), p);
-    // v = 0.05 UV/s along u (0.01 m/s along z) against mu g: in v^2 / (2 mu g) it stands.
+    // v = 0.05 UV/s along u (0.01 m/s along z) against mu g: it stops after v^2 / (2 mu g).
     t.add(vec3(0.1F, 0, 0.1F), kMicrolitre, vec3(0, 0, 0.01F));
     const vec2 from = uvAt(t.uvs, nearestPoint(t.flow->mesh(), vec3(0.1F, 0, 0.1F)));
     double furthest = 0;
@@ -161,7 +161,7 @@ TEST(FlowThesis, FrictionStopsHoldsAndNeverTurnsRound) {
     }
     EXPECT_NEAR(furthest, 0.05 * 0.05 / (2 * 0.5 * kGravity), 6e-6);
     EXPECT_EQ(t.speed(), 0);
-    // Static friction: on a wall with enough adhesion, to a bit.
+    // Static friction on a wall with enough adhesion: the position is exactly constant.
     p.adhesive = 0.01F;
     Thesis held(wall().view(), p);
     held.add(vec3(0.1F, 0.1F, 0));
@@ -183,7 +183,7 @@ TEST(FlowThesis, ADropHasNoTerminalSpeed) {
 }
 
 TEST(FlowThesis, WhetherADropIsHeldDependsOnTheLayout) {
-    // The same wall, drop and friction; the map twice as wide over it. In metres nothing has changed.
+    // The same wall, drop and friction, with a map twice as wide. In metres nothing has changed.
     ThesisParams p = bare();
     p.friction = 1;
     p.adhesive =
@@ -210,7 +210,7 @@ TEST(FlowThesis, WithoutAdhesionHangingDropsDetachAndLyingDropsStay) {
         EXPECT_EQ(t.flow->drops().size(), under ? 0U : 1U);
         if (!under) continue;
         EXPECT_EQ(left[0].picolitres, kMicrolitre);
-        // In metres, as it was given.
+        // In metres, as it was set.
         EXPECT_NEAR(glm::distance(left[0].velocity, vec3(0.02F, 0, 0.01F)), 0, 1e-5F);
         EXPECT_NEAR(glm::distance(left[0].position, vec3(0.1F, 0, 0.1F)), 0, 1e-3F);
     }
@@ -242,7 +242,7 @@ TEST(FlowThesis, TheLayoutIsCutAtSeamsAndOnlyThere) {
     EXPECT_EQ(cuts(laidOut(wall(), Layout::pieces)), 2U * 2U * 3U * 8U);
 }
 
-TEST(FlowThesis, WhatRunsOverASeamDrainsAndTheLedgerCloses) {
+TEST(FlowThesis, DropsThatCrossASeamDrainAndVolumesBalance) {
     const Shape shape = laidOut(ballShape(0.05F, 24), Layout::pieces);
     ThesisParams p;
     p.friction = 0;
@@ -323,7 +323,7 @@ TEST(FlowThesis, PressureAndViscosityMatchTheirSums) {
     EXPECT_GT(fastest, 1e-3);  // there was something to compare
 }
 
-TEST(FlowThesis, ALoneDropIsHeldByACappedTensionOnly) {
+TEST(FlowThesis, ALoneDropIsHeldByCappedTensionOnly) {
     ThesisParams p = bare();
     p.friction = 1;
     p.curvature = 1;  // N kg/UV^3, over a gradient of 0
@@ -354,7 +354,7 @@ TEST(FlowThesis, InvalidUvsAreRefusedOrSkippedWithAMessage) {
     Result<SurfaceFlow> flow = made(uvs);
     ASSERT_TRUE(flow);
     for (uint32_t k = 0; k < 100; ++k) flow->add({k, 0.3F, 0.3F}, kMicrolitre);
-    // And gales, and a skin that collapses to a line and comes back.
+    // Strong wind, and a skin that collapses to a line and recovers.
     std::vector<vec3> line = shape.positions;
     for (vec3& p : line) p.x = 0.1F;
     for (int k = 0; k < 20; ++k)
@@ -366,10 +366,10 @@ TEST(FlowThesis, InvalidUvsAreRefusedOrSkippedWithAMessage) {
 }
 
 // The thesis's figure 3.7 on the default head, a stream under each eye: by gravity alone, with wind to the right, with wind to the back.
-TEST(FlowThesis, ItsPictureLeansWithTheWind) {
+TEST(FlowThesis, ThePictureFollowsTheWind) {
     const test::Skin head = test::headSkin();
     ASSERT_FALSE(head.positions.empty());
-    // Where the height field's middle is, of what began left and right of the nose.
+    // Centre of the height field of the streams left and right of the nose.
     const auto middle = [&](const vec3& pull, double side) {
         Thesis t(head.view(), {});
         std::mt19937 random(1);

@@ -1,4 +1,4 @@
-// Spray, foam and bubbles: where water is calm there are none, where it breaks there are; each moves by its own law, and none is forgotten.
+// Spray, foam and bubbles: breaking water creates them, calm water does not; each kind moves by its own law, and all are accounted for.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ std::vector<Fleck> flecks(FluidWorld& world) {
     return all;
 }
 
-// Puts flecks into a world, by way of a saved state.
+// Puts foam particles into a world by a saved state.
 void put(FluidWorld& world, const std::vector<Fleck>& some) {
     WorldState saved, changed;
     world.save(saved);
@@ -77,7 +77,7 @@ TEST(Foam, CalmWaterMakesNone) {
     EXPECT_EQ(make(*device, boxOf(0.3F, false, 0))->particles().foam, nullptr);
 }
 
-TEST(Foam, FallingWaterMakesSomeAndNeverMoreThanThereIsRoomFor) {
+TEST(Foam, FallingWaterMakesFoamUpToItsLimit) {
     auto device = makeTestCpu();
     for (const int most : {4096, 300}) {
         auto world = make(*device, boxOf(0.1F, true, most));
@@ -103,7 +103,7 @@ TEST(Foam, FallingWaterMakesSomeAndNeverMoreThanThereIsRoomFor) {
     }
 }
 
-// Thrown, it flies as a stone does: drag of a drop of 3 mm takes a per cent of it.
+// Spray flies on a parabola; the drag of a drop of 3 mm reduces its speed by one per cent.
 TEST(Foam, SprayFlies) {
     auto device = makeTestCpu();
     auto world = make(*device, boxOf(0.1F, false));
@@ -120,12 +120,12 @@ TEST(Foam, SprayFlies) {
     EXPECT_NEAR(all[0].velocity.y, 1.0F - 9.81F * t, 0.05F);
 }
 
-TEST(Foam, ABubbleRisesAsFastAsBuoyancyAndDragHaveIt) {
+TEST(Foam, ABubbleRisesAtTheSpeedOfBuoyancyAndDrag) {
     auto device = makeTestCpu();
     FluidParams p = boxOf(0.7F, false);
     p.foam.buoyancy = 1.0F;
     p.foam.drag = 30.0F;                          // 0.327 m/s
-    p.foam.trappedAir = p.foam.waveCrest = 0.0F;  // so deep, water is not calm while it settles
+    p.foam.trappedAir = p.foam.waveCrest = 0.0F;  // deep water is not calm while it settles
     auto world = make(*device, p);
     for (int k = 0; k < 5; ++k) world->step({}, kFrame);
     put(*world, {{vec3(0.5F, 0.1F, 0.25F), vec3(0.0F), 2.0F, 0}});
@@ -138,7 +138,7 @@ TEST(Foam, ABubbleRisesAsFastAsBuoyancyAndDragHaveIt) {
     EXPECT_NEAR((all[0].position.y - before) / 0.5F, 9.81F / 30.0F, 0.03F);
 }
 
-// A ball that hangs in its way, a sloping plane, the walls of the box: it is in none of them.
+// Spray never enters the ball in its path, the sloping plane or the walls of the box.
 TEST(Foam, SolidsStopSpray) {
     auto device = makeTestCpu();
     const vec3 middle(0.5F, 0.5F, 0.25F);
@@ -159,7 +159,7 @@ TEST(Foam, SolidsStopSpray) {
     auto world = make(*device, p, solids);
     world->step({}, kFrame);
     std::vector<Fleck> thrown;
-    for (int k = 0; k < 200; ++k) {  // at the ball from all sides but below; and beyond it the plane and the walls
+    for (int k = 0; k < 200; ++k) {  // towards the ball from all sides except below, then to the plane and the walls
         const float a = 2.4F * static_cast<float>(k), y = static_cast<float>(k) / 200;
         const vec3 from = middle + 0.2F * vec3(std::cos(a) * std::sqrt(1 - y * y), y, std::sin(a) * std::sqrt(1 - y * y));
         thrown.push_back(
@@ -176,13 +176,13 @@ TEST(Foam, SolidsStopSpray) {
                         glm::all(glm::lessThanEqual(f.position, vec3(1.0F, 1.0F, 0.5F) + 1e-5F)))
                 << k;
         }
-        if (k == 5) EXPECT_EQ(all.size(), thrown.size());  // stopped, not swallowed
+        if (k == 5) EXPECT_EQ(all.size(), thrown.size());  // stopped, not removed
     }
 }
 
-// A box of 0.2 m sweeps through flecks at rest, far more than its own depth a frame and in many substeps: none is inside it, none comes out
-// behind, and those that it meets go as fast as it does.
-TEST(Foam, AFastPaddleSweepsFlecksAlong) {
+// A box of 0.2 m sweeps through foam particles at rest, by far more than its own depth per frame and in many substeps: none is inside it or
+// behind it, and those that it hits move at its speed.
+TEST(Foam, AFastPaddleSweepsFoamAlong) {
     auto device = makeTestCpu();
     for (const float speed : {6.0F, 24.0F}) {
         const vec3 half(0.05F, 0.2F, 0.2F);
@@ -200,7 +200,7 @@ TEST(Foam, AFastPaddleSweepsFlecksAlong) {
         const auto step = [&] { world->step({.gravity = vec3(0.0F), .poses = std::span(&pose, 1)}, kFrame); };
         step();
         std::vector<Fleck> rest;
-        for (int k = 0; k < 300; ++k)  // in its way, from its very face on
+        for (int k = 0; k < 300; ++k)  // in its path, directly from its face on
             rest.push_back({vec3(0.38F + 0.004F * static_cast<float>(k), 0.5F + 0.1F * std::sin(static_cast<float>(k)),
                                  0.25F + 0.1F * std::cos(2.5F * static_cast<float>(k))),
                             vec3(0.0F), 2.0F, 0});
@@ -220,9 +220,9 @@ TEST(Foam, AFastPaddleSweepsFlecksAlong) {
     }
 }
 
-// A block of water flies after a wall that flees as fast. Foam of its edges is born where the wall has been a moment ago, and stays on the
-// water's side.
-TEST(Foam, BornBehindAWallItStaysThere) {
+// A block of water follows a wall that moves at the same speed. Foam from its edges is spawned where the wall was a moment ago, and stays
+// on the water's side.
+TEST(Foam, FoamSpawnedNearAMovingWallStaysOnItsSide) {
     auto device = makeTestCpu();
     const test::Mesh wall = test::makeSheet(vec3(0), vec3(1, 0, 0), 2.0F);
     const MeshView view = wall.view();
@@ -275,8 +275,8 @@ TEST(Foam, SprayOnADryShelfAges) {
     EXPECT_EQ(flecks(*world).size(), 0U);
 }
 
-// On the water it lies still, lives as long as it has, and is gone.
-TEST(Foam, OnCalmWaterItLiesAndAges) {
+// Foam on calm water rests, and disappears at the end of its life.
+TEST(Foam, OnCalmWaterFoamRestsAndAges) {
     auto device = makeTestCpu();
     auto world = make(*device, boxOf(0.3F, false));
     for (int k = 0; k < 30; ++k) world->step({}, kFrame);
@@ -292,7 +292,7 @@ TEST(Foam, OnCalmWaterItLiesAndAges) {
 }
 
 // Number and positions of new foam do not depend on threads; a saved world continues with its foam.
-TEST(Foam, TheSameRunMakesTheSame) {
+TEST(Foam, RunsAreReproducible) {
     auto device = makeTestCpu();
     const auto sorted = [](FluidWorld& world) {
         std::vector<std::array<float, 4>> all;
@@ -318,8 +318,8 @@ TEST(Foam, TheSameRunMakesTheSame) {
     EXPECT_EQ(sorted(*a), sorted(*c));
 }
 
-// Four pictures a step: between steps a fleck that flies beside the water is drawn where the water is, in each of them.
-TEST(Foam, BetweenFixedStepsItIsDrawnBesideItsWater) {
+// Four pictures a step: between steps a foam particle that flies beside the water is drawn at the water's position.
+TEST(Foam, BetweenFixedStepsFoamIsDrawnBesideItsWater) {
     auto device = makeTestCpu();
     const float speed = 1.5F;
     FluidParams p = boxOf(0.1F, false);
@@ -344,7 +344,7 @@ TEST(Foam, BetweenFixedStepsItIsDrawnBesideItsWater) {
     }
 }
 
-// A state of more or fewer slots, or damaged in them, says so; the world goes on with all it had.
+// A state with another number of slots, or with damaged slots, is refused with a message; the world continues unchanged.
 TEST(Foam, AStateOfOtherSlotsIsRefusedAndNothingIsLost) {
     auto device = makeTestCpu();
     auto other = make(*device, boxOf(0.1F, true, 300)), world = make(*device, boxOf(0.1F, true));

@@ -1,4 +1,5 @@
-// Surface forces against geometry and conservation: normals of a cube and a pool, a cube that becomes a ball, drops on walls, whirls, wind.
+// Surface forces against geometry and conservation: normals of a cube and a pool, a cube that becomes a ball, drops on walls, vortices,
+// wind.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +28,7 @@ double degreesBetween(const vec3& a, const vec3& b) {
 
 class Normals : public testing::TestWithParam<const char*> {};
 
-TEST_P(Normals, OfACubesFacesAreItsAxes) {
+TEST_P(Normals, OfTheFacesOfACubeAreItsAxes) {
     auto device = cpu();
     FluidParams p;
     p.method = "dfsph";
@@ -42,7 +43,7 @@ TEST_P(Normals, OfACubesFacesAreItsAxes) {
     int faces = 0, inside = 0;
     double worst = 0, length = 0, rest = 0;
     for (size_t i = 0; i < s.position.size(); ++i) {
-        // Depth below the nearest face of each axis; only where the edges are out of reach.
+        // Depth below the nearest face of each axis; only particles far from the edges.
         const vec3 fromCentre = vec3(s.position[i]) - 0.5F;
         int outer = 0, axis = 0, deep = 0;
         for (int k = 0; k < 3; ++k) {
@@ -102,12 +103,12 @@ TEST(Normals, CoincidentParticlesAndSprayAreFinite) {
     EXPECT_GT(-double{spray.y}, longest);
 }
 
-// How much farther a cloud reaches one way than another, of 26: 1 of a ball, 1.7 of a cube.
+// Ratio of the largest to the smallest extent of a cloud in 26 directions: 1 for a ball, 1.7 for a cube.
 double outOfRound(const std::vector<vec4>& x) {
     double centre[3] = {0, 0, 0};
     for (const vec4& p : x)
         for (int k = 0; k < 3; ++k) centre[k] += double{p[k]} / static_cast<double>(x.size());
-    // The farthest hundredth left out.
+    // Without the farthest hundredth.
     double least = 1.0e9, most = 0;
     for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
@@ -138,7 +139,7 @@ TEST(Tension, ACubeBecomesABallAndMomentaStay) {
     const double before = outOfRound(state(*world).position);
     EXPECT_GT(before, 1.4);
     double scale = 0, turned = 0;
-    // Its corners swing in and out (n = 4) in 1.02 s by Lamb 1932, and die away as fast.
+    // Its corners oscillate (n = 4) with a period of 1.02 s by Lamb 1932, and decay in about the same time.
     for (int frame = 0; frame < 60; ++frame) {
         world->step({vec3(0.0F)}, 1.0 / 60);
         const State s = state(*world);
@@ -202,13 +203,13 @@ TEST(Air, ALoneDropFallsAsFastAsItsDragLets) {
     auto world = make(*device, p);
     ASSERT_EQ(world->particles().count, 1U);
     for (int frame = 0; frame < 120; ++frame) world->step({vec3(0.0F)}, 1.0 / 240);
-    // u' = -k u^2 of the difference u to the wind; a sphere of the particle's volume.
+    // u' = -k u^2 for the velocity u relative to the wind; a sphere of the particle's volume.
     const double radius = 0.02 * std::cbrt(3 / (4 * M_PI)), k = 0.5 * 1.2 * 0.47 * M_PI * radius * radius / (1000 * 8.0e-6);
     const double expected = 5 - 5 / (1 + k * 5 * world->time());
     EXPECT_NEAR(double{state(*world).velocity[0].y} / expected, 1.0, 0.01);
 }
 
-TEST(Vorticity, ConfinementKeepsAWhirlUp) {
+TEST(Vorticity, ConfinementSustainsAVortex) {
     auto device = cpu();
     double energy[2] = {0, 0};
     for (int k = 0; k < 2; ++k) {

@@ -1,4 +1,4 @@
-// Viscosity against what the Navier-Stokes equations give exactly: a shear wave's decay, flow between plates that starts from rest.
+// Viscosity against exact solutions of the Navier-Stokes equations: decay of a shear wave, and start-up flow between plates.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -35,7 +35,7 @@ TEST_P(Viscosity, AShearWaveDecaysWithNuKSquared) {
     p.method = GetParam().method;
     p.forces.viscosity = GetParam().viscosity;
     p.spacing = spacing;
-    p.supportSpacings = 2.3F;  // where a perfect lattice sums up what it should along its axes; 2 gives 9 % less there
+    p.supportSpacings = 2.3F;  // a support for which the sum over a perfect lattice is exact along its axes; 2 gives 9 % less
     p.viscosity = static_cast<float>(nu);
     p.artificialViscosity = 0;
     p.gravity = vec3(0.0F);
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, Viscosity,
                                          Way{"wcsph", "auto"}),
                          [](const auto& row) { return std::string(row.param.method) + "_" + row.param.viscosity; });
 
-// ---- walls that do not slip ----
+// ---- no-slip walls ----
 
 // u(y, t) between plates at rest at 0 and L, driven by the acceleration F from t = 0.
 double poiseuille(double y, double t, double length, double nu, double force) {
@@ -80,7 +80,7 @@ double poiseuille(double y, double t, double length, double nu, double force) {
 
 class Channel : public testing::TestWithParam<Way> {};
 
-TEST_P(Channel, PoiseuilleFlowStartsAsTheSeriesSays) {
+TEST_P(Channel, StartingPoiseuilleFlowMatchesTheSeries) {
     auto device = cpu();
     const double length = 1.0e-3, nu = 1.0e-6, force = 2.0e-3;
     FluidParams p;
@@ -152,7 +152,7 @@ Pile pour(const FluidParams& p) {
 
 class Poured : public testing::TestWithParam<const char*> {};
 
-TEST_P(Poured, HoneySpreadsAsHuppertSaysWithStepsAsLongAsWaters) {
+TEST_P(Poured, HoneySpreadsByHuppertsLawWithTheTimeStepOfWater) {
     const FluidParams p = honey(GetParam());
     FluidParams water = p;
     water.viscosity = 1.0e-6F;
@@ -160,7 +160,7 @@ TEST_P(Poured, HoneySpreadsAsHuppertSaysWithStepsAsLongAsWaters) {
     EXPECT_EQ(thick.lost, 0U);
     EXPECT_GE(thick.dtMin, 0.99 * thin.dtMin);
     EXPECT_GT(thick.dtMin, explicitViscousLimit(p)) << "or there was nothing to solve for";
-    // Huppert 1982: a viscous heap on a no-slip floor is 0.894 (g V^3 t / (3 nu))^(1/8) wide, whatever it began as.
+    // Huppert 1982: a viscous heap on a no-slip floor has the radius 0.894 (g V^3 t / (3 nu))^(1/8), for any initial shape.
     const double volume = 0.04 * 0.04 * 0.42;
     EXPECT_NEAR(thick.wide / (0.894 * std::pow(9.81 * std::pow(volume, 3) / (3 * double{p.viscosity}), 0.125)), 1.0, 0.12);
     EXPECT_GT(thin.wide, 0.13) << "water is at the walls by now";
@@ -168,14 +168,14 @@ TEST_P(Poured, HoneySpreadsAsHuppertSaysWithStepsAsLongAsWaters) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Poured, testing::Values("pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
 
-// A thread of cold honey falls ten of its widths: it does not run into the puddle but stands, buckles and lays itself down in coils
-// (liquid rope coiling, Ribe 2004), piled above the puddle, and all stays finite.
+// A thread of cold honey falls ten of its widths. It does not merge with the puddle but buckles and forms coils above it (liquid rope
+// coiling, Ribe 2004); all values stay finite.
 class Thread : public testing::TestWithParam<const char*> {};
 TEST_P(Thread, CoilsAndPilesUp) {
     auto device = cpu();
     FluidParams p;
     p.method = GetParam();
-    // Steps as short as sound asks make wcsph's turns slow and dear: there it stands, piles up and stays finite.
+    // The step limit of sound makes coils expensive with wcsph: there the test requires only that the thread piles up and stays finite.
     const bool coils = p.method != "wcsph";
     p.spacing = 0.0025F;
     p.restDensity = 1420;
@@ -190,7 +190,7 @@ TEST_P(Thread, CoilsAndPilesUp) {
     Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(*device, p, {}, {}, {.emitters = {thread}, .seconds = 1});
     ASSERT_TRUE(made) << (made ? "" : made.error().message);
     FluidWorld& world = **made;
-    // As fast as it comes out, and as it falls.
+    // The emission speed plus the fall.
     const double out = 1.0e-4 / (M_PI * 0.0075 * 0.0075), most = std::sqrt(out * out + 2 * 9.81 * 0.16);
     double fastest = 0, high = 0, turned = 0, before = 0, widest = 0, least = 0, furthest = 0;
     int piled = 0;
@@ -207,14 +207,14 @@ TEST_P(Thread, CoilsAndPilesUp) {
             ASSERT_TRUE(std::isfinite(x.x + x.y + x.z));
             fastest = std::max(fastest, double{glm::length(vec3(s.velocity[i]))});
             const double off = std::hypot(double{x.x} - 0.08, double{x.z} - 0.08);
-            // What lies outside a thread's width is pile.
+            // Particles outside the thread's width belong to the pile.
             if (off > 0.0125) top = std::max(top, double{x.y});
             widest = std::max(widest, off);
         }
         high = std::max(high, top);
         if (frame < kFalls) continue;
         piled += top > 8 * double{p.spacing} ? 1 : 0;
-        // The thread where it meets the pile.
+        // The thread at the top of the pile.
         for (size_t i = 0; i < s.position.size(); ++i) {
             const vec4& x = s.position[i];
             if (x.w < 0 || double{x.y} < top || double{x.y} > top + 4 * double{p.spacing}) continue;
@@ -233,12 +233,12 @@ TEST_P(Thread, CoilsAndPilesUp) {
     EXPECT_EQ(world.stats().lost, 0U);
     EXPECT_LT(fastest, 1.1 * most);
     EXPECT_GT(piled, (frames - kFalls) / 2);
-    // A coil may turn back on itself, and when is chance: what it turned one way counts. A walk at random comes to about one turn.
+    // A coil may reverse at random times: the test counts the rotation in one direction. A random walk gives about one turn.
     if (coils) EXPECT_GT(furthest - least, 1.5 * 2 * M_PI) << "it coils, one way round";
 }
 INSTANTIATE_TEST_SUITE_P(Methods, Thread, testing::Values("wcsph", "pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
 
-TEST(Honey, KeepsMomentumAndSpin) {
+TEST(Honey, ConservesMomentumAndAngularMomentum) {
     auto device = cpu();
     FluidParams p;
     p.method = "dfsph";
@@ -246,7 +246,7 @@ TEST(Honey, KeepsMomentumAndSpin) {
     p.viscosity = 0.05F;
     p.forces.viscosity = "implicit";
     p.gravity = vec3(0.0F);
-    // A glancing blow of two unequal drops.
+    // An off-centre collision of two unequal drops.
     p.blocks = {{vec3(0.3F, 0.4F, 0.4F), vec3(0.46F, 0.56F, 0.56F), vec3(0.6F, 0.0F, 0.0F)},
                 {vec3(0.48F, 0.48F, 0.46F), vec3(0.58F, 0.6F, 0.58F), vec3(-0.8F, 0.1F, 0.0F)}};
     auto world = make(*device, p);
@@ -296,7 +296,7 @@ TEST(NoSlip, CouetteFlowUnderAMovingPlate) {
     const MeshView mesh{corners, triangles, {}, {}};
     Result<VoxelField> field = bakeVoxelField(std::span(&mesh, 1), {.resolution = 80, .band = 0.08F, .padding = 0.1F});
     ASSERT_TRUE(field) << (field ? "" : field.error().message);
-    // Centres keep the field's contact distance; the wall is half a spacing from there.
+    // Particle centres stay at the field's contact distance; the no-slip wall lies half a spacing from there.
     const float standOff = fieldParams(*field, {.spacing = p.spacing}).contact - 0.5F * p.spacing;
     Pose pose{.position = vec3(0.0F, static_cast<float>(length) + standOff + 0.05F, 0.06F)};
     auto world = make(*device, p, {.rigid = {{&*field, pose}}});

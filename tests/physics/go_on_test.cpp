@@ -1,4 +1,4 @@
-// A world that goes on where another is, among solids that have been moved: no particle is lost but where a solid now is.
+// A world continues from another one after solids have moved: particles are removed only where a solid now is.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ void run(Session& session, int frames) {
     for (int k = 0; k < frames; ++k) session.step(1.0 / 60, true);
 }
 
-TEST(GoOn, OnlyWhatIsInTheMovedBallIsTakenAway) {
+TEST(GoOn, OnlyParticlesInTheMovedBallAreRemoved) {
     auto device = cpu();
     SceneFile before = scene();
     auto one = open(*device, before);
@@ -50,7 +50,7 @@ TEST(GoOn, OnlyWhatIsInTheMovedBallIsTakenAway) {
     ASSERT_TRUE(two->continueFrom(*one));
     EXPECT_EQ(two->time(), one->time());
     const HostParticles had = readParticles(one->world()), has = readParticles(two->world());
-    // The ball is closed: what stays is what is outside it, to a voxel, exactly where and as fast as it was.
+    // The ball is closed: all particles outside it remain, to a voxel, with the same position and velocity.
     size_t inside = 0, same = 0;
     std::map<std::array<float, 3>, vec3> there;
     for (size_t k = 0; k < has.position.size(); ++k)
@@ -121,7 +121,7 @@ TEST(GoOn, FoamStaysOnTheWater) {
     EXPECT_TRUE(flecks(*three).empty()) << "another number of them begins anew";
 }
 
-TEST(GoOn, ASavedStateBringsItsRoom) {
+TEST(GoOn, ASavedStateBringsItsNumberOfSlots) {
     auto device = cpu();
     SceneFile inTheWater = scene();
     inTheWater.colliders[0].position = vec3(0.2F, 0.15F, 0.3F);
@@ -138,7 +138,7 @@ TEST(GoOn, ASavedStateBringsItsRoom) {
     two->save(state);
     const Status resumed = three->restore(state);
     ASSERT_TRUE(resumed) << resumed.error().message;
-    {  // What else is wrong leaves a session as it was, whose room is its own.
+    {  // Other errors leave a session and its number of slots unchanged.
         auto four = open(*device, inTheWater);
         run(*four, 2);
         const HostParticles was = readParticles(four->world());
@@ -157,8 +157,8 @@ TEST(GoOn, ASavedStateBringsItsRoom) {
     EXPECT_EQ(two->world().stats().emitted, three->world().stats().emitted);
 }
 
-// Dyes and liquids stay with their particles, emitters go on at the time it is, a wheel stands where it has turned to.
-TEST(GoOn, WhatParticlesAreAndWhenItIs) {
+// Dyes and liquids stay with their particles, emitters continue at the current time, and a wheel keeps its angle.
+TEST(GoOn, KeepsMatterTimeAndPoses) {
     auto device = cpu();
     SceneFile before = scene();
     before.fluid.blocks[0].liquid = "honey";
@@ -189,12 +189,12 @@ TEST(GoOn, WhatParticlesAreAndWhenItIs) {
     EXPECT_NEAR(glm::dot(two->world().poses()[0].rotation, one->world().poses()[0].rotation), 1, 1.0e-5);
     const double there = two->world().stats().emitted;
     run(*two, 20);
-    // From 0.25 s on the emitter is shut.
+    // The emitter stops at 0.25 s.
     EXPECT_NEAR(two->world().stats().emitted, there, 2 * std::pow(0.04, 3)) << "0.05 s too late it would have let out nothing";
 }
 
-// An edit that moves no solid takes no water away, however near it flows.
-TEST(GoOn, WhereNothingWasMovedNothingIsTakenAway) {
+// An edit that moves no solid removes no water, even next to a solid.
+TEST(GoOn, WithoutMovedSolidsNothingIsRemoved) {
     auto device = cpu();
     SceneFile before = scene();
     before.colliders[0].position = vec3(0.5F, 0.1F, 0.3F);
@@ -208,7 +208,7 @@ TEST(GoOn, WhereNothingWasMovedNothingIsTakenAway) {
     EXPECT_EQ(readParticles(two->world()).position.size(), readParticles(one->world()).position.size());
 }
 
-TEST(GoOn, AnotherSpacingStartsAnew) {
+TEST(GoOn, AnotherSpacingStartsFromTheBeginning) {
     auto device = cpu();
     auto one = open(*device, scene());
     run(*one, 5);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60;
 
-// Two blocks side by side, from wall to wall, the world's own liquid left and `right` right.
+// Two blocks side by side, from wall to wall: the world's liquid on the left and `right` on the right.
 FluidParams sideBySide(const char* method, float ownDensity, const char* right, float spacing = 0.02F) {
     FluidParams p;
     p.method = method;
@@ -61,7 +61,7 @@ Heights heights(const FluidWorld& world) {
     return h;
 }
 
-TEST(Liquids, EveryRowIsWholeAndSaysItsSource) {
+TEST(Liquids, EveryRowIsCompleteAndNamesItsSource) {
     EXPECT_GE(liquids().rows.size(), 6U);
     for (const LiquidRow& l : liquids().rows) {
         EXPECT_GT(l.density, 500) << l.name;
@@ -82,7 +82,7 @@ TEST(Liquids, EveryRowIsWholeAndSaysItsSource) {
     for (const LiquidRow& l : liquids().rows) EXPECT_LE(l.viscosity, of("honey").viscosity);
 }
 
-TEST(Liquids, ANamedLiquidSaysDensityAndViscosity) {
+TEST(Liquids, ANamedLiquidSetsDensityAndViscosity) {
     auto device = makeTestCpu();
     FluidParams p{.method = "wcsph"};
     p.restDensity = 7;
@@ -96,7 +96,8 @@ TEST(Liquids, ANamedLiquidSaysDensityAndViscosity) {
     EXPECT_NE(wrong.error().message.find("there are water"), std::string::npos) << wrong.error().message;
 }
 
-// Side by side at first. Wholly apart, oil's middle is 0.1 m above water's. With so few particles the two stay mixed for long.
+// Side by side at the start. After complete separation, the centre of the oil is 0.1 m above that of the water. With so few particles the
+// two stay mixed for long.
 TEST(Liquids, OilEndsAboveWater) {
     for (const auto& [method, least] : {std::pair("wcsph", 0.045), std::pair("dfsph", 0.022), std::pair("pbf", 0.045)}) {
         auto device = makeTestCpu();
@@ -111,7 +112,7 @@ TEST(Liquids, OilEndsAboveWater) {
     }
 }
 
-TEST(Liquids, AHundredTimesHeavierOrLighterStaysFiniteAndFindsItsSide) {
+TEST(Liquids, AHundredTimesHeavierOrLighterStaysFiniteAndSeparates) {
     for (const char* method : {"wcsph", "pbf", "dfsph"})
         for (const float own : {9.982F, 99820.0F}) {
             auto device = makeTestCpu();
@@ -127,7 +128,7 @@ TEST(Liquids, AHundredTimesHeavierOrLighterStaysFiniteAndFindsItsSide) {
         }
 }
 
-// Two layers at rest: in each, pressure grows downwards by that liquid's own weight.
+// Two layers at rest: in each, the pressure gradient is the weight of that liquid.
 TEST(Liquids, PressureGrowsByTheWeightOfEachLayer) {
     auto device = makeTestCpu();
     FluidParams p;
@@ -164,8 +165,8 @@ TEST(Liquids, PressureGrowsByTheWeightOfEachLayer) {
     EXPECT_NEAR(lower.value(), -9.81 * 1000, 0.1 * 9810);
 }
 
-// Mass, centre of mass and energy weigh each particle by its own liquid.
-TEST(Liquids, FiguresWeighEachParticleByItsOwnDensity) {
+// Mass, centre of mass and energy use the density of each particle's liquid.
+TEST(Liquids, StatisticsUseTheDensityOfEachParticle) {
     auto device = makeTestCpu();
     FluidParams p = sideBySide("wcsph", 1, "honey");
     p.liquid = "water";

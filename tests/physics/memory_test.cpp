@@ -1,4 +1,4 @@
-// A world that runs out of memory stops, says so and loses nothing: it goes on once there is memory again.
+// A world that runs out of memory stops and reports it without loss, and continues when memory is available again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ TEST(OutOfMemory, TheGridFailsAgainUntilThereIsMemory) {
 
 class OutOfMemoryOf : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(OutOfMemoryOf, AWorldStopsSaysSoAndGoesOnLater) {
+TEST_P(OutOfMemoryOf, AWorldStopsReportsItAndContinuesLater) {
     for (const bool periodic : {false, true}) {
         if (periodic && std::string_view(GetParam()) == "wcsph_thesis") continue;
         auto device = cpu();

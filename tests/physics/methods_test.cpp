@@ -1,4 +1,4 @@
-// Every method against what holds for all water: a column at rest, free fall, momentum, calm.
+// Every method against general properties of water: a column at rest, free fall, conservation of momentum, decay of motion.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ class Methods : public testing::TestWithParam<const char*> {
     std::vector<vec4> velocities(FluidWorld& world) { return device->readAll<vec4>(*world.particles().velocity, world.particles().count); }
 };
 
-// A pool half a metre deep: it keeps its level (nothing is lost to compression, no layer lifts off), and is still after two seconds.
+// A pool half a metre deep keeps its level (no loss by compression, no layer lifts off) and is still after two seconds.
 TEST_P(Methods, APoolAtRestKeepsItsLevelAndIsStill) {
     FluidParams p = params(0.05F);
     p.box.max = vec3(0.5F, 1.0F, 0.5F);
@@ -42,9 +42,9 @@ TEST_P(Methods, APoolAtRestKeepsItsLevelAndIsStill) {
     auto world = make(p);
     for (int frame = 0; frame < 120; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const FluidStats& s = world->stats();
-    // Water under its own weight: the centre stays within a hundredth of the depth, plus what the method's compressibility lets it sink.
+    // Under gravity the centre of mass stays within a hundredth of the depth, plus the compression of the method.
     EXPECT_NEAR(s.centreOfMass[1], 0.25, 0.25 * 0.03);
-    // Sound goes to and fro in weakly compressible water for long; the others tremble a little, as their density is put right each step.
+    // Sound waves persist in weakly compressible water; the other methods jitter a little, because they correct the density in each step.
     const std::string_view method = GetParam();
     const double calm = method == "wcsph" ? 0.1 : method == "pbf" ? 0.02 : 0.01;
     EXPECT_LT(std::sqrt(2 * s.kinetic / (1000 * 0.125)), calm * std::sqrt(9.81 * 0.5)) << "root mean square speed";
@@ -87,7 +87,7 @@ TEST(Block, JitterMovesParticlesAboutTheirLattice) {
     for (int k = 0; k < 3; ++k) {
         EXPECT_NEAR(sum[k] / inside, 0, 0.01);
         EXPECT_NEAR(squares[k] / inside, 0.03, 0.001) << "a third of the square of 0.3";
-        EXPECT_NEAR(product[k] / inside, 0, 0.001) << "axes know nothing of each other";
+        EXPECT_NEAR(product[k] / inside, 0, 0.001) << "axes are independent";
     }
 }
 
@@ -104,8 +104,8 @@ TEST(Block, ABallIsTheEllipsoidBetweenItsCorners) {
     for (const NewParticle& p : made) EXPECT_LE(glm::length((p.position - vec3(0.0F, 1.5F, 2.3F)) / vec3(0.4F, 0.5F, 0.3F)), 1.0001F);
 }
 
-// On average the pressure halfway down is the weight above. It is what pairs press with: a lattice with a support of 2 spacings passes on
-// 0.95 of that (a third of the sum of V r W'), so that it must be a little more.
+// The mean pressure halfway down equals the weight above. It is measured from pair forces: a lattice with a support of 2 spacings transmits
+// 0.95 of it (a third of the sum of V r W'), so the pressure is a little higher.
 TEST_P(Methods, PressureIsTheWeightAbove) {
     FluidParams p = params(0.05F);
     p.box.max = vec3(0.5F, 1.0F, 0.5F);
@@ -127,7 +127,7 @@ TEST_P(Methods, PressureIsTheWeightAbove) {
     EXPECT_NEAR(sum / weight, 1.05, 0.1);
 }
 
-TEST_P(Methods, WhatTouchesNothingFallsAsGalileoSays) {
+TEST_P(Methods, FreeParticlesFallByGalileosLaw) {
     FluidParams p = params(0.02F);
     p.box.max = vec3(1.0F, 3.0F, 1.0F);
     p.blocks = {{vec3(0.5F, 2.8F, 0.5F), vec3(0.521F, 2.821F, 0.521F), vec3(0.3F, 0.0F, 0.0F)}};
@@ -140,7 +140,7 @@ TEST_P(Methods, WhatTouchesNothingFallsAsGalileoSays) {
     EXPECT_NEAR(double{end.x} - x, 0.15, 1e-4);
 }
 
-// Two unequal drops glance off each other in empty space. Pair forces are equal and opposite: neither momentum may drift.
+// Two unequal drops glance off each other in empty space. Pair forces are equal and opposite: momentum and angular momentum stay constant.
 TEST_P(Methods, CollidingDropsKeepMomentum) {
     FluidParams p = params(0.05F);
     p.gravity = vec3(0.0F);
@@ -171,7 +171,7 @@ TEST_P(Methods, CollidingDropsKeepMomentum) {
     EXPECT_LT(glm::length(after[1] * scale - before[1]), 3 * tolerance);
 }
 
-// Particles placed at random, many of them on top of each other, are pushed apart; nothing becomes infinite, nothing is lost.
+// Particles placed at random, many of them on top of each other, are pushed apart; all values stay finite, and no particle is lost.
 TEST_P(Methods, AHeapOfOverlappingParticlesComesApart) {
     FluidParams p = params(0.05F);
     p.box.max = vec3(1.0F);
@@ -187,7 +187,7 @@ TEST_P(Methods, AHeapOfOverlappingParticlesComesApart) {
         world->step({.gravity = p.gravity}, 1.0 / 60);
         ASSERT_EQ(world->stats().lost, 0U) << "frame " << frame;
         ASSERT_TRUE(std::isfinite(world->stats().maxSpeed)) << "frame " << frame;
-        // No more than a spacing a step, which is the limit that the program sets and says.
+        // At most a spacing a step, which is the limit that the program sets and reports.
         ASSERT_LT(world->stats().maxSpeed, 1.001 * 0.05 / world->stats().dtMin) << "frame " << frame;
     }
     EXPECT_LT(world->stats().avgCompression, 0.03);
@@ -197,8 +197,8 @@ TEST_P(Methods, AHeapOfOverlappingParticlesComesApart) {
 INSTANTIATE_TEST_SUITE_P(All, Methods, testing::Values("wcsph", "pbf", "dfsph"),
                          [](const testing::TestParamInfo<const char*>& row) { return std::string(row.param); });
 
-// The same flow, whole or with its box wrapped round: what crosses the border meets its neighbours as inside.
-TEST_P(Methods, APeriodicBoxKnowsNoBorder) {
+// The same flow inside a box and across its periodic border: particles that cross the border interact as inside.
+TEST_P(Methods, APeriodicBoxHasNoBorder) {
     const auto run = [&](vec3 shift) {
         FluidParams p = params(0.05F);
         p.gravity = vec3(0.0F);
@@ -234,14 +234,14 @@ TEST_P(Methods, APeriodicBoxKnowsNoBorder) {
             const double d = double{here[i][k]} - double{there[i][k]};
             worst = std::max(worst, std::abs(d - std::round(d / double{period[k]}) * double{period[k]}));
         }
-    // PBF looks for neighbours where it predicts particles, and which it finds a hair beyond the support depends on where cells begin.
+    // PBF searches neighbours at predicted positions; whether it includes those just beyond the support depends on the origin of the cells.
     EXPECT_LT(worst, std::string_view(GetParam()) == "pbf" ? 5.0e-4 : 2.0e-5) << "of a spacing of 0.05 m";
 }
 
-// With a tolerance, PBF corrects until that little compression is left; fewer corrections leave more.
+// With a tolerance, PBF corrects until the compression is below it; fewer corrections leave more compression.
 
-// A closed box without walls, with jittered particles: nothing can give way, and with more neighbours each Jacobi correction meets more of
-// the others'. At a support of three spacings the iteration for two diverges: particles fall upon each other.
+// A closed box without walls, with jittered particles: no particle can escape, and with more neighbours the Jacobi corrections of
+// neighbours add up. At a support of three spacings the iteration tuned for two diverges, and particles collapse.
 TEST(Dfsph, ConvergesWithAnyNumberOfNeighbours) {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     const std::unique_ptr<CpuDevice> device = makeCpuDevice(rows);
@@ -313,7 +313,7 @@ TEST(Smoothing, CouplingIsTheLargestEigenvalueOfTheJacobiMatrix) {
             largest = std::sqrt(norm);
             for (size_t i = 0; i < p.size(); ++i) p[i] = q[i] / largest;
         }
-        // Waves of a lattice of 12 are not all waves: a little below.
+        // A lattice of 12 does not contain all waves: the value is a little lower.
         EXPECT_NEAR(wendlandCoupling(support), largest, 0.03 * largest) << support;
     }
 }

@@ -1,4 +1,4 @@
-// Pouring by mouse: the rate is that of the jet, the place that of the pointer, and no more than there is room for.
+// Pouring by mouse: the jet's rate at the pointer's position, limited by the free slots.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,14 +32,14 @@ std::unique_ptr<Session> open(Device& device, const SceneFile& scene) {
     return session ? std::move(*session) : nullptr;
 }
 
-TEST(Pour, TheJetsRateFallsOntoThePlace) {
+TEST(Pour, TheJetHasItsRateAtThePointer) {
     auto device = cpu();
     auto session = open(*device, scene());
     for (int k = 0; k < 5; ++k) session->step(1.0 / 60, true);
     EXPECT_EQ(session->world().stats().particles, 0U) << "no hand, no water";
     session->pourOnto(vec3(0.3F, 0, 0.3F));
     for (int k = 0; k < 12; ++k) session->step(1.0 / 60, true);
-    // pi r^2 v for 0.2 s, r three spacings, v as after a fall of 3 r; the first layer is half a spacing late.
+    // pi r^2 v for 0.2 s, r three spacings, v the speed after a fall of 3 r; the first layer is half a spacing late.
     const double r = 0.09, v = std::sqrt(2 * 9.81 * 3 * r), volume = 3.14159265 * r * r * v * 0.2;
     const HostParticles jet = readParticles(session->world());
     EXPECT_NEAR(static_cast<double>(jet.position.size()) * std::pow(0.03, 3), volume, 0.1 * volume);
@@ -60,7 +60,7 @@ TEST(Pour, TheJetsRateFallsOntoThePlace) {
     EXPECT_EQ(session->world().stats().speedLimited, 0U);
 }
 
-TEST(Pour, WithoutRoomNothingFalls) {
+TEST(Pour, WithoutFreeSlotsNothingIsPoured) {
     auto device = cpu();
     SceneFile dry = scene();
     dry.pour.litres = 0;
@@ -71,8 +71,8 @@ TEST(Pour, WithoutRoomNothingFalls) {
     EXPECT_TRUE(session->needsNew(scene())) << "room is made by a new world";
 }
 
-// A ray from above meets the ball, the floor beside it, the water that lies there; beside the box nothing.
-TEST(Pour, WhereTheMousePoints) {
+// A ray from above hits the ball, the floor beside it or the water on it; outside the box it hits nothing.
+TEST(Pour, RaysHitBallFloorAndWater) {
     auto device = cpu();
     SceneFile wet = scene();
     wet.fluid.blocks = {{vec3(0.0F), vec3(0.4F, 0.3F, 0.6F), vec3(0.0F)}};
@@ -91,7 +91,7 @@ TEST(Pour, WhereTheMousePoints) {
 }
 
 // The place is moved into the box: no particle is spawned outside.
-TEST(Pour, AtTheLidAndInACorner) {
+TEST(Pour, StaysInsideTheBoxAtTheLidAndInACorner) {
     auto device = cpu();
     auto session = open(*device, scene());
     for (const vec3& place : {vec3(0.5F, 0.8F, 0.3F), vec3(0.0F, 0.0F, 0.0F), vec3(5.0F, -3.0F, 9.0F)}) {
@@ -105,7 +105,7 @@ TEST(Pour, AtTheLidAndInACorner) {
 }
 
 // A dyed jet into a run without dye.
-TEST(Pour, IntoWaterThatGoesOn) {
+TEST(Pour, ADyedJetIntoARunningScene) {
     auto device = cpu();
     SceneFile before = scene();
     before.pour.litres = 0;

@@ -1,4 +1,4 @@
-// The rows of methods and forces: what the program asks of one without knowing its name.
+// The rows of methods and forces: properties that the program reads without comparing names.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace rivulet {
 namespace {
 
-TEST(ForceRows, RunInTheirOrderAndNameTheirRemedy) {
+TEST(ForceRows, RunInOrderAndNameTheRemedy) {
     std::set<std::string> names;
     int before = 0;
     for (const ForceRow& row : forces().rows) {

@@ -1,5 +1,5 @@
 // Thesis 4.3.3: a sheet and a column fall onto a sphere voxelised at 128^3; no particle's centre is ever in a set voxel. Checked by brute
-// force from the bits, in double, by code that shares nothing with what collides.
+// force from the bits, in double, independently of the collision code.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace rivulet::sheet_on_sphere_test {
 namespace {
 
-// Bit k of byte b is voxel 8 b + k, x fastest (voxel_grid.h says so; read here from the bytes alone).
+// Bit k of byte b is voxel 8 b + k, x fastest (see voxel_grid.h; read here from the bytes).
 bool voxelIsSet(const VoxelGrid& grid, const vec4& p) {
     long cell[3];
     const long size[3] = {grid.size.x, grid.size.y, grid.size.z};
@@ -47,7 +47,7 @@ TEST(SheetOnSphere, NoCentreIsEverInASetVoxel) {
             inside += voxelIsSet(grid, x) ? 1 : 0;
             const float distance = glm::length(vec3(x) - centre);
             touched = touched || distance < 0.225F + world.params().spacing;
-            inside += distance < 0.22F ? 1 : 0;  // nor within the sphere itself
+            inside += distance < 0.22F ? 1 : 0;  // and none is within the sphere
         }
         ASSERT_EQ(inside, 0U) << "frame " << frame;
     }

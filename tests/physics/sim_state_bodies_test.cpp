@@ -16,8 +16,8 @@ namespace {
 constexpr float kSpacing = 0.03F;
 constexpr int kMostParticles = 1650;
 
-// A heavy box on the floor of a pool with another on it, a light box afloat, and a paddle that turns beside them; dyed water comes in, and
-// a sink lets out what makes room for it.
+// A heavy box on the floor of a pool with another on it, a floating box, and a rotating paddle; an emitter adds dyed water, and a sink
+// removes as much.
 SceneFile scene(const std::string& method) {
     SceneFile s;
     s.name = "state";
@@ -84,7 +84,7 @@ void run(Session& session, int frames) {
     for (int k = 0; k < frames; ++k) session.step(1.0 / 60, true);
 }
 
-// Every section of what the next step depends on, read back: one comparison for all there is.
+// All sections of the state that the next step depends on, for one comparison of everything.
 void expectSame(const WorldState& a, const WorldState& b) {
     ASSERT_EQ(a.sections().size(), b.sections().size());
     for (const auto& [name, bytes] : a.sections()) {
@@ -105,14 +105,14 @@ class WholeState : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, WholeState, testing::Values("wcsph", "pbf", "dfsph"),
                          [](const auto& row) { return std::string(row.param); });
 
-TEST_P(WholeState, WithBodiesEmittersAndSinksGoesOnBitForBit) {
+TEST_P(WholeState, WithBodiesEmittersAndSinksContinuesBitForBit) {
     auto device = cpu();
     const int frames = 14;
     auto whole = start(*device, scene(GetParam())), first = start(*device, scene(GetParam())), second = start(*device, scene(GetParam()));
     ASSERT_TRUE(whole && first && second);
     run(*whole, 2 * frames);
     run(*first, frames);
-    run(*second, 3);  // what it was is no matter
+    run(*second, 3);  // its earlier state does not matter
     const WorldState half = saved(*first);
     WorldState taken = half;
     const Status done = second->restore(taken);
@@ -131,7 +131,7 @@ TEST_P(WholeState, WithBodiesEmittersAndSinksGoesOnBitForBit) {
     EXPECT_EQ(a.drained, b.drained);
     EXPECT_EQ(a.backlog, b.backlog);
 
-    // It is what the test is about: bodies that touch and move, slots that were used again.
+    // The scene must cover these cases: bodies in contact and in motion, and reused slots.
     const auto bodies = items<BodyState>(half, "bodies.states");
     EXPECT_NEAR(bodies[0].pose.position.y, 0.05F, 0.003F);
     EXPECT_NEAR(bodies[1].pose.position.y, 0.15F, 0.01F);
@@ -147,7 +147,7 @@ TEST_P(WholeState, WithBodiesEmittersAndSinksGoesOnBitForBit) {
     EXPECT_GT(red, 100U);
 }
 
-TEST_P(WholeState, WhatMakesNoSenseIsRefusedAndNothingChanges) {
+TEST_P(WholeState, InvalidStatesAreRefusedAndNothingChanges) {
     auto device = cpu();
     auto session = start(*device, scene(GetParam()));
     ASSERT_TRUE(session);
@@ -192,7 +192,7 @@ TEST_P(WholeState, WhatMakesNoSenseIsRefusedAndNothingChanges) {
     EXPECT_FALSE(with("sources.waited", [&](auto& b) { std::memcpy(b.data(), &dnan, 8); }));
     expectSame(now, saved(*session));
 
-    // Another scene's.
+    // The state of another scene.
     for (const auto& [what, change] : std::initializer_list<std::pair<const char*, void (*)(SceneFile&)>>{
              {"bodies", [](SceneFile& s) { s.bodies.pop_back(); }},
              {"density", [](SceneFile& s) { s.bodies[1].density = 2900; }},
@@ -212,7 +212,7 @@ TEST_P(WholeState, WhatMakesNoSenseIsRefusedAndNothingChanges) {
     }
 }
 
-// A host of one's own: a magnet that pulls ever more the longer it has been on.
+// A custom host: a magnet whose force grows with time.
 struct Magnet {
     explicit Magnet(std::span<const Body> bodies) : free(bodies) {}
     FreeBodies free;
@@ -246,7 +246,7 @@ struct Magnet {
     }
 };
 
-TEST(StateOfAHost, IsKeptWhereItSaysWhatItRemembers) {
+TEST(StateOfAHost, IsSavedIfTheHostProvidesIt) {
     auto device = cpu();
     FluidParams p;
     p.method = "pbf";

@@ -18,7 +18,7 @@ std::unique_ptr<CpuDevice> cpu() {
     return makeCpuDevice(rows);
 }
 
-// A block in a box with a spinning, swinging paddle wheel, and a sheet that bends.
+// A block in a box with a rotating and oscillating paddle wheel, and a deforming sheet.
 SceneFile scene(const std::string& method) {
     SceneFile s;
     s.name = "state";
@@ -49,7 +49,7 @@ std::unique_ptr<Session> make(Device& device, const SceneFile& scene) {
     return session ? std::move(*session) : nullptr;
 }
 
-// Through a file's bytes, as a program would.
+// By way of the bytes of a file, as a program does.
 WorldState throughBytes(Session& session) {
     WorldState state;
     session.save(state);
@@ -81,13 +81,13 @@ bool sameBits(const std::vector<T>& a, const std::vector<T>& b) {
 class State : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, State, testing::Values("wcsph", "pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
 
-TEST_P(State, ResumedItGoesOnBitForBit) {
+TEST_P(State, AResumedRunContinuesBitForBit) {
     auto device = cpu();
     const int frames = 8;
     auto whole = make(*device, scene(GetParam())), first = make(*device, scene(GetParam())), second = make(*device, scene(GetParam()));
     for (int k = 0; k < 2 * frames; ++k) whole->step(1.0 / 60, true);
     for (int k = 0; k < frames; ++k) first->step(1.0 / 60, true);
-    second->step(1.0 / 60, true);  // what it was is no matter
+    second->step(1.0 / 60, true);  // its earlier state does not matter
     WorldState state = throughBytes(*first);
     const Status done = second->restore(state);
     ASSERT_TRUE(done) << done.error().message;
@@ -106,8 +106,8 @@ TEST_P(State, ResumedItGoesOnBitForBit) {
     EXPECT_EQ(whole->world().stats().dtMin, second->world().stats().dtMin);
 }
 
-// Each part that is left out must show: without it the next frames are others, or the state is refused.
-TEST_P(State, WhatIsLeftOutOrOfAnotherSceneIsRefused) {
+// Each missing part has an effect: without it the next frames differ, or the state is refused.
+TEST_P(State, AMissingPartOrAnotherSceneIsRefused) {
     auto device = cpu();
     auto session = make(*device, scene(GetParam()));
     for (int k = 0; k < 3; ++k) session->step(1.0 / 60, true);
@@ -160,7 +160,7 @@ TEST_P(State, WhatIsLeftOutOrOfAnotherSceneIsRefused) {
     const All after = all(*session);
     EXPECT_TRUE(sameBits(before.position, after.position) && sameBits(before.velocity, after.velocity) && sameBits(before.id, after.id));
     EXPECT_EQ(before.time, after.time);
-    // Ids are where kernels write to.
+    // Kernels use ids as indices.
     WorldState twice;
     for (const auto& [name, numbers] : saved.sections()) {
         WorldState::Bytes b = numbers;
@@ -170,8 +170,8 @@ TEST_P(State, WhatIsLeftOutOrOfAnotherSceneIsRefused) {
     EXPECT_FALSE(session->restore(twice));
 }
 
-// A world without a session: what waits for a whole step, and what was dropped, is kept too.
-TEST(StateOfAWorld, TimeThatWaitsIsKept) {
+// A world without a session: time that waits for a whole step, and dropped time, are kept.
+TEST(StateOfAWorld, PendingTimeIsKept) {
     auto device = cpu();
     FluidParams p;
     p.method = "pbf";

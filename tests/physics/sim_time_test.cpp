@@ -1,4 +1,4 @@
-// Time: frames that are too long, too slow or of another rate than the steps; pictures between two states; worlds far from the origin.
+// Time: frames that are too long, too slow or at another rate than the steps; pictures between two states; worlds far from the origin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,9 +41,9 @@ size_t saying(const FluidWorld& world, const char* words) {
 class Time : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Time, testing::Values("wcsph", "pbf", "dfsph"), [](const auto& row) { return std::string(row.param); });
 
-// 250 ms after 4 ms frames: no step grows beyond those of a run of 4 ms frames by more than the falling water asks, nothing is lost, nobody
-// jumps further than the fastest of that run could in the time that was taken, and every second asked for is accounted for.
-TEST_P(Time, ASpikeIsNoLargeStep) {
+// 250 ms after 4 ms frames: steps are at most as long as in a run of 4 ms frames, except for the speed of the fall; no particle is lost or
+// moves further than the fastest of that run could; and all requested time is accounted for.
+TEST_P(Time, ALongFrameIsNotOneLargeStep) {
     auto device = cpu();
     const FluidParams p = column(GetParam());
     auto world = make(*device, p), steady = make(*device, p);
@@ -114,7 +114,7 @@ TEST_P(Time, WhatLimitsTheStepIsNamed) {
     EXPECT_NEAR(world->time() + world->dropped(), 2.0 / 60, 1e-12);
 }
 
-// Frames of any length, steps of one: after as much time the same bits, whatever the frames were.
+// Fixed steps with frames of any length: after the same time the bits are the same.
 TEST_P(Time, FixedStepsDoNotDependOnFrames) {
     auto device = cpu();
     FluidParams p = column(GetParam());
@@ -135,7 +135,8 @@ TEST_P(Time, FixedStepsDoNotDependOnFrames) {
     EXPECT_TRUE(byId(*even, *even->particles().velocity) == byId(*uneven, *uneven->particles().velocity));
 }
 
-// Uniform motion is drawn where it is, one step late: a straight line in time, to rounding. Order changes every step, ids do not.
+// Uniform motion is drawn exactly, one step late: a straight line in time, to rounding. The order of particles changes every step, ids do
+// not.
 TEST(Drawn, UniformMotionIsDrawnExactly) {
     auto device = cpu();
     FluidParams p;
@@ -161,9 +162,9 @@ TEST(Drawn, UniformMotionIsDrawnExactly) {
     }
 }
 
-// A host that draws 144 times a second a world of 100 steps a second: what falls is drawn on Galileo's parabola, one step late, and goes on
-// at every frame by what it falls in one.
-TEST(Drawn, WhatFallsIsDrawnOnAParabola) {
+// A host draws 144 frames per second of a world with 100 steps per second: a falling particle is drawn on Galileo's parabola, one step
+// late, and moves in every frame by the fall in that time.
+TEST(Drawn, FallingParticlesAreDrawnOnAParabola) {
     auto device = cpu();
     FluidParams p;
     p.method = "dfsph";
@@ -194,7 +195,7 @@ TEST(Drawn, WhatFallsIsDrawnOnAParabola) {
     EXPECT_LT(before, top - 1.3) << "half a second";
 }
 
-// Between two states otherwise: on the straight way of each particle, at the share of the step that has gone by.
+// Other motion is drawn between two states: on a straight line for each particle, at the elapsed share of the step.
 TEST(Drawn, LiesBetweenTheLastTwoStates) {
     auto device = cpu();
     FluidParams p = column("wcsph");
@@ -221,7 +222,7 @@ TEST(Drawn, LiesBetweenTheLastTwoStates) {
 }
 
 // A particle that wraps around in a periodic box is not interpolated across the image.
-TEST(Drawn, NobodyFliesAcrossAPeriodicBox) {
+TEST(Drawn, NoParticleIsDrawnAcrossAPeriodicBox) {
     auto device = cpu();
     FluidParams p;
     p.method = "dfsph";
@@ -242,7 +243,7 @@ TEST(Drawn, NobodyFliesAcrossAPeriodicBox) {
     EXPECT_TRUE(wrapped);
 }
 
-// A moving wall is where the water is, however frames and steps fall.
+// A moving wall stays in step with the water for any division into frames and steps.
 TEST(Drawn, SolidsKeepStepWithFixedSteps) {
     auto device = cpu();
     FluidParams p = column("pbf");
@@ -268,11 +269,11 @@ TEST(Drawn, SolidsKeepStepWithFixedSteps) {
     }
 }
 
-// On a GPU the budget is kept from what is known late.
+// On a GPU the budget is kept by times that arrive late.
 TEST(FrameStepper, PlansFromWhatEarlierFramesTook) {
     FrameStepper stepper;
     (void)stepper.begin(1.0 / 60, 0, 8);
-    EXPECT_TRUE(stepper.fitsPredicted(1000)) << "nothing is known yet";
+    EXPECT_TRUE(stepper.fitsPredicted(1000)) << "no times are recorded yet";
     for (int k = 0; k < 50; ++k) stepper.recordTime(k % 2 == 0 ? 24 : 0, 6);  // 24 ms that come every second frame: 2 ms a substep
     (void)stepper.begin(1.0 / 60, 0, 8);
     EXPECT_TRUE(stepper.fitsPredicted(2));
@@ -312,7 +313,7 @@ TEST_P(Time, TenKilometresAwayAreTheSameBits) {
         EXPECT_NEAR(there->toHost(vec3(x)).x - 10000.1, double{x.x}, 1e-11);
         EXPECT_EQ(there->fromHost(there->toHost(vec3(x))), vec3(x));
     }
-    ASSERT_TRUE(there->setParams(column(GetParam())));  // a scene that says nothing of it
+    ASSERT_TRUE(there->setParams(column(GetParam())));  // a scene that does not set the origin
     EXPECT_EQ(there->origin(), dvec3(0.0));
 }
 

@@ -1,4 +1,4 @@
-// WCSPH against independent references: sums in double, quadrature of the kernel, conservation, a column at rest, bad luck.
+// WCSPH against independent references: sums in double, quadrature of the kernel, conservation, a column at rest, and degenerate input.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +68,7 @@ TEST(Wcsph, TheLatticeSumIsTheKernelsSumOverALattice) {
 }
 
 // A block that fills its box from wall to wall is at rest density everywhere. The wall's law is calibrated on the layer next to the wall;
-// the second layer, which the lattice says is out of reach, gets 4e-4 from it, and an edge's overlap is an approximation.
+// the second layer, which a lattice would not reach, receives 4e-4 from it, and an edge's overlap is an approximation.
 TEST(Wcsph, ALatticeAgainstWallsIsAtRestDensity) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(1.0F, 0.5F, 1.0F));
@@ -142,7 +142,7 @@ TEST(Wcsph, PairForcesConserveMomentum) {
     EXPECT_GT(ignored, 0.2 * scale) << "they collided and went on, they did not freeze";
 }
 
-TEST(Wcsph, ParticlesFarFromAllOthersFallAsGalileoSays) {
+TEST(Wcsph, FreeParticlesFallByGalileosLaw) {
     auto device = cpu();
     FluidParams p{.method = "wcsph"};
     p.spacing = 0.02F;
@@ -156,12 +156,12 @@ TEST(Wcsph, ParticlesFarFromAllOthersFallAsGalileoSays) {
     EXPECT_NEAR(world->time(), 0.3, 1e-9);
 }
 
-// Water at rest stays at rest: pressure rho g (H - z), little motion, nothing lost, nothing through the floor.
+// Water at rest stays at rest: pressure rho g (H - z), little motion, no particle lost or below the floor.
 TEST(Wcsph, AColumnAtRestStaysAtRestUnderHydrostaticPressure) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.5F, 0.5F, 0.5F));
     p.box.max = vec3(0.5F, 1.0F, 0.5F);
-    p.artificialViscosity = 0.2F;  // calm down quickly
+    p.artificialViscosity = 0.2F;  // damps motion quickly
     auto world = make(*device, p);
     for (int frame = 0; frame < 90; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const FluidStats& s = world->stats();
@@ -169,7 +169,7 @@ TEST(Wcsph, AColumnAtRestStaysAtRestUnderHydrostaticPressure) {
     EXPECT_LT(s.avgCompression, 0.01);
     EXPECT_NEAR(s.centreOfMass[1], 0.25, 0.01);
     EXPECT_LT(std::sqrt(2 * s.kinetic / (1000 * 0.125)), 0.03 * std::sqrt(9.81 * 0.5));
-    // Tait at the densities found gives the weight of the water above.
+    // Tait's equation at the measured densities gives the weight of the water above.
     const double c0 = 10 * std::sqrt(2 * 9.81 * 0.5), rho0 = 1000;
     const uint32_t n = world->particles().count;
     double low = 0, lowPlace = 0;
@@ -214,7 +214,7 @@ TEST(WcsphThesis, TheGradientPrintedInEquationSixCannotSlowAShear) {
         return d * (k * (-1.5 * l / std::pow(h, 3) + 2 / (h * h) - h / (2 * std::pow(l, 3))));
     };
     EXPECT_NEAR(glm::dot(sheared, printedGradient(r)), 0.0, 1e-12);
-    // What is built: the Laplacian, a force along the velocity difference. Two particles, one sliding over the other.
+    // Rivulet uses the Laplacian, a force along the velocity difference. Two particles, one sliding over the other.
     auto device = cpu();
     FluidParams p;
     p.method = "wcsph_thesis";
@@ -233,7 +233,7 @@ TEST(WcsphThesis, TheGradientPrintedInEquationSixCannotSlowAShear) {
     EXPECT_NEAR(below + above, 1.0F, 1e-6);
 }
 
-// ---- bad luck ----
+// ---- degenerate input ----
 
 TEST(Wcsph, NoneOneAndTwoAtTheSamePointAreNoErrors) {
     auto device = cpu();
@@ -332,7 +332,7 @@ TEST(Wcsph, WhatAClosedMeshEnclosesStaysEmpty) {
         EXPECT_FALSE(x.x > 0.3F && x.x < 0.7F && x.y > 0.3F && x.y < 0.7F && x.z > 0.3F && x.z < 0.7F);
 }
 
-// A hollow ball, wall and all: its hollow is no part of the solid, so a block fills it, and its wall stays empty.
+// A hollow ball with a wall: the hollow is not part of the solid, so a block fills it, and the wall stays empty.
 TEST(Wcsph, AHollowOfAClosedMeshCanBeFilled) {
     test::Mesh ball = test::makeSphere(vec3(0.5F), 0.45F, 24);
     const test::Mesh hollow = test::makeSphere(vec3(0.5F), 0.3F, 24);
@@ -360,7 +360,7 @@ TEST(Wcsph, AHollowOfAClosedMeshCanBeFilled) {
     EXPECT_GT(outside, 5000U);
 }
 
-TEST(Wcsph, ResetIsTheStartAgainAndTheSameRunAgain) {
+TEST(Wcsph, ResetRestoresTheStartAndTheSameRun) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.4F));
     auto world = make(*device, p);

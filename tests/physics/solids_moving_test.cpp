@@ -1,4 +1,4 @@
-// Solids that move and bend: nothing passes them however fast they are, they carry and push what they meet, and they pour.
+// Moving and deforming solids: no particle passes them at any speed, and they carry, push and pour water.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,8 +65,8 @@ double distanceTo(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c
     return std::min(edge(a, b), std::min(edge(b, c), edge(c, a)));
 }
 
-// A sheet without thickness sweeps through a block of resting water at up to 60 m/s, tilted or not, at 4 to 40 ms a frame: it meets all of
-// it, and has all of it before it afterwards.
+// A sheet without thickness sweeps through a block of resting water at up to 60 m/s, tilted or not, with frames of 4 to 40 ms: all water is
+// in front of it afterwards.
 TEST(MovingSolid, AFastPlateLeavesNothingBehind) {
     for (const float speed : {0.5F, 5.0F, 60.0F})
         for (const float tilt : {0.0F, 31.0F}) {
@@ -90,7 +90,7 @@ TEST(MovingSolid, AFastPlateLeavesNothingBehind) {
             size_t behind = 0, near = 0;
             for (const vec3& x : places(**world)) {
                 const vec3 own = (*world)->poses()[0].toOwn(x);
-                if (std::max(std::abs(own.y), std::abs(own.z)) > 0.8F) continue;  // squeezed out round the plate's edge
+                if (std::max(std::abs(own.y), std::abs(own.z)) > 0.8F) continue;  // squeezed out around the plate's edge
                 behind += own.x < 0.9F * contact ? 1 : 0;
                 near += own.x < 1.5F * contact ? 1 : 0;
             }
@@ -99,7 +99,7 @@ TEST(MovingSolid, AFastPlateLeavesNothingBehind) {
         }
 }
 
-// The wall's velocity is what counts: a floor of full friction that moves along carries a particle with it, one without does not.
+// Friction uses the wall's velocity: a moving floor with full friction carries a particle along, a floor without friction does not.
 TEST(MovingSolid, FrictionCarriesAlong) {
     for (const float friction : {0.0F, 5.0F}) {
         auto device = cpu();
@@ -122,7 +122,7 @@ TEST(MovingSolid, FrictionCarriesAlong) {
     }
 }
 
-// A full turn in a tenth of a second, in long frames: what stands in the wheel's way is thrown, not passed.
+// A full turn in a tenth of a second, in long frames: particles in the wheel's path are thrown, and the wheel does not pass them.
 TEST(MovingSolid, ASpinningPlateSweepsItsWholeCircle) {
     auto device = cpu();
     const float spacing = 0.05F;
@@ -149,7 +149,7 @@ TEST(MovingSolid, ASpinningPlateSweepsItsWholeCircle) {
     EXPECT_EQ((*world)->stats().lost, 0U);
 }
 
-// A sheet that heaves and sinks under a pool, in frames of 4 to 60 ms: the pool stays on top of it, and rides it.
+// A sheet moves up and down under a pool, in frames of 4 to 60 ms: the pool stays on top of it and moves with it.
 TEST(MovingSolid, ABendingSheetCarriesItsPool) {
     auto device = cpu();
     const float spacing = 0.04F;
@@ -203,7 +203,7 @@ TEST(MovingSolid, ABendingSheetCarriesItsPool) {
     EXPECT_GT((*world)->voxelsRewritten(), 100000U);
 }
 
-// Two floors beside each other, each of its own friction: one particle slides on, the other is held. The walls' own answer, no other's.
+// Two adjacent floors with different friction: one particle slides on, the other is held.
 TEST(MovingSolid, EachWallHasItsOwnFriction) {
     auto device = cpu();
     const float spacing = 0.04F;
@@ -232,8 +232,8 @@ TEST(MovingSolid, EachWallHasItsOwnFriction) {
     EXPECT_LT(x[1].x, -0.1F) << "with more than tan 20 degrees it is held";
 }
 
-// The thin cup: its wall is thinner than a voxel. Tipped and shaken for 20 s with frames of 4 to 250 ms, upright at the end: none is lost,
-// none is ever in its wall; some may splash out of its mouth (the hollow ball below has none).
+// The thin cup: its wall is thinner than a voxel. Tilted and shaken for 20 s with frames of 4 to 250 ms, vertical at the end: no particle
+// is lost or inside its wall; some may splash out of its opening (the hollow ball below has none).
 TEST(MovingSolid, AThinCupHoldsItsWater) {
     Result<SceneFile> scene = loadScene(std::string(RIVULET_SOURCE_DIR) + "/assets/scenes/thin_cup.json", {});
     ASSERT_TRUE(scene) << scene.error().message;
@@ -242,7 +242,7 @@ TEST(MovingSolid, AThinCupHoldsItsWater) {
     scene->fluid.longestFrame = 0.25F;
     ColliderMotion& motion = scene->colliders[0].motion;
     motion.keys.clear();
-    for (int k = 0; k <= 10; ++k) {  // tipped to and fro, not so far that it pours
+    for (int k = 0; k <= 10; ++k) {  // tilted to both sides, without pouring
         ColliderKey key;
         key.time = 2.0F * static_cast<float>(k);
         key.rotation = vec3(0, 0, k % 2 == 1 ? (k % 4 == 1 ? 30.0F : -30.0F) : 0.0F);
@@ -271,14 +271,14 @@ TEST(MovingSolid, AThinCupHoldsItsWater) {
     EXPECT_NEAR(world.time(), 20, 0.01);
     EXPECT_EQ(inWall, 0U);
     EXPECT_EQ(world.stats().lost, 0U);
-    // In the cup's frame its axis is y, its mouth at the top; radius 0.5 to 0.6 of 1.2 that were scaled to 0.36.
+    // In the cup's frame its axis is y, its opening at the top; the radius is 0.5 to 0.6 of a height of 1.2, which is scaled to 0.36.
     size_t within = 0;
     for (const vec3& x : places(world)) {
         const vec3 own = world.poses()[0].toOwn(x);
         within += own.y > -0.18F && own.y < 0.18F && std::hypot(own.x, own.z) < 0.18F ? 1 : 0;
     }
     EXPECT_GT(within, count * 95 / 100) << "a splash may leave by the mouth; nothing leaves through the wall";
-    // How near the centres are to the triangles, by brute force.
+    // Distance of the centres to the triangles, by brute force.
     Result<Mesh> mesh = importMesh(std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/thin_cup.obj");
     ASSERT_TRUE(mesh);
     const Mesh placed = transformed(*mesh, Transform::fitted(mesh->bounds(), 0.36F, vec3(0), vec3(0)));
@@ -299,7 +299,7 @@ TEST(MovingSolid, AThinCupHoldsItsWater) {
                 static_cast<double>(cup.surface.voxel), within, count);
 }
 
-// A block driven into each wall of the box, and into a plane, right through a pool: what it pushes comes back, none is lost.
+// A block moves through a pool into each wall of the box and into a plane: the pushed particles return, none is lost.
 TEST(MovingSolid, NothingIsPushedOutOfTheBox) {
     for (int wall = 0; wall < 7; ++wall) {
         auto device = cpu();
@@ -317,7 +317,7 @@ TEST(MovingSolid, NothingIsPushedOutOfTheBox) {
         ASSERT_GT((*world)->particles().count, 2000U);
         Pose pose = solids.rigid[0].pose;
         for (int k = 1; k <= 24; ++k) {
-            pose.position = way * (-1.5F + 2.1F * static_cast<float>(k) / 24);  // until it stands half out of the box
+            pose.position = way * (-1.5F + 2.1F * static_cast<float>(k) / 24);  // until half of it is outside the box
             (*world)->step({.gravity = p.gravity, .poses = std::span(&pose, 1)}, 1.0 / 60);
         }
         EXPECT_EQ((*world)->stats().lost, 0U) << "wall " << wall;
@@ -328,7 +328,7 @@ TEST(MovingSolid, NothingIsPushedOutOfTheBox) {
     }
 }
 
-// One bad frame of a host changes nothing: the mesh stays where it was, and goes on from there with the next good one.
+// An invalid shape from a host changes nothing: the mesh keeps its shape and continues with the next valid one.
 TEST(MovingSolid, ABadShapeIsRefusedAndTheNextOneTaken) {
     auto device = cpu();
     const float spacing = 0.05F;
@@ -360,12 +360,12 @@ TEST(MovingSolid, ABadShapeIsRefusedAndTheNextOneTaken) {
     EXPECT_GE((*world)->stats().limited.size(), 1U) << "it is said";
     step(lifted(0.1F));
     EXPECT_NEAR(field->positions()[0].y, 0.1F, 1e-5F);
-    // As for poses: a refused one is not the last one over again.
+    // The same for poses: a refused pose does not repeat the last one.
     EXPECT_EQ((*world)->stats().lost, 0U);
 }
 
-// Water between two balls, the wall outside them thinner than a voxel, shaken and turned for 6 s in frames of 4 to 250 ms: with no mouth to
-// leave by, every particle is within at the end of every frame.
+// Water between two balls, the wall outside them thinner than a voxel, shaken and turned for 6 s in frames of 4 to 250 ms: without an
+// opening, every particle is inside at the end of every frame.
 TEST(MovingSolid, AThinHollowBallKeepsEveryParticle) {
     const float outer = 0.3F, inner = 0.297F, spacing = 0.025F;
     test::Mesh ball = test::makeSphere(vec3(0), outer, 40);
@@ -409,7 +409,7 @@ TEST(MovingSolid, AThinHollowBallKeepsEveryParticle) {
     EXPECT_EQ((*world)->stats().lost, 0U);
 }
 
-// Every scene that comes with the program runs: none lost, none in a solid, none NaN.
+// Every shipped scene runs: no particle is lost, in a solid or NaN.
 TEST(ShippedScenes, RunWithNothingLost) {
     for (const char* name : {"bunny_rain", "nested_shells", "paddle_wheel", "thin_cup", "valley", "waving_sheet", "rubber_ducks", "honey",
                              "oil_on_water", "hourglass", "wave_tank", "fountain", "koi"}) {

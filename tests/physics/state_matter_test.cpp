@@ -1,4 +1,4 @@
-// What a saved state says particles are made of is checked before anything is taken from it.
+// The matter of particles in a saved state is checked before the state is restored.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -9,7 +9,7 @@
 namespace rivulet {
 namespace {
 
-TEST(SavedMatter, ThatNoParticleCanHaveIsRefused) {
+TEST(SavedMatter, InvalidMatterIsRefused) {
     FluidParams p;
     p.spacing = 0.1F;
     p.blocks = {{.min = vec3(0.1F), .max = vec3(0.5F), .liquid = "oil"}};

@@ -1,4 +1,4 @@
-// UVs that a skin has are judged, and own ones are made: charts that do not meet, cover all of the skin and keep its angles.
+// UVs of a skin are checked, and new ones are made: charts that do not touch, cover the whole skin and preserve angles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ void expectGood(const std::string& name, const FlowMesh& mesh, double mostDistor
     EXPECT_GE(made->distortion, 1 - 1e-9) << name;
     EXPECT_LT(made->distortion, mostDistortion) << name;
     EXPECT_LE(made->charts, mostCharts) << name;
-    // Texels of one chart are further from another's than both their gutters.
+    // The distance between charts is larger than both gutters.
     std::vector<uint32_t> owner(static_cast<size_t>(size) * size, UINT32_MAX);
     double inUv = 0, onSkin = 0;
     for (size_t t = 0; t < mesh.triangleCount(); ++t) {
@@ -85,18 +85,18 @@ void expectGood(const std::string& name, const FlowMesh& mesh, double mostDistor
     EXPECT_NEAR(inUv / onSkin / (made->texelsPerMetre * made->texelsPerMetre), 1, 0.02) << name << ": scaled to the skin's metres";
 }
 
-TEST(Unwrap, ShapesAreCutAndLaidFlat) {
+TEST(Unwrap, ShapesAreUnwrapped) {
     const std::pair<const char*, Skin> shapes[] = {
         {"cylinder", cylinder()}, {"cone", cone()}, {"ball", test::cubeBall(0.04F, 20)}, {"torus", torus()}};
     for (const auto& [name, skin] : shapes) {
         const Result<FlowMesh> mesh = makeFlowMesh(skin.view());
         ASSERT_TRUE(mesh);
-        // Those that can be rolled out are, without distortion.
+        // Developable shapes have no distortion.
         expectGood(name, *mesh, name[0] == 'c' ? 1.0001 : 1.01, 16);
     }
 }
 
-TEST(Unwrap, EveryTestMeshIsLaidFlat) {
+TEST(Unwrap, EveryTestMeshIsUnwrapped) {
     std::vector<std::string> paths;
     for (const std::filesystem::path& path : test::testMeshes()) paths.push_back(path.string());
     for (const char* own : {"duck", "hourglass", "thin_cup", "shell", "sheet", "canonical_face_model"})
@@ -149,7 +149,7 @@ TEST(Unwrap, BadUvsAreFoundAndReplaced) {
     EXPECT_TRUE(noArea.unwrapped);
 
     Skin folded = good;
-    for (vec2& uv : folded.uvs) uv.x = std::abs(uv.x - 0.505F);  // half the map on the other half
+    for (vec2& uv : folded.uvs) uv.x = std::abs(uv.x - 0.505F);  // one half of the map overlaps the other
     const SkinUvs overlapping = judged(folded);
     EXPECT_GT(overlapping.given.overlap, 0.3);
     EXPECT_TRUE(overlapping.unwrapped);

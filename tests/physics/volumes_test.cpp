@@ -1,4 +1,4 @@
-// Watched volumes: their count equals the particles inside, and those that entered minus those that left, at all times.
+// Watched volumes: at all times their count equals the particles inside, and those that entered minus those that left.
 #include "fluid/sim/query/volumes.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ const std::vector<Volume> kThree = {{7, Volume::box, vec3(0.35F, 0.1F, 0.25F), v
                                     {3, Volume::sphere, vec3(0.1F, 0.2F, 0.2F), {}, 0.12F},
                                     {40, Volume::box, vec3(0.25F), vec3(5.0F)}};
 
-// Which of the particles, by id, a volume holds.
+// Ids of the particles inside a volume.
 std::map<uint32_t, bool> held(FluidWorld& world, const Volume& v) {
     const ParticleView view = world.particles();
     const std::vector<vec4> x = world.device().readAll<vec4>(*view.position, view.slots);
@@ -50,7 +50,7 @@ std::map<uint32_t, bool> held(FluidWorld& world, const Volume& v) {
     return in;
 }
 
-TEST(Volumes, CountsAreWhatLiesInThemStepByStep) {
+TEST(Volumes, CountsEqualTheParticlesInsideAfterEachStep) {
     auto device = makeTestCpu();
     auto world = make(*device);
     std::vector<Volume> volumes = kThree;
@@ -95,7 +95,7 @@ TEST(Volumes, CountsAreWhatLiesInThemStepByStep) {
 }
 
 // Emitters, sinks and exchange: a spawned or removed particle counts as entered or left.
-TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
+TEST(Volumes, SpawnedParticlesEnterAndRemovedOnesLeave) {
     auto device = makeTestCpu();
     Sources sources;
     sources.expectedDeposit = 100 * kOne;
@@ -124,7 +124,7 @@ TEST(Volumes, WhatIsBornHasComeAndWhatIsTakenHasLeft) {
     EXPECT_GT(all.left, 20U);
 }
 
-TEST(Volumes, AnotherVolumeInThePlaceOfOneBeginsEmpty) {
+TEST(Volumes, AVolumeThatReplacesAnotherBeginsEmpty) {
     auto device = makeTestCpu();
     auto world = make(*device);
     ASSERT_TRUE(world->setVolumes(kThree));
@@ -132,7 +132,7 @@ TEST(Volumes, AnotherVolumeInThePlaceOfOneBeginsEmpty) {
     const uint64_t whole = world->volumes()[2].inside;
     EXPECT_GT(whole, 100U);
     EXPECT_GT(world->volumes()[1].inside, 50U);
-    // 3, which held some, is gone, 40 and 7 stay, and 8 is new, in the bit that 3 had.
+    // Volume 3, which held particles, is removed; 40 and 7 stay; 8 is new and reuses the bit of 3.
     std::vector<Volume> next = {kThree[1], kThree[2], kThree[0]};
     next[0].id = 8;
     next[0].shape = Volume::box;
@@ -152,7 +152,7 @@ TEST(Volumes, AnotherVolumeInThePlaceOfOneBeginsEmpty) {
     EXPECT_TRUE(world->volumes().empty());
 }
 
-TEST(Volumes, WhatMakesNoSenseIsRefused) {
+TEST(Volumes, InvalidVolumesAreRefused) {
     auto device = makeTestCpu();
     auto world = make(*device);
     ASSERT_TRUE(world->setVolumes(kThree));
@@ -171,7 +171,7 @@ TEST(Volumes, WhatMakesNoSenseIsRefused) {
     EXPECT_EQ(world->volumes().size(), 3U) << "all stays as it was";
 }
 
-// A saved world goes on counting, whichever volumes the one that takes it up had.
+// A saved world keeps its counts, for any volumes of the world that restores it.
 TEST(Volumes, ASavedWorldKeepsItsCounts) {
     auto device = makeTestCpu();
     auto a = make(*device), b = make(*device);
@@ -197,7 +197,7 @@ TEST(Volumes, ASavedWorldKeepsItsCounts) {
         EXPECT_EQ(y[k].inside, held(*b, kThree[k]).size());
     }
     for (size_t k = 0; k < e.size(); ++k) EXPECT_EQ(e[k].entered, f[k].entered);
-    // Counts that others have tampered with are seen.
+    // Modified counts are detected.
     WorldState wrong;
     a->save(wrong);
     std::vector<uint64_t> numbers = *wrong.take<uint64_t>("volumes.numbers", 15);

@@ -1,4 +1,4 @@
-// Queries of the water at points and along rays. Against sums over all particles in double, and against water whose shape is known.
+// Queries of the water at points and along rays. Compared with sums over all particles in double, and with water of a known shape.
 #include "fluid/sim/query/water_query.h"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ FluidParams pool() {
     return p;
 }
 
-// A ball of lattice in the middle of a box of 1 m, without weight.
+// A lattice ball in the middle of a box of 1 m, without gravity.
 FluidParams ball(float radius) {
     FluidParams p;
     p.method = "dfsph";
@@ -79,7 +79,7 @@ FluidParams ball(float radius) {
     return p;
 }
 
-TEST(WaterQuery, SaysOfAPlaceWhatAllParticlesSumUpTo) {
+TEST(WaterQuery, AtAPointEqualsTheSumOverAllParticles) {
     for (const bool periodic : {false, true}) {
         auto device = cpu();
         FluidParams p = pool();
@@ -103,7 +103,7 @@ TEST(WaterQuery, SaysOfAPlaceWhatAllParticlesSumUpTo) {
                 fullest = std::max(fullest, is.density);
                 emptiest = std::min(emptiest, is.density);
                 EXPECT_NEAR(double{got[k].density}, is.density, 1e-3) << k;
-                // Where hardly anything is near, it is the mean of what is left of one or two.
+                // With one or two particles in reach, it is their mean.
                 if (is.density > 0.01) EXPECT_LT(glm::length(dvec3(got[k].velocity) - is.velocity), 2e-3) << k;
                 const double e = 1.0e-4;
                 for (int axis = 0; axis < 3; ++axis) {
@@ -120,7 +120,7 @@ TEST(WaterQuery, SaysOfAPlaceWhatAllParticlesSumUpTo) {
     }
 }
 
-TEST(WaterQuery, NowhereThereIsAir) {
+TEST(WaterQuery, OutsideTheWaterThereIsAir) {
     auto device = cpu();
     auto world = make(*device, pool());
     const float inf = std::numeric_limits<float>::infinity();
@@ -144,8 +144,8 @@ TEST(WaterQuery, NowhereThereIsAir) {
     EXPECT_TRUE(std::isnan((*desert->heights(std::vector<vec2>{vec2(0.25F)}))[0]));
 }
 
-// Asking changes nothing: the same bits with and without, from the first step on.
-TEST(WaterQuery, AskingTouchesNothing) {
+// A query changes nothing: the bits are the same with and without it, from the first step on.
+TEST(WaterQuery, ChangesNothing) {
     for (const char* method : {"wcsph", "pbf", "dfsph"}) {
         auto device = cpu();
         FluidParams p = pool();
@@ -162,7 +162,7 @@ TEST(WaterQuery, AskingTouchesNothing) {
     }
 }
 
-TEST(WaterQuery, LaterIsTheSameAsNow) {
+TEST(WaterQuery, DelayedResultsEqualImmediateOnes) {
     auto device = cpu();
     auto world = make(*device, pool());
     world->step({}, 1.0 / 60);
@@ -179,7 +179,7 @@ TEST(WaterQuery, LaterIsTheSameAsNow) {
     EXPECT_EQ(called, 2);
 }
 
-// A still pool stands as high as its volume over its area.
+// The height of a still pool is its volume over its area.
 TEST(WaterQuery, AStillPoolStandsAtItsVolumeOverItsArea) {
     for (const char* method : {"wcsph", "dfsph"}) {
         auto device = cpu();
@@ -207,14 +207,14 @@ TEST(WaterQuery, AStillPoolStandsAtItsVolumeOverItsArea) {
     }
 }
 
-// Rays at a ball from all sides, oblique ones and ones from within, against the sphere's own geometry.
-TEST(WaterQuery, RaysMeetABallWhereASphereIs) {
+// Rays at a ball from all sides, oblique ones and ones from within, against the geometry of the sphere.
+TEST(WaterQuery, RaysHitABallOnTheSphere) {
     auto device = cpu();
     const float radius = 0.25F;
     auto world = make(*device, ball(radius));
     const dvec3 centre(0.5);
     std::vector<FluidRay> rays;
-    for (int k = 0; k < 60; ++k) {  // Fibonacci lattice: at the middle, past it, from outside of the box and from inside
+    for (int k = 0; k < 60; ++k) {  // Fibonacci lattice: towards the centre, past the ball, from outside and inside the box
         const float y = 1.0F - 2.0F * (static_cast<float>(k) + 0.5F) / 60.0F, r = std::sqrt(1.0F - y * y),
                     a = 2.3999632F * static_cast<float>(k);
         const vec3 way(r * std::cos(a), y, r * std::sin(a));
@@ -237,7 +237,7 @@ TEST(WaterQuery, RaysMeetABallWhereASphereIs) {
             EXPECT_NEAR(double{hits[k].distance}, distance, 0.5 * double{kSpacing}) << k;
             EXPECT_LT(glm::length(dvec3(hits[k].place) - dvec3(rays[k].origin) - way * double{hits[k].distance}), 1e-5);
             const dvec3 out = glm::normalize(dvec3(hits[k].place) - centre - drift);
-            // Its lattice has steps, a spacing high: 18 degrees in the mean, as binary voxels have on a sphere.
+            // The lattice has steps of one spacing: a mean error of 18 degrees, as for binary voxels on a sphere.
             EXPECT_GT(glm::dot(dvec3(hits[k].normal), out), 0.8) << k;
             upright += glm::dot(dvec3(hits[k].normal), out) / static_cast<double>(rays.size());
             EXPECT_NEAR(glm::length(hits[k].normal), 1.0F, 1e-5F);
@@ -250,7 +250,7 @@ TEST(WaterQuery, RaysMeetABallWhereASphereIs) {
     check(dvec3(0.3, -0.2, 0.1) / 60.0);
 }
 
-TEST(WaterQuery, WhatARayCannotMeetItMisses) {
+TEST(WaterQuery, RaysWithoutWaterMiss) {
     auto device = cpu();
     auto world = make(*device, ball(0.2F));
     const float inf = std::numeric_limits<float>::infinity();
@@ -273,7 +273,7 @@ TEST(WaterQuery, WhatARayCannotMeetItMisses) {
     EXPECT_TRUE((*world->cast(std::vector<FluidRay>{{vec3(0.5F, 1.0F, 0.5F), vec3(0, -1, 0), 0.35F}}))[0].hit);
 }
 
-// Water that walls hold has a surface at them: through the floor it is met there, and left there.
+// Water has a surface at walls: a ray through the floor enters and leaves the water there.
 TEST(WaterQuery, WaterEndsAtItsWalls) {
     auto device = cpu();
     auto world = make(*device, pool());

@@ -1,4 +1,4 @@
-// Params of a running world: fixed ones stay, live ones are taken, whichever they are; gravity is the params' unless a frame gives another.
+// Params of a running world: fixed values stay, live values change; the gravity of the params holds unless a frame sets another.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -90,7 +90,7 @@ FluidParams small() {
     return p;
 }
 
-TEST(ParamsOfAWorld, FixedOnesStayAndLiveOnesAreTaken) {
+TEST(ParamsOfAWorld, FixedValuesStayAndLiveValuesChange) {
     auto device = cpu();
     auto world = make(*device, small());
     ASSERT_TRUE(world);
@@ -105,7 +105,7 @@ TEST(ParamsOfAWorld, FixedOnesStayAndLiveOnesAreTaken) {
     EXPECT_EQ(world->params().blocks.size(), 2U) << "a fixed list keeps its length";
 }
 
-TEST(ParamsOfAFlow, FixedOnesStayAndLiveOnesAreTaken) {
+TEST(ParamsOfAFlow, FixedValuesStayAndLiveValuesChange) {
     auto device = cpu();
     const test::Mesh ball = test::makeSphere(vec3(0.0F), 0.05F);
     Result<FlowMesh> mesh = makeFlowMesh(ball.view());
@@ -121,7 +121,7 @@ TEST(ParamsOfAFlow, FixedOnesStayAndLiveOnesAreTaken) {
     EXPECT_EQ(flow->params().brimStarts, before.brimStarts);
 }
 
-TEST(ParamsOfAWorld, HoldTheGravityThatAFrameDoesNotGive) {
+TEST(ParamsOfAWorld, SetTheGravityOfFramesWithoutTheirOwn) {
     const auto fallen = [](const FluidInputs& inputs) {
         auto device = cpu();
         FluidParams p = small();

@@ -1,4 +1,4 @@
-// Worlds on the cpu, as physics tests make them.
+// Worlds on the cpu for physics tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -15,8 +15,8 @@ struct Image {
     std::vector<uint8_t> rgba;  // 4 bytes per texel, as stored in the file
 };
 
-// The surroundings of a scene: linear radiance in all directions, as an equirectangular map. Its centre is -z, its top row +y; the bottom
-// row is first.
+// The surroundings of a scene: linear radiance in all directions, as an equirectangular map. The centre of the map is -z, the top row is
+// +y. The bottom row is stored first.
 struct HdrImage {
     std::string name;
     int width = 0, height = 0;

@@ -1,4 +1,4 @@
-// Layer: a liquid on any material. It is applied to the result of the surface function, which does not depend on it.
+// Layer: a liquid on any material. The shader applies it to the result of the surface function, which does not depend on the layer.
 #pragma once
 
 #include "engine/core/params.h"
@@ -12,7 +12,7 @@ struct LayerLook {
     float roughness = 0.10F;             // of the surface of a drop
     float filmRoughness = 0.22F;         // of a wet surface without a drop
     float darkening = 0.18F;             // how much darker and more saturated a wet surface is
-    float scale = 1.0F;                  // factor of heights and slopes
+    float scale = 1.0F;                  // factor of the heights and slopes of the liquid
 
     void visit(ParamVisitor& v) {
         v.value({"refractiveIndex", "", "refractive index of the liquid", 1, 2}, refractiveIndex);
@@ -26,7 +26,7 @@ struct LayerLook {
 
 struct Layer {
     // rgba16f with all mips, over the mesh's uvs: x, y the slope of the liquid's height (m per unit of u and v), z the height (mm), w the
-    // wetness: 1 under a drop or a full film. Must outlive the drawing. Null: dry.
+    // wetness: 1 under a drop or a full film. The texture must outlive the drawing. Null: dry.
     const gpu::Texture* texels = nullptr;
     LayerLook look;
 };

@@ -12,14 +12,14 @@ namespace rivulet {
 struct SkinLook {
     vec3 scatter{3.7e-3F, 1.4e-3F, 0.7e-3F};  // m, mean scattering distance of red, green and blue
     float translucency = 1.0F;                // factor of the light through thin parts
-    float pores = 1.0F;                       // strength of the relief finer than a texel of `relief`
+    float pores = 1.0F;                       // strength of the detail below the resolution of `relief`
     std::shared_ptr<const Image> relief;      // red: height; null: smooth
     float reliefStep = 4.0e-6F;               // m per grey level
     std::shared_ptr<const Image> regions;     // masks: R oily, G dry, B hair, A lips; null: none
 };
 
-// An eyeball, in the frame of the mesh; the iris is seen through the refracting cornea. Its images are Lambert equal-area maps: the centre
-// is the direction of sight, the inscribed circle is the back of the eye. All lengths except `radius` are in units of `radius`.
+// An eyeball, in the frame of the mesh; the iris is drawn as refracted by the cornea. The images are Lambert equal-area maps: the centre is
+// the direction of sight, and the inscribed circle is the back of the eye. All lengths except `radius` are in units of `radius`.
 struct EyeLook {
     vec3 centre{0.0F};           // m
     vec3 sight{0, 0, 1};         // unit
@@ -35,18 +35,18 @@ struct Material {
     float roughness = 0.6F;
     float metallic = 0.0F;
 
-    vec3 emission{0.0F};                  // linear radiance, of a lamp
-    float opacity = 1.0F;                 // of the diffuse part of blended materials; reflections keep their strength
-    float grain = 0.0F;                   // of stone or sand: how rough and how mottled, 0..1
-    float grainSize = 0.1F;               // m, of its largest spots
-    bool blended = false;                 // drawn after opaque parts, the farthest first
+    vec3 emission{0.0F};                  // linear radiance of a light source
+    float opacity = 1.0F;                 // of the diffuse part of blended materials; reflections are not reduced
+    float grain = 0.0F;                   // stone or sand: strength of relief and spots, 0..1
+    float grainSize = 0.1F;               // m, size of the largest spots
+    bool blended = false;                 // drawn after opaque parts, from back to front
     bool clear = false;                   // clear glass: each face reflects; baseColour and opacity give the transmission of a wall
     float cutoff = 0.0F;                  // texels of smaller alpha are not drawn
-    float strand = 0.0F;                  // hair on blended ribbons: the width of a hair as a share of u, about its middle; 0: no ribbons
+    float strand = 0.0F;                  // hair on blended ribbons: width of a hair as a share of u, centred; 0: no ribbons
     bool doubleSided = true;              // false: back faces are culled
     std::shared_ptr<const Image> colour;  // sRGB, times baseColour; alpha, times opacity
     std::shared_ptr<const Image> metallicRoughness;  // blue, times metallic; green, times roughness
-    std::shared_ptr<const Image> normals;            // of the tangent plane: x along u, y along v
+    std::shared_ptr<const Image> normals;            // in tangent space: x along u, y along v
     std::shared_ptr<const Image> occlusion;          // red: visible share of the surroundings
     std::shared_ptr<const Image> glow;               // sRGB, times emission
     std::shared_ptr<const SkinLook> skin;            // null: no skin

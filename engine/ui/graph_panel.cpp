@@ -12,19 +12,19 @@ namespace rivulet {
 
 namespace {
 
-// In heights of letters.
-constexpr float kGutter = 3.3F;                     // of the numbers at an axis
-constexpr float kLeastTall = 3.2F, kMostTall = 11;  // of what is plotted
+// In multiples of the font height.
+constexpr float kGutter = 3.3F;                     // width for the numbers of an axis
+constexpr float kLeastTall = 3.2F, kMostTall = 11;  // height of a plot
 
 float toFloat(double v) { return static_cast<float>(v); }
 
-// Leaves out what lies within a fraction of a pixel of the straight line between those that stay, which go to the right.
+// Removes points within a fraction of a pixel of the straight line between the remaining points. Points are ordered by x.
 void straighten(std::vector<ImVec2>& line) {
     constexpr float kOff = 0.3F;  // px
-    size_t kept = 0;              // all before it stay
+    size_t kept = 0;              // index of the last point kept
     float steepest = INFINITY, flattest = -INFINITY;
     for (size_t k = 1; k < line.size(); ++k) {
-        // Every slope from the last one kept that passes near all since.
+        // Range of slopes from the last point kept that pass near all later points.
         const ImVec2 from = line[kept], to = line[k];
         const float run = std::max(to.x - from.x, 1.0e-3F), slope = (to.y - from.y) / run;
         if (slope > steepest || slope < flattest) {
@@ -79,8 +79,8 @@ std::vector<GraphPanel::Sample> GraphPanel::samples(std::string_view graph, std:
     return all;
 }
 
-// The axis that a graph's figures ask for, and what is shown on its way there. It grows as soon as they do, and shrinks when they have
-// left most of it.
+// Adapts the axis to the values of a graph: the shown axis moves smoothly to its target. The axis grows at once, and shrinks when the
+// values use less than about half of it.
 void GraphPanel::follow(size_t graph) {
     double least = INFINITY, largest = -INFINITY, positive = INFINITY;
     for (size_t k = 0; k < graphs_[graph].series.size(); ++k)
@@ -93,7 +93,7 @@ void GraphPanel::follow(size_t graph) {
         }
     View& view = views_[graph];
     if (!(least <= largest)) return;
-    constexpr double kSpans = 50, kNoLonger = 20;  // times the least
+    constexpr double kSpans = 50, kNoLonger = 20;  // largest over smallest value: enter and leave the logarithmic axis
     const bool decades = graphs_[graph].decades && least >= 0 && largest > positive * (view.target.decades ? kNoLonger : kSpans);
     const PlotAxis fits = axisOf(decades ? positive : least, largest, decades);
     constexpr double kRoom = 0.45;
@@ -114,7 +114,7 @@ void GraphPanel::draw(float width, float height) {
     const float line = ImGui::GetTextLineHeightWithSpacing(), font = ImGui::GetFontSize();
     if (filled_ > 1) span_ = roundStep(times_[at(0)] - times_[at(filled_ - 1)]);
     pointing_ = -1;
-    // What is unfolded shares what headers and legends leave.
+    // Unfolded graphs share the height that headers and legends leave.
     size_t unfolded = 0, last = SIZE_MAX;
     float left = height - line;
     for (const Graph& graph : graphs_) {
@@ -130,7 +130,7 @@ void GraphPanel::draw(float width, float height) {
         Graph& graph = graphs_[g];
         if (!graph.shown) continue;
         ImGui::SetNextItemOpen(graph.unfolded, ImGuiCond_Once);
-        const std::string title = graph.unit == "%" ? graph.name + ", %" : graph.name;  // other units stand at the axis
+        const std::string title = graph.unit == "%" ? graph.name + ", %" : graph.name;  // other units are shown at the axis
         graph.unfolded = ImGui::CollapsingHeader((title + "###" + graph.name).c_str());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", graph.doc.c_str());
         if (graph.unfolded) drawGraph(g, width, tall, g == last);
@@ -174,7 +174,7 @@ void GraphPanel::drawGraph(size_t graph, float width, float height, bool last) {
     drawLegend(graph, width);
 }
 
-// Lines across at round numbers, which stand in the gutter at their left.
+// Draws horizontal lines at round numbers, with the numbers in the gutter on the left.
 void GraphPanel::drawAxis(const View& view, const std::string& unit, const Place& place) const {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float tall = ImGui::GetFontSize(), bottom = place.top + place.height;
@@ -192,7 +192,7 @@ void GraphPanel::drawAxis(const View& view, const std::string& unit, const Place
     }
 }
 
-// Lines down at round times before now, which stand below the last of the graphs.
+// Draws vertical lines at round times before now, with the times below the last graph.
 void GraphPanel::drawTimes(const Place& place, bool told) const {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float bottom = place.top + place.height;
@@ -210,8 +210,8 @@ void GraphPanel::drawTimes(const Place& place, bool told) const {
     if (told) text(place.left + place.width, "now");
 }
 
-// A point a pixel at most: of several the one that is farthest from the one before, so that no peak is lost; and none within a straight
-// piece.
+// At most one point a pixel: of several, the one farthest from the previous point, so that peaks stay visible. Points on straight pieces
+// are removed.
 void GraphPanel::drawCurves(size_t graph, const Place& place) const {
     const View& view = views_[graph];
     const float bottom = place.top + place.height;
@@ -220,7 +220,7 @@ void GraphPanel::drawCurves(size_t graph, const Place& place) const {
     for (size_t k = 0; k < graphs_[graph].series.size(); ++k) {
         const auto flush = [&] {
             straighten(line);
-            constexpr float kThick = 2;  // whole: ImGui draws it with half the corners
+            constexpr float kThick = 2;  // a whole number: ImGui draws it with half the vertices
             if (line.size() > 1)
                 ImGui::GetWindowDrawList()->AddPolyline(line.data(), static_cast<int>(line.size()), plotColour(k), 0, kThick);
             line.clear();
@@ -251,7 +251,7 @@ void GraphPanel::drawLegend(size_t graph, float width) const {
     for (size_t k = 0; k < graphs_[graph].series.size(); ++k) {
         const Series& series = graphs_[graph].series[k];
         const std::string figure = readableFigure(ringValue(first_[graph] + k, 0), graphs_[graph].unit);
-        // As wide as a figure may get: what follows does not move with it.
+        // Reserves the largest width of a figure, so that the next entry does not move.
         const float name = ImGui::CalcTextSize(series.name.c_str()).x, wide = side + 4 + name + 5 + ImGui::CalcTextSize("0.08888 %").x;
         if (k > 0 && used + gap + wide <= width) {
             ImGui::SameLine(begin + used + gap);
@@ -270,7 +270,7 @@ void GraphPanel::drawLegend(size_t graph, float width) const {
     }
 }
 
-// The sample nearest to what the mouse points at.
+// Returns the sample nearest to the mouse.
 size_t GraphPanel::pointedAge() const {
     size_t best = 0;
     for (size_t age = 0; age < filled_; ++age)

@@ -24,7 +24,7 @@ class GraphPanel {
     };
     explicit GraphPanel(std::vector<Graph> graphs);
 
-    // A figure of each series of all the graphs, in their order; NaN: it is not known. `time`: s; one that is earlier than the last is of
+    // A figure of each series of all the graphs, in their order; NaN: unknown. `time`: s; one that is earlier than the last is of
     // another run, and all before it is forgotten.
     void add(double time, std::span<const double> values);
     void clear();

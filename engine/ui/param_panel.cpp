@@ -17,15 +17,15 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kSliderSpan = 200;  // a wider range than this is dragged, not slid: a slider's pixels would be too coarse
-constexpr double kOpenRange = 1e6;   // a range beyond this stands for "any"
+constexpr double kSliderSpan = 200;  // a range wider than this has a drag field: a slider would be too coarse
+constexpr double kOpenRange = 1e6;   // a larger limit counts as unlimited
 
 bool isOpen(const ParamInfo& info) { return info.min < -kOpenRange || info.max > kOpenRange; }
 
 float srgbFromLinear(float c) { return c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1.0F / 2.4F) - 0.055F; }
 float linearFromSrgb(float c) { return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F); }
 
-const ImVec4 kChanged(0.42F, 0.78F, 0.94F, 1);  // the colour of what is no longer as it was
+const ImVec4 kChanged(0.42F, 0.78F, 0.94F, 1);  // colour of changed values
 
 std::string lowered(std::string text) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -39,14 +39,14 @@ std::vector<std::string> wordsOf(const std::string& text) {
     return words;
 }
 
-// As much of it as so many pixels hold.
+// Shortens `text` to `width` pixels.
 std::string shortened(std::string text, float width) {
     if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
     while (!text.empty() && ImGui::CalcTextSize((text + "..").c_str()).x > width) text.pop_back();
     return text + "..";
 }
 
-// Digits enough to tell the range's steps apart.
+// Returns a format with enough digits for the steps of the range.
 const char* formatFor(const ParamInfo& info, float v) {
     if (info.logarithmic || isOpen(info) || info.max - info.min > kSliderSpan) return "%.4g";
     float size = std::max(std::abs(v), static_cast<float>(info.max - info.min) * 0.1F);
@@ -112,11 +112,11 @@ void ParamPanel::search(const VisitFn& params) {
     if (wanted.empty()) return;
     const std::vector<std::string> words = wordsOf(wanted);
     for (const ParamEntry& entry : listParams(params)) {
-        if (entry.path.find("[]") != std::string::npos) continue;  // of an item that is not there
+        if (entry.path.find("[]") != std::string::npos) continue;  // of an item that does not exist
         const std::string text = lowered(fmt::format("{} {} {} {}", entry.path, readableName(entry.path), entry.unit, entry.doc));
         if (!std::all_of(words.begin(), words.end(), [&](const std::string& word) { return text.find(word) != std::string::npos; }))
             continue;
-        // With all that it lies in.
+        // Adds the path and all groups that contain it.
         for (size_t end = entry.path.size(); end != std::string::npos && end > 0; end = entry.path.find_last_of(".[", end - 1))
             found_.insert(entry.path.substr(0, end));
         if (entry.kind != ParamEntry::Kind::value) whole_.push_back(entry.path);
@@ -124,7 +124,7 @@ void ParamPanel::search(const VisitFn& params) {
     if (found_.empty()) ImGui::TextDisabled("no matching parameter");
 }
 
-// The list's length is not a value: items that were added stay.
+// The length of a list is not a value: added items stay.
 void ParamPanel::resetAll(const VisitFn& params) {
     for (const auto& [path, text] : memory_.changed()) {
         std::string was = text;
@@ -139,7 +139,7 @@ bool ParamPanel::shown(const char* name) const {
     return found_.contains(path) || isWhole(path);
 }
 
-// Whether it lies in a group or list that was itself found.
+// True if the path lies in a group or list that was itself found.
 bool ParamPanel::isWhole(const std::string& path) const {
     return std::any_of(whole_.begin(), whole_.end(), [&](const std::string& group) {
         return path.starts_with(group) && (path.size() == group.size() || path[group.size()] == '.' || path[group.size()] == '[');
@@ -152,7 +152,7 @@ void ParamPanel::label(const ParamInfo& info, std::string& text) {
     const bool changed = was != memory_.changed().end();
     ImGui::PushID(info.name);
     float left = ImGui::GetCursorPosX();
-    // Widgets stand in one column whatever the nesting; the unit, dimmed, at its right.
+    // Widgets stand in one column at any nesting depth; the dimmed unit follows on the right.
     float column = std::max(left + 20, ImGui::GetWindowWidth() * 0.42F);
     const std::string name = readableName(info.name), cut = shortened(name, column - left - 6);
     ImGui::AlignTextToFramePadding();
@@ -183,7 +183,7 @@ void ParamPanel::label(const ParamInfo& info, std::string& text) {
     ImGui::SetNextItemWidth(std::max(40.0F, ImGui::GetContentRegionAvail().x - unit));
 }
 
-// `widget` draws it and says whether it was edited; `take` reads a value from JSON.
+// `widget` draws the value and returns true if it was edited; `take` reads a value from JSON.
 template <class Widget, class Take>
 void ParamPanel::edit(const ParamInfo& info, const Widget& widget, const Take& take) {
     if (hidden() || !shown(info.name)) return;
@@ -222,7 +222,7 @@ bool ParamPanel::floats(const ParamInfo& info, float* v, int count) {
         edited = ImGui::DragScalarN("##v", ImGuiDataType_Float, v, count, std::max(0.005F * largest, 0.002F), &low, &high, format, flags);
     }
     if (!edited) return false;
-    // A typed "nan" passes ImGui's clamp, and so does anything where the range is open.
+    // ImGui's clamp lets a typed "nan" pass, and any value if the range is open.
     for (int i = 0; i < count; ++i) v[i] = std::isfinite(v[i]) ? std::clamp(v[i], low, high) : before[i];
     return !std::equal(v, v + count, before);
 }
@@ -262,7 +262,7 @@ void ParamPanel::value(const ParamInfo& info, std::string& v) {
 
 void ParamPanel::colour(const ParamInfo& info, vec3& v) {
     const auto widget = [&] {
-        // Colours are linear in the struct and sRGB on the screen, or the swatch would not look like the colour.
+        // Colours are linear in the struct and sRGB on the screen, so that the swatch shows the right colour.
         bool bright = info.max > 1;
         float shown[3];
         for (int i = 0; i < 3; ++i) shown[i] = bright ? v[i] : srgbFromLinear(v[i]);
@@ -295,7 +295,7 @@ void ParamPanel::choice(const ParamInfo& info, std::string& v, std::span<const s
     edit(info, widget, [&](const std::string& text) { assignChoice(text, v, names); });
 }
 
-// What is searched for is unfolded, whatever is folded else.
+// During a search all matching groups are unfolded.
 bool ParamPanel::unfolded(const std::string& title) {
     if (!memory_.wanted.empty()) {
         ImGui::TextDisabled("%s", title.substr(0, title.find("###")).c_str());
@@ -328,7 +328,7 @@ void ParamPanel::endGroup() {
     ImGui::PopID();
 }
 
-// A folded list still visits its items (the length must be kept), so they are told to draw nothing.
+// A folded list still visits its items, because the length must be kept; the items then draw nothing.
 size_t ParamPanel::beginList(const ParamInfo& info, size_t current) {
     size_t wanted = current;
     bool open = false;

@@ -24,7 +24,7 @@ namespace {
 // Least cosine between a triangle's normal and its chart's mean: such a chart projects onto a plane without folding.
 constexpr double kBend = 0.5;
 constexpr size_t kFew = 4;
-// Of the skin's area, and of the covered texels.
+// Limits, as a share of the skin's area and of the covered texels.
 constexpr double kMostLost = 0.02, kMostOverlap = 0.02;
 
 dvec3 place(const FlowMesh& m, size_t corner) { return dvec3(m.rest[m.corner[corner]]); }
@@ -111,7 +111,7 @@ Chart chartOf(const FlowMesh& m, std::vector<uint32_t> triangles) {
     return c;
 }
 
-// Onto the plane across its mean normal.
+// Projects onto the plane perpendicular to the mean normal.
 void project(const FlowMesh& m, Chart& c) {
     dvec3 n(0.0);
     for (const uint32_t t : c.triangles) n += normalOf(m, t);
@@ -121,7 +121,7 @@ void project(const FlowMesh& m, Chart& c) {
     for (const uint32_t p : c.places) c.at.emplace_back(glm::dot(dvec3(m.rest[p]), u), glm::dot(dvec3(m.rest[p]), v));
 }
 
-// Levy et al. 2002: in every triangle the map to UV is as near to a rotation and scale as possible; the two places furthest apart in the
+// Levy et al. 2002: in every triangle the map to UV is as near to a rotation and scale as possible; the two places farthest apart in the
 // projection stay fixed. False if the equations cannot be solved.
 bool layConformal(const FlowMesh& m, Chart& c) {
     project(m, c);
@@ -273,7 +273,7 @@ std::vector<Chart> layCharts(const FlowMesh& m) {
     for (size_t k = 0; k < todo.size(); ++k) {
         Chart c = chartOf(m, todo[k]);
         bool lies = layConformal(m, c) && settle(m, c) && !overlapsItself(c);
-        // A ring or a spiral may overlap itself; its parts do not. The last few triangles are projected.
+        // A ring or a spiral may overlap itself, but its parts do not. Small remaining charts are projected.
         if (!lies && c.triangles.size() <= kFew) {
             project(m, c);
             lies = settle(m, c) && (!overlapsItself(c) || c.triangles.size() == 1);
@@ -289,7 +289,7 @@ std::vector<Chart> layCharts(const FlowMesh& m) {
     return charts;
 }
 
-// Whether all charts fit into the map at this number of texels a metre, and where.
+// Packs the charts into the map at this number of texels per metre. False if they do not fit.
 bool pack(const std::vector<Chart>& charts, double scale, int size, int gutter, std::vector<stbrp_rect>& rects) {
     rects.clear();
     for (const Chart& c : charts) {
@@ -378,7 +378,7 @@ Result<Unwrap> unwrap(const FlowMesh& mesh, int size, int gutter) {
         }
     if (placed.empty())
         return badInput(
-            fmt::format("a map of {0} x {0} texels has no room for the skin's {1} charts: ask for a larger one", size, charts.size()));
+            fmt::format("a map of {0} x {0} texels has no room for the {1} charts of the skin; use a larger map", size, charts.size()));
     Unwrap out;
     out.uvs.assign(mesh.corner.size(), vec2(0.5F));
     out.chart.assign(mesh.triangleCount(), 0);
@@ -418,7 +418,7 @@ Result<SkinUvs> skinUvs(const FlowMesh& mesh, const MeshView& from, int size) {
     if (!own) return own.error();
     s.uvs = std::move(own->uvs);
     s.unwrapped = true;
-    s.notice += fmt::format(" It is unwrapped anew, into {} chart{}.", own->charts, own->charts == 1 ? "" : "s");
+    s.notice += fmt::format(" New UVs were made, with {} chart{}.", own->charts, own->charts == 1 ? "" : "s");
     return s;
 }
 

@@ -306,7 +306,7 @@ Result<RecordedFrame> RecordingReader::read(size_t k, size_t memoryLimit) {
         const uint64_t at = offsets_[k] + sizeof(head);
         if (head.mark != kFrame || head.number != k || headSum(head) != head.headChecksum) return wrong("its head's checksum is wrong");
         if (head.packedBytes > size_ - at) return wrong("it is cut off");
-        if (head.bytes < sizeof(Counts) || head.bytes / kMostBytesPerPackedByte > head.packedBytes) return wrong("its size makes no sense");
+        if (head.bytes < sizeof(Counts) || head.bytes / kMostBytesPerPackedByte > head.packedBytes) return wrong("its size is impossible");
         if (head.bytes > memoryLimit) return failed(fmt::format("{}: frame {} holds more than {} bytes of memory", path_, k, memoryLimit));
         std::vector<std::byte> packed(head.packedBytes);
         if (!take(at, packed.data(), packed.size())) return wrong("it cannot be read");
@@ -315,7 +315,7 @@ Result<RecordedFrame> RecordingReader::read(size_t k, size_t memoryLimit) {
         std::string why;
         if (!unpack(packed, head.bytes, frame, why)) return wrong(why);
         frame.time = head.time;
-        if (!sensible(frame)) return wrong("its arrays make no sense together");
+        if (!sensible(frame)) return wrong("its arrays have inconsistent sizes");
         return frame;
     } catch (const std::bad_alloc&) {
         return failed(fmt::format("{}: there is not enough memory for frame {}", path_, k));

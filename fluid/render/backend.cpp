@@ -47,10 +47,10 @@ GlFacts noGl(const std::string& why) {
 }
 
 BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl) {
-    if (wanted == "cpu") return {Backend::cpu, "it was asked for"};
-    if (wanted == "cl") return {Backend::cl, "it was asked for"};
+    if (wanted == "cpu") return {Backend::cpu, "it was requested"};
+    if (wanted == "cl") return {Backend::cl, "it was requested"};
     if (!gl.present()) return {Backend::cpu, gl.absent};
-    if (wanted == "gl") return {Backend::gl, "it was asked for"};
+    if (wanted == "gl") return {Backend::gl, "it was requested"};
     if (gl.software) return {Backend::cpu, fmt::format("the OpenGL renderer {} is software", gl.renderer)};
     return {Backend::gl, fmt::format("the OpenGL renderer {} is a GPU", gl.renderer)};
 }
@@ -60,14 +60,14 @@ Status settleBackend(std::string& backend, const char* otherwise, const std::str
     const std::vector<std::string> names = backends().names();
     if (std::find(names.begin(), names.end(), backend) == names.end()) {
         const std::string near = nearestName(backend, names);
-        return badInput(near.empty() ? fmt::format("unknown backend '{}'; there are: {}", backend, fmt::join(names, ", "))
+        return badInput(near.empty() ? fmt::format("unknown backend '{}'; choose one of {}", backend, fmt::join(names, ", "))
                                      : fmt::format("unknown backend '{}'; did you mean '{}'?", backend, near));
     }
     if (device.empty()) return ok();
     if (backend == "auto") backend = "cl";
     if (backend != "cl")
-        return badInput(fmt::format(
-            "--device chooses among OpenCL devices, and --backend {} is none: leave one of them out, or use --backend cl", backend));
+        return badInput(
+            fmt::format("--device selects an OpenCL device, but --backend is {}; leave out one of the two, or use --backend cl", backend));
     return checkClDevice(device);
 }
 

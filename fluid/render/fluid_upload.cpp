@@ -70,7 +70,7 @@ Status FluidUpload::room(std::span<const Array> arrays, size_t others, bool ring
                               readableBytes(needed), readableBytes(mostBytes_)));
 }
 
-// Another Device's: what the one before has wrapped means nothing to it.
+// Another Device: buffers that the previous one has wrapped are invalid for it.
 void FluidUpload::follow(std::shared_ptr<const GlSharing> sharing) {
     if (sharing_) dropTargets();
     sharing_ = std::move(sharing);

@@ -17,7 +17,7 @@ GLint asked(GLuint framebuffer, GLenum attachment, GLenum what) {
     return value;
 }
 
-// What a copy of its depth may be, the likeliest first: only what is of one format is copied. Empty: it has none.
+// Returns possible formats of a copy of the depth buffer, the likeliest first; a blit needs equal formats. Empty: there is no depth buffer.
 std::vector<GLenum> depthFormats(GLuint framebuffer) {
     const GLenum depth = framebuffer == 0 ? GL_DEPTH : GL_DEPTH_ATTACHMENT;
     const GLenum stencil = framebuffer == 0 ? GL_STENCIL : GL_STENCIL_ATTACHMENT;
@@ -34,7 +34,7 @@ std::vector<GLenum> depthFormats(GLuint framebuffer) {
     std::vector<GLenum> all;
     if (format != 0 && format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) all.push_back(static_cast<GLenum>(format));
     const GLint bits = asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE);
-    if (bits == 0 && all.empty()) return {};  // a window without
+    if (bits == 0 && all.empty()) return {};  // a window without depth
     const bool floats = asked(framebuffer, depth, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE) == GL_FLOAT;
     const bool both = asked(framebuffer, stencil, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) != GL_NONE &&
                       asked(framebuffer, stencil, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE) > 0;
@@ -58,7 +58,7 @@ bool isFinite(const mat4& m) {
     return true;
 }
 
-// Turned and moved, and neither scaled nor mirrored to less than it was.
+// True if the matrix is a rotation and a translation, without scale; a mirror image is accepted.
 bool isRigid(const mat4& m) {
     constexpr float kOff = 1.0e-3F;
     for (int a = 0; a < 3; ++a)
@@ -68,11 +68,11 @@ bool isRigid(const mat4& m) {
 }
 
 Status usable(const FrameView& v) {
-    if (!isFinite(v.view) || !isFinite(v.projection)) return badInput("FrameView::view or projection has a value that is no number");
+    if (!isFinite(v.view) || !isFinite(v.projection)) return badInput("FrameView::view or projection has a value that is not finite");
     if (!isRigid(v.view))
-        return badInput("FrameView::view is not a turn and a move alone: glm::lookAt makes one, scales belong to the scene");
+        return badInput("FrameView::view is not a rotation and a translation; use glm::lookAt, and scale the scene instead");
     if (!isPerspective(v.projection))
-        return badInput("FrameView::projection is no perspective: water is drawn with glm::perspective, glFrustum and the like");
+        return badInput("FrameView::projection is not a perspective projection; use glm::perspective or glFrustum");
     if (!(v.nearPlane > 0) || !(v.farPlane > v.nearPlane) || !std::isfinite(v.farPlane))
         return badInput("FrameView::nearPlane and farPlane must be positive and finite, the second beyond the first (m)");
     if (!rivulet::isFinite(v.lightDirWorld) || v.lightDirWorld == vec3(0.0F) || !rivulet::isFinite(v.lightColour))
@@ -86,11 +86,11 @@ Status usable(const HostTarget& t) {
         return badInput(fmt::format("the target is {} x {} pixels; skip the frame while a window is closed", t.width, t.height));
     constexpr int kFurthest = 1 << 20;  // pixels: no framebuffer is as large
     if (t.x < -kFurthest || t.y < -kFurthest || t.x > kFurthest || t.y > kFurthest || t.width > kFurthest || t.height > kFurthest)
-        return badInput(fmt::format("the target's {} x {} pixels at {}, {} are in no framebuffer", t.width, t.height, t.x, t.y));
+        return badInput(fmt::format("the target of {} x {} pixels at {}, {} is outside any framebuffer", t.width, t.height, t.x, t.y));
     if (t.framebuffer != 0 && glIsFramebuffer(t.framebuffer) == GL_FALSE)
-        return badInput(fmt::format("{} is no framebuffer of the context that is current", t.framebuffer));
+        return badInput(fmt::format("{} is not a framebuffer of the current context", t.framebuffer));
     const GLenum status = glCheckNamedFramebufferStatus(t.framebuffer, GL_DRAW_FRAMEBUFFER);
-    if (status == GL_FRAMEBUFFER_UNDEFINED) return badInput("the context that is current has no window to draw into: name a framebuffer");
+    if (status == GL_FRAMEBUFFER_UNDEFINED) return badInput("the current context has no window; name a framebuffer");
     if (status != GL_FRAMEBUFFER_COMPLETE)
         return badInput(fmt::format("framebuffer {} is not complete (glCheckNamedFramebufferStatus gives {:#x})", t.framebuffer, status));
     return ok();
@@ -111,12 +111,13 @@ Status HostPicture::nothingUnderWay() {
     GLboolean active = GL_FALSE, paused = GL_FALSE;
     glGetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
     glGetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
-    if (active == GL_TRUE && paused == GL_FALSE) return badInput("transform feedback is under way: pause or end it before water is drawn");
+    if (active == GL_TRUE && paused == GL_FALSE) return badInput("transform feedback is active; pause or end it before drawing water");
     for (const GLenum counts : {GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, GL_PRIMITIVES_GENERATED,
                                 GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN}) {
         GLint query = 0;
         glGetQueryiv(counts, GL_CURRENT_QUERY, &query);
-        if (query != 0) return badInput("a query counts samples or primitives: end it before water is drawn, or ours would be among them");
+        if (query != 0)
+            return badInput("a query counts samples or primitives; end it before drawing water, or it would count Rivulet's as well");
     }
     return ok();
 }
@@ -141,10 +142,11 @@ Status HostPicture::fit(int width, int height) {
     if (colour_ && colour_.width() == width && colour_.height() == height) return ok();
     const std::pair<gpu::Texture*, gpu::Format> wanted[] = {
         {&raw_, gpu::Format::rgba16f}, {&colour_, gpu::Format::rgba16f}, {&depth_, gpu::Format::depth32f}};
-    colour_ = {};  // if one fails, all are made anew
+    colour_ = {};  // if one fails, all are created again next time
     size_t needed = 0;
     for (const auto& [texture, format] : wanted) needed += gpu::TextureDesc{.width = width, .height = height, .format = format}.bytes();
-    needed += gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}.bytes();  // and the host's depth as it is
+    needed += gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}
+                  .bytes();  // and a copy of the host's depth in its own format
     if (needed > most_)
         return failed(fmt::format("a picture of {} x {} pixels needs {}, and {} are allowed for pictures; allow more, or draw fewer pixels",
                                   width, height, readableBytes(needed), readableBytes(most_)));
@@ -186,7 +188,7 @@ Status HostPicture::takeDepth(const HostTarget& t) {
     }
     if (depthThere_)
         return failed(
-            fmt::format("the depth of framebuffer {} is of a format that cannot be copied; use 24 bits or 32-bit floats", t.framebuffer));
+            fmt::format("the depth of framebuffer {} has a format that cannot be copied; use 24 bits or 32-bit floats", t.framebuffer));
     return ok();
 }
 
@@ -205,19 +207,18 @@ Status HostPicture::take(const HostTarget& t, const HostDepth& depth, const Fram
     view_.projection[2][2] = -(f + n) / (f - n);
     view_.projection[3][2] = -2 * f * n / (f - n);
 
-    // Colour: what its first draw buffer holds.
+    // Colour: the content of the first draw buffer.
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, t.framebuffer);
     GLint draws = GL_NONE, reads = GL_NONE;
     glGetIntegerv(GL_DRAW_BUFFER0, &draws);
     if (draws == GL_NONE)
-        return badInput(fmt::format("framebuffer {} draws into no colour: its first draw buffer is GL_NONE", t.framebuffer));
+        return badInput(fmt::format("framebuffer {} has no colour output: its first draw buffer is GL_NONE", t.framebuffer));
     const auto attachment = static_cast<GLenum>(draws == GL_BACK ? GL_BACK_LEFT : draws == GL_FRONT ? GL_FRONT_LEFT : draws);
     if (asked(t.framebuffer, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_NONE)
-        return badInput(fmt::format("framebuffer {} has no colour where it draws first", t.framebuffer));
+        return badInput(fmt::format("framebuffer {} has no colour attachment at its first draw buffer", t.framebuffer));
     const GLint kind = asked(t.framebuffer, attachment, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE);
     if (kind == GL_INT || kind == GL_UNSIGNED_INT)
-        return badInput(
-            fmt::format("framebuffer {} holds whole numbers, no colours: water is drawn into normalised or float formats", t.framebuffer));
+        return badInput(fmt::format("framebuffer {} has an integer format; use a normalised or float format", t.framebuffer));
     linear_ = t.colours == HostTarget::linear || (t.colours == HostTarget::automatic && kind == GL_FLOAT);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, t.framebuffer);
     glGetIntegerv(GL_READ_BUFFER, &reads);

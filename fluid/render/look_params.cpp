@@ -68,12 +68,12 @@ Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& 
     const ColourRow* colour = colourings().find(params.colourBy);
     if (colour == nullptr)
         return badInput(
-            fmt::format("look.colourBy '{}' is not known; there are: {}", params.colourBy, fmt::join(colourings().names(), ", ")));
+            fmt::format("look.colourBy '{}' is unknown; choose one of {}", params.colourBy, fmt::join(colourings().names(), ", ")));
     const FilterRow* filter = filters().find(params.filter);
-    if (filter == nullptr) return badInput(fmt::format("look.filter '{}' is not known", params.filter));
+    if (filter == nullptr) return badInput(fmt::format("look.filter '{}' is unknown", params.filter));
     FluidLook look{.colourBy = colour->colourBy, .filter = filter, .smoothing = params.smoothing, .smoothingRange = params.smoothingRange};
     const ViewRow* view = waterViews().find(params.view);
-    if (view == nullptr) return badInput(fmt::format("look.view '{}' is not known", params.view));
+    if (view == nullptr) return badInput(fmt::format("look.view '{}' is unknown", params.view));
     look.view = view->view;
     look.fast = params.quality == "fast";
     const LiquidRow* liquid = liquids().find(liquidName);

@@ -19,7 +19,7 @@ struct FluidLookParams {
     std::string view = "water";             // a row of waterViews()
     std::string split;                      // a row of renderers(), for the picture's right half; "" = none
     std::string quality = "auto";           // auto | fast | fine
-    float radiusSpacings = 0.6F;            // drawn radius = this * spacing
+    float radiusSpacings = 0.6F;            // drawn radius over spacing
     std::string filter = "narrow_range";    // a row of filters()
     float smoothing = 0.0F;                 // m, reach of the smoothing, two standard deviations; 0 = 1.8 spacings
     float smoothingRange = 0.0F;            // m, largest difference of depths on one surface; 0 = 4.2 spacings
@@ -31,10 +31,10 @@ struct FluidLookParams {
     bool showsEllipsoids() const;  // particles are drawn as ellipsoids, in the whole picture or in its right half
 };
 
-// The look of these params; values left to the liquid come from it (a row of liquids(), or ""). Error (badInput): an unknown name.
+// Returns the look of these params; values of -1 or 0 come from the liquid (a row of liquids(), or ""). Error (badInput): an unknown name.
 Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& liquid);
 
-// `fluid` with what drawing it so needs of the simulation: normals of the surface, ellipsoids.
+// Returns `fluid` with the results that this look needs enabled: normals of the surface, ellipsoids.
 FluidParams fluidForLook(FluidParams fluid, const FluidLookParams& look);
 
 }  // namespace rivulet

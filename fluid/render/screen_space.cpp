@@ -45,7 +45,7 @@ constexpr ProgramRow kPrograms[] = {
     {"shade, normals, ink", "screen_space/tile.vert", "screen_space/shade.frag", {"NORMALS", "INK"}},
 };
 
-// Where there is no time, half of the particles stand for all of them.
+// With look.quality fast, half of the particles represent all of them, with twice the volume.
 struct Drawn {
     uint32_t count;
     float standsFor, larger;
@@ -57,8 +57,8 @@ Drawn drawnOf(const FluidDraw& d) {
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
-// x: depth of the bulk, y: of the spray; m. `prepare`: draws first what hides spheres deep in the water; worth it where they are many
-// pixels.
+// x: depth of the bulk, y: of the spray; m. `prepare`: first draws occluders for spheres deep in the water; this pays off if spheres cover
+// many pixels.
 TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, bool prepare) {
     TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::rg32f};
     const TextureHandle depth = graph.texture("sphere depth", size);
@@ -89,7 +89,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
     return depth;
 }
 
-// The tiles in which there is water, from the spheres' depth: that is less than to draw all particles once more.
+// Finds the tiles that contain water from the spheres' depth, which costs less than drawing all particles again.
 TextureHandle addTilesOf(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle spheres) {
     const TextureDesc from = graph.desc(spheres), size = tilesOf(d.view);
     const TextureHandle blocks =
@@ -113,7 +113,7 @@ TextureHandle addTilesOf(FrameGraph& graph, FluidPrograms& programs, const Fluid
     return tiles;
 }
 
-// An intermediate result of the surface, instead of the water.
+// Draws an intermediate result of the surface instead of the water.
 struct Shown {
     TextureHandle tiles, depth, thickness, colour;
 };
@@ -201,7 +201,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
     const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    const Drawn some = drawnOf(d);  // the blur hides that they are larger
+    const Drawn some = drawnOf(d);  // the blur hides the larger radius
     graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {drawn}, [=, &programs](PassContext& c) {
         c.drawTo({drawn}).clearColour(vec4(0.0F));
         useFrame(c, d);
@@ -214,7 +214,7 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         p.set("volumeScale", volumeScale(d.fluid));
         programs.drawParticles(p, d.fluid, some.count);
     });
-    // The narrow blur hides the single particles: its reach is 1.5 spacings of those that are drawn.
+    // The narrow blur hides single particles: its reach is 1.5 spacings of the drawn particles.
     const float texels = 1.5F * some.larger * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side);
     const int reach = std::clamp(static_cast<int>(texels), 2, 6);
     TextureHandle from = drawn;
@@ -280,7 +280,7 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     const FilterRow& filter = d.look.view == WaterView::spheres ? unfiltered()
                               : d.look.filter != nullptr        ? *d.look.filter
                                                                 : filters().rows.front();
-    // Where there is no time, the surface is found at half the resolution, and only its light in full.
+    // With look.quality fast, the surface is computed at half the resolution and shaded at full resolution.
     const bool half = d.look.fast && static_cast<bool>(d.coarse);
     FluidDraw s = d;
     if (half) {

@@ -23,7 +23,7 @@ struct BodyParams {
     vec3 size{0.1F};            // m, of a box
     float radius = 0.05F;       // m, of a sphere
     float scale = 1.0F;         // of a hull or mesh
-    float fitSize = 0.0F;       // m; as of a collider
+    float fitSize = 0.0F;       // m; as fitSize of a collider
     vec3 position{0.0F};        // m
     vec3 rotation{0.0F};        // deg, about x, then y, then z
     vec3 velocity{0.0F};        // m/s
@@ -42,7 +42,7 @@ struct BodyParams {
     void visit(ParamVisitor& v);
 };
 
-// "", or which values contradict each other; the text continues "bodies[2]". checkScene calls it.
+// Returns "", or the contradiction between values; the text continues "bodies[2]". checkScene calls it.
 std::string contradiction(const BodyParams& body);
 
 }  // namespace rivulet

@@ -37,15 +37,15 @@ struct ColliderWave {
     void visit(ParamVisitor& v);
 };
 
-// A clip of a mesh file that is played. Water collides with the mesh as it is at that time.
+// Playback of an animation clip of a mesh file. Water collides with the mesh in its current pose.
 struct ColliderAnimation {
     std::string clip;   // "" = the first of the file
     float speed = 0;    // 0 = not played
-    bool loops = true;  // false: it stops at its end
+    bool loops = true;  // false: the clip stops at its end
     void visit(ParamVisitor& v);
 };
 
-// A solid. `shape` is a row of colliderKinds() (collider_kinds.h), which says which of these values it reads.
+// A solid. `shape` is a row of colliderKinds() (collider_kinds.h); the row lists the values that it reads.
 struct ColliderParams {
     std::string shape = "mesh";  // a row of colliderKinds()
     std::string mesh;            // path, searched as findAsset does
@@ -61,7 +61,7 @@ struct ColliderParams {
     ColliderWave wave;
     ColliderAnimation animation;
     bool solid = true;                 // false: drawn, but not collided with
-    std::string materials = "file";    // file | scene: the values below
+    std::string materials = "file";    // file: those of the mesh file; scene: the values below
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
     float metallic = 0.0F;
@@ -72,7 +72,7 @@ struct ColliderParams {
     void visit(ParamVisitor& v);
 };
 
-// "", or which values contradict each other; the text continues "colliders[2]". checkScene calls it.
+// Returns "", or the contradiction between values; the text continues "colliders[2]". checkScene calls it.
 std::string contradiction(const ColliderParams& collider);
 
 }  // namespace rivulet

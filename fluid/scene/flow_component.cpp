@@ -53,7 +53,7 @@ vec3 along(const std::vector<vec3>& line, float way) {
     return line.front();
 }
 
-// Whether `list` ("M_Iris*, M_EyeBlend") names a part, by its own name or its material's.
+// True if `list` ("M_Iris*, M_EyeBlend") names a part, by its own name or its material's.
 bool named(std::string_view list, const ModelPart& part) {
     while (!list.empty()) {
         std::string_view one = list.substr(0, list.find(','));
@@ -67,7 +67,7 @@ bool named(std::string_view list, const ModelPart& part) {
     return false;
 }
 
-// Splits vertices, so that each has one UV of `uvs` (3 a triangle of `mesh`, which was made from the part).
+// Splits vertices, so that each has one UV of `uvs` (3 per triangle of `mesh`, which was made from the part).
 void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) {
     Mesh fresh;
     fresh.name = part.mesh.name;
@@ -108,7 +108,7 @@ void split(ModelPart& part, const FlowMesh& mesh, const std::vector<vec2>& uvs) 
     part.grips = std::move(grips);
 }
 
-// Two directions across `n`, a unit vector.
+// Returns two directions perpendicular to the unit vector `n`.
 std::pair<vec3, vec3> across(const vec3& n) {
     const vec3 a = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9F ? vec3(0, 1, 0) : vec3(1, 0, 0)));
     return {a, glm::cross(n, a)};
@@ -264,7 +264,7 @@ Status FlowComponent::prepareFlow(const Mesh& skin) {
         if (marks_.eyes[side].tear) tears_[side] = nearestPoint(*mesh, *marks_.eyes[side].tear);
     for (const FlowSourceParams& source : params_.sources)
         if (const std::string fault = faultOf(source); source.rate > 0 && !fault.empty()) return badInput(fault);
-    // The thesis has no lids: a brim's liquid begins below the eye's corner.
+    // The thesis has no lids: liquid of a brim begins below the corner of the eye.
     const std::vector<SkinBrim> along = thesis() ? std::vector<SkinBrim>() : brims(*mesh);
     Result<SurfaceFlow> flow = thesis() ? SurfaceFlow::createThesis(*device_, std::move(*mesh), uvs_, params_.liquid, params_.thesis)
                                         : SurfaceFlow::create(*device_, std::move(*mesh), params_.liquid, along);
@@ -293,7 +293,7 @@ std::vector<size_t> FlowComponent::eyesOf(const FlowSourceParams& source) const 
 std::string FlowComponent::faultOf(const FlowSourceParams& source) const {
     if (source.kind != "corner" && source.kind != "brim") return {};
     if (eyesOf(source).empty())
-        return fmt::format("{} has no marks of {}: a source of kind {} has nowhere to be; use spot, strewn or rain", params_.mesh,
+        return fmt::format("{} has no marks of {}: a source of kind {} needs marks; use spot, strewn or rain", params_.mesh,
                            source.side == "both" ? "eyes" : fmt::format("the {} eye", source.side), source.kind);
     constexpr float kMostOfAnEye = 1.0e5F;  // microlitres a minute
     if (source.rate > kMostOfAnEye)
@@ -362,7 +362,7 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
 }
 
 void FlowComponent::apply(const FlowParams& params) {
-    // Values that tables are sized for or files were read with stay, also while a panel edits them.
+    // Values that determine the size of tables or the files read keep their value, also while a panel edits them.
     const FlowParams before = std::exchange(params_, params);
     params_.mode = before.mode;
     params_.mesh = before.mesh;
@@ -372,7 +372,7 @@ void FlowComponent::apply(const FlowParams& params) {
     params_.regions = before.regions;
     for (size_t e = 0; e < std::min(before.expression.size(), params_.expression.size()); ++e)
         params_.expression[e].morph = before.expression[e].morph;
-    // Values of a scene have been checked by its reader.
+    // The reader of the scene has already checked the values.
     (void)flow_->setParams(params.liquid);
     if (thesis()) (void)flow_->setThesis(params.thesis);
     layer_->look = params.look;
@@ -435,8 +435,8 @@ void FlowComponent::emitOne(const FlowSourceParams& source, Source& state, uint3
     }
 }
 
-// A point of the disc about a spot, `off` (m) from its middle in the plane of the skin there. All triangles are searched only if the spot
-// has moved, or the skin curves away under the disc.
+// Returns a point of the disc around a spot, `off` (m) from its centre in the tangent plane. All triangles are searched only if the spot
+// has moved or the skin is strongly curved under the disc.
 SkinPoint FlowComponent::besideSpot(const FlowSourceParams& source, Source& state, const vec2& off) {
     const FlowMesh& mesh = flow_->mesh();
     if (!state.spot || state.spotOf != source.position) {

@@ -14,17 +14,17 @@ namespace rivulet {
 // A source of drops.
 struct FlowSourceParams {
     std::string kind = "spot";      // corner | brim | spot | strewn | rain
-    std::string side = "both";      // of an eye: left | right | both
-    float rate = 0;                 // microlitres per minute, in all; 0 = off
+    std::string side = "both";      // the eye: left | right | both
+    float rate = 0;                 // microlitres per minute, sum of all drops; 0 = off
     float drop = 1;                 // microlitres per drop
     float start = 0, stop = 3600;   // s
     float swell = 0;                // 0 (steady) to 1 (fully modulated)
     float period = 4;               // s, of the swell
-    vec3 position{0.0F};            // m, in the skin's own frame: of a spot, or above what it rains on
+    vec3 position{0.0F};            // m, in the skin's own frame: a spot, or the centre of strewn drops or rain
     float radius = 0.0F;            // m, about a spot; strewn or rain: about `position`; 0 = everywhere
     float speed = 9;                // m/s, of rain
     vec3 along{0.0F, -1.0F, 0.0F};  // direction of rain
-    bool film = false;              // a sheet, not single drops
+    bool film = false;              // true: a continuous film instead of single drops
     void visit(ParamVisitor& v);
 };
 
@@ -58,19 +58,19 @@ struct FlowParams {
     std::string mesh = "meshes/head/head.glb";
     std::string part = "skin";  // of a file with several parts
     std::string instead;        // JSON file of another skin, used instead if its mesh is found; "" = none
-    std::string hide;           // parts that are not drawn, by name or material, ", " between them; one may end in *
+    std::string hide;           // parts that are not drawn, by name or material, separated by ", "; a name may end in *
     std::string skinParts;      // parts with the skin material, as `hide`; the default head has its own list
-    std::string marks;          // JSON with eyes, lids and where tears begin; "" = beside the mesh, if there is one
+    std::string marks;          // JSON with eyes, lids and the starts of tears; "" = the file next to the mesh, if it exists
     vec3 position{0.0F};        // m
     vec3 rotation{0.0F};        // deg
     float scale = 1;
-    float fitSize = 0;   // m; > 0: the longest side's length, and its middle at `position`
+    float fitSize = 0;   // m; > 0: the longest side is scaled to this length, and its centre is at `position`
     int mapSize = 1024;  // texels
     vec3 wind{0.0F};     // m/s
     SurfaceFlowParams liquid;
     ThesisParams thesis;
     FlowMotionParams motion;
-    float expressive = 1;  // share of all of expression
+    float expressive = 1;  // factor of all weights in expression
     std::vector<ExpressionParams> expression;
     std::vector<FlowSourceParams> sources;
     RegionParams regions;
@@ -79,7 +79,7 @@ struct FlowParams {
     void visit(ParamVisitor& v);
 };
 
-// Values to set at one click, or by name: "path=value; path=value".
+// A named set of values: "path=value; path=value".
 struct PresetParams {
     std::string name, doc, set;
     void visit(ParamVisitor& v);

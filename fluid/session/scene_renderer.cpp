@@ -205,9 +205,9 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
 
 Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings) {
     const RendererRow* row = renderers().find(settings.look.renderer);
-    if (row == nullptr) return badInput(fmt::format("look.renderer '{}' is not known", settings.look.renderer));
+    if (row == nullptr) return badInput(fmt::format("look.renderer '{}' is unknown", settings.look.renderer));
     const RendererRow* other = settings.look.split.empty() ? nullptr : renderers().find(settings.look.split);
-    if (other == nullptr && !settings.look.split.empty()) return badInput(fmt::format("look.split '{}' is not known", settings.look.split));
+    if (other == nullptr && !settings.look.split.empty()) return badInput(fmt::format("look.split '{}' is unknown", settings.look.split));
     Result<FluidLook> look = fluidLookOf(settings.look, settings.fluid.liquid);
     if (!look) return look.error();
     if (settings.look.quality == "auto") look->fast = hurries_;

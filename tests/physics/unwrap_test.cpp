@@ -119,7 +119,7 @@ TEST(Unwrap, BadUvsAreFoundAndReplaced) {
         EXPECT_TRUE(mesh);
         Result<SkinUvs> uvs = skinUvs(*mesh, skin.view(), 512);
         EXPECT_TRUE(uvs);
-        EXPECT_EQ(uvs->unwrapped, uvs->notice.find("unwrapped anew") != std::string::npos);
+        EXPECT_EQ(uvs->unwrapped, uvs->notice.find("New UVs were made") != std::string::npos);
         EXPECT_TRUE(checkUvs(*mesh, uvs->uvs, 512).usable());
         return *uvs;
     };

@@ -143,7 +143,7 @@ TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
     };
     FrameView flat = host.view();
     flat.projection = glm::ortho(-1.0F, 1.0F, -1.0F, 1.0F, 0.1F, 10.0F);
-    EXPECT_NE(said(flat, host.target()).find("no perspective"), std::string::npos);
+    EXPECT_NE(said(flat, host.target()).find("not a perspective"), std::string::npos);
     FrameView endless = host.view();
     endless.farPlane = std::numeric_limits<float>::infinity();
     EXPECT_NE(said(endless, host.target()).find("farPlane"), std::string::npos);
@@ -155,34 +155,34 @@ TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     EXPECT_EQ(said(host.view(), host.target()), "");
 
-    // Numbers that are none, and a view that is more than a turn and a move.
+    // Values that are not finite, and a view that is not rigid.
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto refusedFor = [&](const char* word, const std::function<void(FrameView&)>& spoil) {
         FrameView view = host.view();
         spoil(view);
         EXPECT_NE(said(view, host.target()).find(word), std::string::npos) << said(view, host.target());
     };
-    refusedFor("no number", [&](FrameView& v) { v.view[3].x = nan; });
-    refusedFor("no number", [&](FrameView& v) { v.projection[0][0] = nan; });
-    refusedFor("a turn and a move", [&](FrameView& v) { v.view = mat4(0.0F); });
-    refusedFor("a turn and a move", [&](FrameView& v) { v.view = glm::scale(v.view, vec3(2.0F)); });
+    refusedFor("not finite", [&](FrameView& v) { v.view[3].x = nan; });
+    refusedFor("not finite", [&](FrameView& v) { v.projection[0][0] = nan; });
+    refusedFor("a rotation and a translation", [&](FrameView& v) { v.view = mat4(0.0F); });
+    refusedFor("a rotation and a translation", [&](FrameView& v) { v.view = glm::scale(v.view, vec3(2.0F)); });
     refusedFor("lightColour", [&](FrameView& v) { v.lightColour.y = nan; });
     refusedFor("direction is 0", [&](FrameView& v) { v.lightDirWorld = vec3(0.0F); });
 
-    // Targets that take no water.
+    // Targets that cannot receive water.
     const auto refusedInto = [&](const char* word, const std::function<void(HostTarget&)>& spoil) {
         HostTarget target = host.target();
         spoil(target);
         EXPECT_NE(said(host.view(), target).find(word), std::string::npos) << said(host.view(), target);
         EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}) << word;
     };
-    refusedInto("no framebuffer", [](HostTarget& t) { t.framebuffer = 999; });
+    refusedInto("not a framebuffer", [](HostTarget& t) { t.framebuffer = 999; });
     refusedInto("no window", [](HostTarget& t) { t.framebuffer = 0; });
-    refusedInto("in no framebuffer", [](HostTarget& t) { t.x = std::numeric_limits<int>::max(); });
+    refusedInto("outside any framebuffer", [](HostTarget& t) { t.x = std::numeric_limits<int>::max(); });
     const auto whole = gpu::Texture::create({.width = kWidth, .height = kHeight, .format = gpu::Format::r32ui});
     ASSERT_TRUE(whole);
     const gpu::Framebuffer counts(*whole, nullptr);
-    refusedInto("whole numbers", [&](HostTarget& t) { t.framebuffer = counts.name(); });
+    refusedInto("integer format", [&](HostTarget& t) { t.framebuffer = counts.name(); });
     GLuint empty = 0;
     glCreateFramebuffers(1, &empty);
     refusedInto("not complete", [&](HostTarget& t) { t.framebuffer = empty; });
@@ -191,7 +191,7 @@ TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
     refusedInto("no colour", [&](HostTarget& t) { t.framebuffer = empty; });
     glDeleteFramebuffers(1, &empty);
 
-    // What of the host's would count what is drawn.
+    // Queries of the host that would count Rivulet's drawing.
     GLuint query = 0;
     glCreateQueries(GL_SAMPLES_PASSED, 1, &query);
     glBeginQuery(GL_SAMPLES_PASSED, query);
@@ -215,7 +215,7 @@ TEST_F(WaterInAHostsPicture, IsAnsweredInASentenceWhereItCannotBe) {
     EXPECT_NE(refused.error().message.find("allowed"), std::string::npos) << refused.error().message;
 }
 
-// A host may have opened as many debug groups as there can be, and wait for results in a buffer of its own.
+// A host may have opened the largest number of debug groups, and may wait for results in its own buffer.
 TEST_F(WaterInAHostsPicture, LeavesAHostsDebugGroupsAndQueryBufferAlone) {
     const HostScene host(kWidth, kHeight);
     GLint most = 0, depth = 0, there = 0;

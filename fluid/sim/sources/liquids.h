@@ -21,7 +21,7 @@ struct LiquidRow {
 };
 Table<LiquidRow> liquids();
 
-// With fluid.liquid named: restDensity and viscosity are the row's. Error (badInput): a liquid of the world or a block is not known.
+// If fluid.liquid is set, restDensity and viscosity come from its row. Error (badInput): an unknown liquid of the world or a block.
 Status takeLiquid(FluidParams& params);
 
 // A liquid as particles of a world have it: the row called `name`, or where it is "" the world's own.

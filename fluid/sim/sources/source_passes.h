@@ -1,4 +1,4 @@
-// The passes of a step that know emitters and sinks: what makes particles of free slots, and free slots of particles.
+// The passes of a step for emitters and sinks: they spawn particles in free slots, and free the slots of drained particles.
 #pragma once
 
 #include <memory>
@@ -18,20 +18,20 @@ namespace rivulet {
 
 class SourcePasses {
   public:
-    // Error (badInput): an emitter that makes no sense, a liquid that is not known; (failed): out of memory. `traits.matter` and
+    // Error (badInput): an invalid emitter, an unknown liquid; (failed): out of memory. `traits.matter` and
     // `absorption`: whether particles have those tables. `device` must outlive it.
     static Result<SourcePasses> create(Device& device, const Sources& sources, const FluidParams& params, bool matter, bool absorption);
 
-    // Slots that emitters would ever fill by the end of sources.seconds, and the box could hold.
+    // Number of slots that emitters fill by the end of sources.seconds, at most what the box can hold.
     static double slotsFor(const Sources& sources, const FluidParams& params);
 
     bool any() const { return !feeds_.empty() || sinkCount_ > 0; }
-    float fastest() const;  // m/s, that emitters let water out with
-    // Takes what can change between steps. Error (badInput): it makes no sense; then all stays as it was.
+    float fastest() const;  // m/s, highest emission speed
+    // Sets the values that can change between steps. Error (badInput): invalid values; then nothing changes.
     Status set(const Sources& sources);
     void reset();  // back to t = 0
 
-    // What a step of it needs to know of the world.
+    // The parts of the world that a step reads.
     struct World {
         const StepParams& step;
         const FluidParams& params;
@@ -39,22 +39,22 @@ class SourcePasses {
         Particles& particles;  // sorted as the substep sorted them
         const SolidPasses& solids;
         const BodyPasses& bodies;
-        std::span<const NamedBuffer> remembered;  // of the method: what it knows of a particle goes with the particle
+        std::span<const NamedBuffer> remembered;  // of the method: its state per particle is removed with the particle
     };
     // After a substep of `dt` that ended at `time`; `last` of its frame.
     void run(const World& world, double time, double dt, bool last);
-    // m^3 from others, that become particles at `place` (m) with the steps to come. sources.expectedDeposit was more than 0.
+    // Deposits m^3 of the host, which become particles at `place` (m) in the following steps. sources.expectedDeposit was more than 0.
     void deposit(const vec3& place, const vec3& velocity, double volume);
-    // Has the counts read, late on a GPU.
+    // Requests the counts, which arrive late on a GPU.
     void report();
 
-    // As far as is known.
-    uint64_t emitted() const;    // particles, by all emitters, and of what was poured
-    uint64_t deposited() const;  // of these, of what was poured
+    // By the last counts that arrived.
+    uint64_t emitted() const;    // particles, by all emitters and deposits
+    uint64_t deposited() const;  // of these, from deposits
     uint64_t drained() const;    // particles
-    bool full() const;           // whether one had to wait because no slot was free
-    double backlog() const;      // particles due, and not taken yet
-    double pending() const;      // of these, of what was poured
+    bool full() const;           // whether a particle had to wait because no slot was free
+    double backlog() const;      // particles due and not yet spawned
+    double pending() const;      // of these, from deposits
 
     // The emitters' accounts and what is counted. Before save, report and wait for the device.
     struct Saved {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fluid/sim/sources/liquids.h"
+
 namespace rivulet {
 
 namespace {
@@ -12,17 +14,14 @@ constexpr float kAbove = 3;  // radii, above the point it falls on
 }  // namespace
 
 void PourParams::visit(ParamVisitor& v) {
-    constexpr bool kLog = true, kLinear = false, kFixed = true;
+    constexpr bool kLog = true, kFixed = true;
     v.value({"litres", "l", "volume that a person can pour in (key P); memory is reserved for it; 0 = none", 0, 1.0e6, kLog, kFixed},
             litres);
     v.value({"radius", "m", "radius of the jet; 0 = three spacings", 0, 100, kLog}, radius);
     v.value({"speed", "m/s", "speed of the jet at its start; 0 = that of a fall of three radii", 0, 100}, speed);
     v.value({.name = "liquid", .doc = "liquid of the jet, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
             liquid);
-    v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
-    v.value({"dyeAmount", "1/m", "concentration of the dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed},
-            dyeAmount);
-    v.value({"dyeScattering", "1/m", "scattering of the dye; 0 = clear, like ink", 0, 1.0e4, kLog, kFixed}, dyeScattering);
+    visitDye(v, dye, dyeAmount, dyeScattering);
 }
 
 EmitterParams pouring(const PourParams& pour, const FluidParams& fluid, const std::optional<vec3>& onto) {

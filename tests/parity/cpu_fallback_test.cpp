@@ -32,16 +32,7 @@ struct Said {
 SceneFile dam(const char* method) {
     SceneFile scene;
     scene.name = "dam";
-    FluidParams& p = scene.fluid;
-    p.method = method;
-    p.spacing = 0.03125F;
-    p.box.max = vec3(1.0F, 1.2F, 1.0F);
-    p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
-    p.soundSpeed = 15;
-    p.cfl = 0.8F;
-    p.pbf.reach = p.dfsph.reach = 1;
-    p.dfsph.tolerance = 1.0e-6F;
-    p.dfsph.maxIterations = 3;
+    scene.fluid = parityDam(method);
     return scene;
 }
 constexpr double kFrame = 1.0 / 1600;  // s

@@ -18,17 +18,7 @@ struct After {
 };
 
 After after200Steps(Device& device, const char* method) {
-    FluidParams p;
-    p.method = method;
-    p.spacing = 0.03125F;
-    p.box.max = vec3(1.0F, 1.2F, 1.0F);
-    p.blocks = {{vec3(0.0F), vec3(0.5F, 1.0F, 0.5F), vec3(0.0F)}};
-    // A frame is one step on every device, because devices read speeds and residuals at different times.
-    p.soundSpeed = 15;
-    p.cfl = 0.8F;
-    p.pbf.reach = p.dfsph.reach = 1;
-    p.dfsph.tolerance = 1.0e-6F;
-    p.dfsph.maxIterations = 3;
+    const FluidParams p = parityDam(method);
     auto world = FluidWorld::create(device, p, {}, {});
     EXPECT_TRUE(world) << (world ? "" : world.error().message);
     if (!world) return {};

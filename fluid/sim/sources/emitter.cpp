@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/core/param_fixed.h"
+#include "fluid/sim/sources/liquids.h"
 
 namespace rivulet {
 
@@ -64,11 +65,7 @@ void EmitterParams::visit(ParamVisitor& v) {
     v.value(
         {.name = "liquid", .doc = "liquid of the emitter, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
         liquid);
-    v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
-    v.value({"dyeAmount", "1/m", "concentration of the dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed},
-            dyeAmount);
-    v.value({"dyeScattering", "1/m", "scattering that the dye adds: milk about 3000; 0 = clear, like ink", 0, 1.0e4, kLog, kFixed},
-            dyeScattering);
+    visitDye(v, dye, dyeAmount, dyeScattering);
 }
 
 void SinkParams::visit(ParamVisitor& v) {

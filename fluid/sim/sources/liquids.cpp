@@ -76,4 +76,13 @@ vec4 dyed(const LiquidOf& liquid, const vec3& colour, float amount, float scatte
     return {vec3(own) + dyeAbsorption(colour, amount), own.w < 0 ? own.w - scattering : own.w + scattering};
 }
 
+void visitDye(ParamVisitor& v, vec3& colour, float& amount, float& scattering) {
+    constexpr bool kLog = true, kLinear = false, kFixed = true;
+    v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, colour);
+    v.value({"dyeAmount", "1/m", "concentration of the dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed},
+            amount);
+    v.value({"dyeScattering", "1/m", "scattering that the dye adds: milk about 3000; 0 = clear, like ink", 0, 1.0e4, kLog, kFixed},
+            scattering);
+}
+
 }  // namespace rivulet

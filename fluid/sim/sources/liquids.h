@@ -1,5 +1,5 @@
-// Liquids: what water, oil or blood are, as rows in SI units, each with its source. In a scene: fluid.liquid, and a block's or emitter's
-// own.
+// Liquids: the properties of water, oil, blood and others as rows in SI units, each with its source. In a scene: fluid.liquid, and the
+// liquid of a block or emitter.
 #pragma once
 
 #include "engine/core/result.h"
@@ -15,7 +15,7 @@ struct LiquidRow {
     float viscosity;       // Pa s, dynamic
     float surfaceTension;  // N/m, against air
     vec3 absorption;       // 1/m, of red, green and blue light (620, 550 and 450 nm)
-    vec3 scattering;       // 1/m, reduced: as if it went evenly to all sides
+    vec3 scattering;       // 1/m, reduced: equivalent isotropic scattering
     float refractiveIndex;
     const char* source;
 };
@@ -24,20 +24,22 @@ Table<LiquidRow> liquids();
 // If fluid.liquid is set, restDensity and viscosity come from its row. Error (badInput): an unknown liquid of the world or a block.
 Status takeLiquid(FluidParams& params);
 
-// A liquid as particles of a world have it: the row called `name`, or where it is "" the world's own.
+// A liquid of particles in a world: the row called `name`, or the world's own if `name` is "".
 struct LiquidOf {
     float density;    // kg/m^3
     float viscosity;  // Pa s
     float row;        // 0: the world's own, else 1 + that in liquids()
-    // xyz what it absorbs, w what it scatters beside the world's own, 1/m; w < 0: instead of the world's own, and it scatters -1 - w.
+    // xyz absorption, w scattering, both added to those of the world, 1/m; w < 0: instead of those of the world, with scattering -1 - w.
     vec4 absorption;
 };
 LiquidOf liquidOf(const FluidParams& world, const std::string& name);
 
-// xyz what a dye adds to absorption, 1/m: after 1 / amount metres of it white light has the dye's colour. `colour` linear, 0..1; `amount`
+// Returns the absorption that a dye adds, 1/m: after 1 / amount metres white light has the dye's colour. `colour` linear, 0..1; `amount`
 // 1/m.
 vec3 dyeAbsorption(const vec3& colour, float amount);
-// The same with what it scatters, 1/m, added to what a liquid does to light.
+// The absorption of `liquid` with a dye in it; `scattering`: what the dye adds, 1/m.
 vec4 dyed(const LiquidOf& liquid, const vec3& colour, float amount, float scattering);
+// Visits the dye of a block, an emitter or the poured jet: the keys dye, dyeAmount and dyeScattering.
+void visitDye(ParamVisitor& v, vec3& colour, float& amount, float& scattering);
 
 }  // namespace rivulet

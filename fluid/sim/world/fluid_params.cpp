@@ -21,11 +21,7 @@ void BlockParams::visit(ParamVisitor& v) {
     v.value({"velocity", "m/s", "velocity at the start", -kFast, kFast, kLinear, kFixed}, velocity);
     v.value({.name = "liquid", .doc = "liquid of the block, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
             liquid);
-    v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, dye);
-    v.value({"dyeAmount", "1/m", "concentration of the dye: after 1 / this metres light has the dye's colour", 0, 1.0e4, kLog, kFixed},
-            dyeAmount);
-    v.value({"dyeScattering", "1/m", "scattering that the dye adds: milk about 3000; 0 = clear, like ink", 0, 1.0e4, kLog, kFixed},
-            dyeScattering);
+    visitDye(v, dye, dyeAmount, dyeScattering);
     v.value({"jitter", "spacings",
              "random offset of particles from their lattice at the start, at most: a perfect lattice resists shear like a crystal until it "
              "is stirred",

@@ -1,4 +1,4 @@
-// ScenePicture: the picture of a session: its particles brought to OpenGL, drawn, in the quality that the frame rate allows.
+// ScenePicture: draws a session: uploads its particles to OpenGL and draws them in the quality that the frame rate allows.
 #pragma once
 
 #include <functional>
@@ -14,12 +14,12 @@ namespace rivulet {
 
 class ScenePicture {
   public:
-    // Goes on with this renderer, whose passes go into `timeline`.
+    // Continues with this renderer; its passes are recorded in `timeline`.
     void adopt(std::unique_ptr<SceneRenderer> renderer, Timeline& timeline);
-    void begin(bool software);  // quality auto is fast at first where software draws
+    void begin(bool software);  // with a software renderer, quality auto starts as fast
     SceneRenderer& renderer() const { return *renderer_; }
     const TransferFacts& facts() const { return upload_.facts(); }
-    // `uploaded` is called when nothing more is read of the world. Error (failed): out of GPU memory; (badInput): as SceneRenderer::draw.
+    // `uploaded` is called when the world is no longer read. Error (failed): out of GPU memory; (badInput): as SceneRenderer::draw.
     Status draw(Session& session, int width, int height, Timeline& timeline, const std::function<void()>& uploaded);
     // Quality auto follows the times of the last pictures.
     void adaptQuality(const FluidLookParams& look);

@@ -1,5 +1,5 @@
-// SceneRun: the session that is shown: stepped at the pace of the wall clock, while the picture is drawn where the plan says so, and
-// recorded where it is asked for.
+// SceneRun: the session on screen: stepped at the speed of the wall clock, depending on the plan while the picture is drawn, and recorded
+// on request.
 #pragma once
 
 #include <functional>
@@ -19,9 +19,9 @@ class SceneRun {
   public:
     // A plan, and the trials that --cooperate auto chose it by.
     void begin(Plan plan, std::vector<CooperationStats::Tried> tried, const Log& log);
-    // Goes on with this session, on `device`; null: on the same device as before.
+    // Continues with this session, on `device`; null: on the same device as before.
     void adopt(std::unique_ptr<Session> session, std::unique_ptr<Device> device);
-    void drop() { work_.reset(); }  // what is under way, before the session is replaced
+    void drop() { work_.reset(); }  // drops a step in progress, before the session is replaced
     Session& session() const { return *session_; }
     Device& device() const { return *device_; }
     Timeline& timeline() { return timeline_; }
@@ -37,16 +37,16 @@ class SceneRun {
         double ms = 0;                 // on the wall
         double deviceMs = 0;           // of the passes below
         std::vector<PassTime> passes;  // that ended since the last step
-        bool toCpu = false;            // the device failed: the cpu goes on
-        bool repicked = false;         // a budget has picked other values
+        bool toCpu = false;            // the device failed: the cpu continues
+        bool repicked = false;         // a frame budget has chosen other values
     };
     using Result = rivulet::Result<std::optional<Stepped>>;  // nothing: there was no step
-    // `seconds`: on the wall, since the last frame. `drawn`: the times of the last picture, for the record. Error: the cpu failed too; what
-    // onStepped() returned.
+    // `seconds`: on the wall, since the last frame. `drawn`: the times of the last picture, for the record. Error: the cpu failed too, or
+    // what onStepped() returned.
     Result step(double seconds, const std::vector<PassTime>& drawn);
-    // Ends a step that another thread has made meanwhile. With `drop` a plan that only prepares one gives it up.
+    // Ends a step that another thread has made meanwhile. With `drop`, a step that is only prepared is cancelled.
     Result finish(double seconds, const std::vector<PassTime>& drawn, bool drop);
-    void stepOn();  // the picture reads no more of the session: another thread may step on
+    void stepOn();  // the picture has read the session: another thread may step
 
     void onStepped(std::function<Status(const Session&)> call) { onStepped_ = std::move(call); }
     bool endOnStepped() { return std::exchange(onStepped_, {}) != nullptr; }  // whether there was one
@@ -54,7 +54,7 @@ class SceneRun {
     bool recording() const { return recorder_.has_value(); }
     void transferred(const TransferFacts& facts);
     RunStats finishRecord();
-    // All times have arrived that the device owes.
+    // All pending times of the device have arrived.
     const Timeline& wholeTimeline();
 
   private:
@@ -67,8 +67,8 @@ class SceneRun {
     Plan plan_ = Plan::alone;
     std::vector<CooperationStats::Tried> tried_;
     std::unique_ptr<Cooperation> work_;
-    double waiting_ = 0;   // s on the wall that the water has not been stepped for
-    double due_ = 0;       // s simulated, that are to be stepped while this frame is drawn
+    double waiting_ = 0;   // s of wall time not yet stepped
+    double due_ = 0;       // s to simulate while this frame is drawn
     double deviceMs_ = 0;  // of the last step's passes
     int repicked_ = 0;     // by the session's budget
     bool paused_ = false, stepOnce_ = false;

@@ -1,5 +1,5 @@
-// Viewer: a scene that a person looks at: stepped, drawn, with panels and an orbit camera. It knows no window: it takes InputEvents and
-// draws into a framebuffer, so that a test can drive it as a person does.
+// Viewer: an interactive scene with panels and an orbit camera, stepped and drawn. It does not depend on a window: it takes InputEvents and
+// draws into a framebuffer, so that a test can operate it as a user does.
 #pragma once
 
 #include <functional>
@@ -36,14 +36,14 @@ class Viewer {
 
     ~Viewer();  // an unfinished video is closed
 
-    // One picture. `seconds`: on the wall since the last. Steps the water when a sixtieth of a second has gone by, at most once: a slow
-    // machine shows slow water, not fewer pictures. With fluid.fixedStep the water has all of the time, but fluid.longestFrame. A window of
-    // 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.
+    // Draws one picture. `seconds`: wall time since the last one. Steps the water at most once, when a sixtieth of a second has passed: a
+    // slow machine shows slow water instead of fewer pictures. With fluid.fixedStep the water gets the whole time, up to
+    // fluid.longestFrame. A window of 0 pixels: stepped, not drawn. Error (failed): out of GPU memory.
     Status frame(const InputEvents& input, double seconds, GLuint framebuffer);
 
     bool paused() const { return run_.paused(); }
     uint64_t steps() const { return run_.steps(); }
-    void stepAtMost(uint64_t steps) { run_.stepAtMost(steps); }  // a plan that steps ahead of the picture begins none beyond
+    void stepAtMost(uint64_t steps) { run_.stepAtMost(steps); }  // limit for plans that step ahead of the picture
     const SceneFile& scene() const { return session().scene(); }
     Session& session() const { return run_.session(); }
     Inspector& watch() { return watch_; }
@@ -52,15 +52,15 @@ class Viewer {
     void chooseThing(const Manipulator::Thing& thing) { hand_.choose(thing); }
     const SceneRenderer& renderer() const { return picture_.renderer(); }
     const PanelLayer::Cost& panelCost() const { return ui_.cost(); }
-    const std::string& message() const { return message_; }  // why the last edit was refused; "" = it was not
+    const std::string& message() const { return message_; }  // the reason why the last edit was refused; "" = accepted
     const HotReload& reload() const { return reload_; }
     bool greets() const { return welcomeScreen_.shown(); }
 
-    // Shows another scene, this one until that is ready; a mistake in it is a message.
+    // Opens another scene; the current one is shown until it is ready. An error in it becomes the message.
     void open(SceneFile scene) { startOpening(std::move(scene), Cause::otherScene); }
     const SceneOpening* opening() const { return opener_.work() ? opener_.work()->opening.get() : nullptr; }  // null: none
 
-    // Keeps the record of the run from now on; starts anew with every new session.
+    // Starts to record the run; the record starts again with every new session.
     void record() { run_.record(); }
     // Called after each step, before the next one, until another session begins. Its Error ends frame().
     void onStepped(std::function<Status(const Session&)> call) { run_.onStepped(std::move(call)); }
@@ -82,10 +82,10 @@ class Viewer {
     // viewer_input.cpp
     void takeKeys(const InputEvents& input);
     void run(Command command);
-    void turnBrush();                                       // on, with room for what it pours, or off
-    void undo();                                            // the last move of a thing, or the change of scenes that lost edits
-    bool handle(const InputEvents& input);                  // whether the manipulator has the mouse
-    void takeMouse(const InputEvents& input, bool greets);  // over the picture, and what shows what it holds
+    void turnBrush();                                       // switches the brush on, with memory for its jet, or off
+    void undo();                                            // undoes the last move of a thing, or the change of scene that lost edits
+    bool handle(const InputEvents& input);                  // true if the manipulator uses the mouse
+    void takeMouse(const InputEvents& input, bool greets);  // also shows what the mouse holds
     void takeDropped(const InputEvents& input);
 
     // viewer_panels.cpp

@@ -1,4 +1,4 @@
-// The passes of a step that know bodies: where their samples are, and what the fluid does to them.
+// The passes of a step for bodies: positions of their samples, and the fluid's forces on them.
 #pragma once
 
 #include <memory>
@@ -15,27 +15,27 @@
 
 namespace rivulet {
 
-// The bodies of a world, on its Device. In a substep: place, sort, index, then push as often as the method says, and advance.
+// The bodies of a world, on its Device. In a substep: place, sort, index, then push as often as the method needs, and advance.
 class BodyPasses {
   public:
-    // Error (badInput): a body without samples, not finite, with mass but no inertia, half a host; (failed): out of memory. `host` empty:
-    // they move freely.
+    // Error (badInput): a body without samples, not finite, with mass but no inertia, a host without one of its functions; (failed): out of
+    // memory. `host` empty: bodies move freely.
     static Result<BodyPasses> create(Device& device, std::span<const Body> bodies, const BodyHost& host, const FluidParams& params,
                                      const PairTraits& traits);
 
-    // What depends on how many slots of particles there are, samples with them. Error: out of memory.
+    // Creates the buffers that depend on the number of slots, including samples. Error: out of memory.
     Status allocate(uint32_t slots);
 
     bool any() const { return !states_.empty(); }
     uint32_t sampleCount() const { return sampleCount_; }
-    // Whether a particle may be spawned at `p`: outside of every body, and not nearer than it would rest.
+    // True if a particle may be spawned at `p`: outside every body, and not nearer than its rest distance.
     bool maySpawn(const vec3& p, float spacing, float near = 1) const;  // `near` as of SolidPasses
-    // What Particles::matterOf holds of the samples.
+    // The entries of Particles::matterOf for the samples.
     std::vector<vec4> matter() const;
 
     const std::vector<BodyState>& states() const { return states_; }
     const std::vector<BodyLoad>& loads() const { return loads_; }  // of the last substep
-    // m/s, of the fastest point of any body.
+    // m/s, speed of the fastest point of all bodies.
     float fastest() const;
 
     // Writes positionNext and velocityNext of the samples, wherever they are sorted.
@@ -45,9 +45,9 @@ class BodyPasses {
     // As StepContext::pushSamples.
     void push(const StepParams& step, const NeighborGrid& grid, Particles& particles, const Buffer& position, const Buffer& pressures,
               float scale, const vec3& weight);
-    // Sums the forces, waits for them (some KB: on a GPU that is one round trip a substep) and has the host move the bodies.
+    // Sums the forces, waits for them (some KB: on a GPU one round trip per substep), and calls the host to move the bodies.
     void advance(const StepParams& step, Particles& particles, double seconds);
-    // The body whose host last gave a state that is not finite: it stayed where it was.
+    // The body for which the host last returned a state that is not finite; the body has kept its state.
     std::optional<size_t> misled() const { return misled_; }
     // Back to t = 0.
     void reset();
@@ -58,12 +58,12 @@ class BodyPasses {
         std::vector<BodyLoad> loads;
         std::vector<std::byte> host;
     };
-    // Error (failed): the host remembers something, and does not say what.
+    // Error (failed): the host has a state that it cannot save.
     Status savable() const;
     void save(WorldState& state) const;
-    // Error: as WorldState::take; other bodies, or what no body can be.
+    // Error: as WorldState::take; other bodies, or invalid values.
     Result<Saved> take(WorldState& state) const;
-    // Error (badInput), by the host; then nothing has changed.
+    // Error (badInput): from the host; then nothing has changed.
     Status restore(const Saved& saved);
 
   private:
@@ -76,7 +76,7 @@ class BodyPasses {
     std::optional<size_t> misled_;
     std::vector<float> reach_;  // m, of each body's farthest sample
     BodyLoads filter_{{}, FluidParams{}};
-    std::shared_ptr<FreeBodies> free_;  // where there is no other host
+    std::shared_ptr<FreeBodies> free_;  // used if there is no other host
     BodyHost host_;
     uint32_t sampleCount_ = 0;
     std::vector<float> volumes_;  // of each sample, over spacing^3

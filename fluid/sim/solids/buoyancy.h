@@ -1,14 +1,13 @@
-// Buoyancy without coupling: what the water does to a host's own bodies, from samples of it, while the water does not know of them. For
-// many small things, or far ones; what the water has to give way to is a Body (bodies.h).
+// Buoyancy without coupling: the force of the water on bodies of the host, computed from samples of the water, which the bodies do not
+// affect. For many small or distant objects; a body that displaces water is a Body (bodies.h).
 //
-// A body is points, each with the volume it stands for. Archimedes: a point bears the weight of rest-density water of its volume, times the
-// share of it that is under, which is the water's density ratio there (1 at most): at the surface that rises from 0 to 1 over about two
-// spacings, half of it on either side, so that a body higher than that floats as deep as it should, and a lower one as if it were that
-// high. Drag (Morison et al. 1950, without its inertia term): linear, k rho V u, and quadratic, C rho A |u| u / 2, of the water's velocity
-// u relative to the point; A is V^(2/3), shared among the points by their volumes. It never turns a motion round within a step.
-//
-// The host's part: ask for places, hand the samples back with the state, integrate. Waves that the body would make, water that it would
-// carry along (added mass) and what it would shelter do not exist.
+// A body is points, each with the volume it stands for. Archimedes: the lift of a point is the weight of its volume in water at rest
+// density, times its submerged share, which is the density ratio of the water there (at most 1). At the surface this share rises from 0 to
+// 1 over about two spacings, half on either side. A body higher than that floats at the right depth, a lower one as if it were that high.
+// Drag (Morison et al. 1950, without its inertia term): linear, k rho V u, and quadratic, C rho A |u| u / 2, of the water's velocity u
+// relative to the point; A is V^(2/3), shared among the points by their volumes. It never reverses a motion within a step. The host gets
+// the places, samples the water there, passes the samples and the state back, and integrates. Waves made by the body, added mass and
+// shelter are not modelled.
 #pragma once
 
 #include <span>
@@ -36,11 +35,11 @@ struct BuoyancyParams {
     void visit(ParamVisitor& v);
 };
 
-// Where the water is to be sampled: the points in the world, m, appended to `places`.
+// Appends the points at which the water must be sampled to `places`, world coordinates, m.
 void addPlaces(std::span<const FloatPoint> points, const Pose& pose, std::vector<vec3>& places);
 
-// The water's force (N) and torque about the centre of mass (N m), world axes. `water`: at the points' places, one each. `mass` kg, > 0;
-// `seconds`: how long the host will let it act, s.
+// Returns the water's force (N) and torque about the centre of mass (N m), world axes. `water`: one sample for each point. `mass` kg, > 0;
+// `seconds`: time for which the host applies them, s.
 BodyLoad buoyancy(std::span<const FloatPoint> points, const BodyState& state, std::span<const FluidSample> water,
                   const BuoyancyParams& params, double mass, double seconds);
 

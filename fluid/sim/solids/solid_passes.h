@@ -1,4 +1,4 @@
-// The passes of a step that know solids: what walls add to density, and what keeps particles out of them.
+// The passes of a step for solids: the walls' share of the density, and collision.
 #pragma once
 
 #include <memory>
@@ -20,22 +20,22 @@ namespace rivulet {
 class SolidPasses {
   public:
     // Error (badInput): a plane without direction, too many surfaces or one out of its range, a field whose band is too narrow for the
-    // spacing; (failed): out of memory. `device` and the solids' fields must outlive it. Without solids and a box with walls nothing is
-    // made for walls. `threads`: PairTraits::threadDefines().
+    // spacing; (failed): out of memory. `device` and the solids' fields must outlive it. Without solids and with a fully periodic box,
+    // nothing is created for walls. `threads`: PairTraits::threadDefines().
     static Result<SolidPasses> create(Device& device, const Solids& solids, const FluidParams& params,
                                       std::span<const Define> threads = {});
 
-    // Whether a particle may be spawned at `p`, where solids are now: on the fluid's side of every plane, outside every mesh, and not
-    // nearer than it would rest. For one that is there already `near` is the least distance, as a share of the distance at which it would
-    // rest: a wall pushes it out.
+    // True if a particle may be spawned at `p`: on the fluid's side of every plane, outside every mesh at its current pose, and not nearer
+    // than its rest distance. For an existing particle, `near` is the least distance as a share of the rest distance, because a wall pushes
+    // it out.
     bool maySpawn(const vec3& p, float spacing, float near = 1) const;
     bool any() const { return planeCount() > 0 || static_.field != nullptr || !rigid_.empty() || !deforming_.empty(); }
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }
-    const Buffer& planes() const { return planes_; }  // as integrate.kernel wants them
+    const Buffer& planes() const { return planes_; }  // in the layout of integrate.kernel
 
     // Error (badInput): as create; nothing has changed then.
     Status setSurfaces(std::span<const Surface> surfaces);
-    // Back to the places at t = 0.
+    // Returns to the poses at t = 0.
     Status reset();
 
     // The places of all solids.
@@ -45,35 +45,36 @@ class SolidPasses {
         uint64_t voxelsRewritten = 0;
     };
     void save(WorldState& state) const;
-    // Error: as WorldState::take; or the voxels are others than those that it was saved with.
+    // Error: as WorldState::take; other voxels than at the time of saving.
     Result<Places> take(WorldState& state) const;
     Status restore(const Places& places);
 
-    // Where solids are to be `seconds` from now; empty spans: where they are. Error (badInput): not one pose a rigid solid, not one shape
-    // a deforming one, not finite, a vertex beyond its field's reach; then nothing moves.
+    // Sets the poses and shapes of solids `seconds` from now; empty spans: unchanged. Error (badInput): the number of poses or shapes is
+    // wrong, a value is not finite, a vertex is beyond its field's reach; then nothing moves.
     Status beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds);
     float fastestWall() const { return fastestWall_; }  // m/s, of the frame
 
-    // Moves the solids on to the frame's shares [from, to] of its time, 0..1. `gravity` m/s^2.
+    // Moves the solids from the share `from` to the share `to` of the frame's time, 0..1. `gravity` m/s^2.
     Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
     // Fills `boundary` with the walls' share at `position`, sorted.
     void boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary);
-    // Fills `friction` with what no-slip walls do at `position`, sorted: see StepContext::wallFriction. Bending ones count as at rest.
+    // Fills `friction` with the effect of no-slip walls at `position`, sorted: see StepContext::wallFriction. Deforming walls count as at
+    // rest.
     void friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction);
-    // Adds the adhesion of walls that stand still to particles.acceleration; step.force.w as fluid/forces/wall_adhesion wants it.
+    // Adds the adhesion of static walls to particles.acceleration; step.force.w: see fluid/forces/wall_adhesion.
     void adhesion(const StepParams& step, const NeighborGrid& grid, Particles& particles);
     // Moves particles.positionNext and velocityNext out of the solids.
     void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);
-    // Anything else that moves: vec4 each, xyz m or m/s, w passed through. `from` is in no solid.
+    // Other moving points: one vec4 each, xyz m or m/s, w unchanged. `from` is outside all solids.
     struct Movers {
         const Buffer *from, *to, *velocity;
-        const Buffer* counts;  // uint; [index]: how many there are, the first ones
+        const Buffer* counts;  // uint; [index]: number of active points
         uint32_t index, slots;
     };
-    // The same, of these, and out of planes and the box. `seconds`: their way is the frame's so far, with the rigid solids' poses since
-    // beginFrame; bending ones have only the last substep's shape. 0: it is of no time, past solids where they are.
+    // Moves these points out of solids, planes and the box. `seconds`: their path covers the frame so far, with the rigid solids' poses
+    // since beginFrame; deforming solids have only the shape of the last substep. 0: the path takes no time, and solids stand still.
     void keepOut(const StepParams& step, const Movers& movers, double seconds);
-    bool moving() const { return !rigid_.empty() || !deforming_.empty(); }  // some can
+    bool moving() const { return !rigid_.empty() || !deforming_.empty(); }  // some may move
 
     const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now
     uint64_t voxelsRewritten() const { return voxelsRewritten_; }  // of the deforming ones, since the start

@@ -1,5 +1,5 @@
-// The passes that let others hold the same water: where a world's particles are, and taking some out. How full a place is, WaterQuery
-// says; what others hand over is poured: see SourcePasses.
+// The passes for exchange of water with other owners: they list particles in a box and withdraw particles. WaterQuery measures the density
+// at a point; SourcePasses handles deposits.
 #pragma once
 
 #include <span>
@@ -20,9 +20,9 @@ class ExchangePasses {
     static Result<ExchangePasses> create(Device& device);
     bool any() const { return device_ != nullptr; }
 
-    // Both wait for the device. By slot. No more than 16,384 at once.
+    // Both wait for the device. Sorted by slot; at most 16,384 per call.
     std::vector<WorldParticle> within(const StepParams& step, const Particles& particles, const Bounds& box, float faster, float looser);
-    // No more than within() gives at once. `sorted`: the grid is of the particles as they lie.
+    // At most as many as one call of within() returns. `sorted`: the grid matches the current order of particles.
     void take(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
               std::span<const uint32_t> slots, bool sorted);
 

@@ -1,5 +1,5 @@
-// Spray, foam and bubbles (Ihmsen et al. 2012): small particles that the water carries, and that act back on nothing. A frame's last step
-// makes, moves and ends them; what they are follows from the water about them.
+// Spray, foam and bubbles (Ihmsen et al. 2012): small particles that the water carries and that do not affect it. The last step of a frame
+// spawns, moves and removes them; their kind follows from the water around them.
 #pragma once
 
 #include <memory>
@@ -23,12 +23,11 @@ class FoamPasses {
     void run(const FluidParams& fluid, const StepParams& step, NeighborGrid& grid, const Particles& particles, SolidPasses& solids,
              double seconds);
 
-    // Where pictures come between steps: foam is to be drawn where it was so many seconds before the newest state. Error (failed): out of
-    // memory.
+    // For pictures between steps: sets the time before the newest state, s, at which foam is drawn. Error (failed): out of memory.
     Status drawEarlier(double seconds);
     void drawNewest() { earlier_ = false; }
 
-    // What is there, for a saved state. Error: as WorldState::take; other slots.
+    // The foam as part of a saved state. Error: as WorldState::take; another number of slots.
     struct Saved {
         std::vector<vec4> foam, velocity;
         uint32_t alive = 0, frame = 0;
@@ -40,7 +39,7 @@ class FoamPasses {
     uint32_t slots() const { return slots_; }
     const Buffer& foam() const { return foam_; }  // see shaders/fluid/surface/foam_params.h
     const Buffer& drawn() const { return earlier_ ? drawn_ : foam_; }
-    const Buffer& velocity() const { return velocity_; }  // as it says
+    const Buffer& velocity() const { return velocity_; }  // see there
     uint32_t alive() const { return counts_->alive; }     // on a GPU some frames ago
 
   private:
@@ -53,7 +52,7 @@ class FoamPasses {
     PairKernel air_, crest_;
     Kernel move_, wanted_, spawn_, back_;
     Buffer airs_, births_, before_, foam_, velocity_, lists_, most_;
-    Buffer drawn_;  // made when it is first asked for
+    Buffer drawn_;  // created at the first use
     bool earlier_ = false;
     std::shared_ptr<Counts> counts_ = std::make_shared<Counts>();
 };

@@ -1,4 +1,4 @@
-// Positions to be drawn, where steps and pictures have different rates: between the two last states, particle by particle.
+// Positions for drawing if steps and pictures have different rates: interpolated between the last two states, for each particle.
 #pragma once
 
 #include "engine/compute/device.h"
@@ -8,15 +8,15 @@ namespace rivulet {
 
 class DrawnPositions {
   public:
-    // Nothing the second time. Error (failed): out of memory, a kernel does not compile.
+    // No effect when called again. Error (failed): out of memory, a kernel does not compile.
     Status prepare(Device& device, uint32_t count);
-    // The newest state is about to become the one before.
+    // Call before the newest state becomes the previous one.
     void remember(Device& device, const Particles& particles);
-    // `share` 0..1 of the way to the newest state; `reach`: the furthest that a particle goes in a fixed step, m.
+    // `share` 0..1 of the way to the newest state; `reach`: the longest path of a particle in a fixed step, m.
     void draw(Device& device, const Particles& particles, float share, float reach);
-    // There is no state before.
+    // Discards the previous state.
     void forget() { remembers_ = drawn_ = false; }
-    // As long as nothing has been drawn: the newest state.
+    // Before the first interpolation: the newest state.
     const Buffer& positions(const Particles& particles) const { return drawn_ ? positions_ : particles.positionNext; }
 
   private:

@@ -1,4 +1,4 @@
-// FluidWorld: the one object a host owns. Particles, neighbour grid, method, boundaries; stepped once a frame.
+// FluidWorld: the object that a host owns. It holds particles, neighbour grid, method and boundaries, and is stepped once a frame.
 #pragma once
 
 #include <array>
@@ -20,29 +20,29 @@
 
 namespace rivulet {
 
-// Where the particles are on the Device. Valid until the next step(), reset() or destruction. Order changes every step; ids do not.
-// Among the slots are `count` particles; where the position's w is negative there is none (a free slot, or a sample on a body).
+// The particles on the Device. Valid until the next step(), reset() or destruction. Their order changes every step; ids do not. A slot with
+// a negative w of the position holds no particle: it is free, or a sample on a body.
 struct ParticleView {
     const Buffer* position = nullptr;  // vec4: xyz m, w = density / rest density; negative: no particle
     const Buffer* velocity = nullptr;  // vec4: xyz m/s, w unused
     const Buffer* id = nullptr;        // uint
-    const Buffer* normal = nullptr;    // vec4: of the surface, w its length; null unless fluid.forces.normals asks for them
-    uint32_t count = 0;                // slots of the fluid; one with position.w < 0 is free, or a sample on a body: nothing to draw
+    const Buffer* normal = nullptr;    // vec4: of the surface, w its length; null if fluid.forces.normals is none
+    uint32_t count = 0;                // slots of the fluid, free ones included
     uint32_t slots = 0;                // of the arrays, samples with them
-    // vec4: xyz 1/m that red, green and blue fade in its liquid and dye; w 1: and as much as in the world's own liquid, 0: instead of that.
-    // Null where all particles are alike.
+    // vec4: xyz absorption of red, green and blue by the particle's liquid and dye, 1/m; w 1: added to that of the world's own liquid, 0:
+    // instead of it. Null if all particles are equal.
     const Buffer* absorption = nullptr;
-    const Buffer* matterOf = nullptr;  // by id, as Particles::matterOf; null where all particles are alike
+    const Buffer* matterOf = nullptr;  // by id, as Particles::matterOf; null if all particles are equal
     float spacing = 0;                 // m
-    float mass = 0;                    // kg, of one of the world's own liquid
-    // Positions at the time that has been asked for: with fluid.fixedStep between the last two steps, one step late; else `position`.
+    float mass = 0;                    // kg, of a particle of the world's own liquid
+    // Positions at the requested time: with fluid.fixedStep between the last two steps, one step late; otherwise `position`.
     const Buffer* drawn = nullptr;  // vec4: as position
-    // The ellipsoids about them: Ellipsoids::buffers(). Null unless fluid.ellipsoids asks for them, and before the first step.
+    // The ellipsoids about them: Ellipsoids::buffers(). Null if fluid.ellipsoids is off, and before the first step.
     std::array<const Buffer*, 3> ellipsoids = {};
-    // Spray, foam and bubbles, a vec4 each: xyz m, w what is left of its life, s (0: none is there); and xyz m/s, w size (0.5 to 1) + 1
-    // spray, 2 foam, 3 bubble. Null unless fluid.foam.most asks for them.
+    // Spray, foam and bubbles, one vec4 each: xyz position, m, w remaining life, s (0: free slot); and xyz velocity, m/s, w size (0.5 to 1)
+    // plus 1 for spray, 2 for foam, 3 for a bubble. Null if fluid.foam.most is 0.
     const Buffer* foam = nullptr;
-    const Buffer* foamDrawn = nullptr;  // vec4: as foam, at the time that `drawn` is of
+    const Buffer* foamDrawn = nullptr;  // vec4: as foam, at the time of `drawn`
     const Buffer* foamVelocity = nullptr;
     uint32_t foamSlots = 0;
 };
@@ -50,10 +50,10 @@ struct ParticleView {
 // The inputs of a frame.
 struct FluidInputs {
     std::optional<vec3> gravity = {};  // m/s^2; absent: params().gravity
-    // The solids at the end of the frame; until then they move evenly. Empty: they stay.
+    // The solids at the end of the frame; within the frame they move uniformly. Empty: they do not move.
     std::span<const Pose> poses = {};                    // of Solids::rigid
     std::span<const std::span<const vec3>> shapes = {};  // m, the vertices of Solids::deforming
-    // Of a GPU, for fluid.frameBudget: the time of a frame's passes some frames ago (Device::takeTimes), ms; 0: not known.
+    // For fluid.frameBudget on a GPU: time of the passes of an earlier frame (Device::takeTimes), ms; 0: unknown.
     double deviceMs = 0;
 };
 
@@ -67,35 +67,34 @@ class FluidWorld {
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;
 
-    // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits ask. 0 or less: nothing happens.
-    // A frame longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited gives the reason:
-    // simulated time slows, steps do not grow. time() + pending() + dropped() is the sum of all `seconds`.
+    // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits require. 0 or less: no effect. A frame
+    // longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited gives the reason: simulated time
+    // slows down, steps do not grow. time() + pending() + dropped() is the sum of all `seconds`.
     void step(const FluidInputs& inputs, double seconds);
     // The part of a frame that step() would simulate, s: time beyond fluid.longestFrame is dropped, and reported. For hosts that cut
     // frames.
     double acceptedSeconds(double seconds);
     // The first work of the next step is to find each particle's cell. Another device can do it meanwhile (cooperation, thesis 2.3): it
-    // runs the kernel fluid/grid/cell_of with this, and the host passes the result to setCells before the next step. Nothing: before the
-    // first step, and where cells are not known before a step: on the cpu, with bodies, periodic axes, linked lists, or a method that
-    // moves particles before it sorts them.
+    // runs the kernel fluid/grid/cell_of with this, and the host passes the result to setCells before the next step. Empty: before the
+    // first step, on the cpu, with bodies, periodic axes or linked lists, and with a method that moves particles before it sorts them.
     struct CellWork {
         StepParams step;
-        const Buffer *position, *id;  // vec4, uint: as they lie until the next step; step.count of them
+        const Buffer *position, *id;  // vec4, uint: in their order until the next step; step.count entries
     };
-    bool hasCellWork() const;  // whether there is such work at all
+    bool hasCellWork() const;  // true if this world can have such work
     std::optional<CellWork> cellWork();
     void setCells(std::span<const uint32_t> cells);  // ignored if the world has changed since cellWork()
     void reset();                                    // back to t = 0
-    // Takes values that can change between steps; `fixed` values stay as they are. Error (badInput): a value out of its range; nothing
+    // Sets values that can change between steps; `fixed` values stay. Error (badInput): a value out of its range; nothing
     // has changed then.
     Status setParams(const FluidParams&);
     Status setSurfaces(std::span<const Surface> surfaces);  // in place of Solids::surfaces. Error: as create
-    void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, a group each
-    // As many emitters and sinks as there are; shapes and meshes stay as they were. Error (badInput): as setParams.
+    void visitForces(ParamVisitor& v);                      // the Params of the host's own forces, one group per force
+    // Sets the existing emitters and sinks; shapes and meshes stay. Error (badInput): another number of them; as setParams.
     Status setSources(const Sources& sources);
 
-    // Exchange with others that hold water, as skins do; only where Sources::expectedDeposit is above 0. Places m, velocities m/s.
-    // deposit: `volume` m^3 lands there. It is pending until it is as much as a particle; then one is spawned above the place. Volume is
+    // Exchange with other owners of water, such as skins; only if Sources::expectedDeposit is above 0. Places m, velocities m/s. deposit:
+    // adds `volume` m^3 at the place. It is pending until it suffices for a particle, which is then spawned above the place. Volume is
     // conserved; deposited water is of the world's own liquid.
     void deposit(const vec3& place, const vec3& velocity, double volume);
     // within: the particles now in a box that are faster (m/s) or of a lower density ratio than given, 16,384 at most. withdraw: removes
@@ -103,8 +102,8 @@ class FluidWorld {
     std::vector<WorldParticle> within(const Bounds& box, float faster = 0, float looser = 1.0e9F);
     void withdraw(std::span<const uint32_t> slots);
 
-    // The water at places, and where rays meet it (water_query.h), as of now: at t = 0, and after each step. Particles that a step's end
-    // spawned are found from the next step on. Nothing of the world changes. They wait. Error (failed): out of memory.
+    // The water at points, and hits of rays (water_query.h), at the current time: at t = 0 and after each step. Particles spawned at the
+    // end of a step are included from the next step on. The world does not change. These calls wait. Error (failed): out of memory.
     Result<std::vector<FluidSample>> sample(std::span<const vec3> places);
     Result<std::vector<FluidHit>> cast(std::span<const FluidRay> rays);
     // y (m) of the highest surface over (or under) each x, z, looking down from above the box; NaN where there is no water.
@@ -117,22 +116,22 @@ class FluidWorld {
     // empties them. Errors as VolumePasses::set.
     Status setVolumes(std::span<const Volume> volumes);
     std::vector<VolumeCount> volumes() const;
-    // The particles that entered and left each since the last call, of volumes where any did.
+    // Returns the particles that entered and left since the last call, for each volume with any.
     std::vector<VolumeCount> takeVolumeEvents();
 
     const FluidParams& params() const;
     ParticleView particles() const;
     const FluidStats& stats() const;  // late on a GPU
-    float fastestFall() const;        // m/s, the speed that its water reaches by falling, with its speed at the start
+    float fastestFall() const;        // m/s, speed after the largest possible fall, including the initial speed
     double time() const;              // s simulated
-    double pending() const;           // s passed to step() that wait for a whole fluid.fixedStep
+    double pending() const;           // s passed to step() that are pending for a whole fluid.fixedStep
     double dropped() const;           // s passed to step() that will not be simulated
     int lastSubsteps() const;         // of the last step(), not late
-    // The pressures of the last substep, Pa, slot by slot as particles(); of pbf, the pressure that would make its corrections. They enter
-    // the pair forces: on a lattice with a support of 2 spacings they are 5 % above the pressure transmitted, and 10 to 20 % off for a
-    // single particle. Reads back and waits.
+    // The pressures of the last substep, Pa, in the order of particles(); for pbf, the pressure equivalent to its corrections. They are the
+    // pressures of the pair forces: on a lattice with a support of 2 spacings they are 5 % above the transmitted pressure, and for a single
+    // particle the error is 10 to 20 %. Reads back and waits.
     std::vector<float> pressures() const;
-    const std::vector<Pose>& poses() const;  // of the rigid solids, as they are now: where time slows, not yet at FluidInputs::poses
+    const std::vector<Pose>& poses() const;  // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
     const std::vector<BodyState>& bodies() const;
     const std::vector<BodyLoad>& bodyLoads() const;  // of the last substep
     std::vector<Pose> drawnPoses() const;            // the same, as ParticleView::drawn
@@ -145,17 +144,17 @@ class FluidWorld {
     dvec3 toHost(const vec3& p) const { return origin() + dvec3(p); }
     vec3 fromHost(const dvec3& p) const { return {p - origin()}; }
 
-    // All that the next step depends on, into sections of `state`; a cpu continues from it bit for bit. Waits for the device.
+    // Writes all data that the next step depends on into sections of `state`; a cpu continues from it bit for bit. Waits for the device.
     // Error (failed): the host of the bodies has a state that it cannot save.
     Status savable() const;
     void save(WorldState& state);  // of a savable world
-    // Continues from there, on any device. Other owners of sections in `state` take theirs before. Error: as WorldState::take and
-    // allTaken; the params that are `fixed` or the solids differ. The world is then as it was.
+    // Continues from a saved state, on any device. Other owners of sections in `state` take theirs before this call. Error: as
+    // WorldState::take and allTaken; the params that are `fixed` or the solids differ. The world is then as it was.
     Status restore(WorldState& state);
-    // Continues from another world with the same box and spacing, among solids that stand at `poses` and have `shapes` now (as
-    // FluidInputs; all of them): with its time, its particles except those inside a solid here, its bodies if they are the same, and its
-    // foam if this world has as many slots for it. The counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another
-    // box or spacing, liquids that this world does not have, more particles than it has room for.
+    // Continues from another world with the same box and spacing, with solids at `poses` and with `shapes` (as FluidInputs; all of them).
+    // It takes over the time, the particles except those inside a solid here, the bodies if they are the same, and the foam if this world
+    // has as many slots for it. The counts of emitters and sinks begin at 0. Waits for both. Error (badInput): another box or spacing,
+    // liquids that this world does not have, more particles than this world has slots.
     Status continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes);
 
   private:

@@ -1,4 +1,4 @@
-// FluidWorld::Impl: what a world is made of. For fluid_world*.cpp alone: made in _start, stepped in fluid_world.cpp, kept in _state.
+// FluidWorld::Impl: the parts of a world, only for fluid_world*.cpp: created in _start, stepped in fluid_world.cpp, saved in _state.
 #pragma once
 
 #include <memory>
@@ -45,19 +45,19 @@ struct FluidWorld::Impl {
     std::unique_ptr<NeighborGrid> grid;
     Particles particles;
     std::vector<NewParticle> start;
-    uint32_t startCount = 0;  // particles that were there when counting began: those of `start`, or of the world that this one goes on from
+    uint32_t startCount = 0;  // particles at the start of counting: those of `start`, or of the world that this one continues
     SolidPasses solids;
     Sources sourceSetup;  // emitters and sinks
     SourcePasses sources;
-    ExchangePasses exchange;  // where others hold water, too
-    uint64_t withdrawn = 0;   // particles, by them
+    ExchangePasses exchange;  // for other owners of water
+    uint64_t withdrawn = 0;   // particles removed by them
     VolumePasses volumes;
-    WaterQuery query;             // made when it is first asked
-    bool sortedForQuery = false;  // as `sorted`, of position and velocity where a step has not been yet
+    WaterQuery query;             // created at the first query
+    bool sortedForQuery = false;  // as `sorted`, for position and velocity before the first step
     std::optional<FoamPasses> foam;
-    bool sorted = false;    // the grid is of the particles as they lie
-    uint32_t slots = 0;     // of particles: those of the blocks and room for more
-    bool coloured = false;  // particles differ to the eye
+    bool sorted = false;    // the grid matches the current order of particles
+    uint32_t slots = 0;     // slots of particles: those of the blocks and free ones
+    bool coloured = false;  // particles differ in colour
     float mostViscous = 0;  // m^2/s, of the world's liquids
     BodyPasses bodies;
     Buffer statsRows, corner;
@@ -66,19 +66,19 @@ struct FluidWorld::Impl {
     WorldForces forces;
     StepLimits limits;
     SolveFigures solve;
-    double iterations = 0;  // of this frame's substeps, all of them
+    double iterations = 0;  // sum over the substeps of this frame
     FrameStepper stepper;
     DrawnPositions drawn;
     Ellipsoids ellipsoids;
     std::vector<Pose> posesBefore;                                         // the rigid solids', before the last fixed step
-    std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads that are still on their way
+    std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads in flight
     StepParams step{};
     vec3 gravity{0.0F};
     WorldClock clock;
     bool cellsValid = false;  // since cellWork()
 
     Status prepare();
-    Status mayLink() const;  // whether fluid.grid linked_list knows all that is asked for
+    Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     void fillStart();
     Status findSlots();
@@ -87,7 +87,7 @@ struct FluidWorld::Impl {
     void gatherColours();
     StepLimits::Inputs limitInputs() const;
     float fastestFall() const { return limits.fastestFall(limitInputs()); }
-    void assumeFastest(double speed);  // m/s: where nothing has been measured yet
+    void assumeFastest(double speed);  // m/s; used before the first measurement
     void warn();
     StepLimit stepLimit(double now, double frameSeconds) const;  // s
     void fillStep();

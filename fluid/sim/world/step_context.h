@@ -15,10 +15,10 @@
 
 namespace rivulet {
 
-// What a pressure solver did. On a GPU the figures come some frames late.
+// Results of a pressure solver. On a GPU they arrive some frames late.
 struct SolveFigures {
     double iterations = 0;           // of the last substep
-    std::optional<double> residual;  // what it stopped at: mean compression it predicts, a fraction; of a method that knows
+    std::optional<double> residual;  // mean compression predicted at the end, a fraction; empty: the method predicts none
     uint64_t sweeps = 0;             // over all neighbours, of all kernels since the start
 };
 
@@ -29,30 +29,29 @@ struct StepContext {
     NeighborGrid& grid;
     Particles& particles;
     SolveFigures& solve;
-    double fastest = 0;   // m/s, as last known; on a GPU that is some frames ago
-    const Buffer& stats;  // rows of fluid/world/stats as they were last measured: where a kernel asks, they are not late
-    // Sorts the newest state into position and velocity, and moves solids and bodies on. false: it could not, and the substep ends here.
-    // `fromPositions`: velocityNext holds where particles come from, m.
+    double fastest = 0;   // m/s, the last measured value; on a GPU some frames old
+    const Buffer& stats;  // rows of fluid/world/stats of the last measurement; for a kernel they are not late
+    // Sorts the newest state into position and velocity, and advances solids and bodies. False: this failed, and the substep ends here.
+    // `fromPositions`: velocityNext holds the previous positions, m.
     std::function<bool(bool fromPositions)> build;
-    // Adds to the forces on bodies what fluid does to their samples; a world without bodies has none. `pressures`: of the fluid, as the
-    // pair terms of the method have them; `scale`: an acceleration of one particle (m/s^2) over pressure * gradient (1/m); `weight`: by
-    // how much they grow a metre beyond the fluid, in the same unit (wcsph: its form of the kernel knows gravity; 0).
+    // Adds the fluid's forces on samples to the forces on bodies; empty in a world without bodies. `pressures`: of the fluid, in the form
+    // of the method's pair terms; `scale`: acceleration of one particle (m/s^2) over pressure * gradient (1/m); `weight`: growth of the
+    // pressure per metre beyond the fluid, in the same unit (wcsph: 0, because its kernel includes gravity).
     std::function<void(const Buffer& position, const Buffer& pressures, float scale, const vec3& weight)> pushSamples;
-    const Buffer& planes;  // as integrate.kernel wants them
-    // Fills particles.boundary for these positions (in sorted order). Methods whose density knows no walls do not ask.
+    const Buffer& planes;  // in the layout of integrate.kernel
+    // Fills particles.boundary for these positions (in sorted order). Methods without walls in their density do not call it.
     std::function<void(const Buffer& position)> boundary;
-    // Whether any row of forces() is on.
+    // True if any row of forces() is on.
     bool hasForces = false;
-    // Adds what the rows of forces() ask for to particles.acceleration, from position and velocity, as sorted.
+    // Adds the forces of all active rows of forces() to particles.acceleration, from the sorted position and velocity.
     std::function<void()> forces;
-    // What no-slip walls do at these positions (in sorted order): w sum of k (1/m^2), xyz sum of k times the wall's velocity; the
-    // acceleration is nu (xyz - w v). Empty: there are none.
+    // Computes the effect of no-slip walls at these positions (in sorted order): w sum of k (1/m^2), xyz sum of k times the wall's
+    // velocity; the acceleration is nu (xyz - w v). Empty: there are no such walls.
     std::function<void(const Buffer& position, Buffer& friction)> wallFriction = {};
-    // Adds what walls at rest pull at particles by adhesion to particles.acceleration; `params`.force.w as fluid/forces/wall_adhesion wants
-    // it.
+    // Adds the adhesion of walls at rest to particles.acceleration; `params`.force.w: see fluid/forces/wall_adhesion.
     std::function<void(const StepParams& params)> wallAdhesion = {};
 
-    // The params of a world where nothing weighs anything.
+    // The params of a world without gravity.
     StepParams noGravity() const {
         StepParams p = params;
         p.gravity = vec4(0.0F);
@@ -60,7 +59,7 @@ struct StepContext {
     }
 };
 
-// A kernel with FOR_NEIGHBORS, in the form that the world's particles need. It binds particles.matter by itself, where it is used.
+// A kernel with FOR_NEIGHBORS, in the form that the world's particles need. It binds particles.matter itself if that is used.
 struct PairKernel {
     Kernel kernel;
     bool matter = false;

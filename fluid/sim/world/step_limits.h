@@ -1,4 +1,4 @@
-// How fast the water of a world gets, and the longest step that is stable at that speed.
+// The speeds of the water in a world, and the longest stable step at these speeds.
 #pragma once
 
 #include "fluid/sim/forces/world_forces.h"
@@ -9,37 +9,37 @@ namespace rivulet {
 
 class StepLimits {
   public:
-    // What the limits depend on, as it is now.
+    // The values that the limits depend on.
     struct Inputs {
         const FluidParams& params;
         const Method& method;
         const WorldForces& forces;
         std::span<const Emitter> emitters;
         vec3 gravity;         // m/s^2
-        float fastestSource;  // m/s, of what emitters let out
+        float fastestSource;  // m/s, highest emission speed
         float fastestBody;    // m/s
-        bool atStart;         // t = 0: how fast bodies are is what the scene asked for
+        bool atStart;         // t = 0: the speeds of bodies are those of the scene
     };
-    // What a step is to be limited by beside that.
+    // Further values that limit a step.
     struct Measured {
-        double late = 0;         // s since speeds were measured: on a GPU figures come some frames late
-        double maxSpeed = 0;     // m/s, of particles then
+        double late = 0;         // s since speeds were measured, which arrive some frames late on a GPU
+        double maxSpeed = 0;     // m/s, of particles at that time
         float fastestWall = 0;   // m/s, in this frame
         float mostViscous = 0;   // m^2/s; 0: all particles are alike
         const StepParams& step;  // of this step
     };
 
-    // m/s, what water reaches by falling from its highest block or emitter to the far side of the box, with what it starts with.
+    // m/s, speed after a fall from the highest block or emitter to the far side of the box, including the initial speed.
     float fastestFall(const Inputs& in) const;
-    // No water of the scene is faster, m/s: ten times what a fall across the whole box, walls, forces or its own start give, or twice the
-    // speed of sound. Where something fails, speeds would otherwise grow as steps shrink, and steps shrink as speeds grow.
+    // Upper limit of the speed of water, m/s: ten times the speed from a fall across the box, walls, forces or the start, or twice the
+    // speed of sound. Without this limit, in a failing run speeds would grow as steps shrink, and steps shrink as speeds grow.
     float fastestPossible(const Inputs& in) const;
-    // The largest stable step: acoustic CFL or how far the fastest may go, viscous and body-force limits (Monaghan 1992, with the
+    // The longest stable step: acoustic CFL or the longest path in a step, viscous and body-force limits (Monaghan 1992, with the
     // constants of Morris et al. 1997).
     StepLimit longest(const Inputs& in, const Measured& measured, double frameSeconds) const;
 
     float fastestWall = 0;   // m/s, of moving solids, lately
-    float fastestStart = 0;  // m/s, of particles as they were put in, or restored from a saved state
+    float fastestStart = 0;  // m/s, of particles at their start, or restored from a saved state
     float fastestEver = 0;   // m/s, the largest fastestPossible() since t = 0
 };
 

@@ -32,7 +32,7 @@ bool isOrdinaryTarget(const std::string& path) {
     return !fs::exists(status) || fs::is_regular_file(status);
 }
 
-// Beside the target, so that the rename stays on one file system; with the target's ending, which tells ffmpeg the container.
+// Beside the target, so that the rename stays on one file system; with the target's ending, by which ffmpeg chooses the container.
 std::string hiddenNameBeside(const std::string& path) {
     fs::path target(path);
     return (target.parent_path() / fmt::format(".rivulet-{}-{}", getpid(), target.filename().string())).string();

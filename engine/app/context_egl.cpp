@@ -69,7 +69,7 @@ struct ContextEgl::Impl {
     Impl() = default;
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
-    // The display stays: EGL hands the same one to everybody in the process, and ending it would end their contexts.
+    // The display stays open: EGL shares it within the process, and closing it would end the contexts of others.
     ~Impl() {
         if (context == EGL_NO_CONTEXT) return;
         if (eglGetCurrentContext() == context) eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -90,7 +90,7 @@ struct ContextEgl::Impl {
         return eglCreateContext(display, config, shares, attributes);
     }
 
-    // nullptr where this display offers no OpenGL 4.5 core context without a surface; `why` then says what is missing.
+    // Returns nullptr if this display offers no OpenGL 4.5 core context without a surface; `why` then gives the reason.
     static std::unique_ptr<Impl> open(const Candidate& candidate, const Options& options, std::string& why) {
         EGLint major = 0, minor = 0;
         if (eglInitialize(candidate.display, &major, &minor) != EGL_TRUE) {
@@ -178,7 +178,8 @@ Result<SharedGl> ContextEgl::shared() const {
         ~Second() { eglDestroyContext(display, context); }
     };
     const EGLContext context = impl_->make(impl_->context);
-    if (context == EGL_NO_CONTEXT) return failed(fmt::format("the driver makes no second OpenGL context (EGL error {:#x})", eglGetError()));
+    if (context == EGL_NO_CONTEXT)
+        return failed(fmt::format("the driver cannot create a second OpenGL context (EGL error {:#x})", eglGetError()));
     const std::shared_ptr<Second> second(new Second{impl_->display, context, {}});
     SharedGl shared;
     shared.enter = [s = second.get()] {

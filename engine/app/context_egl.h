@@ -25,7 +25,7 @@ class ContextEgl {
     ~ContextEgl();
 
     Status makeCurrent();                 // on the calling thread. Error (failed): it is current on another
-    Result<SharedGl> shared() const;      // current nowhere yet. Error (failed): the driver makes no second context
+    Result<SharedGl> shared() const;      // current nowhere yet. Error (failed): the driver cannot create a second context
     bool software() const;                // llvmpipe, softpipe, swrast: GL runs on the CPU
     const std::string& renderer() const;  // GL_RENDERER
     const std::string& version() const;   // GL_VERSION

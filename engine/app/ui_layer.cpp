@@ -86,7 +86,7 @@ Result<UiLayer> UiLayer::create(void* clipboard) {
 void UiLayer::begin(const InputEvents& input, double seconds) {
     ImGui::SetCurrentContext(impl_->context);
     ImGuiIO& io = ImGui::GetIO();
-    // ImGui's coordinates are those of an ordinary screen, so that no panel needs to know of another.
+    // ImGui's coordinates are those of an ordinary screen, so that panels do not depend on other scales.
     const float scale = std::clamp(input.scale, 0.25F, 8.0F);
     io.DisplaySize = ImVec2(static_cast<float>(std::max(input.size.x, 0)) / scale, static_cast<float>(std::max(input.size.y, 0)) / scale);
     if (input.size.x > 0 && input.size.y > 0) {

@@ -162,7 +162,7 @@ Result<SharedGl> WindowGlfw::shared() const {
     };
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);  // the others are those of the first
     GLFWwindow* window = glfwCreateWindow(1, 1, "", nullptr, impl_->window);
-    if (window == nullptr) return failed(fmt::format("the driver makes no second OpenGL context ({})", glfwTrouble()));
+    if (window == nullptr) return failed(fmt::format("the driver cannot create a second OpenGL context ({})", glfwTrouble()));
     const std::shared_ptr<Second> second(new Second{window, {}});
     SharedGl shared;
     shared.enter = [s = second.get()] {

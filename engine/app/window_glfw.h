@@ -32,8 +32,9 @@ class WindowGlfw {
 
     // Waits for nothing; what happened since the last call.
     InputEvents poll();
-    Result<SharedGl> shared() const;  // to be made, and to go, on the main thread. Error (failed): the driver makes no second context
-    void swap();                      // shows what was drawn into framebuffer 0
+    Result<SharedGl> shared()
+        const;    // must be created and destroyed on the main thread. Error (failed): the driver cannot create a second context
+    void swap();  // shows what was drawn into framebuffer 0
     void setTitle(const std::string& title);
     void resize(int width, int height);  // window coordinates
     GLFWwindow* handle() const;

@@ -45,7 +45,7 @@ std::string reason(int error) {
         case EISDIR:
             return "it is a folder";
         case ENOTDIR:
-            return "a part of its path is no folder";
+            return "a part of its path is not a folder";
         case ENOSPC:
         case EDQUOT:
             return "the disk is full";

@@ -1,4 +1,4 @@
-// Params that are `fixed` stay as a world was made; the others may change while it runs. `visit` alone says which is which.
+// Params that are `fixed` keep their value from the creation of a world; the others may change while it runs. Only `visit` marks them.
 #pragma once
 
 #include "engine/core/json.h"

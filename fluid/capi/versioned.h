@@ -1,4 +1,5 @@
-// Structs that begin with their size: a program built against an older or a newer rivulet.h and this library read what both know.
+// Structs that begin with their size: a program built against an older or a newer rivulet.h and this library read the members that both
+// have.
 #pragma once
 
 #include <fmt/format.h>

@@ -313,7 +313,7 @@ std::string UvReport::sentence() const {
     const auto say = [&said](size_t n, const char* one, const char* many) {
         if (n > 0) said.push_back(fmt::format("{} {}", n, n == 1 ? one : many));
     };
-    say(notNumbers, "triangle whose UVs are no numbers", "triangles whose UVs are no numbers");
+    say(notNumbers, "triangle with UVs that are not finite", "triangles with UVs that are not finite");
     say(noArea, "triangle without area", "triangles without area");
     say(tooWide, "triangle wider than the map", "triangles wider than the map");
     if (overlap > 0.001) said.push_back(fmt::format("{:.1f} % of overlap", 100 * overlap));

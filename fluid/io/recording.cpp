@@ -231,7 +231,7 @@ Result<RecordingReader> RecordingReader::open(const std::string& path) {
         struct stat facts = {};
         if (!file || fstat(fileno(file.get()), &facts) != 0)
             return badInput(fmt::format("{} cannot be read: {}", path, std::strerror(errno)));
-        if (!S_ISREG(facts.st_mode)) return badInput(fmt::format("{} cannot be read: it is no ordinary file", path));
+        if (!S_ISREG(facts.st_mode)) return badInput(fmt::format("{} cannot be read: it is not a regular file", path));
         RecordingReader reader(std::move(file), path);
         reader.size_ = static_cast<uint64_t>(facts.st_size);
         if (Status head = reader.readHeader(); !head) return head.error();

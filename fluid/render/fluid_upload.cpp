@@ -98,7 +98,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         out.drops = drops_.name();
     }
     out.foamCount = particles.foam != nullptr ? particles.foamSlots : 0;
-    // The points' shader reads normals where it else reads velocities. There are none before the first step.
+    // The shader of the points reads normals in place of velocities. Before the first step there are no normals.
     const bool normals = look.showsNormals() && particles.normal != nullptr;
     std::vector<Array> arrays;
     const auto wanted = [&](const Buffer* from, Target& to, unsigned& name, bool ofParticles) {

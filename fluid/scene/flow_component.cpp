@@ -334,7 +334,8 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
         if (!path) return path.error();
         Result<Image> mask = loadImage(*path);
         if (!mask) return mask.error();
-        if (skin.uvs.empty()) return badInput(fmt::format("{} has no UVs, so {} cannot lie on it", params_.mesh, params_.regions.mask));
+        if (skin.uvs.empty())
+            return badInput(fmt::format("{} has no UVs, so the mask {} cannot be used", params_.mesh, params_.regions.mask));
         std::vector<float> grip;
         grip.reserve(mesh.rest.size());
         for (size_t p = 0; p < mesh.rest.size(); ++p) {

@@ -286,7 +286,7 @@ BulletSolids::BulletSolids(const Scene& scene, std::span<const Body> bodies, std
     w.dispatcher.setNearCallback(meet);
     w.world.setGravity(btVector3(0, 0, 0));  // a load like the others
     w.world.getSolverInfo().m_splitImpulse = 1;
-    // All contacts of a step are found at once, and their forces from nothing: see forget.
+    // All contacts of a step are detected at once, and their forces start at zero: see forget.
     w.configuration.setConvexConvexMultipointIterations(8, 4);
     w.world.getSolverInfo().m_numIterations = 30;
     const bvec3 periodic = scene.box.periodic();
@@ -343,7 +343,7 @@ BodyHost BulletSolids::host() {
         static_cast<Impl*>(self)->advance(loads, gravity, seconds, states);
     };
     h.reset = [](void* self, std::span<const BodyState> states) { static_cast<Impl*>(self)->put(states); };
-    // Of the solids that move: where they are, and are to be.
+    // Poses of the moving solids: current and at the end of the step.
     h.save = [](void* self) {
         const Impl& w = *static_cast<Impl*>(self);
         std::vector<std::byte> bytes;
@@ -370,7 +370,7 @@ BodyHost BulletSolids::host() {
             return isFinite(p.position) && std::abs(glm::dot(p.rotation, p.rotation) - 1.0F) < 1.0e-3F;
         };
         if (!std::all_of(now.begin(), now.end(), sound) || !std::all_of(target.begin(), target.end(), sound) || !(left >= 0))
-            return badInput("the saved places of the solids that bodies touch are none: save the state again");
+            return badInput("the saved poses of solids that bodies touch are invalid; save the state again");
         w.now = std::move(now);
         w.target = std::move(target);
         w.left = left;

@@ -12,7 +12,7 @@ namespace rivulet {
 
 SceneOpening::SceneOpening(Request request) : request_(std::move(request)) {
     thread_ = std::thread([this] {
-        Result<OpenedScene> opened = failed("the OpenGL driver makes no context current on a second thread");
+        Result<OpenedScene> opened = failed("the OpenGL driver cannot make a context current on a second thread");
         if (request_.gl.enter()) {
             opened = work();
             glFinish();  // its objects are visible to the other context

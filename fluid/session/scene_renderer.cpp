@@ -177,7 +177,7 @@ Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld, 
     return drawn;
 }
 
-// The maps are drawn anew only when the light or a mesh has moved.
+// The maps are drawn again only after the light or a mesh has moved.
 void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
                                LightMaps& light) {
     std::vector<uint64_t> versions;

@@ -45,7 +45,7 @@ Error about(const Error& error, size_t collider, const ColliderParams& params) {
     return {fmt::format("colliders[{}] ({}): {}", collider, labelOf(params), error.message), error.fault};
 }
 
-// Whether the scene sets a material that the file's own would hide: the log says so once.
+// True if the scene sets a material that the file's own hides; the log reports it once.
 bool setsMaterial(const ColliderParams& c) {
     const ColliderParams none;
     return c.colour != none.colour || c.roughness != none.roughness || c.metallic != none.metallic || c.opacity != none.opacity ||
@@ -121,8 +121,9 @@ Status SceneSolids::importColliders(SceneFile& scene, const Log& log, OpeningPro
         Result<ColliderModel> model = ColliderModel::create(collider, scene.folder, *bender_, nodes_);
         if (!model) return about(model.error(), i, collider);
         if (model->dressed() && collider.materials == "file" && setsMaterial(collider))
-            log.notice(fmt::format("colliders[{}] ({}) is drawn with its file's materials: materials scene would take its colour from here",
-                                   i, labelOf(collider)));
+            log.notice(
+                fmt::format("colliders[{}] ({}) is drawn with the materials of its file; set materials to scene to use the colour set here",
+                            i, labelOf(collider)));
         models_.push_back(std::move(*model));
         colliderOf_.push_back(i);
     }

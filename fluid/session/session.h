@@ -90,7 +90,7 @@ class Session {
 
     // Whether the water of a session of `before` can continue in one of `after`: fixed fluid values are equal.
     static bool sameWater(const SceneFile& before, const SceneFile& after);
-    // Continues with another session's water and time (FluidWorld::continueFrom); skins start anew. Error: as there, or a recording is
+    // Continues with another session's water and time (FluidWorld::continueFrom); skins start again. Error: as there, or a recording is
     // shown; then the session is at its start.
     Status continueFrom(Session& other);
 

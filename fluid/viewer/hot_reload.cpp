@@ -1,4 +1,4 @@
-// HotReload: what was written, taken or refused, and the sentence on the screen.
+// HotReload: detects written files, applies or refuses them, and shows a message.
 #include "fluid/viewer/hot_reload.h"
 
 #include <fmt/format.h>

@@ -124,7 +124,7 @@ void Inspector::stepped(const Session& session, double ms) {
     graphs_.add(now, figures);
 }
 
-// Ten times a second, and only while somebody looks. On a GPU the world's figures are of another frame than those of the skins: they do
+// Ten times a second, and only while the tab is open. On a GPU the world's figures are of another frame than those of the skins: they do
 // not add up to the last drop, and the error is left out.
 void Inspector::askLedger(const Session& session) {
     constexpr int kEvery = 6, kGiveUp = 60;  // steps: a device that is lost tells nothing

@@ -64,7 +64,7 @@ quat turned(const vec3& degrees) {
     return glm::angleAxis(r.z, kAxes[2]) * glm::angleAxis(r.y, kAxes[1]) * glm::angleAxis(r.x, kAxes[0]);
 }
 
-// To hundredths: what is written into a scene file is meant to be read.
+// Rounded to hundredths, so that values in a scene file stay readable.
 vec3 rounded(const vec3& v, float step) { return glm::round(v / step) * step; }
 
 // Where a scene has a thing; null: it has no such number. `V`: vec3, or const vec3 of a scene that is not changed.
@@ -114,7 +114,7 @@ std::optional<vec2> seenAt(const Camera& camera, const vec3& p, const vec2& size
     return vec2(0.5F + 0.5F * clip.x / clip.w, 0.5F - 0.5F * clip.y / clip.w) * size;
 }
 
-// They stand in the middle of what is drawn, moved as far as the draft already says.
+// The handles are at the centre of the drawn thing, moved by the change in the draft.
 std::optional<Manipulator::Handles> Manipulator::handles(const Camera& camera, const Session& session, const SceneFile& draft) const {
     // A body that floats is thrown; where it was at the start is a number in the panel.
     if (chosen_.kind == Thing::Kind::body && (chosen_.index >= draft.bodies.size() || !draft.bodies[chosen_.index].fixed))

@@ -19,7 +19,7 @@ std::string fileName(std::string sceneName);
 class ScreenCapture {
   public:
     bool filming() const { return video_.has_value(); }
-    // Begins a video, or ends it; the log says where it is. Error (failed): no ffmpeg, or the file cannot be written.
+    // Begins or ends a video; the log reports its path. Error (failed): no ffmpeg, or the file cannot be written.
     Status toggleVideo(const SceneRenderer& renderer, const std::string& scene, const Log& log);
     void stepped() { stepShown_ = true; }  // the picture that is drawn next goes into the video
     // Adds the picture that was drawn last to the video, one a step. Another size of the picture ends the video. After an Error (failed:

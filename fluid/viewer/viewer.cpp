@@ -122,7 +122,7 @@ Status Viewer::take(SceneRun::Result result) {
     if (!*result) return ok();
     const SceneRun::Stepped& step = **result;
     capture_.stepped();
-    if (step.toCpu) draft_.scene.fluid.grid = scene().fluid.grid;  // the cpu may not know it
+    if (step.toCpu) draft_.scene.fluid.grid = scene().fluid.grid;  // the cpu may not support it
     if (step.repicked) draft_.scene.fluid = scene().fluid;
     profiler_.add("simulate", step.passes);
     watch_.stepped(session(), std::max(step.ms, step.deviceMs));

@@ -75,7 +75,7 @@ void Viewer::undo() {
     }
 }
 
-// The first time the world is made anew, with the same water.
+// At the first use the world is created again, with the same water.
 void Viewer::turnBrush() {
     const SceneFile& scene = draft_.scene;
     if (!brush_.on() && !scene.flow.empty() && scene.fluid.blocks.empty() && scene.emitters.empty()) {

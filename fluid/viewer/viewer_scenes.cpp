@@ -58,7 +58,7 @@ void Viewer::takeWritten(double seconds) {
     rememberOpened(true);
 }
 
-// `written`: a reset goes back to what the file says, not to what is shown, which a person may have edited.
+// `written`: a reset returns to the content of the file, not to the shown scene, which may have been edited.
 void Viewer::rememberOpened(bool written) { draft_.remember(written ? reload_.opened() : draft_.scene, session().budget().has_value()); }
 
 void Viewer::refuse(const Error& error, Cause cause, const SceneFile& before) {

@@ -34,7 +34,7 @@ class VoxelPanel {
     int chosen_ = 0;                     // among the fields: static, moving, deforming
     const VoxelField* field_ = nullptr;  // that labels_ are of
     double labelledAt_ = 0;              // s, simulated
-    double nextLook_ = 0;                // s, on ImGui's clock: no shape is looked at anew before that
+    double nextLook_ = 0;                // s, on ImGui's clock: time of the next check for changed shapes
     Shown shown_ = Shown::materials;
     std::optional<VoxelLabels> labels_;  // of the field's surface, by connectivity
     gpu::Texture slice_;

@@ -100,7 +100,7 @@ dvec3 away(const BandTarget& t, const dvec3& point) {
     return way == dvec3(0.0) ? (t.area < 0.0 ? dvec3(0.0, 0.0, 1.0) : from(t.unit)) : way;
 }
 
-// 0 or 1: whether a brick is to be baked.
+// 0 or 1: 1 if the brick must be baked.
 bool flagged(std::span<const uint8_t> flags, size_t brick) { return flags.empty() || flags[brick] != 0; }
 
 // Bricks along each axis.

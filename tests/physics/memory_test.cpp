@@ -74,7 +74,7 @@ TEST_P(OutOfMemoryOf, AWorldStopsReportsItAndContinuesLater) {
         for (int k = 0; k < 3; ++k) world->step({}, 1.0 / 60);
         const std::vector<std::string>& limited = world->stats().limited;
         EXPECT_TRUE(std::any_of(limited.begin(), limited.end(), [](const std::string& s) {
-            return s.starts_with("there is no memory for the neighbour lists: ");
+            return s.starts_with("not enough memory for the neighbour lists: ");
         })) << GetParam();
         EXPECT_EQ(world->time(), 0);
         EXPECT_NEAR(world->time() + world->pending() + world->dropped(), 3.0 / 60, 1.0e-9);

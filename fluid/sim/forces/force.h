@@ -1,4 +1,4 @@
-// Forces beside pressure and gravity: rows, each with its own passes, run only where the scene asks for it.
+// Forces other than pressure and gravity: rows, each with its own passes, which run only if the scene enables the force.
 #pragma once
 
 #include <functional>

@@ -202,7 +202,7 @@ Status NeighborGrid::Impl::growLists(uint32_t needed) {
         return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
     const uint32_t capacity = needed + needed / 4;
     Result<Buffer> larger = device->allocate(size_t{capacity} * sizeof(uint32_t));
-    if (!larger) return failed("there is no memory for the neighbour lists: " + larger.error().message);
+    if (!larger) return failed("not enough memory for the neighbour lists: " + larger.error().message);
     list = std::move(*larger);
     listCapacity = capacity;
     return ok();

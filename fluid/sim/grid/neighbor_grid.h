@@ -28,7 +28,7 @@ struct PairTraits {
     // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that tests which particles take part.
     std::vector<Define> threadDefines() const;
     std::vector<Define> defines() const;  // MATTER, PERIODIC and those above: of every kernel with FOR_NEIGHBORS
-    // OPEN where there are no walls: of every kernel that asks for them. `extra`: others.
+    // Defines for every kernel with walls; OPEN if there are none. `extra`: further defines.
     std::vector<Define> wallDefines(std::vector<Define> extra = {}) const;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 // The speed of sound over that of the flow: compression under pressure is the square of its inverse, at most.
 constexpr float kSound = 100.0F;
-// The same where there is no surface: the mean of a disordered fluid's densities is above that of a lattice, nothing can give way, and a
+// The same without a free surface: the mean density of a disordered fluid is above that of a lattice, no particle can escape, and a
 // stiff fluid's pressure for it would drown all others.
 constexpr float kSoundClosed = 10.0F;
 float squared(float x) { return x * x; }

@@ -186,7 +186,7 @@ Result<VolumePasses::Saved> VolumePasses::take(WorldState& state, uint32_t slots
     Result<std::vector<uint32_t>> inside = state.take<uint32_t>("volumes.inside", slots);
     if (!inside) return inside.error();
     saved = {std::move(*volumes), std::move(*numbers), std::move(*times), std::move(*inside)};
-    if (Status s = check(saved.volumes); !s) return badInput("the saved state's volumes make no sense: " + s.error().message);
+    if (Status s = check(saved.volumes); !s) return badInput("the saved state has invalid volumes: " + s.error().message);
     uint32_t used = 0;
     bool sound = true;
     for (size_t k = 0; k < count && sound; ++k) {

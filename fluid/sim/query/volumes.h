@@ -44,7 +44,7 @@ class VolumePasses {
     static constexpr size_t kMost = 32;
 
     // Volumes of ids that were there keep their counts, wherever they are now; others begin empty. Error (badInput): too many, an id twice,
-    // sizes that make no sense; (failed): out of memory. Then all stays as it was. `slots` of particles, `particle` m^3.
+    // invalid sizes; (failed): out of memory. Then all stays as it was. `slots` of particles, `particle` m^3.
     Status set(Device& device, std::span<const Volume> volumes, uint32_t slots, double particle);
     // Of the particles as they are, at `time` (s).
     void count(const StepParams& step, const Particles& particles, double time);

@@ -21,7 +21,7 @@ bool isFinite(const BodyState& s) {
 
 bool isFinite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// "", or what is wrong with it.
+// Returns "", or the fault of the body.
 std::string fault(const Body& body) {
     const BodyShape& s = body.shape;
     if (s.samples.empty()) return "has no samples on its surface";

@@ -101,7 +101,7 @@ double nearest(const std::vector<Triangle>& triangles, const dvec3& p) {
     return least;
 }
 
-// How far the mesh goes on from a point of triangle `own`, in a direction (Moeller and Trumbore 1997).
+// Distance from a point of triangle `own` to the mesh in a direction (Moeller and Trumbore 1997).
 double thickness(const std::vector<Triangle>& triangles, size_t own, const dvec3& from, const dvec3& along) {
     double least = 1e30;
     for (size_t k = 0; k < triangles.size(); ++k) {
@@ -117,7 +117,7 @@ double thickness(const std::vector<Triangle>& triangles, size_t own, const dvec3
     return least;
 }
 
-// Darts thrown at the surface and sunk half a spacing, or to the middle of what is thin.
+// Random points on the surface, moved inwards by half a spacing, or to the middle of thin parts.
 std::vector<vec3> meshSamples(const std::vector<Triangle>& triangles, float spacing) {
     std::vector<double> area;
     area.reserve(triangles.size());

@@ -48,7 +48,7 @@ void addPlaces(std::span<const FloatPoint> points, const Pose& pose, std::vector
 BodyLoad buoyancy(std::span<const FloatPoint> points, const BodyState& state, std::span<const FluidSample> water,
                   const BuoyancyParams& params, double mass, double seconds) {
     ASSERT(points.size() == water.size(), "give buoyancy one sample a point");
-    ASSERT(mass > 0, "give buoyancy a body that weighs something");
+    ASSERT(mass > 0, "give buoyancy a body with a mass above 0");
     double whole = 0;
     for (const FloatPoint& p : points) whole += double{p.volume};
     const double density = double{params.restDensity}, area = std::pow(whole, 2.0 / 3.0);

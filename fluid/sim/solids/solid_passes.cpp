@@ -83,7 +83,7 @@ Status check(std::span<const Surface> surfaces) {
     return ok();
 }
 
-// Who touches it must know of it before: fieldParams.
+// Kernels that use the field need its parameters first: fieldParams.
 Status reaches(const VoxelField& field, float spacing) {
     if (0.5F * spacing < field.band) return ok();
     return badInput(
@@ -226,8 +226,8 @@ Status SolidPasses::reset() {
 
 Status SolidPasses::restore(const Places& places) {
     if (places.poses.size() != rigid_.size() || places.shapes.size() != deforming_.size())
-        return badInput(fmt::format("there are {} poses and {} shapes, and {} solids that move and {} that bend", places.poses.size(),
-                                    places.shapes.size(), rigid_.size(), deforming_.size()));
+        return badInput(fmt::format("the state has {} poses and {} shapes, but the scene has {} rigid and {} deforming solids",
+                                    places.poses.size(), places.shapes.size(), rigid_.size(), deforming_.size()));
     poses_ = places.poses;
     for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
     for (size_t k = 0; k < deforming_.size(); ++k) {
@@ -280,7 +280,7 @@ Result<SolidPasses::Places> SolidPasses::take(WorldState& state) const {
     if (!poses) return poses.error();
     Places places{std::move(*poses), {}, n[3]};
     for (size_t k = 0; k < places.poses.size(); ++k)
-        if (!sound(places.poses[k])) return badInput(fmt::format("the saved pose of moving solid {} is none", k));
+        if (!sound(places.poses[k])) return badInput(fmt::format("the saved pose of moving solid {} is invalid", k));
     for (size_t k = 0; k < deforming_.size(); ++k) {
         const std::string name = fmt::format("solids.shape.{}", k);
         Result<std::vector<vec3>> shape = state.take<vec3>(name, deforming_[k].shapeAtStart.size());

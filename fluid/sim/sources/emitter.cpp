@@ -17,7 +17,7 @@ constexpr double kPiD = 3.14159265358979323846;
 constexpr double kFar = 1.0e5;  // m
 constexpr bool kLog = true, kLinear = false;
 constexpr bool kFixed = true;
-// A nozzle that has been blocked lets out what it owes this much faster.
+// A nozzle that was blocked emits its backlog faster by this factor.
 constexpr double kCatchUp = 1.1;
 constexpr double kLoose = 1.01;  // of a jet's lattice
 

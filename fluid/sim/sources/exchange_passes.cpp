@@ -63,7 +63,7 @@ void ExchangePasses::take(const StepParams& step, const NeighborGrid& grid, Part
     block.step = step;
     block.count = static_cast<uint32_t>(slots.size());
     device_->run(take_, block, {&slots_, &particles.positionNext, &particles.velocityNext}, block.count);
-    // Before the first sort nothing is remembered of anybody.
+    // Before the first sort no method has stored anything per particle.
     for (const NamedBuffer& b : remembered)
         if (b.byId && sorted)
             device_->run(forget_, step, {&grid.cellStart(), &particles.positionNext, &particles.id, b.buffer}, particles.count);

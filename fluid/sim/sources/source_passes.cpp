@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t kMostCandidates = 16384;  // at once
 constexpr float kNearest = 0.8F;             // spacings
-// The density ratio that a new particle may have, and give its neighbours: beyond it they would be pushed away with force.
+// Largest density ratio of a new particle and its neighbours: beyond it the pressure would push them apart strongly.
 constexpr float kCrowded = 1.01F;
 
 Status check(const Sources& sources, float spacing) {
@@ -107,7 +107,7 @@ double SourcePasses::slotsFor(const Sources& sources, const FluidParams& params)
     slots += std::ceil(sources.more / volume);
     for (const Emitter& e : sources.emitters) slots += std::ceil(volumeAfter(e.params, sources.seconds) / volume) + 1;
     const dvec3 size(params.box.max - params.box.min);
-    // A box that is full takes no more; a tenth for what is denser.
+    // A full box receives no more; a tenth is added for higher densities.
     return std::min(slots, std::ceil(1.1 * size.x * size.y * size.z / volume) + 64);
 }
 
@@ -206,7 +206,7 @@ void SourcePasses::run(const World& world, double time, double dt, bool last) {
             if (b.byId) device_->run(forget_, step, {&grid.cellStart(), &particles.positionNext, &particles.id, b.buffer}, particles.count);
     }
     waited_ += dt;
-    // Often enough that nothing comes out further than a spacing from where it should, give or take.
+    // Often enough that a particle appears at most about a spacing from its exact place.
     if (feeds_.empty() || (!last && static_cast<double>(fastest()) * waited_ < static_cast<double>(spacing_))) return;
     readCounts();
     list_.clear();

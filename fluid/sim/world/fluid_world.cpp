@@ -164,7 +164,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     if (!cpu) w.stepper.recordTime(inputs.deviceMs, w.clock.lastSubsteps);
     const FrameStepper::Frame frame = w.stepper.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
     w.warn();
-    const double span = frame.before + seconds;  // until the solids are where they are to be
+    const double span = frame.before + seconds;  // until the solids reach their target poses
     w.clock.frameLength = span;
     const vec3 gravity = inputs.gravity.value_or(p.gravity);
     if (isFinite(gravity))
@@ -258,7 +258,7 @@ void FluidWorld::Impl::fillStep() {
 }
 
 // Steps `length` s, from `begin` s after the start of a frame whose solids move for `span` s. Returns the time that it stepped:
-// less where maxSubsteps, the budget or a lack of memory end it, and then nothing more of the frame is to be stepped.
+// less if maxSubsteps, the budget or a lack of memory end it; the rest of the frame is then not stepped.
 double FluidWorld::Impl::stepPiece(double length, double begin, double span, int& substeps, bool& stop) {
     fillStep();
     const StepLimit limit = stepLimit(clock.time + begin, length);

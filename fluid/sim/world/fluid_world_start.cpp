@@ -256,7 +256,7 @@ void FluidWorld::Impl::writeStart() {
     figures = std::make_shared<FluidStats>();
     startCount = static_cast<uint32_t>(start.size());
     figures->particles = startCount;
-    // The first step must know, too.
+    // The first step needs it, too.
     for (const NewParticle& p : start) limits.fastestStart = std::max(limits.fastestStart, glm::length(p.velocity));
     assumeFastest(double{limits.fastestStart});
     figures->emitted = static_cast<double>(startCount) * std::pow(double{params.spacing}, 3);

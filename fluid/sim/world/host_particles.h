@@ -12,7 +12,7 @@ struct HostParticles {
     std::vector<vec4> position, velocity;  // as in ParticleView, without free slots
     std::vector<uint32_t> id;
     std::vector<float> mass;      // kg
-    std::vector<float> pressure;  // Pa, as FluidWorld::pressures(); empty unless asked for
+    std::vector<float> pressure;  // Pa, as FluidWorld::pressures(); empty if not requested
 };
 HostParticles readParticles(const FluidWorld& world, bool pressures = false);
 

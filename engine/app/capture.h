@@ -19,7 +19,7 @@ Status checkWritable(const std::string& path);
 // Makes the folder and its parents. Error (failed): not writable, or a file is in the way.
 Status makeFolder(const std::string& path);
 
-// H.264 in the container that the name's ending asks for. ffmpeg runs in a process group of its own, so Ctrl-C at the terminal does not
+// H.264 in the container that the name's ending selects. ffmpeg runs in a process group of its own, so Ctrl-C at the terminal does not
 // reach it, and writes to a hidden file beside the target, which takes the target's name in close(). A target that is
 // no ordinary file (/dev/null) is written directly. Dropped without close(): ffmpeg is ended and nothing is left.
 class VideoWriter {

@@ -10,7 +10,7 @@ void applyUiStyle();
 
 inline ImVec4 refusedColour() { return {0.98F, 0.55F, 0.45F, 1}; }  // of the sentence that says why
 
-// Makes the font anew, for so many pixels a coordinate of ImGui's. Before ImGui::NewFrame.
+// Creates the font again for a number of pixels per coordinate of ImGui. Call it before ImGui::NewFrame.
 void loadUiFont(float pixels);
 
 }  // namespace rivulet

@@ -19,7 +19,7 @@ Table<BackendRow> backends();  // auto, cpu, gl, cl
 
 // The current OpenGL context; `absent` says why there is none.
 struct GlFacts {
-    std::string absent = "no OpenGL context was asked for";  // empty: there is a context
+    std::string absent = "no OpenGL context was requested";  // empty: there is a context
     std::string renderer, version;
     bool software = false;  // it runs on the CPU: llvmpipe, softpipe
     bool present() const { return absent.empty(); }

@@ -1,4 +1,4 @@
-// SnapshotKeeper: the last snapshot of a session, from which it goes on when its device is lost. Taking them costs a hundredth of what
+// SnapshotKeeper: the last snapshot of a session, from which it continues when its device is lost. Taking them costs a hundredth of what
 // steps cost.
 #pragma once
 

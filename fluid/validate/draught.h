@@ -13,7 +13,7 @@
 
 namespace rivulet {
 
-// A box or a ball that floats upright. SI units.
+// A box or a ball that floats without tilt. SI units.
 struct Floater {
     double height = 0, volume = 0;
     double keel = 0;  // height of its lowest point above the floor of the tank

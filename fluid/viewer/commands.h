@@ -9,7 +9,7 @@
 namespace rivulet {
 
 enum class Command {
-    pause,    // or go on
+    pause,    // or continue
     step,     // one, then pause
     restart,  // the run
     pour,     // on or off

@@ -38,7 +38,7 @@ class Manipulator {
     const Thing& chosen() const { return chosen_; }
     void choose(const Thing& thing) { chosen_ = thing; }
     bool holds() const { return held_ || move_; }  // it uses the mouse, also over a panel
-    // The session is replaced: a body is no longer held. A move by handles goes on.
+    // The session is replaced: a body is no longer held. A move by handles continues.
     void release();
 
   private:

@@ -1,4 +1,4 @@
-// SaveDialog: asks where the scene is to be saved, and saves it.
+// SaveDialog: lets the user choose a file name, and saves the scene.
 #pragma once
 
 #include <optional>

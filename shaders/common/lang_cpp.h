@@ -2,7 +2,7 @@
 // (RIVULET_KERNEL_UNIT), which is compiled once for each instruction set inside a namespace of its own; there `real` is 8 lanes.
 #if !defined(RIVULET_KERNEL_UNIT)
 
-// No #pragma once: each shared header includes lang.h anew, and lang_end.h last, so that a host sees none of these macros.
+// No #pragma once: each shared header includes lang.h again, and lang_end.h last, so that none of these macros reaches a host.
 #include "engine/core/math.h"
 #define FN inline
 #define STRUCT(n) struct n

@@ -32,7 +32,7 @@ namespace rivulet {
 #define PIN_PARTS 4096.0f
 // The drops of a tile, 16 uints. After all tiles: the number of tiles to draw, and their indices.
 #define NEAR_UINTS 16u
-#define NEAR_DRAW 0u  /* bit 0: it is to be drawn; 1: all its rows; 4 to 7: where drops were when it was last drawn */
+#define NEAR_DRAW 0u  /* bit 0: it must be drawn; 1: all its rows; 4 to 7: where drops were when it was last drawn */
 #define NEAR_HASH 1u  /* of the drops that were there when it was last drawn */
 #define NEAR_WET 2u   /* bit 0: it had film then; 4 to 7: drops in its rows 0 and 1, 2 and 3 ... */
 #define NEAR_COUNT 3u /* drops; above MOST_NEAR they are all looked at from NEAR_FIRST to before NEAR_END */
@@ -42,7 +42,7 @@ namespace rivulet {
 #define NEAR_TEXELS 7u /* where its texels begin */
 #define NEAR_LIST 8u   /* sorted numbers of MOST_NEAR drops */
 #define MOST_NEAR 8u
-#define WET_EVERY 16u /* draws: a wet tile is drawn anew that often, for what dries */
+#define WET_EVERY 16u /* draws: interval at which a wet tile is drawn again, because it dries */
 #define ANY_EVERY 64u /* and a dry one, for what a drop left that went too fast to be seen in between */
 // The film's thickness, two half floats per uint, mm: the offset of a triangle's cells, of which the t-th begins at `first`.
 #define THICK_BEGIN(first, t) (2u * (((first) + (t)) >> 1u))

@@ -22,8 +22,9 @@ void main() {
     // Slopes are per step; a step at depth z is `width` wide.
     vec2 width = frame.ray.xy * float(k) * z;
     float sx = zx / width.x, sy = zy / width.y;
-    // Twice the mean curvature (1/m) of a graph over the picture's plane, along the normal; along the line of sight that is longer by the
-    // root of what it is divided by once less. The paper moves depth by the curvature itself: what is seen at a slant it smooths less.
+    // Twice the mean curvature (1/m) of a graph over the picture's plane, along the normal. Along the line of sight the displacement is longer
+    // by the root of the last divisor, so one power of that root is left out. The paper moves depth by the curvature itself, which smooths
+    // oblique surfaces less.
     float twice = ((1.0 + sy * sy) * zxx / (width.x * width.x) + (1.0 + sx * sx) * zyy / (width.y * width.y) -
                    2.0 * sx * sy * zxy / (width.x * width.y)) / (1.0 + sx * sx + sy * sy);
     float wide = pixels * frame.ray.y * z;

@@ -93,11 +93,11 @@ vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 light) {
 
 // For an eye inside the water: the point where the ray through a pixel leaves it, m, view space.
 vec3 wayOut(vec2 pixel) { return normalize(viewRay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
-// What the eye sees that is in the water: the scene in it as it is, what is above through Snell's window, and about the window the water's own
-// colour `deep`, mirrored. `scene`: m along the ray.
+// The picture for an eye in the water: the scene in the water directly, the scene above through Snell's window, and around the window the
+// reflected colour `deep` of the water. `scene`: m along the ray.
 vec3 fromWithin(vec3 dir, float through, float scene, vec3 straight, vec3 deep) {
-    // The surface is level but for what thickness says of it, which is blurred: little of that is to be believed. Whoever looks down, or
-    // through a wall of the box, sees straight on.
+    // The surface is taken as level except for its slope by thickness, which is blurred and gets a small weight. A view from above, or
+    // through a wall of the box, is not refracted.
     const float apart = 12.0;  // pixels
     vec2 at = gl_FragCoord.xy;
     vec3 right = wayOut(at + vec2(apart, 0.0)) - wayOut(at - vec2(apart, 0.0)), above_ = wayOut(at + vec2(0.0, apart)) - wayOut(at - vec2(0.0, apart));

@@ -66,7 +66,7 @@ SceneFile forces() {
     return s;
 }
 
-// A mesh that stands still, one that turns and shakes, and one that bends.
+// A static mesh, a rotating and shaking one, and a deforming one.
 SceneFile solids() {
     SceneFile s;
     s.fluid.maxSubsteps = kSubsteps;
@@ -239,7 +239,7 @@ Status combination(Case& c, const std::string& method, const std::string& number
     }
     std::stable_sort(c.drags.begin(), c.drags.end(), [](const Drag& a, const Drag& b) { return a.frame < b.frame; });
     c.frameSeed = random() | 1U;
-    // One after the other, as at a panel: what makes no sense with the rest is refused, and the scene stays.
+    // One after the other, as at a panel: values in conflict with others are refused, and the scene stays.
     for (const std::string& a : assignments) {
         const Case before = c;
         if (Status done = setAll(c, {a}); !done) return done;

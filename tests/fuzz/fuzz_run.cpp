@@ -22,7 +22,7 @@ namespace rivulet::fuzz {
 
 namespace {
 
-// A case that has swept over all neighbours so often goes on with one step a frame.
+// After this number of sweeps over all neighbours a case continues with one step a frame.
 constexpr uint64_t kDear = 6000;
 constexpr rlim_t kHangs = 300;                // s, on the processor
 constexpr rlim_t kMemory = rlim_t{6} << 30U;  // bytes: beyond it an allocation fails, and that is to be said plainly
@@ -41,7 +41,7 @@ constexpr bool kSanitized = false;
 
 bool plainSentence(const std::string& s) { return s.size() > 10 && s.find('\n') == std::string::npos; }
 
-// "", or what is not finite.
+// Returns "", or the first value that is not finite.
 std::string notFinite(const FluidStats& s) {
     for (const auto& [name, value] :
          {std::pair("emitted", s.emitted), std::pair("drained", s.drained), std::pair("backlog", s.backlog),

@@ -23,7 +23,7 @@ struct Outcome {
 //  - no speed is above what the step limits: a spacing a step. Where solids or bodies move, three: a wall that itself goes no further than
 //  that
 //    in a step throws back with twice its speed besides;
-//  - time + pending + dropped is what was asked for.
+//  - time + pending + dropped is the requested time.
 // Refused with one plain sentence at the start is an outcome of its own, as the window does it: nothing was simulated.
 Outcome run(const Case& c);
 

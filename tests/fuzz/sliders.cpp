@@ -12,7 +12,7 @@ namespace rivulet::fuzz {
 
 namespace {
 
-// Follows a scene and knows where it is.
+// Visits a scene and tracks the current path.
 class PathVisitor : public ParamVisitor {
   protected:
     bool beginGroup(const ParamInfo& info) override {

@@ -1,4 +1,4 @@
-// Drops in the air: as large as they are, upside down, behind what stands before them, and drawn out where they are fast.
+// Drops in the air: their size, the inverted image in them, occlusion by objects in front, and elongation at high speed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,7 +98,7 @@ TEST_F(LookDrops, AreDrawnOutAlongTheirWay) {
     EXPECT_NEAR(fast.wide, still.wide, 3);
 }
 
-TEST_F(LookDrops, AreHiddenByWhatStandsBeforeThem) {
+TEST_F(LookDrops, AreHiddenByObjectsInFront) {
     addWall(vec3(-0.1F, -0.1F, 0.1F), vec3(0.1F, 0.1F, 0.1F));
     const std::vector<uint8_t> none = with({});
     EXPECT_EQ(between(none, with({vec4(0, 0, 0, 0.01F), vec4(0.0F)})).count, 0);

@@ -53,7 +53,7 @@ class LookFile : public LookTest {
     std::filesystem::path folder_;
 };
 
-TEST_F(LookFile, WhereAlphaIsNothingWhatIsBehindIsSeenAndLit) {
+TEST_F(LookFile, WhereAlphaIsZeroTheBackgroundIsVisibleAndLit) {
     const auto device = makeCpuDevice(cpuKernels());
     Camera camera;
     camera.position = vec3(0, 0.5F, 3);
@@ -108,7 +108,7 @@ TEST_F(LookFile, WhereAlphaIsNothingWhatIsBehindIsSeenAndLit) {
     scene = Scene();
 }
 
-TEST_F(LookFile, ALampShinesAsItsFileSaysInTheDark) {
+TEST_F(LookFile, ALampEmitsTheRadianceOfItsFile) {
     const auto device = makeCpuDevice(cpuKernels());
     GltfFile file;
     const int position = file.floats("VEC3", {-0.5F, 0, 0, 0.5F, 0, 0, 0.5F, 1, 0, -0.5F, 1, 0});

@@ -99,7 +99,7 @@ TEST_F(LookModel, spreadLightIsNeitherLostNorMade) {
         EXPECT_NEAR(texels[static_cast<size_t>(x)], std::max(2.0 * (x + 0.5) / cosines - 1.0, 0.0), 0.02) << "not spread at all: Lambert";
 }
 
-TEST_F(LookModel, aFlatLiquidShiftsWhatIsUnderItAsSnellSays) {
+TEST_F(LookModel, aFlatLiquidRefractsBySnellsLaw) {
     // A black and white edge under 2 mm of water, seen at 45 degrees: it moves by h (tan 45 - tan of the bent angle).
     constexpr float kSize = 0.04F, kDepth = 2.0e-3F;
     ModelPart part = pane(kSize);
@@ -209,7 +209,7 @@ TEST_F(LookModel, aWetWayShinesOnTheSideThatLeansToTheLamp) {
     scene = Scene();
 }
 
-TEST_F(LookModel, aDropOnAPaneTurnsWhatIsBehindItUpsideDown) {
+TEST_F(LookModel, aDropOnAPaneInvertsTheBackground) {
     constexpr float kSize = 0.04F, kRadius = 2.0e-3F;
     for (const bool upper : {true, false}) {  // red above, green below
         ModelPart wall = pane(0.2F);

@@ -1,4 +1,4 @@
-// The water from within, in great numbers, beside another renderer, and what it is made from.
+// The water seen from inside, with many particles, next to another renderer, and its intermediate views.
 #include <gtest/gtest.h>
 
 #include <cmath>

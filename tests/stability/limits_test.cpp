@@ -52,8 +52,8 @@ TEST_P(Limits, OffAFrameIsAStep) {
     EXPECT_GT(world->lastSubsteps(), 2);
 }
 
-// Nothing that goes wrong crashes: what is no number any more is counted and frozen, and the count of particles stays.
-TEST_P(Limits, OffNothingCrashesAndWhoIsNoNumberIsCounted) {
+// No failure crashes: particles that become NaN are counted and frozen, and the number of particles stays.
+TEST_P(Limits, OffNothingCrashesAndNanIsCounted) {
     for (const float frame : {0.02F, 0.25F}) {
         auto device = cpu();
         FluidParams p = column(GetParam(), 0.05F, 0.6F);
@@ -114,7 +114,7 @@ TEST(PbfWeight, AMetreOfWaterRestsAtAnySpacing) {
 
 // A single correction that goes further than the whole way has no stable step. Speeds once grew as steps shrank, and steps shrank as speeds
 // grew, to 1e19 m/s.
-TEST(SpeedLimit, EndsWhatStepsCannot) {
+TEST(SpeedLimit, StopsGrowthThatStepsCannot) {
     auto device = cpu();
     FluidParams p = column("pbf", 0.05F, 1);
     p.pbf.iterations = 1;

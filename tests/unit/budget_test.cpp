@@ -202,7 +202,7 @@ TEST(Budget, ASceneGetsAMethodASpacingAndAReport) {
     EXPECT_FALSE((*Session::create(*plain, *device, Log{}))->budget());
 }
 
-TEST(Budget, MakesDoWithAnyScene) {
+TEST(Budget, WorksWithAnyScene) {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     auto device = makeCpuDevice(rows);
     const auto open = [&](std::vector<std::string> assignments, std::string& said) {

@@ -1,4 +1,4 @@
-// The chart's table: what is on the front, and that it is read as it was written.
+// The chart's table: its front, and reading back what was written.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -23,7 +23,7 @@ ChartRow row(const char* name, const char* setting, double error, double cost) {
             .fastest = 1.5};
 }
 
-TEST(Chart, WhatNothingBeatsInBothIsOnTheFront) {
+TEST(Chart, RowsThatNoRowBeatsInBothAreOnTheFront) {
     std::vector<ChartRow> rows = {row("dam_break", "pbf", 0.10, 1), row("dam_break", "dfsph", 0.02, 4), row("dam_break", "wcsph", 0.05, 5),
                                   row("dam_break", "pbf 6", 0.10, 2), row("hydrostatic", "wcsph", 0.5, 9)};
     markFront(rows);

@@ -158,7 +158,7 @@ TEST(Json, RefusesValuesWithPlacePathAndRemedy) {
     for (const Refusal& r : refusals) EXPECT_EQ(errorOf(r.text), r.error) << r.text;
 }
 
-TEST(Json, RefusesWhatIsNoJson) {
+TEST(Json, RefusesInvalidJson) {
     const Refusal refusals[] = {
         {"", "x.json:1:1: the file is empty; it must contain at least {}"},
         {" \n\t ", "x.json:1:1: the file is empty; it must contain at least {}"},
@@ -229,7 +229,7 @@ TEST(Json, AnyByteMayBeWrongAndNothingThrows) {
     }
 }
 
-TEST(Json, WhatIsWrittenReadsBackEqual) {
+TEST(Json, WrittenValuesReadBackEqual) {
     std::mt19937 random(1);
     VisitFn defaults = [](ParamVisitor& v) { Sample().visit(v); };
     for (int i = 0; i < 500; ++i) {
@@ -271,7 +271,7 @@ TEST(Json, WritesShortNumbersAndIndents) {
 )");
 }
 
-TEST(Json, WritesOnlyWhatDiffers) {
+TEST(Json, WritesOnlyValuesThatDiffer) {
     VisitFn defaults = [](ParamVisitor& v) { Sample().visit(v); };
     Sample s;
     EXPECT_EQ(writeJson(visiting(s), &defaults), "{}\n");

@@ -103,7 +103,7 @@ TEST(SetParam, AWrongValueChangesNothing) {
     }
 }
 
-TEST(NearestName, FindsWhatWasMeant) {
+TEST(NearestName, FindsTheIntendedName) {
     const std::vector<std::string> names = {"viscosity", "artificialViscosity", "spacing", "restDensity", "cfl"};
     EXPECT_EQ(nearestName("viscocity", names), "viscosity");
     EXPECT_EQ(nearestName("SPACING", names), "spacing");

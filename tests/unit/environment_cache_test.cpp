@@ -1,4 +1,4 @@
-// Surroundings made ready once: what comes back from the disk is what was made, bit for bit, and nothing else does.
+// Cache of prepared environments: an entry read from disk equals the computed one bit for bit, and invalid entries are rejected.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -58,7 +58,7 @@ TEST(EnvironmentCache, ItIsTheCacheThatAnswers) {
     EXPECT_GT(std::filesystem::last_write_time(file), before) << "it was not read";
 }
 
-TEST(EnvironmentCache, ADamagedFileIsMadeAnew) {
+TEST(EnvironmentCache, ADamagedFileIsReplaced) {
     const Scratch scratch;
     const DiskCache cache(scratch.path().string());
     const HdrImage image = sky(0.8F);

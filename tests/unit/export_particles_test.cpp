@@ -204,7 +204,7 @@ TEST(ExportParticles, NoPlyBeginsWithALineFeed) {
     EXPECT_EQ(bytes.size() - bytes.find(end) - end.size(), 3 * 36U);
 }
 
-// A surface that is turned upright has its normals outward still, and stands where the simulated one does.
+// A surface exported with +Z up keeps its normals outward and its position.
 TEST(ExportParticles, SurfacesTurnUprightToo) {
     const std::vector<vec3> corners = {vec3(0), vec3(1, 0, 0), vec3(0, 2, 0), vec3(0, 0, 3)};
     const std::vector<uint32_t> sides = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
@@ -251,7 +251,7 @@ TEST(ExportParticles, TheCollectionGivesEachFileItsTime) {
     EXPECT_EQ(seen, 4U);
 }
 
-TEST(ExportParticles, SaysWhatIsWrong) {
+TEST(ExportParticles, ErrorsNameTheirCause) {
     const Scratch scratch;
     scratch.file("s.json", smallScene());
     scratch.file("file", "not a folder");

@@ -1,4 +1,4 @@
-// Contexts: headless ones stand side by side, windows give and take events, what is missing is a sentence.
+// Contexts: several headless ones exist together, windows deliver events, and a missing library gives an error message.
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
 #include <sys/wait.h>

@@ -75,7 +75,7 @@ TEST_F(GpuFrameGraph, TexturesThatNeverMeetShareMemory) {
 }
 
 // describe() matches the execution: culled passes, uses of resources, lifetimes, and shared memory.
-TEST_F(GpuFrameGraph, DescribesWhatItDid) {
+TEST_F(GpuFrameGraph, DescribesItsPasses) {
     const Texture outside = std::move(*Texture::create(square(8)));
     FrameGraph graph(*pool_);
     const TextureHandle from = graph.importTexture("outside", outside);
@@ -157,7 +157,7 @@ TEST_F(GpuFrameGraph, ThePoolIsKeptBetweenFramesAndShrinksAfterAResize) {
     EXPECT_EQ(pool_->bytes(), 32U * 32 * 4);
 }
 
-TEST_F(GpuFrameGraph, WhatComputeWroteIsReadRightAfterTheBarrierThatItsReaderNeeds) {
+TEST_F(GpuFrameGraph, ResultsOfComputeAreReadAfterTheBarrierOfTheirReader) {
     writeFile("shaders/fill.comp",
               "layout(local_size_x = 64) in;\nlayout(std430, binding = 1) buffer B { float v[]; }; layout(r32f, binding = 0) uniform "
               "image2D im;\n"
@@ -250,7 +250,7 @@ TEST_F(GpuFrameGraph, NoPassSeesTheStateOfAnother) {
     EXPECT_EQ(viewport[2], 16);
 }
 
-TEST_F(GpuFrameGraph, TimesArriveSomeFramesLateByPassWithWhatWasLeftOut) {
+TEST_F(GpuFrameGraph, TimesArriveSomeFramesLateForEachPassIncludingCulledOnes) {
     for (int frame = 0; frame < 6; ++frame) {
         FrameGraph graph(*pool_);
         const TextureHandle a = graph.texture("a", square(512, Format::rgba32f)), b = graph.texture("b", square(4));

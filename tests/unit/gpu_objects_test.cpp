@@ -24,7 +24,7 @@ std::vector<T> texelsOf(const Texture& texture, int mip = 0, int layer = 0) {
     return texels;
 }
 
-TEST_F(GpuObjects, ABufferHoldsZeroesThenWhatWasWritten) {
+TEST_F(GpuObjects, ABufferHoldsZeroesThenWrittenData) {
     Result<Buffer> buffer = Buffer::create(10 * sizeof(uint32_t));
     ASSERT_TRUE(buffer);
     EXPECT_EQ(buffer->readAll<uint32_t>(10), std::vector<uint32_t>(10, 0U));
@@ -43,7 +43,7 @@ TEST_F(GpuObjects, ABufferOfNothingIsValid) {
     EXPECT_TRUE(buffer->readAll<float>(0).empty());
 }
 
-TEST_F(GpuObjects, AMappedBufferShowsTheHostWhatTheGpuCopied) {
+TEST_F(GpuObjects, AMappedBufferShowsDataCopiedByTheGpu) {
     Result<Buffer> mapped = Buffer::create(16, BufferKind::mapped);
     Result<Buffer> source = Buffer::from(std::vector<uint32_t>{1, 2, 3, 4});
     ASSERT_TRUE(mapped && source);

@@ -12,7 +12,7 @@ namespace {
 
 const std::string kHead = std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/head/";
 
-TEST(HeadLook, eyeballsAreWhereHeadJsonSays) {
+TEST(HeadLook, eyeballsHaveThePositionsOfHeadJson) {
     Result<Model> head = importModel(kHead + "head.glb");
     ASSERT_TRUE(head);
     for (const float side : {1.0F, -1.0F}) {
@@ -24,7 +24,7 @@ TEST(HeadLook, eyeballsAreWhereHeadJsonSays) {
     }
 }
 
-TEST(HeadLook, aTearLineRunsAlongTheLowerLidAndGoesWithIt) {
+TEST(HeadLook, aTearLineFollowsTheLowerLid) {
     Result<Model> head = importModel(kHead + "head.glb");
     ASSERT_TRUE(head);
     ASSERT_TRUE(dressHead(*head, kHead));

@@ -38,7 +38,7 @@ double mean(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) { retu
 TEST(Flip, EqualPicturesDoNotDiffer) { EXPECT_EQ(mean(disc(30), disc(30)), 0); }
 
 // |dL| = 100: beyond the knee at 0.4 cmax, cmax = HyAB(green, blue) of Hunt's colours, 41.28 after the exponent of 0.7.
-TEST(Flip, BlackAgainstWhiteIsWhatTheFormulaSays) {
+TEST(Flip, BlackAgainstWhiteMatchesTheFormula) {
     const double cmax = 41.28, d = std::pow(100.0, 0.7);
     EXPECT_NEAR(mean(plain({0, 0, 0}), plain({255, 255, 255})), 0.95 + (d - 0.4 * cmax) / (0.6 * cmax) * 0.05, 1e-3);
     EXPECT_NEAR(mean(plain({0, 255, 0}), plain({0, 0, 255})), 1, 1e-6);

@@ -42,7 +42,7 @@ TEST(InputQueue, ADragWithinAFrameMovesWhileTheButtonIsHeld) {
 }
 
 // On a German keyboard Z is where Y is on a US one, and plus has a key of its own.
-TEST(InputQueue, AKeyIsWhatItPrints) {
+TEST(InputQueue, AKeyIsNamedByItsPrintedLetter) {
     EXPECT_EQ(keyOf('Y', "z"), 'Z');
     EXPECT_EQ(keyOf('Z', "y"), 'Y');
     EXPECT_EQ(keyOf(']', "+"), '+');
@@ -68,7 +68,7 @@ TEST(InputQueue, TwoClicksAreTwo) {
     EXPECT_EQ(released, 2);
 }
 
-TEST(InputQueue, AKeyWithControlIsSeenWithControlHeldAndWhatIsTypedAfterComesLater) {
+TEST(InputQueue, AKeyWithControlKeepsControlAndLaterKeysComeLater) {
     InputQueue queue;
     InputEvents e;
     queue.key(key::kLeftControl, true);
@@ -109,7 +109,7 @@ TEST(InputQueue, WordsTypedTheWheelAndDroppedFilesComeAtOnce) {
 }
 
 // The field that a click opens takes the keyboard a frame later.
-TEST(InputQueue, WhatIsTypedAfterAClickIsOfALaterFrame) {
+TEST(InputQueue, KeysAfterAClickBelongToALaterFrame) {
     InputQueue queue;
     InputEvents e;
     queue.button(MouseButton::left, true);

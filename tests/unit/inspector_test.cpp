@@ -1,5 +1,5 @@
-// The window at the right, driven by InputEvents: its graphs show what the session says of itself, its chart's points may be clicked, its
-// frame graph is what was drawn.
+// The window at the right, driven by InputEvents: its graphs show the session's figures, the points of its chart can be clicked, and its
+// frame graph shows the drawn passes.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ class Watching : public testing::ViewerFixture {
     static constexpr ivec2 kWindow{1280, 720}, kPixels{64, 36};
 };
 
-TEST_F(Watching, GraphsShowWhatTheSessionSays) {
+TEST_F(Watching, GraphsShowTheFiguresOfTheSession) {
     begin(damBreak(), kWindow, kPixels);
     openTab("graphs");
     EXPECT_EQ(viewer_->watch().shown(), Inspector::Tab::graphs);
@@ -105,7 +105,7 @@ TEST_F(Watching, GraphsShowWhatTheSessionSays) {
     EXPECT_LE(viewer_->watch().graphs().samples("energy", "total").size(), 1U) << "what was before a reset is of another run";
 }
 
-// Rain on a ball: what the graph says is what the ledger of the skins says, and it adds up.
+// Rain on a ball: the graph equals the ledger of the skins, and volumes balance.
 TEST_F(Watching, TheLedgersGraphIsTheLedger) {
     Result<SceneFile> scene = loadScene("rain_on_spot", std::vector<std::string>{"flow.0.mesh=meshes/sphere.obj", "flow.0.mapSize=64"});
     ASSERT_TRUE(scene) << scene.error().message;
@@ -213,7 +213,7 @@ TEST_F(Watching, AClickMayTakeTheNumberOfParticles) {
     EXPECT_NEAR(viewer_->scene().fluid.spacing, 0.05F * std::cbrt(few / 8192.0F), 1e-4F);
 }
 
-// What the chart says of the run is the run's own cost and error; a run as dear as the chart's case lies on the case's point.
+// The chart shows the cost and error of the run; a run with the cost of the chart's case lies on the point of that case.
 TEST(ChartPanel, HereIsWhereTheRunIs) {
     const std::vector<ChartRow> chart = readChart(builtInChart());
     const ChartSetting* pbf = chartSettings().find("pbf");
@@ -246,7 +246,7 @@ TEST(ChartPanel, HereIsWhereTheRunIs) {
     EXPECT_EQ(settingOf(scene.fluid), nullptr);
 }
 
-TEST_F(Watching, TheFrameGraphIsWhatWasDrawnAndTimed) {
+TEST_F(Watching, TheFrameGraphShowsDrawnAndTimedPasses) {
     SceneFile scene = damBreak();
     scene.look.renderer = "screen_space";
     begin(scene, kWindow, kPixels);

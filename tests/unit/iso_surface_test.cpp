@@ -131,7 +131,7 @@ TEST(IsoSurface, ASheetIsFlatAndADropIsASmallBall) {
     EXPECT_NEAR(crossing(drop, dvec3(0), glm::normalize(dvec3(1, 1, 1)), 0, 2), 0.510, 0.001);
 }
 
-TEST(IsoSurface, LeavesOutWhatIsNoParticle) {
+TEST(IsoSurface, IgnoresFreeSlotsAndInvalidPositions) {
     const float nan = std::nanf("");
     const std::vector<vec4> odd = {vec4(0, 0, 0, -1), vec4(nan, 0, 0, 1), vec4(1e30F, 0, 0, 1), vec4(0.1F, 0, 0, 1)};
     EXPECT_EQ(surfaceOf(odd).count(), 1U);

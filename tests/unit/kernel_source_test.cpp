@@ -100,7 +100,7 @@ TEST_F(KernelSourceTest, headerComesFirstThenDefines) {
     EXPECT_EQ(believedPlace(source->text, "int a;"), "0:1");
 }
 
-TEST_F(KernelSourceTest, leavesOutWhatOnlyCppReads) {
+TEST_F(KernelSourceTest, leavesOutPartsForCppOnly) {
     file("shaders/shared.h",
          "#if defined(__cplusplus) && !defined(UNIT)\n#include \"engine/core/no_shader.h\"\n#if defined(X)\nint cpp1;\n#else\nint "
          "cpp2;\n#endif\n"
@@ -151,7 +151,7 @@ TEST_F(KernelSourceTest, circleOfIncludesNamesFileAndLine) {
         << source.error().message;
 }
 
-TEST_F(KernelSourceTest, refusesWhatItCannotRead) {
+TEST_F(KernelSourceTest, refusesInvalidDirectives) {
     const std::pair<const char*, const char*> cases[] = {
         {"\n#include <math.h>\n", "shaders/a.kernel:2: "},
         {"#include \"open\n", "shaders/a.kernel:1: "},

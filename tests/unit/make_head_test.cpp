@@ -159,7 +159,7 @@ void expectSameMeshes(const std::string& shipped, const std::string& written) {
     }
 }
 
-TEST(MakeHead, WritesWhatShipsAndTheSameBytesEachTime) {
+TEST(MakeHead, WritesTheShippedFilesWithTheSameBytesEachTime) {
     Scratch scratch;
     const std::string face = (kShipped.parent_path() / "canonical_face_model.obj").string();
     for (const char* folder : {"head", "again"}) {
@@ -183,7 +183,7 @@ TEST(MakeHead, WritesWhatShipsAndTheSameBytesEachTime) {
     EXPECT_LT(bytes, 6u << 20);
 }
 
-TEST(MakeHead, RefusesAFaceThatIsAnother) {
+TEST(MakeHead, RefusesAnotherFace) {
     Scratch scratch;
     std::string face = scratch.file("face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
     Outcome made = makeHead(face, scratch.file("head"));

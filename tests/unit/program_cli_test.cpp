@@ -43,7 +43,7 @@ TEST(ProgramCli, AMistypedNameIsAnsweredWithTheNearest) {
     expectRefusal(runProgram({"run", scene, "--set", "fluid.spacin=0.1"}), 2, "spacing");
 }
 
-TEST(ProgramCli, ArgumentsThatMakeNoSenseAreRefused) {
+TEST(ProgramCli, InvalidArgumentsAreRefused) {
     Scratch scratch;
     std::string scene = scratch.file("small.json", smallScene());
     expectRefusal(runProgram({"run"}), 2, "SCENE");

@@ -66,7 +66,7 @@ TEST(ProgramExplain, AWorldWithoutWallsBodiesOrTensionCompilesNoneOfTheirCode) {
         }
 }
 
-TEST(ProgramExplain, WhatASceneNeedsIsThereAndHasItsCost) {
+TEST(ProgramExplain, PartsThatASceneNeedsAreListedWithTheirCost) {
     const std::string out = explained(R"({"name": "all", "fluid": {"spacing": 0.05, "forces": {"tension": 0.07},
         "box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "blocks": [{"min": [0, 0, 0], "max": [0.3, 0.3, 0.3]}]},
         "bodies": [{"shape": "box", "size": [0.2, 0.2, 0.2], "position": [0.7, 0.5, 0.7]}]})",

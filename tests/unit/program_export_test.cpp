@@ -42,7 +42,7 @@ TEST(ProgramExport, WritesASurfaceEveryNthFrame) {
     }
 }
 
-TEST(ProgramExport, SaysWhatIsWrong) {
+TEST(ProgramExport, ErrorsNameTheirCause) {
     Scratch scratch;
     scratch.file("s.json", smallScene());
     scratch.file("file", "not a folder");

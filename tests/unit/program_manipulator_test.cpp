@@ -250,7 +250,7 @@ TEST_F(Hand, NoBrushIsLeftWhereNothingCanBePoured) {
     EXPECT_FALSE(viewer_->brush().on());
 }
 
-TEST_F(Hand, SaysWhenAllIsPouredThatThereIsRoomFor) {
+TEST_F(Hand, ReportsThatNoSlotIsLeftForPouring) {
     SceneFile little = viewer_->scene();
     little.emitters.clear();
     little.pour.litres = 3;

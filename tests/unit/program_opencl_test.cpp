@@ -32,7 +32,7 @@ class ProgramOpenCl : public ::testing::Test {
     std::string scene_ = scratch_.file("small.json", smallScene());
 };
 
-TEST_F(ProgramOpenCl, DevicesAreListedWithWhatNamesThem) {
+TEST_F(ProgramOpenCl, DevicesAreListedWithTheirNames) {
     const std::vector<ClDeviceListing> all = listClDevices();
     const Outcome list = runProgram({"list", "devices"}), info = runProgram({"info"});
     for (size_t k = 0; k < all.size(); ++k) {

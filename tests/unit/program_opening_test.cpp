@@ -1,4 +1,4 @@
-// Scenes that are opened while another is shown: the window goes on, what fails or is given up leaves all as it was.
+// Scenes opened while another is shown: the window stays responsive, and a failed or cancelled opening changes nothing.
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -95,7 +95,7 @@ TEST_P(Opening, TheFirstIsOpenedBehindAPicture) {
     EXPECT_NE(wrong.error().message.find("nowhere.obj"), std::string::npos);
 }
 
-TEST_P(Opening, TheSceneBeforeGoesOnUntilTheNextIsReady) {
+TEST_P(Opening, ThePreviousSceneRunsUntilTheNextIsReady) {
     frame();
     const double then = viewer_->session().time();
     viewer_->open(large());
@@ -127,7 +127,7 @@ TEST_P(Opening, AMistakeIsASentenceAndAllStays) {
     EXPECT_EQ(viewer_->message(), "");
 }
 
-TEST_P(Opening, WhoOpensAnotherMeanwhileSeesTheLast) {
+TEST_P(Opening, OfSeveralOpenedScenesTheLastIsShown) {
     viewer_->open(large());
     frame();
     SceneFile last = small();
@@ -164,7 +164,7 @@ TEST_P(Opening, AnotherSkyIsSeen) {
 }
 
 // What is dropped onto the window.
-TEST_P(Opening, ADroppedMeshStandsInTheWaterAndADroppedSceneIsOpened) {
+TEST_P(Opening, ADroppedMeshBecomesAColliderAndADroppedSceneIsOpened) {
     const std::string assets = std::string(RIVULET_SOURCE_DIR) + "/assets/";
     const auto drop = [&](const std::string& path) {
         input_.dropped = {path};
@@ -379,7 +379,7 @@ TEST_P(Opening, TheSceneIsSavedAndReadsBackTheSame) {
     fs::remove_all(folder);
 }
 
-TEST_P(Opening, APictureIsTakenOfWhatIsShown) {
+TEST_P(Opening, APictureShowsTheCurrentScene) {
     namespace fs = std::filesystem;
     const fs::path before = fs::current_path(), folder = fs::temp_directory_path() / ("rivulet_picture_" + std::string(GetParam()));
     fs::remove_all(folder);

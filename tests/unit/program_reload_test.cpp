@@ -1,4 +1,4 @@
-// Shaders, kernels and scenes are taken as they are saved; what is wrong is said on the screen, and changes nothing until it is mended.
+// Shaders, kernels and scenes are reloaded when saved; an error is shown on the screen and changes nothing until it is corrected.
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -34,7 +34,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-TEST(FileWatch, TellsOnceOfWhatWasWrittenAndKeepsStill) {
+TEST(FileWatch, ReportsAWrittenFileOnce) {
     const testing::Scratch scratch;
     const fs::path folder = scratch.path() / "shaders";
     fs::create_directories(folder / "deep");
@@ -153,7 +153,7 @@ TEST_F(Reload, AShaderIsTakenAsItIsSavedAndABrokenOneIsNot) {
     EXPECT_FALSE(onScreen());
 }
 
-TEST_F(Reload, AnIncludedFileReachesWhatIncludesIt) {
+TEST_F(Reload, AnIncludedFileReloadsItsIncluders) {
     const fs::path file = shader("render/frame.glsl");
     const std::string good = readFile(file);
     const GLuint64 steps = viewer_->steps();
@@ -166,7 +166,7 @@ TEST_F(Reload, AnIncludedFileReachesWhatIncludesIt) {
     EXPECT_EQ(trouble(), "");
 }
 
-// What is live goes on, what is fixed begins anew; the camera is the person's in either case.
+// A live value changes the running scene, a fixed value restarts it; the user's camera stays in both cases.
 TEST_F(Reload, ASceneIsTakenAsItIsSaved) {
     input_.keysPressed = {key::kTab};  // the wheel is the camera's
     for (int k = 0; k < 10; ++k) frame();
@@ -204,7 +204,7 @@ TEST_F(Reload, ASceneIsTakenAsItIsSaved) {
     EXPECT_EQ(viewer_->scene().camera.position, vec3(3, 1, 2)) << "unless it is the camera that was written";
 }
 
-TEST_F(Reload, WhatCannotBeOpenedIsSaidAndMended) {
+TEST_F(Reload, AnErrorIsReportedUntilItIsCorrected) {
     const std::string text = readFile(scene_);
     writeFile(scene_, replaced(text, R"("camera")", R"("colliders": [{"mesh": "meshes/spt.obj"}], "camera")"));
     wait();
@@ -216,7 +216,7 @@ TEST_F(Reload, WhatCannotBeOpenedIsSaidAndMended) {
     EXPECT_EQ(viewer_->scene().colliders.size(), 1U);
 }
 
-TEST_F(Reload, WhatTheCommandLineSetStaysSet) {
+TEST_F(Reload, ValuesOfTheCommandLineStaySet) {
     start({"fluid.viscosity=0.25"});
     writeFile(scene_, replaced(readFile(scene_), R"("name": "small")", R"("name": "other", "timeScale": 0.5)"));
     wait();
@@ -225,7 +225,7 @@ TEST_F(Reload, WhatTheCommandLineSetStaysSet) {
     EXPECT_EQ(viewer_->scene().fluid.viscosity, 0.25F);
 }
 
-TEST_F(Reload, KernelsOfAGpuAreTakenWhileTheWaterGoesOn) {
+TEST_F(Reload, KernelsOfAGpuAreReloadedDuringARun) {
     start({}, "gl");
     const fs::path file = shader("fluid/methods/pbf_predict.kernel");
     const std::string good = readFile(file);
@@ -255,8 +255,8 @@ TEST_F(Reload, TheSceneThatIsOpenedNextIsWatchedInstead) {
     EXPECT_EQ(viewer_->scene().name, "written");
 }
 
-// What a person has set stays set, unless the file says something else of it; and so does a mesh that was dropped.
-TEST_F(Reload, WhatAPersonHasSetStaysSet) {
+// Values set in the window stay set unless the file changes them; a dropped mesh stays, too.
+TEST_F(Reload, ValuesSetInTheWindowStaySet) {
     const std::string text = readFile(scene_);
     input_.dropped = {std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/sphere.obj"};
     frame();
@@ -285,7 +285,7 @@ TEST_F(Reload, WhatAPersonHasSetStaysSet) {
     EXPECT_NE(viewer_->scene().fluid.viscosity, 0.5F) << "the file no longer says it";
 }
 
-// Saved over its own file, the scene is what the file says, and no longer what the command line said.
+// After saving over its own file, the scene follows the file and no longer the command line.
 TEST_F(Reload, ASceneThatIsSavedOverItsFileIsTheFiles) {
     const fs::path before = fs::current_path();
     fs::current_path(scratch_.path());

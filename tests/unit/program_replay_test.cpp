@@ -78,7 +78,7 @@ TEST(ProgramReplay, ShowsTheSamePictures) {
     }
 }
 
-TEST(ProgramReplay, SaysWhatIsWrong) {
+TEST(ProgramReplay, ErrorsNameTheirCause) {
     const Scratch scratch;
     scratch.file("s.json", testing::smallScene());
     std::string other = testing::smallScene();
@@ -127,7 +127,7 @@ TEST(ProgramReplay, ARunThatWasCutIsShown) {
     EXPECT_TRUE(contents(scratch, "out/small_0000.png") == picture);
 }
 
-// A person at a window that shows a recording: keys do what they do, and what was settled stays.
+// A user at a window that shows a recording: keys work, and fixed values stay.
 class ReplayPerson : public testing::ViewerFixture {
   protected:
     void SetUp() override {
@@ -179,7 +179,7 @@ TEST_F(ReplayPerson, KeysPauseStepAndReset) {
 }
 
 // Every row of the panel is pressed and dragged. Changes of recorded settings are refused with a message.
-TEST_F(ReplayPerson, WhatWasSettledIsRefused) {
+TEST_F(ReplayPerson, FixedValuesAreRefused) {
     input_.framebuffer = ivec2(0);  // the panel alone
     frame(0);
     const float spacing = viewer_->scene().fluid.spacing;

@@ -47,7 +47,7 @@ TEST(BulkFront, OfABlockIsItsFace) {
     }
 }
 
-TEST(BulkFront, IsOfTheBoxWhereverItStands) {
+TEST(BulkFront, IsFoundForAnyPositionOfTheBox) {
     vec3 low(-3, 2, 5);
     double front = *bulkFront(lattice(low, {0.5F, 0.1F, 0.4F}), boxOf(low, low + vec3(2, 1, 0.4F)), kSpacing);
     EXPECT_NEAR(front, -2.5, 0.021);

@@ -98,7 +98,7 @@ TEST(ProgramRun, SteppingBehindDrawingChangesNoPicture) {
 }
 
 // With the cpu a frame ahead of the pictures, too: at the run's end, and where Ctrl-C ends it.
-TEST(ProgramRun, WhatIsSavedIsWhatWasDrawnLast) {
+TEST(ProgramRun, TheSavedStateIsTheLastDrawnFrame) {
     Scratch scratch;
     const std::string scene = scratch.file("small.json", smallScene());
     const auto run = [&](const char* plan, const std::string& out, const std::vector<std::string>& more, const RunOptions& options) {
@@ -235,7 +235,7 @@ TEST(ProgramRun, StatsReportTheWorkOfThePressureSolver) {
     EXPECT_EQ(dfsph["dropped"].asDouble(), 0);
 }
 
-TEST(ProgramRun, StatsHoldWhatTheyMust) {
+TEST(ProgramRun, StatsHoldAllKeys) {
     Scratch scratch;
     std::string scene = scratch.file("small.json", smallScene());
     Outcome outcome =

@@ -66,7 +66,7 @@ class Person : public testing::ViewerFixture {
     static constexpr ivec2 kWindow{900, 1600}, kPixels{90, 160};
 };
 
-// With fixed steps the world is told of every frame as it comes, and keeps what is left over.
+// With fixed steps the world receives every frame and keeps the remainder.
 TEST_F(Person, FixedStepsTakeFramesAsTheyCome) {
     SceneFile scene = viewer_->scene();
     scene.fluid.fixedStep = 0.01F;
@@ -147,7 +147,7 @@ TEST_F(Person, TheMouseMovesTheCamera) {
     press(false);
 }
 
-// A draft that makes no sense yet leaves the water as it was, not the view.
+// A draft that is not yet valid leaves the water unchanged, but not the view.
 TEST_F(Person, TheViewTurnsAlsoWhileAnEditIsRefused) {
     key(GLFW_KEY_SPACE);
     withControl('F');
@@ -173,14 +173,14 @@ TEST_F(Person, SavesAlsoWhileAFieldIsTypedInto) {
     EXPECT_TRUE(shows("save the scene"));
 }
 
-TEST(FileName, IsOfAFileWhateverTheSceneIsCalled) {
+TEST(FileName, IsValidForAnySceneName) {
     EXPECT_EQ(fileName("a scene"), "a scene");
     EXPECT_EQ(fileName("a/b"), "a_b");
     EXPECT_EQ(fileName(""), "scene");
     EXPECT_EQ(fileName(".hidden"), "scene.hidden");
 }
 
-TEST_F(Person, EscapeClosesWhatLiesOnTop) {
+TEST_F(Person, EscapeClosesTheTopmostWindow) {
     key(GLFW_KEY_H);
     key(GLFW_KEY_O);
     frame();
@@ -314,7 +314,7 @@ TEST_F(Person, EverySliderMayBeDragged) {
     EXPECT_TRUE(std::isfinite(viewer_->session().world().stats().kinetic));
 }
 
-TEST_F(Person, ParametersAreFoundByWordsAndResetToWhatTheyWere) {
+TEST_F(Person, ParametersAreFoundByWordsAndReset) {
     key(GLFW_KEY_SPACE);
     input_.framebuffer = ivec2(0);  // the panel alone
     frame();
@@ -350,8 +350,8 @@ TEST_F(Person, ParametersAreFoundByWordsAndResetToWhatTheyWere) {
     EXPECT_TRUE(hover("parameters", {"fluid", "fluid"})) << "all groups are there again";
 }
 
-// What differs is told by paths, whatever a text holds.
-TEST(ParamMemory, KnowsWhatIsNoLongerAsItWas) {
+// Changes are listed by path, for any content of a text.
+TEST(ParamMemory, ListsChangedValues) {
     SceneFile scene;
     scene.name = "small";
     const auto visit = [&scene](ParamVisitor& v) { scene.visit(v); };
@@ -371,7 +371,7 @@ TEST(ParamMemory, KnowsWhatIsNoLongerAsItWas) {
 }
 
 // An edit that asks for more memory than voxels may take is refused, and all stays as it was: the session, its water, the values.
-TEST_F(Person, WhatMemoryDoesNotHoldLeavesTheOldSession) {
+TEST_F(Person, ASceneTooLargeForMemoryLeavesTheOldSession) {
     const testing::Scratch scratch;
     scratch.file("box.obj",
                  "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\n"

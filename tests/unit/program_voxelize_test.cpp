@@ -141,7 +141,7 @@ TEST(ProgramVoxelize, DefectsAreSaid) {
     EXPECT_EQ(stats["badEdges"].asInt(), 4);
 }
 
-TEST(ProgramVoxelize, WhatMakesNoSenseIsRefusedAndNothingIsWritten) {
+TEST(ProgramVoxelize, InvalidRequestsAreRefusedAndNothingIsWritten) {
     Scratch scratch;
     scratch.file("ball.obj", objOf(test::makeSphere(vec3(0), 1, 4)));
     scratch.file("blocker", "a file, not a folder");
@@ -193,7 +193,7 @@ TEST(ProgramVoxelize, FiguresStandApart) {
     EXPECT_EQ(outcome.out.find(" 0.0 "), std::string::npos) << outcome.out;
 }
 
-TEST(ProgramVoxelize, WhatMemoryDoesNotHoldLeavesTheOldFile) {
+TEST(ProgramVoxelize, AMeshTooLargeForMemoryLeavesTheOldFile) {
     Scratch scratch;
     scratch.file("ball.obj", objOf(test::makeSphere(vec3(0), 1, 4)));
     const std::vector<std::string> words = {"voxelize", "ball.obj", "--backend", "cpu", "--resolution"};

@@ -67,7 +67,7 @@ TEST_F(WelcomeScreenTest, WhereNothingCanBeKeptItIsNoError) {
     EXPECT_FALSE(viewer_->greets());
 }
 
-TEST(SeenFile, LiesWhereSettingsLie) {
+TEST(SeenFile, IsInTheSettingsFolder) {
     const char* before = std::getenv("XDG_CONFIG_HOME");
     const std::string kept = before != nullptr ? before : "";
     setenv("XDG_CONFIG_HOME", "/somewhere", 1);

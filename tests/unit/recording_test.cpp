@@ -166,7 +166,7 @@ TEST(Recording, NoFlippedBitPasses) {
 }
 
 // Headers and contents with valid checksums but invalid values, as another program may write them.
-TEST(Recording, WhatMakesNoSenseIsRefusedWithoutMuchMemory) {
+TEST(Recording, InvalidFilesAreRefusedWithoutMuchMemory) {
     const Scratch scratch;
     std::vector<uint64_t> begins;
     const std::string bytes = recorded(scratch, true, &begins);

@@ -87,7 +87,7 @@ vec3 liftedTo(const Model& model, double time) {
 
 // What assimp 5.2 hands over of STEP and CUBICSPLINE are their keys alone, without the tangents: they are exact there, and straight
 // between.
-TEST(SceneAnimation, KeysAreExactWhateverIsBetween) {
+TEST(SceneAnimation, KeysAreExact) {
     const Scratch scratch;
     for (const auto& [kind, output] :
          {std::pair<const char*, std::vector<float>>("STEP", {0, 0, 0, 0, 2, 0, 0, 5, 0}),

@@ -69,7 +69,7 @@ TEST(SceneFlow, AClickPutsADropOnTheSkin) {
     EXPECT_EQ(there, 1U);
 }
 
-TEST(SceneFlow, PresetsSetWhatTheySay) {
+TEST(SceneFlow, PresetsSetTheirValues) {
     const SceneFile sob = crying({}, "sob"), rain = crying({"flow.0.sources.3.drop=2"}, "rain on a statue");
     EXPECT_GT(sob.flow[0].sources[0].rate, 100);
     EXPECT_EQ(rain.flow[0].sources[0].rate, 0);
@@ -84,7 +84,7 @@ TEST(SceneFlow, PresetsSetWhatTheySay) {
     EXPECT_NE(none.error().message.find("quiet cry"), std::string::npos) << none.error().message;
 }
 
-TEST(SceneFlow, WhatMakesNoSenseIsRefusedByName) {
+TEST(SceneFlow, InvalidValuesAreRefusedByName) {
     struct Row {
         const char *set, *says;
     };
@@ -174,7 +174,7 @@ TEST(SceneFlow, TheSameWaterIsInBothWorlds) {
 }
 
 // A drop that hangs in the air is met by a skin that comes to it: faster than the drop is wide in a frame.
-TEST(SceneFlow, ASkinThatMovesMeetsWhatIsInItsWay) {
+TEST(SceneFlow, AMovingSkinCollectsDropsInItsPath) {
     auto device = cpu();
     Result<SceneFile> scene = loadScene(
         "rain_on_spot",

@@ -94,7 +94,7 @@ TEST_F(SceneModel, theHeadHasItsPartsMorphsAndTextures) {
     EXPECT_EQ(head->find("nobody"), nullptr);
 }
 
-TEST_F(SceneModel, uvsRunUpAsHeadJsonSays) {
+TEST_F(SceneModel, uvsPointUpAsInHeadJson) {
     Result<Model> head = importModel(kHead + "head.glb");
     ASSERT_TRUE(head);
     const Mesh& skin = head->find("skin")->mesh;

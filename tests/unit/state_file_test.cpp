@@ -40,7 +40,7 @@ std::string refusal(const std::string& bytes) {
     return state.error().message;
 }
 
-TEST(StateFile, GivesBackWhatWasPacked) {
+TEST(StateFile, ReadsBackThePackedState) {
     const std::string bytes = packed();
     Result<WorldState> state = unpackState(std::as_bytes(std::span(bytes)), "a.rstate");
     ASSERT_TRUE(state) << state.error().message;

@@ -49,7 +49,7 @@ TEST(SurfaceMetrics, NormalsOfAPlaneAreItsOwn) {
     }
 }
 
-// A step of more than half a radius is an edge: normals beside it are those of either side.
+// A step of more than half a radius is an edge: normals next to it belong to their own side.
 TEST(SurfaceMetrics, NormalsDoNotBendOverAnEdge) {
     SurfaceMap step = plane(tilted(0));
     for (int y = 0; y < kHeight; ++y)
@@ -61,7 +61,7 @@ TEST(SurfaceMetrics, NormalsDoNotBendOverAnEdge) {
     EXPECT_GT(compareSurfaces(found, step, 0.5F).normalMean, 0.5);
 }
 
-TEST(SurfaceMetrics, FiguresAreWhatWasDone) {
+TEST(SurfaceMetrics, FiguresMatchTheKnownChange) {
     const SurfaceMap exact = plane(tilted(0));
     SurfaceMap off = plane(tilted(10));
     off.depth = exact.depth;

@@ -39,7 +39,7 @@ TEST(Timeline, ChromesTraceHasEachSpanInItsLane) {
 
 TEST(Timeline, AnEmptyOneIsAValidTrace) { EXPECT_TRUE(parsed(Timeline().chromeTrace())["traceEvents"].empty()); }
 
-TEST(Timeline, OverlapCountsWhatBothDoOnce) {
+TEST(Timeline, OverlapCountsCommonTimeOnce) {
     // a: 0-4 in pieces that touch and overlap, and 8-9; b: 1-2, 3-8.5.
     const std::vector<PassSpan> a = {{"", 8, 9}, {"", 0, 2}, {"", 1, 3}, {"", 3, 4}}, b = {{"", 3, 8.5}, {"", 1, 2}};
     EXPECT_DOUBLE_EQ(overlapSeconds(a, b), 1 + 1 + 0.5);

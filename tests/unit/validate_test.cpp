@@ -22,7 +22,7 @@ std::unique_ptr<CpuDevice> cpu() {
     return makeCpuDevice(rows);
 }
 
-TEST(ReferenceData, IsWhatThePapersPrint) {
+TEST(ReferenceData, EqualsThePapers) {
     const std::vector<glm::dvec2> front = referenceCurve("martin_moyce_1952_front");
     ASSERT_EQ(front.size(), 15U);
     EXPECT_EQ(front.front(), glm::dvec2(0.41, 1.11));
@@ -40,7 +40,7 @@ TEST(ReferenceData, IsWhatThePapersPrint) {
     for (const ReferenceTable& table : referenceTables()) EXPECT_NE(table.text.find("doi:"), std::string_view::npos) << table.name;
 }
 
-TEST(ReferenceData, LiesOnStraightLinesBetweenItsPoints) {
+TEST(ReferenceData, IsInterpolatedLinearly) {
     const std::vector<glm::dvec2> curve = {{0, 1}, {2, 5}, {3, 4}};
     EXPECT_EQ(valueAt(curve, -1), 1);
     EXPECT_EQ(valueAt(curve, 0.5), 2);
@@ -50,7 +50,7 @@ TEST(ReferenceData, LiesOnStraightLinesBetweenItsPoints) {
 }
 
 // A lattice under one pressure passes on a third of the sum of V r |W'|, here by counting; off a lattice, as much on average.
-TEST(VirialPressure, OfALatticeIsWhatItsPairsPassOn) {
+TEST(VirialPressure, OfALatticeIsThePressureOfItsPairs) {
     FluidParams p;
     p.spacing = 0.1F;
     const double support = double{p.supportSpacings};
@@ -138,7 +138,7 @@ TEST(PhysicsCases, AStoppedTrialStops) {
     EXPECT_TRUE(outcome->findings.empty());
 }
 
-TEST(PhysicsCases, WhatAMethodCannotDoIsReportedAndWhatMakesNoSenseIsAnError) {
+TEST(PhysicsCases, UnsupportedFeaturesAreReportedAndInvalidRequestsAreErrors) {
     auto device = cpu();
     CaseSettings settings;
     settings.device = device.get();
@@ -161,7 +161,7 @@ TEST(PhysicsCases, WhatAMethodCannotDoIsReportedAndWhatMakesNoSenseIsAnError) {
     EXPECT_FALSE(runCase(row, settings)) << "the judged method has to do it";
 }
 
-TEST(Draught, TheLevelHoldsWaterAndWhatIsUnder) {
+TEST(Draught, TheLevelIncludesWaterAndTheSubmergedVolume) {
     // Half a cubic metre of water on a square metre, a box of 0.5 x 0.4 x 0.5 m with its keel at 0.3 m: the level is y where
     // 0.5 + 0.25 (y - 0.3) = y.
     const Floater box{0.4, 0.1, 0.3};

@@ -219,7 +219,7 @@ Forgery forgedLabels(const Words& counts = {3, 1, 1, 1}, const Words& x = {0, 1,
     return f;
 }
 
-TEST(VoxelFile, ReadsBackWhatWasWritten) {
+TEST(VoxelFile, ReadsBackAWrittenFile) {
     unsigned seed = 0;
     for (const ivec3& size : {ivec3(1, 1, 1), ivec3(7, 5, 3), ivec3(33, 17, 9), ivec3(64, 40, 24)}) {
         for (int which = 0; which < 4; ++which) {

@@ -1,4 +1,4 @@
-// Water in a host's picture: where there is none nothing changes, what is in front hides it, and the host's formats make no difference.
+// Water in a host's picture: pixels without water do not change, objects in front hide it, and the host's formats have no effect.
 #include "fluid/render/water_renderer.h"
 
 #include <gtest/gtest.h>

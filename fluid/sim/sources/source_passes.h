@@ -82,7 +82,7 @@ class SourcePasses {
     float spacing_ = 0;
     std::vector<EmitterFeed> feeds_;  // of the emitters; behind them that of what is poured, if others do
     bool deposits_ = false;
-    std::vector<uint32_t> reported_;  // refused by the device, of each, that its feed knows of; it turns over with the counters
+    std::vector<uint32_t> reported_;  // per emitter: refusals that its feed has counted; wraps around with the counters
     size_t sinkCount_ = 0;
     Kernel emit_, drain_, forget_;
     Buffer candidates_, sinks_, counters_;

@@ -21,10 +21,10 @@ STRUCT(FoamStep) {
     float unused1;
     float unused2;
 };
-// A slot of foam: place, vec4: xyz m, w the rest of its life, s (0: free); velocity, vec4: xyz m/s, w its size, 0.5 to 1, and what it is in
-// whole numbers: 1 spray, 2 foam, 3 a bubble.
-// Lists: [0] alive, [1] free ones listed, [2] that would be born, [3] that were, or for which chance left no
-// slot; then the free ones.
+// A slot of foam: place, vec4: xyz m, w remaining life, s (0: free); velocity, vec4: xyz m/s, w size, 0.5 to 1, plus its kind: 1 spray,
+// 2 foam, 3 bubble.
+// Lists: [0] alive, [1] free ones listed, [2] spawns requested, [3] spawns made, or refused because no slot was left;
+// then the free ones.
 CONSTANT(uint, FOAM_LISTS, 4u);
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(FoamStep) % 16 == 0);

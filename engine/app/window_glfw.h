@@ -30,11 +30,11 @@ class WindowGlfw {
     WindowGlfw& operator=(WindowGlfw&&) noexcept;
     ~WindowGlfw();
 
-    // Waits for nothing; what happened since the last call.
+    // Returns the events since the last call, without waiting.
     InputEvents poll();
-    Result<SharedGl> shared()
-        const;    // must be created and destroyed on the main thread. Error (failed): the driver cannot create a second context
-    void swap();  // shows what was drawn into framebuffer 0
+    // Must be created and destroyed on the main thread. Error (failed): the driver cannot create a second context.
+    Result<SharedGl> shared() const;
+    void swap();  // shows the content of framebuffer 0
     void setTitle(const std::string& title);
     void resize(int width, int height);  // window coordinates
     GLFWwindow* handle() const;

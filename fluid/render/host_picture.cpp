@@ -145,8 +145,8 @@ Status HostPicture::fit(int width, int height) {
     colour_ = {};  // if one fails, all are created again next time
     size_t needed = 0;
     for (const auto& [texture, format] : wanted) needed += gpu::TextureDesc{.width = width, .height = height, .format = format}.bytes();
-    needed += gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}
-                  .bytes();  // and a copy of the host's depth in its own format
+    // And a copy of the host's depth in its own format.
+    needed += gpu::TextureDesc{.width = width, .height = height, .format = gpu::Format::depth32f}.bytes();
     if (needed > most_)
         return failed(fmt::format("a picture of {} x {} pixels needs {}, and {} are allowed for pictures; allow more, or draw fewer pixels",
                                   width, height, readableBytes(needed), readableBytes(most_)));

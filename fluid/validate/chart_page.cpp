@@ -150,7 +150,7 @@ std::string viscosityPage(const Chart& chart) {
 }
 
 Plot viscosityPlot(const Chart& chart) {
-    Plot plot{"pbf: viscosity of the standing wave", "corrections per substep", "m^2/s", {}, true, true};
+    Plot plot{"pbf: viscosity of the standing wave", "corrections per step", "m^2/s", {}, true, true};
     std::map<int, Curve> curves;
     for (const ViscosityRow& r : chart.viscosity) {
         Curve& c = curves[r.stepsPerFrame];

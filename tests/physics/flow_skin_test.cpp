@@ -13,7 +13,6 @@
 namespace rivulet::flow_skin_test {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 
 // What nothing pulls at along the skin stays where it is in the world, whichever way the skin goes away under it: as its frame moves, or as

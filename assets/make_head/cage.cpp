@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -13,7 +12,6 @@
 namespace rivulet::head {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kMeridians = 36;  // one from each vertex of the face's boundary to the neck's edge
 constexpr int kRings = 15;
 constexpr int kChin = 152;

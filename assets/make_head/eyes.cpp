@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "assets/make_head/cage.h"
 
 namespace rivulet::head {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr dvec3 kEyeCentre(3.17, 2.68, 2.60);
 constexpr double kCorneaRadius = 0.78, kCorneaCentre = 0.535;  // its sphere's centre lies before the eyeball's
 constexpr double kLidThickness = 0.17;

@@ -5,11 +5,6 @@
 namespace rivulet::head {
 namespace {
 
-double bell(dvec3 p, dvec3 centre, dvec3 width) {
-    dvec3 d = (p - centre) / width;
-    return std::exp(-0.5 * glm::dot(d, d));
-}
-
 // 0 at the lids, 1 away from them: motions of brows and cheeks must not move the lids off the eyes.
 double awayFromLids(dvec3 p, bool above) {
     dvec2 d = dvec2(std::abs(p.x) - 3.17, p.y - 2.6) / dvec2(1.75, above ? 1.35 : 1.2);

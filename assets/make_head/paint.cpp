@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace rivulet::head {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double hash(int64_t x, int64_t y, int64_t z, uint64_t seed) {
     uint64_t h = static_cast<uint64_t>(x) * 0x9E3779B97F4A7C15ULL ^ static_cast<uint64_t>(y) * 0xC2B2AE3D27D4EB4FULL ^
@@ -56,11 +53,6 @@ double cells(dvec3 p, uint64_t seed, double& which) {
         }
     }
     return best;
-}
-
-double bell(dvec3 p, dvec3 centre, dvec3 width) {
-    dvec3 d = (p - centre) / width;
-    return std::exp(-0.5 * glm::dot(d, d));
 }
 
 struct Texel {

@@ -3,14 +3,18 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <vector>
 
 namespace rivulet::head {
+
+inline constexpr double kPi = std::numbers::pi;
 
 using glm::dvec2;
 using glm::dvec3;
@@ -45,6 +49,12 @@ std::vector<std::vector<uint32_t>> boundaryLoops(const Surface& surface);
 std::vector<dvec3> normalsOf(const std::vector<dvec3>& positions, const std::vector<Triangle>& triangles);
 std::vector<dvec3> positionsOf(const Surface& surface);
 Surface subdivided(const Surface& surface);
+
+// A Gaussian of height 1.
+inline double bell(dvec3 p, dvec3 centre, dvec3 width) {
+    dvec3 d = (p - centre) / width;
+    return std::exp(-0.5 * glm::dot(d, d));
+}
 
 inline double smoothstep(double from, double to, double x) {
     double t = glm::clamp((x - from) / (to - from), 0.0, 1.0);

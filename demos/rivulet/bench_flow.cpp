@@ -7,6 +7,7 @@
 
 #include "demos/rivulet/bench_cases.h"
 #include "engine/compute/device_cpu.h"
+#include "engine/core/wall_clock.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/session/session.h"
@@ -58,10 +59,6 @@ Result<SurfaceFlow> runningHead(Device& device, const Mesh& head, int drops) {
         picolitres(1000000, 2000000);
     for (int k = 0; k < drops; ++k) flow->add({triangle(random), 0.3F, 0.3F}, picolitres(random));
     return flow;
-}
-
-double msSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 constexpr int kEdge = 1024;  // texels, width and height of the maps

@@ -6,6 +6,7 @@
 
 #include "demos/rivulet/bench_cases.h"
 #include "engine/compute/device_cpu.h"
+#include "engine/core/wall_clock.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
@@ -27,7 +28,6 @@ Mesh dentedBall() {
         return vec3(static_cast<float>(r * std::sin(polar) * std::cos(round)), static_cast<float>(r * std::cos(polar)),
                     static_cast<float>(r * std::sin(polar) * std::sin(round)));
     };
-    constexpr double kPiD = 3.14159265358979323846;
     mesh.positions.push_back(at(0, 0));
     for (int ring = 1; ring <= kRings; ++ring)
         for (uint32_t side = 0; side < kSides; ++side) mesh.positions.push_back(at(kPiD * ring / (kRings + 1), 2 * kPiD * side / kSides));
@@ -63,12 +63,8 @@ std::vector<Mesh> benchMeshes(const Log& log) {
     return meshes;
 }
 
-double msSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 // Reports one row: the time of `once`, ms. The first error ends it.
-Status row(const BenchContext& context, const std::string& name, const std::function<Result<double>()>& once) {
+Status reportTime(const BenchContext& context, const std::string& name, const std::function<Result<double>()>& once) {
     Status status = ok();
     const Spread spread = repeat(context, [&] {
         if (!status) return 0.0;
@@ -101,14 +97,14 @@ Status benchVoxels(const BenchContext& context) {
             const VoxelizeOptions options{.mode = w.mode, .resolution = w.resolution, .thesisOrder = w.thesisOrder, .progress = {}};
             const std::string name =
                 fmt::format("{} {}^3, {}, {}k triangles, cpu", w.name, w.resolution, mesh.name, mesh.indices.size() / 3000);
-            Status done = row(context, name, [&]() -> Result<double> {
+            Status done = reportTime(context, name, [&]() -> Result<double> {
                 Result<VoxelModel> model = voxelizeMesh(*device, std::span(&view, 1), options);
                 if (!model) return model.error();
                 return model->milliseconds;
             });
             if (!done) return done;
         }
-        Status done = row(context, fmt::format("field 256, {}, cpu", mesh.name), [&]() -> Result<double> {
+        Status done = reportTime(context, fmt::format("field 256, {}, cpu", mesh.name), [&]() -> Result<double> {
             const auto start = std::chrono::steady_clock::now();
             Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 256});
             if (!field) return field.error();

@@ -11,6 +11,7 @@
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
 #include "engine/core/file.h"
+#include "engine/core/wall_clock.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/autotune.h"
@@ -27,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double msSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
 // The frames that are written as PNG: the first, the last, and four at equal distances between them.
 std::set<int> pictureFrames(int frames) {

@@ -32,6 +32,8 @@ using glm::vec3;
 using glm::vec4;
 
 inline constexpr float kPi = 3.14159265358979323846F;
+inline constexpr double kPiD = 3.14159265358979323846;
+inline constexpr float kDegree = kPi / 180.0F;  // rad
 
 inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

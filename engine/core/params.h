@@ -21,6 +21,11 @@
 
 namespace rivulet {
 
+// Values of ParamInfo's last members, and the farthest position.
+inline constexpr bool kLog = true, kLinear = false;
+inline constexpr bool kFixed = true;
+inline constexpr double kMaxPosition = 1.0e5;  // m; beyond this float32 no longer tells millimetres apart
+
 // The range is inclusive, in `unit`, and applies to each component; a value outside is an error and is never clamped.
 struct ParamInfo {
     const char* name;

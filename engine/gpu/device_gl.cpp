@@ -29,7 +29,7 @@ constexpr GLbitfield kReaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE
 
 using gpu::Fence;
 
-GLint64 limit(GLenum which) {
+GLint64 deviceLimit(GLenum which) {
     GLint64 value = 0;
     glGetInteger64v(which, &value);
     return value;
@@ -120,15 +120,15 @@ class GlDevice final : public Device {
 GlDevice::GlDevice(const ShaderFiles& files, Log log)
     : files_(files),
       log_(std::move(log)),
-      maxLocalSize_(static_cast<size_t>(limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS))),
-      blockAlignment_(std::max<size_t>(static_cast<size_t>(limit(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT)), 16)) {
+      maxLocalSize_(static_cast<size_t>(deviceLimit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS))),
+      blockAlignment_(std::max<size_t>(static_cast<size_t>(deviceLimit(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT)), 16)) {
     GLint groups = 0;
     glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
     maxGroups_ = static_cast<size_t>(std::max(groups, 65535));
     info_.name = text(GL_RENDERER);
     info_.driver = text(GL_VERSION);
     info_.software = isSoftwareRenderer(info_.name);
-    info_.maxBufferBytes = static_cast<size_t>(limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
+    info_.maxBufferBytes = static_cast<size_t>(deviceLimit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
 }
 
 // For calls without a Result: the first error is logged; it would otherwise repeat every frame.

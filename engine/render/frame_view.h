@@ -5,6 +5,8 @@
 
 namespace rivulet {
 
+inline constexpr float kNoDepth = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothing
+
 struct FrameView {
     mat4 view{1.0F};                        // world -> view, right-handed, looking down -z
     mat4 projection{1.0F};                  // view -> clip, perspective, OpenGL depth range [-1, 1]

@@ -6,7 +6,6 @@
 
 namespace rivulet {
 namespace {
-constexpr float kDegree = kPi / 180.0F;
 
 vec3 directionOf(float yaw, float pitch) {
     return vec3(std::sin(yaw * kDegree) * std::cos(pitch * kDegree), std::sin(pitch * kDegree),

@@ -12,7 +12,6 @@ vec3 vectorOf(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 namespace {
 
-constexpr float kDegree = kPi / 180.0F;
 constexpr double kTicksPerSecond = 25;  // if the file does not state it
 
 template <class T>

@@ -25,18 +25,13 @@ struct Side {
     bool sameEdge(const Side& o) const { return low == o.low && high == o.high; }
 };
 
-dvec3 normalOf(const FlowMesh& m, size_t t) {
-    const dvec3 a(m.rest[m.corner[3 * t]]), b(m.rest[m.corner[3 * t + 1]]), c(m.rest[m.corner[3 * t + 2]]);
-    return glm::cross(b - a, c - a);
-}
-
 bool flatAt(const FlowMesh& m, size_t t) {
     double longest = 0;
     for (size_t k = 0; k < 3; ++k) {
         const dvec3 e = dvec3(m.rest[m.corner[3 * t + (k + 1) % 3]]) - dvec3(m.rest[m.corner[3 * t + k]]);
         longest = std::max(longest, glm::dot(e, e));
     }
-    return glm::length(normalOf(m, t)) <= kFlat * longest;
+    return glm::length(restNormal(m, t)) <= kFlat * longest;
 }
 
 // From place `low` to `high`, or the other way.
@@ -55,7 +50,7 @@ void joinBranched(FlowMesh& m, std::vector<Side> sides) {
         for (size_t i = 0; i < sides.size(); ++i)
             for (size_t k = i + 1; k < sides.size(); ++k) {
                 if (runsUp(m, sides[i]) == runsUp(m, sides[k])) continue;
-                const dvec3 a = normalOf(m, sides[i].triangle), b = normalOf(m, sides[k].triangle);
+                const dvec3 a = restNormal(m, sides[i].triangle), b = restNormal(m, sides[k].triangle);
                 const double along = glm::dot(a, b) / std::max(glm::length(a) * glm::length(b), 1.0e-300);
                 if (along > best + 1.0e-9) {
                     best = along;

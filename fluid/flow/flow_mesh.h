@@ -38,6 +38,12 @@ struct FlowMesh {
     size_t triangleCount() const { return source.size(); }
 };
 
+// Normal of triangle `t` at rest; its length is twice the area, m^2.
+inline dvec3 restNormal(const FlowMesh& m, size_t t) {
+    const dvec3 a(m.rest[m.corner[3 * t]]), b(m.rest[m.corner[3 * t + 1]]), c(m.rest[m.corner[3 * t + 2]]);
+    return glm::cross(b - a, c - a);
+}
+
 // Error (badInput): indices out of range or not in threes, positions that are not finite, no triangle with an area, more than 2^27 of them.
 Result<FlowMesh> makeFlowMesh(const MeshView& mesh);
 

@@ -7,7 +7,7 @@ namespace rivulet {
 
 namespace {
 
-constexpr size_t kTogether = 32;
+constexpr size_t kTrianglesPerBox = 32;
 
 // Bits of x, y and z in turn.
 uint64_t interleaved(const uvec3& v) {
@@ -52,9 +52,9 @@ SkinSearch::SkinSearch(const FlowMesh& mesh) : mesh_(&mesh), places_(mesh.rest) 
 
 void SkinSearch::follow(std::span<const vec4> places) {
     for (size_t p = 0; p < places_.size(); ++p) places_[p] = vec3(places[p]);
-    boxes_.assign((order_.size() + kTogether - 1) / kTogether, Bounds{});
+    boxes_.assign((order_.size() + kTrianglesPerBox - 1) / kTrianglesPerBox, Bounds{});
     for (size_t k = 0; k < order_.size(); ++k)
-        for (size_t c = 0; c < 3; ++c) boxes_[k / kTogether].add(places_[mesh_->corner[3 * size_t{order_[k]} + c]]);
+        for (size_t c = 0; c < 3; ++c) boxes_[k / kTrianglesPerBox].add(places_[mesh_->corner[3 * size_t{order_[k]} + c]]);
 }
 
 std::optional<SkinSearch::Hit> SkinSearch::first(const vec3& from, const vec3& to) const {
@@ -62,7 +62,7 @@ std::optional<SkinSearch::Hit> SkinSearch::first(const vec3& from, const vec3& t
     std::optional<Hit> best;
     for (size_t b = 0; b < boxes_.size(); ++b) {
         if (!meets(boxes_[b], from, way)) continue;
-        for (size_t k = b * kTogether; k < std::min((b + 1) * kTogether, order_.size()); ++k) {
+        for (size_t k = b * kTrianglesPerBox; k < std::min((b + 1) * kTrianglesPerBox, order_.size()); ++k) {
             const uint32_t* c = &mesh_->corner[3 * size_t{order_[k]}];
             // Moeller and Trumbore 1997.
             const vec3 e1 = places_[c[1]] - places_[c[0]], e2 = places_[c[2]] - places_[c[0]], p = glm::cross(way, e2);

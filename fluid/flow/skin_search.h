@@ -27,7 +27,7 @@ class SkinSearch {
     const FlowMesh* mesh_;
     std::vector<vec3> places_;
     std::vector<uint32_t> order_;  // of triangles
-    std::vector<Bounds> boxes_;    // of kTogether of them each
+    std::vector<Bounds> boxes_;    // of kTrianglesPerBox of them each
 };
 
 }  // namespace rivulet

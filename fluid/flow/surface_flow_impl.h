@@ -16,7 +16,6 @@ namespace rivulet {
 
 inline constexpr double kRadian = 3.14159265358979323846 / 180;
 inline constexpr double kMicrolitre = 1.0e-9;  // m^3
-inline constexpr double kPiD = 3.14159265358979323846;
 // Of the support radius of the film's kernel: radius of the paraboloid with the same spread of volume.
 inline constexpr double kFilmRadius = 0.6455;
 inline constexpr float kJump = 50.0F;        // m/s: a faster skin counts as moved by the user, without drift

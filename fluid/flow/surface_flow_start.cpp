@@ -12,7 +12,6 @@
 namespace rivulet {
 
 void SurfaceFlowParams::visit(ParamVisitor& v) {
-    constexpr bool kLog = true, kLinear = false, kFixed = true;
     v.value({"surfaceTension", "N/m", "surface tension", 0.001, 1, kLog}, surfaceTension);
     v.value({"viscosity", "Pa s", "dynamic viscosity", 1.0e-5, 100, kLog}, viscosity);
     v.value({"density", "kg/m^3", "density", 1, 20000, kLog}, density);

@@ -11,7 +11,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr int kMostParts = 16;    // of a step
 constexpr float kFarUv = 1.0e4F;  // limit of a usable UV
 
@@ -20,7 +19,6 @@ bool somewhere(const vec2& uv) { return std::abs(uv.x) < kFarUv && std::abs(uv.y
 }  // namespace
 
 void ThesisParams::visit(ParamVisitor& v) {
-    constexpr bool kLog = true, kFixed = true;
     v.value({"reach", "UV", "support radius of the sums over neighbours", 1.0e-3, 1, kLog, kFixed}, reach);
     v.value({"restDensity", "kg/UV^2", "density at which the pressure is 0", 1.0e-6, 100, kLog}, restDensity);
     v.value({"stiffness", "UV^2/s^2", "k of the pressure k (density - rest density)", 0, 10}, stiffness);

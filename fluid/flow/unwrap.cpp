@@ -28,15 +28,10 @@ constexpr size_t kFew = 4;
 constexpr double kMostLost = 0.02, kMostOverlap = 0.02;
 
 dvec3 place(const FlowMesh& m, size_t corner) { return dvec3(m.rest[m.corner[corner]]); }
-// Its length is twice the area.
-dvec3 normalOf(const FlowMesh& m, size_t t) {
-    const dvec3 a = place(m, 3 * t);
-    return glm::cross(place(m, 3 * t + 1) - a, place(m, 3 * t + 2) - a);
-}
 bool flat(const FlowMesh& m, size_t t) {
     double longest = 0;
     for (size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(place(m, 3 * t + k), place(m, 3 * t + (k + 1) % 3)));
-    return glm::length(normalOf(m, t)) <= 1.0e-6 * longest * longest;
+    return glm::length(restNormal(m, t)) <= 1.0e-6 * longest * longest;
 }
 
 // A part of the skin and its flat layout, in metres.
@@ -55,7 +50,7 @@ class Cutter {
     // Grows charts from the largest triangle without one, adding first the triangles that bend least.
     std::vector<std::vector<uint32_t>> cut() {
         std::vector<dvec3> normal;
-        for (size_t t = 0; t < chart_.size(); ++t) normal.push_back(normalOf(mesh_, t));
+        for (size_t t = 0; t < chart_.size(); ++t) normal.push_back(restNormal(mesh_, t));
         std::vector<uint32_t> order;
         for (uint32_t t = 0; t < chart_.size(); ++t)
             if (!flat(mesh_, t)) order.push_back(t);
@@ -114,7 +109,7 @@ Chart chartOf(const FlowMesh& m, std::vector<uint32_t> triangles) {
 // Projects onto the plane perpendicular to the mean normal.
 void project(const FlowMesh& m, Chart& c) {
     dvec3 n(0.0);
-    for (const uint32_t t : c.triangles) n += normalOf(m, t);
+    for (const uint32_t t : c.triangles) n += restNormal(m, t);
     n = glm::length(n) > 0 ? glm::normalize(n) : dvec3(0, 0, 1);
     const dvec3 u = glm::normalize(glm::cross(std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0), n)), v = glm::cross(n, u);
     c.at.clear();
@@ -186,13 +181,13 @@ bool settle(const FlowMesh& m, Chart& c) {
     double inUv = 0, onSkin = 0;
     for (size_t t = 0; t < c.triangles.size(); ++t) {
         inUv += areaInUv(c, t);
-        onSkin += glm::length(normalOf(m, c.triangles[t]));
+        onSkin += glm::length(restNormal(m, c.triangles[t]));
     }
     if (!(inUv > 0)) return false;
     const double scale = std::sqrt(onSkin / inUv);
     for (dvec2& p : c.at) p *= scale;
     for (size_t t = 0; t < c.triangles.size(); ++t)
-        if (areaInUv(c, t) < 0.01 * glm::length(normalOf(m, c.triangles[t]))) return false;
+        if (areaInUv(c, t) < 0.01 * glm::length(restNormal(m, c.triangles[t]))) return false;
     double least = 1.0e300;
     std::vector<dvec2> best;
     for (int k = 0; k < 30; ++k) {
@@ -334,7 +329,7 @@ UvReport checkUvs(const FlowMesh& mesh, std::span<const vec2> uvs, int size) {
     for (size_t t = 0; t < mesh.triangleCount(); ++t) {
         const std::span<const vec2> uv = uvs.subspan(3 * t, 3);
         const UvTriangle f = uvTriangle(uv, size);
-        const double own = glm::length(normalOf(mesh, t));
+        const double own = glm::length(restNormal(mesh, t));
         area += own;
         if (!flat(mesh, t)) {
             r.notNumbers += f.fault == UvTriangle::Fault::notNumbers ? 1 : 0;

@@ -14,12 +14,12 @@ namespace rivulet {
 
 namespace {
 
-constexpr ParticleFormat kRows[] = {
+constexpr ParticleFormat kParticleFormatRows[] = {
     {"ply", "Stanford PLY: binary; for Blender, MeshLab, CloudCompare", "ply", writeParticlesPly},
     {"vtk", "VTK's XML (.vtp), and a .pvd that gives each file its time; for ParaView", "vtp", writeParticlesVtp},
     {"csv", "text, one line per particle, with units; for tables and scripts", "csv", writeParticlesCsv},
 };
-constexpr Table<ParticleFormat> kFormats{kRows};
+constexpr Table<ParticleFormat> kParticleFormats{kParticleFormatRows};
 
 // Three bytes become four letters.
 std::string base64(std::string_view bytes) {
@@ -61,7 +61,7 @@ std::string bytesOf(std::span<const uint32_t> numbers) {
 
 }  // namespace
 
-const Table<ParticleFormat>& particleFormats() { return kFormats; }
+const Table<ParticleFormat>& particleFormats() { return kParticleFormats; }
 
 std::string writeParticlesPly(const ExportParticles& of, const ExportFrame& frame) {
     const char* type = frame.doubles() ? "double" : "float";

@@ -10,15 +10,15 @@ namespace rivulet {
 
 namespace {
 
-constexpr MeshFormat kRows[] = {
+constexpr MeshFormat kMeshFormatRows[] = {
     {"obj", "Wavefront OBJ: text, read by most programs", writeObj},
     {"ply", "Stanford PLY: binary, about a quarter of the size", writePly},
 };
-constexpr Table<MeshFormat> kFormats{kRows};
+constexpr Table<MeshFormat> kMeshFormats{kMeshFormatRows};
 
 }  // namespace
 
-const Table<MeshFormat>& meshFormats() { return kFormats; }
+const Table<MeshFormat>& meshFormats() { return kMeshFormats; }
 
 std::string writeObj(const MeshView& mesh, const ExportFrame& frame) {
     std::string out = fmt::format("# metres, +{} up\n", frame.upLetter());

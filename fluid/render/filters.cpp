@@ -13,7 +13,6 @@ using gpu::Program;
 using gpu::TextureDesc;
 using gpu::TextureHandle;
 
-constexpr float kFar = 1.0e6F;  // m, shaders/render/frame.glsl's depth of nothing
 // Steps of the levels, relative; the small ones last: they iron out what the holes of the others leave. The nearer the camera, the more
 // pixels the same metres are, and the more levels there are between a pixel and the widest.
 constexpr float kFarSteps[] = {3, 5, 7, 4, 2, 1};
@@ -57,7 +56,7 @@ TextureHandle addStep(FrameGraph& graph, FluidPrograms& programs, const FluidDra
     const float huge = 1.0e5F;
     const Bounds box = d.fluid.bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : d.fluid.bounds;
     return addTiled(
-        graph, "smooth", programs, d, programs.filter(own, final), tiles, from, depthDesc(d), kFar,
+        graph, "smooth", programs, d, programs.filter(own, final), tiles, from, depthDesc(d), kNoDepth,
         [=](Program& p, const PassContext& c) {
             setup(p);
             if (!final) return;

@@ -22,7 +22,7 @@ Status makeRoom(gpu::Buffer& buffer, size_t bytes) {
 }
 
 constexpr const char* kSameMemory = "same memory";
-constexpr const char* kShared = "shared with OpenCL";
+constexpr const char* kSharedWithOpenCl = "shared with OpenCL";
 constexpr const char* kRing = "ring";
 
 template <class T>
@@ -126,7 +126,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         if (Status s = share(all); !s) return s.error();
     }
     if (sharing_ && refused_.empty()) {
-        facts_.way = kShared;
+        facts_.way = kSharedWithOpenCl;
     } else if (!arrays.empty()) {
         if (sharing_) facts_.why = refused_;
         ids_.resize(out.count);

@@ -5,7 +5,7 @@ namespace rivulet {
 
 namespace {
 
-constexpr ProgramRow kPrograms[] = {
+constexpr ProgramRow kPointsPrograms[] = {
     {"points", "screen_space/points.vert", "screen_space/points.frag"},
     {"points shade", "screen_space/tile.vert", "screen_space/points_shade.frag"},
 };
@@ -62,7 +62,7 @@ RendererRow pointsRenderer() {
             .doc = "every particle as a lit sphere, coloured by speed, density, id, dye, normal or surface",
             .opaque = true,
             .add = addPoints,
-            .programs = kPrograms};
+            .programs = kPointsPrograms};
 }
 
 }  // namespace rivulet

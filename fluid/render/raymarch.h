@@ -10,8 +10,6 @@
 
 namespace rivulet {
 
-constexpr float kNoDepth = 1.0e6F;  // m: shaders/render/frame.glsl's depth of nothing
-
 // One value per pixel in OpenGL's order: the bottom row first.
 struct RaymarchPicture {
     int width = 0, height = 0;

@@ -8,7 +8,7 @@ RendererRow screenSpaceRenderer();
 RendererRow referenceRenderer();
 
 namespace {
-constexpr int kTile = 32;  // pixels
+constexpr int kTilePixels = 32;  // pixels
 }  // namespace
 
 const Table<RendererRow>& renderers() {
@@ -24,7 +24,9 @@ std::vector<gpu::Read> splatReads(const FluidDraw& d) {
 }
 
 gpu::TextureDesc tilesOf(const FrameView& view) {
-    return {.width = (view.width + kTile - 1) / kTile, .height = (view.height + kTile - 1) / kTile, .format = gpu::Format::r8};
+    return {.width = (view.width + kTilePixels - 1) / kTilePixels,
+            .height = (view.height + kTilePixels - 1) / kTilePixels,
+            .format = gpu::Format::r8};
 }
 
 gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d) {

@@ -16,13 +16,12 @@ using gpu::TextureDesc;
 using gpu::TextureHandle;
 using gpu::Usage;
 
-constexpr float kFar = 1.0e6F;                               // m, shaders/render/frame.glsl's depth of nothing
 constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolution
 constexpr int kThicknessBlur = 4;                            // texels either side
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
 
-constexpr ProgramRow kPrograms[] = {
+constexpr ProgramRow kScreenSpacePrograms[] = {
     {"occluder", "screen_space/occluder.vert", "render/depth.frag"},
     {"occluder, ellipsoids", "screen_space/occluder.vert", "render/depth.frag", {"ELLIPSOIDS"}},
     {"depth", "screen_space/sphere.vert", "screen_space/depth.frag"},
@@ -67,7 +66,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
     graph.pass("fluid depth", splatReads(d), {depth, hidden}, [=, &programs](PassContext& c) {
         const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
         useFrame(c, d);
-        target.clearColour(vec4(kFar));
+        target.clearColour(vec4(kNoDepth));
         target.clearDepth();
         if (prepare) {
             glEnable(GL_DEPTH_TEST);
@@ -292,7 +291,7 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     TextureHandle depth = filter.add(filter, graph, programs, s, tiles, spheres);
     if (half) {
         const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-        depth = addTiled(graph, "refine", programs, d, programs["refine"], tiles, depth, size, kFar,
+        depth = addTiled(graph, "refine", programs, d, programs["refine"], tiles, depth, size, kNoDepth,
                          [=](Program& p, const PassContext&) { p.set("range", filterReach(d.look, d.fluid.spacing).range); });
     }
     WaterSurface water = addThickness(graph, programs, d, tiles);
@@ -305,7 +304,7 @@ RendererRow screenSpaceRenderer() {
             .doc = "a water surface from the particles' smoothed depth: refraction, absorption, reflection",
             .opaque = false,
             .add = addScreenSpace,
-            .programs = kPrograms,
+            .programs = kScreenSpacePrograms,
             .ellipsoids = true};
 }
 

@@ -4,14 +4,6 @@
 
 namespace rivulet {
 
-namespace {
-
-constexpr double kFar = 1.0e5;  // m
-constexpr bool kLog = true, kLinear = false;
-constexpr bool kFixed = true;
-
-}  // namespace
-
 void BodyPartParams::visit(ParamVisitor& v) {
     v.value({.name = "mesh", .doc = "mesh file, searched as a collider's; scaled and turned like the body's own", .fixed = kFixed}, mesh);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
@@ -22,12 +14,12 @@ void BodyParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"box", "sphere", "hull", "mesh"};
     v.choice({.name = "shape", .doc = "a box, a sphere, the convex hull of a mesh, or a closed mesh", .fixed = kFixed}, shape, shapes);
     v.value({.name = "mesh", .doc = "mesh file of a hull or mesh, searched as a collider's", .fixed = kFixed}, mesh);
-    v.value({"size", "m", "edge lengths of a box", 1.0e-4, kFar, kLog, kFixed}, size);
-    v.value({"radius", "m", "radius of a sphere", 1.0e-4, kFar, kLog, kFixed}, radius);
+    v.value({"size", "m", "edge lengths of a box", 1.0e-4, kMaxPosition, kLog, kFixed}, size);
+    v.value({"radius", "m", "radius of a sphere", 1.0e-4, kMaxPosition, kLog, kFixed}, radius);
     v.value({"scale", "", "scale factor of a hull or mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
-    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to; 0 = use scale", 0, kFar, kLog, kFixed}, fitSize);
-    v.value({"position", "m", "position of the body's centre; hull or mesh: of the mesh's origin (with fitSize: of its centre)", -kFar,
-             kFar, kLinear, kFixed},
+    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to; 0 = use scale", 0, kMaxPosition, kLog, kFixed}, fitSize);
+    v.value({"position", "m", "position of the body's centre; hull or mesh: of the mesh's origin (with fitSize: of its centre)",
+             -kMaxPosition, kMaxPosition, kLinear, kFixed},
             position);
     v.value({"rotation", "deg", "rotation about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
     v.value({"velocity", "m/s", "velocity at t = 0", -1000, 1000, kLinear, kFixed}, velocity);

@@ -8,12 +8,7 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kFar = 1.0e5;  // m
-constexpr bool kLog = true, kLinear = false;
-constexpr bool kFixed = true;
 constexpr float kShortest = 1.0e-6F;  // of a direction
-
-std::string shown(const vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
 std::string docOfKinds() {
     std::string doc;
@@ -25,7 +20,7 @@ std::string docOfKinds() {
 
 void ColliderKey::visit(ParamVisitor& v) {
     v.value({"time", "s", "time at which the pose is reached", 0, 3600}, time);
-    v.value({"position", "m", "translation, added to the collider's own position", -kFar, kFar}, position);
+    v.value({"position", "m", "translation, added to the collider's own position", -kMaxPosition, kMaxPosition}, position);
     v.value({"rotation", "deg", "rotation about x, then y, then z, applied after the collider's own", -36000, 36000}, rotation);
 }
 
@@ -39,7 +34,7 @@ void ColliderMotion::visit(ParamVisitor& v) {
 
 void ColliderWave::visit(ParamVisitor& v) {
     v.value({"amplitude", "m", "amplitude of the wave; 0 = none; not allowed in a scene with bodies", 0, 100, kLinear, kFixed}, amplitude);
-    v.value({"length", "m", "wavelength, from crest to crest", 0.001, kFar, kLog}, length);
+    v.value({"length", "m", "wavelength, from crest to crest", 0.001, kMaxPosition, kLog}, length);
     v.value({"period", "s", "period, from crest to crest; the amplitude grows to its full value during the first one", 0.01, 3600, kLog},
             period);
     v.value({"along", "", "direction of travel, of any length", -1.0e6, 1.0e6}, along);
@@ -63,12 +58,12 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.value({"resolution", "", "voxels along the mesh's longest side; 0 = voxels of a quarter of the fluid's spacing", 0, 2048, kLinear,
              kFixed},
             resolution);
-    v.value(
-        {"position", "m", "position of a mesh's origin (with fitSize: of its centre), or a point on a plane", -kFar, kFar, kLinear, kFixed},
-        position);
+    v.value({"position", "m", "position of a mesh's origin (with fitSize: of its centre), or a point on a plane", -kMaxPosition,
+             kMaxPosition, kLinear, kFixed},
+            position);
     v.value({"rotation", "deg", "rotation of a mesh about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
     v.value({"scale", "", "scale factor of a mesh", 1.0e-6, 1.0e6, kLog, kFixed}, scale);
-    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to; 0 = use scale", 0, kFar, kLog, kFixed}, fitSize);
+    v.value({"fitSize", "m", "length that a mesh's longest side is scaled to; 0 = use scale", 0, kMaxPosition, kLog, kFixed}, fitSize);
     v.value({"normal", "", "normal of a plane, of any length", -1.0e6, 1.0e6, kLinear, kFixed}, normal);
     v.value({"friction", "", "Coulomb friction; -1 = that of fluid.collision", -1, 10}, friction);
     v.value({"restitution", "", "share of the normal speed after the impact; -1 = that of fluid.collision", -1, 1}, restitution);
@@ -85,7 +80,7 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.value({"metallic", "", "0 = stone or paint, 1 = metal", 0, 1}, metallic);
     v.value({"opacity", "", "1 = opaque; less: glass that absorbs this share of the light and tints the rest", 0, 1}, opacity);
     v.value({"grain", "", "0 = smooth and of one colour, 1 = coarse, mottled stone", 0, 1}, grain);
-    v.value({"grainSize", "m", "size of the grain's largest spots", 1.0e-4, kFar, kLog}, grainSize);
+    v.value({"grainSize", "m", "size of the grain's largest spots", 1.0e-4, kMaxPosition, kLog}, grainSize);
     v.value({.name = "visible", .doc = "whether it is drawn; it stays solid"}, visible);
 }
 
@@ -109,7 +104,7 @@ std::string contradiction(const ColliderParams& collider) {
         return fmt::format(" has an animation and a {}: remove one of them", motion.moves() ? "motion" : "wave");
     if (!collider.solid && wave.amplitude > 0) return " has a wave and is not solid: set solid to true or remove the wave";
     if (motion.spin != 0 && glm::length(motion.axis) < kShortest)
-        return fmt::format(".motion.axis is {}: its length must not be 0", shown(motion.axis));
+        return fmt::format(".motion.axis is ({}, {}, {}): its length must not be 0", motion.axis.x, motion.axis.y, motion.axis.z);
     for (size_t k = 1; k < motion.keys.size(); ++k)
         if (!(motion.keys[k].time > motion.keys[k - 1].time))
             return fmt::format(".motion.keys[{}].time is {} s: it must be later than that of the key before, {} s", k, motion.keys[k].time,

@@ -9,7 +9,6 @@
 namespace rivulet {
 
 namespace {
-constexpr bool kLog = true, kLinear = false, kFixed = true;
 constexpr double kFar = 1.0e4;  // m
 }  // namespace
 

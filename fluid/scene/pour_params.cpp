@@ -14,7 +14,6 @@ constexpr float kAbove = 3;  // radii, above the point it falls on
 }  // namespace
 
 void PourParams::visit(ParamVisitor& v) {
-    constexpr bool kLog = true, kFixed = true;
     v.value({"litres", "l", "volume that a person can pour in (key P); memory is reserved for it; 0 = none", 0, 1.0e6, kLog, kFixed},
             litres);
     v.value({"radius", "m", "radius of the jet; 0 = three spacings", 0, 100, kLog}, radius);

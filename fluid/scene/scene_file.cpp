@@ -19,10 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFar = 1.0e5;  // m
-constexpr bool kLog = true, kLinear = false;
-constexpr bool kFixed = true;
-
 std::string shown(const vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
 bool inside(const vec3& p, const BoxParams& box) { return glm::clamp(p, box.min, box.max) == p; }
@@ -111,8 +107,8 @@ void CameraParams::visit(ParamVisitor& v) {
              .doc = "name of a camera in a collider's file, used instead of position, target and fieldOfView; without roll",
              .fixed = kFixed},
             from);
-    v.value({"position", "m", "position of the eye", -kFar, kFar}, position);
-    v.value({"target", "m", "point at the centre of the picture", -kFar, kFar}, target);
+    v.value({"position", "m", "position of the eye", -kMaxPosition, kMaxPosition}, position);
+    v.value({"target", "m", "point at the centre of the picture", -kMaxPosition, kMaxPosition}, target);
     v.value({"fieldOfView", "deg", "vertical angle of view", 5, 120}, fieldOfView);
 }
 
@@ -130,7 +126,7 @@ void BackgroundParams::visit(ParamVisitor& v) {
     v.colour({"horizon", "", "linear colour of the sky at eye level", 0, 10}, horizon);
     v.colour({"zenith", "", "linear colour of the sky overhead", 0, 10}, zenith);
     v.colour({"floor", "", "linear colour of the ground", 0, 1}, floor);
-    v.value({"floorHeight", "m", "height of the ground", -kFar, kFar}, floorHeight);
+    v.value({"floorHeight", "m", "height of the ground", -kMaxPosition, kMaxPosition}, floorHeight);
     v.value({.name = "showFloor", .doc = "whether the ground is drawn"}, showFloor);
     v.value({.name = "showBox", .doc = "whether the edges of the fluid's box are drawn"}, showBox);
     static const std::vector<std::string> skies = {"studio", "clouds"};

@@ -6,6 +6,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/core/assert.h"
+#include "engine/core/wall_clock.h"
 #include "fluid/session/scene_renderer.h"
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
@@ -15,25 +16,23 @@ namespace rivulet {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kWidth = 640, kHeight = 480;  // pixels; half as many per side where a CPU draws, else drawing dominates
+constexpr int kPictureWidth = 640, kPictureHeight = 480;  // pixels; half as many per side where a CPU draws, else drawing dominates
 constexpr int kVoxels = 128;
-constexpr double kFall = 0.2;            // s: the column has hit the mesh, and water lies on it
-constexpr int kBefore = 4, kFrames = 8;  // frames not measured; frames per run
-constexpr float kSpacing = 0.0125F;      // m
-constexpr float kTop = 0.51F;            // m: above the mesh
+constexpr double kFall = 0.2;                          // s: the column has hit the mesh, and water lies on it
+constexpr int kWarmUpFrames = 4, kMeasuredFrames = 8;  // frames not measured; frames per run
+constexpr float kColumnSpacing = 0.0125F;              // m
+constexpr float kColumnBase = 0.51F;                   // m: above the mesh
 constexpr const char* kMesh = "spot.obj";
-
-double msSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
 // A column of `particles`, a power of two; its height is one, two or four times its width.
 BlockParams column(int particles) {
     int wide = 1;
     while (8 * wide * wide * wide <= particles) wide *= 2;
     const int high = particles / (wide * wide);
-    const vec2 half = vec2(0.5F * kSpacing * static_cast<float>(wide));
+    const vec2 half = vec2(0.5F * kColumnSpacing * static_cast<float>(wide));
     const vec2 middle(0.4F, 0.4F);  // over the mesh
-    return {.min = vec3(middle.x - half.x, kTop, middle.y - half.y),
-            .max = vec3(middle.x + half.x, kTop + kSpacing * static_cast<float>(high), middle.y + half.y),
+    return {.min = vec3(middle.x - half.x, kColumnBase, middle.y - half.y),
+            .max = vec3(middle.x + half.x, kColumnBase + kColumnSpacing * static_cast<float>(high), middle.y + half.y),
             .velocity = vec3(0.0F, -2.0F, 0.0F)};
 }
 
@@ -44,7 +43,7 @@ Result<SceneFile> sceneOf(const Chapter4Row& row) {
     f.method = "wcsph_thesis";
     f.grid = row.grid;
     f.workGroup = row.workGroup;
-    f.spacing = kSpacing;
+    f.spacing = kColumnSpacing;
     f.viscosity = 5.0e-3F;
     f.maxSubsteps = 1;  // a frame is one step of the stable length
     f.blocks = {column(row.particles)};
@@ -136,7 +135,7 @@ struct Contender {
         row.frameMs = spreadOf(row.runMs).median;
         row.stepMs = spreadOf(step).median;
         row.drawMs = spreadOf(draw).median;
-        for (auto& [name, ms] : row.passes) ms /= static_cast<double>(row.runMs.size()) * kFrames;
+        for (auto& [name, ms] : row.passes) ms /= static_cast<double>(row.runMs.size()) * kMeasuredFrames;
     }
     void forget() {
         row.runMs.clear();
@@ -155,7 +154,7 @@ Status compare(std::vector<Chapter4Row> wanted, const Chapter4Request& request, 
         Result<Contender> made = Contender::create(row, *request.device, *moment);
         if (!made) return made.error();
         all.push_back(std::move(*made));
-        if (Status warm = all.back().run(renderer, *moment->session, chapter, kBefore); !warm) return warm;
+        if (Status warm = all.back().run(renderer, *moment->session, chapter, kWarmUpFrames); !warm) return warm;
         all.back().forget();
     }
     for (int run = 0; run < request.runs; ++run)
@@ -163,7 +162,7 @@ Status compare(std::vector<Chapter4Row> wanted, const Chapter4Request& request, 
             Contender& c = all[(turn + static_cast<size_t>(run)) % all.size()];  // no variant is always the first
             chapter.stopped = chapter.stopped || !request.goOn();
             if (chapter.stopped) return ok();
-            if (Status done = c.run(renderer, *moment->session, chapter, kFrames); !done) return done;
+            if (Status done = c.run(renderer, *moment->session, chapter, kMeasuredFrames); !done) return done;
         }
     for (Contender& c : all) {
         c.sumUp();
@@ -180,8 +179,8 @@ Result<Chapter4> runChapter4(const Chapter4Request& request) {
     Chapter4 chapter;
     chapter.drawnBy = request.device->info().name;
     const int smaller = request.device->info().software ? 2 : 1;
-    chapter.width = kWidth / smaller;
-    chapter.height = kHeight / smaller;
+    chapter.width = kPictureWidth / smaller;
+    chapter.height = kPictureHeight / smaller;
     chapter.mesh = kMesh;
     chapter.voxels = kVoxels;
     Result<std::unique_ptr<SceneRenderer>> renderer = SceneRenderer::create(ShaderFiles::developer());

@@ -13,16 +13,16 @@ namespace rivulet {
 namespace {
 
 // The variants that run in turn at each number of particles, in the order of the table.
-struct Way {
+struct SearchVariant {
     const char *grid, *walk, *name;
 };
-constexpr Way kWays[] = {
+constexpr SearchVariant kSearchVariants[] = {
     {"linked_list", "", "lists, without collision"},   {"linked_list", "thesis", "lists, the thesis's walk"},
     {"linked_list", "exact", "lists, the exact walk"}, {"sorted", "", "sorted, without collision"},
     {"sorted", "exact", "sorted, the exact walk"},
 };
 
-const Chapter4Row* find(const Chapter4& chapter, int particles, const Way& way) {
+const Chapter4Row* find(const Chapter4& chapter, int particles, const SearchVariant& way) {
     const auto row = std::find_if(chapter.rows.begin(), chapter.rows.end(), [&](const Chapter4Row& r) {
         return !r.sizes && r.particles == particles && r.grid == way.grid && r.walk == way.walk;
     });
@@ -48,7 +48,7 @@ std::string csvOf(const Chapter4& chapter, const std::string& machine) {
 
 Plot plotOf(const Chapter4& chapter) {
     Plot plot{"A column of water on a hollow mesh (thesis, fig. 4.8)", "particles", "frames a second", {}, true, true};
-    for (const Way& way : kWays) {
+    for (const SearchVariant& way : kSearchVariants) {
         Curve curve{way.name, true, {}};
         for (const int particles : counts(chapter))
             if (const Chapter4Row* row = find(chapter, particles, way)) curve.points.emplace_back(particles, row->frames.median);
@@ -83,7 +83,8 @@ double shareOfStep(const Chapter4Row& row) {
 // Compared with the two figures of the thesis.
 std::string verdict(const Chapter4& chapter) {
     std::string text = "| the thesis, on a GTX 650 | here |\n| --- | --- |\n";
-    const Chapter4Row *with = find(chapter, kThesisParticles, kWays[1]), *exact = find(chapter, kThesisParticles, kWays[4]);
+    const Chapter4Row *with = find(chapter, kThesisParticles, kSearchVariants[1]),
+                      *exact = find(chapter, kThesisParticles, kSearchVariants[4]);
     if (with != nullptr && exact != nullptr)
         text += fmt::format(
             "| {} particles with collision: above {} frames a second | {:.3g} with lists and the thesis's walk ({:.3g} ms per step, {:.3g} "
@@ -91,7 +92,7 @@ std::string verdict(const Chapter4& chapter) {
             kThesisParticles, kThesisFrames, with->frames.median, with->stepMs, with->drawMs, exact->frames.median);
     std::vector<double> frames, steps;
     for (const int particles : counts(chapter)) {
-        const Chapter4Row *on = find(chapter, particles, kWays[1]), *off = find(chapter, particles, kWays[0]);
+        const Chapter4Row *on = find(chapter, particles, kSearchVariants[1]), *off = find(chapter, particles, kSearchVariants[0]);
         if (particles <= kThesisHalf || on == nullptr || off == nullptr) continue;
         frames.push_back(shareOfFrame(*on, *off).median);
         steps.push_back(shareOfStep(*on));
@@ -118,7 +119,8 @@ std::string sharesOf(const Chapter4& chapter) {
     for (const int particles : counts(chapter)) {
         text += fmt::format("| {} |", particles);
         for (const auto& [with, without] : {std::pair(1, 0), std::pair(2, 0), std::pair(4, 3)}) {
-            const Chapter4Row *on = find(chapter, particles, kWays[with]), *off = find(chapter, particles, kWays[without]);
+            const Chapter4Row *on = find(chapter, particles, kSearchVariants[with]),
+                              *off = find(chapter, particles, kSearchVariants[without]);
             if (on == nullptr || off == nullptr) continue;
             const Spread of = shareOfFrame(*on, *off);
             text += fmt::format(" {:.0f} % ({:.0f} to {:.0f}) | {:.1f} % |", of.median, of.min, of.max, shareOfStep(*on));
@@ -157,21 +159,21 @@ std::string pageOf(const Chapter4& chapter, const std::string& machine, const st
     text += verdict(chapter);
     if (picture) text += "![frames a second against particles](chapter4.svg)\n\n";
     text += "## Frames a second\n\n| particles |";
-    for (const Way& way : kWays) text += fmt::format(" {} |", way.name);
+    for (const SearchVariant& way : kSearchVariants) text += fmt::format(" {} |", way.name);
     text += "\n| --- | --- | --- | --- | --- | --- |\n";
     for (const int particles : counts(chapter)) {
         text += fmt::format("| {} |", particles);
-        for (const Way& way : kWays) text += fmt::format(" {} |", perSecond(find(chapter, particles, way)));
+        for (const SearchVariant& way : kSearchVariants) text += fmt::format(" {} |", perSecond(find(chapter, particles, way)));
         text += '\n';
     }
     text += "\n## Time of a step, ms\n\nThe step alone; drawing is the last column.\n\n| particles |";
-    for (const Way& way : kWays) text += fmt::format(" {} |", way.name);
+    for (const SearchVariant& way : kSearchVariants) text += fmt::format(" {} |", way.name);
     text += " drawing |\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const int particles : counts(chapter)) {
         text += fmt::format("| {} |", particles);
-        for (const Way& way : kWays)
+        for (const SearchVariant& way : kSearchVariants)
             if (const Chapter4Row* row = find(chapter, particles, way)) text += fmt::format(" {:.3g} |", row->stepMs);
-        if (const Chapter4Row* row = find(chapter, particles, kWays[1])) text += fmt::format(" {:.3g} |\n", row->drawMs);
+        if (const Chapter4Row* row = find(chapter, particles, kSearchVariants[1])) text += fmt::format(" {:.3g} |\n", row->drawMs);
     }
     return text + sharesOf(chapter) + '\n' + groupsOf(chapter);
 }

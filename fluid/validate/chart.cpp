@@ -16,7 +16,7 @@ struct ChartCase {
     bool quick;
     const char *coarse, *fine;
 };
-constexpr ChartCase kCases[] = {
+constexpr ChartCase kChartCases[] = {
     {"hydrostatic", true, "fluid.spacing=0.0357142857", "fluid.spacing=0.0178571429"},
     {"dam_break", true, "fluid.spacing=0.00238125; fluid.box.max=0.3429,0.15,0.009525; fluid.blocks.0.max=0.05715,0.1143,0.009525",
      "fluid.spacing=0.00119062500; fluid.box.max=0.3429,0.15,0.0047625; fluid.blocks.0.max=0.05715,0.1143,0.0047625"},
@@ -43,7 +43,7 @@ struct Run {
 // Default settings at all sizes, the others at the middle size. Quick: some settings, two sizes.
 std::vector<Run> plannedRuns(const ChartRequest& request) {
     std::vector<Run> runs;
-    for (const ChartCase& c : kCases) {
+    for (const ChartCase& c : kChartCases) {
         const bool named = std::find(request.names.begin(), request.names.end(), c.name) != request.names.end();
         if (request.names.empty() ? request.quick && !c.quick : !named) continue;
         for (const Size size : {kCoarse, kMiddle, kFine})
@@ -61,7 +61,7 @@ const Finding* judgedOf(const Outcome& outcome) {
 }
 
 // Quick: without the extreme numbers of corrections.
-constexpr int kIterations[] = {1, 2, 4, 8, 16}, kSteps[] = {4, 8, 16};
+constexpr int kIterations[] = {1, 2, 4, 8, 16}, kStepCounts[] = {4, 8, 16};
 std::span<const int> iterationsOf(const ChartRequest& request) {
     const std::span<const int> all(kIterations);
     return request.quick ? all.subspan(1, all.size() - 2) : all;
@@ -71,7 +71,7 @@ std::span<const int> iterationsOf(const ChartRequest& request) {
 
 std::vector<std::string> chartCases() {
     std::vector<std::string> names;
-    for (const ChartCase& c : kCases) names.emplace_back(c.name);
+    for (const ChartCase& c : kChartCases) names.emplace_back(c.name);
     return names;
 }
 
@@ -88,7 +88,7 @@ Result<Chart> runChart(const ChartRequest& request) {
     const std::vector<Run> runs = plannedRuns(request);
     const bool wave =
         request.names.empty() || std::find(request.names.begin(), request.names.end(), "standing_wave") != request.names.end();
-    const size_t viscous = wave ? iterationsOf(request).size() * std::size(kSteps) : 0, whole = runs.size() + viscous;
+    const size_t viscous = wave ? iterationsOf(request).size() * std::size(kStepCounts) : 0, whole = runs.size() + viscous;
     size_t done = 0;
     CaseSettings settings;
     settings.device = request.device;
@@ -127,7 +127,7 @@ Result<Chart> runChart(const ChartRequest& request) {
     }
     markFront(chart.rows);
     settings.quick = true;
-    for (const int steps : kSteps)
+    for (const int steps : kStepCounts)
         for (const int iterations : iterationsOf(request)) {
             if (!wave) break;
             settings.method = "pbf";

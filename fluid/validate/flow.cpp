@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "fluid/session/reference_data.h"
@@ -12,7 +11,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 Result<SurfaceFlow> flowOn(const Under& u, const Shape& shape, const SurfaceFlowParams& params) {
     Result<FlowMesh> mesh = makeFlowMesh(shape.view());
     if (!mesh) return mesh.error();

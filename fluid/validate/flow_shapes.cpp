@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace rivulet {
 
 namespace {
-
-constexpr double kPiD = std::numbers::pi;
 
 // Quads (k, i) of a grid of (n + 1) x (m + 1) vertices, split along alternating diagonals.
 void addQuads(Shape& s, uint32_t n, uint32_t m) {

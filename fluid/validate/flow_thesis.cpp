@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "fluid/flow/flow_maps.h"
 #include "fluid/validate/flow_case.h"
@@ -13,8 +12,6 @@
 namespace rivulet {
 
 namespace {
-
-constexpr double kPiD = std::numbers::pi;
 
 Result<SurfaceFlow> thesisOn(const Under& u, const Shape& shape, const ThesisParams& params = {}, const SurfaceFlowParams& liquid = {}) {
     Result<FlowMesh> mesh = makeFlowMesh(shape.view());
@@ -57,7 +54,7 @@ Status turnedForce(Under& u, const PathCase& kind, Layout layout) {
 }
 
 // The largest single drop that stays on a vertical wall.
-Status heldDrop(Under& u, Layout layout) {
+Status thesisHeldDrop(Under& u, Layout layout) {
     constexpr int kRow = 7;
     Shape wall = laidOut(sheetShape(vec3(0, 0.1F, 0), vec3(0, -0.1F, 0), vec3(0.1F, 0, 0), 60, 60), layout);
     Result<SurfaceFlow> flow = thesisOn(u, wall);
@@ -93,16 +90,16 @@ Status terminalSpeed(Under& u) {
     return ok();
 }
 
-struct Way {
+struct ThesisPath {
     std::vector<vec3> places;
     double arrival = -1;  // s; -1: the drop drained or stays
 };
 
-Result<Way> wayDown(Under& u, const PathCase& kind, Layout layout) {
+Result<ThesisPath> thesisPathDown(Under& u, const PathCase& kind, Layout layout) {
     Result<SurfaceFlow> flow = thesisOn(u, laidOut(kind.shape, layout));
     if (!flow) return flow.error();
     flow->add(nearestPoint(flow->mesh(), kind.from), 12000000);
-    Way way;
+    ThesisPath way;
     constexpr double kFine = kStep / 8;
     for (int k = 0; k < 1200; ++k) {
         if (!u.step(*flow, {}, kFine)) return way;
@@ -117,11 +114,11 @@ Result<Way> wayDown(Under& u, const PathCase& kind, Layout layout) {
 }
 
 // Distance by position, because arrival times differ: from each point of one path to the nearest point of the other.
-Status samePath(Under& u, const PathCase& kind) {
-    Way own;
+Status thesisSamePath(Under& u, const PathCase& kind) {
+    ThesisPath own;
     double apart = 0, late = 0, length = 0, arrived = 0;
     for (const Layout layout : kLayouts) {
-        Result<Way> way = wayDown(u, kind, layout);
+        Result<ThesisPath> way = thesisPathDown(u, kind, layout);
         if (!way) return way.error();
         if (u.stopped) return ok();
         arrived += way->arrival >= 0 ? 1 : 0;
@@ -144,7 +141,7 @@ Status samePath(Under& u, const PathCase& kind) {
     return ok();
 }
 
-Status ledger(Under& u) {
+Status thesisLedger(Under& u) {
     const Shape rest = ballShape(0.06F, 64);
     Result<SurfaceFlow> flow = thesisOn(u, rest, {}, {.capacity = 512});
     if (!flow) return flow.error();
@@ -168,17 +165,17 @@ Result<Outcome> runFlowThesis(const CaseSettings& settings) {
         {0.3,
          [&] {
              for (const Layout layout : kLayouts)
-                 if (Status held = heldDrop(u, layout); !held || u.stopped) return held;
+                 if (Status held = thesisHeldDrop(u, layout); !held || u.stopped) return held;
              return ok();
          }},
         {0.4, [&] { return terminalSpeed(u); }},
         {0.6,
          [&] {
              for (const PathCase& kind : kinds)
-                 if (Status same = samePath(u, kind); !same || u.stopped) return same;
+                 if (Status same = thesisSamePath(u, kind); !same || u.stopped) return same;
              return ok();
          }},
-        {1.0, [&] { return ledger(u); }},
+        {1.0, [&] { return thesisLedger(u); }},
     };
     return runParts(u, parts);
 }

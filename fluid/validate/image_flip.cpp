@@ -24,7 +24,7 @@ struct Sensitivity {
 constexpr Sensitivity kSensitivity[3] = {
     {{1, 0}, {0.0047, 1e-5}}, {{1, 0}, {0.0053, 1e-5}}, {{34.1, 13.5}, {0.04, 0.025}}};  // luminance, red-green, blue-yellow
 
-struct Image {
+struct FlipImage {
     int width, height;
     std::vector<dvec3> texels;
     const dvec3& at(int x, int y) const {
@@ -33,7 +33,7 @@ struct Image {
     }
 };
 
-Image mapped(Image image, const std::function<dvec3(const dvec3&)>& f) {
+FlipImage mapped(FlipImage image, const std::function<dvec3(const dvec3&)>& f) {
     for (dvec3& texel : image.texels) texel = f(texel);
     return image;
 }
@@ -67,12 +67,12 @@ dvec3 labOf(const dvec3& rgb) {  // CIELab, with chroma reduced in dark areas (H
 double hyab(const dvec3& a, const dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
 // A separable filter with weights at -reach .. reach; border pixels are repeated.
-Image filtered(const Image& image, const std::vector<dvec3>& alongX, const std::vector<dvec3>& alongY) {
-    Image half = image, whole = image;
+FlipImage filtered(const FlipImage& image, const std::vector<dvec3>& alongX, const std::vector<dvec3>& alongY) {
+    FlipImage half = image, whole = image;
     const int reachX = static_cast<int>(alongX.size() / 2), reachY = static_cast<int>(alongY.size() / 2);
     for (const bool first : {true, false}) {
-        const Image& from = first ? image : half;
-        Image& to = first ? half : whole;
+        const FlipImage& from = first ? image : half;
+        FlipImage& to = first ? half : whole;
         size_t i = 0;
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x, ++i) {
@@ -88,7 +88,7 @@ Image filtered(const Image& image, const std::vector<dvec3>& alongX, const std::
 }
 
 // Opponent colours after the contrast sensitivity of the eye at this resolution.
-Image seen(const Image& opponent, double ppd) {
+FlipImage seen(const FlipImage& opponent, double ppd) {
     const int reach = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * glm::pi<double>() * glm::pi<double>())) * ppd));
     std::vector<dvec3> terms[2];
     dvec3 scale[2], total(0.0);
@@ -103,8 +103,8 @@ Image seen(const Image& opponent, double ppd) {
         for (int c = 0; c < 3; ++c) scale[t][c] = kSensitivity[c].a[t] * std::sqrt(glm::pi<double>() / kSensitivity[c].b[t]);
         total += scale[t] * sum * sum;
     }
-    Image all = filtered(opponent, terms[0], terms[0]);
-    const Image second = filtered(opponent, terms[1], terms[1]);
+    FlipImage all = filtered(opponent, terms[0], terms[0]);
+    const FlipImage second = filtered(opponent, terms[1], terms[1]);
     for (size_t i = 0; i < all.texels.size(); ++i) all.texels[i] = (scale[0] * all.texels[i] + scale[1] * second.texels[i]) / total;
     return all;
 }
@@ -113,7 +113,7 @@ Image seen(const Image& opponent, double ppd) {
 struct Features {
     std::vector<double> edge, point;
 };
-Features featuresOf(const Image& opponent, double ppd) {
+Features featuresOf(const FlipImage& opponent, double ppd) {
     const double deviation = 0.5 * kFeatureWidth * ppd;
     const int reach = static_cast<int>(std::ceil(3 * deviation));
     std::vector<dvec3> smooth, edge, point;
@@ -132,9 +132,9 @@ Features featuresOf(const Image& opponent, double ppd) {
         edge[k] /= sums[1];
         point[k] /= point[k].x > 0 ? sums[2] : sums[3];
     }
-    const Image y = mapped(opponent, [](const dvec3& o) { return dvec3((o.x + 16) / 116); });
-    const Image edgeX = filtered(y, edge, smooth), edgeY = filtered(y, smooth, edge), pointX = filtered(y, point, smooth),
-                pointY = filtered(y, smooth, point);
+    const FlipImage y = mapped(opponent, [](const dvec3& o) { return dvec3((o.x + 16) / 116); });
+    const FlipImage edgeX = filtered(y, edge, smooth), edgeY = filtered(y, smooth, edge), pointX = filtered(y, point, smooth),
+                    pointY = filtered(y, smooth, point);
     Features f;
     for (size_t i = 0; i < y.texels.size(); ++i) {
         f.edge.push_back(std::hypot(edgeX.texels[i].x, edgeY.texels[i].x));
@@ -144,18 +144,18 @@ Features featuresOf(const Image& opponent, double ppd) {
 }
 
 struct Prepared {
-    Image lab;
+    FlipImage lab;
     Features features;
 };
 Prepared prepare(std::span<const uint8_t> rgba, int width, int height, double ppd) {
-    Image image{width, height, {}};
+    FlipImage image{width, height, {}};
     for (size_t i = 0; i + 3 < rgba.size(); i += 4) {
         dvec3 c;
         for (int k = 0; k < 3; ++k) c[k] = linearOf(rgba[i + static_cast<size_t>(k)] / 255.0);
         image.texels.push_back(opponentOf(c));
     }
     Features features = featuresOf(image, ppd);
-    Image lab = mapped(seen(image, ppd), [](const dvec3& o) { return labOf(glm::clamp(rgbOfOpponent(o), 0.0, 1.0)); });
+    FlipImage lab = mapped(seen(image, ppd), [](const dvec3& o) { return labOf(glm::clamp(rgbOfOpponent(o), 0.0, 1.0)); });
     return {std::move(lab), std::move(features)};
 }
 

@@ -17,7 +17,7 @@ namespace rivulet {
 namespace {
 
 // Of the box, m: the face that the water hits, and its middle.
-constexpr double kFace = 0.8245, kMiddle = 0.497, kQuarter = 0.1;
+constexpr double kFace = 0.8245, kMiddleZ = 0.497, kQuarter = 0.1;
 constexpr double kDepth = 0.55;                                // m, of the water at first
 constexpr double kArrived = 2800;                              // Pa: a quarter of the peak of the complete 1 kHz record
 constexpr double kOnFace[] = {0.021, 0.061, 0.101, 0.141};     // m, heights of P1 to P4
@@ -28,7 +28,7 @@ constexpr double kHeights[] = {1.488, 0.992, 0.496, 2.638};    // m along x, of 
 double pressureAt(std::span<const vec4> x, std::span<const float> pressure, size_t gauge, double spacing) {
     double sum = 0, count = 0;
     for (size_t i = 0; i < x.size(); ++i) {
-        if (x[i].w < 0 || std::abs(double{x[i].z} - kMiddle) > kQuarter) continue;
+        if (x[i].w < 0 || std::abs(double{x[i].z} - kMiddleZ) > kQuarter) continue;
         const bool onFace = gauge < std::size(kOnFace);
         const double off = onFace ? double{x[i].x} - kFace : double{x[i].y} - kTop;
         const double aside = onFace ? double{x[i].y} - kOnFace[gauge] : double{x[i].x} - kOnTop[gauge - std::size(kOnFace)];

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMostDegrees = 2;  // mean error of normals on analytic shapes
 constexpr double kMostFlicker = 1;  // of 255
 
-struct Under {
+struct SurfaceRun {
     Outcome outcome = {};
 
     void found(std::string what, const char* unit, double measured, double reference, std::optional<double> tolerance = {}) {
@@ -46,7 +46,7 @@ Result<Outcome> runSurface(const CaseSettings& settings) {
     Result<SurfaceTrial> trial = SurfaceTrial::create(settings);
     if (!trial) return trial.error();
     const SurfaceLook look{settings.method};
-    Under u;
+    SurfaceRun u;
     u.outcome.method = settings.method;
     const Result<std::vector<ShapeErrors>> shapes = trial->shapes(look);
     if (!shapes) return shapes.error();

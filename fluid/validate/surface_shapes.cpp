@@ -9,10 +9,10 @@ namespace rivulet {
 
 namespace {
 
-constexpr float kSpacing = 0.01F;  // m
-constexpr float kBall = 0.2F;      // m, radius
-constexpr float kPool = 0.3F;      // m, half its side
-constexpr float kDepth = 0.1F;     // m, of the pool
+constexpr float kSplatSpacing = 0.01F;  // m
+constexpr float kBall = 0.2F;           // m, radius
+constexpr float kPool = 0.3F;           // m, half its side
+constexpr float kPoolDepth = 0.1F;      // m, of the pool
 
 // Pseudo-random numbers in -1 .. 1, the same on every machine.
 class Jitter {
@@ -33,13 +33,13 @@ class Jitter {
 template <class In>
 SplatSet lattice(double jitter, const In& in) {
     Jitter off(jitter);
-    SplatSet p{{}, kSpacing, {}};
-    const int reach = static_cast<int>(std::ceil(kPool / kSpacing)) + 1;
+    SplatSet p{{}, kSplatSpacing, {}};
+    const int reach = static_cast<int>(std::ceil(kPool / kSplatSpacing)) + 1;
     for (int z = -reach; z < reach; ++z)
         for (int y = -reach; y < reach; ++y)
             for (int x = -reach; x < reach; ++x) {
-                const vec3 at = kSpacing * (vec3(x, y, z) + 0.5F);
-                if (in(at)) p.at.emplace_back(at + kSpacing * off(), 1.0F);
+                const vec3 at = kSplatSpacing * (vec3(x, y, z) + 0.5F);
+                if (in(at)) p.at.emplace_back(at + kSplatSpacing * off(), 1.0F);
             }
     return p;
 }
@@ -47,22 +47,23 @@ SplatSet lattice(double jitter, const In& in) {
 // A drop as surface tension arranges it: shells one spacing apart, evenly covered (Swinbank & Purser 2006), then jittered.
 SplatSet settledBall(double jitter) {
     Jitter off(jitter);
-    SplatSet p{{}, kSpacing, {}};
-    for (float r = kBall - 0.5F * kSpacing; r > 0; r -= kSpacing) {
-        const int count = std::max(static_cast<int>(std::lround(4 * kPi * r * r / (kSpacing * kSpacing))), 1);
+    SplatSet p{{}, kSplatSpacing, {}};
+    for (float r = kBall - 0.5F * kSplatSpacing; r > 0; r -= kSplatSpacing) {
+        const int count = std::max(static_cast<int>(std::lround(4 * kPi * r * r / (kSplatSpacing * kSplatSpacing))), 1);
         for (int k = 0; k < count; ++k) {
             const float y = (2.0F * static_cast<float>(k) + 1) / static_cast<float>(count) - 1, flat = std::sqrt(1 - y * y);
             const float turn = 2.39996323F * static_cast<float>(k) + 100 * r;
-            p.at.emplace_back(r * vec3(flat * std::cos(turn), y, flat * std::sin(turn)) + kSpacing * off(), 1.0F);
+            p.at.emplace_back(r * vec3(flat * std::cos(turn), y, flat * std::sin(turn)) + kSplatSpacing * off(), 1.0F);
         }
     }
     return p;
 }
 
 SplatSet pool(double jitter) {
-    SplatSet p = lattice(jitter, [](const vec3& x) { return std::abs(x.x) < kPool && std::abs(x.z) < kPool && x.y < 0 && x.y > -kDepth; });
-    p.box.add({-kPool, -kDepth, -kPool});
-    p.box.add({kPool, kDepth, kPool});
+    SplatSet p =
+        lattice(jitter, [](const vec3& x) { return std::abs(x.x) < kPool && std::abs(x.z) < kPool && x.y < 0 && x.y > -kPoolDepth; });
+    p.box.add({-kPool, -kPoolDepth, -kPool});
+    p.box.add({kPool, kPoolDepth, kPool});
     return p;
 }
 
@@ -111,7 +112,7 @@ SurfaceMap levelMap(const FrameView& view) {
         [](const dvec3& eye, const dvec3& way) {
             const double t = way.y < 0 ? -eye.y / way.y : double{kNoDepth};
             const dvec3 p = eye + t * way;
-            const double room = double{kPool} - 6 * double{kSpacing};
+            const double room = double{kPool} - 6 * double{kSplatSpacing};
             return std::abs(p.x) < room && std::abs(p.z) < room ? t : double{kNoDepth};
         },
         [](const dvec3&) { return dvec3(0, 1, 0); });

@@ -13,8 +13,8 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kMoment = 0.6;          // s, of the dam break
-constexpr int kBefore = 3, kDraws = 15;  // draws of a timed picture: before counting, and counted
+constexpr double kMoment = 0.6;               // s, of the dam break
+constexpr int kWarmUpDraws = 3, kDraws = 15;  // draws of a timed picture: before counting, and counted
 // Frames until the pool is at rest: motion started by tension, walls and the lattice has decayed, and the largest speed is 6 mm/s. After
 // half as many frames it is 130 mm/s, and the picture of the reference changes more than the drawn one (1.55 and 1.11 of 255).
 constexpr int kSettling = 240;
@@ -161,9 +161,9 @@ Result<DrawTimes> SurfaceTrial::times(const SurfaceLook& look) {
     // The ray-marcher caches its picture; a slightly moved camera forces a new one.
     FrameView view = view_;
     if (reference) view.view[3].x += 1.0e-5F;
-    const Result<std::vector<double>> dry = drawMs(view, scene, FluidView{}, kBefore, kDraws);
+    const Result<std::vector<double>> dry = drawMs(view, scene, FluidView{}, kWarmUpDraws, kDraws);
     if (!dry) return dry.error();
-    Result<std::vector<double>> wet = drawMs(view, scene, *fluid, reference ? 0 : kBefore, reference ? 1 : kDraws);
+    Result<std::vector<double>> wet = drawMs(view, scene, *fluid, reference ? 0 : kWarmUpDraws, reference ? 1 : kDraws);
     if (!wet) return wet.error();
     DrawTimes times{spreadOf(*wet), {}};
     const double without = spreadOf(*dry).median;

@@ -12,10 +12,10 @@ namespace rivulet {
 
 namespace {
 
-constexpr float kNear = 9;       // px: as near to a handle a press takes it
-constexpr float kStill = 4;      // px: what moved further was a drag
-constexpr float kReach = 0.16F;  // of the camera's distance: how long handles are
-constexpr float kRing = 0.75F;   // of that: the rings' radius
+constexpr float kHandleReach = 9;  // px: as near to a handle a press takes it
+constexpr float kStill = 4;        // px: what moved further was a drag
+constexpr float kReach = 0.16F;    // of the camera's distance: how long handles are
+constexpr float kRing = 0.75F;     // of that: the rings' radius
 constexpr float kRadian = kPi / 180.0F;
 constexpr int kCorners = 48;  // of a ring as it is drawn
 
@@ -129,7 +129,7 @@ std::optional<Manipulator::Handles> Manipulator::handles(const Camera& camera, c
 
 Manipulator::Part Manipulator::partAt(const Handles& h, const Camera& camera, const vec2& mouse, const vec2& size, bool turns) const {
     Part nearest = Part::none;
-    float most = kNear;
+    float most = kHandleReach;
     const auto middle = seenAt(camera, h.centre, size);
     for (int k = 0; k < 3; ++k) {
         const auto end = seenAt(camera, h.centre + h.length * kAxes[static_cast<size_t>(k)], size);

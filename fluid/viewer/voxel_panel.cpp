@@ -14,7 +14,7 @@ namespace rivulet {
 
 namespace {
 
-void fact(const char* name, const std::string& text) {
+void gridFact(const char* name, const std::string& text) {
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine(ImGui::GetFontSize() * 6.5F);
     ImGui::TextUnformatted(text.c_str());
@@ -83,9 +83,9 @@ void VoxelPanel::draw(const SolidFields& fields, double time, float width) {
     if (!labels_) label(time);
     const ivec3& size = field->surface.size;
     for (int k = 0; k < 3; ++k) at_[k] = at_[k] < 0 ? size[k] / 2 : std::min(at_[k], size[k] - 1);
-    fact("grid", fmt::format("{} x {} x {}", size.x, size.y, size.z));
-    fact("edge", fmt::format("{:.3g} mm", 1e3F * field->surface.voxel));
-    fact("memory", fmt::format("{:.1f} MB", static_cast<double>(field->bytes()) / 1e6));
+    gridFact("grid", fmt::format("{} x {} x {}", size.x, size.y, size.z));
+    gridFact("edge", fmt::format("{:.3g} mm", 1e3F * field->surface.voxel));
+    gridFact("memory", fmt::format("{:.1f} MB", static_cast<double>(field->bytes()) / 1e6));
     ImGui::Spacing();
     drawControls(*field, width);
     if (stale_) refresh(*field);

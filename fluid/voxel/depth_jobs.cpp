@@ -12,7 +12,7 @@ namespace rivulet {
 namespace {
 
 constexpr size_t kTriangles = 4096;  // per task
-constexpr double kRounding = 1e-6;   // voxels: error of an edge; a column that one triangle leaves out its neighbour must include
+constexpr double kEdgeError = 1e-6;  // voxels: error of an edge; a column that one triangle leaves out its neighbour must include
 constexpr int kMostPixels = 4096;    // of a job's bounds; some shader loops are limited to 65,535
 
 struct Corner {
@@ -30,7 +30,7 @@ void addJobs(const std::array<dvec3, 3>& triangle, int axis, const ivec3& size, 
     std::array<Corner, 3> c;
     for (size_t k = 0; k < 3; ++k) c[k] = {triangle[k][u], triangle[k][v], triangle[k][axis]};
     const auto [lowU, highU] = std::minmax({c[0].u, c[1].u, c[2].u});
-    const int columns = firstAfter(highU + kRounding) - firstAfter(lowU - kRounding);
+    const int columns = firstAfter(highU + kEdgeError) - firstAfter(lowU - kEdgeError);
     if (columns == 0) return;
     std::sort(c.begin(), c.end(), [](const Corner& a, const Corner& b) { return a.v != b.v ? a.v < b.v : a.u < b.u; });
     const int first = std::max(0, firstAtOrAfter(c[0].v)), end = std::min(size[v], firstAtOrAfter(c[2].v));

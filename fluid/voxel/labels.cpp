@@ -13,14 +13,12 @@
 namespace rivulet {
 namespace {
 
-constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+constexpr uint32_t kNoRun = std::numeric_limits<uint32_t>::max();
 constexpr int kLayers = 16;        // z layers per task
 constexpr size_t kRowChunk = 512;  // rows per task; a multiple of 8, so that no two tasks write the same byte of bits
 
 // Kinds of runs, before they have labels.
 constexpr uint32_t kOpen = 0, kWithin = 2, kCavity = 3;
-
-size_t rowsOf(const ivec3& size) { return static_cast<size_t>(size.y) * static_cast<size_t>(size.z); }
 
 // 64 bits from bit `first` on; 0 beyond the end.
 uint64_t wordAt(const std::vector<uint8_t>& bits, size_t first) {
@@ -79,7 +77,7 @@ void findRuns(const VoxelGrid& surface, const VoxelGrid* inside, VoxelLabels& la
         total += start;
         start = static_cast<uint32_t>(total);
     }
-    if (total >= kNone) throw std::bad_alloc();
+    if (total >= kNoRun) throw std::bad_alloc();
     labels.runs.resize(total);
     forRowChunks(rows, [&](size_t first, size_t end) {
         for (size_t row = first; row < end; ++row) {
@@ -136,7 +134,7 @@ class RunJoiner {
                 const uint32_t rootA = find(a), rootB = find(b);
                 parent_[std::max(rootA, rootB)] = std::min(rootA, rootB);
             }
-            const uint32_t nextA = a + 1 < endA ? runs[a + 1].x : kNone, nextB = b + 1 < endB ? runs[b + 1].x : kNone;
+            const uint32_t nextA = a + 1 < endA ? runs[a + 1].x : kNoRun, nextB = b + 1 < endB ? runs[b + 1].x : kNoRun;
             a += nextA <= nextB ? 1 : 0;
             b += nextB <= nextA ? 1 : 0;
         }
@@ -267,13 +265,13 @@ VoxelLabels labelsOf(const VoxelGrid& surface, std::span<const uint32_t> region,
     VoxelLabels labels;
     labels.size = surface.size;
     findRuns(surface, nullptr, labels);
-    std::vector<uint32_t> root(labels.runs.size()), firstRun(regions, kNone);
+    std::vector<uint32_t> root(labels.runs.size()), firstRun(regions, kNoRun);
     std::vector<uint8_t> outside(labels.runs.size(), 0);
     forAllRuns(labels, [&](uint32_t k, int y, int z, int first, int) {
         if (labels.runs[k].label == kInsideSurface) return;
         const uint32_t of = region[surface.index({first, y, z})];
         ASSERT(of < regions, "a region's number must be below their count");
-        if (firstRun[of] == kNone) firstRun[of] = k;
+        if (firstRun[of] == kNoRun) firstRun[of] = k;
         root[k] = firstRun[of];
         outside[k] = of == 0 ? 1 : 0;
     });

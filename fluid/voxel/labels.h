@@ -45,6 +45,8 @@ struct VoxelLabels {
     }
 };
 
+inline size_t rowsOf(const ivec3& size) { return static_cast<size_t>(size.y) * static_cast<size_t>(size.z); }
+
 // Labels the connected regions of voxels that are not `surface`. `inside` (mode solid): the voxels within the mesh by winding number, of
 // the same size; its bits at surface voxels are ignored; no region contains both kinds. null: connectivity alone (the thesis's rule), and
 // every enclosed region counts as solid. A region is kOutside if it touches the grid's border and is not inside. The result does not depend

@@ -12,16 +12,16 @@
 namespace rivulet {
 namespace {
 
-constexpr uint32_t kNone = UINT32_MAX;
+constexpr uint32_t kNoNumber = UINT32_MAX;
 
 // Finds the number of a place: an open-addressed table of numbers, at most half full.
 class Places {
   public:
-    Places(size_t most, std::vector<vec3>& positions) : positions_(positions), slots_(std::bit_ceil(2 * most + 1), kNone) {}
+    Places(size_t most, std::vector<vec3>& positions) : positions_(positions), slots_(std::bit_ceil(2 * most + 1), kNoNumber) {}
     uint32_t number(const vec3& given) {
         const vec3 p = given + 0.0F;  // -0 is 0
         size_t at = hash(p) & (slots_.size() - 1);
-        while (slots_[at] != kNone) {
+        while (slots_[at] != kNoNumber) {
             if (positions_[slots_[at]] == p) return slots_[at];
             at = (at + 1) & (slots_.size() - 1);
         }
@@ -126,12 +126,12 @@ void weld(std::span<const MeshView> meshes, CleanMesh& mesh) {
     Places places(most, mesh.positions);
     std::vector<uint32_t> known;
     for (const MeshView& m : meshes) {
-        known.assign(m.positions.size(), kNone);
+        known.assign(m.positions.size(), kNoNumber);
         for (size_t t = 0; t < m.triangleCount(); ++t) {
             std::array<uint32_t, 3> corner{};
             for (size_t k = 0; k < 3; ++k) {
                 uint32_t& number = known[m.indices[3 * t + k]];
-                if (number == kNone) number = places.number(m.positions[m.indices[3 * t + k]]);
+                if (number == kNoNumber) number = places.number(m.positions[m.indices[3 * t + k]]);
                 corner[k] = number;
             }
             const auto source = static_cast<uint32_t>(mesh.defects.triangles++);
@@ -230,7 +230,7 @@ std::vector<uint8_t> makeConsistent(CleanMesh& mesh, Faces& faces) {
     const size_t count = mesh.source.size();
     mesh.component.resize(count);
     std::vector<uint8_t> turned(count);
-    std::vector<uint32_t> number(count, kNone);  // of a root
+    std::vector<uint32_t> number(count, kNoNumber);  // of a root
     struct Component {
         uint32_t root = 0;
         bool mixed = false;
@@ -239,7 +239,7 @@ std::vector<uint8_t> makeConsistent(CleanMesh& mesh, Faces& faces) {
     std::vector<Component> components;
     for (uint32_t f = 0; f < count; ++f) {
         const Faces::Root root = faces.find(f);
-        if (number[root.face] == kNone) {
+        if (number[root.face] == kNoNumber) {
             number[root.face] = static_cast<uint32_t>(components.size());
             components.push_back({root.face});
         }

@@ -10,7 +10,7 @@ namespace rivulet {
 namespace {
 
 // For a 256^3 band, level 3 takes twice the time for 3 % fewer bytes; bytes sorted into planes gave 25 % more.
-constexpr int kLevel = 1;
+constexpr int kCompressionLevel = 1;
 constexpr int kMostWindowLog = 23;  // 8 MiB: the largest window that the reader accepts; the level used needs 512 KiB
 
 void require(size_t code) {
@@ -27,7 +27,7 @@ struct ArrayPacker::Impl {
 
 ArrayPacker::ArrayPacker(std::string& out) : impl_(std::make_unique<Impl>()), out_(out) {
     if (!impl_->context) throw std::bad_alloc();
-    require(ZSTD_CCtx_setParameter(impl_->context.get(), ZSTD_c_compressionLevel, kLevel));
+    require(ZSTD_CCtx_setParameter(impl_->context.get(), ZSTD_c_compressionLevel, kCompressionLevel));
 }
 
 ArrayPacker::~ArrayPacker() = default;

@@ -38,15 +38,15 @@ struct Place {
     size_t pointBytes = sizeof(float) + sizeof(uint32_t);  // per grid point
 };
 
-struct Layout {
+struct FieldLayout {
     float voxel = 0, band = 0;
     dvec3 voxels{0.0};  // along each axis; may be very large
     double bytes = 0;
 };
 
-Layout layoutFor(const Place& place, const VoxelFieldOptions& options, int resolution) {
+FieldLayout fieldLayoutFor(const Place& place, const VoxelFieldOptions& options, int resolution) {
     const MeshExtent& extent = place.extent;
-    Layout l;
+    FieldLayout l;
     l.voxel = static_cast<float>(extent.longest / resolution);
     l.band = std::max(options.band, kBandVoxels * l.voxel);
     const double padding = std::max(options.padding, l.band);
@@ -61,7 +61,7 @@ Layout layoutFor(const Place& place, const VoxelFieldOptions& options, int resol
 
 Error tooMuchMemory(const Place& place, const VoxelFieldOptions& options, double needed, double limit) {
     int fits = options.resolution;
-    while (fits >= kMinResolution && layoutFor(place, options, fits).bytes > limit) --fits;
+    while (fits >= kMinResolution && fieldLayoutFor(place, options, fits).bytes > limit) --fits;
     const std::string remedy = fits >= kMinResolution ? fmt::format("a resolution of {} fits", fits)
                                                       : fmt::format("the band of {} m and padding of {} m are too wide for meshes of {} m",
                                                                     options.band, options.padding, place.extent.longest);
@@ -137,7 +137,7 @@ Result<VoxelField> emptyVoxelField(std::span<const MeshView> meshes, const Bound
         extent = {*reach, std::max(size.x, std::max(size.y, size.z))};
     }
     place.pointBytes += extra;
-    const Layout layout = layoutFor(place, options, options.resolution);
+    const FieldLayout layout = fieldLayoutFor(place, options, options.resolution);
     if (auto error = checkVoxel(extent, layout.voxel)) return *error;
     // Kernels count voxels and points in 32 bits.
     const double limit = std::min(static_cast<double>(options.memoryLimit), 4294967295.0 * sizeof(float));

@@ -73,8 +73,6 @@ size_t pointsOf(const ivec3& size) {
 
 size_t bitBytesOf(const VoxelGrid& grid) { return (grid.count() + 31) / 32 * 4; }
 
-size_t rowsOf(const ivec3& size) { return static_cast<size_t>(size.y) * static_cast<size_t>(size.z); }
-
 std::string_view asText(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
 class Writer {

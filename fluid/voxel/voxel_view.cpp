@@ -15,7 +15,7 @@ namespace rivulet {
 namespace {
 
 constexpr int kMostCells = 512;
-constexpr int kBrick = 16;  // cells; the fastest of 4, 8 and 16
+constexpr int kSkippedBrick = 16;  // cells; the fastest of 4, 8 and 16
 
 constexpr uint8_t kAir = 0, kShell = 1, kFirstColour = 2, kColours = 126;
 constexpr uint8_t kCutAway = 128;  // added to the previous value
@@ -34,7 +34,7 @@ class Cells {
         const int longest = std::max(labels.size.x, std::max(labels.size.y, labels.size.z));
         const int block = (longest + kMostCells - 1) / kMostCells;
         size_ = (labels.size + ivec3(block - 1)) / block;
-        bricks_ = (size_ + ivec3(kBrick - 1)) / kBrick;
+        bricks_ = (size_ + ivec3(kSkippedBrick - 1)) / kSkippedBrick;
         cells_.assign(volume(size_), kAir);
         tbb::parallel_for(0, size_.z, [&](int z) {
             for (int y = z * block; y < std::min((z + 1) * block, labels.size.z); ++y) fill(labels, y, block);
@@ -53,7 +53,7 @@ class Cells {
             if (c.x >= cut.x && c.z >= cut.z)
                 cell |= kCutAway;
             else
-                full_[index(bricks_, c / kBrick)] = 1;
+                full_[index(bricks_, c / kSkippedBrick)] = 1;
         });
     }
 
@@ -84,8 +84,8 @@ class Cells {
         for (size_t k = 0; k < 3; ++k) stride[k] *= static_cast<size_t>(static_cast<std::ptrdiff_t>(step[static_cast<int>(k)]));
         ivec3 cell = cellAt(from + way * t, ivec3(0), size_ - 1);
         while (inside(cell)) {
-            const ivec3 first = cell / kBrick * kBrick, last = glm::min(first + (kBrick - 1), size_ - 1);
-            const bool empty = full_[index(bricks_, cell / kBrick)] == 0;
+            const ivec3 first = cell / kSkippedBrick * kSkippedBrick, last = glm::min(first + (kSkippedBrick - 1), size_ - 1);
+            const bool empty = full_[index(bricks_, cell / kSkippedBrick)] == 0;
             if (empty) {
                 int out = 0;
                 t = std::numeric_limits<float>::max();

@@ -26,13 +26,13 @@ constexpr std::array<VoxelModeRow, 3> kModes{{
 
 constexpr const char* kCancelled = "Voxelising was cancelled.";
 
-struct Layout {
+struct GridLayout {
     float voxel = 0;
     dvec3 voxels{0.0};  // along each axis; may be very large
 };
 
-Layout layoutFor(const MeshExtent& extent, double resolution) {
-    Layout l;
+GridLayout gridLayoutFor(const MeshExtent& extent, double resolution) {
+    GridLayout l;
     l.voxel = static_cast<float>(extent.longest / resolution);
     // Rounded up: otherwise the far side would be outside.
     while (static_cast<double>(l.voxel) * resolution < extent.longest) l.voxel = std::nextafter(l.voxel, std::numeric_limits<float>::max());
@@ -61,7 +61,7 @@ Result<VoxelGrid> layoutWithin(std::span<const MeshView> meshes, int resolution,
     if (auto error = checkMeshes(meshes)) return *error;
     const MeshExtent extent = extentOf(meshes);
     const auto limit = static_cast<double>(memoryLimit);
-    const auto needed = [&](int n) { return bytesOf(layoutFor(extent, n).voxels); };
+    const auto needed = [&](int n) { return bytesOf(gridLayoutFor(extent, n).voxels); };
     const auto fitting = [&] {
         int fits = std::min(resolution, kMaxVoxelResolution);
         while (fits >= kMinVoxelResolution && needed(fits) > limit) --fits;
@@ -74,7 +74,7 @@ Result<VoxelGrid> layoutWithin(std::span<const MeshView> meshes, int resolution,
     if (resolution < kMinVoxelResolution || resolution > kMaxVoxelResolution)
         return badInput(fmt::format("The resolution must be {}..{} voxels along the longest side, not {}.", kMinVoxelResolution,
                                     kMaxVoxelResolution, resolution));
-    const Layout layout = extent.longest > 0.0 ? layoutFor(extent, resolution) : Layout{};
+    const GridLayout layout = extent.longest > 0.0 ? gridLayoutFor(extent, resolution) : GridLayout{};
     if (auto error = checkVoxel(extent, layout.voxel)) return *error;
     if (needed(resolution) > limit)
         return badInput(fmt::format("A resolution of {} needs {}; {}.", resolution, readableBytes(needed(resolution)), fitting()));
@@ -192,7 +192,7 @@ std::string lostFeatures(std::span<const MeshView> meshes, const VoxelGrid& grid
     return fmt::format(
         "The mesh is {:.3g} wide and has features of {:.3g}: a voxel of {:.4g} cannot show them; they need a resolution of {:.3g} "
         "({}).",
-        extent.longest, *fifth * voxel, voxel, resolution, readableBytes(bitsBytes(layoutFor(extent, resolution).voxels)));
+        extent.longest, *fifth * voxel, voxel, resolution, readableBytes(bitsBytes(gridLayoutFor(extent, resolution).voxels)));
 }
 
 }  // namespace rivulet

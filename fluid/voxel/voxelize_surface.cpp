@@ -15,13 +15,13 @@
 namespace rivulet {
 namespace {
 
-constexpr double kTouch = 1e-9;        // voxels
-constexpr double kLevel = 1e-11;       // of an axis: largest part of x before the axis counts as sloped
-constexpr double kRounding = 4e-16;    // error of one operation in double, with a margin
-constexpr size_t kUpload = 64 * 1024;  // triangles at a time on a device: 29 MB
+constexpr double kTouch = 1e-9;               // voxels
+constexpr double kSlopeTolerance = 1e-11;     // of an axis: largest part of x before the axis counts as sloped
+constexpr double kOperationError = 4e-16;     // error of one operation in double, with a margin
+constexpr size_t kSurfaceUpload = 64 * 1024;  // triangles at a time on a device: 29 MB
 
 // A triangle in the layout of shaders/voxel/overlap.h.
-struct Prepared {
+struct PreparedOverlap {
     std::array<double, OVERLAP_DOUBLES> numbers{};
     std::array<int, OVERLAP_INTS> bounds{};  // 0, 1, 2: first voxel; 3, 4, 5: last; 6: level slabs; 7: slabs
     bool empty = false;                      // beyond the grid
@@ -43,7 +43,7 @@ bool exact(const dvec3& a, const dvec3& b) {
 
 class Slabs {
   public:
-    Slabs(Prepared& p, double across) : p_(p), across_(across) {}
+    Slabs(PreparedOverlap& p, double across) : p_(p), across_(across) {}
     // The triangle spans 0 to `extent` on the axis, with an error of `slack`.
     void add(const dvec3& axis, double extent, double slack) {
         const double half = 0.5 * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
@@ -51,7 +51,7 @@ class Slabs {
         const double reach = half * (1.0 + 2.0 * kTouch) + slack;
         Slab s{axis.y, axis.z, std::min(0.0, extent) - reach, std::max(0.0, extent) + reach, 0.0};
         const double alongX = std::abs(axis.x) * across_;
-        if (alongX <= kLevel * half) {
+        if (alongX <= kSlopeTolerance * half) {
             s[2] -= alongX;
             s[3] += alongX;
             level_[levels_++] = s;
@@ -71,13 +71,13 @@ class Slabs {
 
   private:
     using Slab = std::array<double, OVERLAP_SLAB>;
-    Prepared& p_;
+    PreparedOverlap& p_;
     double across_;  // voxels along x that a centre may be away from corner a
     std::array<Slab, OVERLAP_SLABS> level_, sloped_;
     size_t levels_ = 0, slopes_ = 0;
 };
 
-void prepare(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, Prepared& p) {
+void prepareOverlap(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, PreparedOverlap& p) {
     const auto [a, b, c] = triangles.corners(k);
     const dvec3 ab = b - a, ac = c - a, bc = c - b;  // in the mesh's unit: usually exact
     const GridTriangle t{triangles.inVoxels(a), ab / triangles.voxel(), ac / triangles.voxel()};
@@ -104,7 +104,7 @@ void prepare(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, Pr
             // rounding error.
             const bool sure = exact(a, b) && exact(a, c);
             const double reach = glm::length(t.ab) + glm::length(t.ac) + 1.0;
-            slabs.add(normal, 0.0, sure ? 0.0 : kRounding * glm::length(ab) * glm::length(ac) * reach);
+            slabs.add(normal, 0.0, sure ? 0.0 : kOperationError * glm::length(ab) * glm::length(ac) * reach);
         }
         // Edges across the box's edges. Within a single layer of voxels only those across the layer's normal can separate.
         for (const auto& [e, other] : {std::pair{ab, t.ac}, std::pair{ac, t.ab}, std::pair{bc, t.ab}}) {
@@ -117,7 +117,7 @@ void prepare(const GridTriangles& triangles, size_t k, const VoxelGrid& grid, Pr
 }
 
 // Sets bits [first, last] of the row-major order. Other threads may set adjacent bits at the same time.
-void setRun(VoxelGrid& grid, size_t first, size_t last) {
+void setRunAtomic(VoxelGrid& grid, size_t first, size_t last) {
     for (size_t byte = first >> 3U; byte <= last >> 3U; ++byte) {
         unsigned mask = 0xFFU;
         if (byte == first >> 3U) mask &= 0xFFU << (first & 7U);
@@ -127,29 +127,29 @@ void setRun(VoxelGrid& grid, size_t first, size_t last) {
     }
 }
 
-void setTriangle(const Prepared& p, VoxelGrid& grid) {
+void setTriangle(const PreparedOverlap& p, VoxelGrid& grid) {
     for (int z = p.bounds[2]; z <= p.bounds[5]; ++z) {
         for (int y = p.bounds[1]; y <= p.bounds[4]; ++y) {
             const OverlapRun run = overlapRow(p.numbers.data(), p.bounds.data(), 0, y, z);
             if (run.first > run.last) continue;
             const size_t row = grid.index({0, y, z});
-            setRun(grid, row + static_cast<size_t>(run.first), row + static_cast<size_t>(run.last));
+            setRunAtomic(grid, row + static_cast<size_t>(run.first), row + static_cast<size_t>(run.last));
         }
     }
 }
 
 // Some triangles in the layout of the kernel, with their work items.
-struct Batch {
+struct SurfaceBatch {
     std::vector<double> numbers;
     std::vector<int> bounds;
     std::vector<uint32_t> items;
 };
 
-Batch batchOf(const GridTriangles& triangles, size_t first, size_t end, const VoxelGrid& grid) {
-    Batch batch;
-    Prepared p;
+SurfaceBatch surfaceBatchOf(const GridTriangles& triangles, size_t first, size_t end, const VoxelGrid& grid) {
+    SurfaceBatch batch;
+    PreparedOverlap p;
     for (size_t k = first; k < end; ++k) {
-        prepare(triangles, k, grid, p);
+        prepareOverlap(triangles, k, grid, p);
         if (p.empty) continue;
         const auto number = static_cast<uint32_t>(batch.bounds.size() / OVERLAP_INTS), rows = static_cast<uint32_t>(p.rows());
         batch.numbers.insert(batch.numbers.end(), p.numbers.begin(), p.numbers.end());
@@ -168,8 +168,8 @@ Status onDevice(Device& device, const GridTriangles& triangles, VoxelGrid& grid)
     Result<Buffer> bits = device.allocate(grid.bits.size());
     if (!bits) return bits.error();
     device.writeAll<uint8_t>(*bits, grid.bits);
-    for (size_t first = 0; first < triangles.size(); first += kUpload) {
-        const Batch batch = batchOf(triangles, first, std::min(first + kUpload, triangles.size()), grid);
+    for (size_t first = 0; first < triangles.size(); first += kSurfaceUpload) {
+        const SurfaceBatch batch = surfaceBatchOf(triangles, first, std::min(first + kSurfaceUpload, triangles.size()), grid);
         Result<Buffer> numbers = device.allocate(batch.numbers.size() * sizeof(double));
         Result<Buffer> bounds = device.allocate(batch.bounds.size() * sizeof(int));
         Result<Buffer> items = device.allocate(batch.items.size() * sizeof(uint32_t));
@@ -189,9 +189,9 @@ Status onDevice(Device& device, const GridTriangles& triangles, VoxelGrid& grid)
 
 void voxelizeSurface(const GridTriangles& triangles, VoxelGrid& grid) {
     tbb::parallel_for(tbb::blocked_range<size_t>(0, triangles.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
-        Prepared p;
+        PreparedOverlap p;
         for (size_t k = range.begin(); k != range.end(); ++k) {
-            prepare(triangles, k, grid, p);
+            prepareOverlap(triangles, k, grid, p);
             if (!p.empty) setTriangle(p, grid);
         }
     });

@@ -14,22 +14,13 @@
 namespace rivulet {
 namespace {
 
-constexpr uint32_t kPiece = 16;     // triangles of a fan treated together
-constexpr double kModel = 0.1;      // turns: largest error of the first-order model of all pieces
-constexpr double kBend = 0.05;      // turns: its largest error in a cell that is decided voxel by voxel
-constexpr double kRounding = 1e-9;  // turns
-constexpr double kSphere = 4.0 * std::numbers::pi;
-constexpr int kBrick = 4;  // voxels along the smallest cell that is tested for surface
-constexpr int kTask = 16;  // voxels along the cell of one task
-constexpr int kFine = 8;   // voxels along a cell that uses a piece's own edges
-constexpr int kSmall = 2;  // voxels along a cell that is decided voxel by voxel
-
-// From the origin.
-double distanceToSegment(const dvec3& a, const dvec3& b) {
-    const dvec3 ab = b - a;
-    const double along = -glm::dot(a, ab), all = glm::dot(ab, ab);
-    return glm::length(a + ab * (all > 0.0 ? std::clamp(along / all, 0.0, 1.0) : 0.0));
-}
+constexpr uint32_t kPiece = 16;   // triangles of a fan treated together
+constexpr double kModel = 0.1;    // turns: largest error of the first-order model of all pieces
+constexpr double kBend = 0.05;    // turns: its largest error in a cell that is decided voxel by voxel
+constexpr int kSmallestCell = 4;  // voxels along the smallest cell that is tested for surface
+constexpr int kTask = 16;         // voxels along the cell of one task
+constexpr int kEdgeCell = 8;      // voxels along a cell that uses a piece's own edges
+constexpr int kSmall = 2;         // voxels along a cell that is decided voxel by voxel
 
 // Calls loop(places) for each closed loop of the directed edges (pairs of places); a loop contains no place twice.
 template <class Loop>
@@ -70,14 +61,14 @@ void assignRun(VoxelGrid& grid, size_t first, size_t end, bool value) {
     }
 }
 
-// The cubes of kBrick, 2 kBrick, 4 kBrick ... voxels that a mesh passes through; touching counts.
+// The cubes of kSmallestCell, 2 kSmallestCell, 4 kSmallestCell ... voxels that a mesh passes through; touching counts.
 class Occupied {
   public:
     Occupied(const CleanMesh& mesh, const VoxelGrid& grid) {
         VoxelGrid bricks;
-        bricks.size = (grid.size + kBrick - 1) / kBrick;
+        bricks.size = (grid.size + kSmallestCell - 1) / kSmallestCell;
         bricks.origin = grid.origin;
-        bricks.voxel = grid.voxel * static_cast<float>(kBrick);
+        bricks.voxel = grid.voxel * static_cast<float>(kSmallestCell);
         bricks.bits.assign((bricks.count() + 31) / 32 * 4, 0);
         const MeshView view{mesh.positions, mesh.indices, {}, {}};
         voxelizeSurface(GridTriangles(std::span(&view, 1), bricks), bricks);
@@ -86,9 +77,9 @@ class Occupied {
     }
     // `low` and `size` of a cell; size is a power of two.
     bool test(const ivec3& low, int size) const {
-        const int level = size <= kBrick ? 0 : std::countr_zero(static_cast<unsigned>(size / kBrick));
+        const int level = size <= kSmallestCell ? 0 : std::countr_zero(static_cast<unsigned>(size / kSmallestCell));
         if (level >= static_cast<int>(levels_.size())) return true;
-        return levels_[static_cast<size_t>(level)].test(low / std::max(size, kBrick));
+        return levels_[static_cast<size_t>(level)].test(low / std::max(size, kSmallestCell));
     }
 
   private:
@@ -298,10 +289,11 @@ class BoundaryCaps::Descent {
         part += inner.model(ball.middle);
         // Over the ball the part is within `change` of the value, and within `bend` of the linear model, except for the caps' steps.
         const Wires wires = outline(inner.near, ball);
-        const dvec3 slope = inner.slope + wires.slope / kSphere;
-        const double bend = inner.slack + 0.5 * ball.reach * ball.reach * wires.bend / kSphere + kRounding;
-        const double change = std::min(inner.slack + ball.reach * (glm::length(inner.slope) + wires.steepest / kSphere) + kRounding,
-                                       ball.reach * glm::length(slope) + bend);
+        const dvec3 slope = inner.slope + wires.slope / kFullSphere;
+        const double bend = inner.slack + 0.5 * ball.reach * ball.reach * wires.bend / kFullSphere + kWindingRounding;
+        const double change =
+            std::min(inner.slack + ball.reach * (glm::length(inner.slope) + wires.steepest / kFullSphere) + kWindingRounding,
+                     ball.reach * glm::length(slope) + bend);
         if (!capped) {
             const double lowest = std::floor(part - change + 0.5), highest = std::floor(part + change + 0.5);
             if (lowest == highest) return compare(cell.low, end, static_cast<int>(lowest));
@@ -329,12 +321,12 @@ class BoundaryCaps::Descent {
 
     // A patch's solid angle is at most its area over its least distance squared.
     bool partBelowHalf(const Cell& cell, const Ball& ball) const {
-        double most = std::abs(cell.model(ball.middle)) + ball.reach * glm::length(cell.slope) + cell.slack + kRounding;
+        double most = std::abs(cell.model(ball.middle)) + ball.reach * glm::length(cell.slope) + cell.slack + kWindingRounding;
         for (uint32_t k : cell.near) {
             const Piece& piece = caps_.pieces_[k];
             const double apart = glm::length(piece.centre - ball.middle) - piece.radius - ball.reach;
             if (apart <= 0.0) return false;
-            most += piece.area / (kSphere * apart * apart);
+            most += piece.area / (kFullSphere * apart * apart);
             if (most >= 0.5) return false;
         }
         return true;
@@ -346,16 +338,16 @@ class BoundaryCaps::Descent {
         const double apart = glm::length(piece.centre - ball.middle) - piece.radius - ball.reach, second = 0.5 * ball.reach * ball.reach;
         // By its outline as a wire (Biot and Savart), or by its area as dipoles.
         double wrong = std::numeric_limits<double>::infinity();
-        if (apart > 0.0) wrong = second * std::min(2.0 * piece.outline, 6.0 * piece.area / apart) / (kSphere * apart * apart * apart);
+        if (apart > 0.0) wrong = second * std::min(2.0 * piece.outline, 6.0 * piece.area / apart) / (kFullSphere * apart * apart * apart);
         if (wrong > tolerance_) {
             passes = apart <= 0.0 && passesThrough(piece, ball);
-            if (passes || cell.size > kFine) return false;
+            if (passes || cell.size > kEdgeCell) return false;
         }
         Wires wires;
         eachWire(piece, [&](const dvec3& a, const dvec3& b) { wires.add(a, b, ball); });
-        wrong = std::min(wrong, second * wires.bend / kSphere);
+        wrong = std::min(wrong, second * wires.bend / kFullSphere);
         if (wrong > tolerance_) return false;
-        const dvec3 slope = wires.slope / kSphere;
+        const dvec3 slope = wires.slope / kFullSphere;
         cell.far += value - glm::dot(slope, ball.middle);
         cell.slope += slope;
         cell.slack += wrong;
@@ -411,7 +403,7 @@ class BoundaryCaps::Descent {
             const dvec3 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
             if (std::max({low.x, low.y, low.z, -high.x, -high.y, -high.z}) > ball.reach) continue;
             const dvec3 normal = glm::cross(b - a, c - a);
-            if (std::abs(glm::dot(normal, a)) <= (ball.reach + kRounding) * glm::length(normal)) return true;
+            if (std::abs(glm::dot(normal, a)) <= (ball.reach + kWindingRounding) * glm::length(normal)) return true;
         }
         return false;
     }
@@ -427,7 +419,7 @@ class BoundaryCaps::Descent {
                     if (unclear(turns, smooth.slack)) {
                         turns = crossed - cell.model(p);
                         for (uint32_t k : cell.near) turns -= caps_.winding(caps_.pieces_[k], p);
-                        if (unclear(turns, cell.slack + kRounding)) turns = crossed - caps_.winding(p);
+                        if (unclear(turns, cell.slack + kWindingRounding)) turns = crossed - caps_.winding(p);
                     }
                     assignRun(grid_, grid_.index({x, y, z}), grid_.index({x, y, z}) + 1, std::abs(turns) > 0.5);
                 }

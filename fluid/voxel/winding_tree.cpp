@@ -15,12 +15,10 @@
 namespace rivulet {
 namespace {
 
-constexpr double kSphere = 4.0 * std::numbers::pi;
-constexpr double kRounding = 1e-9;  // turns
-constexpr uint32_t kLeaf = 8;       // patches
-constexpr int kFine = 8;            // voxels along a cell that uses single patches
-constexpr int kLast = 4;            // voxels along a cell that is decided, or halved once more where many patches are near
-constexpr size_t kCrowd = 12;       // patches that count as many
+constexpr uint32_t kLeaf = 8;  // patches
+constexpr int kPatchCell = 8;  // voxels along a cell that uses single patches
+constexpr int kLast = 4;       // voxels along a cell that is decided, or halved once more where many patches are near
+constexpr size_t kCrowd = 12;  // patches that count as many
 
 // Half the solid angle is the argument of this complex number.
 struct Turned {
@@ -30,12 +28,6 @@ Turned halfAngle(const Corners& t, const dvec3& p) {
     const dvec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;
     const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
     return {glm::dot(a, glm::cross(b, c)), (la * lb + glm::dot(a, b)) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb};
-}
-
-double distanceToSegment(const dvec3& a, const dvec3& b) {  // from the origin
-    const dvec3 ab = b - a;
-    const double along = -glm::dot(a, ab), all = glm::dot(ab, ab);
-    return glm::length(a + ab * (all > 0.0 ? std::clamp(along / all, 0.0, 1.0) : 0.0));
 }
 
 // Bound of the terms above the second order, relative to area / (4 pi R^2).
@@ -189,7 +181,7 @@ class WindingTree::Descent {
         single.swap(inner.patches);
         single.insert(single.end(), cell.patches.begin(), cell.patches.end());
         for (uint32_t patch : single)
-            if (cell.size > kFine || !moveToModel(tree_.patches_[patch], inner)) inner.patches.push_back(patch);
+            if (cell.size > kPatchCell || !moveToModel(tree_.patches_[patch], inner)) inner.patches.push_back(patch);
         const bool last = cell.size == kLast && inner.patches.size() < kCrowd;
         if (last || cell.size < kLast || (inner.nodes.empty() && inner.patches.empty())) {
             decideEach(inner, end);
@@ -203,7 +195,7 @@ class WindingTree::Descent {
             child.patches = inner.patches;
             descend(child);
         };
-        if (cell.size > kFine)
+        if (cell.size > kPatchCell)
             tbb::parallel_for(0, 8, half, tbb::simple_partitioner());
         else
             for (int k = 0; k < 8; ++k) half(k);
@@ -212,11 +204,11 @@ class WindingTree::Descent {
     // The part of a patch is at most its area over its least distance squared.
     bool belowHalf(const Cell& cell) const {
         const double reach = cell.reach();
-        double most = std::abs(cell.far.value) + reach * glm::length(cell.far.slope) + cell.far.slack + kRounding;
+        double most = std::abs(cell.far.value) + reach * glm::length(cell.far.slope) + cell.far.slack + kWindingRounding;
         for (int k = 0; k < 3; ++k) most += 0.5 * reach * reach * glm::length(cell.far.bend[k]);
         const auto add = [&](const auto& some) {
             const double apart = glm::length(some.centre - cell.middle()) - some.radius - reach;
-            most += apart > 0.0 ? some.area / (kSphere * apart * apart) : 1.0;
+            most += apart > 0.0 ? some.area / (kFullSphere * apart * apart) : 1.0;
             return most < 0.5;
         };
         return most < 0.5 && std::all_of(cell.nodes.begin(), cell.nodes.end(), [&](uint32_t k) { return add(tree_.nodes_[k]); }) &&
@@ -230,14 +222,14 @@ class WindingTree::Descent {
         const dvec3 way = cell.middle() - node.centre;
         const double apart = glm::length(way), share = (node.radius + reach) / apart;
         if (share < 0.8) {
-            const double wrong = node.area / (kSphere * apart * apart) * beyondSecond(share);
+            const double wrong = node.area / (kFullSphere * apart * apart) * beyondSecond(share);
             if (wrong <= tolerance_ * (node.end - node.first)) {
                 addNode(node, way, cell.far);
                 cell.far.slack += wrong;
                 return;
             }
         }
-        if (cell.size > kFine && node.radius < reach) {
+        if (cell.size > kPatchCell && node.radius < reach) {
             cell.nodes.push_back(number);
         } else if (node.children != 0) {
             sortNode(node.children, cell);
@@ -258,10 +250,10 @@ class WindingTree::Descent {
         const double value = -along * i3 - (3.0 * q * i5 - trace * i3) + 0.5 * (-15.0 * cubic * i7 + 3.0 * glm::dot(node.pull, r) * i5);
         const dvec3 slope = (3.0 * along * i5) * r - i3 * node.dipole + (15.0 * q * i7) * r - (3.0 * i5) * (trace * r + 2.0 * pulled);
         const dmat3 cross = glm::outerProduct(node.dipole, r);
-        field.value += value / kSphere;
-        field.slope += slope / kSphere;
-        field.bend +=
-            ((-15.0 * along * i7) * glm::outerProduct(r, r) + (3.0 * i5) * (cross + glm::transpose(cross) + along * dmat3(1.0))) / kSphere;
+        field.value += value / kFullSphere;
+        field.slope += slope / kFullSphere;
+        field.bend += ((-15.0 * along * i7) * glm::outerProduct(r, r) + (3.0 * i5) * (cross + glm::transpose(cross) + along * dmat3(1.0))) /
+                      kFullSphere;
     }
 
     // By its outline, the sum of the outlines of its triangles.
@@ -269,7 +261,7 @@ class WindingTree::Descent {
         const dvec3 middle = cell.middle();
         const double reach = cell.reach(), away = glm::length(patch.centre - middle);
         if (patch.radius + reach < 0.8 * away) {
-            const double wrong = patch.area / (kSphere * away * away) * beyondSecond((patch.radius + reach) / away);
+            const double wrong = patch.area / (kFullSphere * away * away) * beyondSecond((patch.radius + reach) / away);
             if (wrong <= tolerance_) return addPatch(patch, middle, wrong, cell.far);
         }
         double wrong = 0;
@@ -280,12 +272,12 @@ class WindingTree::Descent {
                 const double apart = distanceToSegment(a, b) - reach;
                 if (apart <= 0.0) return false;
                 const double share = reach / apart;
-                wrong += std::min(glm::length(b - a) / apart, 0.5 * std::numbers::pi) * share * share * share / kSphere;
+                wrong += std::min(glm::length(b - a) / apart, 0.5 * std::numbers::pi) * share * share * share / kFullSphere;
                 if (wrong > tolerance_) return false;
             }
             // The outlines are all beyond the ball; the triangle may still pass through it.
             const dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
-            if (std::abs(glm::dot(normal, c[0] - middle)) > (reach + kRounding) * glm::length(normal)) continue;
+            if (std::abs(glm::dot(normal, c[0] - middle)) > (reach + kWindingRounding) * glm::length(normal)) continue;
             const dvec3 foot = middle + normal * (glm::dot(normal, c[0] - middle) / std::max(glm::dot(normal, normal), 1e-300));
             bool within = true;
             for (size_t k = 0; k < 3; ++k) within = within && glm::dot(glm::cross(c[(k + 1) % 3] - c[k], foot - c[k]), normal) >= 0.0;
@@ -299,8 +291,8 @@ class WindingTree::Descent {
         for (uint32_t t = patch.first; t < patch.end; ++t)
             for (size_t k = 0; k < 3; ++k) addWire(tree_.triangles_[t][k] - middle, tree_.triangles_[t][(k + 1) % 3] - middle, slope, bend);
         field.value += tree_.winding(patch, middle);
-        field.slope += slope / kSphere;
-        field.bend += bend / kSphere;
+        field.slope += slope / kFullSphere;
+        field.bend += bend / kFullSphere;
         field.slack += wrong;
         return true;
     }
@@ -318,7 +310,7 @@ class WindingTree::Descent {
                     const dvec3 p = dvec3(x, y, z) + 0.5;
                     double turns = crossed - cell.far.at(p - cell.middle());
                     for (uint32_t k : cell.patches) turns -= tree_.winding(tree_.patches_[k], p);
-                    if (exact && std::abs(std::abs(turns) - 0.5) <= cell.far.slack + kRounding) turns = crossed - tree_.winding(p);
+                    if (exact && std::abs(std::abs(turns) - 0.5) <= cell.far.slack + kWindingRounding) turns = crossed - tree_.winding(p);
                     assign(grid_.index({x, y, z}), std::abs(turns) > 0.5);
                 }
             }

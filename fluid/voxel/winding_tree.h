@@ -2,9 +2,11 @@
 // Cubes of voxels share one second-order model of all far nodes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -14,6 +16,16 @@
 namespace rivulet {
 
 using dmat3 = glm::dmat3;
+
+inline constexpr double kWindingRounding = 1e-9;  // turns
+inline constexpr double kFullSphere = 4.0 * std::numbers::pi;
+
+// From the origin.
+inline double distanceToSegment(const dvec3& a, const dvec3& b) {
+    const dvec3 ab = b - a;
+    const double along = -glm::dot(a, ab), all = glm::dot(ab, ab);
+    return glm::length(a + ab * (all > 0.0 ? std::clamp(along / all, 0.0, 1.0) : 0.0));
+}
 
 // Second-order expansion of a field about a point, and the bound of its error (`slack`) within the ball it was made for.
 struct LocalField {

@@ -59,7 +59,7 @@ TEST(BadInput, AParamOutOfItsRangeIsNamed) {
 
 TEST(BadInput, InvalidInputLeavesAWorldUnchanged) {
     auto device = cpu();
-    auto world = make(*device, sound());
+    auto world = makeWorld(*device, sound());
     FluidParams p = sound();
     p.viscosity = std::numeric_limits<float>::quiet_NaN();
     p.cfl = 0.1F;
@@ -127,7 +127,7 @@ TEST(BadInput, BodiesAndTheirHostAreNamed) {
     };
     const auto reset = [](void*, std::span<const BodyState>) {};
     auto device = cpu();
-    auto world = make(*device, sound(), {.bodies = {pebble()}, .bodyHost = {.advance = mad, .reset = reset}});
+    auto world = makeWorld(*device, sound(), {.bodies = {pebble()}, .bodyHost = {.advance = mad, .reset = reset}});
     world->step({}, 1.0 / 60);
     EXPECT_EQ(world->bodies()[0].pose.position, vec3(0.7F));
     EXPECT_NE(std::find_if(world->stats().limited.begin(), world->stats().limited.end(),

@@ -109,7 +109,7 @@ TEST(Buoyancy, ForcesAreThoseOfArchimedesAndMorison) {
 
 TEST(Buoyancy, ACubeOfHalfTheDensityFloatsHalfUnder) {
     auto device = cpu();
-    auto world = make(*device, pool()), alone = make(*device, pool());
+    auto world = makeWorld(*device, pool()), alone = makeWorld(*device, pool());
     const float edge = 0.1F;
     Floater light = floating(boxShape(vec3(edge), 500, kSpacing), 0.02F, vec3(0.15F, 0.36F, 0.25F));
     Floater heavy = floating(boxShape(vec3(edge), 1500, kSpacing), 0.02F, vec3(0.35F, 0.36F, 0.25F));

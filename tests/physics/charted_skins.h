@@ -60,7 +60,7 @@ inline Skin shattered(const Skin& of) {
 }
 
 // The connected part of a mesh with the most triangles: for the head its skin, without eyes and lashes.
-inline Skin largestPart(const Mesh& mesh) {
+inline Skin largestPart(const rivulet::Mesh& mesh) {
     Result<FlowMesh> made = makeFlowMesh(mesh.view());
     if (!made) return {};
     std::vector<uint32_t> part(made->triangleCount(), UINT32_MAX), open, best;
@@ -86,7 +86,7 @@ inline Skin largestPart(const Mesh& mesh) {
 }
 
 inline Skin headSkin() {
-    Result<Mesh> head = importMesh(RIVULET_SOURCE_DIR "/assets/meshes/head/head.glb");
+    Result<rivulet::Mesh> head = importMesh(RIVULET_SOURCE_DIR "/assets/meshes/head/head.glb");
     return head ? largestPart(*head) : Skin{};
 }
 

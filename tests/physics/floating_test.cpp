@@ -66,7 +66,7 @@ TEST_P(Draught, TheDisplacedWaterWeighsAsMuchAsTheBody) {
     const float drop = (what.ball ? 2 : 6) * s;
     body.state.pose.position = vec3(0.5F * p.box.max.x, static_cast<float>(level - draught + 0.5 * height) + drop, 0.5F * p.box.max.z);
     auto device = cpu();
-    auto world = make(*device, p, {.bodies = {body}});
+    auto world = makeWorld(*device, p, {.bodies = {body}});
     ASSERT_TRUE(world);
     double under = 0, tilt = 0, moved = 0;
     constexpr int kFrames = 110, kLast = 45;
@@ -112,7 +112,7 @@ TEST(Neutral, ABallOfTheDensityOfWaterKeepsItsHeight) {
         body.shape = sphereShape(4 * s, 1000, s);
         body.state.pose.position = vec3(8 * s);
         auto device = cpu();
-        auto world = make(*device, p, {.bodies = {body}});
+        auto world = makeWorld(*device, p, {.bodies = {body}});
         ASSERT_TRUE(world);
         for (int frame = 0; frame < 30; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
         const double sunk = 8 - double{world->bodies()[0].pose.position.y / s};
@@ -155,7 +155,7 @@ TEST_P(Sticking, APlateDragsWaterOnlyWithoutSlip) {
             states[0].pose.position += states[0].velocity * static_cast<float>(seconds);
         };
         auto device = cpu();
-        auto world = make(*device, p, {.bodies = {plate}, .bodyHost = sliding});
+        auto world = makeWorld(*device, p, {.bodies = {plate}, .bodyHost = sliding});
         ASSERT_TRUE(world);
         for (int frame = 0; frame < 24; ++frame) world->step({p.gravity}, 1.0 / 120);
         const Fluid f = fluidOf(*world);

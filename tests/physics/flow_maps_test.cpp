@@ -23,7 +23,6 @@ namespace {
 
 using test::addSheet;
 using test::Skin;
-constexpr double kPiD = 3.14159265358979323846;
 constexpr uint32_t kMicrolitre = 1000000;  // picolitres
 
 // A flow on a skin and its maps, and what the maps' texels show.

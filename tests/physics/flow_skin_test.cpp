@@ -13,7 +13,6 @@
 namespace rivulet::flow_skin_test {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 
 // A drop without tangential forces keeps its position in the world while the skin moves below it, by its frame or by its positions.

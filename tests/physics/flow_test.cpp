@@ -12,8 +12,6 @@
 namespace rivulet::flow_test {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-
 constexpr uint32_t kMicrolitres = 1000000;  // picolitres
 
 TEST(FlowMesh, ABallIsConnectedOverItsSeamAndPoles) {

@@ -16,7 +16,6 @@
 namespace rivulet::flow_thesis_test {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr uint32_t kMicrolitre = 1000000;  // picolitres
 constexpr double kGravity = 9.81;
 constexpr double kStep = 1.0 / 60;

@@ -36,7 +36,7 @@ TEST_P(Normals, OfTheFacesOfACubeAreItsAxes) {
     p.gravity = vec3(0.0F);
     p.forces.normals = GetParam();
     p.blocks = {{vec3(0.3F), vec3(0.7F), vec3(0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     world->step({vec3(0.0F)}, 1.0e-4);
     const State s = state(*world);
     ASSERT_EQ(s.normal.size(), 8000U);
@@ -85,7 +85,7 @@ TEST(Normals, CoincidentParticlesAndSprayAreFinite) {
     p.forces.thesisTension = -5.0F;
     // Two blocks in the same place, and one particle alone.
     p.blocks = {{vec3(0.3F), vec3(0.4F), vec3(0.0F)}, {vec3(0.3F), vec3(0.4F), vec3(0.0F)}, {vec3(0.8F), vec3(0.82F), vec3(0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     world->step({vec3(0.0F)}, 1.0e-4);
     const State s = state(*world);
     double longest = 0;
@@ -135,7 +135,7 @@ TEST(Tension, ACubeBecomesABallAndMomentaStay) {
     p.viscosity = 2.0e-3F;
     p.forces.tension = 1.0F;
     p.blocks = {{vec3(0.4F, 0.4F, 0.4F), vec3(0.6F, 0.6F, 0.6F), vec3(0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     const double before = outOfRound(state(*world).position);
     EXPECT_GT(before, 1.4);
     double scale = 0, turned = 0;
@@ -178,7 +178,7 @@ TEST(Tension, AdhesionSpreadsADropOnTheFloor) {
         p.forces.tension = 1.0F;
         p.forces.adhesion = k == 0 ? 0.0F : 2.0F;
         p.blocks = {{vec3(0.42F, 0.0F, 0.42F), vec3(0.58F, 0.16F, 0.58F), vec3(0.0F)}};
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         for (int frame = 0; frame < 60; ++frame) world->step({p.gravity}, 1.0 / 60);
         const State s = state(*world);
         int onFloor = 0;
@@ -200,7 +200,7 @@ TEST(Air, ALoneDropFallsAsFastAsItsDragLets) {
     p.forces.airDrag = 0.47F;
     p.forces.wind = vec3(0.0F, 5.0F, 0.0F);
     p.blocks = {{vec3(0.5F, 0.1F, 0.5F), vec3(0.52F, 0.12F, 0.52F), vec3(0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     ASSERT_EQ(world->particles().count, 1U);
     for (int frame = 0; frame < 120; ++frame) world->step({vec3(0.0F)}, 1.0 / 240);
     // u' = -k u^2 for the velocity u relative to the wind; a sphere of the particle's volume.
@@ -222,7 +222,7 @@ TEST(Vorticity, ConfinementSustainsAVortex) {
         p.box.max = vec3(0.8F, 0.2F, 0.8F);
         p.box.periodicY = true;
         p.blocks = {{p.box.min, p.box.max, vec3(0.0F)}};
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         State s = state(*world);
         for (size_t i = 0; i < s.position.size(); ++i) {
             // Along the walls at the walls.

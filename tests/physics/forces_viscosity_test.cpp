@@ -46,7 +46,7 @@ TEST_P(Viscosity, AShearWaveDecaysWithNuKSquared) {
         p.blocks.push_back({vec3(x, 0.0F, 0.0F), vec3(x + spacing, p.box.max.y, p.box.max.z),
                             vec3(0.0F, amplitude * std::sin(static_cast<float>(k) * middle), 0.0F)});
     }
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     ASSERT_EQ(world->particles().count, 40U * 49U);
     auto wave = [&] {
         const State s = state(*world);
@@ -97,7 +97,7 @@ TEST_P(Channel, StartingPoiseuilleFlowMatchesTheSeries) {
     p.box.max = vec3(6 * p.spacing, static_cast<float>(length), 6 * p.spacing);
     p.box.periodicX = p.box.periodicZ = true;
     p.blocks = {{p.box.min, p.box.max, vec3(0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     ASSERT_EQ(world->particles().count, 720U);
     for (int frame = 1; frame <= 60; ++frame) {
         world->step({p.gravity}, 1.0 / 120);
@@ -137,7 +137,7 @@ struct Pile {
 
 Pile pour(const FluidParams& p) {
     auto device = cpu();
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int frame = 0; frame < 60; ++frame) world->step({p.gravity}, 1.0 / 60);
     Pile pile;
     for (const vec4& x : state(*world).position) {
@@ -249,7 +249,7 @@ TEST(Honey, ConservesMomentumAndAngularMomentum) {
     // An off-centre collision of two unequal drops.
     p.blocks = {{vec3(0.3F, 0.4F, 0.4F), vec3(0.46F, 0.56F, 0.56F), vec3(0.6F, 0.0F, 0.0F)},
                 {vec3(0.48F, 0.48F, 0.46F), vec3(0.58F, 0.6F, 0.58F), vec3(-0.8F, 0.1F, 0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     auto sums = [&](double& scale) {
         const State s = state(*world);
         std::array<double, 6> sum{};
@@ -299,7 +299,7 @@ TEST(NoSlip, CouetteFlowUnderAMovingPlate) {
     // Particle centres stay at the field's contact distance; the no-slip wall lies half a spacing from there.
     const float standOff = fieldParams(*field, {.spacing = p.spacing}).contact - 0.5F * p.spacing;
     Pose pose{.position = vec3(0.0F, static_cast<float>(length) + standOff + 0.05F, 0.06F)};
-    auto world = make(*device, p, {.rigid = {{&*field, pose}}});
+    auto world = makeWorld(*device, p, {.rigid = {{&*field, pose}}});
     ASSERT_EQ(world->particles().count, 720U);
     for (int frame = 1; frame <= 60; ++frame) {
         pose.position.x = static_cast<float>(speed * frame / 120);

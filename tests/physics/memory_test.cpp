@@ -7,7 +7,7 @@
 
 #include "tests/physics/worlds.h"
 
-namespace rivulet {
+namespace rivulet::memory_test {
 namespace {
 
 // Particles packed so closely that the neighbour lists must grow in the first step.
@@ -36,7 +36,7 @@ State stateOf(FluidWorld& world) {
 TEST(OutOfMemory, TheGridFailsAgainUntilThereIsMemory) {
     auto device = cpu();
     const FluidParams p = packed("dfsph");
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     ASSERT_TRUE(world);
     const State start = stateOf(*world);
     Result<NeighborGrid> grid =
@@ -67,7 +67,7 @@ TEST_P(OutOfMemoryOf, AWorldStopsReportsItAndContinuesLater) {
     for (const bool periodic : {false, true}) {
         if (periodic && std::string_view(GetParam()) == "wcsph_thesis") continue;
         auto device = cpu();
-        auto world = make(*device, packed(GetParam(), periodic));
+        auto world = makeWorld(*device, packed(GetParam(), periodic));
         ASSERT_TRUE(world);
         const State start = stateOf(*world);
         device->limitMemory(device->bytesAllocated());
@@ -94,4 +94,4 @@ TEST_P(OutOfMemoryOf, AWorldStopsReportsItAndContinuesLater) {
 INSTANTIATE_TEST_SUITE_P(Methods, OutOfMemoryOf, ::testing::Values("pbf", "dfsph", "wcsph", "wcsph_thesis"));
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::memory_test

@@ -6,7 +6,7 @@
 
 #include "fluid/sim/forces/force.h"
 
-namespace rivulet {
+namespace rivulet::rows_test {
 namespace {
 
 TEST(ForceRows, RunInOrderAndNameTheRemedy) {
@@ -51,4 +51,4 @@ TEST(MethodRows, GiveTheirLeastSubsteps) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::rows_test

@@ -255,7 +255,7 @@ TEST(StateOfAHost, IsSavedIfTheHostProvidesIt) {
     Body body;
     body.shape = boxShape(vec3(0.2F), 400, p.spacing);
     body.state.pose.position = vec3(0.5F, 0.35F, 0.25F);
-    const auto world = [&](const BodyHost& host) { return make(*device, p, {.bodies = {body}, .bodyHost = host}); };
+    const auto world = [&](const BodyHost& host) { return makeWorld(*device, p, {.bodies = {body}, .bodyHost = host}); };
     const auto step = [&](FluidWorld& w, int frames) {
         for (int k = 0; k < frames; ++k) w.step({.gravity = p.gravity}, 1.0 / 60);
     };

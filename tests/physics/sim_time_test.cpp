@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Time, testing::Values("wcsph", "pbf", "dfsph")
 TEST_P(Time, ALongFrameIsNotOneLargeStep) {
     auto device = cpu();
     const FluidParams p = column(GetParam());
-    auto world = make(*device, p), steady = make(*device, p);
+    auto world = makeWorld(*device, p), steady = makeWorld(*device, p);
     for (int k = 0; k < 10; ++k) world->step({.gravity = p.gravity}, 0.004);
     for (int k = 0; k < 35; ++k) steady->step({.gravity = p.gravity}, 0.004);
     const std::vector<vec4> before = byId(*world, *world->particles().position);
@@ -79,7 +79,7 @@ TEST_P(Time, ALongFrameIsNotOneLargeStep) {
 TEST_P(Time, ABudgetSlowsTimeAndNotTheProgram) {
     auto device = cpu();
     FluidParams p = column(GetParam());
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int k = 0; k < 3; ++k) world->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_NEAR(world->time(), 0.05, 1e-12);
     EXPECT_EQ(world->dropped(), 0);
@@ -106,7 +106,7 @@ TEST_P(Time, WhatLimitsTheStepIsNamed) {
     FluidParams p = column(GetParam());
     p.maxSubsteps = 1;
     p.gravity = vec3(0, -1000, 0);
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int k = 0; k < 2; ++k) world->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_GE(saying(*world, "maxSubsteps"), 1U);
     const std::string method = GetParam();
@@ -119,7 +119,7 @@ TEST_P(Time, FixedStepsDoNotDependOnFrames) {
     auto device = cpu();
     FluidParams p = column(GetParam());
     p.fixedStep = 0.01F;
-    auto even = make(*device, p), uneven = make(*device, p);
+    auto even = makeWorld(*device, p), uneven = makeWorld(*device, p);
     for (int k = 0; k < 12; ++k) even->step({.gravity = p.gravity}, double{p.fixedStep});
     double asked = 0;
     for (int k = 0; uneven->time() < 0.1195; ++k) {
@@ -146,7 +146,7 @@ TEST(Drawn, UniformMotionIsDrawnExactly) {
     p.fixedStep = 0.02F;
     const vec3 v(0.5F, 0.3F, -0.4F);
     p.blocks = {{vec3(0.3F, 0.3F, 0.6F), vec3(0.35F, 0.35F, 0.65F), v}};  // one particle
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     ASSERT_EQ(world->particles().count, 1U);
     EXPECT_EQ(world->particles().drawn, world->particles().position) << "before the first step there is nothing between";
     const dvec3 from(byId(*world, *world->particles().position)[0]);
@@ -172,7 +172,7 @@ TEST(Drawn, FallingParticlesAreDrawnOnAParabola) {
     p.fixedStep = 0.01F;
     p.box.max = vec3(1.0F, 3.0F, 1.0F);
     p.blocks = {{vec3(0.4F, 2.5F, 0.4F), vec3(0.6F, 2.7F, 0.6F), vec3(0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     const auto height = [&] {
         double sum = 0;
         const std::vector<vec4> drawn = byId(*world, *world->particles().drawn);
@@ -200,7 +200,7 @@ TEST(Drawn, LiesBetweenTheLastTwoStates) {
     auto device = cpu();
     FluidParams p = column("wcsph");
     p.fixedStep = 0.01F;
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int k = 0; k < 20; ++k) world->step({.gravity = p.gravity}, double{p.fixedStep});
     const std::vector<vec4> before = byId(*world, *world->particles().position);
     world->step({.gravity = p.gravity}, double{p.fixedStep});
@@ -231,7 +231,7 @@ TEST(Drawn, NoParticleIsDrawnAcrossAPeriodicBox) {
     p.fixedStep = 0.02F;
     p.box.periodicX = true;
     p.blocks = {{vec3(0.9F, 0.5F, 0.5F), vec3(0.95F, 0.55F, 0.55F), vec3(1, 0, 0)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     bool wrapped = false;
     for (int k = 0; k < 30; ++k) {
         world->step({.gravity = p.gravity}, 0.007);
@@ -253,7 +253,7 @@ TEST(Drawn, SolidsKeepStepWithFixedSteps) {
     Result<VoxelField> field = bakeVoxelField(std::span(&view, 1), {.resolution = 40, .band = 0.1F, .padding = 0.1F});
     ASSERT_TRUE(field) << field.error().message;
     const Pose start{vec3(0.7F, 0.5F, 0.5F), quat(1, 0, 0, 0)};
-    auto world = make(*device, p, {.rigid = {{&*field, start}}});
+    auto world = makeWorld(*device, p, {.rigid = {{&*field, start}}});
     const double speed = -1.5;
     double asked = 0;
     for (int k = 0; k < 30; ++k) {
@@ -300,9 +300,9 @@ TEST(FrameStepper, WholeStepsThatWereNotMadeAreDropped) {
 TEST_P(Time, TenKilometresAwayAreTheSameBits) {
     auto device = cpu();
     FluidParams p = column(GetParam());
-    auto here = make(*device, p);
+    auto here = makeWorld(*device, p);
     p.origin = dvec3(10000.1, -3.7, 12345.678901);
-    auto there = make(*device, p);
+    auto there = makeWorld(*device, p);
     EXPECT_EQ(there->origin(), p.origin);
     for (int k = 0; k < 12; ++k)
         for (FluidWorld* world : {here.get(), there.get()}) world->step({.gravity = p.gravity}, 1.0 / 60);
@@ -329,7 +329,7 @@ TEST(Origin, FloatAloneLosesMotionFarAway) {
         p.box.min = low;
         p.box.max = low + 1.0F;
         p.blocks = {{low + 0.5F, low + 0.57F, vec3(0.1F, 0, 0)}};
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         EXPECT_EQ(world->particles().count, 1U);
         const double before = double{byId(*world, *world->particles().position)[0].x};
         for (int k = 0; k < 100; ++k) world->step({.gravity = p.gravity}, 0.004);  // 0.4 mm a step

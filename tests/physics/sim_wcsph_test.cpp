@@ -34,7 +34,7 @@ TEST(Wcsph, DensityIsTheSumOverAllPairsInDouble) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.04F, vec3(0.3F), vec3(0.7F));  // no wall within reach
     p.gravity = vec3(0.0F);
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     const uint32_t n = world->particles().count;
     // Disturb, take one tiny step, and compare what it measured with every pair summed in double.
     std::vector<vec4> x = device->readAll<vec4>(*world->particles().position, n);
@@ -73,7 +73,7 @@ TEST(Wcsph, ALatticeAgainstWallsIsAtRestDensity) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(1.0F, 0.5F, 1.0F));
     p.gravity = vec3(0.0F);
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     world->step({vec3(0.0F)}, 1.0e-9);
     const uint32_t n = world->particles().count;
     ASSERT_EQ(n, 20U * 10U * 20U);
@@ -96,7 +96,7 @@ TEST(Wcsph, AWallsShareIsTheKernelsIntegralBehindIt) {
         p.spacing = spacing;
         p.gravity = vec3(0.0F);
         p.blocks = {{vec3(0.45F), vec3(0.5F), vec3(0.0F)}};  // one particle
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         ASSERT_EQ(world->particles().count, 1U);
         const vec4 place(distance, 0.5F, 0.5F, 1.0F);
         device->writeAll<vec4>(const_cast<Buffer&>(*world->particles().position), std::span(&place, 1));
@@ -123,7 +123,7 @@ TEST(Wcsph, PairForcesConserveMomentum) {
     p.gravity = vec3(0.0F);
     p.blocks = {{vec3(0.2F, 0.4F, 0.4F), vec3(0.4F, 0.6F, 0.6F), vec3(1.0F, 0.0F, 0.0F)},
                 {vec3(0.44F, 0.44F, 0.36F), vec3(0.64F, 0.6F, 0.56F), vec3(-0.5F, 0.1F, 0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     const uint32_t n = world->particles().count;
     auto momentum = [&](double& scale) {
         double sum[3] = {0, 0, 0};
@@ -147,7 +147,7 @@ TEST(Wcsph, FreeParticlesFallByGalileosLaw) {
     FluidParams p{.method = "wcsph"};
     p.spacing = 0.02F;
     p.blocks = {{vec3(0.5F, 0.9F, 0.5F), vec3(0.52F, 0.92F, 0.52F), vec3(0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     ASSERT_EQ(world->particles().count, 1U);
     const float start = device->readAll<vec4>(*world->particles().position, 1)[0].y;
     for (int frame = 0; frame < 18; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
@@ -162,7 +162,7 @@ TEST(Wcsph, AColumnAtRestStaysAtRestUnderHydrostaticPressure) {
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.5F, 0.5F, 0.5F));
     p.box.max = vec3(0.5F, 1.0F, 0.5F);
     p.artificialViscosity = 0.2F;  // damps motion quickly
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int frame = 0; frame < 90; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const FluidStats& s = world->stats();
     EXPECT_EQ(s.lost, 0U);
@@ -192,7 +192,7 @@ TEST(Wcsph, ThesisModeRunsTheSameColumnAndKeepsEverythingInItsBox) {
     FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(0.4F, 0.6F, 0.4F));
     p.method = "wcsph_thesis";
     p.viscosity = 5.0e-3F;
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int frame = 0; frame < 30; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_EQ(world->stats().lost, 0U);
     EXPECT_GT(world->stats().maxSpeed, 0.1);
@@ -222,7 +222,7 @@ TEST(WcsphThesis, TheGradientPrintedInEquationSixCannotSlowAShear) {
     p.viscosity = 1.0e-2F;
     p.gravity = vec3(0.0F);
     p.blocks = {{vec3(0.50F), vec3(0.52F), vec3(0.0F)}, {vec3(0.50F, 0.52F, 0.50F), vec3(0.52F, 0.54F, 0.52F), vec3(1.0F, 0.0F, 0.0F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     ASSERT_EQ(world->particles().count, 2U);
     world->step({vec3(0.0F)}, 1.0e-5);
     const auto v = device->readAll<vec4>(*world->particles().velocity, 2);
@@ -238,14 +238,14 @@ TEST(WcsphThesis, TheGradientPrintedInEquationSixCannotSlowAShear) {
 TEST(Wcsph, NoneOneAndTwoAtTheSamePointAreNoErrors) {
     auto device = cpu();
     FluidParams none{.method = "wcsph"};
-    auto empty = make(*device, none);
+    auto empty = makeWorld(*device, none);
     empty->step({none.gravity}, 1.0 / 60);
     EXPECT_EQ(empty->stats().particles, 0U);
     FluidParams two;
     two.blocks = {{vec3(0.5F), vec3(0.52F), vec3(0.0F)}, {vec3(0.5F), vec3(0.52F), vec3(0.0F)}};
     for (const char* method : {"wcsph", "wcsph_thesis"}) {
         two.method = method;
-        auto world = make(*device, two);
+        auto world = makeWorld(*device, two);
         ASSERT_EQ(world->particles().count, 2U);
         for (int frame = 0; frame < 30; ++frame) world->step({two.gravity}, 1.0 / 60);
         EXPECT_EQ(world->stats().lost, 0U) << method;
@@ -287,7 +287,7 @@ TEST(Wcsph, AFrameTooLongForItsSubstepsSlowsTimeInsteadOfGrowingSteps) {
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.3F));
     p.maxSubsteps = 5;
     p.longestFrame = 1;
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     world->step({.gravity = p.gravity}, 0.25);
     EXPECT_LT(world->time(), 0.02);
     ASSERT_EQ(world->stats().limited.size(), 1U);
@@ -299,7 +299,7 @@ TEST(Wcsph, APlaneHoldsWaterOnItsNormalsSide) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(0.6F, 0.6F, 0.6F));
     const PlaneSolid slope{vec3(0.0F, 0.2F, 0.0F), vec3(0.3F, 1.0F, 0.0F)};
-    auto world = make(*device, p, {.planes = {slope}});
+    auto world = makeWorld(*device, p, {.planes = {slope}});
     for (int frame = 0; frame < 30; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const vec3 n = glm::normalize(slope.normal);
     for (const vec4& x : device->readAll<vec4>(*world->particles().position, world->particles().count))
@@ -317,7 +317,7 @@ TEST(Wcsph, WhatAClosedMeshEnclosesStaysEmpty) {
     ASSERT_TRUE(field) << field.error().message;
     auto device = cpu();
     const FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(1.0F));
-    auto world = make(*device, p, {.field = &*field});
+    auto world = makeWorld(*device, p, {.field = &*field});
     const uint32_t n = world->particles().count;
     const float contact = fieldParams(*field, {.spacing = p.spacing}).contact, lo = 0.3F - contact, hi = 0.7F + contact;
     uint32_t expected = 0;
@@ -345,7 +345,7 @@ TEST(Wcsph, AHollowOfAClosedMeshCanBeFilled) {
     EXPECT_TRUE(field->closed);
     auto device = cpu();
     const FluidParams p = boxOfWater(0.04F, vec3(0.0F), vec3(1.0F));
-    auto world = make(*device, p, {.field = &*field});
+    auto world = makeWorld(*device, p, {.field = &*field});
     size_t within = 0, outside = 0, wall = 0;
     const float contact = fieldParams(*field, {.spacing = p.spacing}).contact;
     for (const vec4& x : device->readAll<vec4>(*world->particles().position, world->particles().count)) {
@@ -363,7 +363,7 @@ TEST(Wcsph, AHollowOfAClosedMeshCanBeFilled) {
 TEST(Wcsph, ResetRestoresTheStartAndTheSameRun) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(0.4F));
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     auto run = [&] {
         for (int frame = 0; frame < 5; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
         return device->readAll<vec4>(*world->particles().position, world->particles().count);

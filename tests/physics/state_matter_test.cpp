@@ -6,7 +6,7 @@
 #include "fluid/sim/sources/liquids.h"
 #include "tests/physics/worlds.h"
 
-namespace rivulet {
+namespace rivulet::state_matter_test {
 namespace {
 
 TEST(SavedMatter, InvalidMatterIsRefused) {
@@ -17,7 +17,7 @@ TEST(SavedMatter, InvalidMatterIsRefused) {
     body.shape = {.samples = {vec3(0.02F, 0, 0), vec3(-0.02F, 0, 0)}, .mass = 0.1F, .inertia = vec3(1.0e-4F), .volume = 1.0e-4F};
     body.state.pose.position = vec3(0.7F);
     auto device = cpu();
-    auto world = make(*device, p, {.bodies = {body}});
+    auto world = makeWorld(*device, p, {.bodies = {body}});
     ASSERT_TRUE(world);
     WorldState good;
     world->save(good);
@@ -51,4 +51,4 @@ TEST(SavedMatter, InvalidMatterIsRefused) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::state_matter_test

@@ -17,7 +17,6 @@ namespace rivulet::unwrap_test {
 namespace {
 
 using test::Skin;
-constexpr double kPiD = 3.14159265358979323846;
 
 // Rows of `around` points each, joined; `at` gives a point from the row's share and an angle.
 template <class F>

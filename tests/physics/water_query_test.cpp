@@ -86,7 +86,7 @@ TEST(WaterQuery, AtAPointEqualsTheSumOverAllParticles) {
         p.blocks[0].max.x = 0.3F;
         p.blocks[0].velocity = vec3(1.0F, 0.0F, 0.5F);
         p.box.periodicX = p.box.periodicZ = periodic;
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         std::vector<vec3> places;
         places.reserve(400);
         for (int row = 0; row < 20; ++row)
@@ -122,7 +122,7 @@ TEST(WaterQuery, AtAPointEqualsTheSumOverAllParticles) {
 
 TEST(WaterQuery, OutsideTheWaterThereIsAir) {
     auto device = cpu();
-    auto world = make(*device, pool());
+    auto world = makeWorld(*device, pool());
     const float inf = std::numeric_limits<float>::infinity();
     const std::vector<vec3> nowhere = {vec3(NAN),      vec3(0.25F, NAN, 0.25F),  vec3(inf),
                                        vec3(-1.0e30F), vec3(0.25F, 7.0F, 0.25F), vec3(0.25F, -7.0F, 0.25F)};
@@ -139,7 +139,7 @@ TEST(WaterQuery, OutsideTheWaterThereIsAir) {
     }
     FluidParams dry = pool();
     dry.blocks.clear();
-    auto desert = make(*device, dry);
+    auto desert = makeWorld(*device, dry);
     EXPECT_EQ(desert->sample(nowhere)->size(), nowhere.size());
     EXPECT_TRUE(std::isnan((*desert->heights(std::vector<vec2>{vec2(0.25F)}))[0]));
 }
@@ -151,7 +151,7 @@ TEST(WaterQuery, ChangesNothing) {
         FluidParams p = pool();
         p.method = method;
         p.blocks[0].max.x = 0.3F;
-        auto asked = make(*device, p), alone = make(*device, p);
+        auto asked = makeWorld(*device, p), alone = makeWorld(*device, p);
         for (int k = 0; k < 5; ++k) {
             (void)asked->sample(std::vector<vec3>{vec3(0.2F), vec3(0.1F)});
             (void)asked->heights(std::vector<vec2>{vec2(0.2F)});
@@ -164,7 +164,7 @@ TEST(WaterQuery, ChangesNothing) {
 
 TEST(WaterQuery, DelayedResultsEqualImmediateOnes) {
     auto device = cpu();
-    auto world = make(*device, pool());
+    auto world = makeWorld(*device, pool());
     world->step({}, 1.0 / 60);
     const std::vector<vec3> places = {vec3(0.2F, 0.1F, 0.2F), vec3(0.3F, 0.18F, 0.3F), vec3(0.25F, 0.4F, 0.25F)};
     int called = 0;
@@ -185,7 +185,7 @@ TEST(WaterQuery, AStillPoolStandsAtItsVolumeOverItsArea) {
         auto device = cpu();
         FluidParams p = pool();
         p.method = method;
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         std::vector<vec2> places;
         places.reserve(49);
         for (int row = 0; row < 7; ++row)
@@ -211,7 +211,7 @@ TEST(WaterQuery, AStillPoolStandsAtItsVolumeOverItsArea) {
 TEST(WaterQuery, RaysHitABallOnTheSphere) {
     auto device = cpu();
     const float radius = 0.25F;
-    auto world = make(*device, ball(radius));
+    auto world = makeWorld(*device, ball(radius));
     const dvec3 centre(0.5);
     std::vector<FluidRay> rays;
     for (int k = 0; k < 60; ++k) {  // Fibonacci lattice: towards the centre, past the ball, from outside and inside the box
@@ -252,7 +252,7 @@ TEST(WaterQuery, RaysHitABallOnTheSphere) {
 
 TEST(WaterQuery, RaysWithoutWaterMiss) {
     auto device = cpu();
-    auto world = make(*device, ball(0.2F));
+    auto world = makeWorld(*device, ball(0.2F));
     const float inf = std::numeric_limits<float>::infinity();
     const std::vector<FluidRay> rays = {{vec3(0.5F), vec3(0.0F)},
                                         {vec3(0.5F), vec3(NAN, 1, 0)},
@@ -276,7 +276,7 @@ TEST(WaterQuery, RaysWithoutWaterMiss) {
 // Water has a surface at walls: a ray through the floor enters and leaves the water there.
 TEST(WaterQuery, WaterEndsAtItsWalls) {
     auto device = cpu();
-    auto world = make(*device, pool());
+    auto world = makeWorld(*device, pool());
     for (int k = 0; k < 2; ++k) {
         const std::vector<FluidHit> hits = *world->cast(std::vector<FluidRay>{{vec3(0.25F, -1.0F, 0.25F), vec3(0, 1, 0)},
                                                                               {vec3(0.25F, 0.1F, 0.25F), vec3(0, -2, 0)},

@@ -9,7 +9,7 @@
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
-namespace rivulet {
+namespace rivulet::world_params_test {
 namespace {
 
 // Visits every value: writes its text down, or changes it to another that its range allows.
@@ -92,7 +92,7 @@ FluidParams small() {
 
 TEST(ParamsOfAWorld, FixedValuesStayAndLiveValuesChange) {
     auto device = cpu();
-    auto world = make(*device, small());
+    auto world = makeWorld(*device, small());
     ASSERT_TRUE(world);
     const FluidParams before = world->params();
     FluidParams asked;
@@ -127,7 +127,7 @@ TEST(ParamsOfAWorld, SetTheGravityOfFramesWithoutTheirOwn) {
         FluidParams p = small();
         p.gravity = vec3(5.0F, 0.0F, 0.0F);
         p.method = "wcsph";
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         for (int k = 0; k < 3; ++k) world->step(inputs, 1.0 / 60);
         const ParticleView v = world->particles();
         const std::vector<vec4> velocity = world->device().readAll<vec4>(*v.velocity, v.slots);
@@ -142,4 +142,4 @@ TEST(ParamsOfAWorld, SetTheGravityOfFramesWithoutTheirOwn) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::world_params_test

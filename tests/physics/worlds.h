@@ -16,7 +16,7 @@ inline std::unique_ptr<CpuDevice> cpu() {
     return makeCpuDevice(rows);
 }
 
-inline std::unique_ptr<FluidWorld> make(Device& device, const FluidParams& params, const Solids& solids = {}) {
+inline std::unique_ptr<FluidWorld> makeWorld(Device& device, const FluidParams& params, const Solids& solids = {}) {
     auto world = FluidWorld::create(device, params, solids, {});
     EXPECT_TRUE(world) << (world ? "" : world.error().message);
     return world ? std::move(*world) : nullptr;

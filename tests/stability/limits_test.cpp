@@ -37,7 +37,7 @@ TEST_P(Limits, OffAFrameIsAStep) {
     auto device = cpu();
     FluidParams p = column(GetParam(), 0.05F, 0.3F);
     p.limits = false;
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (const double frame : {0.001, 0.05, 0.25}) {
         world->step({.gravity = p.gravity}, frame);
         EXPECT_EQ(world->lastSubsteps(), 1);
@@ -61,7 +61,7 @@ TEST_P(Limits, OffNothingCrashesAndNanIsCounted) {
         p.viscosity = 1;
         if (std::string_view(GetParam()) != "wcsph_thesis") p.forces.tension = 100;
         p.forces.vorticity = 100;
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         const uint32_t all = world->particles().count;
         for (int k = 0; k < 60; ++k) world->step({.gravity = 30.0F * p.gravity}, frame);
         const FluidStats& s = world->stats();
@@ -84,7 +84,7 @@ TEST_P(Limits, NoneOneAndTwoAtTheSamePoint) {
             p.limits = limits;
             const BlockParams one{vec3(0.5F), vec3(0.52F)};
             p.blocks.assign(static_cast<size_t>(count), one);
-            auto world = make(*device, p);
+            auto world = makeWorld(*device, p);
             for (int frame = 0; frame < 30; ++frame) world->step({p.gravity}, 1.0 / 60);
             EXPECT_EQ(world->stats().particles, static_cast<uint32_t>(count));
             EXPECT_EQ(world->stats().lost, 0U);
@@ -98,7 +98,7 @@ TEST(PbfWeight, AMetreOfWaterRestsAtAnySpacing) {
     for (const float spacing : {0.05F, 0.02F}) {
         auto device = cpu();
         const FluidParams p = column("pbf", spacing, 1);
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         double fastest = 0;
         for (int k = 0; k < 90; ++k) {
             world->step({.gravity = p.gravity}, 1.0 / 60);
@@ -119,7 +119,7 @@ TEST(SpeedLimit, StopsGrowthThatStepsCannot) {
     FluidParams p = column("pbf", 0.05F, 1);
     p.pbf.iterations = 1;
     p.pbf.relaxation = 1.5F;
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int k = 0; k < 40; ++k) world->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_LT(world->stats().maxSpeed, 10 * 2 * std::sqrt(2 * 9.81 * 1.5));
     EXPECT_EQ(world->stats().lost, 0U);
@@ -140,7 +140,7 @@ TEST(DfsphFirstFrame, IsAsStiffAsTheNext) {
     p.box.max = vec3(1.5F, 1, 1);
     p.blocks = {{vec3(-0.525F, -0.2F, -0.2F), vec3(-0.025F, 0.2F, 0.2F), vec3(2, 0, 0)},
                 {vec3(0.025F, -0.2F, -0.2F), vec3(0.525F, 0.2F, 0.2F), vec3(-2, 0, 0)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     const double start = 0.5 * 1280 * 0.125 * 4;
     for (int k = 0; k < 6; ++k) {
         world->step({.gravity = p.gravity}, double{p.fixedStep});
@@ -171,7 +171,7 @@ TEST(TensionOfACube, MovesItAsMuchAsTheSphereItBecomesAllows) {
             FluidParams p = tense(method, 0.2F);
             p.fixedStep = static_cast<float>(dt);
             p.blocks = {{vec3(-0.05F), vec3(0.05F)}};
-            auto world = make(*device, p);
+            auto world = makeWorld(*device, p);
             const double surface = 10 * 6 * 0.1 * 0.1;
             for (int k = 0; k < 15; ++k) {
                 world->step({.gravity = p.gravity}, 1.0 / 60);
@@ -189,7 +189,7 @@ TEST(TensionOfSpray, MeetsGently) {
         FluidParams p = tense(method, 0.1F);
         // One more than a support radius apart, which drift into it at a tenth of a metre a second.
         p.blocks = {{vec3(-0.02F, 0, 0), vec3(-0.01F, 0.01F, 0.01F), vec3(0.1F, 0, 0)}, {vec3(0.0002F, 0, 0), vec3(0.0102F, 0.01F, 0.01F)}};
-        auto world = make(*device, p);
+        auto world = makeWorld(*device, p);
         ASSERT_EQ(world->particles().count, 2U);
         double fastest = 0;
         for (int k = 0; k < 20; ++k) {
@@ -211,7 +211,7 @@ TEST(Warnings, OfABoxTooFarAwayAndOfPairs) {
     p.box.min = vec3(10000, 0, 0);
     p.box.max = vec3(10001, 1, 1);
     p.blocks = {{vec3(10000.4F, 0, 0.4F), vec3(10000.6F, 0.2F, 0.6F)}};
-    auto world = make(*device, p);
+    auto world = makeWorld(*device, p);
     for (int k = 0; k < 3; ++k) world->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_TRUE(says(*world, "fluid.origin"));
     EXPECT_TRUE(says(*world, "form pairs"));
@@ -223,7 +223,7 @@ TEST(Warnings, OfABoxTooFarAwayAndOfPairs) {
     p.box.min = vec3(0.0F);
     p.box.max = vec3(1.0F);
     p.blocks = {{vec3(0.4F, 0, 0.4F), vec3(0.6F, 0.2F, 0.6F)}};
-    auto other = make(*device, p);
+    auto other = makeWorld(*device, p);
     other->step({.gravity = p.gravity}, 1.0 / 60);
     EXPECT_FALSE(says(*other, "fluid.origin"));
     EXPECT_FALSE(says(*other, "form pairs"));

@@ -10,7 +10,7 @@
 #include "engine/core/file.h"
 #include "tests/unit/core_sample.h"
 
-namespace rivulet {
+namespace rivulet::core_file_test {
 
 namespace {
 
@@ -108,4 +108,4 @@ TEST_F(FileTest, JsonErrorsNameTheFile) {
     EXPECT_EQ(errorOf(readJsonFile(path("a.json"), visiting(sample))), path("a.json") + ":1:2: fre is not a parameter; did you mean free?");
 }
 
-}  // namespace rivulet
+}  // namespace rivulet::core_file_test

@@ -9,7 +9,7 @@
 
 #include "tests/unit/core_sample.h"
 
-namespace rivulet {
+namespace rivulet::core_json_test {
 
 namespace {
 
@@ -314,4 +314,4 @@ TEST(Json, NoLocaleChangesNumbers) {
     EXPECT_EQ(errorOf(R"({"fluid": {"spacing": 1.5}})"), "x.json:1:23: fluid.spacing is 1.5 m, must be between 0.0005 and 1 m");
 }
 
-}  // namespace rivulet
+}  // namespace rivulet::core_json_test

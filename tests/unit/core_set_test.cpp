@@ -3,7 +3,7 @@
 #include "engine/core/table.h"
 #include "tests/unit/core_sample.h"
 
-namespace rivulet {
+namespace rivulet::core_set_test {
 
 namespace {
 
@@ -131,4 +131,4 @@ TEST(DescribeParams, NamesEveryParamWithUnitRangeAndDefault) {
         EXPECT_NE(page.find(row), std::string::npos) << row << page;
 }
 
-}  // namespace rivulet
+}  // namespace rivulet::core_set_test

@@ -82,7 +82,7 @@ class Display {
         }
         close(ends[1]);
         char number[16] = {};
-        for (size_t have = 0; have + 1 < sizeof number && read(ends[0], number + have, 1) == 1 && number[have] != '\n';) ++have;
+        for (size_t have = 0; have + 1 < sizeof number && ::read(ends[0], number + have, 1) == 1 && number[have] != '\n';) ++have;
         close(ends[0]);
         number[strcspn(number, "\n")] = '\0';
         if (number[0] == '\0') return;

@@ -13,7 +13,7 @@
 #include "engine/core/json.h"
 #include "fluid/sim/sources/block.h"
 
-namespace rivulet {
+namespace rivulet::scene_file_test {
 
 namespace {
 
@@ -277,4 +277,4 @@ TEST_F(SceneTest, TheSphereMeshIsAClosedUnitSphere) {
     }
 }
 
-}  // namespace rivulet
+}  // namespace rivulet::scene_file_test

@@ -11,13 +11,13 @@
 #include "fluid/sim/world/world_state.h"
 #include "fluid/voxel/voxel_file.h"
 
-namespace rivulet {
+namespace rivulet::version_0_1_0_test {
 namespace {
 
 const std::string kFolder = RIVULET_SOURCE_DIR "/tests/unit/version_0_1_0/";
 constexpr double kSaved = 2.0 / kFramesPerSecond;  // s
 
-class Version010 : public testing::Test {
+class Version010 : public ::testing::Test {
   protected:
     void SetUp() override {
         Result<SceneFile> scene = loadScene(kFolder + "small.json", {});
@@ -68,4 +68,4 @@ TEST(Version010Voxels, AreRead) {
 }
 
 }  // namespace
-}  // namespace rivulet
+}  // namespace rivulet::version_0_1_0_test

@@ -11,7 +11,6 @@ namespace rivulet::force_tension {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr double kTensionFrom = 0.2;  // as in fluid/forces/cohesion
 
 // What a flat surface pulls along itself with, per length (unit spacing), of particles spread evenly under it, one a cubic spacing: the
@@ -116,7 +115,6 @@ ForceRow row() {
 namespace rivulet {
 
 double capillaryLimit(const FluidParams& p) {
-    constexpr double kPiD = 3.14159265358979323846;
     const double hs = 0.5 * double{p.supportSpacings} * double{p.spacing};
     return p.forces.tension > 0 ? 0.25 * std::sqrt(double{p.restDensity} * hs * hs * hs / (2 * kPiD * double{p.forces.tension})) : 1.0e30;
 }

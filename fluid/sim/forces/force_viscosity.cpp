@@ -198,7 +198,6 @@ StepLimit limit(const ForceLimitInputs& in) {
 }  // namespace
 
 void Params::visit(ParamVisitor& v) {
-    constexpr bool kLog = true;
     static const std::vector<std::string> ways = {"auto", "explicit", "implicit", "none"};
     v.choice({.name = "viscosity",
               .doc = "viscosity of methods pbf and dfsph; explicit: one pass per substep, which is limited to 0.125 hs^2 / viscosity; "

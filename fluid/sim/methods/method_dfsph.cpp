@@ -142,7 +142,6 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
 }  // namespace
 
 void DfsphParams::visit(ParamVisitor& v) {
-    constexpr bool kLog = true;
     v.value({"tolerance", "",
              "mean compression that one substep may add, as a fraction, if the fastest particle moves by reach; smaller in slower water, "
              "down to a twentieth",

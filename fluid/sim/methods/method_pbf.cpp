@@ -162,7 +162,6 @@ Result<std::unique_ptr<Method>> makePbf(Device& device, const MethodSetup& setup
 }  // namespace
 
 void PbfParams::visit(ParamVisitor& v) {
-    constexpr bool kLog = true;
     v.value({"iterations", "", "corrections per substep if tolerance is 0: more is stiffer and slower", 1, 50}, iterations);
     v.value({"tolerance", "", "mean compression, as a fraction, at which corrections stop; 0 = always the number of iterations", 0, 0.1},
             tolerance);

@@ -11,8 +11,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-
 class Wcsph final : public Method {
   public:
     Wcsph(bool thesis, bool moves) : thesis_(thesis), moves_(moves) {}

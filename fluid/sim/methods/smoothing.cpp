@@ -8,8 +8,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-
 double wendlandShape(double q) {
     const double a = std::max(1.0 - q, 0.0);
     return a * a * a * a * (4.0 * q + 1.0);

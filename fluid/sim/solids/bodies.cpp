@@ -14,8 +14,6 @@ namespace {
 using dquat = glm::dquat;
 using dmat3 = glm::dmat3;
 
-constexpr double kPiD = 3.14159265358979323846;
-
 // The smoothing kernels' shapes, as shaders/fluid/methods/shape.h has them.
 double shapeOf(bool cubic, double q) {
     const double a = std::max(1.0 - q, 0.0);

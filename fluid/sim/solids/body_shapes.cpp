@@ -15,7 +15,6 @@ namespace {
 
 using dmat3 = glm::dmat3;
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr float kApart = 0.8F;        // spacings: no two darts are nearer
 constexpr double kDartsEach = 40;     // darts thrown per square spacing
 constexpr double kMostDarts = 4.0e7;  // beyond this a mesh has more samples than any fluid has particles

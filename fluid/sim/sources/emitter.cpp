@@ -13,10 +13,6 @@ namespace rivulet {
 
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-constexpr double kFar = 1.0e5;  // m
-constexpr bool kLog = true, kLinear = false;
-constexpr bool kFixed = true;
 // A nozzle that was blocked emits its backlog faster by this factor.
 constexpr double kCatchUp = 1.1;
 constexpr double kLoose = 1.01;  // of a jet's lattice
@@ -52,13 +48,14 @@ void EmitterParams::visit(ParamVisitor& v) {
              shape, shapes);
     v.value({"litresPerSecond", "l/s", "flow rate", 0, 1.0e6, kLog}, litresPerSecond);
     v.value({"speed", "m/s", "speed of the new fluid; 0 for a nozzle = the speed that the rate needs through its opening", 0, 1000}, speed);
-    v.value({"position", "m", "centre of the opening or box, or position of the mesh's origin (with fitSize: of its centre)", -kFar, kFar},
+    v.value({"position", "m", "centre of the opening or box, or position of the mesh's origin (with fitSize: of its centre)", -kMaxPosition,
+             kMaxPosition},
             position);
     v.value({"direction", "", "direction of the fluid from a nozzle or box, of any length", -1.0e6, 1.0e6}, direction);
     v.value({"radius", "m", "radius of a nozzle's opening; the jet is thinner if the rate needs less", 1.0e-4, 100, kLog}, radius);
-    v.value({"size", "m", "edge lengths of a box", 0, kFar}, size);
+    v.value({"size", "m", "edge lengths of a box", 0, kMaxPosition}, size);
     v.value({.name = "mesh", .doc = "mesh file, searched as a collider's", .fixed = kFixed}, mesh);
-    v.value({"fitSize", "m", "length that the mesh's longest side is scaled to; 0 = not scaled", 0, kFar, kLog, kFixed}, fitSize);
+    v.value({"fitSize", "m", "length that the mesh's longest side is scaled to; 0 = not scaled", 0, kMaxPosition, kLog, kFixed}, fitSize);
     v.value({"rotation", "deg", "rotation of the mesh about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
     v.value({"start", "s", "time at which the emitter starts", 0, 3600}, start);
     v.value({"stop", "s", "time at which the emitter stops; 0 = never", 0, 3600}, stop);
@@ -71,9 +68,9 @@ void EmitterParams::visit(ParamVisitor& v) {
 void SinkParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"box", "sphere"};
     v.choice({.name = "shape", .doc = "shape of the volume in which particles are removed"}, shape, shapes);
-    v.value({"position", "m", "centre of the volume", -kFar, kFar}, position);
-    v.value({"size", "m", "edge lengths of a box", 0, kFar}, size);
-    v.value({"radius", "m", "radius of a sphere", 0, kFar}, radius);
+    v.value({"position", "m", "centre of the volume", -kMaxPosition, kMaxPosition}, position);
+    v.value({"size", "m", "edge lengths of a box", 0, kMaxPosition}, size);
+    v.value({"radius", "m", "radius of a sphere", 0, kMaxPosition}, radius);
 }
 
 double volumeAfter(const EmitterParams& p, double seconds) {

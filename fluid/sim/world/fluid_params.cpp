@@ -6,18 +6,15 @@
 namespace rivulet {
 
 namespace {
-constexpr double kFar = 1.0e5;                // m; beyond this float32 no longer tells millimetres apart
-constexpr double kFast = 1.0e3;               // m/s
-constexpr bool kLog = true, kLinear = false;  // the slider's scale
-constexpr bool kFixed = true;                 // until the scene is loaded anew
+constexpr double kFast = 1.0e3;  // m/s
 }  // namespace
 
 void BlockParams::visit(ParamVisitor& v) {
     static const std::vector<std::string> shapes = {"box", "ball"};
     v.choice({.name = "shape", .doc = "box: all between min and max; ball: the ellipsoid that fits into it", .fixed = kFixed}, shape,
              shapes);
-    v.value({"min", "m", "lower corner", -kFar, kFar, kLinear, kFixed}, min);
-    v.value({"max", "m", "upper corner", -kFar, kFar, kLinear, kFixed}, max);
+    v.value({"min", "m", "lower corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, min);
+    v.value({"max", "m", "upper corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, max);
     v.value({"velocity", "m/s", "velocity at the start", -kFast, kFast, kLinear, kFixed}, velocity);
     v.value({.name = "liquid", .doc = "liquid of the block, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
             liquid);
@@ -34,8 +31,8 @@ void BlockParams::visit(ParamVisitor& v) {
 }
 
 void BoxParams::visit(ParamVisitor& v) {
-    v.value({"min", "m", "lower corner", -kFar, kFar, kLinear, kFixed}, min);
-    v.value({"max", "m", "upper corner", -kFar, kFar, kLinear, kFixed}, max);
+    v.value({"min", "m", "lower corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, min);
+    v.value({"max", "m", "upper corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, max);
     v.value({"restitution", "", "share of the normal speed after impact on a wall: 0 = no rebound, 1 = full rebound", 0, 1}, restitution);
     v.value({.name = "periodicX",
              .doc = "whether the box is periodic along x, without walls: particles that leave on one side enter on the other",

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # run.sh BUILD: installs BUILD into a prefix of its own, builds a host against it, by find_package and by pkg-config, and runs both; then
-# runs the installed program where there is no source tree for it to find: its shaders must be inside it and its assets beside it. Last,
-# every header that is installed is read alone, by a compiler that takes warnings for errors, and all of them leave a host no macro without a
-# prefix.
+# runs the installed program where there is no source tree for it to find: its shaders must be inside it and its assets beside it. Last, the
+# examples of the guide for hosts. The installed headers are checked by tests/checks/headers.sh.
 set -eu
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 work="$(mktemp -d)"
@@ -25,20 +24,6 @@ c++ -std=c++20 -O1 "$here/main.cpp" "${flags[@]}" -o "$work/by_pkg_config"
     "$work/prefix/bin/rivulet" run "$work/prefix/share/rivulet/assets/scenes/sheet_on_sphere.json" --headless --frames 1 --size 64x48
     [ -s "$work/out/sheet_on_sphere.mp4" ]
 )
-
-# Headers for C++; those under shaders/ are for kernels, which say first what they are compiled as.
-cd "$work/prefix/include"
-find engine fluid -name '*.h' | sort >"$work/headers"
-export alone="c++ -x c++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -DCL_TARGET_OPENCL_VERSION=120 $(pkg-config --cflags rivulet-fluid) -fsyntax-only -"
-xargs -P 2 -I {} sh -c 'printf "#include \"%s\"\n" {} | $alone || { echo "{} does not compile alone"; exit 1; }' <"$work/headers"
-echo "$(wc -l <"$work/headers") headers compile alone"
-sed 's/.*/#include "&"/' "$work/headers" | ${alone/-fsyntax-only/-E -dD} >"$work/preprocessed"
-awk '/^# [0-9]+ "/ { ours = $3 ~ /^"(.*\/)?(engine|fluid|shaders)\// }
-    /^#(define|undef) / { sub(/\(.*/, "", $2) }
-    /^#define / { if (ours && $2 !~ /^RIVULET_/) left[$2] = 1; next }
-    /^#undef / { delete left[$2] }
-    END { delete left["ASSERT"]; for (name in left) print name }' "$work/preprocessed" | sort >"$work/macros"  # assert.h is there for ASSERT
-[ ! -s "$work/macros" ] || { echo "the headers leave a host these macros:" $(cat "$work/macros"); exit 1; }
 
 # What the guide for hosts shows.
 guide=(python3 "$here/../guide.py" "$work/prefix" "$here/../../..")

@@ -14,7 +14,7 @@ using namespace rivulet::relations;
 class RelationsParity : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
 TEST_P(RelationsParity, AnswersAgreeInRandomScenes) {
-    const auto& [name, method] = GetParam();
+    const std::string name = std::get<0>(GetParam()), method = std::get<1>(GetParam());
     Result<TestGpu> gpu = makeTestGpu(name);
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     struct Row {

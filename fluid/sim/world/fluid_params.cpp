@@ -6,16 +6,36 @@
 namespace rivulet {
 
 namespace {
-constexpr double kFast = 1.0e3;  // m/s
+constexpr double kFast = 1.0e3;      // m/s, rad/s
+constexpr double kSteepest = 1.0e4;  // 1/s
 }  // namespace
 
 void BlockParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> shapes = {"box", "ball"};
-    v.choice({.name = "shape", .doc = "box: all between min and max; ball: the ellipsoid that fits into it", .fixed = kFixed}, shape,
-             shapes);
+    static const std::vector<std::string> shapes = {"box", "ball", "cylinder", "cone"}, axes = {"x", "y", "z"};
+    v.choice(
+        {.name = "shape",
+         .doc = "box: all between min and max; ball, cylinder, cone: the ellipsoid, elliptic cylinder or elliptic cone that fits into it",
+         .fixed = kFixed},
+        shape, shapes);
+    v.choice({.name = "axis", .doc = "axis of a cylinder or a cone; a cone has its base at min and its apex at max", .fixed = kFixed}, axis,
+             axes);
     v.value({"min", "m", "lower corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, min);
     v.value({"max", "m", "upper corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, max);
-    v.value({"velocity", "m/s", "velocity at the start", -kFast, kFast, kLinear, kFixed}, velocity);
+    v.value({"velocity", "m/s", "velocity at the start; of a block with spin or a gradient, that of its centre between min and max", -kFast,
+             kFast, kLinear, kFixed},
+            velocity);
+    v.value({"spin", "rad/s", "angular velocity at the start: the block turns about its centre like a rigid body", -kFast, kFast, kLinear,
+             kFixed},
+            spin);
+    v.value({"gradientX", "1/s", "derivatives of the x component of the velocity along x, y and z at the start", -kSteepest, kSteepest,
+             kLinear, kFixed},
+            gradientX);
+    v.value({"gradientY", "1/s", "derivatives of the y component of the velocity along x, y and z at the start", -kSteepest, kSteepest,
+             kLinear, kFixed},
+            gradientY);
+    v.value({"gradientZ", "1/s", "derivatives of the z component of the velocity along x, y and z at the start", -kSteepest, kSteepest,
+             kLinear, kFixed},
+            gradientZ);
     v.value({.name = "liquid", .doc = "liquid of the block, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
             liquid);
     visitDye(v, dye, dyeAmount, dyeScattering);

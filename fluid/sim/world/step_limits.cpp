@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fluid/sim/sources/block.h"
+
 namespace rivulet {
 
 float StepLimits::fastestFall(const Inputs& in) const {
@@ -15,7 +17,7 @@ float StepLimits::fastestFall(const Inputs& in) const {
             for (int k = 0; k < 3; ++k)
                 fall += std::abs(down[k]) * (down[k] < 0 ? b.max[k] - in.params.box.min[k] : in.params.box.max[k] - b.min[k]);
         }
-        fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
+        fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + fastestOf(b));
     }
     for (const Emitter& e : in.emitters) {
         float fall = 0.0F;

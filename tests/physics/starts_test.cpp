@@ -1,4 +1,4 @@
-// The water of a world at t = 0: shapes and velocities of blocks; against formulas of
+// The water of a world at t = 0: shapes and velocities of blocks, layers beside walls; against formulas of
 // geometry and mechanics.
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "fluid/sim/sources/block.h"
 #include "tests/physics/worlds.h"
+#include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet::starts_test {
 namespace {
@@ -142,6 +143,69 @@ TEST(Start, AWorldStartsWithTheSpinOfItsBlock) {
     world->reset();
     world->step({}, 1.0e-4);
     EXPECT_NEAR(world->stats().maxSpeed, 2, 0.05);
+}
+
+// A tank of triangles keeps every particle of a block that is flush with its floor and walls: as one sheet, with walls that have a
+// thickness, standing still and turned as a rigid solid. A block that reaches further loses the layer that is too near.
+TEST(Start, ABlockFlushWithAMeshKeepsItsLayer) {
+    constexpr float spacing = 0.02F;
+    test::Mesh sheet = test::makeBox(vec3(0.2F, 0.1F, 0.2F), vec3(0.8F, 0.7F, 0.8F));
+    sheet.indices.resize(36);
+    // Without its two triangles of the top: both have all corners at 0.7 m.
+    std::vector<uint32_t> open;
+    for (size_t t = 0; t < sheet.indices.size(); t += 3)
+        if (std::any_of(&sheet.indices[t], &sheet.indices[t] + 3, [&](uint32_t i) { return sheet.positions[i].y < 0.6F; }))
+            open.insert(open.end(), &sheet.indices[t], &sheet.indices[t] + 3);
+    ASSERT_EQ(open.size(), 30U);
+    sheet.indices = open;
+    test::Mesh thick;
+    const auto wall = [&thick](const vec3& low, const vec3& high) {
+        const test::Mesh box = test::makeBox(low, high);
+        for (size_t t = 0; t < box.indices.size(); t += 3)
+            thick.triangle(box.positions[box.indices[t]], box.positions[box.indices[t + 1]], box.positions[box.indices[t + 2]]);
+    };
+    wall(vec3(0.15F, 0.05F, 0.15F), vec3(0.85F, 0.1F, 0.85F));
+    wall(vec3(0.15F, 0.05F, 0.15F), vec3(0.2F, 0.7F, 0.85F));
+    wall(vec3(0.8F, 0.05F, 0.15F), vec3(0.85F, 0.7F, 0.85F));
+    wall(vec3(0.15F, 0.05F, 0.15F), vec3(0.85F, 0.7F, 0.2F));
+    wall(vec3(0.15F, 0.05F, 0.8F), vec3(0.85F, 0.7F, 0.85F));
+    auto device = cpu();
+    FluidParams p;
+    p.spacing = spacing;
+    p.blocks = {{.min = vec3(0.2F, 0.1F, 0.2F), .max = vec3(0.8F, 0.5F, 0.8F)}};
+    for (const test::Mesh* mesh : {&sheet, &thick}) {
+        const MeshView view = mesh->view();
+        for (const int resolution : {142, 151, 200}) {  // voxels of at most a quarter of a spacing, at several offsets
+            auto field = bakeVoxelField(std::span(&view, 1), {.resolution = resolution, .band = 2 * spacing, .padding = 2 * spacing});
+            ASSERT_TRUE(field) << field.error().message;
+            EXPECT_EQ(makeWorld(*device, p, {.field = &*field})->particles().count, 30U * 20U * 30U) << resolution;
+        }
+    }
+    const MeshView view = sheet.view();
+    auto field = bakeVoxelField(std::span(&view, 1), {.resolution = 120, .band = 2 * spacing, .padding = 2 * spacing});
+    const Pose turned{vec3(1.0F, 0, 0), glm::angleAxis(-0.5F * kPi, vec3(0, 1, 0))};  // x, z -> 1 - z, x
+    EXPECT_EQ(makeWorld(*device, p, {.rigid = {{&*field, turned}}})->particles().count, 30U * 20U * 30U);
+    FluidParams wider = p;
+    wider.blocks[0].max.x += 0.5F * spacing;  // the lattice is centred in the block
+    EXPECT_EQ(makeWorld(*device, wider, {.field = &*field})->particles().count, 29U * 20U * 30U) << "half the rest distance from the wall";
+    auto world = makeWorld(*device, p, {.field = &*field});
+    for (int frame = 0; frame < 10; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
+    EXPECT_EQ(world->stats().lost, 0U);
+    for (const vec4& x : device->readAll<vec4>(*world->particles().position, world->particles().count)) {
+        EXPECT_GT(x.y, 0.1F);
+        EXPECT_TRUE(x.x > 0.2F && x.x < 0.8F && x.z > 0.2F && x.z < 0.8F);
+    }
+}
+
+// The same beside a plane that floats round: its places are no multiples of the spacing.
+TEST(Start, ABlockFlushWithAPlaneKeepsItsLayer) {
+    auto device = cpu();
+    for (float height = 0.1F; height < 0.3F; height += 0.0137F) {
+        FluidParams p;
+        p.spacing = 0.02F;
+        p.blocks = {{.min = vec3(0.2F, height, 0.2F), .max = vec3(0.6F, height + 0.2F, 0.6F)}};
+        EXPECT_EQ(makeWorld(*device, p, {.planes = {{.position = vec3(0, height, 0)}}})->particles().count, 20U * 10U * 20U) << height;
+    }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The water of a world at t = 0: shapes and velocities of blocks, layers beside walls; against formulas of
+// The water of a world at t = 0: shapes and velocities of blocks, layers beside walls, placed particles; against formulas of
 // geometry and mechanics.
 #include <gtest/gtest.h>
 
@@ -206,6 +206,73 @@ TEST(Start, ABlockFlushWithAPlaneKeepsItsLayer) {
         p.blocks = {{.min = vec3(0.2F, height, 0.2F), .max = vec3(0.6F, height + 0.2F, 0.6F)}};
         EXPECT_EQ(makeWorld(*device, p, {.planes = {{.position = vec3(0, height, 0)}}})->particles().count, 20U * 10U * 20U) << height;
     }
+}
+
+FluidParams emptyBox() {
+    FluidParams p;
+    p.spacing = 0.05F;
+    return p;
+}
+
+Sources placing(std::vector<NewParticle> particles) {
+    Sources s;
+    s.particles = std::move(particles);
+    return s;
+}
+
+// Particles that a host places are where it placed them, beside those of a block, and again after a reset. One that falls freely has
+// v + g t and x + v t + g t^2 / 2.
+TEST(Start, PlacedParticlesStartAndFall) {
+    auto device = cpu();
+    FluidParams p = emptyBox();
+    p.box.max.y = 3;
+    p.blocks = {{.max = vec3(0.2F)}};  // 64 particles
+    const vec3 at(0.5F, 2.5F, 0.6F), v(0.3F, 0.1F, -0.2F);
+    auto made = FluidWorld::create(*device, p, {}, {}, placing({{at, v}, {vec3(0.9F, 0.025F, 0.9F)}}));
+    ASSERT_TRUE(made) << made.error().message;
+    FluidWorld& world = **made;
+    ASSERT_EQ(world.particles().count, 66U);
+    // The highest of all.
+    const auto placed = [&](const Buffer& of) {
+        const std::vector<vec4> x = device->readAll<vec4>(*world.particles().position, 66), all = device->readAll<vec4>(of, 66);
+        return vec3(all[static_cast<size_t>(std::max_element(x.begin(), x.end(), [](auto& a, auto& b) { return a.y < b.y; }) - x.begin())]);
+    };
+    for (int turn = 0; turn < 2; ++turn) {
+        EXPECT_EQ(placed(*world.particles().position), at);
+        EXPECT_EQ(placed(*world.particles().velocity), v);
+        EXPECT_GE(world.fastestFall(), std::sqrt(2 * 9.81F * 2.5F)) << "it falls to the bottom of the box";
+        constexpr float t = 0.25F;
+        for (int frame = 0; frame < 15; ++frame) world.step({.gravity = p.gravity}, double{t} / 15);
+        const vec3 now = placed(*world.particles().position), fallen = at + v * t + 0.5F * p.gravity * t * t;
+        EXPECT_LT(glm::length(now - fallen), 0.01F) << now.x << " " << now.y << " " << now.z;
+        EXPECT_LT(glm::length(placed(*world.particles().velocity) - (v + p.gravity * t)), 0.02F);
+        world.reset();
+    }
+}
+
+// What cannot be placed is refused by number, with the remedy; what is inside a mesh is left out.
+TEST(Start, PlacedParticlesThatCannotBeAreRefused) {
+    auto device = cpu();
+    const auto refusal = [&](const FluidParams& p, std::vector<NewParticle> particles) {
+        auto made = FluidWorld::create(*device, p, {}, {}, placing(std::move(particles)));
+        return made ? std::string() : made.error().message;
+    };
+    FluidParams p = emptyBox();
+    EXPECT_EQ(
+        refusal(p, {{vec3(0.5F)}, {vec3(0.5F, 1.5F, 0.5F)}}),
+        "particles[1] at (0.5, 1.5, 0.5) m is outside fluid.box from (0, 0, 0) to (1, 1, 1) m: move it into the box, or enlarge the box");
+    EXPECT_TRUE(refusal(p, {{vec3(0.5F, NAN, 0.5F)}}).starts_with("particles[0] has the position (0.5, nan, 0.5) m"));
+    EXPECT_TRUE(refusal(p, {{vec3(0.5F), vec3(INFINITY, 0, 0)}}).ends_with("give finite numbers"));
+    p.maxParticles = 1;
+    EXPECT_TRUE(refusal(p, {{vec3(0.4F)}, {vec3(0.6F)}}).starts_with("fluid.maxParticles is 1, but the world starts with 2 particles"));
+
+    const test::Mesh ball = test::makeSphere(vec3(0.5F), 0.3F, 24);
+    const MeshView view = ball.view();
+    auto field = bakeVoxelField(std::span(&view, 1), {.resolution = 64, .band = 0.1F, .padding = 0.1F});
+    ASSERT_TRUE(field);
+    auto world = FluidWorld::create(*device, emptyBox(), {.field = &*field}, {}, placing({{vec3(0.5F)}, {vec3(0.5F, 0.81F, 0.5F)}}));
+    ASSERT_TRUE(world) << world.error().message;
+    EXPECT_EQ((*world)->particles().count, 1U) << "the one beside it stays, nearer than its rest distance";
 }
 
 }  // namespace

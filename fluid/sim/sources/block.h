@@ -7,10 +7,12 @@
 
 namespace rivulet {
 
+inline constexpr uint32_t kNoBlock = 0xffffffffU;  // of a particle that a host placed: it is of the world's own liquid
+
 struct NewParticle {
-    vec3 position;       // m
-    vec3 velocity;       // m/s
-    uint32_t block = 0;  // which one it is of
+    vec3 position{0.0F};        // m
+    vec3 velocity{0.0F};        // m/s
+    uint32_t block = kNoBlock;  // of fluid.blocks
 };
 
 // How many particles a block's box holds, without making them: a block too large for memory is refused before it is built. Other shapes

@@ -6,20 +6,33 @@
 
 namespace rivulet {
 
+namespace {
+
+// The triangles of the mesh that an emitter names, placed in the world (m): three corners each.
+Result<std::vector<vec3>> trianglesOf(const EmitterParams& params, const std::string& folder) {
+    Result<std::string> path = findAsset(params.mesh, folder);
+    if (!path) return path.error();
+    Result<Mesh> mesh = importMesh(*path);
+    if (!mesh) return mesh.error();
+    const mat4 place = params.fitSize > 0 ? Transform::fitted(mesh->bounds(), params.fitSize, params.position, params.rotation)
+                                          : Transform{params.position, params.rotation, 1.0F}.matrix();
+    const Mesh placed = transformed(*mesh, place);
+    std::vector<vec3> corners;
+    for (const uint32_t i : placed.indices) corners.push_back(placed.positions[i]);
+    return corners;
+}
+
+}  // namespace
+
 Status SceneSources::create(const SceneFile& scene) {
     start_ = {.sinks = scene.sinks, .seconds = static_cast<double>(scene.duration), .least = scene.room};
     start_.expectedDeposit = SkinFlows::expectedDeposit(scene, start_.seconds);
     for (const EmitterParams& params : scene.emitters) {
         Emitter emitter{params, {}};
         if (params.shape == "mesh") {
-            Result<std::string> path = findAsset(params.mesh, scene.folder);
-            if (!path) return path.error();
-            Result<Mesh> mesh = importMesh(*path);
-            if (!mesh) return mesh.error();
-            const mat4 place = params.fitSize > 0 ? Transform::fitted(mesh->bounds(), params.fitSize, params.position, params.rotation)
-                                                  : Transform{params.position, params.rotation, 1.0F}.matrix();
-            const Mesh placed = transformed(*mesh, place);
-            for (const uint32_t i : placed.indices) emitter.triangles.push_back(placed.positions[i]);
+            Result<std::vector<vec3>> triangles = trianglesOf(params, scene.folder);
+            if (!triangles) return triangles.error();
+            emitter.triangles = std::move(*triangles);
         }
         start_.emitters.push_back(std::move(emitter));
     }

@@ -201,6 +201,9 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     Result<Sources> sources = sourcesOf(w.params);
     if (!sources) return sources.error();
     if (Status added = addParticles(o, *sources); !added) return added;
+    for (size_t k = 0; k < w.params.fluid.blocks.size(); ++k)
+        if (w.params.fluid.blocks[k].shape == "mesh")
+            return badInput(fmt::format("fluid.blocks[{}].shape is mesh: use another shape or particles, a mesh needs a scene file", k));
     auto made = FluidWorld::create(*context.device, simulated(w), solids, context.log, *sources);
     if (!made) return made.error();
     w.world = std::move(*made);

@@ -8,8 +8,9 @@ namespace rivulet {
 
 namespace {
 
-// The triangles of the mesh that an emitter names, placed in the world (m): three corners each.
-Result<std::vector<vec3>> trianglesOf(const EmitterParams& params, const std::string& folder) {
+// The triangles of a mesh that an emitter or a block names, placed in the world (m): three corners each.
+template <class Placed>
+Result<std::vector<vec3>> trianglesOf(const Placed& params, const std::string& folder) {
     Result<std::string> path = findAsset(params.mesh, folder);
     if (!path) return path.error();
     Result<Mesh> mesh = importMesh(*path);
@@ -35,6 +36,13 @@ Status SceneSources::create(const SceneFile& scene) {
             emitter.triangles = std::move(*triangles);
         }
         start_.emitters.push_back(std::move(emitter));
+    }
+    start_.blockTriangles.resize(scene.fluid.blocks.size());
+    for (size_t k = 0; k < scene.fluid.blocks.size(); ++k) {
+        if (scene.fluid.blocks[k].shape != "mesh") continue;
+        Result<std::vector<vec3>> triangles = trianglesOf(scene.fluid.blocks[k], scene.folder);
+        if (!triangles) return triangles.error();
+        start_.blockTriangles[k] = std::move(*triangles);
     }
     if (scene.pour.litres > 0) {
         start_.emitters.push_back({pouring(scene.pour, scene.fluid, std::nullopt), {}});

@@ -1,12 +1,16 @@
-// The water of a world at t = 0: shapes and velocities of blocks, layers beside walls, placed particles; against formulas of
+// The water of a world at t = 0: shapes and velocities of blocks, layers beside walls, meshes, placed particles; against formulas of
 // geometry and mechanics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/import_assimp.h"
+#include "engine/scene/transform.h"
+#include "fluid/session/session.h"
 #include "fluid/sim/sources/block.h"
 #include "tests/physics/worlds.h"
+#include "tests/unit/mesh_volume.h"
 #include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet::starts_test {
@@ -208,6 +212,85 @@ TEST(Start, ABlockFlushWithAPlaneKeepsItsLayer) {
     }
 }
 
+// Corners of the triangles of a mesh, as Sources::blockTriangles.
+std::vector<vec3> cornersOf(const test::Mesh& mesh) {
+    std::vector<vec3> corners;
+    for (const uint32_t i : mesh.indices) corners.push_back(mesh.positions[i]);
+    return corners;
+}
+
+// The particles have the volume of the mesh, at about 20 spacings a radius: of a ball, as given and inverted; of a knotted tube.
+TEST(Start, AMeshIsFilledWithItsVolume) {
+    test::Mesh inverted = test::makeSphere(vec3(0.5F), 0.4F, 48);
+    for (size_t t = 0; t < inverted.indices.size(); t += 3) std::swap(inverted.indices[t], inverted.indices[t + 1]);
+    const test::Mesh knot = test::readObj(test::testMesh("generated/trefoil_tube.obj"));
+    for (const test::Mesh& mesh : {test::makeSphere(vec3(0.5F), 0.4F, 48), inverted, knot}) {
+        Bounds bounds;
+        for (const vec3& p : mesh.positions) bounds.add(p);
+        const vec3 size = bounds.size();
+        const double volume = std::abs(volumeOf(mesh.view()));
+        for (const float spacing : {0.1F * static_cast<float>(std::cbrt(volume)) / 3, 0.029F * static_cast<float>(std::cbrt(volume))}) {
+            std::vector<NewParticle> made;
+            fillBlock({.min = bounds.min - 0.3F * spacing, .max = bounds.max + 0.4F * spacing, .shape = "mesh"}, spacing, made,
+                      cornersOf(mesh));
+            EXPECT_NEAR(volumeOf(made, spacing) / volume, 1, 0.005) << size.x << " " << spacing;
+        }
+    }
+}
+
+// max.y is the level: a ball that is filled to a height has the volume of a spherical cap, and no particle above it or outside.
+TEST(Start, AMeshIsFilledToALevel) {
+    constexpr float spacing = 0.02F, radius = 0.4F;
+    const std::vector<vec3> ball = cornersOf(test::makeSphere(vec3(0.5F), radius, 96));
+    for (const float level : {0.3F, 0.5F, 0.72F}) {
+        const BlockParams b{.min = vec3(0.1F), .max = vec3(0.9F, level, 0.9F), .shape = "mesh"};
+        std::vector<NewParticle> made;
+        fillBlock(b, spacing, made, ball);
+        const double height = double{level} - 0.1, cap = double{kPi} * height * height * (3 * double{radius} - height) / 3;
+        EXPECT_NEAR(volumeOf(made, spacing) / cap, 1, 0.005) << level;
+        for (const NewParticle& p : made) {
+            EXPECT_LT(p.position.y, level);
+            EXPECT_LE(glm::length(p.position - 0.5F), radius);
+        }
+    }
+}
+
+// A scene names the file: the duck, scaled, turned and moved as a collider is, has its volume, about its centroid.
+TEST(Start, ASceneFillsTheMeshThatItNames) {
+    auto device = cpu();
+    SceneFile scene;
+    scene.fluid.spacing = 0.015F;
+    scene.fluid.box.max = vec3(1.2F);
+    scene.fluid.blocks = {{.min = vec3(0.0F),
+                           .max = vec3(1.2F),
+                           .shape = "mesh",
+                           .mesh = "meshes/duck.obj",
+                           .fitSize = 1,
+                           .position = vec3(0.55F, 0.6F, 0.65F),
+                           .rotation = vec3(20, 70, 0)}};
+    auto session = Session::create(scene, *device, {});
+    ASSERT_TRUE(session) << session.error().message;
+    Result<Mesh> duck = importMesh(*findAsset("meshes/duck.obj", ""));
+    ASSERT_TRUE(duck);
+    const Mesh placed = transformed(*duck, Transform::fitted(duck->bounds(), 1, scene.fluid.blocks[0].position, vec3(20, 70, 0)));
+    dvec3 moment(0.0);  // of the tetrahedra below the triangles
+    for (size_t t = 0; t < placed.indices.size(); t += 3) {
+        const dvec3 a(placed.positions[placed.indices[t]]), b(placed.positions[placed.indices[t + 1]]),
+            c(placed.positions[placed.indices[t + 2]]);
+        moment += glm::dot(a, glm::cross(b, c)) / 24 * (a + b + c);
+    }
+    const double volume = volumeOf(placed.view());
+    const uint32_t count = (*session)->world().particles().count;
+    EXPECT_NEAR(count * std::pow(0.015, 3) / volume, 1, 0.005);
+    dvec3 sum(0.0);
+    for (const vec4& x : device->readAll<vec4>(*(*session)->world().particles().position, count)) sum += dvec3(x);
+    EXPECT_LT(glm::length(sum / static_cast<double>(count) - moment / volume), 0.003);
+    scene.fluid.blocks[0].mesh = "meshes/swan.obj";
+    auto none = Session::create(scene, *device, {});
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("meshes/swan.obj does not exist"), std::string::npos) << none.error().message;
+}
+
 FluidParams emptyBox() {
     FluidParams p;
     p.spacing = 0.05F;
@@ -265,6 +348,8 @@ TEST(Start, PlacedParticlesThatCannotBeAreRefused) {
     EXPECT_TRUE(refusal(p, {{vec3(0.5F), vec3(INFINITY, 0, 0)}}).ends_with("give finite numbers"));
     p.maxParticles = 1;
     EXPECT_TRUE(refusal(p, {{vec3(0.4F)}, {vec3(0.6F)}}).starts_with("fluid.maxParticles is 1, but the world starts with 2 particles"));
+    p.blocks = {{.max = vec3(1.0F), .shape = "mesh"}};
+    EXPECT_TRUE(refusal(p, {}).starts_with("fluid.blocks[0].shape is mesh, and no triangles are given for it"));
 
     const test::Mesh ball = test::makeSphere(vec3(0.5F), 0.3F, 24);
     const MeshView view = ball.view();

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "fluid/voxel/mesh_defects.h"
+#include "fluid/voxel/voxelize_solid.h"
 
 namespace rivulet {
 
@@ -86,6 +90,21 @@ Sites sitesAlongAxis(const BlockParams& b, const Lattice& lattice) {
     }
     return in;
 }
+
+// A voxel about each site: its bit is set if the mesh encloses its centre, which is the site.
+Sites sitesOfMesh(const Lattice& lattice, std::span<const vec3> triangles) {
+    VoxelGrid grid;
+    grid.size = lattice.count;
+    grid.voxel = lattice.spacing;
+    grid.origin = lattice.first - vec3(0.5F * lattice.spacing);
+    std::vector<uint32_t> indices(triangles.size());
+    std::iota(indices.begin(), indices.end(), 0U);
+    const MeshView mesh{triangles, indices, {}, {}};
+    voxelizeSolid(cleanMesh(std::span(&mesh, 1)), grid);
+    Sites in(lattice.size());
+    for (size_t k = 0; k < in.size(); ++k) in[k] = ((grid.bits[k >> 3U] >> (k & 7U)) & 1U) != 0;
+    return in;
+}
 }  // namespace
 
 double blockCount(const BlockParams& b, float spacing) {
@@ -99,10 +118,13 @@ float fastestOf(const BlockParams& b) {
     return fastest;
 }
 
-void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to) {
+void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to, std::span<const vec3> triangles) {
     const Lattice lattice(b, spacing);
     if (lattice.size() == 0) return;
-    const Sites in = b.shape == "box" ? Sites() : b.shape == "ball" ? sitesOfBall(b, lattice) : sitesAlongAxis(b, lattice);
+    const Sites in = b.shape == "box"    ? Sites()
+                     : b.shape == "ball" ? sitesOfBall(b, lattice)
+                     : b.shape == "mesh" ? sitesOfMesh(lattice, triangles)
+                                         : sitesAlongAxis(b, lattice);
     const vec3 last = lattice.first + vec3(lattice.count) * spacing - vec3(spacing);
     to.reserve(to.size() + (in.empty() ? lattice.size() : static_cast<size_t>(std::count(in.begin(), in.end(), true))));
     uint32_t place = 0;

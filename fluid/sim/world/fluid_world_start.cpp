@@ -139,8 +139,16 @@ Status FluidWorld::Impl::checkPrecision() const {
                     params.spacing, params.method, params.supportSpacings, 1.1F * least));
 }
 
-// Particles that the host placed.
+// Meshes of blocks, and particles that the host placed.
 Status FluidWorld::Impl::checkStart() const {
+    for (size_t k = 0; k < params.blocks.size(); ++k) {
+        if (params.blocks[k].shape != "mesh") continue;
+        if (k >= sourceSetup.blockTriangles.size() || sourceSetup.blockTriangles[k].size() < 3)
+            return badInput(fmt::format("fluid.blocks[{}].shape is mesh, and no triangles are given for it: use another shape", k));
+        const std::vector<vec3>& corners = sourceSetup.blockTriangles[k];
+        if (corners.size() % 3 != 0 || !std::all_of(corners.begin(), corners.end(), [](const vec3& c) { return isFinite(c); }))
+            return badInput(fmt::format("the mesh of fluid.blocks[{}] has corners that are not finite or not in threes: correct it", k));
+    }
     const BoxParams& box = params.box;
     for (size_t k = 0; k < sourceSetup.particles.size(); ++k) {
         const vec3 &at = sourceSetup.particles[k].position, &velocity = sourceSetup.particles[k].velocity;
@@ -162,7 +170,8 @@ Status FluidWorld::Impl::checkStart() const {
 void FluidWorld::Impl::fillStart() {
     for (size_t k = 0; k < params.blocks.size(); ++k) {
         const size_t first = start.size();
-        fillBlock(params.blocks[k], params.spacing, start);
+        fillBlock(params.blocks[k], params.spacing, start,
+                  k < sourceSetup.blockTriangles.size() ? std::span<const vec3>(sourceSetup.blockTriangles[k]) : std::span<const vec3>());
         for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
     }
     if (!sourceSetup.particles.empty()) {
@@ -176,6 +185,7 @@ void FluidWorld::Impl::fillStart() {
         placed = BlockParams{.min = bounds.min, .max = bounds.max, .velocity = vec3(fastest, 0.0F, 0.0F)};
     }
     sourceSetup.particles = {};
+    sourceSetup.blockTriangles = {};
     size_t left = 0, leftPlaced = 0;
     std::erase_if(start, [&](const NewParticle& p) {
         const float near = p.block == kNoBlock ? 0.0F : 1.0F;

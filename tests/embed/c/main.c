@@ -529,6 +529,7 @@ static void what_makes_no_sense_is_a_sentence(rivulet_context* context) {
                {"{\"fluid\": {\"spacing\": -1}}", "fluid.spacing"},
                {"{\"colliders\": []}", "colliders"},
                {"{\"emitters\": [{\"shape\": \"mesh\"}]}", "emitters[0]"},
+               {"{\"fluid\": {\"blocks\": [{\"shape\": \"mesh\"}]}}", "fluid.blocks[0]"},
                {"{\"fluid\": {\"method\": \"magic\"}}", "magic"}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
         const rivulet_world_options o = {.size = sizeof o, .json = bad[k].json};

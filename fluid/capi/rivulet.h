@@ -167,6 +167,11 @@ typedef struct rivulet_world_options {
     const rivulet_body* bodies;
     size_t bodies_count;
     const rivulet_body_host* body_host;
+    /* Particles at t = 0, in addition to those of fluid.blocks: m, 3 each, inside fluid.box, about fluid.spacing apart. They are of the
+       world's own liquid. Those inside a wall or body are left out, and the log reports their number. */
+    const float* particles;
+    const float* particle_velocities; /* m/s, 3 each; NULL: at rest */
+    size_t particles_count;
 } rivulet_world_options;
 
 typedef struct rivulet_inputs {

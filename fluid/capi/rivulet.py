@@ -84,7 +84,8 @@ class _BodyHost(Structure):
 
 class _WorldOptions(Structure):
     _fields_ = [("size", c_size_t), ("json", c_char_p), ("walls", POINTER(_Mesh)), ("walls_count", c_size_t), ("bodies", POINTER(_Body)),
-                ("bodies_count", c_size_t), ("body_host", POINTER(_BodyHost))]
+                ("bodies_count", c_size_t), ("body_host", POINTER(_BodyHost)), ("particles", c_void_p), ("particle_velocities", c_void_p),
+                ("particles_count", c_size_t)]
 
 
 class _Inputs(Structure):
@@ -270,12 +271,14 @@ class Context(_Handle):
         _call("context_times", self._pointer, all, room, ctypes.byref(count))
         return {t.name.decode(): (t.ms, t.calls) for t in all[:min(count.value, room)]}
 
-    def world(self, scene=None, walls=(), bodies=(), body_host=None):
+    def world(self, scene=None, walls=(), bodies=(), body_host=None, particles=None, velocities=None):
         """A World of `scene`, with `walls` (Mesh) and `bodies` (Body).
+        particles (m, n x 3) are there at t = 0 in addition to those of fluid.blocks: inside fluid.box, about fluid.spacing apart, with
+        velocities (m/s, n x 3; None: at rest).
         body_host moves the bodies: advance(loads, gravity, seconds, states) changes `states`, an array with the fields position (m), rotation
         (x y z w), velocity (m/s) and spin (rad/s), by loads["force"] (N) and loads["torque"] (N m); reset(states) gets the states
         of t = 0. None: bodies collide with nothing but fluid."""
-        return World(self, scene, walls, bodies, body_host)
+        return World(self, scene, walls, bodies, body_host, particles, velocities)
 
     def skin(self, mesh, liquid=None, map_size=0):
         """A Skin: drops and films on `mesh`, a Mesh with uvs. liquid: a dict with keys of flow.N.liquid in a scene file; None: tears."""
@@ -322,8 +325,12 @@ class World(_Handle):
 
     _kind = "world"
 
-    def __init__(self, context, scene, walls, bodies, body_host):
+    def __init__(self, context, scene, walls, bodies, body_host, particles, velocities):
         self._context, self._bodies, host = context, len(bodies), None
+        placed, moving = _array(particles, (-1, 3), "particles"), _array(velocities, (-1, 3), "velocities")
+        count = 0 if placed is None else len(placed)
+        if moving is not None and len(moving) != count:
+            raise BadInput(f"{len(moving)} velocities were given for {count} particles: give one for each")
         raised = self._raised = []  # by body_host; its functions reference this list and not the world, which must be destroyed before its context
         if body_host is not None:
             def guarded(work):
@@ -346,7 +353,8 @@ class World(_Handle):
             self._host = _struct(_BodyHost, advance=_ADVANCE(advance), reset=_RESET(reset))
             host = ctypes.pointer(self._host)
         options = _struct(_WorldOptions, json=_text(scene), walls=(_Mesh * len(walls))(*(w._c for w in walls)), walls_count=len(walls),
-                        bodies=(_Body * len(bodies))(*(b._c for b in bodies)), bodies_count=len(bodies), body_host=host)
+                        bodies=(_Body * len(bodies))(*(b._c for b in bodies)), bodies_count=len(bodies), body_host=host,
+                        particles=_at(placed), particle_velocities=_at(moving), particles_count=count)
         pointer = c_void_p()
         self._checked("world_create", context._pointer, options, pointer)
         self._pointer = pointer

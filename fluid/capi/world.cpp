@@ -182,6 +182,14 @@ Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solid
     return ok();
 }
 
+Status addParticles(const rivulet_world_options& o, Sources& sources) {
+    if (o.particles_count > 0 && o.particles == nullptr) return badInput("particles is NULL, and particles_count is not 0");
+    for (size_t k = 0; k < o.particles_count; ++k)
+        sources.particles.push_back(
+            {vectorOf(o.particles + 3 * k), o.particle_velocities != nullptr ? vectorOf(o.particle_velocities + 3 * k) : vec3(0.0F)});
+    return ok();
+}
+
 Status createWorld(rivulet_context& context, const rivulet_world_options& o, rivulet_world& w) {
     w.context = &context;
     if (context.memoryLimit > 0) w.upload.limitMemory(context.memoryLimit);
@@ -192,6 +200,10 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     if (Status added = addBodies(o, w, solids); !added) return added;
     Result<Sources> sources = sourcesOf(w.params);
     if (!sources) return sources.error();
+    if (Status added = addParticles(o, *sources); !added) return added;
+    for (size_t k = 0; k < w.params.fluid.blocks.size(); ++k)
+        if (w.params.fluid.blocks[k].shape == "mesh")
+            return badInput(fmt::format("fluid.blocks[{}].shape is mesh: use another shape or particles, a mesh needs a scene file", k));
     auto made = FluidWorld::create(*context.device, simulated(w), solids, context.log, *sources);
     if (!made) return made.error();
     w.world = std::move(*made);

@@ -32,6 +32,8 @@ std::string contradiction(const SceneFile& scene) {
         const BlockParams& block = scene.fluid.blocks[i];
         if (!glm::all(glm::lessThanEqual(block.min, block.max)))
             return fmt::format("fluid.blocks[{}].min {} must not lie above its max {}", i, shown(block.min), shown(block.max));
+        if (block.shape == "mesh" && block.mesh.empty())
+            return fmt::format("fluid.blocks[{}].mesh is empty: name a mesh file, or set another shape", i);
         if (!inside(block.min, box) || !inside(block.max, box))
             return fmt::format("fluid.blocks[{}] from {} to {} reaches outside fluid.box from {} to {}", i, shown(block.min),
                                shown(block.max), shown(box.min), shown(box.max));

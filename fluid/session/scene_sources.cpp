@@ -6,22 +6,43 @@
 
 namespace rivulet {
 
+namespace {
+
+// The triangles of a mesh that an emitter or a block names, placed in the world (m): three corners each.
+template <class Placed>
+Result<std::vector<vec3>> trianglesOf(const Placed& params, const std::string& folder) {
+    Result<std::string> path = findAsset(params.mesh, folder);
+    if (!path) return path.error();
+    Result<Mesh> mesh = importMesh(*path);
+    if (!mesh) return mesh.error();
+    const mat4 place = params.fitSize > 0 ? Transform::fitted(mesh->bounds(), params.fitSize, params.position, params.rotation)
+                                          : Transform{params.position, params.rotation, 1.0F}.matrix();
+    const Mesh placed = transformed(*mesh, place);
+    std::vector<vec3> corners;
+    for (const uint32_t i : placed.indices) corners.push_back(placed.positions[i]);
+    return corners;
+}
+
+}  // namespace
+
 Status SceneSources::create(const SceneFile& scene) {
     start_ = {.sinks = scene.sinks, .seconds = static_cast<double>(scene.duration), .least = scene.room};
     start_.expectedDeposit = SkinFlows::expectedDeposit(scene, start_.seconds);
     for (const EmitterParams& params : scene.emitters) {
         Emitter emitter{params, {}};
         if (params.shape == "mesh") {
-            Result<std::string> path = findAsset(params.mesh, scene.folder);
-            if (!path) return path.error();
-            Result<Mesh> mesh = importMesh(*path);
-            if (!mesh) return mesh.error();
-            const mat4 place = params.fitSize > 0 ? Transform::fitted(mesh->bounds(), params.fitSize, params.position, params.rotation)
-                                                  : Transform{params.position, params.rotation, 1.0F}.matrix();
-            const Mesh placed = transformed(*mesh, place);
-            for (const uint32_t i : placed.indices) emitter.triangles.push_back(placed.positions[i]);
+            Result<std::vector<vec3>> triangles = trianglesOf(params, scene.folder);
+            if (!triangles) return triangles.error();
+            emitter.triangles = std::move(*triangles);
         }
         start_.emitters.push_back(std::move(emitter));
+    }
+    start_.blockTriangles.resize(scene.fluid.blocks.size());
+    for (size_t k = 0; k < scene.fluid.blocks.size(); ++k) {
+        if (scene.fluid.blocks[k].shape != "mesh") continue;
+        Result<std::vector<vec3>> triangles = trianglesOf(scene.fluid.blocks[k], scene.folder);
+        if (!triangles) return triangles.error();
+        start_.blockTriangles[k] = std::move(*triangles);
     }
     if (scene.pour.litres > 0) {
         start_.emitters.push_back({pouring(scene.pour, scene.fluid, std::nullopt), {}});

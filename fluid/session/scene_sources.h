@@ -10,7 +10,7 @@ namespace rivulet {
 
 class SceneSources {
   public:
-    // Reads the meshes of emitters. Error (badInput): as importMesh.
+    // Reads the meshes of emitters and blocks. Error (badInput): as importMesh.
     Status create(const SceneFile& scene);
 
     const Sources& ofWorld() const { return start_; }  // what a FluidWorld is made with

@@ -334,4 +334,11 @@ uint32_t packNormal(const dvec3& direction, uint32_t surface) {
     return codes[0] | surface << 28U;
 }
 
+vec3 unpackNormal(uint32_t code) {
+    const auto part = [](uint32_t bits) { return (static_cast<float>(bits & 16383U) - 8191.0F) / 8191.0F; };
+    const vec2 square(part(code), part(code >> 14U));
+    const float z = 1.0F - std::abs(square.x) - std::abs(square.y), fold = std::max(-z, 0.0F);
+    return glm::normalize(vec3(square.x - std::copysign(fold, square.x), square.y - std::copysign(fold, square.y), z));
+}
+
 }  // namespace rivulet

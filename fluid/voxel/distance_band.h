@@ -48,8 +48,9 @@ class DistanceBand {
 
 // Encodes a direction of any length above 0 on an octahedron (Meyer et al. 2010): x and y of its unfolded square, 14 bits each, x low; 1 is
 // 8191 above the middle. Of the four neighbouring codes the nearest is taken (Cigolle et al. 2014): within 1.73e-4 rad of the direction;
-// axes are exact. The 4 bits above are `surface`, 0..15, the wall's set of friction and restitution. Unpacked by unpackNormal and
-// wallSurface of shaders/fluid/solids/contact_walls.h.
+// axes are exact. The 4 bits above are `surface`, 0..15, the wall's set of friction and restitution. Unpacked by unpackNormal, here and for
+// kernels in shaders/fluid/solids/contact_walls.h, and by wallSurface there.
 uint32_t packNormal(const dvec3& direction, uint32_t surface);
+vec3 unpackNormal(uint32_t code);  // of unit length
 
 }  // namespace rivulet

@@ -99,14 +99,22 @@ float VoxelField::clearance(const vec3& p) const {
     const ivec3& size = surface.size;
     const vec3 g = glm::clamp((p - surface.origin) / surface.voxel, vec3(0.0F), vec3(size));
     const ivec3 cell = glm::min(ivec3(g), size - ivec3(1));
-    float best = -std::numeric_limits<float>::infinity();
+    // Of the distances: a lower bound; the trilinear interpolant, exact beside one wall, too small between walls that face each other, at
+    // most a little too large around an outer edge; the nearest of the walls that the grid points see, each extended as a plane, exact
+    // between walls and too small around an edge.
+    float bound = -std::numeric_limits<float>::infinity(), mean = 0, planes = band;
     for (int k = 0; k < 8; ++k) {
-        const ivec3 c = cell + ivec3(k & 1, (k >> 1) & 1, k >> 2);
+        const ivec3 step(k & 1, (k >> 1) & 1, k >> 2), c = cell + step;
         const auto row = static_cast<size_t>(c.z) * static_cast<size_t>(size.y + 1) + static_cast<size_t>(c.y);
-        const float there = distance[row * static_cast<size_t>(size.x + 1) + static_cast<size_t>(c.x)];
-        best = std::max(best, std::abs(there) - glm::length(vec3(c) - g) * surface.voxel);
+        const size_t at = row * static_cast<size_t>(size.x + 1) + static_cast<size_t>(c.x);
+        const float there = std::abs(distance[at]);
+        const vec3 way = (g - vec3(c)) * surface.voxel, near = vec3(1.0F) - glm::abs(g - vec3(c));
+        bound = std::max(bound, there - glm::length(way));
+        mean += near.x * near.y * near.z * there;
+        if (there < band) planes = std::min(planes, there + glm::dot(unpackNormal(normal[at]), way));
     }
-    return best;
+    const ivec3 voxel = surface.cellOf(p);
+    return surface.contains(voxel) && surface.test(voxel) ? bound : std::max({bound, mean, planes});
 }
 
 bool VoxelField::inside(const vec3& p) const {

@@ -19,9 +19,10 @@ struct VoxelField {
     bool closed = false;           // every mesh is watertight and so has an inside; else no distance is negative
     bool empty() const { return surface.count() == 0; }
     size_t bytes() const { return surface.bits.size() + distance.size() * sizeof(float) + normal.size() * sizeof(uint32_t); }
-    // A lower bound (m) of the distance from `p` to the mesh, at most sqrt(3) voxels below it and never above `band`; `p` may be inside.
-    // It changes by at most the distance that `p` moves, and may be negative near the mesh. A particle may be spawned at `p` if
-    // clearance(p) >= contact.
+    // The distance (m) from `p` to the mesh, at most `band`; `p` may be inside. Exact beside plane walls and in corners between them, to
+    // second order in voxels beside curved walls, within sqrt(3) voxels everywhere. In a voxel that a triangle overlaps it is a lower
+    // bound, less than kContactVoxels voxels and possibly negative.
+    // A particle may be spawned at `p` if clearance(p) >= contact.
     float clearance(const vec3& p) const;
     // True if the grid point nearest to `p` is inside a mesh; false if not all meshes are closed, or outside the grid.
     bool inside(const vec3& p) const;

@@ -46,7 +46,9 @@ TEST(BadInput, AParamOutOfItsRangeIsNamed) {
         {"fluid.box.max", [=](FluidParams& p) { p.box.max.z = nan; }},
         {"fluid.box.min", [](FluidParams& p) { p.box.max.y = p.box.min.y; }},
         {"fluid.blocks[0].velocity", [=](FluidParams& p) { p.blocks[0].velocity.x = inf; }},
-        {"fluid.blocks[1].shape", [](FluidParams& p) { p.blocks.push_back({.shape = "cone"}); }},
+        {"fluid.blocks[0].spin", [=](FluidParams& p) { p.blocks[0].spin.z = nan; }},
+        {"fluid.blocks[0].axis", [](FluidParams& p) { p.blocks[0].axis = "w"; }},
+        {"fluid.blocks[1].shape", [](FluidParams& p) { p.blocks.push_back({.shape = "torus"}); }},
     };
     for (const auto& [name, spoil] : wrong) {
         FluidParams p = sound();

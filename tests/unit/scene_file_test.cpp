@@ -140,6 +140,8 @@ TEST_F(SceneTest, ContradictingValuesAreRefusedByName) {
          "x.json: fluid.box.min (0, 0, 0) must lie below fluid.box.max (1, 1, 0) on every axis"},
         {R"({"fluid": {"blocks": [{}, {"min": [0.5, 0, 0], "max": [0.2, 1, 1]}]}})",
          "x.json: fluid.blocks[1].min (0.5, 0, 0) must not lie above its max (0.2, 1, 1)"},
+        {R"({"fluid": {"blocks": [{"shape": "mesh", "max": [1, 1, 1]}]}})",
+         "x.json: fluid.blocks[0].mesh is empty: name a mesh file, or set another shape"},
         {R"({"fluid": {"blocks": [{"max": [0.5, 1.25, 0.5]}]}})",
          "x.json: fluid.blocks[0] from (0, 0, 0) to (0.5, 1.25, 0.5) reaches outside fluid.box from (0, 0, 0) to (1, 1, 1)"},
         {R"({"colliders": [{"shape": "plane"}, {"shape": "plane", "normal": [0, 0, 0]}]})",

@@ -107,6 +107,9 @@ TEST(StateFile, FixedValuesThatDifferAreNamed) {
     EXPECT_NE(other.error().message.find("b = 2, this scene has b = 3"), std::string::npos) << other.error().message;
     EXPECT_FALSE(sameFixedValues("a = 1\n", "a = 1\nb = 2\n"));
     EXPECT_FALSE(sameFixedValues("a = 1\nb = 2\n", "a = 1\n"));
+    EXPECT_TRUE(sameFixedValues("l.0.a = 1\nl.0.b = 2\n", "l.0.new = 7\nl.0.a = 1\nl.0.b = 2\n")) << "a parameter of a later version";
+    EXPECT_FALSE(sameFixedValues("l.0.a = 1\nl.0.b = 2\n", "l.0.new = 7\nl.0.a = 1\nl.0.b = 3\n"));
+    EXPECT_FALSE(sameFixedValues("l.0.a = 1\n", "l.0.a = 1\nl.1.a = 1\n")) << "another item";
 }
 
 std::string textOf(const std::filesystem::path& path) {

@@ -38,6 +38,7 @@ TEST(VoxelBand, PackedDirectionsAreWithinTheStatedAngle) {
         const uint32_t code = packNormal(d, surface);
         vec3 n;
         ASSERT_EQ(test::unpackWall(code, &n.x), surface);
+        ASSERT_LT(glm::length(n - unpackNormal(code)), 1e-6F) << "the host unpacks what kernels do";
         worst = std::max(worst, angle(d, dvec3(n)));
     }
     std::printf("worst error of a stored direction: %.3g rad\n", worst);

@@ -193,16 +193,21 @@ Status SolidPasses::addMoving(Moving m) {
     return ok();
 }
 
+namespace {
+// A little less than the rest distance, so that rounding removes no particle of a lattice that is flush with a wall.
+constexpr float kRounded = 0.998F;
+}  // namespace
+
 bool SolidPasses::Field::maySpawn(const vec3& p, float spacing, float near) const {
     const float contact = fieldParams(*field, FieldContact{.spacing = spacing}).contact;
-    if ((near > 0 && field->clearance(p) < near * contact) || field->inside(p)) return false;
+    if ((near > 0 && field->clearance(p) < kRounded * near * contact) || field->inside(p)) return false;
     const ivec3 voxel = field->surface.cellOf(p);
     return field->closed || !field->surface.contains(voxel) || outside[field->surface.index(voxel)] != 0;
 }
 
 bool SolidPasses::maySpawn(const vec3& p, float spacing, float near) const {
     for (const PlaneSolid& plane : planeSolids_)
-        if (glm::dot(glm::normalize(plane.normal), p - plane.position) < 0.5F * near * spacing) return false;
+        if (glm::dot(glm::normalize(plane.normal), p - plane.position) < kRounded * 0.5F * near * spacing) return false;
     for (size_t k = 0; k < rigid_.size(); ++k)
         if (!rigid_[k].on.maySpawn(poses_[k].toOwn(p), spacing, near)) return false;
     for (const Moving& m : deforming_)

@@ -1,23 +1,31 @@
-// A block of particles: the cubic lattice that fills a box or a ball at rest spacing, with optional jitter.
+// A block of particles: the cubic lattice that fills a shape at rest spacing, with optional jitter, and its velocity field.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "fluid/sim/world/fluid_params.h"
 
 namespace rivulet {
 
+inline constexpr uint32_t kNoBlock = 0xffffffffU;  // of a particle that a host placed: it is of the world's own liquid
+
 struct NewParticle {
-    vec3 position;       // m
-    vec3 velocity;       // m/s
-    uint32_t block = 0;  // which one it is of
+    vec3 position{0.0F};        // m
+    vec3 velocity{0.0F};        // m/s
+    uint32_t block = kNoBlock;  // of fluid.blocks
 };
 
-// How many particles a block's box holds, without making them: a block too large for memory is refused before it is built. A ball has
-// fewer.
+// How many particles a block's box holds, without making them: a block too large for memory is refused before it is built. Other shapes
+// have fewer.
 double blockCount(const BlockParams& block, float spacing);
-// Appends the lattice, centred in the block, x fastest; of a ball what lies within. With jitter no particle stands further out than the
-// outermost of the lattice; the same every time. An empty or inverted block adds nothing.
-void fillBlock(const BlockParams& block, float spacing, std::vector<NewParticle>& to);
+// Appends the lattice, centred in the block, x fastest; of a ball the sites within. Of a cylinder or a cone, each layer across the axis has
+// as many sites as its volume holds, those next to the axis first: the particles have the volume of the layers to within one spacing^3.
+// Of a mesh the sites that it encloses: `triangles`, m, three corners each; an open mesh by its generalized winding number
+// (voxelize_solid.h). With jitter no particle is further out than the outermost of the lattice; the same every time. An empty or inverted
+// block adds nothing.
+void fillBlock(const BlockParams& block, float spacing, std::vector<NewParticle>& to, std::span<const vec3> triangles = {});
+// The highest speed of a point between the block's corners at the start, m/s.
+float fastestOf(const BlockParams& block);
 
 }  // namespace rivulet

@@ -8,6 +8,7 @@
 
 #include "engine/core/params.h"
 #include "engine/core/result.h"
+#include "fluid/sim/sources/block.h"
 #include "shaders/fluid/sources/emit_params.h"
 
 namespace rivulet {
@@ -55,6 +56,10 @@ struct Sources {
     double expectedDeposit = 0;
     double more = 0;     // m^3 there is room for beyond all that
     uint32_t least = 0;  // particles there is room for at least, wherever they come from
+    // At t = 0: particles in the box, about a spacing apart, in addition to those of fluid.blocks; and the triangles of fluid.blocks[k] of
+    // shape mesh, three corners each (m).
+    std::vector<NewParticle> particles = {};
+    std::vector<std::vector<vec3>> blockTriangles = {};
 };
 
 // Volume an emitter has let out after `seconds`, m^3, if nothing blocks it.

@@ -6,16 +6,44 @@
 namespace rivulet {
 
 namespace {
-constexpr double kFast = 1.0e3;  // m/s
+constexpr double kFast = 1.0e3;      // m/s, rad/s
+constexpr double kSteepest = 1.0e4;  // 1/s
 }  // namespace
 
 void BlockParams::visit(ParamVisitor& v) {
-    static const std::vector<std::string> shapes = {"box", "ball"};
-    v.choice({.name = "shape", .doc = "box: all between min and max; ball: the ellipsoid that fits into it", .fixed = kFixed}, shape,
-             shapes);
+    static const std::vector<std::string> shapes = {"box", "ball", "cylinder", "cone", "mesh"}, axes = {"x", "y", "z"};
+    v.choice({.name = "shape",
+              .doc = "box: all between min and max; ball, cylinder, cone: the ellipsoid, elliptic cylinder or elliptic cone that fits into "
+                     "it; mesh: the inside of a mesh between min and max, which cut it",
+              .fixed = kFixed},
+             shape, shapes);
+    v.choice({.name = "axis", .doc = "axis of a cylinder or a cone; a cone has its base at min and its apex at max", .fixed = kFixed}, axis,
+             axes);
     v.value({"min", "m", "lower corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, min);
     v.value({"max", "m", "upper corner", -kMaxPosition, kMaxPosition, kLinear, kFixed}, max);
-    v.value({"velocity", "m/s", "velocity at the start", -kFast, kFast, kLinear, kFixed}, velocity);
+    v.value({.name = "mesh",
+             .doc = "mesh file of shape mesh, searched as a collider's; an open mesh is closed across its holes",
+             .fixed = kFixed},
+            mesh);
+    v.value({"fitSize", "m", "length that the mesh's longest side is scaled to; 0 = not scaled", 0, kMaxPosition, kLog, kFixed}, fitSize);
+    v.value({"position", "m", "position of the mesh's origin (with fitSize: of its centre)", -kMaxPosition, kMaxPosition, kLinear, kFixed},
+            position);
+    v.value({"rotation", "deg", "rotation of the mesh about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
+    v.value({"velocity", "m/s", "velocity at the start; of a block with spin or a gradient, that of its centre between min and max", -kFast,
+             kFast, kLinear, kFixed},
+            velocity);
+    v.value({"spin", "rad/s", "angular velocity at the start: the block turns about its centre like a rigid body", -kFast, kFast, kLinear,
+             kFixed},
+            spin);
+    v.value({"gradientX", "1/s", "derivatives of the x component of the velocity along x, y and z at the start", -kSteepest, kSteepest,
+             kLinear, kFixed},
+            gradientX);
+    v.value({"gradientY", "1/s", "derivatives of the y component of the velocity along x, y and z at the start", -kSteepest, kSteepest,
+             kLinear, kFixed},
+            gradientY);
+    v.value({"gradientZ", "1/s", "derivatives of the z component of the velocity along x, y and z at the start", -kSteepest, kSteepest,
+             kLinear, kFixed},
+            gradientZ);
     v.value({.name = "liquid", .doc = "liquid of the block, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
             liquid);
     visitDye(v, dye, dyeAmount, dyeScattering);

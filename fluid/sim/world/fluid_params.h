@@ -21,8 +21,15 @@ struct BlockParams {
     float dyeAmount = 20.0F;     // 1/m
     float dyeScattering = 0.0F;  // 1/m
     float jitter = 0.0F;         // spacings: largest random offset of a particle from its lattice point, along each axis
-    std::string shape = "box";   // box | ball: the ellipsoid between min and max
+    std::string shape = "box";   // box | ball | cylinder | cone: fits between min and max; mesh: the inside of `mesh` between them
     bool cut = false;            // solids are meant to cut the block: no notice about the particles that they remove
+    std::string axis = "y";      // x | y | z: of a cylinder or cone, whose apex is at max
+    std::string mesh = {};       // file, as of a collider
+    float fitSize = 0.0F;        // m, mesh: its longest side; 0 = as it is
+    vec3 position{0.0F};         // m, mesh: where its origin goes
+    vec3 rotation{0.0F};         // deg, mesh
+    vec3 spin{0.0F};             // rad/s, about the centre between min and max
+    vec3 gradientX{0.0F}, gradientY{0.0F}, gradientZ{0.0F};  // 1/s: of the velocity's x, y, z about that centre
     void visit(ParamVisitor& v);
 };
 

@@ -70,7 +70,15 @@ void FluidWorld::Impl::warn() {
 }
 
 StepLimits::Inputs FluidWorld::Impl::limitInputs() const {
-    return {params, *method, forces, sourceSetup.emitters, gravity, sources.fastest(), bodies.fastest(), clock.time == 0};
+    return {params,
+            *method,
+            forces,
+            sourceSetup.emitters,
+            gravity,
+            sources.fastest(),
+            bodies.fastest(),
+            clock.time == 0,
+            placed ? &*placed : nullptr};
 }
 
 StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {

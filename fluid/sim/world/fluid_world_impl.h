@@ -45,7 +45,8 @@ struct FluidWorld::Impl {
     std::unique_ptr<NeighborGrid> grid;
     Particles particles;
     std::vector<NewParticle> start;
-    uint32_t startCount = 0;  // particles at the start of counting: those of `start`, or of the world that this one continues
+    std::optional<BlockParams> placed;  // bounds, highest speed and liquid of the particles that the host placed
+    uint32_t startCount = 0;            // particles at the start of counting: those of `start`, or of the world that this one continues
     SolidPasses solids;
     Sources sourceSetup;  // emitters and sinks
     SourcePasses sources;
@@ -80,7 +81,11 @@ struct FluidWorld::Impl {
     Status prepare();
     Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
+    Status checkStart() const;
     void fillStart();
+    const BlockParams& blockOf(const NewParticle& particle) const {
+        return particle.block == kNoBlock ? *placed : params.blocks[particle.block];
+    }
     Status findSlots();
     void findLiquids();
     void writeStart();

@@ -20,12 +20,13 @@ constexpr double kMostParticles = 64.0e6;
 
 Status FluidWorld::Impl::prepare() {
     const float h = params.supportSpacings * params.spacing;
-    double wanted = 0;
+    double wanted = static_cast<double>(sourceSetup.particles.size());
     for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
     if (wanted > kMostParticles)
         return badInput(fmt::format(
             "fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
             params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
+    if (Status s = checkStart(); !s) return s;
     fillStart();
     if (Status s = findSlots(); !s) return s;
     findLiquids();
@@ -138,19 +139,61 @@ Status FluidWorld::Impl::checkPrecision() const {
                     params.spacing, params.method, params.supportSpacings, 1.1F * least));
 }
 
-// The particles of the blocks, without those that would start inside or too near a mesh or behind a plane.
+// Meshes of blocks, and particles that the host placed.
+Status FluidWorld::Impl::checkStart() const {
+    for (size_t k = 0; k < params.blocks.size(); ++k) {
+        if (params.blocks[k].shape != "mesh") continue;
+        if (k >= sourceSetup.blockTriangles.size() || sourceSetup.blockTriangles[k].size() < 3)
+            return badInput(fmt::format("fluid.blocks[{}].shape is mesh, and no triangles are given for it: use another shape", k));
+        const std::vector<vec3>& corners = sourceSetup.blockTriangles[k];
+        if (corners.size() % 3 != 0 || !std::all_of(corners.begin(), corners.end(), [](const vec3& c) { return isFinite(c); }))
+            return badInput(fmt::format("the mesh of fluid.blocks[{}] has corners that are not finite or not in threes: correct it", k));
+    }
+    const BoxParams& box = params.box;
+    for (size_t k = 0; k < sourceSetup.particles.size(); ++k) {
+        const vec3 &at = sourceSetup.particles[k].position, &velocity = sourceSetup.particles[k].velocity;
+        if (!isFinite(at) || !std::isfinite(glm::dot(velocity, velocity)))
+            return badInput(
+                fmt::format("particles[{}] has the position ({}, {}, {}) m and the velocity ({}, {}, {}) m/s: give finite numbers", k, at.x,
+                            at.y, at.z, velocity.x, velocity.y, velocity.z));
+        if (glm::clamp(at, box.min, box.max) != at)
+            return badInput(
+                fmt::format("particles[{}] at ({}, {}, {}) m is outside fluid.box from ({}, {}, {}) to ({}, {}, {}) m: move it "
+                            "into the box, or enlarge the box",
+                            k, at.x, at.y, at.z, box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
+    }
+    return ok();
+}
+
+// The particles of the blocks, without those that would start inside or too near a mesh or behind a plane; those that the host placed,
+// without those inside a solid: a wall pushes the others out.
 void FluidWorld::Impl::fillStart() {
     for (size_t k = 0; k < params.blocks.size(); ++k) {
         const size_t first = start.size();
-        fillBlock(params.blocks[k], params.spacing, start);
+        fillBlock(params.blocks[k], params.spacing, start,
+                  k < sourceSetup.blockTriangles.size() ? std::span<const vec3>(sourceSetup.blockTriangles[k]) : std::span<const vec3>());
         for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
     }
-    size_t left = 0;
+    if (!sourceSetup.particles.empty()) {
+        Bounds bounds;
+        float fastest = 0;
+        for (const NewParticle& p : sourceSetup.particles) {
+            bounds.add(p.position);
+            fastest = std::max(fastest, glm::length(p.velocity));
+            start.push_back({p.position, p.velocity});
+        }
+        placed = BlockParams{.min = bounds.min, .max = bounds.max, .velocity = vec3(fastest, 0.0F, 0.0F)};
+    }
+    sourceSetup.particles = {};
+    sourceSetup.blockTriangles = {};
+    size_t left = 0, leftPlaced = 0;
     std::erase_if(start, [&](const NewParticle& p) {
-        const bool may = solids.maySpawn(p.position, params.spacing) && bodies.maySpawn(p.position, params.spacing);
-        if (!may && !params.blocks[p.block].cut) ++left;
+        const float near = p.block == kNoBlock ? 0.0F : 1.0F;
+        const bool may = solids.maySpawn(p.position, params.spacing, near) && bodies.maySpawn(p.position, params.spacing, near);
+        if (!may && !blockOf(p).cut) ++(p.block == kNoBlock ? leftPlaced : left);
         return !may;
     });
+    if (leftPlaced > 0) log.notice(fmt::format("{} of the placed particles are inside a solid: they were left out", leftPlaced));
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
 }
 
@@ -161,9 +204,9 @@ Status FluidWorld::Impl::findSlots() {
     if (params.maxParticles > 0) {
         room = params.maxParticles;
         if (room < held)
-            return badInput(
-                fmt::format("fluid.maxParticles is {}, but the blocks hold {} particles: increase it, or set 0 to reserve memory for all",
-                            params.maxParticles, start.size()));
+            return badInput(fmt::format(
+                "fluid.maxParticles is {}, but the world starts with {} particles: increase it, or set 0 to reserve memory for all",
+                params.maxParticles, start.size()));
     } else if (!sourceSetup.emitters.empty() || sourceSetup.expectedDeposit > 0) {
         room = std::min(room, kMostParticles);
         const bool lets = sourceSetup.expectedDeposit > 0 || std::any_of(sourceSetup.emitters.begin(), sourceSetup.emitters.end(),
@@ -220,7 +263,7 @@ void FluidWorld::Impl::writeStart() {
     }
     std::vector<vec4> matterOf, absorptionOf;
     for (const NewParticle& p : start) {
-        const BlockParams& b = params.blocks[p.block];
+        const BlockParams& b = blockOf(p);
         const LiquidOf liquid = liquidOf(params, b.liquid);
         if (traits.matter) matterOf.emplace_back(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
         if (coloured) absorptionOf.push_back(dyed(liquid, b.dye, b.dyeAmount, b.dyeScattering));

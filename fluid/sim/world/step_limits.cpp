@@ -3,20 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fluid/sim/sources/block.h"
+
 namespace rivulet {
 
 float StepLimits::fastestFall(const Inputs& in) const {
     const float g = glm::length(in.gravity);
     float fastest = 0.0F;
-    for (const BlockParams& b : in.params.blocks) {
+    const auto add = [&](const BlockParams& b) {
         float fall = 0.0F;
         if (g > 0.0F) {
             const vec3 down = in.gravity / g;
             for (int k = 0; k < 3; ++k)
                 fall += std::abs(down[k]) * (down[k] < 0 ? b.max[k] - in.params.box.min[k] : in.params.box.max[k] - b.min[k]);
         }
-        fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + glm::length(b.velocity));
-    }
+        fastest = std::max(fastest, std::sqrt(2.0F * g * std::max(fall, 0.0F)) + fastestOf(b));
+    };
+    for (const BlockParams& b : in.params.blocks) add(b);
+    if (in.placed != nullptr) add(*in.placed);
     for (const Emitter& e : in.emitters) {
         float fall = 0.0F;
         for (int k = 0; k < 3; ++k)

@@ -19,6 +19,8 @@ class StepLimits {
         float fastestSource;  // m/s, highest emission speed
         float fastestBody;    // m/s
         bool atStart;         // t = 0: the speeds of bodies are those of the scene
+        // Bounds and highest speed of the particles that the host placed at t = 0; null: none.
+        const BlockParams* placed = nullptr;
     };
     // Further values that limit a step.
     struct Measured {

@@ -185,7 +185,22 @@ std::string fixedValues(const VisitFn& visit) {
     return std::move(values.text);
 }
 
+namespace {
+
+// True if `line` is of a parameter that `saved` lacks in a group that it has: a later version added the parameter.
+bool isLater(std::string_view line, std::string_view saved) {
+    const auto has = [&](std::string_view start) {
+        return saved.starts_with(start) || saved.find(fmt::format("\n{}", start)) != std::string_view::npos;
+    };
+    const std::string_view name = line.substr(0, line.find(" = ") + 3);
+    const size_t dot = name.rfind('.');
+    return dot != std::string_view::npos && !has(name) && has(name.substr(0, dot + 1));
+}
+
+}  // namespace
+
 Status sameFixedValues(std::string_view saved, std::string_view now) {
+    const std::string_view all = saved;
     const auto next = [](std::string_view& text) {
         const size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
@@ -193,7 +208,9 @@ Status sameFixedValues(std::string_view saved, std::string_view now) {
         return line.empty() ? std::string_view("nothing more") : line;
     };
     while (!saved.empty() || !now.empty()) {
-        const std::string_view was = next(saved), is = next(now);
+        const std::string_view is = next(now);
+        if (isLater(is, all)) continue;
+        const std::string_view was = next(saved);
         if (was != is)
             return badInput(
                 fmt::format("the state was saved with {}, this scene has {}: resume it with the scene it was saved from", was, is));

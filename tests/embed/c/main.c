@@ -529,6 +529,7 @@ static void what_makes_no_sense_is_a_sentence(rivulet_context* context) {
                {"{\"fluid\": {\"spacing\": -1}}", "fluid.spacing"},
                {"{\"colliders\": []}", "colliders"},
                {"{\"emitters\": [{\"shape\": \"mesh\"}]}", "emitters[0]"},
+               {"{\"fluid\": {\"blocks\": [{\"shape\": \"mesh\"}]}}", "fluid.blocks[0]"},
                {"{\"fluid\": {\"method\": \"magic\"}}", "magic"}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
         const rivulet_world_options o = {.size = sizeof o, .json = bad[k].json};
@@ -554,6 +555,11 @@ static void what_makes_no_sense_is_a_sentence(rivulet_context* context) {
     const rivulet_body empty = {.size = sizeof empty};
     o = (rivulet_world_options){.size = sizeof o, .bodies = &empty, .bodies_count = 1};
     REFUSED(rivulet_world_create(context, &o, &world, &why), "bodies[0] has no samples");
+    const float beside[6] = {0.5f, 0.5f, 0.5f, 0.5f, -1, 0.5f};
+    o = (rivulet_world_options){.size = sizeof o, .json = kDrop, .particles = beside, .particles_count = 2};
+    REFUSED(rivulet_world_create(context, &o, &world, &why), "particles[1] at (0.5, -1, 0.5) m is outside fluid.box");
+    o.particles = NULL;
+    REFUSED(rivulet_world_create(context, &o, &world, &why), "particles is NULL");
 
     world = make(context, kDrop);
     rivulet_stats s = {.size = sizeof s};

@@ -69,6 +69,27 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     assert context.memory == before
     refused(lambda: world.step(0.01), "world is NULL")  # closed
 
+    # Particles of the caller's own: a lattice that turns about its centre, with the energy m w^2 r^2 / 2, again after a reset.
+    places = np.stack(np.meshgrid(*[np.arange(0.325, 0.7, 0.05)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    turning = np.cross([0, 3, 0], places - 0.5)
+    open_box = {"fluid": {"spacing": 0.05, "gravity": [0, 0, 0]}}
+    with context.world(open_box, particles=places, velocities=turning) as world:
+        energy = 0.5 * 1000 * 0.05**3 * (turning**2).sum()
+        for _ in range(2):
+            placed = by_id(world.particles())
+            assert np.allclose(placed["positions"], places, atol=1e-6) and np.allclose(placed["velocities"], turning, atol=1e-6)
+            world.step(0.001)
+            assert abs(world.stats().kinetic / energy - 1) < 0.01, world.stats().kinetic / energy
+            world.reset()
+    with context.world(DROP, particles=places) as world:
+        assert len(world.particles().ids) == 512 + len(places)
+    refused(lambda: context.world(open_box, particles=places[:, :2]), "particles", "shape")
+    refused(lambda: context.world(open_box, particles=places, velocities=turning[1:]), "511 velocities", "512 particles")
+    refused(lambda: context.world(open_box, velocities=turning), "512 velocities", "0 particles")
+    refused(lambda: context.world(open_box, particles=places + [0, np.nan, 0]), "particles[0]", "finite")
+    refused(lambda: context.world(open_box, particles=places + [0, 0, 0.5]), "outside fluid.box", "enlarge")
+    refused(lambda: context.world({"fluid": {**open_box["fluid"], "maxParticles": 100}}, particles=places), "fluid.maxParticles is 100", "512")
+
     # A pool at rest: what is asked of it is what is known of it.
     calm = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1, 1]}, "blocks": [{"max": [1, 0.5, 1]}]}}
     with context.world(calm) as world:

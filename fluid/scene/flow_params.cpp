@@ -112,7 +112,7 @@ void FlowParams::visit(ParamVisitor& v) {
     v.list({.name = "sources", .doc = "sources of drops"}, sources);
     v.group({.name = "regions", .doc = "parts of the skin that hold drops more or less strongly"}, regions);
     v.group({.name = "look", .doc = "look of the liquid"}, look);
-    v.group({.name = "material", .doc = "material of a mesh whose file has none"}, material);
+    v.group({.name = "material", .doc = "material of a mesh if its file has none"}, material);
 }
 
 void PresetParams::visit(ParamVisitor& v) {

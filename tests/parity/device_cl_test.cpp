@@ -258,7 +258,7 @@ TEST_F(ClDeviceTest, aCachedProgramBehavesAsItsSource) {
     file("scale", other);
     EXPECT_EQ(scaled("1"), (std::vector<float>{0, 1, 2}));
     EXPECT_EQ(files(), 3);
-    // A complete file with this key whose content is no program: the driver rejects it, and it is replaced.
+    // A complete file with this key, but its content is not a program: the driver rejects it, and it is replaced.
     std::string key;
     for (const auto& entry : fs::directory_iterator(cache)) {
         std::ifstream stream(entry.path(), std::ios::binary);

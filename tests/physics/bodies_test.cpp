@@ -94,7 +94,7 @@ double surfaceOf(const std::vector<Drop>& drops, float spacing, Counts counts) {
 
 // ---- samples ----
 
-// Fluid whose lattice begins half a spacing off a flat surface is at rest density, for any offset along the samples.
+// A lattice of fluid that begins half a spacing from a flat surface is at rest density, for any offset along the samples.
 TEST(Samples, APlaneHasTheDensityOfTheFluidThatItReplaces) {
     for (const char* kernel : {"wendland", "cubic_spline"})
         for (const float support : {2.0F, 2.5F, 3.0F}) {

@@ -99,7 +99,7 @@ TEST(Collide, NothingEntersASphere) {
     EXPECT_GT(hits, 2000U);
 }
 
-// Inside a room whose walls have no thickness, at any angle to the grid: no particle leaves.
+// A room has walls without thickness, at any angle to the grid: no particle leaves it.
 TEST(Collide, NothingLeavesARoomOfSheets) {
     random_.seed(2);
     for (int turn = 0; turn < 4; ++turn) {

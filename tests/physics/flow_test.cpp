@@ -273,7 +273,7 @@ TEST(Flow, TheSecondTearFollowsTheFirst) {
     EXPECT_EQ(l.added, l.drops + l.film + l.left);
 }
 
-// A deforming skin, whose triangles sometimes lose their area, carries its drops: they keep their places on it, and none becomes infinite.
+// A deforming skin carries its drops, even where triangles lose their area: drops keep their places on it, and none becomes infinite.
 TEST(Flow, ASkinThatMovesCarriesItsDrops) {
     auto device = cpu();
     const Shape rest = sheetShape(vec3(-0.05F, 0, 0.05F), vec3(0.1F, 0, 0), vec3(0, 0, -0.1F), 20, 20);

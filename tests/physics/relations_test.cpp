@@ -1,5 +1,5 @@
 // Relations between the answers of pairs of random scenes (relations.h), with every method on the cpu.
-#include "tests/physics/relations.h"
+#include "tests/physics/relation_rounds.h"
 
 #include <gtest/gtest.h>
 

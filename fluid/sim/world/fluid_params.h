@@ -23,7 +23,7 @@ struct BlockParams {
     float jitter = 0.0F;         // spacings: largest random offset of a particle from its lattice point, along each axis
     std::string shape = "box";   // box | ball | cylinder | cone: fits between min and max; mesh: the inside of `mesh` between them
     bool cut = false;            // solids are meant to cut the block: no notice about the particles that they remove
-    std::string axis = "y";      // x | y | z: of a cylinder or cone, whose apex is at max
+    std::string axis = "y";      // x | y | z: of a cylinder or a cone; a cone has its apex at max
     std::string mesh = {};       // file, as of a collider
     float fitSize = 0.0F;        // m, mesh: its longest side; 0 = as it is
     vec3 position{0.0F};         // m, mesh: where its origin goes

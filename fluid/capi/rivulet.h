@@ -274,6 +274,22 @@ RIVULET_API rivulet_status rivulet_world_volumes(rivulet_world* world, rivulet_v
 RIVULET_API rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
                                                        rivulet_error* why);
 
+/* What fluid.probes measured: the load of the fluid on walls and bodies, in world axes. Means are over the last frame that has arrived; on
+   a GPU two or three frames ago. Probes are part of the world's json, or set with rivulet_world_set while their number stays. Their `on` is
+   box, body or collider; collider k is walls[k]. */
+typedef struct rivulet_load {
+    char name[64];             /* of the probe; a longer one is cut */
+    double time, seconds;      /* s simulated: the means are of the last `seconds` before `time`; 0: no frame has arrived */
+    double force[3];           /* N, on the wall, mean */
+    double torque[3];          /* N m, about the probe's point, mean */
+    double pressure;           /* Pa, mean over the probe's area; NaN: it has no area, or is on a body */
+    double impulse[3];         /* N s, since the start, a reset or a restored state */
+    double angular_impulse[3]; /* N m s, likewise */
+} rivulet_load;
+/* `count` receives the number of all probes, also where `capacity` is smaller. */
+RIVULET_API rivulet_status rivulet_world_loads(const rivulet_world* world, rivulet_load* loads, size_t capacity, size_t* count,
+                                               rivulet_error* why);
+
 /* ---- Files ---- */
 
 /* Writes the particles as .ply, .vtp (ParaView) or .csv, the water's surface as .obj or .ply, by the path's ending; +Y up, metres. */

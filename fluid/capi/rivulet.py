@@ -76,6 +76,8 @@ _VOLUME = np.dtype([("id", np.uint32), ("shape", np.int32), ("position", np.floa
 _COUNT = np.dtype([("id", np.uint32), ("entered", np.uint64), ("left", np.uint64), ("inside", np.uint64), ("time", np.float64),
                    ("volume_inside", np.float64)], align=True)
 _MOST_VOLUMES = 32
+_LOADS = np.dtype([("name", "S64"), ("time", np.float64), ("seconds", np.float64), ("force", np.float64, 3), ("torque", np.float64, 3),
+                   ("pressure", np.float64), ("impulse", np.float64, 3), ("angular_impulse", np.float64, 3)])
 
 
 class _BodyHost(Structure):
@@ -155,7 +157,8 @@ for _name, _arguments in {
         "world_bodies": [c_void_p, c_void_p, c_size_t], "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_cast": [c_void_p, c_void_p, c_size_t, c_void_p], "world_heights": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_set_volumes": [c_void_p, c_void_p, c_size_t], "world_volumes": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
-        "world_volume_events": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)], "world_export": [c_void_p, c_char_p],
+        "world_volume_events": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
+        "world_loads": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)], "world_export": [c_void_p, c_char_p],
         "world_export_surface": [c_void_p, c_char_p], "world_save": [c_void_p, c_char_p], "world_restore": [c_void_p, c_char_p],
         "skin_create": [c_void_p, POINTER(_SkinOptions), _handle], "skin_add": [c_void_p, c_void_p, c_double],
         "skin_step": [c_void_p, POINTER(_SkinInputs), c_double], "skin_stats_of": [c_void_p, POINTER(_SkinStats)]}.items():
@@ -457,6 +460,16 @@ class World(_Handle):
     def volume_events(self):
         """The volumes that particles entered or left since the last call, with entered and left since then."""
         return self._counts("world_volume_events")
+
+    def loads(self):
+        """{name: load} of the scene's fluid.probes in the last frame (on a GPU two or three frames ago). A load has the fields force (N) on the
+        wall and torque (N m) about the probe's point, means over the last `seconds` before `time`; pressure (Pa, NaN without an area); impulse
+        (N s) and angular_impulse (N m s), sums since the start, a reset or a restored state."""
+        n = c_size_t()
+        _call("world_loads", self._pointer, None, 0, n)
+        loads = np.zeros(n.value, _LOADS)
+        _call("world_loads", self._pointer, _at(loads), len(loads), n)
+        return {load["name"].decode(): load for load in loads}
 
     def export(self, path):
         """Writes the particles as .ply, .vtp (ParaView) or .csv."""

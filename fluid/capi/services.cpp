@@ -123,6 +123,34 @@ rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_
     });
 }
 
+rivulet_status rivulet_world_loads(const rivulet_world* world, rivulet_load* loads, size_t capacity, size_t* count, rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        if (count == nullptr) return badInput("count is NULL: it receives the number of probes");
+        const std::vector<ProbeParams>& probes = world->params.fluid.probes;
+        const ProbeFrame& frame = world->world->stats().loads;
+        *count = probes.size();
+        for (size_t k = 0; loads != nullptr && k < std::min(probes.size(), capacity); ++k) {
+            rivulet_load to{};
+            to.pressure = std::numeric_limits<double>::quiet_NaN();
+            probes[k].name.copy(to.name, sizeof to.name - 1);
+            if (k < frame.probes.size()) {
+                const ProbeReading& p = frame.probes[k];
+                to.time = frame.time;
+                to.seconds = frame.seconds;
+                for (int axis = 0; axis < 3; ++axis) {
+                    to.force[axis] = p.force[axis];
+                    to.torque[axis] = p.torque[axis];
+                    to.impulse[axis] = p.impulse[axis];
+                    to.angular_impulse[axis] = p.angularImpulse[axis];
+                }
+                to.pressure = p.pressure.value_or(to.pressure);
+            }
+            loads[k] = to;
+        }
+        return ok();
+    });
+}
+
 rivulet_status rivulet_world_export(rivulet_world* world, const char* path, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         if (path == nullptr) return badInput("path is NULL");

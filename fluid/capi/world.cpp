@@ -87,9 +87,12 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
         Result<HostMesh> mesh = meshOf(wall, fmt::format("walls[{}]", k));
         if (!mesh) return mesh.error();
         const Surface surface{wall.friction, wall.restitution};
-        const auto same = std::find_if(solids.surfaces.begin(), solids.surfaces.end(), [&](const Surface& s) {
-            return s.friction == surface.friction && s.restitution == surface.restitution;
-        });
+        // A surface for each wall while there are enough, so that probes measure each; then equal walls share one.
+        const auto same = o.walls_count <= kMostSurfaces
+                              ? solids.surfaces.end()
+                              : std::find_if(solids.surfaces.begin(), solids.surfaces.end(), [&](const Surface& s) {
+                                    return s.friction == surface.friction && s.restitution == surface.restitution;
+                                });
         const auto number = static_cast<size_t>(same - solids.surfaces.begin());
         if (same == solids.surfaces.end()) solids.surfaces.push_back(surface);
         if (number >= kMostSurfaces)
@@ -99,6 +102,7 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
         if (wall.moves == 0) {
             still.push_back(std::move(*mesh));
             stillSurfaces.push_back(surfaceNumber);
+            solids.colliders.push_back({ProbeOn::still, surfaceNumber});
             finest = std::max(finest, wall.resolution);
             continue;
         }
@@ -106,6 +110,7 @@ Status addWalls(const rivulet_world_options& o, rivulet_world& w, Solids& solids
         if (!pose) return pose.error();
         auto field = fieldOf(std::span(&*mesh, 1), std::span(&surfaceNumber, 1), wall.resolution, spacing, w.context->memoryLimit);
         if (!field) return Error{fmt::format("walls[{}]: {}", k, field.error().message), field.error().fault};
+        solids.colliders.push_back({ProbeOn::rigid, static_cast<uint32_t>(solids.rigid.size())});
         solids.rigid.push_back({field->get(), *pose});
         w.poses.push_back(*pose);
         w.fields.push_back(std::move(*field));

@@ -104,6 +104,7 @@ void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
     for (const PassTime& pass : passes) passes_[pass.name].push_back(pass.ms);
     substeps_ += static_cast<uint64_t>(world_->lastSubsteps());
     iterations_ += world_->stats().iterations * world_->lastSubsteps();
+    takeLoads();
     if (!readBack_) return;
 
     HostParticles now = readParticles(*world_);
@@ -122,6 +123,11 @@ void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
         compressionSum_ += sum / static_cast<double>(counted);
         ++compressionFrames_;
     }
+}
+
+void RunRecorder::takeLoads() {
+    std::vector<ProbeFrame> arrived = world_->takeLoads();
+    std::move(arrived.begin(), arrived.end(), std::back_inserter(loads_));
 }
 
 RunStats::Ledger ledgerOf(const FluidStats& late, double inWorld, double one, const SkinFlows::Ledger* skins) {
@@ -154,6 +160,7 @@ RunStats RunRecorder::finish(std::string scene) {
     world.device().finish();
     world.device().poll();
     HostParticles now = readParticles(world);
+    takeLoads();
     const FluidStats& late = world.stats();
     const FluidParams& params = world.params();
 
@@ -223,6 +230,7 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.dtMin = late.dtMin;
     stats.dtMax = late.dtMax;
     stats.limited = late.limited;
+    stats.loads = loads_;
     return stats;
 }
 
@@ -230,6 +238,29 @@ namespace {
 
 // JSON has no NaN and no infinity.
 Json::Value number(double v) { return std::isfinite(v) ? Json::Value(v) : Json::Value(); }
+
+Json::Value jsonOf(const dvec3& v) {
+    Json::Value list(Json::arrayValue);
+    for (int axis = 0; axis < 3; ++axis) list.append(number(v[axis]));
+    return list;
+}
+
+// A series of each probe: time and seconds of its frames, then the values of each. A change of the probes begins new series.
+Json::Value seriesOf(const std::vector<ProbeFrame>& frames) {
+    Json::Value all(Json::objectValue);
+    for (const ProbeFrame& frame : frames)
+        for (const ProbeReading& p : frame.probes) {
+            Json::Value& series = all[p.name];
+            series["time"].append(number(frame.time));
+            series["seconds"].append(number(frame.seconds));
+            series["force"].append(jsonOf(p.force));
+            series["torque"].append(jsonOf(p.torque));
+            if (p.pressure) series["pressure"].append(number(*p.pressure));
+            series["impulse"] = jsonOf(p.impulse);
+            series["angularImpulse"] = jsonOf(p.angularImpulse);
+        }
+    return all;
+}
 
 Json::Value jsonOf(const Spread& spread) {
     Json::Value v(Json::objectValue);
@@ -304,6 +335,8 @@ std::string writeRunStats(const RunStats& stats) {
         v["ledger"][name] = number(value);
     v["limited"] = Json::Value(Json::arrayValue);
     for (const std::string& sentence : stats.limited) v["limited"].append(sentence);
+
+    if (!stats.loads.empty()) v["probes"] = seriesOf(stats.loads);
 
     Json::StreamWriterBuilder builder;
     builder["indentation"] = "  ";

@@ -79,6 +79,7 @@ struct RunStats {
     double dropped = 0;              // s requested but not simulated
     double dtMin = 0, dtMax = 0;     // s
     std::vector<std::string> limited;
+    std::vector<ProbeFrame> loads;  // of fluid.probes, a row for each frame that stepped
     // m^3. emitted: blocks, emitters and sources. pending (key `debt`): the part of inWorld that came from skins and is not yet a particle.
     // error: the imbalance over emitted.
     struct Ledger {
@@ -106,6 +107,7 @@ class RunRecorder {
 
   private:
     bool inSolid(const vec4& p) const;
+    void takeLoads();
 
     FluidWorld* world_;
     const SkinFlows* flows_;
@@ -116,7 +118,8 @@ class RunRecorder {
     std::map<std::string, std::vector<double>> passes_;
     double compressionSum_ = 0, maxCompression_ = 0, wallMs_ = 0;
     uint64_t compressionFrames_ = 0, substeps_ = 0;
-    double iterations_ = 0;         // of all substeps
+    double iterations_ = 0;  // of all substeps
+    std::vector<ProbeFrame> loads_;
     std::vector<bool> penetrated_;  // by id
 };
 

@@ -101,12 +101,24 @@ Status SceneSolids::create(SceneFile& scene, const Log& log, OpeningProgress& pr
     solids_.surfaces = surfacesOf(scene, surfaceOf_);
     if (Status baked = bake(scene, log, progress); !baked) return baked;
     if (!still_.empty()) solids_.field = &still_;
+    std::vector<SolidRef>& refs = solids_.colliders;
+    refs.assign(scene.colliders.size(), {});
     for (size_t i = 0; i < scene.colliders.size(); ++i) {
         const ColliderKind& kind = kindOf(scene.colliders[i]);
-        if (!kind.hasTriangles()) kind.addTo(scene.colliders[i], surfaceOf_[i], solids_);
+        if (kind.hasTriangles()) continue;
+        refs[i] = {ProbeOn::plane, static_cast<uint32_t>(solids_.planes.size())};
+        kind.addTo(scene.colliders[i], surfaceOf_[i], solids_);
     }
-    for (const Rigid& r : rigid_) solids_.rigid.push_back({r.field.get(), poseOf(scene, r.model, 0, 0)});
-    for (const Deforming& d : deforming_) solids_.deforming.push_back(d.field.get());
+    for (size_t m = 0; m < models_.size(); ++m)
+        if (roleOf(scene, m) == Role::still) refs[colliderOf_[m]] = {ProbeOn::still, surfaceOf_[colliderOf_[m]]};
+    for (const Rigid& r : rigid_) {
+        refs[colliderOf_[r.model]] = {ProbeOn::rigid, static_cast<uint32_t>(solids_.rigid.size())};
+        solids_.rigid.push_back({r.field.get(), poseOf(scene, r.model, 0, 0)});
+    }
+    for (const Deforming& d : deforming_) {
+        refs[colliderOf_[d.model]] = {ProbeOn::deforming, static_cast<uint32_t>(solids_.deforming.size())};
+        solids_.deforming.push_back(d.field.get());
+    }
     if (scene.bodies.empty()) return ok();
     if (Status on = progress.next("bodies"); !on) return on;
     return addBodies(scene);

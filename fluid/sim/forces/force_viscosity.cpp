@@ -59,6 +59,7 @@ class Viscosity {
         std::vector<const Buffer*> buffers = {&c.grid.cellStart(), &p.velocity, &friction, &p.acceleration};
         if (explicit_.matter) buffers.push_back(&p.matter);
         c.device.dispatch(drag, std::as_bytes(std::span(&c.params, 1)), buffers, p.count);
+        if (c.probes != nullptr) c.probes->friction(c.params, friction, p.velocity);
     }
 
     void explicitly(StepContext& c) {
@@ -110,6 +111,7 @@ class Viscosity {
                              [into = last_, tolerance](std::span<const std::byte> b) { *into = read(b, tolerance); });
         device.run(finish, c.params, {&cells, &p.velocity, &solved, &left, &p.acceleration}, p.count);
         pushSamples(c, solved);
+        if (walls_ && c.probes != nullptr) c.probes->friction(c.params, friction, solved);
     }
 
     static Left read(std::span<const std::byte> bytes, double tolerance) {

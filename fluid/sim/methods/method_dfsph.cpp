@@ -67,6 +67,10 @@ class Dfsph final : public Method {
         c.solve.iterations = residual.iterations();
         c.solve.residual = residual.value();
         c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept}, p.count);
+        if (c.probes != nullptr) {
+            c.probes->solved(c.params, solve);
+            c.probes->response(c.params, p.position, p.velocity, p.acceleration, 0.0F);
+        }
         c.device.run(
             integrate, c.params,
             {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},

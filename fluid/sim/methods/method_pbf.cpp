@@ -51,6 +51,7 @@ class Pbf final : public Method {
     bool predicts() const override { return true; }
     void step(StepContext& c) override {
         Particles& p = c.particles;
+        if (c.probes != nullptr) c.probes->predicted(c.params);
         c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
         c.grid.setMargin(1.05F);  // as pbf_lambda keeps
         if (!c.build(true)) {
@@ -81,10 +82,12 @@ class Pbf final : public Method {
             }
             shift.run(c, s, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2], &given}, threads);
             c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt), vec3(0.0F));
+            if (c.probes != nullptr) c.probes->pressure(c.params, *at, p.pressure, c.params.mass / c.params.dt);
             at = &corrected[k % 2];
         }
         c.solve.iterations = k;
         if (toTolerance) c.solve.residual = residual.value();
+        if (c.probes != nullptr) c.probes->responseFromPositions(c.params, p.velocity, *at);
         c.device.run(finish, c.params,
                      {&c.grid.cellStart(), &p.position, at, &p.velocity, &p.density, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
         // The other forces act on the velocity that came out; the next step's prediction follows it.

@@ -69,8 +69,11 @@ class Wcsph final : public Method {
             forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.boundary}, threads);
             // At a sample the pair has the fluid's pressure twice; one over rho^2 is in the pressures already.
             c.pushSamples(p.position, p.pressure, 2.0F * c.params.restDensity, vec3(0.0F));
+            if (c.probes != nullptr)
+                c.probes->pressure(c.params, p.position, p.pressure, 2.0F * c.params.restDensity * c.params.mass * c.params.dt);
         }
         c.forces();
+        if (c.probes != nullptr) c.probes->response(c.params, p.position, p.velocity, p.acceleration, 1.0F);
         c.device.run(
             integrate, c.params,
             {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},

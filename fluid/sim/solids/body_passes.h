@@ -45,6 +45,11 @@ class BodyPasses {
     // As StepContext::pushSamples.
     void push(const StepParams& step, const NeighborGrid& grid, Particles& particles, const Buffer& position, const Buffer& pressures,
               float scale, const vec3& weight);
+    // What probes read: of each sample its slot, its place in the body's frame (w: the body) and from its centre of mass; and the bodies.
+    struct Samples {
+        const Buffer *slotOf, *own, *arm, *bodies;
+    };
+    Samples samples() const { return {&slotOf_, &own_, &arm_, &deviceBodies_}; }
     // Sums the forces, waits for them (some KB: on a GPU one round trip per substep), and calls the host to move the bodies.
     void advance(const StepParams& step, Particles& particles, double seconds);
     // The body for which the host last returned a state that is not finite; the body has kept its state.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "fluid/sim/solids/probe_passes.h"
 #include "fluid/voxel/labels.h"
 #include "fluid/voxel/packed_array.h"
 
@@ -467,25 +468,50 @@ void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Par
         device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration}, step.count);
 }
 
-void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles) {
-    collide(step,
-            {&particles.position, &particles.positionNext, &particles.velocityNext, &grid.cellStart(), step.cellCount, particles.count},
-            moving(), std::nullopt);
+std::vector<SolidPasses::FieldView> SolidPasses::movingFields() const {
+    std::vector<FieldView> views;
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        const Moving& m = deforming_[k];
+        views.push_back({ProbeOn::deforming, static_cast<uint32_t>(k), &m.block, &m.on.distance, &m.on.normal});
+    }
+    for (size_t k = 0; k < rigid_.size(); ++k) {
+        const Moving& m = rigid_[k];
+        views.push_back({ProbeOn::rigid, static_cast<uint32_t>(k), &m.block, &m.on.distance, &m.on.normal});
+    }
+    return views;
 }
 
-void SolidPasses::keepOut(const StepParams& step, const Movers& movers, double seconds) { collide(step, movers, true, seconds); }
+void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles, ProbePasses* probes) {
+    collide(step,
+            {&particles.position, &particles.positionNext, &particles.velocityNext, &grid.cellStart(), step.cellCount, particles.count},
+            moving(), std::nullopt, probes);
+}
 
-void SolidPasses::collide(const StepParams& step, const Movers& m, bool planes, std::optional<double> seconds) {
+void SolidPasses::keepOut(const StepParams& step, const Movers& movers, double seconds) { collide(step, movers, true, seconds, nullptr); }
+
+void SolidPasses::collide(const StepParams& step, const Movers& m, bool planes, std::optional<double> seconds, ProbePasses* probes) {
     const bool still = seconds && !(*seconds > 0);
     StepParams walls = step;
     walls.cellCount = m.index;
-    for (Moving& solid : deforming_) {
+    const auto measured = [&](ProbeOn on, size_t index, const Field& f, const Buffer& block, const auto& dispatch) {
+        if (probes != nullptr) probes->remember(on);
+        dispatch();
+        if (probes != nullptr) probes->contact(step, on, static_cast<uint32_t>(index), f.distance, f.normal, block);
+    };
+    const auto withinWalls = [&] {
+        if (probes != nullptr) probes->arrived(step);
+        device_->run(walls_, walls, {m.counts, &planes_, m.to, m.velocity}, m.slots);
+    };
+    for (size_t k = 0; k < deforming_.size(); ++k) {
+        const Moving& solid = deforming_[k];
         MotionParams motion = solid.motion;
         motion.field.countIndex = m.index;
         if (still) motion.carried = 0.0F;
-        device_->run(collideDeforming_, motion,
-                     {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal, &solid.displacement},
-                     m.slots);
+        measured(ProbeOn::deforming, k, solid.on, solid.block, [&] {
+            device_->run(collideDeforming_, motion,
+                         {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal, &solid.displacement},
+                         m.slots);
+        });
     }
     for (size_t k = 0; k < rigid_.size(); ++k) {
         const Moving& solid = rigid_[k];
@@ -498,17 +524,21 @@ void SolidPasses::collide(const StepParams& step, const Movers& m, bool planes, 
         } else if (seconds) {
             setMotion(motion, solid.from, poses_[k], static_cast<float>(*seconds));
         }
-        device_->run(collideRigid_, motion, {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal},
-                     m.slots);
+        measured(ProbeOn::rigid, k, solid.on, solid.block, [&] {
+            device_->run(collideRigid_, motion, {m.from, m.to, m.velocity, m.counts, &solid.on.bits, &solid.on.distance, &solid.on.normal},
+                         m.slots);
+        });
     }
-    if (planes && walled_) device_->run(walls_, walls, {m.counts, &planes_, m.to, m.velocity}, m.slots);
+    if (planes && walled_) withinWalls();
     // Last: what stands still is never entered, whatever squeezes.
     if (static_.field == nullptr) return;
     FieldParams block = block_;
     block.countIndex = m.index;
-    device_->run(collide_, block, {m.from, m.to, m.velocity, m.counts, &static_.bits, &static_.distance, &static_.normal}, m.slots);
+    measured(ProbeOn::still, 0, static_, staticBlock_, [&] {
+        device_->run(collide_, block, {m.from, m.to, m.velocity, m.counts, &static_.bits, &static_.distance, &static_.normal}, m.slots);
+    });
     // The thesis's way back by a voxel asks nothing of the box: a mesh beside a wall would put particles beyond it, and they would be lost.
-    if (thesis_) device_->run(walls_, walls, {m.counts, &planes_, m.to, m.velocity}, m.slots);
+    if (thesis_) withinWalls();
 }
 
 }  // namespace rivulet

@@ -16,6 +16,8 @@
 
 namespace rivulet {
 
+class ProbePasses;
+
 // The solids of a world, on its Device. Per frame: beginFrame, then a substep's advance, boundary, collide, each in that order.
 class SolidPasses {
   public:
@@ -63,8 +65,8 @@ class SolidPasses {
     void friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction);
     // Adds the adhesion of static walls to particles.acceleration; step.force.w: see fluid/forces/wall_adhesion.
     void adhesion(const StepParams& step, const NeighborGrid& grid, Particles& particles);
-    // Moves particles.positionNext and velocityNext out of the solids.
-    void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles);
+    // Moves particles.positionNext and velocityNext out of the solids. `probes`: measures it; null: nothing does.
+    void collide(const StepParams& step, const NeighborGrid& grid, Particles& particles, ProbePasses* probes = nullptr);
     // Other moving points: one vec4 each, xyz m or m/s, w unchanged. `from` is outside all solids.
     struct Movers {
         const Buffer *from, *to, *velocity;
@@ -74,6 +76,14 @@ class SolidPasses {
     // Moves these points out of solids, planes and the box. `seconds`: their path covers the frame so far, with the rigid solids' poses
     // since beginFrame; deforming solids have only the shape of the last substep. 0: the path takes no time, and solids stand still.
     void keepOut(const StepParams& step, const Movers& movers, double seconds);
+    // What probes read of a field: kind and number, its params (FieldParams, or MotionParams of this substep), distances, normals.
+    struct FieldView {
+        ProbeOn on = ProbeOn::none;
+        uint32_t index = 0;
+        const Buffer *block = nullptr, *distance = nullptr, *normal = nullptr;
+    };
+    FieldView stillField() const { return {ProbeOn::still, 0, &staticBlock_, &static_.distance, &static_.normal}; }
+    std::vector<FieldView> movingFields() const;
     bool moving() const { return !rigid_.empty() || !deforming_.empty(); }  // some may move
 
     const std::vector<Pose>& poses() const { return poses_; }      // of the rigid solids, now
@@ -101,7 +111,7 @@ class SolidPasses {
 
     Status addMoving(Moving moving);
     // `planes`: what is pushed may be beyond the box or a plane. `seconds`: as keepOut; nothing: the way is the last substep's.
-    void collide(const StepParams& step, const Movers& movers, bool planes, std::optional<double> seconds);
+    void collide(const StepParams& step, const Movers& movers, bool planes, std::optional<double> seconds, ProbePasses* probes);
     uint64_t voxelsHash() const;  // of what was baked and stays
     Status deform(Moving& moving, double share, double seconds);
     static void setMotion(MotionParams& motion, const Pose& start, const Pose& end, float dt);

@@ -7,6 +7,7 @@
 
 #include "engine/core/math.h"
 #include "fluid/sim/solids/bodies.h"
+#include "fluid/sim/solids/probes.h"
 #include "fluid/sim/world/pose.h"
 #include "fluid/voxel/deforming_field.h"
 #include "fluid/voxel/voxel_field.h"
@@ -41,6 +42,7 @@ struct Solids {
     std::vector<Surface> surfaces = {};           // kMostSurfaces at most; those left out are as fluid.collision says
     std::vector<Body> bodies = {};                // floating, or made of boundary particles and standing still
     BodyHost bodyHost = {};                       // moves them; empty: they move freely
+    std::vector<SolidRef> colliders = {};         // of the host's own list, for fluid.probes that name one by number
 };
 
 // What follows a field's normals in their buffer: friction and restitution of every surface, as float bits.

@@ -174,6 +174,7 @@ void FluidParams::visit(ParamVisitor& v) {
     v.group({.name = "box", .doc = "walls around the fluid; particles that leave the box are lost"}, box);
     v.group({.name = "collision", .doc = "contact of the fluid with solids"}, collision);
     v.list({.name = "blocks", .doc = "blocks of fluid at the start", .fixed = kFixed}, blocks);
+    v.list({.name = "probes", .doc = "force, torque and pressure of the fluid on walls and bodies, as results"}, probes);
 }
 
 }  // namespace rivulet

@@ -9,6 +9,7 @@
 #include "engine/core/params.h"
 #include "fluid/sim/methods/method_dfsph.h"
 #include "fluid/sim/methods/method_pbf.h"
+#include "fluid/sim/solids/probes.h"
 
 namespace rivulet {
 
@@ -98,6 +99,7 @@ struct FluidParams {
     BoxParams box = {};
     CollisionParams collision = {};
     std::vector<BlockParams> blocks = {};
+    std::vector<ProbeParams> probes = {};
     void visit(ParamVisitor& v);
 };
 

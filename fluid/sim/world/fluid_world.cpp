@@ -127,7 +127,12 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
                         .forces = {},
                         .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
-                        .wallAdhesion = [&](const StepParams& s) { solids.adhesion(s, *grid, particles); }};
+                        .wallAdhesion =
+                            [&](const StepParams& s) {
+                                solids.adhesion(s, *grid, particles);
+                                if (probes) probes->adhesion(s);
+                            },
+                        .probes = probes ? &*probes : nullptr};
     context.hasForces = forces.anyOn();
     particles.hasNormals = false;
     context.forces = [&] { forces.run(context); };
@@ -135,9 +140,10 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     iterations += solve.iterations;
     sorted = built;
     if (!built) return false;
-    solids.collide(step, *grid, particles);
+    solids.collide(step, *grid, particles, probes ? &*probes : nullptr);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
+    if (probes) probes->bodies(step);
     bodies.advance(step, particles, dt);
     if (const std::optional<size_t> body = bodies.misled())
         report(fmt::format("the host's solver gave body {} a state that is not finite: the body keeps its last state", *body));
@@ -185,6 +191,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.limits.fastestWall = std::max(w.limits.fastestWall * static_cast<float>(std::exp(-now / kForget)), w.solids.fastestWall());
     for (const std::string& off : w.forces.update(*w.device, {p, w.particles.count, w.traits, methodOf(p).doesViscosity})) w.report(off);
     w.iterations = 0;
+    if (w.probes) w.probes->begin();
     double stepped = 0;
     int substeps = 0, done = 0;
     bool stop = false;
@@ -204,6 +211,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     }
     w.clock.lastSubsteps = substeps;
     w.clock.time += stepped;
+    if (w.probes) w.probes->end(std::shared_ptr<ProbeFrame>(w.figures, &w.figures->loads), w.clock.time, stepped);
     w.gatherColours();
     if (stepped > 0) w.volumes.count(w.step, w.particles, w.clock.time);
     if (p.ellipsoids && substeps > 0) {
@@ -366,6 +374,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                 }
             }
             f.limited = std::move(into->limited);
+            f.loads = std::move(into->loads);
             fillLedger(f);
             *into = std::move(f);
             if (sources.full())
@@ -379,6 +388,8 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                 report("the fastest particles were slowed to one spacing a step");
         });
 }
+
+std::vector<ProbeFrame> FluidWorld::takeLoads() { return impl_->probes ? impl_->probes->take() : std::vector<ProbeFrame>{}; }
 
 bool FluidWorld::hasCellWork() const {
     const Impl& w = *impl_;
@@ -438,6 +449,19 @@ Status FluidWorld::setSources(const Sources& next) {
     return ok();
 }
 
+Status FluidWorld::Impl::prepareProbes(const FluidParams& next) {
+    std::optional<ProbePasses> made;
+    if (!next.probes.empty()) {
+        Result<ProbePasses> passes = ProbePasses::create(*device, next, probeTargets, {solids, bodies, particles, *grid, traits});
+        if (!passes) return passes.error();
+        made.emplace(std::move(*passes));
+    }
+    probes.reset();  // with its reads in flight
+    figures->loads = {};
+    if (made) probes.emplace(std::move(*made));
+    return ok();
+}
+
 Status FluidWorld::setParams(const FluidParams& params) {
     if (Status s = checkParams("fluid", params); !s) return s;
     FluidParams next = params;
@@ -450,6 +474,8 @@ Status FluidWorld::setParams(const FluidParams& params) {
     }
     // A scene gives the origin in floats: a double that rounds to them stays.
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
+    if (next.probes != old.probes)
+        if (Status s = impl_->prepareProbes(next); !s) return s;
     impl_->params = next;
     return ok();
 }
@@ -512,6 +538,8 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.log = std::move(log);
     w.gravity = params.gravity;
     if (Status s = w.prepare(); !s) return s.error();
+    w.probeTargets = ProbeTargets::of(solids);
+    if (Status s = w.prepareProbes(w.params); !s) return s.error();
     return world;
 }
 

@@ -12,6 +12,7 @@
 #include "fluid/sim/query/volumes.h"
 #include "fluid/sim/query/water_query.h"
 #include "fluid/sim/solids/body_passes.h"
+#include "fluid/sim/solids/probe_passes.h"
 #include "fluid/sim/solids/solid_passes.h"
 #include "fluid/sim/sources/block.h"
 #include "fluid/sim/sources/exchange_passes.h"
@@ -61,6 +62,8 @@ struct FluidWorld::Impl {
     bool coloured = false;  // particles differ in colour
     float mostViscous = 0;  // m^2/s, of the world's liquids
     BodyPasses bodies;
+    ProbeTargets probeTargets;
+    std::optional<ProbePasses> probes;  // empty: the scene has none
     Buffer statsRows, corner;
     Kernel stats, wrap, wrapFromPositions, gatherMatter, gatherAbsorption;
     PairTraits traits;
@@ -79,6 +82,7 @@ struct FluidWorld::Impl {
     bool cellsValid = false;  // since cellWork()
 
     Status prepare();
+    Status prepareProbes(const FluidParams& next);
     Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     Status checkStart() const;

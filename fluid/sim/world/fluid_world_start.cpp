@@ -282,6 +282,7 @@ void FluidWorld::Impl::writeStart() {
     withdrawn = 0;
     if (foam) foam->reset();
     volumes.reset();
+    if (probes) probes->reset();
     sorted = false;
     invalidateCells();
     gatherColours();

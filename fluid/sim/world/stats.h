@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/math.h"
+#include "fluid/sim/solids/probes.h"
 
 namespace rivulet {
 
@@ -34,6 +35,7 @@ struct FluidStats {
     uint64_t sweeps = 0;               // over all neighbours, since the start: what a step costs, whatever the machine
     std::optional<double> residual;    // mean compression after the last of them, as the solver predicts it; nothing: it predicts none
     double dtMin = 0, dtMax = 0;       // s, since the start
+    ProbeFrame loads = {};             // what fluid.probes measured, of its own last frame
     std::vector<std::string> limited;  // sentences: what the program limited and why, each once
 };
 

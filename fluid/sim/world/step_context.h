@@ -22,6 +22,26 @@ struct SolveFigures {
     uint64_t sweeps = 0;             // over all neighbours, of all kernels since the start
 };
 
+// Measures what walls do to particles in a substep. Each function is called beside the kernel whose effect it measures.
+class WallLoads {
+  public:
+    virtual ~WallLoads() = default;
+    // Walls' share of a pressure solve at `position` (sorted), with particles.boundary there: the impulse is -scale * multiplier *
+    // gradient.
+    virtual void pressure(const StepParams& step, const Buffer& position, const Buffer& multiplier, float scale) = 0;
+    // The same for dfsph, at the end of its solve: `solve` as in dfsph_rate.kernel, particles.velocity with what stopped particles at
+    // walls.
+    virtual void solved(const StepParams& step, const Buffer& solve) = 0;
+    // No-slip walls, with the result of StepContext::wallFriction, on particles of these velocities.
+    virtual void friction(const StepParams& step, const Buffer& friction, const Buffer& velocity) = 0;
+    // The box and the planes at the end of a step, as integrate.kernel: velocity + `share` * acceleration * dt from `position`.
+    virtual void response(const StepParams& step, const Buffer& position, const Buffer& velocity, const Buffer& acceleration,
+                          float share) = 0;
+    // As pbf_finish.kernel and pbf_predict.kernel; the latter before it, on the newest state.
+    virtual void responseFromPositions(const StepParams& step, const Buffer& start, const Buffer& corrected) = 0;
+    virtual void predicted(const StepParams& step) = 0;
+};
+
 struct StepContext {
     Device& device;
     const FluidParams& fluid;
@@ -50,6 +70,7 @@ struct StepContext {
     std::function<void(const Buffer& position, Buffer& friction)> wallFriction = {};
     // Adds the adhesion of walls at rest to particles.acceleration; `params`.force.w: see fluid/forces/wall_adhesion.
     std::function<void(const StepParams& params)> wallAdhesion = {};
+    WallLoads* probes = nullptr;  // null in a world without probes
 
     // The params of a world without gravity.
     StepParams noGravity() const {

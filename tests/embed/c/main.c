@@ -202,6 +202,48 @@ static void walls_stop_it_and_lift_it(rivulet_context* context) {
     rivulet_world_destroy(moving);
 }
 
+/* Two plates, one that moves and one that stands still, bear the weight of their water; a reset starts the sums again. */
+static void walls_report_their_loads(rivulet_context* context) {
+    const char* json =
+        "{\"fluid\": {\"spacing\": 0.05, \"box\": {\"max\": [1, 1, 1]}, \"blocks\": [{\"min\": [0, 0.25, 0], \"max\": [1, 0.5, 1]}], \"probes\": ["
+        "{\"name\": \"floor\", \"face\": \"-y\"}, {\"name\": \"plate\", \"on\": \"collider\", \"index\": 0, \"area\": 1}]}}";
+    float at[12];
+    memcpy(at, kPlate, sizeof at);
+    for (uint32_t moves = 0; moves < 2; ++moves) {
+        for (int k = 0; k < 4; ++k) at[3 * k + 1] = moves == 0 ? 0.2F : 0;
+        const rivulet_mesh plate = {.size = sizeof plate,
+                                    .positions = at,
+                                    .vertices = 4,
+                                    .indices = kSquare,
+                                    .indices_count = 6,
+                                    .friction = -1,
+                                    .restitution = -1,
+                                    .moves = moves,
+                                    .pose = {{0, 0.2F, 0}, {0, 0, 0, 0}}};
+        const rivulet_world_options o = {.size = sizeof o, .json = json, .walls = &plate, .walls_count = 1};
+        rivulet_world* world = NULL;
+        DONE(rivulet_world_create(context, &o, &world, &why));
+        if (world == NULL) return;
+        rivulet_load loads[2];
+        size_t n = 0;
+        DONE(rivulet_world_loads(world, loads, 2, &n, &why));
+        CHECK(n == 2 && strcmp(loads[1].name, "plate") == 0 && loads[1].seconds == 0 && isnan(loads[1].pressure));
+        run(world, 90);
+        DONE(rivulet_world_loads(world, loads, 2, &n, &why));
+        rivulet_stats stats = {.size = sizeof stats};
+        DONE(rivulet_world_stats(world, &stats, &why));
+        const double weight = stats.particles * 1000 * 0.05 * 0.05 * 0.05 * 9.81;
+        CHECK(loads[0].force[1] == 0 && loads[1].time == stats.time && fabs(loads[1].seconds - 1.0 / 60) < 1e-9);
+        CHECK(fabs(loads[1].impulse[1] / (-weight * stats.time) - 1) < 0.03);
+        CHECK(fabs(loads[1].pressure + loads[1].force[1]) < 0.02 * weight);
+        DONE(rivulet_world_reset(world, &why));
+        run(world, 1);
+        DONE(rivulet_world_loads(world, loads, 2, &n, &why));
+        CHECK(fabs(loads[1].impulse[1]) < 0.1 * weight);
+        rivulet_world_destroy(world);
+    }
+}
+
 /* The mean upward speed after a frame of free fall: about -0.16 m/s where no wall has pushed the water. */
 static double speed_after_a_frame(rivulet_world* world) {
     run(world, 1);
@@ -451,6 +493,10 @@ static void a_game_asks_what_the_water_is(rivulet_context* context, const char* 
     DONE(rivulet_world_volume_events(world, counts, 32, &n, &why));
     CHECK(n == 0);
     REFUSED(rivulet_world_volume_events(world, counts, 3, &n, &why), "32");
+    rivulet_load loads[3];
+    DONE(rivulet_world_loads(world, loads, 3, &n, &why));
+    CHECK(n == 0); /* this world has no probes: see probes() */
+    REFUSED(rivulet_world_loads(world, loads, 3, NULL, &why), "count");
     const rivulet_volume twice[] = {volumes[0], volumes[0]};
     REFUSED(rivulet_world_set_volumes(world, twice, 2, &why), "7");
     REFUSED(rivulet_world_sample(world, NULL, 1, at, &why), "NULL");
@@ -614,6 +660,7 @@ int main(int count, char** arguments) {
     it_falls_and_is_all_there(context);
     what_is_saved_goes_on_bit_for_bit(context, folder);
     walls_stop_it_and_lift_it(context);
+    walls_report_their_loads(context);
     walls_that_move_begin_where_they_are(context, folder);
     bodies_are_pushed_as_Archimedes_says(context);
     values_are_set_and_emitters_pour(context);

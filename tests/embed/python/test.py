@@ -91,7 +91,8 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     refused(lambda: context.world({"fluid": {**open_box["fluid"], "maxParticles": 100}}, particles=places), "fluid.maxParticles is 100", "512")
 
     # A pool at rest: what is asked of it is what is known of it.
-    calm = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1, 1]}, "blocks": [{"max": [1, 0.5, 1]}]}}
+    calm = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1, 1]}, "blocks": [{"max": [1, 0.5, 1]}],
+                      "probes": [{"name": "floor", "face": "-y"}, {"name": "wall", "face": "+x"}]}}
     with context.world(calm) as world:
         for _ in range(90):
             world.step(1 / 60)
@@ -115,6 +116,13 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         assert here["id"].tolist() == [7, 9] and abs(int(here["inside"][0]) - below) < 5 and here["inside"][1] == 0
         assert abs(here["volume_inside"][0] / (here["inside"][0] * 0.05**3) - 1) < 1e-6
         assert world.volume_events()["id"].tolist() == [7] and len(world.volume_events()) == 0
+        loads = world.loads()
+        weight = world.stats().particles * 1000 * 0.05**3 * 9.81
+        assert set(loads) == {"floor", "wall"} and abs(loads["floor"]["force"][1] / -weight - 1) < 0.2, loads
+        assert abs(loads["floor"]["time"] - world.stats().time) < 1e-9 and np.isnan(loads["wall"]["pressure"]) == (loads["wall"]["seconds"] == 0)
+        assert abs(loads["floor"]["impulse"][1] / (-weight * world.stats().time) - 1) < 0.05, loads["floor"]["impulse"]
+        assert abs(loads["wall"]["force"][0] - loads["wall"]["pressure"]) < 1e-6 * abs(loads["wall"]["force"][0]) + 1e-9  # on 1 m^2
+        refused(lambda: context.world({"fluid": {"probes": [{"name": "a", "on": "collider", "index": 3}]}}), "fluid.probes[0]", "3")
         refused(lambda: world.set_volumes([rivulet.Sphere(1, (0, 0, 0), -1)]), "volume 1", "negative")
         for name in ("calm.ply", "calm.vtp", "calm.csv"):
             world.export(os.path.join(sys.argv[1], name))

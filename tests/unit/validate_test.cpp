@@ -16,6 +16,7 @@
 #include "fluid/validate/clusters.h"
 #include "fluid/validate/draught.h"
 #include "fluid/validate/known_misses.h"
+#include "fluid/validate/orders.h"
 #include "fluid/validate/oscillation.h"
 #include "fluid/validate/trial.h"
 #include "fluid/validate/virial.h"
@@ -220,6 +221,15 @@ TEST(Clusters, TheCoveredVolumeIsThatOfTheUnion) {
     const double volume = coveredVolume(slab, 0.09, 0.025, 0.4);
     EXPECT_GT(volume, 1.9 * 1.9 * 0.4);
     EXPECT_LT(volume, 2.08 * 2.08 * 0.4);
+}
+
+TEST(Orders, AreTheSlopeOfTheLogarithms) {
+    const std::vector<double> spacings = {0.04, 0.03, 0.02, 0.01};
+    std::vector<double> errors;
+    for (const double d : spacings) errors.push_back(3 * std::pow(d, 1.7));
+    EXPECT_NEAR(orderOf(spacings, errors), 1.7, 1e-12);
+    errors[2] = 0;
+    EXPECT_TRUE(std::isnan(orderOf(spacings, errors)));
 }
 
 TEST(PhysicsCases, ATrialGivesVelocitiesByPlaceAndCountsItsSweeps) {

@@ -9,11 +9,7 @@
 namespace rivulet {
 
 Result<Outcome> runStandingWave(const CaseSettings& settings) {
-    // A lattice resists shear and oscillates a tenth faster, so positions are jittered. An equation of state turns every overdense place
-    // into a pressure pulse, and with full jitter the wave was gone in 50 ms: a small jitter is enough there.
-    CaseSettings jittered = settings;
-    if (settings.method.starts_with("wcsph")) jittered.assignments.insert(jittered.assignments.begin(), "fluid.blocks.0.jitter=0.05");
-    Result<Trial> trial = Trial::open("standing_wave", jittered);
+    Result<Trial> trial = Trial::open("standing_wave", settings);
     if (!trial) return trial.error();
     const FluidParams p = trial->params();
     constexpr double pi = std::numbers::pi, amplitude = 0.02;  // m, of the surface

@@ -2,9 +2,9 @@
 // w^2 = n (n - 1) (n + 2) sigma / (rho R^3), n = 2 (Lamb 1932).
 //
 // The force of the surface (fluid/forces/cohesion) acts only at the surface: inside a drop at rest there is only the pressure of the
-// method, and a gauge there measures the pressure of the surface. Start positions are jittered, because a ball cut from a lattice stays a
-// crystal that carries loads (its pressures are a fifth higher). The stress of a packing at rest still differs by a tenth between starts,
-// so each pressure is the mean of three.
+// method, and a gauge there measures the pressure of the surface. A ball cut from a lattice stays a crystal that carries loads (its
+// pressures are a fifth higher), unless start positions are jittered (tension_tuned). The stress of a packing at rest still differs by a
+// tenth between starts, so each pressure is the mean of three.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -25,13 +25,10 @@ struct Drop {
 // Reduces the block of the scene, a cube around the origin, to the ball in it. With `start` the block is larger by that many spacings on
 // all sides, so that other particles with other jitter form the ball.
 Result<Trial> openDrop(const CaseSettings& settings, const Drop& wanted, int start, std::vector<std::string> assignments, Drop& drop) {
-    // Steps of a quarter of the stable length, because pressure responds to the surface of the last step.
-    const double substeps = 32 * std::pow(0.0025 / wanted.spacing, 1.5);
     assignments.push_back(fmt::format("fluid.spacing={:.9g}", wanted.spacing));
     const double half = wanted.radius + start * wanted.spacing;
     assignments.push_back(fmt::format("fluid.blocks.0.min=-{0:.9g},-{0:.9g},-{0:.9g}", half));
     assignments.push_back(fmt::format("fluid.blocks.0.max={0:.9g},{0:.9g},{0:.9g}", half));
-    assignments.push_back(fmt::format("fluid.dfsph.minSubsteps={:.0f}", std::ceil(substeps)));
     CaseSettings with = settings;
     with.assignments.insert(with.assignments.begin(), assignments.begin(), assignments.end());
     Result<Trial> trial = Trial::open("tension", with);

@@ -196,7 +196,7 @@ TEST_F(KernelsOfCl, EachDispatchIsTheCpus) {
     run("honey", {"fluid.spacing=0.03"});
     run("oil_on_water", {"fluid.spacing=0.05"});
     run("wave_tank", {"fluid.spacing=0.06"});
-    run("cases/couette.json", {"fluid.spacing=2.5e-5"});
+    run("cases/couette.json", {"fluid.supportSpacings=2.3", "fluid.forces.viscosity=implicit", "fluid.forces.viscosityTolerance=1e-3"});
     run("paddle_wheel", {"fluid.spacing=0.025", "colliders.0.resolution=32", "fluid.foam.most=500"});
     run("waving_sheet", {"fluid.spacing=0.05", "colliders.0.resolution=24"});
     run("window_rain", {"flow.0.mapSize=64", "flow.0.liquid.capacity=2048", "flow.0.liquid.filmCell=0.003"}, 6);

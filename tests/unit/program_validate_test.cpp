@@ -125,6 +125,27 @@ TEST(ProgramValidate, AHurriedSurfaceIsStillToo) {
     EXPECT_EQ(found, 1);
 }
 
+// The four errors of each judged figure, and the order.
+TEST(ProgramValidate, OrdersArePrintedAndWritten) {
+    Scratch scratch;
+    RunOptions in;
+    in.folder = scratch.path();
+    const Outcome outcome = runProgram({"validate", "elliptical_drop", "--orders", "--method", "pbf", "--json", "v.json"}, in);
+    ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+    EXPECT_NE(outcome.out.find("order "), std::string::npos) << outcome.out;
+    const Json::Value rows = readJson(scratch.path() / "v.json");
+    ASSERT_GE(rows.size(), 2U);
+    for (const Json::Value& row : rows) {
+        EXPECT_EQ(row["method"], "pbf");
+        ASSERT_EQ(row["spacings"].size(), 4U);
+        ASSERT_EQ(row["errors"].size(), 4U);
+        EXPECT_GT(row["spacings"][0].asDouble(), row["spacings"][3].asDouble());
+    }
+    EXPECT_GT(rows[0]["errors"][0].asDouble(), 0);
+    expectRefusal(runProgram({"validate", "momentum", "--orders"}), 2, "no sizes");
+    expectRefusal(runProgram({"validate", "--orders", "--backend", "gl"}), 2, "--orders");
+}
+
 TEST(ProgramValidate, InvalidArgumentsAreRefusedWithAMessage) {
     expectRefusal(runProgram({"validate", "hydrostatics"}), 2, "did you mean 'hydrostatic'");
     expectRefusal(runProgram({"validate", "--method", "dfshp"}), 2, "did you mean 'dfsph'");

@@ -1,14 +1,23 @@
 // Physics cases: their references, scenes and pictures, and the verb that runs them.
 #include <gtest/gtest.h>
+#include <json/json.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
 
 #include "engine/core/file.h"
 #include "fluid/session/reference_data.h"
 #include "fluid/sim/world/cpu_kernels.h"
+#include "fluid/validate/clusters.h"
 #include "fluid/validate/draught.h"
+#include "fluid/validate/known_misses.h"
+#include "fluid/validate/orders.h"
+#include "fluid/validate/oscillation.h"
 #include "fluid/validate/trial.h"
 #include "fluid/validate/virial.h"
 
@@ -37,6 +46,9 @@ TEST(ReferenceData, EqualsThePapers) {
     EXPECT_NEAR(valueAt(p1, 0.395), 2800, 100);
     EXPECT_NEAR(h4.front().y, 0.55, 0.005);
     EXPECT_NEAR(h4.back().x, 6, 0.011);
+    const std::vector<glm::dvec2> cavity = referenceCurve("ghia_1982_cavity");
+    EXPECT_EQ(cavity.size(), 17U);
+    EXPECT_EQ(valueAt(cavity, 0.4531), -0.21090);
     for (const ReferenceTable& table : referenceTables()) EXPECT_NE(table.text.find("doi:"), std::string_view::npos) << table.name;
 }
 
@@ -88,13 +100,136 @@ TEST(PhysicsCases, EachHasItsSceneAndAQuickSize) {
         CaseSettings settings;
         settings.device = device.get();
         settings.quick = true;
-        Result<Trial> trial = Trial::open(row.name, settings);
+        Result<Trial> trial = Trial::open(row.sceneName(), settings);
         ASSERT_TRUE(trial) << trial.error().message;
-        EXPECT_EQ(trial->scene().name, row.name);
+        EXPECT_EQ(trial->scene().name, row.sceneName());
         const uint32_t particles = trial->world().particles().count;
         EXPECT_GT(particles, 1000U) << row.name;
         EXPECT_LT(particles, 13000U) << row.name;
     }
+}
+
+// The keys of a scene that state the experiment: shape, liquid, walls and resolution. All others are numerical parameters, or looks.
+const std::regex kExperiment(
+    R"(name|doc|duration|fluid\.(method|spacing|liquid|restDensity|viscosity|gravity|forces\.tension|collision\.(walls|friction)|)"
+    R"(box\.(min|max|periodic[XYZ])|blocks\.(shape|axis|min|max|velocity|spin|gradient[XYZ]|cut))|)"
+    R"(colliders\.(shape|mesh|scale|position|rotation|normal|friction|motion\.(shake|shakeFrequency))|)"
+    R"(bodies\.(shape|size|radius|density|position|velocity|friction|fixed|sticks))");
+
+void collectKeys(const Json::Value& value, const std::string& path, std::set<std::string>& keys) {
+    const bool numbers = value.isArray() && (value.empty() || value[0].isNumeric());
+    if (value.isObject())
+        for (const std::string& name : value.getMemberNames()) collectKeys(value[name], path.empty() ? name : path + "." + name, keys);
+    else if (value.isArray() && !numbers)
+        for (const Json::Value& item : value) collectKeys(item, path, keys);
+    else
+        keys.insert(path);
+}
+
+// Cases judge what users get. Numerical parameters belong in PhysicsCase::tuned, in a row that is not judged.
+TEST(PhysicsCases, NoJudgedCaseSetsNumericalParameters) {
+    std::map<std::string, std::set<std::string>> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(RIVULET_SOURCE_DIR) / "assets/cases")) {
+        Json::Value scene;
+        std::ifstream stream(entry.path());
+        ASSERT_TRUE(Json::parseFromStream(Json::CharReaderBuilder(), stream, &scene, nullptr)) << entry.path();
+        collectKeys(scene, "", found[entry.path().filename().string()]);
+    }
+    EXPECT_GE(found.size(), 17U);
+    for (const PhysicsCase& row : physicsCases().rows) {
+        if (*row.tuned != '\0') {
+            for (const std::string& method : methodsOf(row)) EXPECT_FALSE(judges(row, method)) << row.name;
+            continue;
+        }
+        const std::string assignments = std::string(row.quick) + "; " + row.sizes;
+        const std::regex key(R"(([A-Za-z][A-Za-z0-9.]*)=)");
+        for (std::sregex_iterator at(assignments.begin(), assignments.end(), key), end; at != end; ++at)
+            found[row.name].insert(std::regex_replace((*at)[1].str(), std::regex(R"(\.[0-9]+\.)"), "."));
+    }
+    for (const auto& [name, keys] : found)
+        for (const std::string& key : keys)
+            EXPECT_TRUE(std::regex_match(key, kExperiment)) << name << " sets " << key << ": a judged case leaves it at its default";
+    // Assignments in the functions of the cases.
+    const std::regex assignment(R"("((?:fluid|colliders|bodies)\.[A-Za-z0-9.]+)=)");
+    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(RIVULET_SOURCE_DIR) / "fluid/validate")) {
+        const std::string text = *readFile(entry.path().string());
+        if (text.find("Trial::open(\"") == std::string::npos) continue;
+        for (std::sregex_iterator at(text.begin(), text.end(), assignment), end; at != end; ++at) {
+            const std::string key = std::regex_replace((*at)[1].str(), std::regex(R"(\.[0-9]+\.)"), ".");
+            EXPECT_TRUE(std::regex_match(key, kExperiment)) << entry.path().filename() << " sets " << key;
+        }
+    }
+}
+
+TEST(PhysicsCases, KnownMissesNameJudgedFigures) {
+    for (const KnownMiss& k : knownMisses()) {
+        const PhysicsCase* row = physicsCases().find(k.name);
+        ASSERT_NE(row, nullptr) << k.name;
+        EXPECT_TRUE(judges(*row, k.method)) << k.name << ", " << k.method;
+        EXPECT_GT(k.cause.size(), 10U) << k.name;
+        EXPECT_EQ(knownMiss(k.name, k.method, std::string(k.what) + ", more"), k.cause);
+        EXPECT_EQ(knownMiss(k.name, "wcsph_thesis", k.what), "");
+    }
+    EXPECT_EQ(knownMiss("momentum", "dfsph", "momentum, drift"), "");
+    // A known miss is a miss, and does not fail a run.
+    const Finding miss{"x", "", 1, 0, 1, 0.1, "the cause"};
+    EXPECT_FALSE(miss.pass());
+    EXPECT_FALSE(miss.fails());
+    EXPECT_TRUE((Finding{"x", "", 1, 0, 1, 0.1, {}}).fails());
+}
+
+TEST(Oscillation, IsRecoveredFromItsCurve) {
+    for (const double decay : {0.0, 0.4, 2.0}) {
+        std::vector<glm::dvec2> curve;
+        for (int i = 0; i < 300; ++i) {
+            const double t = 0.3 + i / 60.0;
+            curve.emplace_back(t, 0.02 + 0.5 * std::exp(-decay * t) * std::cos(4.2 * t + 1.1));
+        }
+        const Oscillation o = fitOscillation(curve, 5.3);
+        EXPECT_NEAR(o.frequency, 4.2, 1e-5);
+        EXPECT_NEAR(o.decay, decay, 1e-5);
+        EXPECT_NEAR(o.amplitude, 0.5, 1e-5);
+        EXPECT_NEAR(o.offset, 0.02, 1e-6);
+        EXPECT_LT(o.misfit, 1e-5);
+    }
+}
+
+TEST(Clusters, AreConnectedByDistanceAlsoAcrossThePeriod) {
+    std::vector<vec4> positions;
+    for (int k = 0; k < 30; ++k) positions.emplace_back(0.1F * static_cast<float>(k), 0, 0.05F, 1);
+    EXPECT_EQ(largestCluster(positions, 0.15, 1), 1);
+    positions[10].w = -1;  // a free slot parts them
+    EXPECT_NEAR(largestCluster(positions, 0.15, 1), 19.0 / 29, 1e-12);
+    EXPECT_NEAR(largestCluster(positions, 0.05, 1), 1.0 / 29, 1e-12);
+    EXPECT_EQ(largestCluster(positions, 0.25, 1), 1);
+    const vec4 across[] = {{0, 0, 0.03F, 1}, {0, 0, 0.97F, 1}};
+    EXPECT_EQ(largestCluster(across, 0.1, 1), 1);
+    EXPECT_EQ(largestCluster(across, 0.1, 2), 0.5);
+}
+
+TEST(Clusters, TheCoveredVolumeIsThatOfTheUnion) {
+    const double ball = 4.0 / 3 * M_PI * 0.027;
+    const vec4 one[] = {{0.21F, -0.3F, 0.5F, 1}, {0.21F, -0.3F, 0.5F, 1}, {5, 5, 5, -1}};
+    EXPECT_NEAR(coveredVolume(one, 0.3, 0.02, 2), ball, 0.01 * ball);
+    const vec4 apart[] = {{0, 0, 0.05F, 1}, {0.9F, 0, 1.95F, 1}};
+    EXPECT_NEAR(coveredVolume(apart, 0.3, 0.02, 2), 2 * ball, 0.02 * ball) << "cut by the border of the period, and whole";
+    // A slab of a lattice, covered without gaps: its volume, and no more than a radius beyond its faces.
+    std::vector<vec4> slab;
+    for (int k = 0; k < 20 * 20 * 4; ++k)
+        slab.emplace_back(0.1F * static_cast<float>(k % 20), 0.1F * static_cast<float>(k / 20 % 20),
+                          0.05F + 0.1F * static_cast<float>(k / 400), 1);
+    const double volume = coveredVolume(slab, 0.09, 0.025, 0.4);
+    EXPECT_GT(volume, 1.9 * 1.9 * 0.4);
+    EXPECT_LT(volume, 2.08 * 2.08 * 0.4);
+}
+
+TEST(Orders, AreTheSlopeOfTheLogarithms) {
+    const std::vector<double> spacings = {0.04, 0.03, 0.02, 0.01};
+    std::vector<double> errors;
+    for (const double d : spacings) errors.push_back(3 * std::pow(d, 1.7));
+    EXPECT_NEAR(orderOf(spacings, errors), 1.7, 1e-12);
+    errors[2] = 0;
+    EXPECT_TRUE(std::isnan(orderOf(spacings, errors)));
 }
 
 TEST(PhysicsCases, ATrialGivesVelocitiesByPlaceAndCountsItsSweeps) {

@@ -1,4 +1,4 @@
-// Misses whose cause is known. `rivulet validate` prints them with the cause, and they do not fail a run.
+// Misses with a known cause. `rivulet validate` prints the cause, and the miss does not fail a run.
 #pragma once
 
 #include <span>

@@ -3,6 +3,7 @@
 
 #include "fluid/sim/solids/body_shapes.h"
 #include "tests/parity/devices.h"
+#include "tests/physics/baked_mesh.h"
 #include "tests/physics/loads.h"
 
 namespace rivulet::probes_parity_test {

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "fluid/sim/world/fluid_world.h"
-#include "fluid/voxel/voxel_field.h"
-#include "tests/unit/voxel_test_meshes.h"
 
 namespace rivulet::test {
 
@@ -78,18 +76,6 @@ inline Balance balanceOf(FluidWorld& world, int frames, const std::function<Flui
     }
     b.missing = glm::length(most - least) / b.scale;
     return b;
-}
-
-inline VoxelField baked(const Mesh& mesh, float voxel, float spacing) {
-    const MeshView view = mesh.view();
-    Bounds bounds;
-    for (const vec3& p : mesh.positions) bounds.add(p);
-    const vec3 size = bounds.size();
-    Result<VoxelField> field = bakeVoxelField(
-        std::span(&view, 1),
-        {.resolution = static_cast<int>(std::max(size.x, std::max(size.y, size.z)) / voxel), .band = 2 * spacing, .padding = 2 * spacing});
-    EXPECT_TRUE(field) << (field ? "" : field.error().message);
-    return std::move(*field);
 }
 
 }  // namespace rivulet::test

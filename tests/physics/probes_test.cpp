@@ -9,6 +9,7 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/solids/body_shapes.h"
 #include "fluid/voxel/deforming_field.h"
+#include "tests/physics/baked_mesh.h"
 #include "tests/physics/loads.h"
 #include "tests/physics/worlds.h"
 

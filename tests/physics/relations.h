@@ -2,8 +2,8 @@
 //
 // Bounds. A scene runs for 0.1 s, in which pressure and walls move particles by 0.2 to 5 spacings away from free flight. The control is the
 // same scene with places at the start that differ by one rounding error. Its answer differs on average (median of 300 scenes) by 5e-6
-// spacings with wcsph, 9e-6 with wcsph_thesis, 3e-6 with dfsph and 8e-5 with pbf, whose velocities are differences of places. In a few
-// scenes it differs by up to 2.5e-3: a switch of the method falls the other way. With dfsph it is the switch of the momentum: without
+// spacings with wcsph, 9e-6 with wcsph_thesis, 3e-6 with dfsph and 8e-5 with pbf, which computes velocities as differences of positions. In
+// a few scenes it differs by up to 2.5e-3: a switch of the method falls the other way. With dfsph it is the switch of the momentum: without
 // momentum the largest error of a particle falls from 5e-3 to 5e-5. A relation that holds up to rounding cannot have smaller errors than
 // the control. Hence two bounds: kMost for the mean error of each scene, and kOverControl times the error of the control for the median of
 // the rounds. Measured in 300 scenes of each relation: at most 1.2e-3, and 3.6 times the control.
@@ -59,7 +59,7 @@ inline Found movingFrame(Device& device, const std::string& method, Dice& dice) 
     const RandomScene s = randomScene(method, dice, {.periodic = bvec3(true)});
     return moving(device, s, dice.inCube(2.0F));
 }
-// The same in a box whose walls are farther away than particles fly.
+// The same in a larger box: no particle reaches a wall.
 inline Found movingFrameFarFromWalls(Device& device, const std::string& method, Dice& dice) {
     const RandomScene s = randomScene(method, dice, {.gravity = false, .margin = 12});
     return moving(device, s, dice.inCube(2.0F));
@@ -92,8 +92,8 @@ inline Found turnedPeriodicScene(Device& device, const std::string& method, Dice
 inline Found scaling(Device& device, const RandomScene& s, float by) {
     return compare(device, s, scaled(by, s), [by](const vec3& x) { return by * x; });
 }
-// A scale whose root is a power of two. Exact: floats are scaled without rounding. A constant that should have a unit, or a wrong power of
-// a length, breaks this.
+// The scale is a power of four, and its root a power of two: floats are scaled without rounding. A constant that should have a unit, or a
+// wrong power of a length, breaks this.
 inline Found scaledByAPowerOfFour(Device& device, const std::string& method, Dice& dice) {
     const RandomScene s = randomScene(method, dice);
     constexpr float scales[] = {0.0625F, 0.25F, 4.0F, 16.0F};

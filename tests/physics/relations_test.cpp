@@ -135,7 +135,7 @@ Sums sums(const RandomScene& s, const std::vector<vec3>& x, const std::vector<ve
 }
 
 // Half a second with default settings: trajectories are chaotic, sums over the water differ little. The largest differences in 60 turned
-// scenes follow; in brackets those between runs whose places at the start differ by one rounding error, which are the chaos itself.
+// scenes follow; in brackets those between runs with positions at the start that differ by one rounding error: the effect of chaos alone.
 // Centre of mass: 0.16 (0.18) spacings. Kinetic energy, as a share of that at the start and of a fall over the diagonal of the box: 0.07
 // (0.06) with wcsph_thesis, 0.013 (0.016) with the others. Share of the particles that are in another of the 8 layers: 0.10 (0.19).
 TEST_P(RandomScenes, ATurnedSceneKeepsItsSumsForHalfASecond) {

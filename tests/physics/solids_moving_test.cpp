@@ -11,7 +11,7 @@
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
-#include "tests/unit/voxel_test_meshes.h"
+#include "tests/physics/baked_mesh.h"
 
 namespace rivulet::solids_moving_test {
 namespace {
@@ -30,18 +30,6 @@ FluidParams fluid(const vec3& low, const vec3& high, float spacing, const vec3& 
     p.box.max = high;
     p.blocks = {{blockLow, blockHigh, vec3(0.0F)}};
     return p;
-}
-
-VoxelField bake(const test::Mesh& mesh, float voxel, float spacing) {
-    const MeshView view = mesh.view();
-    Bounds bounds;
-    for (const vec3& p : mesh.positions) bounds.add(p);
-    const vec3 size = bounds.size();
-    Result<VoxelField> field = bakeVoxelField(
-        std::span(&view, 1),
-        {.resolution = static_cast<int>(std::max(size.x, std::max(size.y, size.z)) / voxel), .band = 2 * spacing, .padding = 2 * spacing});
-    EXPECT_TRUE(field) << (field ? "" : field.error().message);
-    return std::move(*field);
 }
 
 std::vector<vec3> places(FluidWorld& world) {
@@ -74,7 +62,7 @@ TEST(MovingSolid, AFastPlateLeavesNothingBehind) {
             const float spacing = 0.04F;
             FluidParams p = fluid(vec3(-6, -0.5F, -0.5F), vec3(6, 0.5F, 0.5F), spacing, vec3(-0.2F), vec3(0.2F));
             p.gravity = vec3(0.0F);
-            const VoxelField plate = bake(test::makeSheet(vec3(0), vec3(1, 0, 0), 1.6F), 0.25F * spacing, spacing);
+            const VoxelField plate = test::baked(test::makeSheet(vec3(0), vec3(1, 0, 0), 1.6F), 0.25F * spacing, spacing);
             Pose pose{vec3(-0.6F, 0, 0), turned(tilt, vec3(0, 0.4F, 1))};
             auto world = FluidWorld::create(*device, p, {.rigid = {{&plate, pose}}}, {});
             ASSERT_TRUE(world) << world.error().message;
@@ -105,7 +93,7 @@ TEST(MovingSolid, FrictionCarriesAlong) {
         auto device = cpu();
         const float spacing = 0.04F;
         FluidParams p = fluid(vec3(-2, -0.5F, -1), vec3(2, 1, 1), spacing, vec3(0), vec3(spacing));  // one particle
-        const VoxelField floor = bake(test::makeSheet(vec3(0), vec3(0, 1, 0), 1.0F), 0.25F * spacing, spacing);
+        const VoxelField floor = test::baked(test::makeSheet(vec3(0), vec3(0, 1, 0), 1.0F), 0.25F * spacing, spacing);
         Pose pose{vec3(0, -0.03F, 0), {}};
         pose.rotation = quat(1, 0, 0, 0);
         auto world = FluidWorld::create(*device, p, {.rigid = {{&floor, pose}}, .surfaces = {{friction, 0.0F}}}, {});
@@ -130,7 +118,7 @@ TEST(MovingSolid, ASpinningPlateSweepsItsWholeCircle) {
     p.gravity = vec3(0.0F);
     test::Mesh blade;
     blade.quad(vec3(0, 0, -0.5F), vec3(0.9F, 0, -0.5F), vec3(0.9F, 0, 0.5F), vec3(0, 0, 0.5F));
-    const VoxelField field = bake(blade, 0.25F * spacing, spacing);
+    const VoxelField field = test::baked(blade, 0.25F * spacing, spacing);
     Pose pose{vec3(0), quat(1, 0, 0, 0)};
     auto world = FluidWorld::create(*device, p, {.rigid = {{&field, pose}}}, {});
     ASSERT_TRUE(world) << world.error().message;
@@ -306,7 +294,7 @@ TEST(MovingSolid, NothingIsPushedOutOfTheBox) {
         const float spacing = 0.05F;
         FluidParams p = fluid(vec3(-0.5F), vec3(0.5F), spacing, vec3(-0.4F), vec3(0.4F));
         p.gravity = vec3(0.0F);
-        const VoxelField block = bake(test::makeBox(vec3(-0.2F), vec3(0.2F)), 0.25F * spacing, spacing);
+        const VoxelField block = test::baked(test::makeBox(vec3(-0.2F), vec3(0.2F)), 0.25F * spacing, spacing);
         vec3 way(0.0F);
         way[wall % 3] = wall < 3 ? 1.0F : -1.0F;
         if (wall == 6) way = glm::normalize(vec3(1, 1, 0));
@@ -373,7 +361,7 @@ TEST(MovingSolid, AThinHollowBallKeepsEveryParticle) {
     for (size_t t = 0; t < hollow.indices.size(); t += 3)
         ball.triangle(hollow.positions[hollow.indices[t]], hollow.positions[hollow.indices[t + 2]],
                       hollow.positions[hollow.indices[t + 1]]);
-    const VoxelField field = bake(ball, 0.25F * spacing, spacing);
+    const VoxelField field = test::baked(ball, 0.25F * spacing, spacing);
     ASSERT_GT(field.surface.voxel, outer - inner);
     auto device = cpu();
     FluidParams p = fluid(vec3(-1), vec3(1), spacing, vec3(-0.28F, -0.28F, -0.28F), vec3(0.28F, 0.0F, 0.28F));

@@ -19,6 +19,8 @@ constexpr std::string_view kStart = "the water settles around the sphere after t
 
 constexpr KnownMiss kKnownMisses[] = {
     {"sloshing", "dfsph", "period", kShear},
+    {"sloshing", "pbf", "period, H/L 0.2, tilt 0.02", kShear},
+    {"sloshing", "wcsph", "period, H/L 0.2, tilt 0.02", kShear},
     {"sloshing", "dfsph", "viscosity of the decay", kDamping},
     {"sloshing", "pbf", "viscosity of the decay", kDamping},
     {"sloshing", "wcsph", "viscosity of the decay", kDamping},
@@ -26,6 +28,7 @@ constexpr KnownMiss kKnownMisses[] = {
     {"u_tube", "dfsph", "levels at rest", kShear},
     {"u_tube", "pbf", "period", kDamping},
     {"u_tube", "wcsph", "period", kDamping},
+    {"u_tube", "wcsph", "levels at rest, difference over that at the start, arms 6", kShear},
     {"cavity", "dfsph", "lowest u", kShear},
     {"cavity", "dfsph", "profile of u", kShear},
     {"cavity", "pbf", "lowest u", kWallShear},
@@ -46,6 +49,7 @@ constexpr KnownMiss kKnownMisses[] = {
     {"submerged", "wcsph", "acceleration", kShear},
     {"submerged", "pbf", "acceleration", kStart},
     {"submerged", "dfsph", "force", kWallLoad},
+    {"submerged", "pbf", "force on a held sphere, R = 3", kStart},
     {"submerged", "dfsph", "path", kStart},
     {"submerged", "pbf", "path", kStart},
     {"submerged", "wcsph", "path", kStart},

@@ -77,7 +77,8 @@ constexpr PhysicsCase kCases[] = {
     {"surface", "the drawn surface against a sphere, a plane and the ray-marched reference, and the flicker of a pool at rest", "",
      runSurface, "narrow_range"},
     {.name = "sloshing",
-     .doc = "gravity tilts at t = 0: period and decay of the first mode, H/L 0.2 and 0.5, with and without side walls (Lamb 1932)",
+     .doc = "gravity tilts at t = 0: period and decay of the first mode, H/L 0.2 and 0.5, with and without side walls, waves of 0.5 to 3 "
+            "spacings (Lamb 1932)",
      .quick = "fluid.box.max=1,0.8,0.08; fluid.blocks.0.max=1,0.2,0.08",
      .run = runSloshing,
      .everyMethod = true,
@@ -86,7 +87,7 @@ constexpr PhysicsCase kCases[] = {
               "fluid.spacing=0.025; fluid.box.max=1,0.8,0.1; fluid.blocks.0.max=1,0.2,0.1 | "
               "fluid.spacing=0.02; fluid.box.max=1,0.8,0.08; fluid.blocks.0.max=1,0.2,0.08"},
     {.name = "u_tube",
-     .doc = "unequal levels in two arms 10 spacings wide: period, T = 2 pi sqrt(L / 2 g), and the levels at rest",
+     .doc = "unequal levels in two arms 6, 10 and 20 spacings wide: period, T = 2 pi sqrt(L / 2 g), and the levels at rest",
      .quick = "duration=3",
      .run = runUTube,
      .everyMethod = true},

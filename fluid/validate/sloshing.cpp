@@ -24,6 +24,9 @@ Result<Outcome> runSloshing(const CaseSettings& settings) {
     if (!settings.quick) {
         tanks.push_back({"H/L 0.5", {"fluid.box.max=1,1.2,0.16", "fluid.blocks.0.max=1,0.5,0.16"}});
         tanks.push_back({"H/L 0.2, no side walls", {"fluid.box.periodicZ=true"}});
+        // A half and three spacings high at the walls; the case itself tilts by 0.05, 1.25 spacings.
+        tanks.push_back({"H/L 0.2, tilt 0.02", {"fluid.gravity=0.196187,-9.808038,0"}});
+        tanks.push_back({"H/L 0.2, tilt 0.12", {"fluid.gravity=1.174376,-9.739454,0"}});
     }
     const double periods = settings.quick ? 3 : 5;
     std::vector<Finding> findings;
@@ -37,7 +40,7 @@ Result<Outcome> runSloshing(const CaseSettings& settings) {
         const FluidParams& p = trial->params();
         const double length = double{p.box.max.x - p.box.min.x}, depth = double{p.blocks[0].max.y - p.blocks[0].min.y};
         const double g = glm::length(p.gravity), k = std::numbers::pi / length, w = std::sqrt(g * k * std::tanh(k * depth));
-        const double period = 2 * std::numbers::pi / w, tilt = double{p.gravity.x} / g;
+        const double period = 2 * std::numbers::pi / w, tilt = -double{p.gravity.x} / double{p.gravity.y};
         // The place of rest: the surface is inclined by the tilt.
         const double rest = tilt * length * length / (12 * depth);
         Curve measured{tank.name, true, {}};

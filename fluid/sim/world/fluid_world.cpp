@@ -529,10 +529,10 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.traits.linked = params.grid == "linked_list";
     if (w.traits.linked)
         if (Status can = w.mayLink(); !can) return can.error();
-    Result<SolidPasses> passes = SolidPasses::create(device, solids, params, w.traits.threadDefines());
+    Result<SolidPasses> passes = SolidPasses::create(device, solids, w.params, w.traits.threadDefines());
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
-    Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, params, {.periodic = params.box.periodic()});
+    Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, w.params, {.periodic = params.box.periodic()});
     if (!bodies) return bodies.error();
     w.bodies = std::move(*bodies);
     w.log = std::move(log);

@@ -99,7 +99,7 @@ TEST(Envelope, Pbf) {
     const std::vector<EnvelopeFinding> all = findings("pbf");
     ASSERT_EQ(all.size(), 4U);
     expectFailsAt(all[0], kKnown, 2);
-    expectFailsAt(all[1], 0.2, 0.5);
+    expectFailsAt(all[1], 0.5, 1.3);
     expectFailsAt(all[2], 0.8, 1.3);
     expectFailsAt(all[3], 0.8, 1.3);
     for (const EnvelopeFinding& f : all) expectHolds(f, kCut);

@@ -94,7 +94,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     calm = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1, 1]}, "blocks": [{"max": [1, 0.5, 1]}],
                       "probes": [{"name": "floor", "face": "-y"}, {"name": "wall", "face": "+x"}]}}
     with context.world(calm) as world:
-        for _ in range(90):
+        for _ in range(120):
             world.step(1 / 60)
         grid = np.array([(x, z) for x in (0.3, 0.5, 0.7) for z in (0.3, 0.7)])
         heights = world.heights(grid)

@@ -94,7 +94,7 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
     calm = {"fluid": {"spacing": 0.05, "box": {"max": [1, 1, 1]}, "blocks": [{"max": [1, 0.5, 1]}],
                       "probes": [{"name": "floor", "face": "-y"}, {"name": "wall", "face": "+x"}]}}
     with context.world(calm) as world:
-        for _ in range(120):
+        for _ in range(90):
             world.step(1 / 60)
         grid = np.array([(x, z) for x in (0.3, 0.5, 0.7) for z in (0.3, 0.7)])
         heights = world.heights(grid)
@@ -102,7 +102,9 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         assert np.isnan(world.heights([[3, 3]])).all()
         samples = world.sample([[0.5, 0.25, 0.5], [0.5, 0.9, 0.5], [0.4, 0.48, 0.4]])
         assert abs(samples["density"][0] - 1) < 0.1 and samples["density"][1] == 0 and (samples["velocity"][1] == 0).all()
-        assert np.linalg.norm(samples["velocity"][0]) < 0.05 and samples["gradient"][2, 1] < -1
+        assert samples["gradient"][2, 1] < -1
+        inside = world.sample([[x, y, z] for x in (0.25, 0.5, 0.75) for y in (0.1, 0.25, 0.4) for z in (0.25, 0.5, 0.75)])
+        assert np.sqrt((inside["velocity"] ** 2).sum(axis=1).mean()) < 0.05
         hits = world.cast([[0.5, 0.9, 0.5], [0.5, 0.9, 0.5], [0.5, 0.25, 0.5]], [[0, -1, 0], [0, 1, 0], [0, 2, 0]])
         assert hits["hit"].tolist() == [True, False, True] and hits["inside"].tolist() == [False, False, True]
         assert np.allclose(hits["place"][[0, 2], 1], heights.mean(), atol=0.02) and abs(hits["distance"][0] + hits["place"][0, 1] - 0.9) < 1e-4

@@ -55,8 +55,9 @@ bool setsMaterial(const ColliderParams& c) {
 VoxelFieldOptions fieldOptions(const SceneFile& scene, const Bounds& bounds, float edge) {
     VoxelFieldOptions options;
     options.resolution = static_cast<int>(std::clamp(std::ceil(longest(bounds) / edge - 0.001F), 2.0F, 1.0e6F));
-    // A particle must enter the band before it touches: two spacings cover the motion of a substep and the contact distance.
-    options.band = 2 * scene.fluid.spacing;
+    // A particle must enter the band before it touches: two spacings cover the motion of a substep and the contact distance. Friction and
+    // the walls' share of the density act within the support radius.
+    options.band = std::max(2.0F, scene.fluid.supportSpacings) * scene.fluid.spacing;
     options.padding = options.band;
     return options;
 }

@@ -9,6 +9,14 @@ STRUCT(FieldSample) {
 
 FN vec3 toCells(FieldParams f, vec3 p) { return (p - f.origin.xyz) * f.origin.w; }
 
+// The index of the grid point nearest to `g` (cell coordinates), clamped to the border of the grid.
+FN uint nearestPoint(FieldParams f, vec3 g) {
+    uint x = TO_UINT(clamp(g.x + 0.5f, 0.0f, TO_FLOAT(f.sizeX)));
+    uint y = TO_UINT(clamp(g.y + 0.5f, 0.0f, TO_FLOAT(f.sizeY)));
+    uint z = TO_UINT(clamp(g.z + 0.5f, 0.0f, TO_FLOAT(f.sizeZ)));
+    return (z * (TO_UINT(f.sizeY) + 1u) + y) * (TO_UINT(f.sizeX) + 1u) + x;
+}
+
 // Outside the grid the value at the border is used, which is the band's limit: the grid is padded by at least that width.
 FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     vec3 g = toCells(f, p);
@@ -57,6 +65,9 @@ FN vec3 fieldNormal(FieldSample s) {
     float slope = length(s.gradient);
     return slope > 0.1f ? s.gradient * (1.0f / slope) : vec3(0.0f, 0.0f, 0.0f);
 }
+
+// False beyond the band, where the distance is only known to be at least the band: a wall has no effect there.
+FN bool withinBand(FieldParams f, FieldSample s) { return s.distance < f.band; }
 
 // False where walls meet and the interpolant blends their distances: then the gradient is not a normal of a wall.
 FN bool loneWall(FieldSample s) {

@@ -22,7 +22,7 @@ VoxelFieldOptions options(float side) {
 }
 
 // A fixed ball, a rotating blade, a deforming sheet below and a plane; water falls among them for 0.25 s.
-Outcome run(Device& device, const std::string& walk) {
+Outcome run(Device& device, const std::string& walk, const char* walls) {
     Outcome out;
     const test::Mesh ball = test::makeSphere(vec3(0.3F, 0.35F, 0.3F), 0.12F, 16);
     test::Mesh blade;
@@ -53,6 +53,8 @@ Outcome run(Device& device, const std::string& walk) {
     p.box.max = vec3(1, 0.9F, 0.6F);
     p.blocks = {{vec3(0.05F, 0.5F, 0.05F), vec3(0.95F, 0.75F, 0.55F), vec3(0.0F)}};
     p.collision.walk = walk;
+    p.collision.walls = walls;
+    p.viscosity = 5.0e-3F;
     Pose pose{vec3(0.7F, 0.35F, 0.3F), quat(1, 0, 0, 0)};
     Solids solids{.field = &*still,
                   .planes = {{vec3(0, 0.05F, 0), vec3(0.1F, 1, 0), 1}},
@@ -91,14 +93,14 @@ TEST_P(SolidsParity, TheSameWaterAmongSolidsOfEveryKind) {
     Result<TestGpu> gpu = makeTestGpu(GetParam());
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     const std::unique_ptr<Device> cpu = makeTestCpu();
-    for (const char* walk : {"exact", "thesis"}) {
-        const Outcome here = run(*cpu, walk), there = run(*gpu->device, walk);
+    for (const auto& [walk, walls] : {std::pair("exact", "slip"), std::pair("thesis", "slip"), std::pair("exact", "no-slip")}) {
+        const Outcome here = run(*cpu, walk, walls), there = run(*gpu->device, walk, walls);
         for (const Outcome* o : {&here, &there}) {
-            EXPECT_EQ(o->lost, 0U) << walk;
+            EXPECT_EQ(o->lost, 0U) << walk << ", " << walls;
             if (std::string(walk) == "exact") EXPECT_EQ(o->inSolid, 0U);
         }
-        EXPECT_LT(glm::length(here.centre - there.centre), 0.005) << walk;
-        EXPECT_NEAR(here.kinetic, there.kinetic, 0.05 * here.kinetic) << walk;
+        EXPECT_LT(glm::length(here.centre - there.centre), 0.005) << walk << ", " << walls;
+        EXPECT_NEAR(here.kinetic, there.kinetic, 0.05 * here.kinetic) << walk << ", " << walls;
     }
 }
 

@@ -128,18 +128,22 @@ TEST_P(Loads, OfAMeshThatBendsAreTheChangeOfMomentum) {
     reach.add(vec3(0.6F, 0.5F, 0.35F));
     Result<DeformingField> field = DeformingField::create(std::span(&view, 1), reach, {.resolution = 90, .band = 2 * s, .padding = 2 * s});
     ASSERT_TRUE(field) << field.error().message;
-    FluidParams p = dam(GetParam());
-    p.blocks = {{vec3(0.0F), vec3(0.25F, 0.2F, 0.2F)}};
-    std::vector<vec3> shape;
-    std::span<const vec3> of;
-    const Balance b = run(p, {.deforming = {&*field}}, "bending plate", 40, [&](int k) {
-        shape = plate.positions;
-        for (vec3& x : shape) x.x += 0.25F * x.y * std::sin(0.2F * static_cast<float>(k + 1));
-        of = shape;
-        return FluidInputs{.shapes = std::span(&of, 1)};
-    });
-    EXPECT_LT(b.missing, kMissing);
-    EXPECT_GT(glm::length(b.impulses[1]), 0.02 * b.scale);
+    for (const char* walls : {"slip", "no-slip"}) {
+        FluidParams p = dam(GetParam());
+        p.collision.walls = walls;
+        p.viscosity = 2.0e-3F;
+        p.blocks = {{vec3(0.0F), vec3(0.25F, 0.2F, 0.2F)}};
+        std::vector<vec3> shape;
+        std::span<const vec3> of;
+        const Balance b = run(p, {.deforming = {&*field}}, "bending plate", 40, [&](int k) {
+            shape = plate.positions;
+            for (vec3& x : shape) x.x += 0.25F * x.y * std::sin(0.2F * static_cast<float>(k + 1));
+            of = shape;
+            return FluidInputs{.shapes = std::span(&of, 1)};
+        });
+        EXPECT_LT(b.missing, kMissing) << walls;
+        EXPECT_GT(glm::length(b.impulses[1]), 0.02 * b.scale) << walls;
+    }
 }
 
 TEST_P(Loads, OfABodyAreTheChangeOfMomentum) {

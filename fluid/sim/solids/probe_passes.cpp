@@ -156,10 +156,13 @@ Status ProbePasses::findKernels() {
     };
     const char *atDistance = "fluid/solids/probe_walls", *response = "fluid/solids/probe_response";
     const bool still = wantsStill() && walled_;
+    std::vector<Define> deforming = with("FRICTION", true, "MOVING", true);
+    deforming.insert(deforming.begin(), {"DEFORMING", "1"});
     for (const Wanted& w : {Wanted{&pressure_.still, atDistance, with("PRESSURE", field_, "FIELD", false), still},
-                            Wanted{&pressure_.moving, atDistance, with("PRESSURE", true, "MOVING", false), moving},
+                            Wanted{&pressure_.rigid, atDistance, with("PRESSURE", true, "MOVING", false), moving},
                             Wanted{&friction_.still, atDistance, with("FRICTION", field_, "FIELD", true), still},
-                            Wanted{&friction_.moving, atDistance, with("FRICTION", true, "MOVING", true), moving},
+                            Wanted{&friction_.rigid, atDistance, with("FRICTION", true, "MOVING", true), wants(ProbeOn::rigid)},
+                            Wanted{&friction_.deforming, atDistance, deforming, wants(ProbeOn::deforming)},
                             Wanted{&adhesion_.still, atDistance, with("ADHESION", field_, "FIELD", true), still},
                             Wanted{&integrated_, response, with("", false, "", true), walls},
                             Wanted{&finished_, response, with("FROM_POSITIONS", false, "", true), walls},
@@ -174,6 +177,8 @@ Status ProbePasses::findKernels() {
         if (!found) return found.error();
         *w.kernel = *found;
     }
+    pressure_.deforming = pressure_.rigid;
+    friction_.readsDisplacement = true;
     return ok();
 }
 
@@ -227,7 +232,8 @@ void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, 
     const Buffer& cells = world_.grid.cellStart();
     const auto dispatch = [&](const Kernel& kernel, const StepParams& s, std::initializer_list<const Buffer*> walls) {
         std::vector<const Buffer*> buffers = {&cells, &position, &probes_, &rows_, &first, &second};
-        buffers.insert(buffers.end(), walls);
+        for (const Buffer* wall : walls)
+            if (wall != nullptr) buffers.push_back(wall);
         if (matter && world_.traits.matter) buffers.push_back(&world_.particles.matter);
         device_->dispatch(kernel, std::as_bytes(std::span(&s, 1)), buffers, PROBE_THREADS);
     };
@@ -245,7 +251,9 @@ void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, 
         StepParams s = step;
         s.force.y = static_cast<float>(f.on);
         s.force.z = static_cast<float>(f.index);
-        dispatch(kernels.moving, s, {f.block, f.distance});
+        const bool deforming = f.on == ProbeOn::deforming;
+        dispatch(deforming ? kernels.deforming : kernels.rigid, s,
+                 {f.block, f.distance, deforming && kernels.readsDisplacement ? f.displacement : nullptr});
     }
 }
 

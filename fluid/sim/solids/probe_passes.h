@@ -80,9 +80,11 @@ class ProbePasses final : public WallLoads {
     bool wantsStill() const { return wants(ProbeOn::box) || wants(ProbeOn::plane) || wants(ProbeOn::still); }
     bool wantsWalls() const { return wants(ProbeOn::box) || wants(ProbeOn::plane); }
     Status findKernels();
-    // Which of probe_walls: its forms without and with MOVING.
+    // Which of probe_walls: its form without MOVING, and those for moving solids. Only friction depends on the velocity of a wall, so only
+    // its form for deforming solids reads their displacement.
     struct AtDistance {
-        Kernel still, moving;
+        Kernel still, rigid, deforming;
+        bool readsDisplacement = false;
     };
     void atDistance(const AtDistance& kernels, const StepParams& step, const Buffer& position, const Buffer& first, const Buffer& second,
                     bool matter, bool movingToo);

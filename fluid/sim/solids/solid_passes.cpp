@@ -159,7 +159,8 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
                  s.walled_},
           Wanted{&s.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
                  s.walled_},
-          Wanted{&s.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !s.rigid_.empty()},
+          Wanted{&s.frictionDeforming_, "fluid/forces/wall_friction_moving", {{"DEFORMING", "1"}}, !s.deforming_.empty()},
           Wanted{&s.walls_, "fluid/solids/walls", {threads.begin(), threads.end()}, s.walled_},
           Wanted{&s.boundaryMoving_, "fluid/solids/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.collide_, "fluid/solids/collide", collide(""), still},
@@ -455,8 +456,9 @@ void SolidPasses::friction(const StepParams& step, const NeighborGrid& grid, con
         device_->run(friction_, step, {&start, &position, &planes_, &friction, &staticBlock_, &static_.distance}, n);
     else
         device_->run(friction_, step, {&start, &position, &planes_, &friction}, n);
-    for (std::vector<Moving>* list : {&rigid_, &deforming_})
-        for (const Moving& m : *list) device_->run(frictionMoving_, step, {&start, &position, &friction, &m.block, &m.on.distance}, n);
+    for (const Moving& m : rigid_) device_->run(frictionMoving_, step, {&start, &position, &friction, &m.block, &m.on.distance}, n);
+    for (const Moving& m : deforming_)
+        device_->run(frictionDeforming_, step, {&start, &position, &friction, &m.block, &m.on.distance, &m.displacement}, n);
 }
 
 void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Particles& p) {
@@ -472,11 +474,11 @@ std::vector<SolidPasses::FieldView> SolidPasses::movingFields() const {
     std::vector<FieldView> views;
     for (size_t k = 0; k < deforming_.size(); ++k) {
         const Moving& m = deforming_[k];
-        views.push_back({ProbeOn::deforming, static_cast<uint32_t>(k), &m.block, &m.on.distance, &m.on.normal});
+        views.push_back({ProbeOn::deforming, static_cast<uint32_t>(k), &m.block, &m.on.distance, &m.on.normal, &m.displacement});
     }
     for (size_t k = 0; k < rigid_.size(); ++k) {
         const Moving& m = rigid_[k];
-        views.push_back({ProbeOn::rigid, static_cast<uint32_t>(k), &m.block, &m.on.distance, &m.on.normal});
+        views.push_back({ProbeOn::rigid, static_cast<uint32_t>(k), &m.block, &m.on.distance, &m.on.normal, nullptr});
     }
     return views;
 }

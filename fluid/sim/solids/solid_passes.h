@@ -60,8 +60,7 @@ class SolidPasses {
     Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
     // Fills `boundary` with the walls' share at `position`, sorted.
     void boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary);
-    // Fills `friction` with the effect of no-slip walls at `position`, sorted: see StepContext::wallFriction. Deforming walls count as at
-    // rest.
+    // Fills `friction` with the effect of no-slip walls at `position`, sorted: see StepContext::wallFriction.
     void friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction);
     // Adds the adhesion of static walls to particles.acceleration; step.force.w: see fluid/forces/wall_adhesion.
     void adhesion(const StepParams& step, const NeighborGrid& grid, Particles& particles);
@@ -80,9 +79,9 @@ class SolidPasses {
     struct FieldView {
         ProbeOn on = ProbeOn::none;
         uint32_t index = 0;
-        const Buffer *block = nullptr, *distance = nullptr, *normal = nullptr;
+        const Buffer *block = nullptr, *distance = nullptr, *normal = nullptr, *displacement = nullptr;  // displacement: of deforming
     };
-    FieldView stillField() const { return {ProbeOn::still, 0, &staticBlock_, &static_.distance, &static_.normal}; }
+    FieldView stillField() const { return {ProbeOn::still, 0, &staticBlock_, &static_.distance, &static_.normal, nullptr}; }
     std::vector<FieldView> movingFields() const;
     bool moving() const { return !rigid_.empty() || !deforming_.empty(); }  // some may move
 
@@ -124,7 +123,8 @@ class SolidPasses {
     Buffer planes_;
     bool walled_ = true;   // the box or solids
     bool thesis_ = false;  // collision.walk
-    Kernel boundary_, friction_, frictionMoving_, adhesion_, collide_, walls_, boundaryMoving_, collideRigid_, collideDeforming_;
+    Kernel boundary_, friction_, frictionMoving_, frictionDeforming_, adhesion_, collide_, walls_, boundaryMoving_, collideRigid_,
+        collideDeforming_;
     Field static_;
     FieldParams block_{};
     Buffer staticBlock_;

@@ -38,14 +38,6 @@ FN vec3 unpackNormal(uint code) {
 // The index of the collider, 0..15, in `surfaces` of VoxelFieldOptions.
 FN uint wallSurface(uint code) { return code >> 28u; }
 
-// The index of the grid point nearest to `g` (cell coordinates), clamped to the border of the grid.
-FN uint nearestPoint(FieldParams f, vec3 g) {
-    uint x = TO_UINT(clamp(g.x + 0.5f, 0.0f, TO_FLOAT(f.sizeX)));
-    uint y = TO_UINT(clamp(g.y + 0.5f, 0.0f, TO_FLOAT(f.sizeY)));
-    uint z = TO_UINT(clamp(g.z + 0.5f, 0.0f, TO_FLOAT(f.sizeZ)));
-    return (z * (TO_UINT(f.sizeY) + 1u) + y) * (TO_UINT(f.sizeX) + 1u) + x;
-}
-
 // Friction and restitution of the surface whose index is stored in a grid point's normal; they follow the normals in the buffer.
 FN vec2 surfaceOf(GLOBAL(uint, bandNormal) FieldParams f, uint code) {
     uint at = f.surfacesAt + 2u * wallSurface(code);

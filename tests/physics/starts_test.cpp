@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "engine/scene/import_assimp.h"
 #include "engine/scene/transform.h"
 #include "fluid/session/session.h"
 #include "fluid/sim/sources/block.h"
+#include "fluid/sim/world/start_surface.h"
 #include "tests/physics/worlds.h"
 #include "tests/unit/mesh_volume.h"
 #include "tests/unit/voxel_test_meshes.h"
@@ -358,6 +360,28 @@ TEST(Start, PlacedParticlesThatCannotBeAreRefused) {
     auto world = FluidWorld::create(*device, emptyBox(), {.field = &*field}, {}, placing({{vec3(0.5F)}, {vec3(0.5F, 0.81F, 0.5F)}}));
     ASSERT_TRUE(world) << world.error().message;
     EXPECT_EQ((*world)->particles().count, 1U) << "the one beside it stays, nearer than its rest distance";
+}
+
+// ---- a free surface at the start ----
+
+TEST(FreeSurface, IsWhereOneMoreParticleHasRoom) {
+    FluidParams p;
+    p.spacing = 0.1F;
+    const auto surface = [&](const vec3& size, const vec3& water, const std::function<bool(const vec3&)>& may) {
+        p.box.max = size;
+        std::vector<NewParticle> start;
+        fillBlock({vec3(0.0F), water, vec3(0.0F)}, p.spacing, start);
+        return hasFreeSurface(start, p, may);
+    };
+    const auto anywhere = [](const vec3&) { return true; };
+    EXPECT_FALSE(surface(vec3(1.0F), vec3(1.0F), anywhere)) << "full";
+    EXPECT_TRUE(surface(vec3(1.0F), vec3(1.0F, 0.8F, 1.0F), anywhere)) << "a pool";
+    EXPECT_FALSE(surface(vec3(1.0F, 1.08F, 1.0F), vec3(1.0F), anywhere)) << "a gap that holds no layer";
+    EXPECT_TRUE(surface(vec3(1.0F, 1.12F, 1.0F), vec3(1.0F), anywhere)) << "a gap that holds one";
+    EXPECT_FALSE(surface(vec3(1.0F, 1.5F, 1.0F), vec3(1.0F), [](const vec3& x) { return x.y < 1.0F; })) << "under a lid";
+    p.box.periodicY = true;
+    EXPECT_FALSE(surface(vec3(1.0F), vec3(1.0F), anywhere)) << "full and periodic";
+    EXPECT_TRUE(surface(vec3(1.0F), vec3(1.0F, 0.8F, 1.0F), anywhere)) << "a film across a periodic axis";
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ struct MethodSetup {
     uint32_t count;  // slots of particles
     PairTraits traits;
     bool doesViscosity = false;  // of forces: MethodRow::doesViscosity
+    bool closed = false;         // the liquid starts without a free surface
 };
 
 // A buffer that a method keeps between steps. Its name is unique and has at most 20 letters.

@@ -27,7 +27,7 @@ class Dfsph final : public Method {
     Buffer solve, kept;  // kept: pressures of the last step, by id
     SolverResidual residual;
     float coupling = 1;   // of the iteration, over that with a support of 2 spacings
-    bool closed = false;  // periodic along all axes: there may be no surface
+    bool closed = false;  // MethodSetup::closed
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
     StepLimit stepLimit(const FluidParams& p, float) const override { return {p.dfsph.reach, 1.0 / (60 * p.dfsph.minSubsteps)}; }
@@ -113,7 +113,7 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     auto m = std::make_unique<Dfsph>();
     const double support = setup.params.supportSpacings;
     m->coupling = static_cast<float>(std::max(wendlandCoupling(support) / wendlandCoupling(2), 1.0));
-    m->closed = glm::all(setup.traits.periodic);
+    m->closed = setup.closed;
     struct Wanted {
         Kernel* kernel;
         const char* path;

@@ -87,6 +87,7 @@ struct FluidWorld::Impl {
     Status checkPrecision() const;
     Status checkStart() const;
     void fillStart();
+    bool startsClosed() const;
     const BlockParams& blockOf(const NewParticle& particle) const {
         return particle.block == kNoBlock ? *placed : params.blocks[particle.block];
     }

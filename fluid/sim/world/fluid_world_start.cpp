@@ -7,6 +7,7 @@
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
+#include "fluid/sim/world/start_surface.h"
 #include "shaders/fluid/world/stats_row.h"
 
 namespace rivulet {
@@ -57,7 +58,8 @@ Status FluidWorld::Impl::prepare() {
         *w.kernel = *found;
     }
     const uint32_t count = slots + traits.samples;
-    Result<std::unique_ptr<Method>> made = methodOf(params).make(*device, {params, count, traits});
+    Result<std::unique_ptr<Method>> made =
+        methodOf(params).make(*device, {.params = params, .count = count, .traits = traits, .closed = startsClosed()});
     if (!made) return made.error();
     method = std::move(*made);
     if (Status s = checkPrecision(); !s) return s;
@@ -195,6 +197,14 @@ void FluidWorld::Impl::fillStart() {
     });
     if (leftPlaced > 0) log.notice(fmt::format("{} of the placed particles are inside a solid: they were left out", leftPlaced));
     if (left > 0) log.notice(fmt::format("{} particles of fluid.blocks would start inside or too near a solid: they were left out", left));
+}
+
+// Whether the liquid has no free surface and gets none by what flows in or out. In a box that is periodic along all axes there may be none.
+bool FluidWorld::Impl::startsClosed() const {
+    if (glm::all(traits.periodic)) return true;
+    if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || sourceSetup.expectedDeposit > 0 || start.empty()) return false;
+    return !hasFreeSurface(start, params,
+                           [&](const vec3& p) { return solids.maySpawn(p, params.spacing) && bodies.maySpawn(p, params.spacing, 1); });
 }
 
 // The number of slots.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes meshes of the scenes glass, fountain, splash_crown, koi and cove, by formulas: python3 assets/make_meshes.py assets/meshes"""
+"""Makes meshes of the scenes glass, fountain, splash_crown, koi and cove and of validation cases, by formulas: python3 assets/make_meshes.py assets/meshes"""
 import math
 import os
 import sys
@@ -202,6 +202,32 @@ def cove():
     return positions, faces
 
 
+def rod():
+    """A rod of diameter 1 along y, 3 long."""
+    return revolved([(0, -1.5), (0.5, -1.5), (0.5, 1.5), (0, 1.5)], 128)
+
+
+def pipe():
+    """A pipe along y, 4 long, of inner radius 1 and outer radius 1.5: its profile is a closed line, so the last ring meets the first."""
+    positions, faces = revolved([(1, -2), (1.5, -2), (1.5, 2), (1, 2), (1, -2)], 128)
+    first = len(positions) - 128
+    return positions[:first], [tuple(k - first if k >= first else k for k in f) for f in faces]
+
+
+def trough():
+    """A channel along z, 1 long: 1 wide and 1 deep inside, walls 0.2 thick that rise 0.2 higher than that."""
+    line = [(-0.7, -0.2), (0.7, -0.2), (0.7, 1.2), (0.5, 1.2), (0.5, 0), (-0.5, 0), (-0.5, 1.2), (-0.7, 1.2)]
+    n = len(line)
+    positions = [(x, y, z) for z in (-0.5, 0.5) for x, y in line]
+    faces = []
+    for k in range(n):
+        m = (k + 1) % n
+        faces += [(k, m, n + m), (k, n + m, n + k)]
+    for a, b, c, d in ((0, 1, 4, 5), (1, 2, 3, 4), (0, 5, 6, 7)):
+        faces += [(a, c, b), (a, d, c), (n + a, n + b, n + c), (n + a, n + c, n + d)]
+    return positions, faces
+
+
 def main():
     if len(sys.argv) != 2 or not os.path.isdir(sys.argv[1]):
         print("make_meshes: name the folder that the meshes go to", file=sys.stderr)
@@ -214,6 +240,9 @@ def main():
     write(folder, "basin.obj", "A fountain's basin with a bowl on a stem, m: a closed surface of revolution.", *basin())
     write(folder, "rocks.obj", "Rocks that stand in a cove, m.", *rocks())
     write(folder, "cove.obj", "A cove: sea bed, beach and cliffs on a block, m.", *cove())
+    write(folder, "rod.obj", "A rod of diameter 1 along y, 3 long: a closed surface of revolution.", *rod())
+    write(folder, "pipe.obj", "A pipe along y, 4 long, of inner radius 1 and outer radius 1.5: a closed surface of revolution.", *pipe())
+    write(folder, "trough.obj", "A channel along z, 1 wide, 1 deep and 1 long inside, walls 0.2 thick that rise 0.2 higher.", *trough())
     return 0
 
 

@@ -93,6 +93,8 @@ double toleranceOf(const CaseSettings& settings);
 Result<Outcome> runHydrostatic(const CaseSettings& settings);
 Result<Outcome> runDamBreak(const CaseSettings& settings);
 Result<Outcome> runPoiseuille(const CaseSettings& settings);
+Result<Outcome> runPoiseuilleMesh(const CaseSettings& settings);
+Result<Outcome> runPipe(const CaseSettings& settings);
 Result<Outcome> runCouette(const CaseSettings& settings);
 Result<Outcome> runTaylorGreen(const CaseSettings& settings);
 Result<Outcome> runStandingWave(const CaseSettings& settings);
@@ -104,10 +106,13 @@ Result<Outcome> runFlow(const CaseSettings& settings);
 Result<Outcome> runSloshing(const CaseSettings& settings);
 Result<Outcome> runUTube(const CaseSettings& settings);
 Result<Outcome> runCavity(const CaseSettings& settings);
+Result<Outcome> runCavity400(const CaseSettings& settings);
 Result<Outcome> runRotatingPatch(const CaseSettings& settings);
 Result<Outcome> runEllipticalDrop(const CaseSettings& settings);
 Result<Outcome> runPool(const CaseSettings& settings);
 Result<Outcome> runSubmerged(const CaseSettings& settings);
+Result<Outcome> runDrag(const CaseSettings& settings);
+Result<Outcome> runDragCylinder(const CaseSettings& settings);
 
 // Runs the case. If the method refuses it but dfsph accepts it, the outcome holds one finding with the refusal, which is not judged. With
 // `cpu` the run is compared with the cpu, see compareWithCpu; null: the case is measured. Error: as PhysicsCase::run.

@@ -49,6 +49,14 @@ constexpr PhysicsCase kCases[] = {
               "fluid.spacing=3.57142857e-05; fluid.box.max=0.000214285714,1.2e-3,0.000214285714; "
               "fluid.blocks.0.max=0.000214285714,1e-3,0.000214285714 | "
               "fluid.spacing=2.5e-05; fluid.box.max=0.00015,1.2e-3,0.00015; fluid.blocks.0.max=0.00015,1e-3,0.00015"},
+    {.name = "poiseuille_mesh",
+     .doc = "flow between meshes in place of the box's walls: the same series",
+     .quick = "fluid.spacing=2.5e-5",
+     .run = runPoiseuilleMesh},
+    {.name = "pipe",
+     .doc = "flow in a pipe, a mesh, started from rest: series solution at 0.1 and 1 s",
+     .quick = "fluid.spacing=2.5e-5",
+     .run = runPipe},
     {.name = "taylor_green",
      .doc = "decay rate of vortices in a periodic box, Re = 100",
      .quick = "fluid.spacing=0.025; fluid.box.max=1,1,0.2; fluid.blocks.0.max=1,1,0.2",
@@ -100,6 +108,22 @@ constexpr PhysicsCase kCases[] = {
               "fluid.spacing=0.005; fluid.box.max=0.1,0.12,0.03; fluid.blocks.0.max=0.1,0.1,0.03 | "
               "fluid.spacing=0.00357142857; fluid.box.max=0.1,0.12,0.0214285714; fluid.blocks.0.max=0.1,0.1,0.0214285714 | "
               "fluid.spacing=0.0025; fluid.box.max=0.1,0.12,0.015; fluid.blocks.0.max=0.1,0.1,0.015"},
+    {.name = "cavity_400",
+     .doc = "flow in a trough that slides under a wall at rest, Re = 400: the profile of Ghia, Ghia and Shin 1982",
+     .quick = "fluid.spacing=0.005; fluid.box.max=2.2,0.1,0.03; fluid.blocks.0.max=0.1,0.1,0.03; duration=2.5",
+     .run = runCavity400,
+     .everyMethod = true},
+    {.name = "drag",
+     .doc = "a sphere held in a stream at Re 20, 100 and 200: drag coefficient (Schiller and Naumann 1935)",
+     .quick = "fluid.spacing=0.00909090909; fluid.box.max=0.290909091,0.181818182,0.181818182; "
+              "fluid.blocks.0.max=0.290909091,0.181818182,0.181818182; colliders.0.position=0.1,0.0909090909,0.0909090909",
+     .run = runDrag,
+     .everyMethod = true},
+    {.name = "drag_cylinder",
+     .doc = "a cylinder held across a stream at Re 20 and 40: drag coefficient (Dennis and Chang 1970)",
+     .quick = "fluid.spacing=0.01; fluid.box.max=0.6,0.36,0.06; fluid.blocks.0.max=0.6,0.36,0.06; colliders.0.position=0.2,0.18,0.03",
+     .run = runDragCylinder,
+     .everyMethod = true},
     {.name = "rotating_patch",
      .doc = "a square turns without gravity (Colagrossi 2005): it stays in one piece and keeps its area",
      .quick = "fluid.spacing=0.04; fluid.box.max=2,2,0.24; fluid.blocks.0.max=0.5,0.5,0.24",

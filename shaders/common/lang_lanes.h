@@ -76,6 +76,7 @@ INLINE float max0(float a) { return a > 0.0f ? a : 0.0f; }
 INLINE float select(bool c, float a, float b) { return c ? a : b; }
 INLINE real select(bool c, real a, real b) { return c ? a : b; }
 #define SELECT(condition, a, b) select(condition, a, b)
+#define ANY_LANE(condition) anyLane(condition)
 
 struct real3 {
     real x, y, z;
@@ -152,6 +153,7 @@ INLINE real4 loadLanes(const vec4* b, const Group& g) {
 #endif
     return r;
 }
+INLINE real4 LOAD4_AT(const vec4* b, const Group& g, uint offset) { return loadLanes(b + offset, g); }
 INLINE real3 LOAD3(const vec4* b, const Group& g) { return loadLanes(b, g).xyz; }
 INLINE real LOADX(const vec4* b, const Group& g) { return loadLanes(b, g).xyz.x; }
 INLINE real LOADY(const vec4* b, const Group& g) { return loadLanes(b, g).xyz.y; }
@@ -172,6 +174,7 @@ INLINE void STORE4(vec4* b, const Group& g, const real3& v, real w) {
     memcpy(ws, &w.v, 32);
     for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = vec4(x[k], y[k], z[k], ws[k]);
 }
+INLINE void STORE4_AT(vec4* b, const Group& g, uint offset, const real3& v, real w) { STORE4(b + offset, g, v, w); }
 INLINE void STORE4(vec4* b, uint i, const vec3& v, float w) { b[i] = vec4(v, w); }
 template <class T>
 INLINE void STORE(T* b, uint i, const T& v) {
@@ -191,7 +194,7 @@ INLINE void STORE(T* b, uint i, const T& v) {
 #define END_NEIGHBORS \
     }                 \
     }
-// FOR_NEIGHBORS in a step's first sweep: the list keeps only the entries for which KEEP's condition holds in some lane.
+// FOR_NEIGHBORS in a step's first sweep: the list keeps only the entries for which KEEP's condition holds in some lane; with KEEP_ALL, all.
 #define FOR_ALL_NEIGHBORS(i, home, j)                \
     {                                                \
         uint* list_ = neighbors->list + i.listBegin; \
@@ -202,6 +205,7 @@ INLINE void STORE(T* b, uint i, const T& v) {
 #define KEEP(condition) \
     list_[kept_] = j;   \
     kept_ += anyLane(condition) ? 1U : 0U
+#define KEEP_ALL kept_ = k_ + 1
 #define END_ALL_NEIGHBORS(i)                 \
     }                                        \
     const_cast<Group&>(i).listCount = kept_; \

@@ -18,7 +18,8 @@ FN uint nearestPoint(FieldParams f, vec3 g) {
 }
 
 // Outside the grid the value at the border is used, which is the band's limit: the grid is padded by at least that width.
-FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
+FN float sideOf_(float distance_, bool signed_) { return signed_ ? distance_ : abs(distance_); }
+FN FieldSample sampleField_(GLOBAL(float, bandDistance) FieldParams f, vec3 p, bool signed_) {
     vec3 g = toCells(f, p);
     g = vec3(clamp(g.x, 0.0f, TO_FLOAT(f.sizeX)), clamp(g.y, 0.0f, TO_FLOAT(f.sizeY)), clamp(g.z, 0.0f, TO_FLOAT(f.sizeZ)));
     int cx = clamp(TO_INT(g.x), 0, f.sizeX - 1);
@@ -30,14 +31,14 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     uint row = TO_UINT(f.sizeX) + 1u;
     uint slab = row * (TO_UINT(f.sizeY) + 1u);
     uint at = TO_UINT(cz) * slab + TO_UINT(cy) * row + TO_UINT(cx);
-    float d000 = abs(bandDistance[at]);
-    float d100 = abs(bandDistance[at + 1u]);
-    float d010 = abs(bandDistance[at + row]);
-    float d110 = abs(bandDistance[at + row + 1u]);
-    float d001 = abs(bandDistance[at + slab]);
-    float d101 = abs(bandDistance[at + slab + 1u]);
-    float d011 = abs(bandDistance[at + slab + row]);
-    float d111 = abs(bandDistance[at + slab + row + 1u]);
+    float d000 = sideOf_(bandDistance[at], signed_);
+    float d100 = sideOf_(bandDistance[at + 1u], signed_);
+    float d010 = sideOf_(bandDistance[at + row], signed_);
+    float d110 = sideOf_(bandDistance[at + row + 1u], signed_);
+    float d001 = sideOf_(bandDistance[at + slab], signed_);
+    float d101 = sideOf_(bandDistance[at + slab + 1u], signed_);
+    float d011 = sideOf_(bandDistance[at + slab + row], signed_);
+    float d111 = sideOf_(bandDistance[at + slab + row + 1u], signed_);
     float e00 = d000 + (d100 - d000) * x;
     float e10 = d010 + (d110 - d010) * x;
     float e01 = d001 + (d101 - d001) * x;
@@ -59,6 +60,10 @@ FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) {
     s.gradient = vec3(alongX0 + (alongX1 - alongX0) * z, (e10 - e00) + ((e11 - e01) - (e10 - e00)) * z, high - low) * f.origin.w;
     return s;
 }
+
+FN FieldSample fieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) { return sampleField_(PASS(bandDistance) f, p, false); }
+// The same with its sign: below 0 inside a closed mesh. For points that may be there.
+FN FieldSample signedFieldAt(GLOBAL(float, bandDistance) FieldParams f, vec3 p) { return sampleField_(PASS(bandDistance) f, p, true); }
 
 // Unit vector towards larger distance; zero where the field has no gradient (far away, or midway between two walls).
 FN vec3 fieldNormal(FieldSample s) {

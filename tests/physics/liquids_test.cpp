@@ -152,7 +152,8 @@ TEST(Liquids, PressureGrowsByTheWeightOfEachLayer) {
         double value() const { return (n * yp - y * p) / (n * yy - y * y); }
     } upper, lower;
     for (const vec4& x : device->readAll<vec4>(*view.position, view.count)) {
-        const double y = double{x.y}, pressure = 20.0 * 20.0 * 1000 / 7 * (std::pow(double{x.w}, 7) - 1);  // Tait
+        const double y = double{x.y},
+                     pressure = std::max(20.0 * 20.0 * 1000 / 7 * (std::pow(double{x.w}, 7) - 1), 0.0);  // Tait, as the method has it
         if ((y < 0.03 || y > 0.17) && (y < 0.23 || y > 0.37)) continue;
         Slope& s = y > 0.2 ? upper : lower;
         s.n += 1;

@@ -94,7 +94,8 @@ TEST_P(Loads, OfAMeshTankAreTheChangeOfMomentum) {
     FluidParams p = dam(GetParam());
     p.box.min = vec3(-0.3F);
     p.box.max = vec3(0.9F, 0.9F, 0.5F);
-    p.blocks = {{vec3(0.025F), vec3(0.225F, 0.3F, 0.175F)}};
+    // Water that runs up the far wall comes nearly twice as high as it was: not over the rim.
+    p.blocks = {{vec3(0.025F), vec3(0.225F, 0.25F, 0.175F)}};
     const Balance b = run(p, {.field = &tank}, "mesh tank");
     EXPECT_LT(b.missing, kMissing);
     ASSERT_EQ(b.impulses.size(), 2U);
@@ -301,7 +302,11 @@ TEST(Probes, OfAScenesCollidersAreInItsStatistics) {
     EXPECT_LT(glm::length(missing), 1.0e-3 * mass * 9.81 * world.time());
     const auto along = [&](const char* name) { return stats["probes"][name]["impulse"][0].asDouble(); };
     EXPECT_GT(along("0"), 3 * along("2")) << "the first ball shelters the second";
-    EXPECT_GT(along("2"), 0.001);
+    // The wave pushes the second ball forward, and then flows back from the plane behind it.
+    double first = 0;
+    for (const Json::Value& force : stats["probes"]["2"]["force"])
+        if (first == 0 && std::abs(force[0].asDouble()) > 0.5) first = force[0].asDouble();
+    EXPECT_GT(first, 0.5);
     EXPECT_GT(along("1"), 0.01);
     EXPECT_EQ(along("3"), 0);
 }

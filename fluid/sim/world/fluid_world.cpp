@@ -124,7 +124,7 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
                         .pushSamples = [&](const Buffer& position, const Buffer& pressures, float scale,
                                            const vec3& weight) { bodies.push(step, *grid, particles, position, pressures, scale, weight); },
                         .planes = solids.planes(),
-                        .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
+                        .nearWalls = [&](const Buffer& position) { solids.nearWalls(step, *grid, position, particles.nearWalls); },
                         .forces = {},
                         .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
                         .wallAdhesion =

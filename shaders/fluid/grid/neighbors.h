@@ -15,9 +15,10 @@
     }                 \
     }                 \
     }
-// In the first sweep of a step, KEEP marks the neighbours that later sweeps need; a GPU keeps no list.
+// In the first sweep of a step, KEEP marks the neighbours that later sweeps need, and KEEP_ALL keeps those of an earlier loop; a GPU keeps no list.
 #define FOR_ALL_NEIGHBORS(i, home, j) FOR_NEIGHBORS(i, home, j)
 #define KEEP(condition)
+#define KEEP_ALL
 #define END_ALL_NEIGHBORS(i) END_NEIGHBORS
 #endif
 #if !defined(__cplusplus)

@@ -15,6 +15,7 @@ std::vector<double> virialPressures(std::span<const vec4> positions, std::span<c
     const double spacing = p.spacing, h = spacing * double{p.supportSpacings};
     // V r |W'(r)| = factor r^2 (h - r)^3
     const double factor = std::pow(spacing, 3) * 210 / (std::numbers::pi * std::pow(h, 8)) / wendlandLatticeSum(p.supportSpacings);
+    const double pull = pullScale(p.kernel, p.supportSpacings);
     const auto cellOf = [h](const vec4& x) { return glm::i64vec3(glm::floor(glm::dvec3(x) / h)); };
     const auto keyOf = [](const glm::i64vec3& c) { return static_cast<uint64_t>(c.x * 73856093 ^ c.y * 19349663 ^ c.z * 83492791); };
     std::unordered_map<uint64_t, std::vector<size_t>> cells;  // keys may collide; distances decide
@@ -35,7 +36,12 @@ std::vector<double> virialPressures(std::span<const vec4> positions, std::span<c
             for (const size_t j : found->second) {
                 const glm::dvec3 d = glm::dvec3(positions[i]) - glm::dvec3(positions[j]);
                 const double r2 = glm::dot(d, d);
-                if (r2 < h * h) sum += 0.5 * (double{pressures[i]} + double{pressures[j]}) * r2 * std::pow(h - std::sqrt(r2), 3);
+                if (!(r2 < h * h)) continue;
+                const double r = std::sqrt(r2), a = pressures[i], b = pressures[j];
+                // Negative pressures have the weights of shaders/fluid/methods/pull.h.
+                const double push = std::max(a, 0.0) + std::max(b, 0.0),
+                             pulled = (std::min(a, 0.0) + std::min(b, 0.0)) * pull * (r / spacing - kPullFrom);
+                sum += 0.5 * (push + pulled) * r2 * std::pow(h - r, 3);
             }
         }
         virial[i] = factor * sum / 3;

@@ -9,8 +9,9 @@
 
 namespace rivulet {
 
-// Pa, of each particle: a third of the sum over neighbours of V (p_i + p_j) / 2 r |W'(r)|, with Wendland's kernel as the methods have it.
-// Walls are not neighbours: the value is valid a support radius away from walls and surface. `pressures`: FluidWorld::pressures().
+// Pa, of each particle: a third of the sum over neighbours of V (p_i + p_j) / 2 r |W'(r)|, with Wendland's kernel as the methods have it,
+// and its weights of tension where a pressure is negative. Walls are not neighbours: the value is valid a support radius away from walls
+// and surface. `pressures`: FluidWorld::pressures().
 std::vector<double> virialPressures(std::span<const vec4> positions, std::span<const float> pressures, const FluidParams& params);
 
 }  // namespace rivulet

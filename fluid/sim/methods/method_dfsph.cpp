@@ -24,7 +24,7 @@ class Dfsph final : public Method {
   public:
     Kernel integrate, begin, end;
     PairKernel density, rate, push;
-    Buffer solve, kept;  // kept: pressures of the last step, by id
+    Buffer solve, kept, pull;  // kept: pressures of the last step, by id; pull: changes of negative pressures
     SolverResidual residual;
     float coupling = 1;   // of the iteration, over that with a support of 2 spacings
     bool closed = false;  // periodic along all axes: there may be no surface
@@ -61,7 +61,8 @@ class Dfsph final : public Method {
         density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
                     c.grid.pairThreads());
         c.forces();
-        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
+        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity, &pull},
+                     p.count);
         pushOn(c, 0, vec3(c.params.gravity) * c.params.dt);
         iterate(c);
         c.solve.iterations = residual.iterations();
@@ -84,7 +85,7 @@ class Dfsph final : public Method {
         StepParams s = c.params;
         s.iteration = k > 0 ? 1 : 0;
         s.force = vec4(weight, 0.0F);
-        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure, &residual.progress()},
+        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure, &residual.progress(), &pull},
                  c.grid.pairThreads());
         c.pushSamples(p.position, p.pressure, 2.0F / c.params.dt, weight);  // MIRRORED
     }
@@ -98,7 +99,7 @@ class Dfsph final : public Method {
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         for (int k = 0; k < most; ++k) {
             s.iteration = k > 0 ? 1 : 0;  // not its number: a device keeps few different blocks of params at hand
-            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress()},
+            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress(), &pull},
                      c.grid.pairThreads());
             pushOn(c, k, vec3(0.0F));
             if (residual.converged(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
@@ -135,7 +136,8 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     if (!residual) return residual.error();
     m->residual = std::move(*residual);
     const size_t count = setup.count;
-    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float))}) {
+    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float)),
+                                 std::pair(&m->pull, count * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);

@@ -83,6 +83,22 @@ double wendlandCoupling(double support) {
     return most / squares;
 }
 
+double pullScale(const std::string& kernel, double support) {
+    const int n = static_cast<int>(std::ceil(support));
+    double full = 0, pull = 0;
+    for (int z = -n; z <= n; ++z)
+        for (int y = -n; y <= n; ++y)
+            for (int x = -n; x <= n; ++x) {
+                const double r = std::sqrt(double(x * x + y * y + z * z)), q = r / support;
+                if (r == 0) continue;
+                const double a = std::max(1 - q, 0.0), b = std::max(0.5 - q, 0.0);
+                const double slope = kernel == "cubic_spline" ? (6 * a * a - 24 * b * b) / q : a * a * a;
+                full += slope * r * r;
+                pull += slope * r * r * (r - kPullFrom);
+            }
+    return full / pull;
+}
+
 namespace {
 
 void fillFactors(const FluidParams& p, StepParams& s) {
@@ -105,6 +121,7 @@ void fillFactors(const FluidParams& p, StepParams& s) {
 
 void fillSmoothing(const FluidParams& p, StepParams& s) {
     fillFactors(p, s);
+    s.pullScale = static_cast<float>(pullScale(p.kernel, double{p.supportSpacings}));
     s.wallShare = static_cast<float>(0.98 * wallShare(double{s.contact + s.wallOffset} / double{s.h}));
 }
 

@@ -17,7 +17,12 @@ double wendlandWallOffset(double supportSpacings);
 // (Wendland C2, diagonal 1). 2.6 at a support of 2 spacings, 6.3 at 3: iterations that converge at one diverge at the other.
 double wendlandCoupling(double supportSpacings);
 
-// Fills kernelK, gradientK, wallOffset and wallShare (h and contact are there) for fluid.kernel: "wendland" or "cubic_spline".
+// The factor of PULL (shaders/fluid/methods/pull.h): with it, a uniform pressure on a cubic lattice has the same virial with the weights of
+// tension as without.
+inline constexpr double kPullFrom = 0.9;  // spacings; as there
+double pullScale(const std::string& kernel, double supportSpacings);
+
+// Fills kernelK, gradientK, wallOffset, wallShare and pullScale (h and contact are there) for fluid.kernel: "wendland" or "cubic_spline".
 void fillSmoothing(const FluidParams& params, StepParams& step);
 
 }  // namespace rivulet

@@ -43,7 +43,7 @@ STRUCT(StepParams) {
     float correction;   // share of a density error that a step corrects
     float wallShare;    // wall share at the distance at which particles rest, slightly reduced: above it, particles do not move nearer
     float sampleScale;  // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)
-    float padding2;
+    float pullScale;    // of PULL, see fluid/methods/pull.h
     float momentum;  // share of the last iteration's change that is repeated (heavy ball)
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)

@@ -85,6 +85,9 @@ TEST(VirialPressure, OfALatticeIsThePressureOfItsPairs) {
     const size_t middle = 4 + 9 * 4 + 81 * 4;
     std::vector<float> pressures(positions.size(), 700.0F);
     EXPECT_NEAR(virialPressures(positions, pressures, p)[middle], 700 * passed / shape, 0.01);
+    // Under tension pairs have other weights, and the lattice passes on as much.
+    const std::vector<float> tension(positions.size(), -700.0F);
+    EXPECT_NEAR(virialPressures(positions, tension, p)[middle], -700 * passed / shape, 0.01);
     // Of its own pressure it passes on half, of its neighbours' half.
     pressures[middle] = 0;
     EXPECT_NEAR(virialPressures(positions, pressures, p)[middle], 350 * passed / shape, 0.01);

@@ -24,7 +24,7 @@ class Dfsph final : public Method {
   public:
     Kernel integrate, begin, end;
     PairKernel density, rate, push;
-    Buffer solve, kept, pull;  // kept: pressures of the last step, by id; pull: changes of negative pressures
+    Buffer solve, kept, pull, lowest;  // kept: pressures of the last step, by id; pull: changes of negative pressures
     SolverResidual residual;
     float coupling = 1;   // of the iteration, over that with a support of 2 spacings
     bool closed = false;  // periodic along all axes: there may be no surface
@@ -58,11 +58,11 @@ class Dfsph final : public Method {
         if (!c.build(false)) return;
         Particles& p = c.particles;
         c.boundary(p.position);
-        density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
+        density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration, &lowest},
                     c.grid.pairThreads());
         c.forces();
-        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity, &pull},
-                     p.count);
+        c.device.run(begin, c.params,
+                     {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity, &pull, &lowest}, p.count);
         pushOn(c, 0, vec3(c.params.gravity) * c.params.dt);
         iterate(c);
         c.solve.iterations = residual.iterations();
@@ -99,8 +99,10 @@ class Dfsph final : public Method {
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         for (int k = 0; k < most; ++k) {
             s.iteration = k > 0 ? 1 : 0;  // not its number: a device keeps few different blocks of params at hand
-            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress(), &pull},
-                     c.grid.pairThreads());
+            rate.run(
+                c, s,
+                {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress(), &pull, &lowest},
+                c.grid.pairThreads());
             pushOn(c, k, vec3(0.0F));
             if (residual.converged(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
         }
@@ -137,7 +139,7 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     m->residual = std::move(*residual);
     const size_t count = setup.count;
     for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float)),
-                                 std::pair(&m->pull, count * sizeof(float))}) {
+                                 std::pair(&m->pull, count * sizeof(float)), std::pair(&m->lowest, count * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);

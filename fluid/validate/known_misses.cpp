@@ -36,6 +36,7 @@ constexpr KnownMiss kKnownMisses[] = {
     {"rotating_patch", "wcsph", "share of the largest piece", kClamp},
     {"rotating_patch", "pbf", "area over", kClamp},
     {"rotating_patch", "wcsph", "area over", kClamp},
+    {"elliptical_drop", "dfsph", "short axis", kShear},
     {"elliptical_drop", "pbf", "short axis", kShear},
     {"elliptical_drop", "wcsph", "short axis", kShear},
     {"pool", "dfsph", "rms speed", kNoise},

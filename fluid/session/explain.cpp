@@ -18,9 +18,9 @@ struct Part {
     const char* define;  // "" = see `paths`
 };
 constexpr Part kParts[] = {
-    {"walls", "the box is periodic along all axes, and there are no colliders", "fluid/solids/boundary|fluid/wall", ""},
+    {"walls", "the box is periodic along all axes, and there are no colliders", "fluid/solids/near_walls|fluid/wall", ""},
     {"collision with meshes", "no collider has triangles", "fluid/solids/collide", ""},
-    {"moving meshes", "no collider moves or deforms", "fluid/solids/boundary_moving|fluid/forces/wall_friction_moving", ""},
+    {"moving meshes", "no collider moves or deforms", "fluid/solids/near_walls_moving|fluid/forces/wall_friction_moving", ""},
     {"floating bodies", "the scene has none",
      "fluid/solids/place_samples|fluid/solids/push_samples|fluid/solids/sum_loads|fluid/solids/index_samples", ""},
     {"masses and densities per particle", "there is one liquid and no body", "", "MATTER"},

@@ -21,6 +21,7 @@ Result<SceneFile> sceneOf(int particles, int times) {
     if (!scene) return scene.error();
     FluidParams& f = scene->fluid;
     f.method = "wcsph_thesis";
+    f.supportSpacings = 2;
     const float wide = std::round(std::cbrt(2 * static_cast<float>(particles)));
     f.spacing = 0.5F / std::cbrt(static_cast<float>(particles * times));
     f.maxSubsteps = 1;  // a frame is one step of the stable length

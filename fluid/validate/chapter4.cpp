@@ -41,6 +41,7 @@ Result<SceneFile> sceneOf(const Chapter4Row& row) {
     if (!scene) return scene.error();
     FluidParams& f = scene->fluid;
     f.method = "wcsph_thesis";
+    f.supportSpacings = 2;
     f.grid = row.grid;
     f.workGroup = row.workGroup;
     f.spacing = kColumnSpacing;

@@ -18,10 +18,10 @@ struct ChartCase {
 };
 constexpr ChartCase kChartCases[] = {
     {"hydrostatic", true, "fluid.spacing=0.0357142857", "fluid.spacing=0.0178571429"},
-    {"dam_break", true, "fluid.spacing=0.00238125; fluid.box.max=0.3429,0.15,0.009525; fluid.blocks.0.max=0.05715,0.1143,0.009525",
-     "fluid.spacing=0.00119062500; fluid.box.max=0.3429,0.15,0.0047625; fluid.blocks.0.max=0.05715,0.1143,0.0047625"},
-    {"standing_wave", true, "fluid.spacing=0.025; fluid.box.max=1,0.8,0.1; fluid.blocks.0.max=1,0.5,0.1",
-     "fluid.spacing=0.0125; fluid.box.max=1,0.8,0.05; fluid.blocks.0.max=1,0.5,0.05"},
+    {"dam_break", true, "fluid.spacing=0.00238125; fluid.box.max=0.3429,0.15,0.01190625; fluid.blocks.0.max=0.05715,0.1143,0.01190625",
+     "fluid.spacing=0.00119062500; fluid.box.max=0.3429,0.15,0.005953125; fluid.blocks.0.max=0.05715,0.1143,0.005953125"},
+    {"standing_wave", true, "fluid.spacing=0.025; fluid.box.max=1,0.8,0.125; fluid.blocks.0.max=1,0.5,0.125",
+     "fluid.spacing=0.0125; fluid.box.max=1,0.8,0.0625; fluid.blocks.0.max=1,0.5,0.0625"},
     {"taylor_green", true, "fluid.spacing=0.0333333333; fluid.box.max=1,1,0.2666666664; fluid.blocks.0.max=1,1,0.2666666664",
      "fluid.spacing=0.02; fluid.box.max=1,1,0.16; fluid.blocks.0.max=1,1,0.16"},
     {"poiseuille", false,

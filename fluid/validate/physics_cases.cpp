@@ -30,7 +30,7 @@ constexpr PhysicsCase kCases[] = {
               "fluid.spacing=0.0357142857 | "
               "fluid.spacing=0.025"},
     {"dam_break", "front and height of a collapsing column: inviscid flow, Martin and Moyce 1952, Koshizuka and Oka 1996",
-     "fluid.spacing=0.0017859375; fluid.box.max=0.3429,0.15,0.00714375; fluid.blocks.0.max=0.05715,0.1143,0.00714375", runDamBreak},
+     "fluid.spacing=0.0017859375; fluid.box.max=0.3429,0.15,0.0089296875; fluid.blocks.0.max=0.05715,0.1143,0.0089296875", runDamBreak},
     {.name = "poiseuille",
      .doc = "flow between plates, started from rest: series solution at 0.1 and 1 s",
      .quick = "fluid.spacing=2.5e-5",
@@ -67,12 +67,12 @@ constexpr PhysicsCase kCases[] = {
               "fluid.spacing=0.025; fluid.box.max=1,1,0.2; fluid.blocks.0.max=1,1,0.2"},
     {.name = "standing_wave",
      .doc = "period of the lowest mode, w^2 = g k tanh(k H), and the viscosity of its decay",
-     .quick = "fluid.spacing=0.0166666667; fluid.box.max=1,0.8,0.0666666667; fluid.blocks.0.max=1,0.5,0.0666666667",
+     .quick = "fluid.spacing=0.0166666667; fluid.box.max=1,0.8,0.0833333335; fluid.blocks.0.max=1,0.5,0.0833333335",
      .run = runStandingWave,
-     .sizes = "fluid.spacing=0.05; fluid.box.max=1,0.8,0.2; fluid.blocks.0.max=1,0.5,0.2 | "
-              "fluid.spacing=0.0357142857; fluid.box.max=1,0.8,0.142857143; fluid.blocks.0.max=1,0.5,0.142857143 | "
-              "fluid.spacing=0.025; fluid.box.max=1,0.8,0.1; fluid.blocks.0.max=1,0.5,0.1 | "
-              "fluid.spacing=0.0178571429; fluid.box.max=1,0.8,0.0714285714; fluid.blocks.0.max=1,0.5,0.0714285714"},
+     .sizes = "fluid.spacing=0.05; fluid.box.max=1,0.8,0.25; fluid.blocks.0.max=1,0.5,0.25 | "
+              "fluid.spacing=0.0357142857; fluid.box.max=1,0.8,0.178571429; fluid.blocks.0.max=1,0.5,0.178571429 | "
+              "fluid.spacing=0.025; fluid.box.max=1,0.8,0.125; fluid.blocks.0.max=1,0.5,0.125 | "
+              "fluid.spacing=0.0178571429; fluid.box.max=1,0.8,0.0892857145; fluid.blocks.0.max=1,0.5,0.0892857145"},
     {"momentum", "two drops collide without gravity: drift of momentum and angular momentum", "fluid.spacing=0.035", runMomentum},
     {"floating", "floating and sinking boxes: draught against Archimedes, impulse between water and boxes", "fluid.spacing=0.0125",
      runFloating},

@@ -16,6 +16,7 @@ typedef int3 ivec3;
 typedef uint4 uvec4;
 typedef float real;
 typedef float3 real3;
+typedef float4 real4;
 #define vec2(...) ((float2)(__VA_ARGS__))
 #define vec3(...) ((float3)(__VA_ARGS__))
 #define real3(...) ((float3)(__VA_ARGS__))
@@ -60,6 +61,7 @@ typedef float3 real3;
 #else  // GLSL. LOCAL_SIZE comes from the device, here and in OpenCL.
 #define real float
 #define real3 vec3
+#define real4 vec4
 #define TO_IVEC3(v) ivec3(v)
 #define TO_VEC3(v) vec3(v)
 #define TO_INT(x) int(x)
@@ -105,6 +107,7 @@ typedef float3 real3;
 #endif
 #if !defined(__cplusplus)  // on a GPU a lane is the particle itself
 #define SELECT(condition, a, b) ((condition) ? (a) : (b))
+#define ANY_LANE(condition) (condition)
 #define NEIGHBOR_TYPE uint  // see fluid/grid/neighbors.h
 #define LOAD(b, i) b[i]
 #define LOAD3(b, i) b[i].xyz
@@ -112,7 +115,9 @@ typedef float3 real3;
 #define LOADY(b, i) b[i].y
 #define LOADZ(b, i) b[i].z
 #define LOADW(b, i) b[i].w
+#define LOAD4_AT(b, i, offset) b[(i) + (offset)]
 #define STORE(b, i, v) b[i] = (v)
 #define STORE4(b, i, v, w) b[i] = vec4(v, w)
+#define STORE4_AT(b, i, offset, v, w) b[(i) + (offset)] = vec4(v, w)
 #define max0(x) max(x, 0.0f)
 #endif

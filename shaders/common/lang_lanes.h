@@ -76,6 +76,7 @@ INLINE float max0(float a) { return a > 0.0f ? a : 0.0f; }
 INLINE float select(bool c, float a, float b) { return c ? a : b; }
 INLINE real select(bool c, real a, real b) { return c ? a : b; }
 #define SELECT(condition, a, b) select(condition, a, b)
+#define ANY_LANE(condition) anyLane(condition)
 
 struct real3 {
     real x, y, z;
@@ -98,6 +99,7 @@ INLINE real dot(const real3& a, const real3& b) { return a.x * b.x + a.y * b.y +
 // A group: up to 8 consecutive particles of one row of cells. Lanes beyond `lanes` repeat the last particle and are never stored.
 struct Group {
     uint first, lanes, listBegin, listCount;
+    uint seenCount;  // the first entries of the list: those of which a lane may see an image, see fluid/solids/images.h
 };
 struct NeighborLists {
     const Group* groups;
@@ -152,6 +154,7 @@ INLINE real4 loadLanes(const vec4* b, const Group& g) {
 #endif
     return r;
 }
+INLINE real4 LOAD4_AT(const vec4* b, const Group& g, uint offset) { return loadLanes(b + offset, g); }
 INLINE real3 LOAD3(const vec4* b, const Group& g) { return loadLanes(b, g).xyz; }
 INLINE real LOADX(const vec4* b, const Group& g) { return loadLanes(b, g).xyz.x; }
 INLINE real LOADY(const vec4* b, const Group& g) { return loadLanes(b, g).xyz.y; }
@@ -172,6 +175,7 @@ INLINE void STORE4(vec4* b, const Group& g, const real3& v, real w) {
     memcpy(ws, &w.v, 32);
     for (uint k = 0; k < g.lanes; ++k) b[g.first + k] = vec4(x[k], y[k], z[k], ws[k]);
 }
+INLINE void STORE4_AT(vec4* b, const Group& g, uint offset, const real3& v, real w) { STORE4(b + offset, g, v, w); }
 INLINE void STORE4(vec4* b, uint i, const vec3& v, float w) { b[i] = vec4(v, w); }
 template <class T>
 INLINE void STORE(T* b, uint i, const T& v) {
@@ -191,19 +195,37 @@ INLINE void STORE(T* b, uint i, const T& v) {
 #define END_NEIGHBORS \
     }                 \
     }
-// FOR_NEIGHBORS in a step's first sweep: the list keeps only the entries for which KEEP's condition holds in some lane.
-#define FOR_ALL_NEIGHBORS(i, home, j)                \
-    {                                                \
-        uint* list_ = neighbors->list + i.listBegin; \
-        const uint n_ = i.listCount;                 \
-        uint kept_ = 0;                              \
-        for (uint k_ = 0; k_ < n_; ++k_) {           \
+// FOR_NEIGHBORS between FOR_IMAGES and END_IMAGES.
+#define FOR_SEEN(i, home, j)                                       \
+    {                                                              \
+        const uint* list_ = neighbors->list + i.listBegin;         \
+        const uint n_ = IMAGE > 0 ? i.seenCount : i.listCount;     \
+        for (uint k_ = 0; k_ < n_; ++k_) {                         \
             const uint j = list_[k_];
-#define KEEP(condition) \
-    list_[kept_] = j;   \
-    kept_ += anyLane(condition) ? 1U : 0U
-#define END_ALL_NEIGHBORS(i)                 \
-    }                                        \
-    const_cast<Group&>(i).listCount = kept_; \
+// FOR_SEEN in a step's first sweep: the list keeps only the entries for which KEEP's condition holds in some lane, those of which an image
+// may be seen (a bool) before the others.
+#define FOR_ALL_SEEN(i, home, j)                                   \
+    {                                                              \
+        uint* list_ = neighbors->list + i.listBegin;               \
+        const uint n_ = IMAGE > 0 ? i.seenCount : i.listCount;     \
+        uint kept_ = 0, seen_ = 0;                                 \
+        for (uint k_ = 0; k_ < n_; ++k_) {                         \
+            const uint j = list_[k_];
+#define KEEP(condition, seen)             \
+    if (IMAGE == 0 && anyLane(condition)) { \
+        list_[kept_] = j;                 \
+        if (seen) {                       \
+            list_[kept_] = list_[seen_];  \
+            list_[seen_] = j;             \
+            ++seen_;                      \
+        }                                 \
+        ++kept_;                          \
+    }
+#define END_ALL_SEEN(i)                              \
+    }                                                \
+    if (IMAGE == 0) {                                \
+        const_cast<Group&>(i).listCount = kept_;     \
+        const_cast<Group&>(i).seenCount = seen_;     \
+    }                                                \
     }
 }  // namespace rivulet::RIVULET_KERNEL_UNIT

@@ -111,15 +111,19 @@ std::vector<vec4> result(Device& device, const Case& c, float dt = 2.0e-3F) {
     s.firstSample = count - traits.samples;
     EXPECT_TRUE(grid->build(s, *particles));
     const std::vector<uint32_t> order = device.readAll<uint32_t>(particles->id, count);
+    const std::vector<vec4> sorted = device.readAll<vec4>(particles->position, count);
+    const float lowest = std::min_element(sorted.begin(), sorted.end(), [](const vec4& a, const vec4& b) { return a.y < b.y; })->y;
     std::vector<float> density(count);
-    std::vector<vec4> sortedMatter(count), boundary(count);
+    std::vector<vec4> sortedMatter(count), nearWalls(4 * size_t{count}, vec4(0.0F));
     for (uint32_t i = 0; i < count; ++i) {
         density[i] = 0.6F + 0.001F * static_cast<float>(order[i] % 500);
         sortedMatter[i] = matter[order[i]];
-        boundary[i] = vec4(0.1F, -1.0F, 0.3F, 0.1F) * static_cast<float>(order[i] % 7);
+        // One wall, below the block; the further two entries are out of reach.
+        nearWalls[i] = vec4(0.0F, 1.0F, 0.0F, sorted[i].y - lowest + 0.3F * s.spacing);
+        nearWalls[i + count] = nearWalls[i + 2 * size_t{count}] = vec4(0.0F, 1.0F, 0.0F, 4.0F * s.h);
     }
     device.writeAll<float>(particles->density, density);
-    device.writeAll<vec4>(particles->boundary, boundary);
+    device.writeAll<vec4>(particles->nearWalls, nearWalls);
     if (c.matter) device.writeAll<vec4>(particles->matter, sortedMatter);
     auto kernel = [&](const char* path) {
         Result<Kernel> found = device.kernel(path);
@@ -139,7 +143,7 @@ std::vector<vec4> result(Device& device, const Case& c, float dt = 2.0e-3F) {
         .build = {},
         .pushSamples = {},
         .planes = planes,
-        .boundary = {},
+        .nearWalls = {},
         .forces = {},
         .wallFriction =
             [&](const Buffer& at, Buffer& into) {

@@ -107,7 +107,7 @@ struct Bench {
                             .build = [&](bool) { return static_cast<bool>(grid->build(step, particles)); },
                             .pushSamples = [](const Buffer&, const Buffer&, float, const vec3&) {},
                             .planes = planes,
-                            .boundary = [](const Buffer&) {},
+                            .nearWalls = [](const Buffer&) {},
                             .forces = [] {}};
         method->step(context);
     }

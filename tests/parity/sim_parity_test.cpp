@@ -94,9 +94,9 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
     auto particles = Particles::create(device, count);
     std::vector<Define> defines;
     if (field != nullptr) defines.push_back({"FIELD", "1"});
-    auto boundary = device.kernel("fluid/solids/boundary", defines), collide = device.kernel("fluid/solids/collide"),
-         stats = device.kernel("fluid/world/stats");
-    for (const Result<Kernel>* k : {&boundary, &collide, &stats}) {
+    auto nearWalls = device.kernel("fluid/solids/near_walls", defines), follow = device.kernel("fluid/solids/follow_walls"),
+         collide = device.kernel("fluid/solids/collide"), stats = device.kernel("fluid/world/stats");
+    for (const Result<Kernel>* k : {&nearWalls, &follow, &collide, &stats}) {
         EXPECT_TRUE(*k) << (*k ? "" : k->error().message);
         if (!*k) return out;
     }
@@ -180,16 +180,20 @@ Fields oneStep(Device& device, const char* methodName, const VoxelField* field, 
             },
         .pushSamples = [](const Buffer&, const Buffer&, float, const vec3&) {},
         .planes = planes,
-        .boundary =
+        .nearWalls =
             [&](const Buffer& position) {
                 if (field != nullptr)
-                    device.run(*boundary, s, {&grid->cellStart(), &position, &planes, &particles->boundary, &block, &distance}, count);
+                    device.run(*nearWalls, s, {&grid->cellStart(), &position, &planes, &particles->nearWalls, &block, &distance}, count);
                 else
-                    device.run(*boundary, s, {&grid->cellStart(), &position, &planes, &particles->boundary}, count);
+                    device.run(*nearWalls, s, {&grid->cellStart(), &position, &planes, &particles->nearWalls}, count);
+            },
+        .followWalls =
+            [&](const Buffer& from, const Buffer& to) {
+                device.run(*follow, s, {&grid->cellStart(), &from, &to, &particles->nearWalls}, count);
             },
         .forces = [] {}};
     (*method)->step(context);
-    if (std::string_view(methodName) != "wcsph_thesis") keep("boundary", particles->boundary, true);
+    if (std::string_view(methodName) != "wcsph_thesis") keep("nearest wall", particles->nearWalls, true);
     keep("density", particles->density, false);
     keep("pressure", particles->pressure, false);
     if (!pbf) keep("acceleration", particles->acceleration, true);

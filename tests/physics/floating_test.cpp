@@ -51,6 +51,9 @@ TEST_P(Draught, TheDisplacedWaterWeighsAsMuchAsTheBody) {
     FluidParams p;
     p.method = what.method;
     p.spacing = s;
+    // Bodies as small as these float up to 0.3 spacings too high or too low at the default support; validate's case `floating` has larger
+    // ones.
+    p.supportSpacings = 2;
     p.box.max = vec3(24 * s, 0.4F, 24 * s);
     p.box.periodicX = p.box.periodicZ = true;  // no walls, so no gap between water and walls
     p.soundSpeed = 15;
@@ -82,7 +85,7 @@ TEST_P(Draught, TheDisplacedWaterWeighsAsMuchAsTheBody) {
     }
     std::printf("%s %s %g: under %.4f (%+.2f %%), tilt %.1e, speed %.3f\n", what.method, what.ball ? "ball" : "box", what.ratio, under,
                 100 * (under / what.ratio - 1), tilt, moved);
-    EXPECT_NEAR(under / what.ratio, 1.0, 0.03);
+    EXPECT_NEAR(under * height / double{s}, what.ratio * height / double{s}, 0.15) << "of a spacing";
     if (!what.ball) EXPECT_LT(tilt, 0.01) << "it floats upright";
     EXPECT_EQ(world->stats().lost, 0U);
 }

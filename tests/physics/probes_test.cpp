@@ -83,8 +83,8 @@ TEST_P(Loads, OfAMeshAreTheChangeOfMomentum) {
 // A tank of a mesh alone: the box is far away.
 TEST_P(Loads, OfAMeshTankAreTheChangeOfMomentum) {
     const float s = 0.025F;
-    const vec3 a(0.0F), top(0.6F, 0.6F, 0.2F);
-    test::Mesh walls;  // open at the top
+    const vec3 a(0.0F), top(0.6F, 0.8F, 0.2F);  // drops fly more than twice as high as the column
+    test::Mesh walls;                           // open at the top
     walls.quad(a, vec3(top.x, 0, 0), vec3(top.x, 0, top.z), vec3(0, 0, top.z));
     walls.quad(a, vec3(0, 0, top.z), vec3(0, top.y, top.z), vec3(0, top.y, 0));
     walls.quad(vec3(top.x, 0, 0), vec3(top.x, 0, top.z), top, vec3(top.x, top.y, 0));
@@ -93,7 +93,7 @@ TEST_P(Loads, OfAMeshTankAreTheChangeOfMomentum) {
     const VoxelField tank = test::baked(walls, 0.2F * s, s);
     FluidParams p = dam(GetParam());
     p.box.min = vec3(-0.3F);
-    p.box.max = vec3(0.9F, 0.9F, 0.5F);
+    p.box.max = vec3(0.9F, 1.1F, 0.5F);
     p.blocks = {{vec3(0.025F), vec3(0.225F, 0.3F, 0.175F)}};
     const Balance b = run(p, {.field = &tank}, "mesh tank");
     EXPECT_LT(b.missing, kMissing);
@@ -301,7 +301,11 @@ TEST(Probes, OfAScenesCollidersAreInItsStatistics) {
     EXPECT_LT(glm::length(missing), 1.0e-3 * mass * 9.81 * world.time());
     const auto along = [&](const char* name) { return stats["probes"][name]["impulse"][0].asDouble(); };
     EXPECT_GT(along("0"), 3 * along("2")) << "the first ball shelters the second";
-    EXPECT_GT(along("2"), 0.001);
+    // The wave pushes the second ball forward, and then flows back from the plane behind it.
+    double first = 0;
+    for (const Json::Value& force : stats["probes"]["2"]["force"])
+        if (first == 0 && std::abs(force[0].asDouble()) > 0.5) first = force[0].asDouble();
+    EXPECT_GT(first, 0.5);
     EXPECT_GT(along("1"), 0.01);
     EXPECT_EQ(along("3"), 0);
 }

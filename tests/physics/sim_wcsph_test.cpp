@@ -10,6 +10,7 @@
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world.h"
+#include "tests/physics/baked_mesh.h"
 #include "tests/physics/worlds.h"
 #include "tests/unit/voxel_test_meshes.h"
 
@@ -46,7 +47,7 @@ TEST(Wcsph, DensityIsTheSumOverAllPairsInDouble) {
     world->step({vec3(0.0F)}, 1.0e-9);
     const std::vector<vec4> after = device->readAll<vec4>(*world->particles().position, n);
     const std::vector<uint32_t> id = device->readAll<uint32_t>(*world->particles().id, n);
-    const double h = 0.08, mass = std::pow(0.04, 3), lattice = wendlandLatticeSum(2.0);
+    const double support = double{p.supportSpacings}, h = 0.04 * support, mass = std::pow(0.04, 3), lattice = wendlandLatticeSum(support);
     double worst = 0;
     for (uint32_t i = 0; i < n; ++i) {
         double ratio = 0;
@@ -67,8 +68,7 @@ TEST(Wcsph, TheLatticeSumIsTheKernelsSumOverALattice) {
     }
 }
 
-// A block that fills its box from wall to wall is at rest density everywhere. The wall's law is calibrated on the layer next to the wall;
-// the second layer, which a lattice would not reach, receives 4e-4 from it, and an edge's overlap is an approximation.
+// A block that fills its box from wall to wall is at rest density everywhere, along edges and in corners too: walls continue the lattice.
 TEST(Wcsph, ALatticeAgainstWallsIsAtRestDensity) {
     auto device = cpu();
     FluidParams p = boxOfWater(0.05F, vec3(0.0F), vec3(1.0F, 0.5F, 1.0F));
@@ -77,40 +77,74 @@ TEST(Wcsph, ALatticeAgainstWallsIsAtRestDensity) {
     world->step({vec3(0.0F)}, 1.0e-9);
     const uint32_t n = world->particles().count;
     ASSERT_EQ(n, 20U * 10U * 20U);
-    double faceWorst = 0, edgeWorst = 0;
+    double worst = 0;
     for (const vec4& x : device->readAll<vec4>(*world->particles().position, n)) {
-        if (x.y > 0.4F) continue;  // the free surface
-        const int walls = (x.x < 0.05F) + (x.x > 0.95F) + (x.z < 0.05F) + (x.z > 0.95F) + (x.y < 0.05F);
-        (walls <= 1 ? faceWorst : edgeWorst) = std::max(walls <= 1 ? faceWorst : edgeWorst, std::abs(double{x.w} - 1.0));
+        if (x.y > 0.35F) continue;  // the free surface
+        worst = std::max(worst, std::abs(double{x.w} - 1.0));
     }
-    EXPECT_LT(faceWorst, 1.0e-3);
-    EXPECT_LT(edgeWorst, 0.01);
+    EXPECT_LT(worst, 3.0e-6);
 }
 
-// The wall's share against the kernel integrated numerically over the half space behind it.
-TEST(Wcsph, AWallsShareIsTheKernelsIntegralBehindIt) {
+// Three squares that meet at `corner`.
+test::Mesh innerCorner(const vec3& corner, float size) {
+    test::Mesh mesh;
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 u(0.0F), v(0.0F);
+        u[(axis + 1) % 3] = size;
+        v[(axis + 2) % 3] = size;
+        mesh.quad(corner, corner + u, corner + u + v, corner + v);
+    }
+    return mesh;
+}
+
+// Walls of the box, of planes and of a mesh are planes of symmetry: in a corner, the density is the sum over all particles and their seven
+// reflections, in double.
+TEST(Wcsph, DensityInACornerIsTheSumOverReflections) {
     auto device = cpu();
-    const float spacing = 0.05F, h = 0.1F;
-    for (float distance : {0.03F, 0.05F, 0.07F, 0.09F}) {
-        FluidParams p{.method = "wcsph"};
-        p.spacing = spacing;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> jitter(-0.01F, 0.01F);
+    for (const char* walls : {"box", "planes", "mesh"}) {
+        FluidParams p = boxOfWater(0.04F, vec3(0.2F), vec3(0.52F));
         p.gravity = vec3(0.0F);
-        p.blocks = {{vec3(0.45F), vec3(0.5F), vec3(0.0F)}};  // one particle
-        auto world = makeWorld(*device, p);
-        ASSERT_EQ(world->particles().count, 1U);
-        const vec4 place(distance, 0.5F, 0.5F, 1.0F);
-        device->writeAll<vec4>(const_cast<Buffer&>(*world->particles().position), std::span(&place, 1));
-        world->step({vec3(0.0F)}, 1.0e-9);
-        const double ratio = device->readAll<vec4>(*world->particles().position, 1)[0].w;
-        const double own = std::pow(double{spacing}, 3) * wendland(0, h) / wendlandLatticeSum(2.0);
-        const double d = distance + wendlandWallOffset(2.0) * spacing;
-        double share = 0;  // shells of radius r, the cap beyond d: 2 pi r (r - d)
-        const int steps = 20000;
-        for (int k = 0; k < steps; ++k) {
-            const double r = d + (h - d) * (k + 0.5) / steps;
-            if (r > d) share += wendland(r, h) * 2 * M_PI * r * (r - d) * (h - d) / steps;
+        Solids solids;
+        VoxelField field;
+        if (std::string_view(walls) == "box") p.box.min = vec3(0.2F);
+        if (std::string_view(walls) == "planes")
+            for (int k = 0; k < 3; ++k) {
+                vec3 n(0.0F);
+                n[k] = 1;
+                solids.planes.push_back({vec3(0.2F), n, 0});
+            }
+        if (std::string_view(walls) == "mesh") {
+            field = test::baked(innerCorner(vec3(0.2F), 0.8F), 0.01F, 2 * p.spacing);
+            solids.field = &field;
         }
-        EXPECT_NEAR(ratio - own, std::max(share, 0.0), 2.0e-6) << distance << " m from the wall";
+        auto world = makeWorld(*device, p, solids);
+        const uint32_t n = world->particles().count;
+        ASSERT_EQ(n, 512U);
+        std::vector<vec4> x = device->readAll<vec4>(*world->particles().position, n);
+        for (vec4& v : x) v += vec4(jitter(random), jitter(random), jitter(random), 0.0F);
+        device->writeAll<vec4>(const_cast<Buffer&>(*world->particles().position), x);
+        world->step({vec3(0.0F)}, 1.0e-9);
+        const std::vector<vec4> after = device->readAll<vec4>(*world->particles().position, n);
+        const std::vector<uint32_t> id = device->readAll<uint32_t>(*world->particles().id, n);
+        const double support = double{p.supportSpacings}, h = 0.04 * support, mass = std::pow(0.04, 3),
+                     lattice = wendlandLatticeSum(support);
+        double worst = 0;
+        for (uint32_t i = 0; i < n; ++i) {
+            double ratio = 0;
+            for (const vec4& b : x)
+                for (int image = 0; image < 8; ++image) {
+                    double squares = 0;
+                    for (int k = 0; k < 3; ++k) {
+                        const double there = (image >> k & 1) != 0 ? 2 * double{0.2F} - double{b[k]} : double{b[k]};
+                        squares += std::pow(double{x[id[i]][k]} - there, 2);
+                    }
+                    ratio += mass * wendland(std::sqrt(squares), h) / lattice;
+                }
+            worst = std::max(worst, std::abs(double{after[i].w} - ratio) / ratio);
+        }
+        EXPECT_LT(worst, std::string_view(walls) == "mesh" ? 2.0e-3 : 2.0e-5) << walls;
     }
 }
 

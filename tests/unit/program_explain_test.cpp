@@ -53,7 +53,7 @@ TEST(ProgramExplain, AWorldWithoutWallsBodiesOrTensionCompilesNoneOfTheirCode) {
             for (const char* part : {"walls", "floating bodies", "surface tension"}) EXPECT_TRUE(anyBegins(left, part)) << part << out;
             ASSERT_GT(made.size(), 5U);
             for (const std::string& kernel : made) {
-                for (const char* path : {"fluid/solids/boundary", "fluid/wall", "fluid/solids/collide", "fluid/solids/place_samples",
+                for (const char* path : {"fluid/solids/near_walls", "fluid/wall", "fluid/solids/collide", "fluid/solids/place_samples",
                                          "fluid/solids/push_samples", "fluid/forces/cohesion", "fluid/sources/emit"})
                     EXPECT_FALSE(kernel.starts_with(path)) << kernel;
                 EXPECT_EQ(kernel.find("MATTER"), std::string::npos) << kernel;
@@ -74,7 +74,7 @@ TEST(ProgramExplain, PartsThatASceneNeedsAreListedWithTheirCost) {
     const std::vector<std::string> left = under(out, "left out"), made = under(out, "compiled"), costs = under(out, "costs");
     for (const char* part : {"walls", "floating bodies", "surface tension"}) EXPECT_FALSE(anyBegins(left, part)) << part << out;
     for (const char* kernel :
-         {"fluid/solids/boundary", "fluid/solids/place_samples", "fluid/forces/cohesion", "fluid/methods/dfsph_push MATTER"})
+         {"fluid/solids/near_walls", "fluid/solids/place_samples", "fluid/forces/cohesion", "fluid/methods/dfsph_push MATTER"})
         EXPECT_TRUE(anyBegins(made, kernel)) << kernel << out;
     EXPECT_TRUE(anyBegins(left, "emitters"));
     ASSERT_GT(costs.size(), 5U);

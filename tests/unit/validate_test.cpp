@@ -68,6 +68,7 @@ TEST(ReferenceData, IsInterpolatedLinearly) {
 TEST(VirialPressure, OfALatticeIsThePressureOfItsPairs) {
     FluidParams p;
     p.spacing = 0.1F;
+    p.supportSpacings = 2;
     const double support = double{p.supportSpacings};
     double shape = 0, passed = 0;
     for (int z = -3; z <= 3; ++z)

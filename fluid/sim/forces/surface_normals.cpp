@@ -23,7 +23,7 @@ double flatNormal(double support, bool coulomb) {
 Result<SurfaceNormals> SurfaceNormals::find(Device& device, const PairTraits& traits, bool coulomb, bool walled) {
     std::vector<Define> defines;
     if (coulomb) defines.push_back({"COULOMB", "1"});
-    if (walled) defines.push_back({"WALLED", "1"});
+    if (walled) defines = traits.wallDefines({{"WALLED", "1"}});
     Result<PairKernel> found = PairKernel::find(device, "fluid/forces/normals", traits, defines);
     if (!found) return found.error();
     return SurfaceNormals{*found, coulomb};
@@ -31,13 +31,12 @@ Result<SurfaceNormals> SurfaceNormals::find(Device& device, const PairTraits& tr
 
 void SurfaceNormals::run(StepContext& c, Buffer& into) const {
     const double flat = flatNormal(double{c.fluid.supportSpacings}, coulomb), spacing = double{c.fluid.spacing};
-    // Of the gradient: force.x slope d is in units of a flat surface's; so is force.y times a gradient in 1/m.
+    // Of the gradient: force.x slope d is in units of a flat surface's.
     StepParams s = forceParams(c, vec4(0.0F));
     const double slope = flat * std::pow(spacing, 4);
     s.force.x = static_cast<float>(coulomb ? spacing * spacing / flat : -1 / slope);
-    s.force.y = static_cast<float>(1 / (slope * std::pow(spacing, 3) * std::abs(double{s.gradientK})));
     Particles& p = c.particles;
-    kernel.run(c, s, {&c.grid.neighbors(), &p.position, &p.density, &p.boundary, &into}, c.grid.pairThreads());
+    kernel.run(c, s, {&c.grid.neighbors(), &p.position, &p.density, &p.nearWalls, &into}, c.grid.pairThreads());
 }
 
 }  // namespace rivulet

@@ -191,7 +191,7 @@ void NeighborGrid::Impl::buildGroups() {
         if (row * rowLength == sortedCells()) fluidGroups = groupCount;
         const uint32_t end = start[(row + 1) * rowLength];
         for (uint32_t first = start[row * rowLength]; first < end; first += 8)
-            group[groupCount++] = {first, std::min(8U, end - first), 0, 0};
+            group[groupCount++] = {first, std::min(8U, end - first), 0, 0, 0};
     }
     if (traits.samples == 0) fluidGroups = groupCount;
 }

@@ -267,7 +267,7 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
             regionEnd = at + take;
         }
         group.listBegin = at;
-        group.listCount = 0;
+        group.listCount = group.seenCount = 0;
         if (regionEnd > job.listCapacity || regionEnd < at) continue;  // the host sees the cursor above the capacity and rebuilds
         for (uint32_t r = 0; r < s.count; ++r)
             for (uint32_t j = s.from[r]; j < s.to[r]; j += 8) {
@@ -290,7 +290,7 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
                 }
                 at += appendLanes(job.list + at, j, keep);
             }
-        group.listCount = at - group.listBegin;
+        group.listCount = group.seenCount = at - group.listBegin;
     }
 }
 void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*) {

@@ -15,7 +15,7 @@ struct Float4 {
 
 // 8 lanes of one row of cells. Same layout as Group in shaders/common/lang_lanes.h.
 struct CpuGroup {
-    uint32_t first, lanes, listBegin, listCount;
+    uint32_t first, lanes, listBegin, listCount, seenCount;
 };
 // Binding 1 of a pair kernel. Same layout as NeighborLists in lang_lanes.h.
 struct CpuNeighborLists {

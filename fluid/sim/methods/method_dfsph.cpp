@@ -57,8 +57,8 @@ class Dfsph final : public Method {
     void step(StepContext& c) override {
         if (!c.build(false)) return;
         Particles& p = c.particles;
-        c.boundary(p.position);
-        density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.boundary, &p.density, &solve, &p.velocity, &p.acceleration},
+        c.nearWalls(p.position);
+        density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.nearWalls, &p.density, &solve, &p.velocity, &p.acceleration},
                     c.grid.pairThreads());
         c.forces();
         c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
@@ -84,7 +84,7 @@ class Dfsph final : public Method {
         StepParams s = c.params;
         s.iteration = k > 0 ? 1 : 0;
         s.force = vec4(weight, 0.0F);
-        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &p.pressure, &residual.progress()},
+        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &p.pressure, &residual.progress()},
                  c.grid.pairThreads());
         c.pushSamples(p.position, p.pressure, 2.0F / c.params.dt, weight);  // MIRRORED
     }
@@ -98,7 +98,7 @@ class Dfsph final : public Method {
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         for (int k = 0; k < most; ++k) {
             s.iteration = k > 0 ? 1 : 0;  // not its number: a device keeps few different blocks of params at hand
-            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.boundary, &solve, &p.pressure, &residual.progress()},
+            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &solve, &p.pressure, &residual.progress()},
                      c.grid.pairThreads());
             pushOn(c, k, vec3(0.0F));
             if (residual.converged(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;

@@ -56,6 +56,7 @@ class Pbf final : public Method {
     void fill(const FluidParams& p, float, StepParams& s) const override {
         fillSmoothing(p, s);
         s.relaxation = p.pbf.relaxation;
+        s.wallMargin = 0.5F * s.spacing;
     }
 
     std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
@@ -91,18 +92,24 @@ class Pbf final : public Method {
         const int cycle = cycleOf(most);
         int k = 0;
         StepParams s = c.params;
+        // Pressures on bodies grow by the weight of the water beyond the particle (Adami et al. 2012), a part in each correction.
+        s.force = vec4(vec3(c.params.gravity) * (c.params.dt * c.params.dt / static_cast<float>(most)), 0.0F);
+        // Walls are found where particles come from, because predictions and corrections may lie inside a mesh.
+        c.nearWalls(p.velocity);
+        const Buffer* last = &p.velocity;
         for (; k < most; ++k) {
             s.iteration = static_cast<uint32_t>(k);
-            c.boundary(*at);
+            c.followWalls(*last, *at);
+            last = at;
             s.relaxation = c.params.relaxation * static_cast<float>(correctionWeight(k, cycle, coupling));
-            lambda.run(c, s, {&neighbors, &p.position, at, &p.boundary, &p.density, &p.pressure}, threads);
+            lambda.run(c, s, {&neighbors, &p.position, at, &p.nearWalls, &p.density, &p.pressure}, threads);
             if (toTolerance && (cpu || k + 1 == most)) {
                 const double left = residual.measure(c, p.density);
                 if (cpu && k > 0 && k % cycle == 0 && left <= double{pbf.tolerance}) break;
             }
-            shift.run(c, s, {&neighbors, &p.position, at, &p.boundary, &p.pressure, &corrected[k % 2], &given}, threads);
-            c.pushSamples(*at, p.pressure, 1.0F / (c.params.dt * c.params.dt), vec3(0.0F));
-            if (c.probes != nullptr) c.probes->pressure(c.params, *at, p.pressure, c.params.mass / c.params.dt);
+            shift.run(c, s, {&neighbors, &p.position, at, &p.nearWalls, &p.pressure, &corrected[k % 2], &given}, threads);
+            c.pushSamples(*at, p.pressure, 2.0F / (c.params.dt * c.params.dt), vec3(s.force));  // MIRRORED
+            if (c.probes != nullptr) c.probes->pressure(c.params, p.position, p.velocity, *at, p.pressure, c.params.mass / c.params.dt);
             at = &corrected[k % 2];
         }
         c.solve.iterations = k;
@@ -142,9 +149,9 @@ class Pbf final : public Method {
 
     void measure(StepContext& c) override {
         Particles& p = c.particles;
-        c.boundary(p.positionNext);
+        c.nearWalls(p.positionNext);
         // p.velocity: where the grid was built, see the end of step().
-        lambda.run(c, c.params, {&c.grid.neighbors(), &p.velocity, &p.positionNext, &p.boundary, &p.density, &p.pressure},
+        lambda.run(c, c.params, {&c.grid.neighbors(), &p.velocity, &p.positionNext, &p.nearWalls, &p.density, &p.pressure},
                    c.grid.pairThreads());
         c.device.run(setRatio, c.params, {&c.grid.cellStart(), &p.density, &p.positionNext}, p.count);
     }

@@ -64,13 +64,14 @@ class Wcsph final : public Method {
             density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure}, threads);
             forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.density}, threads);
         } else {
-            c.boundary(p.position);
-            density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure, &p.boundary}, threads);
-            forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.boundary}, threads);
+            c.nearWalls(p.position);
+            density.run(c, c.params, {&neighbors, &p.position, &p.density, &p.pressure, &p.nearWalls}, threads);
+            forces.run(c, c.params, {&neighbors, &p.position, &p.velocity, &p.pressure, &p.acceleration, &p.nearWalls}, threads);
             // At a sample the pair has the fluid's pressure twice; one over rho^2 is in the pressures already.
             c.pushSamples(p.position, p.pressure, 2.0F * c.params.restDensity, vec3(0.0F));
             if (c.probes != nullptr)
-                c.probes->pressure(c.params, p.position, p.pressure, 2.0F * c.params.restDensity * c.params.mass * c.params.dt);
+                c.probes->pressure(c.params, p.position, p.position, p.position, p.pressure,
+                                   c.params.restDensity * c.params.mass * c.params.dt);
         }
         c.forces();
         if (c.probes != nullptr) c.probes->response(c.params, p.position, p.velocity, p.acceleration, 1.0F);

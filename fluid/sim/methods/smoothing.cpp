@@ -28,23 +28,6 @@ double latticeSum(double (*shape)(double), double support, int from, int to) {
     return sum;
 }
 
-double wallShare(double distanceOverH) {
-    const double s = std::clamp(1.0 - distanceOverH, 0.0, 1.0);
-    return std::pow(s, 6) * (3.5 - 4.5 * s + 1.5 * s * s);
-}
-
-double wallOffset(double (*shape)(double), double support) {
-    const int n = static_cast<int>(std::ceil(support));
-    const double missing = latticeSum(shape, support, -n, -1) / latticeSum(shape, support, -n, n);
-    // wallShare falls monotonically with distance: bisection.
-    double near = 0, far = 1;
-    for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (near + far);
-        (wallShare(middle) > missing ? near : far) = middle;
-    }
-    return near * support - 0.5;
-}
-
 }  // namespace
 
 double wendlandLatticeSum(double support) {
@@ -56,8 +39,6 @@ double cubicLatticeSum(double support) {
     const int n = static_cast<int>(std::ceil(support));
     return 8.0 / (kPiD * support * support * support) * latticeSum(cubicShape, support, -n, n);
 }
-
-double wendlandWallOffset(double support) { return wallOffset(wendlandShape, support); }
 
 // By Fourier: a wave k of pressures comes back |sum_r g(r) sin(k r)|^2 / sum_r |g(r)|^2 times as large. The largest is looked for along the
 // lattice's axes and diagonals.
@@ -83,29 +64,17 @@ double wendlandCoupling(double support) {
     return most / squares;
 }
 
-namespace {
-
-void fillFactors(const FluidParams& p, StepParams& s) {
+void fillSmoothing(const FluidParams& p, StepParams& s) {
     const double h = s.h;
     if (p.kernel == "cubic_spline") {
         const double lattice = cubicLatticeSum(p.supportSpacings);
         s.kernelK = static_cast<float>(8.0 / (kPiD * h * h * h) / lattice);
         s.gradientK = static_cast<float>(-8.0 / (kPiD * std::pow(h, 5)) / lattice);
-        // The walls' share keeps Wendland's form: only where it is at rest is made to fit.
-        s.wallOffset = static_cast<float>(wallOffset(cubicShape, p.supportSpacings)) * p.spacing;
         return;
     }
     const double lattice = wendlandLatticeSum(p.supportSpacings);
     s.kernelK = static_cast<float>(21.0 / (2.0 * kPiD * h * h * h) / lattice);
     s.gradientK = static_cast<float>(-210.0 / (kPiD * std::pow(h, 8)) / lattice);
-    s.wallOffset = static_cast<float>(wendlandWallOffset(p.supportSpacings)) * p.spacing;
-}
-
-}  // namespace
-
-void fillSmoothing(const FluidParams& p, StepParams& s) {
-    fillFactors(p, s);
-    s.wallShare = static_cast<float>(0.98 * wallShare(double{s.contact + s.wallOffset} / double{s.h}));
 }
 
 }  // namespace rivulet

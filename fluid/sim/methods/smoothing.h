@@ -10,14 +10,12 @@ namespace rivulet {
 // at the given spacing is at rest density exactly. `h / spacing` between 1 and 8.
 double wendlandLatticeSum(double supportSpacings);
 double cubicLatticeSum(double supportSpacings);  // the same of the cubic spline
-// How far (in spacings) to push a wall back in the density so that a lattice half a spacing off it is at rest density exactly.
-double wendlandWallOffset(double supportSpacings);
 
 // How far neighbours act together: the largest eigenvalue, on a cubic lattice, of the matrix that a Jacobi iteration for the pressures has
 // (Wendland C2, diagonal 1). 2.6 at a support of 2 spacings, 6.3 at 3: iterations that converge at one diverge at the other.
 double wendlandCoupling(double supportSpacings);
 
-// Fills kernelK, gradientK, wallOffset and wallShare (h and contact are there) for fluid.kernel: "wendland" or "cubic_spline".
+// Fills kernelK and gradientK (h is there) for fluid.kernel: "wendland" or "cubic_spline".
 void fillSmoothing(const FluidParams& params, StepParams& step);
 
 }  // namespace rivulet

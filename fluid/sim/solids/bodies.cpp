@@ -42,7 +42,10 @@ double volumeTimesSum(bool cubic, double support) {
     for (int i = 0; i < kOffsets; ++i)
         for (int k = 0; k < kOffsets; ++k) met += planeSum(cubic, support, double{1} * i / kOffsets, double{1} * k / kOffsets, 1.0);
     met /= kOffsets * kOffsets;
-    return missing / met * planeSum(cubic, support, 0, 0, 0);
+    // A lattice, as at a support of 2 spacings, keeps its distance from the samples. A fluid in disorder comes nearer. Measured at 2.3
+    // spacings: with this factor, boxes 16 spacings high float to 0.3 spacings at the depth of Archimedes with dfsph and pbf.
+    const double disorder = 1 + 0.35 * std::max(support - 2, 0.0);
+    return missing / met * planeSum(cubic, support, 0, 0, 0) * disorder;
 }
 
 // The water that a body moves along, m^3: what it displaces, or the ball of water before a plate of its largest cross-section

@@ -69,6 +69,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
     if (glm::any(traits.periodic)) periodic.push_back({"PERIODIC", "1"});
     push = cubic;
     if (b.friction_) push.push_back({"FRICTION", "1"});
+    if (!traits.walls) push.push_back({"OPEN", "1"});
     push.insert(push.end(), periodic.begin(), periodic.end());
     cubic.insert(cubic.end(), periodic.begin(), periodic.end());
     struct Wanted {
@@ -169,10 +170,12 @@ void BodyPasses::push(const StepParams& step, const NeighborGrid& grid, Particle
     if (friction_)
         device_->run(push_, s,
                      {&grid.neighbors(), &particles.position, &position, &pressures, &particles.matter, &particles.acceleration,
-                      &particles.velocity},
+                      &particles.nearWalls, &particles.velocity},
                      grid.sampleThreads());
     else
-        device_->run(push_, s, {&grid.neighbors(), &particles.position, &position, &pressures, &particles.matter, &particles.acceleration},
+        device_->run(push_, s,
+                     {&grid.neighbors(), &particles.position, &position, &pressures, &particles.matter, &particles.acceleration,
+                      &particles.nearWalls},
                      grid.sampleThreads());
 }
 

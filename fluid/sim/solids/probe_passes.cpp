@@ -92,6 +92,7 @@ Result<ProbePasses> ProbePasses::create(Device& device, const FluidParams& param
     ProbePasses made(world);
     made.device_ = &device;
     made.field_ = targets.field;
+    made.cubic_ = params.kernel == "cubic_spline";
     if (world.traits.linked)
         return badInput("fluid.grid linked_list does not support fluid.probes: remove them, or choose fluid.grid sorted");
     const std::vector<ProbeParams>& list = params.probes;
@@ -121,7 +122,7 @@ Result<ProbePasses> ProbePasses::create(Device& device, const FluidParams& param
     const size_t slots = world.particles.count;
     for (const auto& [buffer, bytes] :
          {std::pair(&made.probes_, rows.size() * sizeof(DeviceProbe)),
-          std::pair(&made.rows_, rows.size() * PROBE_THREADS * sizeof(ProbeRow)), std::pair(&made.multiplier_, slots * sizeof(float)),
+          std::pair(&made.rows_, rows.size() * PROBE_THREADS * sizeof(ProbeRow)), std::pair(&made.loads_, 3 * slots * sizeof(vec4)),
           std::pair(&made.before_, slots * sizeof(vec4))}) {
         Result<Buffer> room = device.allocate(bytes);
         if (!room) return room.error();
@@ -168,7 +169,6 @@ Status ProbePasses::findKernels() {
                             Wanted{&finished_, response, with("FROM_POSITIONS", false, "", true), walls},
                             Wanted{&predicted_, response, with("PREDICTS", false, "", true), walls},
                             Wanted{&arrived_, response, with("ARRIVED", false, "", true), walls},
-                            Wanted{&solved_, "fluid/methods/dfsph_load", with("", false, "", true), still || moving},
                             Wanted{&contact_, "fluid/solids/probe_contact", with("", false, "", true), contact},
                             Wanted{&contactMoving_, "fluid/solids/probe_contact", with("MOVING", false, "", true), moving},
                             Wanted{&body_, "fluid/solids/probe_body", {}, body}}) {
@@ -179,6 +179,13 @@ Status ProbePasses::findKernels() {
     }
     pressure_.deforming = pressure_.rigid;
     friction_.readsDisplacement = true;
+    if (!(still || moving)) return ok();
+    for (auto [kernel, list] : {std::pair(&load_, std::vector<Define>()), std::pair(&loadHeld_, std::vector<Define>{{"HELD", "1"}})}) {
+        if (cubic_) list.push_back({"CUBIC", "1"});
+        Result<PairKernel> found = PairKernel::find(*device_, "fluid/solids/wall_load", world_.traits, list);
+        if (!found) return found.error();
+        *kernel = *found;
+    }
     return ok();
 }
 
@@ -226,7 +233,7 @@ void ProbePasses::reset() {
 }
 
 void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, const Buffer& position, const Buffer& first,
-                             const Buffer& second, bool matter, bool movingToo) {
+                             const Buffer& second, bool matter, bool movingToo, const Buffer* start) {
     if (!walled_) return;
     const SolidPasses& solids = world_.solids;
     const Buffer& cells = world_.grid.cellStart();
@@ -234,6 +241,7 @@ void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, 
         std::vector<const Buffer*> buffers = {&cells, &position, &probes_, &rows_, &first, &second};
         for (const Buffer* wall : walls)
             if (wall != nullptr) buffers.push_back(wall);
+        if (start != nullptr) buffers.push_back(start);
         if (matter && world_.traits.matter) buffers.push_back(&world_.particles.matter);
         device_->dispatch(kernel, std::as_bytes(std::span(&s, 1)), buffers, PROBE_THREADS);
     };
@@ -257,19 +265,26 @@ void ProbePasses::atDistance(const AtDistance& kernels, const StepParams& step, 
     }
 }
 
-void ProbePasses::pressure(const StepParams& step, const Buffer& position, const Buffer& multiplier, float scale) {
+bool ProbePasses::wantsPressure() const { return walled_ && (wantsStill() || wants(ProbeOn::rigid) || wants(ProbeOn::deforming)); }
+
+void ProbePasses::pressure(const StepParams& step, const Buffer& home, const Buffer& start, const Buffer& position,
+                           const Buffer& multiplier, float scale) {
+    if (!wantsPressure()) return;
     StepParams s = step;
     s.force = vec4(scale, 0.0F, 0.0F, 0.0F);
-    atDistance(pressure_, s, position, world_.particles.boundary, multiplier, false, true);
+    const Particles& p = world_.particles;
+    load_.run(*device_, p, s, {&world_.grid.neighbors(), &home, &position, &p.nearWalls, &loads_, &multiplier}, world_.grid.pairThreads());
+    atDistance(pressure_, step, position, p.nearWalls, loads_, false, true, &start);
 }
 
 void ProbePasses::solved(const StepParams& step, const Buffer& solve) {
-    if (!walled_ || solved_.index == Kernel{}.index) return;
+    if (!wantsPressure()) return;
     const Particles& p = world_.particles;
-    std::vector<const Buffer*> buffers = {&world_.grid.cellStart(), &solve, &p.velocity, &p.boundary, &multiplier_};
-    if (world_.traits.matter) buffers.push_back(&p.matter);
-    device_->dispatch(solved_, std::as_bytes(std::span(&step, 1)), buffers, p.count);
-    pressure(step, p.position, multiplier_, step.mass);
+    StepParams s = step;
+    s.force = vec4(step.mass, 0.0F, 0.0F, 0.0F);
+    loadHeld_.run(*device_, p, s, {&world_.grid.neighbors(), &p.position, &p.position, &p.nearWalls, &loads_, &solve, &p.velocity},
+                  world_.grid.pairThreads());
+    atDistance(pressure_, step, p.position, p.nearWalls, loads_, false, true, &p.position);
 }
 
 void ProbePasses::friction(const StepParams& step, const Buffer& friction, const Buffer& velocity) {
@@ -278,7 +293,7 @@ void ProbePasses::friction(const StepParams& step, const Buffer& friction, const
 
 void ProbePasses::adhesion(const StepParams& step) {
     const Particles& p = world_.particles;
-    atDistance(adhesion_, step, p.position, p.boundary, p.velocity, true, false);
+    atDistance(adhesion_, step, p.position, p.nearWalls, p.velocity, true, false);
 }
 
 void ProbePasses::respond(const Kernel& kernel, const StepParams& step, const Buffer& position, const Buffer& velocity, const Buffer& last,

@@ -53,7 +53,8 @@ class ProbePasses final : public WallLoads {
     void reset();  // impulses are counted from 0
 
     // ---- In a substep, each beside the kernel whose effect it measures ----
-    void pressure(const StepParams& step, const Buffer& position, const Buffer& multiplier, float scale) override;
+    void pressure(const StepParams& step, const Buffer& home, const Buffer& start, const Buffer& position, const Buffer& multiplier,
+                  float scale) override;
     void solved(const StepParams& step, const Buffer& solve) override;
     void friction(const StepParams& step, const Buffer& friction, const Buffer& velocity) override;
     void response(const StepParams& step, const Buffer& position, const Buffer& velocity, const Buffer& acceleration, float share) override;
@@ -78,6 +79,7 @@ class ProbePasses final : public WallLoads {
     explicit ProbePasses(const World& world) : world_(world) {}
     bool wants(ProbeOn on) const { return wanted_[static_cast<size_t>(on)]; }
     bool wantsStill() const { return wants(ProbeOn::box) || wants(ProbeOn::plane) || wants(ProbeOn::still); }
+    bool wantsPressure() const;
     bool wantsWalls() const { return wants(ProbeOn::box) || wants(ProbeOn::plane); }
     Status findKernels();
     // Which of probe_walls: its form without MOVING, and those for moving solids. Only friction depends on the velocity of a wall, so only
@@ -87,19 +89,20 @@ class ProbePasses final : public WallLoads {
         bool readsDisplacement = false;
     };
     void atDistance(const AtDistance& kernels, const StepParams& step, const Buffer& position, const Buffer& first, const Buffer& second,
-                    bool matter, bool movingToo);
+                    bool matter, bool movingToo, const Buffer* start = nullptr);
     void respond(const Kernel& kernel, const StepParams& step, const Buffer& position, const Buffer& velocity, const Buffer& last,
                  const Buffer* matter);
 
     World world_;
     Device* device_ = nullptr;
     std::array<bool, 7> wanted_{};
-    bool walled_ = true, field_ = false;
+    bool walled_ = true, field_ = false, cubic_ = false;
     std::shared_ptr<const std::vector<Spec>> specs_;
     std::shared_ptr<Totals> totals_;
-    Buffer probes_, rows_, multiplier_, before_;
+    Buffer probes_, rows_, loads_, before_;
+    PairKernel load_, loadHeld_;
     AtDistance pressure_, friction_, adhesion_;
-    Kernel integrated_, finished_, predicted_, arrived_, solved_, contact_, contactMoving_, body_;
+    Kernel integrated_, finished_, predicted_, arrived_, contact_, contactMoving_, body_;
 };
 
 }  // namespace rivulet

@@ -154,7 +154,8 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         return d;
     };
     for (const Wanted& w :
-         {Wanted{&s.boundary_, "fluid/solids/boundary", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+         {Wanted{&s.nearWalls_, "fluid/solids/near_walls", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{}, s.walled_},
+          Wanted{&s.followWalls_, "fluid/solids/follow_walls", {}, s.walled_},
           Wanted{&s.friction_, "fluid/forces/wall_friction", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
                  s.walled_},
           Wanted{&s.adhesion_, "fluid/forces/wall_adhesion", still ? std::vector<Define>{{"FIELD", "1"}} : std::vector<Define>{},
@@ -162,7 +163,7 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
           Wanted{&s.frictionMoving_, "fluid/forces/wall_friction_moving", {}, !s.rigid_.empty()},
           Wanted{&s.frictionDeforming_, "fluid/forces/wall_friction_moving", {{"DEFORMING", "1"}}, !s.deforming_.empty()},
           Wanted{&s.walls_, "fluid/solids/walls", {threads.begin(), threads.end()}, s.walled_},
-          Wanted{&s.boundaryMoving_, "fluid/solids/boundary_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
+          Wanted{&s.nearWallsMoving_, "fluid/solids/near_walls_moving", {}, !s.rigid_.empty() || !s.deforming_.empty()},
           Wanted{&s.collide_, "fluid/solids/collide", collide(""), still},
           Wanted{&s.collideRigid_, "fluid/solids/collide", collide("MOVING"), !s.rigid_.empty()},
           Wanted{&s.collideDeforming_, "fluid/solids/collide", collide("DEFORMING"), !s.deforming_.empty()}}) {
@@ -436,16 +437,20 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
     return ok();
 }
 
-void SolidPasses::boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary) {
+void SolidPasses::nearWalls(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& into) {
     if (!walled_) return;
     const uint32_t n = step.count;
     const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
-        device_->run(boundary_, step, {&start, &position, &planes_, &boundary, &staticBlock_, &static_.distance}, n);
+        device_->run(nearWalls_, step, {&start, &position, &planes_, &into, &staticBlock_, &static_.distance}, n);
     else
-        device_->run(boundary_, step, {&start, &position, &planes_, &boundary}, n);
+        device_->run(nearWalls_, step, {&start, &position, &planes_, &into}, n);
     for (std::vector<Moving>* list : {&rigid_, &deforming_})
-        for (const Moving& m : *list) device_->run(boundaryMoving_, step, {&start, &position, &boundary, &m.block, &m.on.distance}, n);
+        for (const Moving& m : *list) device_->run(nearWallsMoving_, step, {&start, &position, &into, &m.block, &m.on.distance}, n);
+}
+
+void SolidPasses::followWalls(const StepParams& step, const NeighborGrid& grid, const Buffer& from, const Buffer& to, Buffer& walls) {
+    if (walled_) device_->run(followWalls_, step, {&grid.cellStart(), &from, &to, &walls}, step.count);
 }
 
 void SolidPasses::friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction) {

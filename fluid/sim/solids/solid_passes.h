@@ -1,4 +1,4 @@
-// The passes of a step for solids: the walls' share of the density, and collision.
+// The passes of a step for solids: the walls near each particle, and collision.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ namespace rivulet {
 
 class ProbePasses;
 
-// The solids of a world, on its Device. Per frame: beginFrame, then a substep's advance, boundary, collide, each in that order.
+// The solids of a world, on its Device. Per frame: beginFrame, then a substep's advance, nearWalls, collide, each in that order.
 class SolidPasses {
   public:
     // Error (badInput): a plane without direction, too many surfaces or one out of its range, a field whose band is too narrow for the
@@ -58,8 +58,10 @@ class SolidPasses {
 
     // Moves the solids from the share `from` to the share `to` of the frame's time, 0..1. `gravity` m/s^2.
     Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
-    // Fills `boundary` with the walls' share at `position`, sorted.
-    void boundary(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& boundary);
+    // Fills `into` with the walls near each particle and body sample at `position`, sorted: see shaders/fluid/solids/near_walls.h.
+    void nearWalls(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& into);
+    // Moves the planes in `walls`, found for particles at `from`, to particles at `to`, both sorted.
+    void followWalls(const StepParams& step, const NeighborGrid& grid, const Buffer& from, const Buffer& to, Buffer& walls);
     // Fills `friction` with the effect of no-slip walls at `position`, sorted: see StepContext::wallFriction.
     void friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction);
     // Adds the adhesion of static walls to particles.acceleration; step.force.w: see fluid/forces/wall_adhesion.
@@ -100,7 +102,7 @@ class SolidPasses {
         Field on;
         DeformingField* shape = nullptr;  // null: rigid
         MotionParams motion{};
-        Buffer block;  // a MotionParams, for the boundary pass
+        Buffer block;  // a MotionParams
         Pose atStart, from, target;
         std::vector<vec3> shapeAtStart, shapeFrom, shapeTarget, shapeNow;
         int updates = 1, updated = 0;  // of the frame
@@ -123,8 +125,8 @@ class SolidPasses {
     Buffer planes_;
     bool walled_ = true;   // the box or solids
     bool thesis_ = false;  // collision.walk
-    Kernel boundary_, friction_, frictionMoving_, frictionDeforming_, adhesion_, collide_, walls_, boundaryMoving_, collideRigid_,
-        collideDeforming_;
+    Kernel nearWalls_, followWalls_, friction_, frictionMoving_, frictionDeforming_, adhesion_, collide_, walls_, nearWallsMoving_,
+        collideRigid_, collideDeforming_;
     Field static_;
     FieldParams block_{};
     Buffer staticBlock_;

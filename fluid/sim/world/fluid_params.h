@@ -75,7 +75,7 @@ struct FluidParams {
     std::string grid = "sorted";      // sorted | linked_list
     int workGroup = 64;               // threads per work group of a GPU
     float spacing = 0.02F;            // m
-    float supportSpacings = 2.0F;     // h = this * spacing
+    float supportSpacings = 2.3F;     // h = this * spacing
     std::string liquid = {};          // a row of liquids(), which then sets restDensity and viscosity; "" = the values below
     float restDensity = 1000.0F;      // kg/m^3
     float viscosity = 1.0e-6F;        // m^2/s, kinematic

@@ -112,27 +112,29 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), limits.fastestEver) : kAnySpeed;
     bool built = false;
-    StepContext context{.device = *device,
-                        .fluid = params,
-                        .params = step,
-                        .grid = *grid,
-                        .particles = particles,
-                        .solve = solve,
-                        .fastest = figures->maxSpeed,
-                        .stats = statsRows,
-                        .build = [&](bool fromPositions) { return built = build(fromPositions, from, to); },
-                        .pushSamples = [&](const Buffer& position, const Buffer& pressures, float scale,
-                                           const vec3& weight) { bodies.push(step, *grid, particles, position, pressures, scale, weight); },
-                        .planes = solids.planes(),
-                        .boundary = [&](const Buffer& position) { solids.boundary(step, *grid, position, particles.boundary); },
-                        .forces = {},
-                        .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
-                        .wallAdhesion =
-                            [&](const StepParams& s) {
-                                solids.adhesion(s, *grid, particles);
-                                if (probes) probes->adhesion(s);
-                            },
-                        .probes = probes ? &*probes : nullptr};
+    StepContext context{
+        .device = *device,
+        .fluid = params,
+        .params = step,
+        .grid = *grid,
+        .particles = particles,
+        .solve = solve,
+        .fastest = figures->maxSpeed,
+        .stats = statsRows,
+        .build = [&](bool fromPositions) { return built = build(fromPositions, from, to); },
+        .pushSamples = [&](const Buffer& position, const Buffer& pressures, float scale,
+                           const vec3& weight) { bodies.push(step, *grid, particles, position, pressures, scale, weight); },
+        .planes = solids.planes(),
+        .nearWalls = [&](const Buffer& position) { solids.nearWalls(step, *grid, position, particles.nearWalls); },
+        .followWalls = [&](const Buffer& a, const Buffer& b) { solids.followWalls(step, *grid, a, b, particles.nearWalls); },
+        .forces = {},
+        .wallFriction = [&](const Buffer& position, Buffer& into) { solids.friction(step, *grid, position, into); },
+        .wallAdhesion =
+            [&](const StepParams& s) {
+                solids.adhesion(s, *grid, particles);
+                if (probes) probes->adhesion(s);
+            },
+        .probes = probes ? &*probes : nullptr};
     context.hasForces = forces.anyOn();
     particles.hasNormals = false;
     context.forces = [&] { forces.run(context); };

@@ -132,9 +132,8 @@ class FluidWorld {
     double dropped() const;           // s passed to step() that will not be simulated
     int lastSubsteps() const;         // of the last step(), not late
     // The pressures of the last substep, Pa, in the order of particles(); for pbf, the pressure equivalent to its corrections. They are the
-    // pressures of the pair forces: on a lattice with a support of 2 spacings they are 5 % above the transmitted pressure, and for a single
-    // particle the error is 10 to 20 %. In the layer beside a wall they are multipliers of a constraint in which the wall takes part, 1.2
-    // to 1.5 times the transmitted pressure with dfsph: for the load on a wall use fluid.probes. Reads back and waits.
+    // pressures of the pair forces: on a lattice with the default support they are 3 % above the transmitted pressure, and for a single
+    // particle the error is 6 to 10 %. For the load on a wall use fluid.probes. Reads back and waits.
     std::vector<float> pressures() const;
     const std::vector<Pose>& poses() const;  // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
     const std::vector<BodyState>& bodies() const;

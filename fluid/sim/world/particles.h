@@ -17,7 +17,7 @@ struct Particles {
     Buffer density;                     // float, density / rest density
     Buffer pressure;                    // float, what the method makes of it
     Buffer acceleration;                // vec4, m/s^2; of a sample: what it would be for a particle of the fluid
-    Buffer boundary;                    // vec4: gradient (1/m) and share of the walls
+    Buffer nearWalls;                   // vec4, four a particle: see shaders/fluid/solids/near_walls.h
     Buffer normal;                      // vec4: of the surface (fluid/forces/normals), w its length; see hasNormals
     bool hasNormals = false;            // whether a force of the last substep filled `normal`
     // Where particles differ (PairTraits::matter). vec4: x volume / spacing^3; y reference rest density / own; z dynamic viscosity, Pa s;

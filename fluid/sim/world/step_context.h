@@ -26,9 +26,11 @@ struct SolveFigures {
 class WallLoads {
   public:
     virtual ~WallLoads() = default;
-    // Walls' share of a pressure solve at `position` (sorted), with particles.boundary there: the impulse is -scale * multiplier *
+    // Pressure at walls: the images' part in pair forces at `position` (sorted; the grid was built at `home`), with particles.nearWalls
+    // there, as found at `start`. `multiplier`: pressures in the form of the method's pair terms; `scale`: impulse (N s) over multiplier *
     // gradient.
-    virtual void pressure(const StepParams& step, const Buffer& position, const Buffer& multiplier, float scale) = 0;
+    virtual void pressure(const StepParams& step, const Buffer& home, const Buffer& start, const Buffer& position, const Buffer& multiplier,
+                          float scale) = 0;
     // The same for dfsph, at the end of its solve: `solve` as in dfsph_rate.kernel, particles.velocity with what stopped particles at
     // walls.
     virtual void solved(const StepParams& step, const Buffer& solve) = 0;
@@ -59,8 +61,10 @@ struct StepContext {
     // pressure per metre beyond the fluid, in the same unit (wcsph: 0, because its kernel includes gravity).
     std::function<void(const Buffer& position, const Buffer& pressures, float scale, const vec3& weight)> pushSamples;
     const Buffer& planes;  // in the layout of integrate.kernel
-    // Fills particles.boundary for these positions (in sorted order). Methods without walls in their density do not call it.
-    std::function<void(const Buffer& position)> boundary;
+    // Fills particles.nearWalls for these positions (in sorted order). Methods without walls in their density do not call it.
+    std::function<void(const Buffer& position)> nearWalls;
+    // Moves the planes of particles.nearWalls, which were right for particles at `from`, to particles at `to` (in sorted order).
+    std::function<void(const Buffer& from, const Buffer& to)> followWalls = {};
     // True if any row of forces() is on.
     bool hasForces = false;
     // Adds the forces of all active rows of forces() to particles.acceleration, from the sorted position and velocity.

@@ -15,10 +15,12 @@
     }                 \
     }                 \
     }
-// In the first sweep of a step, KEEP marks the neighbours that later sweeps need; a GPU keeps no list.
-#define FOR_ALL_NEIGHBORS(i, home, j) FOR_NEIGHBORS(i, home, j)
-#define KEEP(condition)
-#define END_ALL_NEIGHBORS(i) END_NEIGHBORS
+// The same among images (fluid/solids/images.h). In the first sweep of a step, KEEP marks the neighbours that later sweeps need, and those of
+// which images may be seen; a GPU keeps no list.
+#define FOR_SEEN(i, home, j) FOR_NEIGHBORS(i, home, j)
+#define FOR_ALL_SEEN(i, home, j) FOR_NEIGHBORS(i, home, j)
+#define KEEP(condition, seen)
+#define END_ALL_SEEN(i) END_NEIGHBORS
 #endif
 #if !defined(__cplusplus)
 #undef FOR_NEIGHBORS

@@ -35,13 +35,13 @@ STRUCT(StepParams) {
     float spacing;      // m
     float maxSpeed;     // m/s, above which a particle could pass a wall in one step: higher speeds are limited and counted
     uint planeCount;    // of the array of collider planes
-    float wallOffset;   // m, added to a wall's distance in the density, so that a lattice half a spacing from a wall has rest density
+    float wallMargin;   // m, walls are looked for this much farther: for particles that move before their walls are looked for again
     float friction;     // Coulomb friction of the box walls
     float relaxation;   // relaxation factor of the pressure solvers
     float warmStart;    // share of the last step's pressures that the next step starts with
     uint iteration;     // of a solver, from 0; dfsph: 1 of all but the first
     float correction;   // share of a density error that a step corrects
-    float wallShare;    // wall share at the distance at which particles rest, slightly reduced: above it, particles do not move nearer
+    float padding1;
     float sampleScale;  // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)
     float padding2;
     float momentum;  // share of the last iteration's change that is repeated (heavy ball)

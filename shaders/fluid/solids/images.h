@@ -12,6 +12,13 @@
 #undef SEEN_VELOCITY
 #undef IMAGE
 #undef MAY_SEE
+#undef SKIP_IMAGE
+#undef NEAR_IMAGES_
+#undef IMAGE_WALLS_
+#undef SEEN_IN_ANY_
+#undef VELOCITY_IN_ANY_
+#undef FORM_
+#undef LOAD_REFLECTIONS
 #if defined(OPEN) || defined(WITHOUT_IMAGES)
 #define FOR_IMAGES(i) {
 #define END_IMAGES }
@@ -108,27 +115,71 @@ FN real3 velocityInSeveral_(Reflections m, int image, real3 velocity) {
     m.second.w = max(m.second.w, 0.02f * PARAMS.h);                             \
     m.third.w = max(m.third.w, 0.02f * PARAMS.h);                               \
     m.speed = LOAD4_AT(nearWalls, i, 3u * PARAMS.count).xyz;
-#define FOR_IMAGES(i)                                                                                                                  \
-    {                                                                                                                                  \
-        LOAD_REFLECTIONS(mirrors_, i)                                                                                                  \
-        int near_ = within_(mirrors_.first, PARAMS.h) + 2 * within_(mirrors_.second, PARAMS.h) + 4 * within_(mirrors_.third, PARAMS.h); \
-        for (int image_ = 0; image_ < 8; ++image_) {                                                                                   \
-            if ((image_ & near_) != image_) continue;                                                                                  \
-            bool one_ = image_ == 1 || image_ == 2 || image_ == 4;                                                                     \
-            real4 mirror_ = image_ == 2 ? mirrors_.second : image_ == 4 ? mirrors_.third : mirrors_.first;                             \
-            real far_ = beyond_(mirrors_, image_);
+#define NEAR_IMAGES_(m) (within_(m.first, PARAMS.h) + 2 * within_(m.second, PARAMS.h) + 4 * within_(m.third, PARAMS.h))
+// The wall of an image in one wall, and how many times as far an image behind an edge is.
+#define IMAGE_WALLS_                                                                                           \
+    bool one_ = image_ == 1 || image_ == 2 || image_ == 4;                                                     \
+    real4 mirror_ = image_ == 2 ? mirrors_.second : image_ == 4 ? mirrors_.third : mirrors_.first;             \
+    real far_ = beyond_(mirrors_, image_);
+#define SEEN_IN_ANY_(d) (one_ ? seenInOne_(mirrors_, mirror_, d) : seenInSeveral_(mirrors_, image_, far_, d))
+#define VELOCITY_IN_ANY_(v) \
+    (one_ ? velocityInOne_(mirror_, speedOf_(mirrors_, image_), real3(v)) : velocityInSeveral_(mirrors_, image_, real3(v)))
+#if defined(__cplusplus)
+// The sweeps over the neighbours themselves (form 0), over the images in a wall alone (1) and over others (2) are compiled apart: most
+// groups of particles need no more than the first, most of the others no more than the second.
+template <int N>
+struct SweepForm {
+    static constexpr int value = N;
+};
+#define FORM_ decltype(form_)::value
+#define FOR_IMAGES(i)                                                                                          \
+    {                                                                                                          \
+        LOAD_REFLECTIONS(mirrors_, i)                                                                          \
+        const int near_ = NEAR_IMAGES_(mirrors_);                                                              \
+        const auto sweep_ = [&](auto form_, [[maybe_unused]] int image_) __attribute__((always_inline)) {
+#define END_IMAGES                                                                                             \
+        };                                                                                                     \
+        sweep_(SweepForm<0>{}, 0);                                                                             \
+        if (near_ == 1) sweep_(SweepForm<1>{}, 1);                                                             \
+        if (near_ > 1)                                                                                         \
+            for (int k_ = 1; k_ < 8; ++k_)                                                                     \
+                if ((k_ & near_) == k_) sweep_(SweepForm<2>{}, k_);                                            \
+    }
+template <int N>
+INLINE real3 seenIn_(const Reflections& mirrors_, int image_, const real3& d) {
+    if constexpr (N == 0) return d;
+    if constexpr (N == 1) return reflected_(mirrors_.first, d);
+    IMAGE_WALLS_
+    return SEEN_IN_ANY_(d);
+}
+template <int N>
+INLINE real3 velocitySeenIn_(const Reflections& mirrors_, int image_, const real3& v) {
+    if constexpr (N == 0) return v;
+    if constexpr (N == 1) return velocityInOne_(mirrors_.first, mirrors_.speed.x, v);
+    IMAGE_WALLS_
+    (void)far_;
+    return VELOCITY_IN_ANY_(v);
+}
+#define SEEN(d) seenIn_<FORM_>(mirrors_, image_, d)
+#define SEEN_VELOCITY(v) velocitySeenIn_<FORM_>(mirrors_, image_, real3(v))
+#define IMAGE (FORM_ == 0 ? 0 : image_)
+#define SKIP_IMAGE return
+#else
+#define FOR_IMAGES(i)                                          \
+    {                                                          \
+        LOAD_REFLECTIONS(mirrors_, i)                          \
+        int near_ = NEAR_IMAGES_(mirrors_);                    \
+        for (int image_ = 0; image_ < 8; ++image_) {           \
+            if ((image_ & near_) != image_) continue;          \
+            IMAGE_WALLS_
 #define END_IMAGES \
     }              \
     }
-#define SEEN(d)                                                                      \
-    (image_ == 0 ? (d)                                                               \
-     : one_      ? seenInOne_(mirrors_, mirror_, d)                                \
-                 : seenInSeveral_(mirrors_, image_, far_, d))
-#define SEEN_VELOCITY(v)                                                             \
-    (image_ == 0 ? real3(v)                                                          \
-     : one_      ? velocityInOne_(mirror_, speedOf_(mirrors_, image_), real3(v))   \
-                 : velocityInSeveral_(mirrors_, image_, real3(v)))
+#define SEEN(d) (image_ == 0 ? (d) : SEEN_IN_ANY_(d))
+#define SEEN_VELOCITY(v) (image_ == 0 ? real3(v) : VELOCITY_IN_ANY_(v))
 #define IMAGE image_
+#define SKIP_IMAGE continue
+#endif
 // True if an image of the neighbour at d from the particle may be within reach, m.
 #define MAY_SEE(d, reach) (near_ != 0 && ANY_LANE(nearestImage_(mirrors_, d) < (reach)))
 #endif

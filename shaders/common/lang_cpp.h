@@ -141,6 +141,7 @@ INLINE void atomicMax(uint* p, uint v) {
 }  // namespace rivulet::RIVULET_KERNEL_UNIT
 
 #include "shaders/common/lang_lanes.h"
+#include "shaders/common/lang_neighbors.h"
 
 #define FN INLINE
 #define STRUCT(n) struct n

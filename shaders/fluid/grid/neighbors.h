@@ -1,6 +1,6 @@
 // The loop over a particle's neighbours on a GPU: the nine rows of cells around it, each with three cells contiguous in memory; with MATTER
 // also the same rows of body samples; with PERIODIC cell by cell, because rows may wrap around; with LINKED_LIST the lists of the 27
-// cells. (On the CPU, lang_lanes.h defines the same macros over a neighbour list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1,
+// cells. (On the CPU, lang_neighbors.h defines the same macros over a neighbour list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1,
 // Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart or the lists. `home`: the particle's position when the grid was built.
 // j includes the particle itself.
 #include "shaders/fluid/grid/linked_list.h"

@@ -50,7 +50,7 @@ TEST(GoOn, OnlyParticlesInTheMovedBallAreRemoved) {
     ASSERT_TRUE(two->continueFrom(*one));
     EXPECT_EQ(two->time(), one->time());
     const HostParticles had = readParticles(one->world()), has = readParticles(two->world());
-    // The ball is closed: all particles outside it remain, to a voxel, with the same position and velocity.
+    // The ball is closed: all particles outside it and its voxels remain, with the same position and velocity.
     size_t inside = 0, same = 0;
     std::map<std::array<float, 3>, vec3> there;
     for (size_t k = 0; k < has.position.size(); ++k)
@@ -59,9 +59,9 @@ TEST(GoOn, OnlyParticlesInTheMovedBallAreRemoved) {
         const vec3 p(had.position[k]);
         const float off = glm::distance(p, after.colliders[0].position) - 0.1F;
         const auto found = there.find({p.x, p.y, p.z});
-        if (off < -0.01F) ++inside;
-        if (off < -0.01F) EXPECT_EQ(found, there.end());
-        if (off > 0.01F) {
+        if (off < -0.001F) ++inside;
+        if (off < -0.001F) EXPECT_EQ(found, there.end());
+        if (off > 0.0175F) {  // a voxel's diagonal
             ASSERT_NE(found, there.end()) << off;
             EXPECT_EQ(found->second, vec3(had.velocity[k]));
             ++same;
@@ -76,7 +76,8 @@ TEST(GoOn, OnlyParticlesInTheMovedBallAreRemoved) {
     run(*two, 30);
     const HostParticles later = readParticles(two->world());
     EXPECT_EQ(later.position.size(), has.position.size());
-    for (const vec4& p : later.position) EXPECT_GT(glm::distance(vec3(p), after.colliders[0].position), 0.09F);
+    for (const vec4& p : later.position)
+        EXPECT_GT(glm::distance(vec3(p), after.colliders[0].position), 0.115F) << "half a spacing off the ball, but for a quarter";
     EXPECT_LT(two->world().stats().maxCompression, 0.3);
     EXPECT_NEAR(two->world().stats().emitted / volume, static_cast<double>(has.position.size()), 0.01);
     two->reset();

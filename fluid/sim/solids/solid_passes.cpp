@@ -199,6 +199,15 @@ Status SolidPasses::addMoving(Moving m) {
 namespace {
 // A little less than the rest distance, so that rounding removes no particle of a lattice that is flush with a wall.
 constexpr float kRounded = 0.998F;
+
+// Whether `p` is in a voxel that the mesh touches, or within rounding of one: a particle that starts there never moves (collide.kernel).
+bool inWall(const VoxelGrid& grid, const vec3& p) {
+    for (int k = 0; k < 8; ++k) {
+        const vec3 away = 0.01F * grid.voxel * (2.0F * vec3(k & 1, (k >> 1) & 1, k >> 2) - 1.0F);
+        if (grid.test(grid.cellOf(p + away))) return true;
+    }
+    return false;
+}
 }  // namespace
 
 bool SolidPasses::Field::maySpawn(const vec3& p, float spacing, float near) const {
@@ -215,7 +224,7 @@ bool SolidPasses::maySpawn(const vec3& p, float spacing, float near) const {
         if (!rigid_[k].on.maySpawn(poses_[k].toOwn(p), spacing, near)) return false;
     for (const Moving& m : deforming_)
         if (!m.on.maySpawn(p, spacing, near)) return false;
-    return static_.field == nullptr || static_.maySpawn(p, spacing, near);
+    return static_.field == nullptr || (static_.maySpawn(p, spacing, near) && !inWall(static_.field->surface, p));
 }
 
 Status SolidPasses::setSurfaces(std::span<const Surface> surfaces) {

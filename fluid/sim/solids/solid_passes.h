@@ -29,7 +29,7 @@ class SolidPasses {
 
     // True if a particle may be spawned at `p`: on the fluid's side of every plane, outside every mesh at its current pose, and not nearer
     // than its rest distance. For an existing particle, `near` is the least distance as a share of the rest distance, because a wall pushes
-    // it out.
+    // it out; but not from the voxels of a static mesh's surface.
     bool maySpawn(const vec3& p, float spacing, float near = 1) const;
     bool any() const { return planeCount() > 0 || static_.field != nullptr || !rigid_.empty() || !deforming_.empty(); }
     uint32_t planeCount() const { return static_cast<uint32_t>(planeSolids_.size()); }

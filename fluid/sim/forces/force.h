@@ -40,6 +40,7 @@ struct ForceRow {
     Result<ForcePass> (*make)(Device& device, const MethodSetup& setup);
     StepLimit (*limit)(const ForceLimitInputs& inputs) = nullptr;  // none: it limits no step. Called whether it is on or not
     float (*fastest)(const FluidParams& params) = nullptr;         // m/s, as HostForce::fastest
+    float (*pressure)(const FluidParams& params) = nullptr;        // Pa, the most that it causes inside the fluid; none: little
 };
 Table<ForceRow> forces();  // by `order`
 

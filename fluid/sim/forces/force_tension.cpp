@@ -87,6 +87,9 @@ Result<ForcePass> make(Device& device, const MethodSetup& setup) {
 
 StepLimit limit(const ForceLimitInputs& in) { return {capillaryLimit(in.params), "surface tension"}; }
 
+// In a drop two spacings in radius.
+float pressure(const FluidParams& p) { return p.forces.tension / p.spacing; }
+
 float fastest(const FluidParams& p) { return std::sqrt((p.forces.tension + p.forces.adhesion) / (p.restDensity * p.spacing)); }
 
 }  // namespace
@@ -107,7 +110,8 @@ ForceRow row() {
             .on = on,
             .make = make,
             .limit = limit,
-            .fastest = fastest};
+            .fastest = fastest,
+            .pressure = pressure};
 }
 
 }  // namespace rivulet::force_tension

@@ -64,6 +64,13 @@ void WorldForces::run(StepContext& context) const {
         if (f.on) f.pass(context);
 }
 
+float WorldForces::pressure(const FluidParams& params) const {
+    float most = 0;
+    for (const ForceRow& f : forces().rows)
+        if (f.pressure != nullptr) most = std::max(most, f.pressure(params));
+    return most;
+}
+
 float WorldForces::fastest(const FluidParams& params) const {
     float fastest = 0;
     for (const ForceRow& f : forces().rows)

@@ -22,8 +22,9 @@ class WorldForces {
     std::vector<std::string> update(Device& device, const MethodSetup& setup);
     bool anyOn() const;
     void run(StepContext& context) const;
-    float fastest(const FluidParams& params) const;  // m/s, the most that a force drives water to
-    void visit(ParamVisitor& v) const;               // the Params of the host's forces, a group each
+    float fastest(const FluidParams& params) const;   // m/s, the most that a force drives water to
+    float pressure(const FluidParams& params) const;  // Pa, the most that a force causes inside the fluid
+    void visit(ParamVisitor& v) const;                // the Params of the host's forces, a group each
 
   private:
     struct Entry {

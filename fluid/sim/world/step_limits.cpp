@@ -29,6 +29,8 @@ float StepLimits::fastestFall(const Inputs& in) const {
         fastest = std::max(fastest, std::sqrt(2.0F * std::max(fall, 0.0F) + in.fastestSource * in.fastestSource));
     }
     fastest = std::max(fastest, fastestWall);
+    // The speed that a force's pressure gives at a surface: a drop of wcsph without it would be as soft as its slow motion allows.
+    fastest = std::max(fastest, std::sqrt(in.forces.pressure(in.params) / in.params.restDensity));
     // Still water without gravity has no speed of its own: the length it could be pushed over in a tenth of a second.
     return std::max(fastest, 10.0F * in.params.spacing);
 }

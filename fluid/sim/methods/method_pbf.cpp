@@ -71,10 +71,17 @@ class Pbf final : public Method {
     void step(StepContext& c) override {
         Particles& p = c.particles;
         if (c.probes != nullptr) c.probes->predicted(c.params);
+        // On the cpu alone a sort can fail.
+        const bool cpu = c.device.backend() == Backend::cpu;
+        if (cpu) {
+            c.device.copy(p.positionNext, corrected[0], size_t{p.count} * sizeof(vec4));
+            c.device.copy(p.velocityNext, corrected[1], size_t{p.count} * sizeof(vec4));
+        }
         c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
         c.grid.setMargin(1.05F);  // as pbf_lambda keeps
         if (!c.build(true)) {
-            takeBack(c);
+            c.device.copy(corrected[0], p.positionNext, size_t{p.count} * sizeof(vec4));
+            c.device.copy(corrected[1], p.velocityNext, size_t{p.count} * sizeof(vec4));
             return;
         }
         // p.position: predicted; p.velocity: where each particle comes from.
@@ -85,7 +92,7 @@ class Pbf final : public Method {
         if (c.params.firstSample < c.params.count)
             for (Buffer& b : corrected) c.device.copy(p.position, b, size_t{p.count} * sizeof(vec4));
         const PbfParams& pbf = c.fluid.pbf;
-        const bool toTolerance = pbf.tolerance > 0, cpu = c.device.backend() == Backend::cpu;
+        const bool toTolerance = pbf.tolerance > 0;
         const int most = !toTolerance ? pbf.iterations
                          : cpu        ? pbf.maxIterations
                                       : residual.plannedIterations(double{pbf.tolerance}, pbf.maxIterations);
@@ -126,25 +133,6 @@ class Pbf final : public Method {
             p.velocity.swap(p.velocityNext);
         }
         p.position.swap(p.velocity);  // what follows walks from where the step began
-    }
-
-    // After a failed sort: the newest state has predicted positions, and where particles come from in place of velocities. Particles return
-    // there, with the velocity that led to the prediction. On the cpu alone, where a sort can fail.
-    void takeBack(StepContext& c) const {
-        Particles& p = c.particles;
-        const StepParams& s = c.params;
-        std::vector<vec4> at = c.device.readAll<vec4>(p.positionNext, p.count), from = c.device.readAll<vec4>(p.velocityNext, p.count);
-        const float farthest = 1.001F * s.maxSpeed * s.dt;
-        for (uint32_t i = 0; i < p.count; ++i) {
-            const vec3 start(from[i]), cell = (start - vec3(s.gridOrigin)) * vec3(s.gridScale), end(s.cellsX, s.cellsY, s.cellsZ);
-            const bool inGrid = glm::all(glm::greaterThanEqual(cell, vec3(1.0F))) && glm::all(glm::lessThan(cell, end - 1.0F));
-            // What is free, lost or a sample was not predicted.
-            if (at[i].w < 0 || !inGrid || !(glm::distance(vec3(at[i]), start) <= farthest)) continue;
-            from[i] = vec4((vec3(at[i]) - start) / s.dt - vec3(s.gravity) * s.dt, 0.0F);
-            at[i] = vec4(start, at[i].w);
-        }
-        c.device.writeAll<vec4>(p.positionNext, at);
-        c.device.writeAll<vec4>(p.velocityNext, from);
     }
 
     void measure(StepContext& c) override {

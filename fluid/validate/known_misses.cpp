@@ -15,9 +15,12 @@ constexpr std::string_view kClamp = "no negative pressure: pressure is clamped a
 constexpr std::string_view kNoise = "residual motion of particles in a packing under load (supposed)";
 // Measured in the same run: the error against inviscid flow is below 1 %.
 constexpr std::string_view kGate = "the measured front starts later than that of inviscid flow: behind a gate, over a floor that rubs";
-constexpr std::string_view kStart = "the water settles around the sphere after the start from a lattice (supposed)";
+constexpr std::string_view kStart = "the water settles around the sphere after the start (supposed)";
+// Measured: with fluid.pbf.minSubsteps = 8 instead of 2 the error is 0.6 %.
+constexpr std::string_view kSoft = "the water is compressed by 2 % under its weight, and swings up and down after the start";
 
 constexpr KnownMiss kKnownMisses[] = {
+    {"hydrostatic", "dfsph", "speed left", kNoise},
     {"dam_break", "dfsph", "front, mean error", kGate},
     {"dam_break", "dfsph", "front's speed", kGate},
     {"sloshing", "dfsph", "viscosity of the decay", kDamping},
@@ -44,15 +47,12 @@ constexpr KnownMiss kKnownMisses[] = {
     {"rotating_patch", "dfsph", "area over", kClamp},
     {"rotating_patch", "pbf", "area over", kClamp},
     {"rotating_patch", "wcsph", "area over", kClamp},
-    {"elliptical_drop", "dfsph", "short axis", kShear},
-    {"elliptical_drop", "pbf", "short axis", kShear},
-    {"elliptical_drop", "wcsph", "short axis", kShear},
     {"pool", "dfsph", "rms speed", kNoise},
     {"pool", "pbf", "rms speed", kNoise},
     {"pool", "wcsph", "rms speed", kNoise},
     {"submerged", "dfsph", "acceleration", kShear},
     {"submerged", "wcsph", "acceleration", kShear},
-    {"submerged", "pbf", "acceleration", kStart},
+    {"submerged", "pbf", "acceleration", kSoft},
     {"submerged", "dfsph", "path", kStart},
     {"submerged", "pbf", "path", kStart},
     {"submerged", "wcsph", "path", kStart},

@@ -41,7 +41,7 @@ After run(Device& device, const std::string& method, bool periodic) {
     After after;
     if (!world) return after;
     // A method without sound pushes only after the fluid has been compressed, which takes some frames.
-    const int steps = method == "wcsph" ? 1 : method == "pbf" ? 4 : 3;
+    const int steps = method == "wcsph" ? 1 : method == "pbf" ? 2 : 3;
     for (int k = 0; k < steps; ++k) {
         (*world)->step({.gravity = p.gravity}, 2.0e-3);
         device.finish();

@@ -68,26 +68,30 @@ TEST_P(SolverStops, AtTheSameIterationAsTheCpu) {
     if (!gpu) GTEST_SKIP() << gpu.error().message;
     auto cpu = makeTestCpu();
     double iterations[2] = {}, compression[2] = {};
-    for (int which = 0; which < 2; ++which) {
-        Device& device = which == 0 ? *cpu : *gpu->device;
-        FluidParams p;
-        p.method = "dfsph";
-        p.spacing = 0.05F;
-        p.box.max = vec3(1.0F, 0.8F, 0.5F);
-        p.blocks = {{vec3(0.0F), vec3(0.5F, 0.6F, 0.5F), vec3(0.0F)}};
-        auto world = FluidWorld::create(device, p, {}, {});
-        ASSERT_TRUE(world) << world.error().message;
-        for (int k = 0; k < 12; ++k) {
-            (*world)->step({.gravity = p.gravity}, 1.0 / 60);
-            device.finish();
-            device.poll();
-            compression[which] += (*world)->stats().avgCompression / 12;
-            // The host receives a GPU's iteration counts one frame later.
-            if (k >= 1) iterations[which] += (*world)->stats().iterations / 11;
+    // On one device, offsets of 1e-6 spacings change the compression of one start by 6 % in twelve frames: the mean of nine starts, within
+    // two and a half standard deviations.
+    for (int start = 0; start < 9; ++start)
+        for (int which = 0; which < 2; ++which) {
+            Device& device = which == 0 ? *cpu : *gpu->device;
+            FluidParams p;
+            p.method = "dfsph";
+            p.spacing = 0.05F;
+            p.box.max = vec3(1.0F, 0.8F, 0.5F);
+            p.blocks = {{vec3(0.0F), vec3(0.5F, 0.6F, 0.5F), vec3(0.0F)}};
+            p.blocks[0].jitter = 0.03F * static_cast<float>(start + 1);
+            auto world = FluidWorld::create(device, p, {}, {});
+            ASSERT_TRUE(world) << world.error().message;
+            for (int k = 0; k < 8; ++k) {
+                (*world)->step({.gravity = p.gravity}, 1.0 / 60);
+                device.finish();
+                device.poll();
+                compression[which] += (*world)->stats().avgCompression / 8;
+                // The host receives a GPU's iteration counts one frame later.
+                if (k >= 1) iterations[which] += (*world)->stats().iterations / 7;
+            }
         }
-    }
-    // On one device, a jitter of 1e-6 spacings changes the compression by 6 % in these frames (at a support of 2 spacings by 5 %).
-    EXPECT_NEAR(compression[1] / compression[0], 1, 0.12);
+    RecordProperty("compression", std::to_string(compression[1] / compression[0] - 1));
+    EXPECT_NEAR(compression[1] / compression[0], 1, 0.05);
     EXPECT_NEAR(iterations[1] / iterations[0], 1, 0.2);
 }
 

@@ -175,7 +175,10 @@ TEST(Liquids, StatisticsUseTheDensityOfEachParticle) {
     FluidParams p = sideBySide("wcsph", 1, "honey");
     p.liquid = "water";
     p.gravity = vec3(0.0F);
-    for (BlockParams& b : p.blocks) b.velocity = vec3(0, 0.1F, 0);
+    for (BlockParams& b : p.blocks) {
+        b.velocity = vec3(0, 0.1F, 0);
+        b.jitter = 0;
+    }
     auto world = make(*device, p);
     world->step({.gravity = vec3(0.0F)}, 1.0e-6);
     const double volume = 0.12 * 0.2 * 0.12, water = volume * 998.2, honey = volume * 1420;

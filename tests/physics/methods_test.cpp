@@ -34,19 +34,19 @@ class Methods : public testing::TestWithParam<const char*> {
     std::vector<vec4> velocities(FluidWorld& world) { return device->readAll<vec4>(*world.particles().velocity, world.particles().count); }
 };
 
-// A pool half a metre deep keeps its level (no loss by compression, no layer lifts off) and is still after four seconds.
+// A pool half a metre deep keeps its level (no loss by compression, no layer lifts off) and is still after two seconds.
 TEST_P(Methods, APoolAtRestKeepsItsLevelAndIsStill) {
     FluidParams p = params(0.05F);
     p.box.max = vec3(0.5F, 1.0F, 0.5F);
     p.blocks = {{vec3(0.0F), vec3(0.5F), vec3(0.0F)}};
     auto world = make(p);
-    for (int frame = 0; frame < 240; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
+    for (int frame = 0; frame < 120; ++frame) world->step({.gravity = p.gravity}, 1.0 / 60);
     const FluidStats& s = world->stats();
     // Under gravity the centre of mass stays within a hundredth of the depth, plus the compression of the method.
     EXPECT_NEAR(s.centreOfMass[1], 0.25, 0.25 * 0.03);
-    // The start on a lattice is not a packing at rest: particles rearrange themselves, and this motion decays slowly.
+    // Particles rearrange themselves, and this motion decays slowly.
     const std::string_view method = GetParam();
-    const double calm = method == "dfsph" ? 0.01 : 0.02;
+    const double calm = method == "pbf" ? 0.025 : 0.01;
     EXPECT_LT(std::sqrt(2 * s.kinetic / (1000 * 0.125)), calm * std::sqrt(9.81 * 0.5)) << "root mean square speed";
     EXPECT_LT(s.avgCompression, 0.015);
     EXPECT_EQ(s.lost, 0U);
@@ -55,12 +55,13 @@ TEST_P(Methods, APoolAtRestKeepsItsLevelAndIsStill) {
     EXPECT_LT(highest, 0.5F + 0.05F) << "a particle climbed";
 }
 
-// A block with jitter: no particle is further than that from its lattice point or outside the block; all of the range occurs; runs are
-// identical.
+// A block with jitter: no particle is further than that from its lattice point; the outermost layers stay flat; all of the range occurs;
+// runs are identical.
 TEST(Block, JitterMovesParticlesAboutTheirLattice) {
     BlockParams b;
     b.min = vec3(0.1F);
     b.max = vec3(0.1F + 20 * 0.05F);
+    b.jitter = 0;
     std::vector<NewParticle> still, jittered, again;
     fillBlock(b, 0.05F, still);
     b.jitter = 0.3F;
@@ -75,8 +76,7 @@ TEST(Block, JitterMovesParticlesAboutTheirLattice) {
         EXPECT_EQ(x, again[i].position);
         for (int k = 0; k < 3; ++k) {
             EXPECT_LE(std::abs(off[k]), 0.3001F);
-            EXPECT_GE(x[k], 0.1249F);
-            EXPECT_LE(x[k], 1.0751F);
+            if (s[k] < 0.13F || s[k] > 1.07F) EXPECT_EQ(x[k], s[k]) << "the outermost layer stays flat";
         }
         if (glm::any(glm::lessThan(s, vec3(0.13F))) || glm::any(glm::greaterThan(s, vec3(1.07F)))) continue;
         ++inside;

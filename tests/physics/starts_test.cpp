@@ -112,6 +112,7 @@ TEST(Start, GradientsAreThoseOfTheVelocity) {
     const BlockParams b{.min = vec3(-0.1F, 0.2F, 0.3F),
                         .max = vec3(0.3F, 0.5F, 0.5F),
                         .velocity = vec3(0.5F, 0, -1),
+                        .jitter = 0,
                         .gradientX = vec3(0, 3, -1),
                         .gradientY = vec3(2, 0.5F, 4),
                         .gradientZ = vec3(-5, 1, -0.5F)};
@@ -138,7 +139,7 @@ TEST(Start, AWorldStartsWithTheSpinOfItsBlock) {
     FluidParams p;
     p.spacing = 0.02F;
     p.gravity = vec3(0.0F);
-    p.blocks = {{.min = vec3(0.3F), .max = vec3(0.7F), .shape = "cylinder", .spin = vec3(0, 10, 0)}};
+    p.blocks = {{.min = vec3(0.3F), .max = vec3(0.7F), .jitter = 0, .shape = "cylinder", .spin = vec3(0, 10, 0)}};
     auto device = cpu();
     auto world = makeWorld(*device, p);
     EXPECT_GE(world->fastestFall(), 2) << "the rim, 0.2 m from the axis";

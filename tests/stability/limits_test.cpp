@@ -230,17 +230,24 @@ TEST(Warnings, OfABoxTooFarAwayAndOfPairs) {
 }
 
 // A body a hundred times as heavy as water, the other end of what the envelope's row sweeps.
+// The ball may squirt a single drop from under itself: the middle one of three starts.
 TEST(Coupling, AHeavyBallSinksAndNothingElseHappens) {
     auto device = cpu();
     const EnvelopeSettings settings{.device = device.get()};
     for (const char* method : {"wcsph", "pbf", "dfsph"}) {
-        const Result<Seen> seen = watch(settings, {.scene = "coupling",
-                                                   .assignments = {std::string("fluid.method=") + method, "bodies.0.density=100000"},
-                                                   .limits = true,
-                                                   .asFrames = true});
-        ASSERT_TRUE(seen) << seen.error().message;
-        EXPECT_FALSE(seen->failed) << method;
-        EXPECT_LT(seen->mostSpeed, 6) << method;
+        std::vector<double> fastest;
+        for (const char* jitter : {"0.1", "0.2", "0.3"}) {
+            const Result<Seen> seen = watch(settings, {.scene = "coupling",
+                                                       .assignments = {std::string("fluid.method=") + method, "bodies.0.density=100000",
+                                                                       std::string("fluid.blocks.0.jitter=") + jitter},
+                                                       .limits = true,
+                                                       .asFrames = true});
+            ASSERT_TRUE(seen) << seen.error().message;
+            EXPECT_FALSE(seen->failed) << method;
+            fastest.push_back(seen->mostSpeed);
+        }
+        std::sort(fastest.begin(), fastest.end());
+        EXPECT_LT(fastest[1], 5) << method;
     }
 }
 

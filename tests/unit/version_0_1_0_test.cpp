@@ -1,7 +1,7 @@
 // Files that version 0.1.0 wrote (before fluid/bridge became scene, session and viewer) are still read: tests/unit/version_0_1_0/ holds
 //     rivulet run small.json --headless --no-render --backend cpu --frames 2 --save small.rstate --record small.rrec
 //     rivulet voxelize tetrahedron.obj --resolution 8 --out small.rvox
-// The default of fluid.supportSpacings has changed since, so small.json names the old one.
+// The defaults of fluid.supportSpacings and fluid.blocks[].jitter have changed since, so small.json names the old ones.
 // A change of a format either reads these, or refuses them with a sentence that names both versions; then this test says so.
 #include <gtest/gtest.h>
 

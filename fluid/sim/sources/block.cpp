@@ -23,11 +23,6 @@ float jittered(uint32_t place, uint32_t axis) {
     k ^= k >> 33U;
     return static_cast<float>(k >> 40U) / 8388608.0F - 1.0F;
 }
-// m/s at `at`.
-vec3 velocityAt(const BlockParams& b, const vec3& at) {
-    const vec3 r = at - 0.5F * (b.min + b.max);
-    return b.velocity + glm::cross(b.spin, r) + vec3(glm::dot(b.gradientX, r), glm::dot(b.gradientY, r), glm::dot(b.gradientZ, r));
-}
 
 // The sites of a block's box: x fastest, centred in it.
 struct Lattice {
@@ -111,6 +106,11 @@ double blockCount(const BlockParams& b, float spacing) {
     return along(b.min.x, b.max.x, spacing) * along(b.min.y, b.max.y, spacing) * along(b.min.z, b.max.z, spacing);
 }
 
+vec3 velocityAt(const BlockParams& b, const vec3& at) {
+    const vec3 r = at - 0.5F * (b.min + b.max);
+    return b.velocity + glm::cross(b.spin, r) + vec3(glm::dot(b.gradientX, r), glm::dot(b.gradientY, r), glm::dot(b.gradientZ, r));
+}
+
 float fastestOf(const BlockParams& b) {
     float fastest = 0;  // of a field that is linear, at a corner
     for (int k = 0; k < 8; ++k)
@@ -125,17 +125,27 @@ void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to
                      : b.shape == "ball" ? sitesOfBall(b, lattice)
                      : b.shape == "mesh" ? sitesOfMesh(lattice, triangles)
                                          : sitesAlongAxis(b, lattice);
-    const vec3 last = lattice.first + vec3(lattice.count) * spacing - vec3(spacing);
+    const auto has = [&](const ivec3& c) {
+        if (glm::any(glm::lessThan(c, ivec3(0))) || glm::any(glm::greaterThanEqual(c, lattice.count))) return false;
+        return in.empty() || in[lattice.place(c)];
+    };
+    // Along an axis only particles between two others: those at a wall or a surface would come too close to the next layer.
+    const auto offset = [&](const ivec3& c, uint32_t place) {
+        vec3 away(0.0F);
+        for (int axis = 0; axis < 3; ++axis) {
+            ivec3 next(0);
+            next[axis] = 1;
+            if (has(c - next) && has(c + next)) away[axis] = b.jitter * spacing * jittered(place, static_cast<uint32_t>(axis));
+        }
+        return away;
+    };
     to.reserve(to.size() + (in.empty() ? lattice.size() : static_cast<size_t>(std::count(in.begin(), in.end(), true))));
     uint32_t place = 0;
     for (ivec3 c(0); c.z < lattice.count.z; ++c.z)
         for (c.y = 0; c.y < lattice.count.y; ++c.y)
             for (c.x = 0; c.x < lattice.count.x; ++c.x, ++place) {
                 if (!in.empty() && !in[place]) continue;
-                vec3 at = lattice.at(c);
-                if (b.jitter > 0)
-                    at = glm::clamp(at + b.jitter * spacing * vec3(jittered(place, 0), jittered(place, 1), jittered(place, 2)),
-                                    lattice.first, last);
+                const vec3 at = lattice.at(c) + (b.jitter > 0 ? offset(c, place) : vec3(0.0F));
                 to.push_back({at, velocityAt(b, at)});
             }
 }

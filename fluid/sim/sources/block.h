@@ -22,9 +22,11 @@ double blockCount(const BlockParams& block, float spacing);
 // Appends the lattice, centred in the block, x fastest; of a ball the sites within. Of a cylinder or a cone, each layer across the axis has
 // as many sites as its volume holds, those next to the axis first: the particles have the volume of the layers to within one spacing^3.
 // Of a mesh the sites that it encloses: `triangles`, m, three corners each; an open mesh by its generalized winding number
-// (voxelize_solid.h). With jitter no particle is further out than the outermost of the lattice; the same every time. An empty or inverted
-// block adds nothing.
+// (voxelize_solid.h). With jitter a particle that lacks a neighbour along an axis keeps its place on that axis, so that surfaces stay flat;
+// the same every time. An empty or inverted block adds nothing.
 void fillBlock(const BlockParams& block, float spacing, std::vector<NewParticle>& to, std::span<const vec3> triangles = {});
+// m/s, the velocity field of a block at `at` (m).
+vec3 velocityAt(const BlockParams& block, const vec3& at);
 // The highest speed of a point between the block's corners at the start, m/s.
 float fastestOf(const BlockParams& block);
 

@@ -48,8 +48,8 @@ void BlockParams::visit(ParamVisitor& v) {
             liquid);
     visitDye(v, dye, dyeAmount, dyeScattering);
     v.value({"jitter", "spacings",
-             "random offset of particles from their lattice at the start, at most: a perfect lattice resists shear like a crystal until it "
-             "is stirred",
+             "largest random offset of particles from a lattice at the start; then particles move apart until none is too dense. 0 = a "
+             "perfect lattice, which resists shear like a crystal until it is stirred",
              0, 0.5, kLinear, kFixed},
             jitter);
     v.value({.name = "cut",

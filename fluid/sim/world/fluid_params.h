@@ -21,7 +21,7 @@ struct BlockParams {
     vec3 dye{1.0F};              // linear; white = none
     float dyeAmount = 20.0F;     // 1/m
     float dyeScattering = 0.0F;  // 1/m
-    float jitter = 0.0F;         // spacings: largest random offset of a particle from its lattice point, along each axis
+    float jitter = 0.2F;         // spacings: largest random offset of a particle from its lattice point, before the start is relaxed
     std::string shape = "box";   // box | ball | cylinder | cone: fits between min and max; mesh: the inside of `mesh` between them
     bool cut = false;            // solids are meant to cut the block: no notice about the particles that they remove
     std::string axis = "y";      // x | y | z: of a cylinder or a cone; a cone has its apex at max

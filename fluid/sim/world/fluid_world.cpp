@@ -539,7 +539,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.bodies = std::move(*bodies);
     w.log = std::move(log);
     w.gravity = params.gravity;
-    if (Status s = w.prepare(); !s) return s.error();
+    if (Status s = w.prepare(solids); !s) return s.error();
     w.probeTargets = ProbeTargets::of(solids);
     if (Status s = w.prepareProbes(w.params); !s) return s.error();
     return world;

@@ -81,12 +81,13 @@ struct FluidWorld::Impl {
     WorldClock clock;
     bool cellsValid = false;  // since cellWork()
 
-    Status prepare();
+    Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
     Status mayLink() const;  // Error: fluid.grid linked_list does not support a feature of the scene
     Status checkPrecision() const;
     Status checkStart() const;
     void fillStart();
+    void relaxStart(const Solids& given);
     bool startsClosed() const;
     const BlockParams& blockOf(const NewParticle& particle) const {
         return particle.block == kNoBlock ? *placed : params.blocks[particle.block];

@@ -19,7 +19,7 @@ constexpr double kMostParticles = 64.0e6;
 
 }  // namespace
 
-Status FluidWorld::Impl::prepare() {
+Status FluidWorld::Impl::prepare(const Solids& given) {
     const float h = params.supportSpacings * params.spacing;
     double wanted = static_cast<double>(sourceSetup.particles.size());
     for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
@@ -95,6 +95,7 @@ Status FluidWorld::Impl::prepare() {
         foam = std::move(*foaming);
     }
     if (count == 0) log.notice("the scene has no particles");
+    relaxStart(given);
     writeStart();
     return ok();
 }

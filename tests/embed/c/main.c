@@ -81,7 +81,7 @@ static void it_falls_and_is_all_there(rivulet_context* context) {
     read(world, &a);
     CHECK(a.count == 512 && each_id_once(&a));
     const double start = mean(&a, a.x, 1);
-    CHECK(fabs(start - 1.2) < 1e-4);
+    CHECK(fabs(start - 1.2) < 1e-3); /* particles start disordered */
     run(world, 15); /* a quarter of a second: 0.307 m of the metre below it */
     read(world, &b);
     CHECK(fabs(mean(&b, b.v, 1) + 9.81 * 0.25) < 0.02 * 9.81 * 0.25);

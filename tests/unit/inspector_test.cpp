@@ -220,8 +220,8 @@ TEST(ChartPanel, HereIsWhereTheRunIs) {
     const ChartRow* row = rowLike(chart, "dam_break", pbf, "pbf", 9000);
     ASSERT_NE(row, nullptr);
     EXPECT_EQ(row->setting, "pbf");
-    EXPECT_EQ(row->particles, 8192U);
-    EXPECT_EQ(rowLike(chart, "dam_break", pbf, "pbf", 100)->particles, 4608U);
+    EXPECT_EQ(row->particles, 10240U);
+    EXPECT_EQ(rowLike(chart, "dam_break", pbf, "pbf", 100)->particles, 5760U);
     EXPECT_EQ(rowLike(chart, "dam_break", nullptr, "dfsph", 9000)->setting, "dfsph") << "values of its own: the method as it comes";
     EXPECT_EQ(rowLike(chart, "dam_break", pbf, "none", 9000)->setting, "pbf");
     EXPECT_EQ(rowLike(chart, "no such case", pbf, "pbf", 9000), nullptr);

@@ -202,15 +202,15 @@ TEST_F(Watching, AClickMayTakeTheNumberOfParticles) {
     for (float y = window->Pos.y + window->Size.y - 20; y > window->Pos.y + 0.5F * window->Size.y && !taken; y -= 12) {
         clickAt(vec2(window->Pos.x + 20, y));
         const auto point = std::find_if(chart.placed().begin(), chart.placed().end(), [](const auto& p) {
-            return p.row != nullptr && p.row->setting == "pbf" && p.row->particles == 8192;
+            return p.row != nullptr && p.row->setting == "pbf" && p.row->particles == 10240;
         });
         ASSERT_NE(point, chart.placed().end());
         clickAt(point->at);
         taken = viewer_->session().world().particles().count != few;
     }
     ASSERT_TRUE(taken);
-    EXPECT_NEAR(viewer_->session().world().particles().count, 8192, 0.2 * 8192);
-    EXPECT_NEAR(viewer_->scene().fluid.spacing, 0.05F * std::cbrt(few / 8192.0F), 1e-4F);
+    EXPECT_NEAR(viewer_->session().world().particles().count, 10240, 0.2 * 10240);
+    EXPECT_NEAR(viewer_->scene().fluid.spacing, 0.05F * std::cbrt(few / 10240.0F), 1e-4F);
 }
 
 // The chart shows the cost and error of the run; a run with the cost of the chart's case lies on the point of that case.

@@ -50,8 +50,8 @@ TEST(RelaxedStart, IsTheSameAfterAReset) {
     p.gravity = vec3(0.0F);
     p.blocks = {{.min = vec3(0.3F), .max = vec3(0.5F), .spin = vec3(0, 3, 0)}};
     auto device = cpu();
-    std::vector<NewParticle> placed;
-    for (int k = 0; k < 5; ++k) placed.push_back({vec3(0.7F, 0.5F, 0.5F + 0.01F * static_cast<float>(k)), vec3(0.0F)});
+    std::vector<NewParticle> placed(5);
+    for (size_t k = 0; k < placed.size(); ++k) placed[k].position = vec3(0.7F, 0.5F, 0.5F + 0.01F * static_cast<float>(k));
     auto world = FluidWorld::create(*device, p, {}, {}, {.particles = placed});
     ASSERT_TRUE(world) << world.error().message;
     const HostParticles first = readParticles(**world);

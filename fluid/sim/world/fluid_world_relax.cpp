@@ -70,19 +70,20 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
     Impl& w = *(*made)->impl_;
     if (w.start.size() != start.size()) return;
     const std::vector<vec4> still(w.particles.count, vec4(0.0F));
-    std::vector<vec3> at(start.size());
     for (int round = 0; round < kMostRounds; ++round) {
         cpu->writeAll<vec4>(w.particles.velocityNext, still);
         (*made)->step({vec3(0.0F)}, 1.0e-4);
         if (w.figures->lost > 0) return;
-        const std::vector<vec4> position = cpu->readAll<vec4>(w.particles.positionNext, w.particles.count);
-        const std::vector<uint32_t> id = cpu->readAll<uint32_t>(w.particles.id, w.particles.count);
-        for (size_t k = 0; k < id.size(); ++k)
-            if (id[k] < at.size()) at[id[k]] = vec3(position[k]);
         if (w.figures->maxCompression < kRelaxed) break;
     }
-    for (size_t k = 0; k < start.size(); ++k)
-        if (start[k].block != kNoBlock) start[k] = {at[k], velocityAt(params.blocks[start[k].block], at[k]), start[k].block};
+    const std::vector<vec4> position = cpu->readAll<vec4>(w.particles.positionNext, w.particles.count);
+    const std::vector<uint32_t> id = cpu->readAll<uint32_t>(w.particles.id, w.particles.count);
+    for (size_t k = 0; k < id.size(); ++k) {
+        if (id[k] >= start.size() || start[id[k]].block == kNoBlock) continue;  // a sample, or the host's
+        NewParticle& p = start[id[k]];
+        p.position = vec3(position[k]);
+        p.velocity = velocityAt(params.blocks[p.block], p.position);
+    }
 }
 
 }  // namespace rivulet

@@ -15,7 +15,8 @@ HEADERS = [
     "fluid/render/fluid_view.h", "fluid/render/fluid_upload.h", "fluid/render/look_params.h", "fluid/render/host_target.h",
     "fluid/render/water_renderer.h", "fluid/render/renderers.h", "fluid/flow/flow_mesh.h", "fluid/flow/surface_flow.h",
     "fluid/flow/flow_maps.h", "fluid/flow/flow_layer.h", "fluid/flow/placed_flow.h", "fluid/flow/air_drops.h", "fluid/io/export.h", "fluid/io/marching_cubes.h", "fluid/io/recording.h",
-    "fluid/capi/rivulet.h",
+    "fluid/capi/rivulet.h", "fluid/capi/rivulet_context.h", "fluid/capi/rivulet_world.h", "fluid/capi/rivulet_query.h",
+    "fluid/capi/rivulet_draw.h", "fluid/capi/rivulet_skin.h",
 ]
 
 
@@ -42,10 +43,11 @@ def page(root):
         if not path.exists():
             sys.exit(f"{name} does not exist: correct the list in fluid/capi/reference.py")
         source = path.read_text()
-        if name.endswith("rivulet.h"):
+        if name.startswith("fluid/capi/"):
             head, body = source.split("*/", 1)
             said = "\n".join(re.sub(r"^ ?\*? ?", "", line) for line in head.replace("/*", "", 1).splitlines()).strip()
-            body = body.split('extern "C" {\n#endif', 1)[1].split("#ifdef __cplusplus", 1)[0]
+            # rivulet.h itself includes the others and declares nothing.
+            body = body.split('extern "C" {\n#endif', 1)[1].split("#ifdef __cplusplus", 1)[0] if 'extern "C"' in body else ""
         else:
             lines = source.splitlines()
             n = next(k for k, line in enumerate(lines) if not line.startswith("//"))
@@ -56,8 +58,8 @@ def page(root):
             body = without_private(body)
         said = re.sub(r"((?:^ {4}.*\n?)+)", lambda m: "\n" + m.group(1) + "\n", said, flags=re.M)
         body = re.sub(r"\n{3,}", "\n\n", body).strip()
-        language = "c" if name.endswith("rivulet.h") else "cpp"
-        text += f"\n## {name}\n\n{said.strip()}\n\n```{language}\n{body}\n```\n"
+        language = "c" if name.startswith("fluid/capi/") else "cpp"
+        text += f"\n## {name}\n\n{said.strip()}\n" + (f"\n```{language}\n{body}\n```\n" if body else "")
     return text
 
 

@@ -9,11 +9,13 @@ cmake --install "$1" --prefix "$work/prefix" >"$work/log" 2>&1 || { cat "$work/l
 export PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig:$work/prefix/lib64/pkgconfig:$work/prefix/lib/$(cc -dumpmachine)/pkgconfig"
 library="$(pkg-config --variable=libdir rivulet)/librivulet.so"
 
-# The header alone, as C and as C++.
+# The header and each of its parts alone, as C and as C++.
 warnings="-Wall -Wextra -Wpedantic -Werror"
 read -ra flags <<<"$(pkg-config --cflags rivulet)"
 for language in "cc -x c -std=c11" "c++ -x c++ -std=c++17"; do
-    printf '#include <rivulet.h>\n' | $language $warnings "${flags[@]}" -fsyntax-only -
+    for header in "$(pkg-config --variable=includedir rivulet)"/fluid/capi/rivulet*.h; do
+        printf '#include <%s>\n' "${header##*/}" | $language $warnings "${flags[@]}" -fsyntax-only -
+    done
 done
 
 # Of what it needs at run time nothing opens windows, draws panels, reads models or moves rigid bodies.
@@ -27,7 +29,7 @@ fi
 # And of what it shows, nothing but rivulet.h: a host may have names of its own.
 others="$(nm -D --defined-only "$library" | awk '{ print $3 }' | grep -v '^rivulet_' || true)"
 [ -z "$others" ] || [ "${cc[0]}" = clang ] || { echo "librivulet.so shows more than rivulet.h: $others"; exit 1; }
-declared="$(grep -o '\brivulet_[a-z_]*(' "$(pkg-config --variable=includedir rivulet)/fluid/capi/rivulet.h" | tr -d '(' | sort -u)"
+declared="$(grep -oh '\brivulet_[a-z_]*(' "$(pkg-config --variable=includedir rivulet)"/fluid/capi/rivulet_*.h | tr -d '(' | sort -u)"
 shown="$(nm -D --defined-only "$library" | awk '{ print $3 }' | grep '^rivulet_' | sort -u)"
 for name in $shown; do
     grep -q "\b$name(" "$here"/*.c || { echo "$name is not used by a test"; exit 1; }

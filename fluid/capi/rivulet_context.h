@@ -1,0 +1,83 @@
+/* rivulet.h: the version, errors, and contexts: a device that simulates and, with OpenGL, a renderer. */
+#ifndef RIVULET_CONTEXT_H
+#define RIVULET_CONTEXT_H
+/* NOLINTBEGIN(readability-identifier-naming): C's own way with names */
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define RIVULET_API __attribute__((visibility("default")))
+#else
+#define RIVULET_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Semantic versioning: a program that works with a version works with later ones of the same major version. */
+#define RIVULET_VERSION_MAJOR 0
+#define RIVULET_VERSION_MINOR 1
+#define RIVULET_VERSION_PATCH 0
+/* The version of the loaded library, "0.1.0". */
+RIVULET_API const char* rivulet_version(void);
+
+typedef enum rivulet_status {
+    RIVULET_OK = 0,
+    RIVULET_FAILED = 1,   /* not possible now: out of memory, no OpenGL 4.5, a file that cannot be written */
+    RIVULET_BAD_INPUT = 2 /* an argument or the order of calls is wrong */
+} rivulet_status;
+
+typedef struct rivulet_error {
+    char message[1024];
+} rivulet_error;
+
+typedef struct rivulet_context rivulet_context; /* a device that simulates and, with OpenGL, a renderer */
+typedef struct rivulet_world rivulet_world;     /* particles in a box, with walls and bodies */
+typedef struct rivulet_skin rivulet_skin;       /* drops and films on a mesh, and a map of them */
+
+typedef void (*rivulet_function)(void);
+typedef rivulet_function (*rivulet_find_function)(const char* name); /* glfwGetProcAddress, SDL_GL_GetProcAddress, eglGetProcAddress */
+typedef enum rivulet_level { RIVULET_INFO = 0, RIVULET_NOTICE = 1, RIVULET_WARNING = 2, RIVULET_ERROR = 3 } rivulet_level;
+
+typedef struct rivulet_context_options {
+    size_t size;
+    /* Finds OpenGL's functions in the current OpenGL context. NULL: no OpenGL; worlds are simulated and cannot be drawn. */
+    rivulet_find_function find;
+    const char* backend; /* auto (NULL), cpu, gl or cl. auto: gl if OpenGL runs on a GPU, else cpu */
+    const char* device;  /* for backend cl: its number or a part of its name; NULL: the first */
+    void (*log)(void* user, rivulet_level level, const char* sentence); /* NULL: silent */
+    void* log_user;
+    /* A limit in bytes, applied to each of: the device's buffers, the renderer's images, what a world of backend cpu or cl copies to
+       OpenGL, the voxels of one wall. A call that would exceed it returns RIVULET_FAILED. 0: no limit. */
+    size_t memory_limit;
+    float sky_horizon[3], sky_zenith[3]; /* reflected by the water, radiance in the target's units; all 0: a grey-blue sky */
+    float sky_sun[3];                    /* towards the sun; all 0: the default light direction of rivulet_view */
+    float clouds;                        /* share of the sky that they cover, 0 to 1, approximate */
+} rivulet_context_options;
+
+RIVULET_API rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why);
+/* Destroy its worlds and skins first: a context that still has some stays, and the log says so. */
+RIVULET_API void rivulet_context_destroy(rivulet_context* context);
+/* The device that simulates, "cpu: AMD EPYC, 2 threads"; valid as long as the context. */
+RIVULET_API const char* rivulet_context_device(const rivulet_context* context);
+/* Bytes in use now by the device's buffers and by images. */
+RIVULET_API size_t rivulet_context_memory(const rivulet_context* context);
+
+/* Times of the passes: the simulation's since the last call of rivulet_context_times, the drawing's in the last frame with known times. A
+   GPU's times arrive two or three frames late. */
+typedef struct rivulet_pass_time {
+    char name[64];
+    double ms;
+    int32_t calls;
+} rivulet_pass_time;
+/* `count` receives the number of all passes, also where `capacity` is smaller. */
+RIVULET_API rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time* times, size_t capacity, size_t* count,
+                                                 rivulet_error* why);
+
+#ifdef __cplusplus
+}
+#endif
+/* NOLINTEND(readability-identifier-naming) */
+#endif

@@ -1,0 +1,83 @@
+/* rivulet.h: questions to a world: samples, rays, heights, counted volumes, loads; and its particles and surface as files. */
+#ifndef RIVULET_QUERY_H
+#define RIVULET_QUERY_H
+/* NOLINTBEGIN(readability-identifier-naming): C's own way with names */
+
+#include "rivulet_world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The water at places (m, 3 each), from the particles as they are now. Waits for the device. */
+typedef struct rivulet_sample {
+    float density;     /* over the rest density; 0 in air */
+    float velocity[3]; /* m/s; 0 in air */
+    float gradient[3]; /* 1/m, of the density: points into the water */
+} rivulet_sample;
+RIVULET_API rivulet_status rivulet_world_sample(rivulet_world* world, const float* places, size_t count, rivulet_sample* samples,
+                                                rivulet_error* why);
+
+/* The first crossing of each ray with the water's surface. Waits for the device. */
+typedef struct rivulet_ray {
+    float origin[3], direction[3]; /* m; of any length but 0: a ray of length 0 misses */
+    float reach;                   /* m; 0: no limit */
+} rivulet_ray;
+typedef struct rivulet_hit {
+    uint32_t hit, inside;                   /* 1: the ray hits; it begins in water and this is where it leaves it */
+    float distance;                         /* m */
+    float place[3], normal[3], velocity[3]; /* m; unit, out of the water; m/s */
+} rivulet_hit;
+RIVULET_API rivulet_status rivulet_world_cast(rivulet_world* world, const rivulet_ray* rays, size_t count, rivulet_hit* hits,
+                                              rivulet_error* why);
+/* y (m) of the highest surface at each x, z (2 floats each); NaN where there is no water. Waits for the device. */
+RIVULET_API rivulet_status rivulet_world_heights(rivulet_world* world, const float* places, size_t count, float* heights,
+                                                 rivulet_error* why);
+
+/* Volumes that count particles, at most 32, each with an id that the host chooses. */
+typedef enum rivulet_shape { RIVULET_BOX = 0, RIVULET_SPHERE = 1 } rivulet_shape;
+typedef struct rivulet_volume {
+    uint32_t id;
+    int32_t shape;     /* a rivulet_shape */
+    float position[3]; /* m, its centre */
+    float size[3];     /* m, of a box */
+    float radius;      /* m, of a sphere */
+} rivulet_volume;
+typedef struct rivulet_volume_count {
+    uint32_t id;
+    uint64_t entered, left, inside; /* particles; inside = entered - left, since the volume was set */
+    double time;                    /* s, simulated time at which they were counted; on a GPU two or three frames ago */
+    double volume_inside;           /* m^3 */
+} rivulet_volume_count;
+RIVULET_API rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_volume* volumes, size_t count, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_world_volumes(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
+                                                 rivulet_error* why);
+/* The volumes that particles entered or left since the last call, with entered and left since then. `capacity` must be at least 32. */
+RIVULET_API rivulet_status rivulet_world_volume_events(rivulet_world* world, rivulet_volume_count* counts, size_t capacity, size_t* count,
+                                                       rivulet_error* why);
+
+/* What fluid.probes measured: the load of the fluid on walls and bodies, in world axes. Means are over the last frame that has arrived; on
+   a GPU two or three frames ago. Probes are part of the world's json, or set with rivulet_world_set while their number stays. Their `on` is
+   box, body or collider; collider k is walls[k]. */
+typedef struct rivulet_load {
+    char name[64];             /* of the probe; a longer one is cut */
+    double time, seconds;      /* s simulated: the means are of the last `seconds` before `time`; 0: no frame has arrived */
+    double force[3];           /* N, on the wall, mean */
+    double torque[3];          /* N m, about the probe's point, mean */
+    double pressure;           /* Pa, mean over the probe's area; NaN: it has no area, or is on a body */
+    double impulse[3];         /* N s, since the start, a reset or a restored state */
+    double angular_impulse[3]; /* N m s, likewise */
+} rivulet_load;
+/* `count` receives the number of all probes, also where `capacity` is smaller. */
+RIVULET_API rivulet_status rivulet_world_loads(const rivulet_world* world, rivulet_load* loads, size_t capacity, size_t* count,
+                                               rivulet_error* why);
+
+/* Writes the particles as .ply, .vtp (ParaView) or .csv, the water's surface as .obj or .ply, by the path's ending; +Y up, metres. */
+RIVULET_API rivulet_status rivulet_world_export(rivulet_world* world, const char* path, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_world_export_surface(rivulet_world* world, const char* path, rivulet_error* why);
+
+#ifdef __cplusplus
+}
+#endif
+/* NOLINTEND(readability-identifier-naming) */
+#endif

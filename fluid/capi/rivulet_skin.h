@@ -1,0 +1,48 @@
+/* rivulet.h: skins: drops and films on a mesh, and a map of them. */
+#ifndef RIVULET_SKIN_H
+#define RIVULET_SKIN_H
+/* NOLINTBEGIN(readability-identifier-naming): C's own way with names */
+
+#include "rivulet_world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct rivulet_skin_options {
+    size_t size;
+    const rivulet_mesh* mesh; /* with uvs; their charts must not overlap */
+    const char* json;         /* the liquid: {"advancing": 60, ...}, as flow.N.liquid in docs/parameters.md; NULL: tears */
+    int32_t map_size;         /* texels of the map's edge, a power of two; 0: 1024 */
+} rivulet_skin_options;
+typedef struct rivulet_skin_inputs {
+    size_t size;
+    const float* gravity;   /* m/s^2, in the world; NULL: (0, -9.81, 0) */
+    const float* wind;      /* m/s; NULL: none */
+    const float* to_world;  /* the mesh's frame -> the world, a matrix without scale; NULL: identity */
+    const float* positions; /* m, of all vertices of a mesh that deforms; NULL: as before */
+} rivulet_skin_inputs;
+typedef struct rivulet_skin_stats {
+    size_t size;
+    uint64_t drops; /* on the skin now */
+    double added, on_skin, left, evaporated,
+        refused; /* m^3 since the start; on_skin: now, in drops and film; refused: no drop slot was free */
+} rivulet_skin_stats;
+
+RIVULET_API rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin,
+                                               rivulet_error* why);
+RIVULET_API void rivulet_skin_destroy(rivulet_skin* skin);
+/* Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame). */
+RIVULET_API rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why);
+/* Updates the map, a GL texture over the mesh's uvs, rgba16f with mips: r, g the slope of the liquid's height (m a unit of u, of v), b the
+   height (mm), a the wetness, 0 to 1. */
+RIVULET_API rivulet_status rivulet_skin_texture(rivulet_skin* skin, uint32_t* texture, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_skin_stats_of(const rivulet_skin* skin, rivulet_skin_stats* stats,
+                                                 rivulet_error* why); /* waits for the device */
+
+#ifdef __cplusplus
+}
+#endif
+/* NOLINTEND(readability-identifier-naming) */
+#endif

@@ -1,0 +1,131 @@
+/* rivulet.h: worlds: particles in a box, with walls and bodies; steps, parameters, statistics, saved states. */
+#ifndef RIVULET_WORLD_H
+#define RIVULET_WORLD_H
+/* NOLINTBEGIN(readability-identifier-naming): C's own way with names */
+
+#include "rivulet_context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct rivulet_pose {
+    float position[3]; /* m */
+    float rotation[4]; /* unit quaternion, x y z w; all 0: none */
+} rivulet_pose;
+
+typedef struct rivulet_mesh {
+    size_t size;
+    const float* positions; /* m, 3 a vertex */
+    size_t vertices;
+    const uint32_t* indices; /* 3 a triangle */
+    size_t indices_count;
+    const float* uvs;   /* 2 a vertex; for skins */
+    float friction;     /* of a wall: Coulomb's coefficient; negative: that of fluid.collision */
+    float restitution;  /* of a wall: 0 to 1; negative: that of fluid.collision */
+    uint32_t moves;     /* of a wall: 1: moves rigidly with rivulet_inputs.poses and turns about its own origin; 0: stands still */
+    int32_t resolution; /* of a wall: voxels along its longest side; 0: voxels of a quarter of the fluid's spacing */
+    rivulet_pose pose;  /* of a wall that moves: at t = 0 */
+} rivulet_mesh;
+
+/* A floating body, coupled to the fluid both ways. The origin of its frame is its centre of mass, its axes are the principal axes. */
+typedef struct rivulet_body {
+    size_t size;
+    const float* samples; /* m, 3 each: points half a spacing below its surface, about a spacing apart */
+    size_t samples_count;
+    float mass;       /* kg; 0: the body is fixed */
+    float inertia[3]; /* kg m^2 */
+    float volume;     /* m^3 */
+    rivulet_pose pose;
+} rivulet_body;
+typedef struct rivulet_body_state {
+    rivulet_pose pose;
+    float velocity[3], spin[3]; /* m/s; rad/s; in world axes */
+} rivulet_body_state;
+typedef struct rivulet_body_load {
+    double force[3], torque[3]; /* N; N m about the centre of mass; in world axes */
+} rivulet_body_load;
+/* The host's rigid-body engine, which moves the bodies. NULL functions: bodies collide with nothing but fluid. */
+typedef struct rivulet_body_host {
+    size_t size;
+    void* user;
+    /* Advances all bodies by `seconds` under the loads, gravity (m/s^2) and the host's own contacts. Called once a substep. */
+    void (*advance)(void* user, const rivulet_body_load* loads, const float* gravity, double seconds, rivulet_body_state* states,
+                    size_t count);
+    void (*reset)(void* user, const rivulet_body_state* states,
+                  size_t count); /* sets the bodies to these states: those of t = 0 after a reset */
+} rivulet_body_host;
+
+typedef struct rivulet_world_options {
+    size_t size;
+    /* {"fluid": {...}, "emitters": [...], "sinks": [...], "look": {...}}, as in a scene file; docs/parameters.md lists all keys. NULL: {}
+     */
+    const char* json;
+    const rivulet_mesh* walls; /* in the world's frame; walls that move in their own frame */
+    size_t walls_count;
+    const rivulet_body* bodies;
+    size_t bodies_count;
+    const rivulet_body_host* body_host;
+    /* Particles at t = 0, in addition to those of fluid.blocks: m, 3 each, inside fluid.box, about fluid.spacing apart. They are of the
+       world's own liquid. Those inside a wall or body are left out, and the log reports their number. */
+    const float* particles;
+    const float* particle_velocities; /* m/s, 3 each; NULL: at rest */
+    size_t particles_count;
+} rivulet_world_options;
+
+typedef struct rivulet_inputs {
+    size_t size;
+    const float* gravity;      /* m/s^2; NULL: fluid.gravity */
+    const rivulet_pose* poses; /* of the walls that move, in their order, at the end of the frame; NULL: as given before; after a reset
+                                  those of t = 0, after a restore those that were saved */
+    size_t poses_count;
+} rivulet_inputs;
+
+typedef struct rivulet_stats {
+    size_t size;
+    double time;                                    /* s simulated */
+    double dropped;                                 /* s that were not simulated: frames longer than allowed */
+    uint32_t particles, lost;                       /* in the world now; that left the grid or became not finite */
+    double average_compression, kinetic, potential; /* a fraction; J */
+    double maximum_speed;                           /* m/s */
+    double centre_of_mass[3];                       /* m */
+    int32_t substeps;                               /* in the last frame */
+} rivulet_stats;
+
+RIVULET_API rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_world_options* options, rivulet_world** world,
+                                                rivulet_error* why);
+RIVULET_API void rivulet_world_destroy(rivulet_world* world);
+/* Advances by a frame of `seconds`, in as many substeps as stability needs; 0 or less: nothing happens. `inputs` may be NULL. */
+RIVULET_API rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why);
+/* Sets a parameter: "fluid.viscosity=0.01", "look.quality=fast", "emitters.0.litresPerSecond=2". A parameter that docs/parameters.md calls
+   fixed is refused. */
+RIVULET_API rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, rivulet_error* why);
+/* On a GPU the values are two or three frames old. */
+RIVULET_API rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* stats, rivulet_error* why);
+
+/* Copies the particles to host memory, at most `capacity`. Their order changes from step to step; ids do not. Arrays may be NULL. Waits for
+   the device. */
+typedef struct rivulet_particles {
+    size_t size;
+    size_t capacity;   /* of each array */
+    float* positions;  /* m, 3 each */
+    float* velocities; /* m/s, 3 each */
+    float* densities;  /* over the rest density */
+    uint32_t* ids;
+    size_t count; /* out: the number of all particles, also where capacity is smaller */
+} rivulet_particles;
+RIVULET_API rivulet_status rivulet_world_particles(rivulet_world* world, rivulet_particles* particles, rivulet_error* why);
+
+/* The states of the bodies now, in their order; `count` must be their number. */
+RIVULET_API rivulet_status rivulet_world_bodies(const rivulet_world* world, rivulet_body_state* states, size_t count, rivulet_error* why);
+
+/* Saves and restores all that the next step depends on; on the cpu the restored run is bit-identical. */
+RIVULET_API rivulet_status rivulet_world_save(rivulet_world* world, const char* path, rivulet_error* why);
+RIVULET_API rivulet_status rivulet_world_restore(rivulet_world* world, const char* path, rivulet_error* why);
+
+#ifdef __cplusplus
+}
+#endif
+/* NOLINTEND(readability-identifier-naming) */
+#endif

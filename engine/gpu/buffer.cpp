@@ -11,6 +11,10 @@
 namespace rivulet::gpu {
 namespace {
 
+// NVIDIA's driver 580 lets a glNamedBufferSubData of this many bytes overtake an earlier glClearNamedBufferData of the buffer, which then
+// wipes the data out: before such a write, glFinish() ends the clear. Shorter writes were in order.
+constexpr size_t kWriteOvertakesClear = 65536;
+
 // GL refuses buffers of 0 bytes, fills are done in 4-byte words, and std140 blocks have a size of 16 n bytes.
 size_t paddedBytes(size_t bytes) { return std::max<size_t>((bytes + 15) / 16 * 16, 16); }
 
@@ -29,7 +33,8 @@ Result<Buffer> Buffer::create(size_t bytes, BufferKind kind) {
     glNamedBufferStorage(name, static_cast<GLsizeiptr>(padded), nullptr, flags);
     GLenum error = takeGlError();
     if (error == GL_NO_ERROR) {
-        buffer.fill(0);  // drivers that allocate late fail here
+        buffer.fill(0);                                     // drivers that allocate late fail here
+        if (kind == BufferKind::mapped) buffer.endClear();  // the host may write at once
         if (kind == BufferKind::mapped)
             buffer.mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(name, 0, static_cast<GLsizeiptr>(padded), mapping));
         error = takeGlError();
@@ -50,7 +55,13 @@ Result<Buffer> Buffer::fromBytes(std::span<const std::byte> bytes) {
 void Buffer::write(std::span<const std::byte> bytes, size_t offset) {
     ASSERT(offset <= bytes_ && bytes.size() <= bytes_ - offset, "write inside the buffer");
     if (bytes.empty()) return;
+    if (bytes.size() >= kWriteOvertakesClear) endClear();
     glNamedBufferSubData(name(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void Buffer::endClear() {
+    if (cleared_) glFinish();
+    cleared_ = false;
 }
 
 void Buffer::read(std::span<std::byte> bytes, size_t offset) const {
@@ -61,6 +72,7 @@ void Buffer::read(std::span<std::byte> bytes, size_t offset) const {
 
 void Buffer::fill(uint32_t word) {
     ASSERT(name() != 0, "create the buffer before filling it");
+    cleared_ = true;
     glClearNamedBufferData(name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 

@@ -34,7 +34,8 @@ class Buffer {
     size_t bytes() const { return bytes_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
 
-    // In order with other GL commands. write() and fill() never wait for the GPU; read() does.
+    // In order with other GL commands. fill() never waits for the GPU, write() only after create() or fill(), with 64 KiB or more; read()
+    // does.
     void write(std::span<const std::byte> bytes, size_t offset = 0);
     void read(std::span<std::byte> bytes, size_t offset = 0) const;
     void fill(uint32_t word);  // every 4 bytes
@@ -54,10 +55,12 @@ class Buffer {
     void bind(GLenum target, GLuint binding) const { glBindBufferBase(target, binding, name()); }
 
   private:
+    void endClear();
     static Result<Buffer> fromBytes(std::span<const std::byte> bytes);
     BufferName name_;
     size_t bytes_ = 0;
     std::byte* mapped_ = nullptr;
+    bool cleared_ = false;  // see kWriteOvertakesClear
 };
 
 }  // namespace rivulet::gpu

@@ -19,8 +19,11 @@ namespace rivulet {
 namespace {
 
 constexpr uint32_t kDefaultLocalSize = 64;
-constexpr size_t kBlockPage = size_t{64} << 10U;  // bytes of parameter blocks per page
-constexpr size_t kHarvestAbove = 1024;            // timed dispatches above which times are collected without takeTimes()
+constexpr size_t kBlockPage = size_t{64} << 10U;  // bytes per page, at least
+// NVIDIA's driver 580 lets glNamedBufferSubData overtake dispatches that still read the buffer, whatever the barriers. So what is written
+// is copied by the GPU, in order; more than this at once, as when a world begins, is written when the GPU has finished.
+constexpr size_t kMostStaged = size_t{4} << 20U;
+constexpr size_t kHarvestAbove = 1024;  // timed dispatches above which times are collected without takeTimes()
 
 // Makes the results of a dispatch visible to every use of a Buffer, in kernels and in drawing.
 constexpr GLbitfield kReaders = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
@@ -82,7 +85,8 @@ class GlDevice final : public Device {
         size_t passed = 0;     // buffers passed by the last dispatch; 0: there was none
         void link();           // finds bindings and groupBase
     };
-    // Parameter blocks, written one after the other by the host. A page is reused when the GPU has finished with all of its blocks.
+    // Parameter blocks, or data for write(), put down one after the other by the host. A page is reused when the GPU has finished with all
+    // of it.
     struct Page {
         gpu::Buffer buffer;
         size_t used = 0;
@@ -96,7 +100,7 @@ class GlDevice final : public Device {
     };
 
     bool bindParams(std::span<const std::byte> bytes);
-    bool nextPage(size_t bytes);
+    Status roomIn(std::deque<Page>& pages, size_t bytes);  // in the last page, which is a new one if need be
     gpu::Buffer stagingFor(size_t bytes);
     void harvest();
     void logOnce(const std::string& error);
@@ -106,7 +110,7 @@ class GlDevice final : public Device {
     DeviceInfo info_;
     size_t maxLocalSize_, maxGroups_, blockAlignment_;
     std::vector<Entry> kernels_;
-    std::deque<Page> pages_;  // the oldest first; the last is being written
+    std::deque<Page> pages_, writes_;  // the oldest first; the last is being written
     std::vector<std::byte> lastBlock_;
     size_t lastBlockAt_ = 0;
     std::deque<PendingRead> pendingReads_;
@@ -218,7 +222,16 @@ void GlDevice::release(uint64_t handle, size_t bytes) {
 void GlDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {
     ASSERT(offset <= to.bytes() && bytes.size() <= to.bytes() - offset, "write inside the buffer");
     if (bytes.empty()) return;
-    glNamedBufferSubData(nameOf(to), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    const auto at = static_cast<GLintptr>(offset), size = static_cast<GLintptr>(bytes.size());
+    if (bytes.size() > kMostStaged || !roomIn(writes_, bytes.size())) {
+        glFinish();
+        glNamedBufferSubData(nameOf(to), at, size, bytes.data());
+        return;
+    }
+    Page& page = writes_.back();
+    std::memcpy(page.buffer.mapped().data() + page.used, bytes.data(), bytes.size());
+    glCopyNamedBufferSubData(page.buffer.name(), nameOf(to), static_cast<GLintptr>(page.used), at, size);
+    page.used += roundedUp(bytes.size(), 16);
 }
 
 void GlDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offset) {
@@ -273,24 +286,23 @@ void GlDevice::poll() {
     harvest();
 }
 
-bool GlDevice::nextPage(size_t bytes) {
-    if (!pages_.empty()) pages_.back().done = Fence::now();
+Status GlDevice::roomIn(std::deque<Page>& pages, size_t bytes) {
+    if (!pages.empty() && pages.back().used + bytes <= pages.back().buffer.bytes()) return ok();
+    if (!pages.empty()) pages.back().done = Fence::now();
     Page page;
-    if (!pages_.empty() && pages_.front().buffer.bytes() >= bytes && pages_.front().done.passed()) {
-        page = std::move(pages_.front());
-        pages_.pop_front();
+    const auto free = std::ranges::find_if(pages, [&](const Page& p) { return p.buffer.bytes() >= bytes && p.done.passed(); });
+    if (free != pages.end()) {
+        page = std::move(*free);
+        pages.erase(free);
         page.used = 0;
         page.done = {};
     } else {
         Result<gpu::Buffer> made = gpu::Buffer::create(std::max(kBlockPage, bytes), gpu::BufferKind::mapped);
-        if (!made) {
-            logOnce(fmt::format("a kernel cannot run: {}", made.error().message));
-            return false;
-        }
+        if (!made) return made.error();
         page.buffer = std::move(*made);
     }
-    pages_.push_back(std::move(page));
-    return true;
+    pages.push_back(std::move(page));
+    return ok();
 }
 
 // Most kernels of a step have the same parameter block, which is written once.
@@ -298,7 +310,10 @@ bool GlDevice::bindParams(std::span<const std::byte> bytes) {
     const bool same = lastBlock_.size() == bytes.size() && std::memcmp(lastBlock_.data(), bytes.data(), bytes.size()) == 0;
     if (!same) {
         lastBlock_.clear();
-        if ((pages_.empty() || pages_.back().used + bytes.size() > pages_.back().buffer.bytes()) && !nextPage(bytes.size())) return false;
+        if (Status room = roomIn(pages_, bytes.size()); !room) {
+            logOnce(fmt::format("a kernel cannot run: {}", room.error().message));
+            return false;
+        }
         Page& page = pages_.back();
         std::memcpy(page.buffer.mapped().data() + page.used, bytes.data(), bytes.size());
         lastBlock_.assign(bytes.begin(), bytes.end());

@@ -143,6 +143,26 @@ TEST_F(DeviceGl, CopiesFillsAndWritesInOrder) {
     EXPECT_EQ(device_->readAll<float>(a, 4), (std::vector<float>{0, 0, 0, 0}));
 }
 
+// A GPU is many dispatches behind the host. Drivers exist in which glNamedBufferSubData overtakes them.
+TEST_F(DeviceGl, WhatIsWrittenIsReadByTheNextDispatchAndByNoneBefore) {
+    for (const uint32_t count : {1U, 20000U, 1500000U}) {
+        Buffer in = make(std::vector<float>(count, -1.0F));
+        std::vector<Buffer> out;
+        const int rounds = count > 100000 ? 4 : 40;
+        for (int k = 0; k < rounds; ++k) out.push_back(make(std::vector<float>(count, 0.0F)));
+        for (int k = 0; k < rounds; ++k) {
+            const std::vector<float> all(count, static_cast<float>(k));
+            device_->writeAll<float>(in, all);
+            device_->run(scale(), ScaleParams{count, 2.0F}, {&in, &out[static_cast<size_t>(k)]}, count);
+        }
+        for (int k = 0; k < rounds; ++k) {
+            const std::vector<float> got = device_->readAll<float>(out[static_cast<size_t>(k)], count);
+            EXPECT_TRUE(std::ranges::all_of(got, [&](float v) { return v == 2.0F * static_cast<float>(k); }))
+                << count << " words, round " << k << ": " << got[0];
+        }
+    }
+}
+
 TEST_F(DeviceGl, ATooLargeBufferIsRefusedWithBothSizes) {
     const size_t most = device_->info().maxBufferBytes;
     const Result<Buffer> buffer = device_->allocate(most + 1);

@@ -250,6 +250,10 @@ Result<ClDevice::Entry> ClDevice::make(std::string key, std::string_view path, s
     }
     size_t allowed = 0;
     clGetKernelWorkGroupInfo(object.get(), device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof allowed, &allowed, nullptr);
+    // NVIDIA names 256 also for a kernel that was compiled for larger groups, as KERNEL demands.
+    size_t compiled[3] = {};
+    clGetKernelWorkGroupInfo(object.get(), device_, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof compiled, compiled, nullptr);
+    if (compiled[0] == localSize) allowed = std::max(allowed, compiled[0]);
     if (localSize > std::min(allowed, maxLocalSize_))
         return failed(fmt::format("{} runs in work groups of {}, but {} allows it {}; try --backend cpu", file, localSize, info_.name,
                                   std::min(allowed, maxLocalSize_)));

@@ -153,8 +153,33 @@ bool readNumber(std::string_view text, size_t& at, size_t& number) {
     return at > begin;
 }
 
+// The file and line that line `wanted` of source.text comes from, by its #line directives of OpenCL; "" before the first of them.
+std::string placeInText(size_t wanted, const KernelSource& source) {
+    std::string file;
+    size_t number = 0, at = 0;
+    for (size_t k = 1; k < wanted && at < source.text.size(); ++k) {
+        const size_t newline = std::min(source.text.find('\n', at), source.text.size());
+        const Directive d = directiveOf(std::string_view(source.text).substr(at, newline - at));
+        at = newline + 1;
+        size_t from = 0;
+        const size_t quote = d.rest.find('"');
+        if (d.name == "line" && quote != std::string_view::npos && readNumber(d.rest, from, number))
+            file = d.rest.substr(quote + 1, d.rest.rfind('"') - quote - 1);
+        else
+            ++number;
+    }
+    return file.empty() ? file : fmt::format("{}:{}", file, number);
+}
+
 std::string readableLine(std::string_view line, const KernelSource& source) {
     size_t at = 0;
+    constexpr std::string_view kWhole = "<kernel>:";  // NVIDIA's OpenCL ignores #line and counts the lines of the whole text
+    if (line.starts_with(kWhole)) {
+        size_t number = 0;
+        at = kWhole.size();
+        const std::string place = readNumber(line, at, number) ? placeInText(number, source) : std::string();
+        return place.empty() ? std::string(line) : fmt::format("{}{}", place, line.substr(at));
+    }
     for (const std::string_view prefix : {"ERROR: ", "WARNING: "})
         if (line.starts_with(prefix)) at = prefix.size();
     const std::string_view prefix = line.substr(0, at);

@@ -17,11 +17,11 @@ typedef uint4 uvec4;
 typedef float real;
 typedef float3 real3;
 typedef float4 real4;
-#define vec2(...) ((float2)(__VA_ARGS__))
-#define vec3(...) ((float3)(__VA_ARGS__))
-#define real3(...) ((float3)(__VA_ARGS__))
-#define vec4(...) ((float4)(__VA_ARGS__))
-#define ivec3(...) ((int3)(__VA_ARGS__))
+#define vec2(args...) ((float2)(args))
+#define vec3(args...) ((float3)(args))
+#define real3(args...) ((float3)(args))
+#define vec4(args...) ((float4)(args))
+#define ivec3(args...) ((int3)(args))
 #undef abs
 #define abs(x) fabs(x) /* of floats only, in every kernel */
 #define TO_IVEC3(v) convert_int3(v)

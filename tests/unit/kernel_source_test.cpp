@@ -186,8 +186,13 @@ TEST_F(KernelSourceTest, readableLogNamesTheFileALineComesFrom) {
     EXPECT_EQ(readableLog("2(12) : error C1008: undefined variable", source), "shaders/fluid/sph.h:12: error C1008: undefined variable");
     EXPECT_EQ(readableLog("ERROR: 1:7: 'y' : undeclared\n0:1(1): warning: z\n", source),
               "ERROR: shaders/common/lang.h:7: 'y' : undeclared\nshaders/fluid/a.kernel:1(1): warning: z\n");
-    for (const char* plain : {"", "\n\n", "error: linking failed", "9:12(3): error", "2:", "2(", "2(12", "12",
-                              "shaders/fluid/sph.h:12:3: error", "99999999999999999999:1: x"})
+    source.text =
+        "#define A 1\n#line 1 \"shaders/fluid/a.kernel\"\none\n#line 5 \"shaders/fluid/sph.h\"\nfive\nsix\n#line 3 "
+        "\"shaders/fluid/a.kernel\"\nthree\n";
+    EXPECT_EQ(readableLog("<kernel>:3:7: error: one\n<kernel>:6:1: error: six\n<kernel>:8:2: three\n", source),
+              "shaders/fluid/a.kernel:1:7: error: one\nshaders/fluid/sph.h:6:1: error: six\nshaders/fluid/a.kernel:3:2: three\n");
+    for (const char* plain : {"", "\n\n", "<kernel>:1:2: error", "<kernel>", "error: linking failed", "9:12(3): error", "2:", "2(", "2(12",
+                              "12", "shaders/fluid/sph.h:12:3: error", "99999999999999999999:1: x"})
         EXPECT_EQ(readableLog(plain, source), plain);
 }
 

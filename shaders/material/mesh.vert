@@ -19,6 +19,7 @@ uniform mat4 toWorldMatrix;
 uniform mat3 normalMatrix;
 out vec3 posWorld;
 out vec3 normalWorld;
+invariant gl_Position;  // the depth pass draws the same vertices with another program, and what is drawn later must have its depth to the bit
 void main() {
     posWorld = (toWorldMatrix * vec4(position, 1.0)).xyz;
     normalWorld = normalMatrix * normal.xyz;

@@ -115,9 +115,9 @@ void main() {
     shadeEye(uv, n, toEye, albedo.rgb, falling, lit, open, matte, shine);
 #else
     vec3 mapped = texture(normalMap, uv).xyz * 2.0 - 1.0;
-    vec3 alongU = normalize(t.du + 1.0e-20), alongV = normalize(t.dv + 1.0e-20);
+    // A mesh without uv has no directions along it. The least is a square that a float of any GPU holds.
+    vec3 alongU = t.du * inversesqrt(max(dot(t.du, t.du), 1.0e-30)), alongV = t.dv * inversesqrt(max(dot(t.dv, t.dv), 1.0e-30));
     facing = normalize(n * max(mapped.z, 0.05) + alongU * mapped.x + alongV * mapped.y);
-    if (!(dot(facing, facing) > 0.5)) facing = n;
 #if defined(LAYER)
     facing = normalize(facing - q.slope * (layerLook.x - 1.0));  // the liquid acts as a prism over the reflecting surface
 #endif

@@ -6,5 +6,6 @@ FN float adhesionOfPlane(float q) {
     float s = clamp(4.0f * q - 3.0f, -1.0f, 1.0f);
     float s2 = s * s;
     float part = s * (1.0f - s2 * (0.08333333f + s2 * (0.01875f + s2 * 0.02389f)));
-    return max(q, 0.0f) * 0.1767767f * max(0.874028f - part, 0.0f);
+    // Beyond h not even by rounding: the walls of a periodic box are at 1e15 m.
+    return q < 1.0f ? max(q, 0.0f) * 0.1767767f * max(0.874028f - part, 0.0f) : 0.0f;
 }

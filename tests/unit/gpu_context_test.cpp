@@ -58,8 +58,9 @@ TEST(GpuContextDeathTest, WithoutADriverIsASentence) {
     const auto tryWithout = [](const char* variable, const char* value) {
         setenv(variable, value, 1);
         const Result<ContextEgl> context = ContextEgl::create();
-        std::fprintf(stderr, "%s", context ? "a context" : context.error().message.c_str());
-        std::exit(context ? 0 : 3);
+        const bool hears = !context || context->version().find("Mesa") != std::string::npos;  // no other driver reads MESA_...
+        std::fprintf(stderr, "%s", !hears ? "no OpenGL 4.5 to try" : context ? "a context" : context.error().message.c_str());
+        std::exit(context && hears ? 0 : 3);
     };
     EXPECT_EXIT(tryWithout("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent"), ::testing::ExitedWithCode(3),
                 "no OpenGL 4.5 without a window.*apt-get");

@@ -1,8 +1,8 @@
 // Device: runs kernels on the CPU (oneTBB), in OpenGL compute shaders or in OpenCL.
 //
 // Threading: a Device and everything made from it may be used by one thread at a time (gl: a thread on which its context is current), but
-// not always the same one. Calls are in order: a dispatch sees the results of earlier dispatches and writes. Only read() and finish() wait
-// for the GPU.
+// not always the same one. Calls are in order: a dispatch sees the results of earlier dispatches and writes. read() and finish() wait
+// for the GPU; allocate() and write() may, where they need new memory.
 #pragma once
 
 #include <cstddef>

@@ -34,8 +34,9 @@ class Buffer {
     size_t bytes() const { return bytes_; }
     explicit operator bool() const { return static_cast<bool>(name_); }
 
-    // In order with other GL commands. fill() never waits for the GPU, write() only after create() or fill(), with 64 KiB or more; read()
-    // does.
+    // In order with draws and copies; not with dispatches that still read the buffer, which a driver is known to let a write overtake (use
+    // Device::write for what kernels read). fill() never waits for the GPU, write() only after create() or fill(), with 64 KiB or more;
+    // read() does.
     void write(std::span<const std::byte> bytes, size_t offset = 0);
     void read(std::span<std::byte> bytes, size_t offset = 0) const;
     void fill(uint32_t word);  // every 4 bytes

@@ -21,8 +21,9 @@ namespace {
 constexpr uint32_t kDefaultLocalSize = 64;
 constexpr size_t kBlockPage = size_t{64} << 10U;  // bytes per page, at least
 // NVIDIA's driver 580 lets glNamedBufferSubData overtake dispatches that still read the buffer, whatever the barriers. So what is written
-// is copied by the GPU, in order; more than this at once, as when a world begins, is written when the GPU has finished.
-constexpr size_t kMostStaged = size_t{4} << 20U;
+// is copied by the GPU, in order, in parts of this size.
+constexpr size_t kWritePage = size_t{4} << 20U;
+constexpr size_t kFreePages = 3;        // kept for later
 constexpr size_t kHarvestAbove = 1024;  // timed dispatches above which times are collected without takeTimes()
 
 // Makes the results of a dispatch visible to every use of a Buffer, in kernels and in drawing.
@@ -222,16 +223,20 @@ void GlDevice::release(uint64_t handle, size_t bytes) {
 void GlDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {
     ASSERT(offset <= to.bytes() && bytes.size() <= to.bytes() - offset, "write inside the buffer");
     if (bytes.empty()) return;
-    const auto at = static_cast<GLintptr>(offset), size = static_cast<GLintptr>(bytes.size());
-    if (bytes.size() > kMostStaged || !roomIn(writes_, bytes.size())) {
-        glFinish();
-        glNamedBufferSubData(nameOf(to), at, size, bytes.data());
-        return;
+    for (size_t done = 0; done < bytes.size();) {
+        const std::span<const std::byte> part = bytes.subspan(done, std::min(kWritePage, bytes.size() - done));
+        const auto at = static_cast<GLintptr>(offset + done), size = static_cast<GLsizeiptr>(part.size());
+        if (roomIn(writes_, part.size())) {
+            Page& page = writes_.back();
+            std::memcpy(page.buffer.mapped().data() + page.used, part.data(), part.size());
+            glCopyNamedBufferSubData(page.buffer.name(), nameOf(to), static_cast<GLintptr>(page.used), at, size);
+            page.used += roundedUp(part.size(), 16);
+        } else {  // no memory for a page
+            glFinish();
+            glNamedBufferSubData(nameOf(to), at, size, part.data());
+        }
+        done += part.size();
     }
-    Page& page = writes_.back();
-    std::memcpy(page.buffer.mapped().data() + page.used, bytes.data(), bytes.size());
-    glCopyNamedBufferSubData(page.buffer.name(), nameOf(to), static_cast<GLintptr>(page.used), at, size);
-    page.used += roundedUp(bytes.size(), 16);
 }
 
 void GlDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offset) {
@@ -302,6 +307,7 @@ Status GlDevice::roomIn(std::deque<Page>& pages, size_t bytes) {
         page.buffer = std::move(*made);
     }
     pages.push_back(std::move(page));
+    while (pages.size() > kFreePages && pages.front().done.passed()) pages.pop_front();
     return ok();
 }
 

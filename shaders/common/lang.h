@@ -17,6 +17,7 @@ typedef uint4 uvec4;
 typedef float real;
 typedef float3 real3;
 typedef float4 real4;
+/* GNU's form: NVIDIA's OpenCL refuses __VA_ARGS__. */
 #define vec2(args...) ((float2)(args))
 #define vec3(args...) ((float3)(args))
 #define real3(args...) ((float3)(args))

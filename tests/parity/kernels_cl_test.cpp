@@ -201,12 +201,15 @@ TEST_F(KernelsOfCl, EachDispatchIsTheCpus) {
     run("waving_sheet", {"fluid.spacing=0.05", "colliders.0.resolution=24"});
     run("window_rain", {"flow.0.mapSize=64", "flow.0.liquid.capacity=2048", "flow.0.liquid.filmCell=0.003"}, 6);
     run("crying_thesis", {"flow.0.mapSize=64"}, 6);
-    // A GPU fuses multiplications and additions otherwise: a place that lies on the edge of a cell of film then falls on either side of it
-    // (flow/map_taps, 2e-5 of its words on an H100).
-    const size_t share = gpu_.device->info().software ? 0 : 10000;
-    for (const auto& [path, c] : twin_->all)
-        EXPECT_LE(c.apart, share == 0 ? 0 : c.words / share)
+    // A GPU fuses multiplications and additions otherwise than the cpu. Measured on an H100: of these kernels' words so many are apart,
+    // because a place lies on the edge of a cell of film, or a wall is just as far as another.
+    const std::map<std::string, double> onGpus = {{"flow/map_taps", 5.0e-5}, {"fluid/solids/near_walls_moving", 1.0e-6}};
+    for (const auto& [path, c] : twin_->all) {
+        const auto known = onGpus.find(path);
+        const double most = gpu_.device->info().software || known == onGpus.end() ? 0.0 : known->second * static_cast<double>(c.words);
+        EXPECT_LE(static_cast<double>(c.apart), most)
             << path << ": of " << c.words << " words in " << c.dispatches << " dispatches, at worst by " << c.worst;
+    }
     EXPECT_GE(twin_->all.size(), 50U) << "kernels that these scenes run";
     for (const std::string& path : twin_->alone)
         EXPECT_TRUE(kElsewhere.contains(path) || looksThroughNeighbours(path)) << path << " is not compared";

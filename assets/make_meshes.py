@@ -217,15 +217,29 @@ def pipe():
 def trough():
     """A channel along z, 1 long: 1 wide and 1 deep inside, walls 0.2 thick that rise 0.2 higher than that."""
     line = [(-0.7, -0.2), (0.7, -0.2), (0.7, 1.2), (0.5, 1.2), (0.5, 0), (-0.5, 0), (-0.5, 1.2), (-0.7, 1.2)]
+    return extruded(line, ((0, 1, 4, 5), (1, 2, 3, 4), (0, 5, 6, 7)), -0.5, 0.5)
+
+
+def extruded(line, quads, low, high):
+    """A closed prism along z: `line` is its outline, counter-clockwise, which the quads (indices) cover."""
     n = len(line)
-    positions = [(x, y, z) for z in (-0.5, 0.5) for x, y in line]
+    positions = [(x, y, z) for z in (low, high) for x, y in line]
     faces = []
     for k in range(n):
         m = (k + 1) % n
         faces += [(k, m, n + m), (k, n + m, n + k)]
-    for a, b, c, d in ((0, 1, 4, 5), (1, 2, 3, 4), (0, 5, 6, 7)):
+    for a, b, c, d in quads:
         faces += [(a, c, b), (a, d, c), (n + a, n + b, n + c), (n + a, n + c, n + d)]
     return positions, faces
+
+
+def siphon():
+    """A weir between two tanks, and a hood over it that reaches down into both: a channel 0.2 wide that is bent twice."""
+    weir = [(0.75, -0.1), (0.85, -0.1), (0.85, 0.6), (0.75, 0.6)]
+    hood = [(0.51, 0.2), (0.55, 0.2), (0.55, 0.8), (1.05, 0.8), (1.05, 0.2), (1.09, 0.2), (1.09, 0.9), (0.51, 0.9)]
+    positions, faces = extruded(weir, [(0, 1, 2, 3)], -0.2, 0.4)
+    more, others = extruded(hood, [(0, 1, 2, 7), (2, 3, 6, 7), (3, 4, 5, 6)], -0.2, 0.4)
+    return positions + more, faces + [tuple(k + len(positions) for k in f) for f in others]
 
 
 def main():
@@ -243,6 +257,7 @@ def main():
     write(folder, "rod.obj", "A rod of diameter 1 along y, 3 long: a closed surface of revolution.", *rod())
     write(folder, "pipe.obj", "A pipe along y, 4 long, of inner radius 1 and outer radius 1.5: a closed surface of revolution.", *pipe())
     write(folder, "trough.obj", "A channel along z, 1 wide, 1 deep and 1 long inside, walls 0.2 thick that rise 0.2 higher.", *trough())
+    write(folder, "siphon.obj", "A weir and a hood over it, which make a channel 0.2 wide between two tanks, m: two closed surfaces.", *siphon())
     return 0
 
 

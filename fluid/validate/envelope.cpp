@@ -34,7 +34,7 @@ constexpr EnvelopeRow kRows[] = {
     {"clumping", "negative pressure pulls neighbours together, more strongly the nearer they are",
      "density below the rest density (Swegle, Hicks and Attaway 1995)",
      "The thesis's pressure is negative at every free surface, so its particles clump in any block. All runs of this section had the "
-     "limits on. The pressure of the other methods is never negative.",
+     "limits on. In the other methods it is never negative, except with fluid.dfsph.negativePressure, which moves particles apart.",
      envelopeOfClumping},
     {"far_origin", "far from zero, a float coordinate is too coarse for a small step", "ulp(x) / 2 = v dt",
      "With the limits on this position is the world's origin, a double, and coordinates are relative to it. The program warns of a box "

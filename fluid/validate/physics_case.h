@@ -108,6 +108,7 @@ Result<Outcome> runUTube(const CaseSettings& settings);
 Result<Outcome> runCavity(const CaseSettings& settings);
 Result<Outcome> runCavity400(const CaseSettings& settings);
 Result<Outcome> runRotatingPatch(const CaseSettings& settings);
+Result<Outcome> runSiphon(const CaseSettings& settings);
 Result<Outcome> runEllipticalDrop(const CaseSettings& settings);
 Result<Outcome> runPool(const CaseSettings& settings);
 Result<Outcome> runSubmerged(const CaseSettings& settings);

@@ -1,11 +1,12 @@
 // DFSPH (Bender and Koschier 2015) as one solve for rates of compression (see dfsph_rate.kernel), with pressures summed over the
-// iterations, kept from pulling, and begun with those of the step before.
+// iterations, kept from pulling (negativePressure: at the surface only), and begun with those of the step before.
 #include "fluid/sim/methods/method_dfsph.h"
 
 #include <algorithm>
 #include <memory>
 
 #include "fluid/sim/methods/method.h"
+#include "fluid/sim/methods/particle_shifting.h"
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/methods/solver_residual.h"
 
@@ -26,6 +27,7 @@ class Dfsph final : public Method {
     PairKernel density, rate, push;
     Buffer solve, kept;  // kept: pressures of the last step, by id
     SolverResidual residual;
+    ParticleShifting shifting;
     float coupling = 1;   // of the iteration, over that with a support of 2 spacings
     bool closed = false;  // MethodSetup::closed
 
@@ -61,20 +63,21 @@ class Dfsph final : public Method {
         density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.nearWalls, &p.density, &solve, &p.velocity, &p.acceleration},
                     c.grid.pairThreads());
         c.forces();
-        c.device.run(begin, c.params, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
+        StepParams allowed = c.params;
+        allowed.force.x = c.fluid.dfsph.negativePressure ? 1.0F : 0.0F;
+        c.device.run(begin, allowed, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
         pushOn(c, 0, vec3(c.params.gravity) * c.params.dt);
         iterate(c);
         c.solve.iterations = residual.iterations();
         c.solve.residual = residual.value();
-        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept}, p.count);
-        if (c.probes != nullptr) {
-            c.probes->solved(c.params, solve);
-            c.probes->response(c.params, p.position, p.velocity, p.acceleration, 0.0F);
-        }
-        c.device.run(
-            integrate, c.params,
-            {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
-            p.count);
+        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept, &p.pressure}, p.count);
+        if (c.probes != nullptr) c.probes->solved(c.params, solve);
+        if (c.fluid.dfsph.negativePressure) shifting.run(c, p.pressure, c.params.dt / squared(c.params.spacing), solve);
+        const Buffer& from = c.fluid.dfsph.negativePressure ? solve : p.position;
+        if (c.probes != nullptr) c.probes->response(c.params, from, p.velocity, p.acceleration, 0.0F);
+        c.device.run(integrate, c.params,
+                     {&c.grid.cellStart(), &from, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
+                     p.count);
     }
 
   private:
@@ -134,6 +137,9 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     Result<SolverResidual> residual = SolverResidual::create(device, {});
     if (!residual) return residual.error();
     m->residual = std::move(*residual);
+    Result<ParticleShifting> shifting = ParticleShifting::create(device, setup.traits);
+    if (!shifting) return shifting.error();
+    m->shifting = std::move(*shifting);
     const size_t count = setup.count;
     for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);
@@ -164,6 +170,10 @@ void DfsphParams::visit(ParamVisitor& v) {
             momentum);
     v.value({"reach", "", "longest path of the fastest particle in one substep, in spacings", 0.05, 1}, reach);
     v.value({"minSubsteps", "", "minimum of substeps per 1/60 s: more keeps the density more accurate", 1, 100}, minSubsteps);
+    v.value({.name = "negativePressure",
+             .doc = "whether pressure inside the fluid may be negative: it then holds together where no air can get in, as in a siphon; "
+                    "costs up to twice as much, and tears where steps are long for the size of the particles"},
+            negativePressure);
 }
 
 MethodRow dfsphMethod() {

@@ -14,8 +14,9 @@ struct DfsphParams {
     float warmStart = 1.0F;   // 0..1
     float relaxation = 0.6F;  // of an iteration
     float momentum = 0.7F;
-    float reach = 0.3F;   // spacings a step
-    int minSubsteps = 8;  // a frame of 1/60 s
+    float reach = 0.3F;             // spacings a step
+    int minSubsteps = 8;            // a frame of 1/60 s
+    bool negativePressure = false;  // inside the fluid
     void visit(ParamVisitor& v);
 };
 

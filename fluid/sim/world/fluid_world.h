@@ -131,9 +131,10 @@ class FluidWorld {
     double pending() const;           // s passed to step() that are pending for a whole fluid.fixedStep
     double dropped() const;           // s passed to step() that will not be simulated
     int lastSubsteps() const;         // of the last step(), not late
-    // The pressures of the last substep, Pa, in the order of particles(); for pbf, the pressure equivalent to its corrections. They are the
-    // pressures of the pair forces: on a lattice with the default support they are 3 % above the transmitted pressure, and for a single
-    // particle the error is 6 to 10 %. For the load on a wall use fluid.probes. Reads back and waits.
+    // The pressures of the last substep, Pa, in the order of particles(); for pbf, the pressure equivalent to its corrections; with dfsph
+    // negative where water is under tension. They are the pressures of the pair forces: on a lattice with the default support they are 3 %
+    // above the transmitted pressure, and for a single particle the error is 6 to 10 %. For the load on a wall use fluid.probes. Reads back
+    // and waits.
     std::vector<float> pressures() const;
     const std::vector<Pose>& poses() const;  // current poses of the rigid solids; if time slows down, not yet FluidInputs::poses
     const std::vector<BodyState>& bodies() const;

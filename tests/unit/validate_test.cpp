@@ -113,10 +113,10 @@ TEST(PhysicsCases, EachHasItsSceneAndAQuickSize) {
     }
 }
 
-// The keys of a scene that state the experiment: shape, liquid, walls, resolution and probes. All others are numerical parameters, or
-// looks.
+// The keys of a scene that state the experiment: shape, liquid, walls, resolution, probes, and that no air can get into the water
+// (negativePressure). All others are numerical parameters, or looks.
 const std::regex kExperiment(
-    R"(name|doc|duration|fluid\.(method|spacing|liquid|restDensity|viscosity|gravity|forces\.tension|collision\.(walls|friction)|)"
+    R"(name|doc|duration|fluid\.(method|dfsph\.negativePressure|spacing|liquid|restDensity|viscosity|gravity|forces\.tension|collision\.(walls|friction)|)"
     R"(box\.(min|max|periodic[XYZ])|blocks\.(shape|axis|min|max|velocity|spin|gradient[XYZ]|cut)|probes\.(name|on|index))|)"
     R"(colliders\.(shape|mesh|scale|fitSize|position|rotation|normal|friction|motion\.(shake|shakeFrequency))|)"
     R"(bodies\.(shape|size|radius|density|position|velocity|friction|fixed|sticks))");

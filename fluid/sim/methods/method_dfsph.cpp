@@ -139,7 +139,7 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     m->residual = std::move(*residual);
     Result<ParticleShifting> shifting = ParticleShifting::create(device, setup.traits);
     if (!shifting) return shifting.error();
-    m->shifting = std::move(*shifting);
+    m->shifting = *shifting;
     const size_t count = setup.count;
     for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);

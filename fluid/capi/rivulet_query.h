@@ -46,7 +46,7 @@ typedef struct rivulet_volume {
 typedef struct rivulet_volume_count {
     uint32_t id;
     uint64_t entered, left, inside; /* particles; inside = entered - left, since the volume was set */
-    double time;                    /* s, simulated time at which they were counted; on a GPU two or three frames ago */
+    double time;                    /* s, simulated time of the count; on a GPU two or three frames before the present */
     double volume_inside;           /* m^3 */
 } rivulet_volume_count;
 RIVULET_API rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_volume* volumes, size_t count, rivulet_error* why);

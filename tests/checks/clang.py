@@ -2,8 +2,8 @@
 """Reads every C++ file of the project a second time, with clang: `clang.py tidy BUILD` runs clang-tidy with .clang-tidy, which tells
 of the compiler's own warnings too; `clang.py syntax BUILD` compiles the others, the tests, with -Werror and writes nothing. A file that
 passed is not read again until its command, one of the files it includes, or .clang-tidy changes (stamps in BUILD/clang_stamps).
-RIVULET_LINT=part: of a clone with its history only the files that the last 25 commits changed (or whose header they changed), and a third of the
-others, another one with each commit. Exit 77: clang is not installed."""
+With RIVULET_LINT=part only some files are read: those that the last 25 commits changed, those whose header they changed, and a third of
+the others. With each commit it is another third. Without git's history all files are read. Exit 77: clang is not installed."""
 import hashlib, json, os, shlex, shutil, subprocess, sys
 from concurrent.futures import ThreadPoolExecutor
 

@@ -5,6 +5,7 @@
 // for the GPU; allocate() and write() may, where they need new memory.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -138,6 +139,19 @@ class Device {
         dispatch(kernel, std::as_bytes(std::span(&params, 1)), std::span(buffers.begin(), buffers.size()), threads);
     }
     virtual void finish() = 0;
+
+    // Stopping in the middle of long work. While `flag` is true, dispatch() and CpuDevice::parallelFor() do nothing, and a pass that
+    // already runs on the cpu ends with the chunks that have begun (about a millisecond); what a GPU has in its queue still runs. Any
+    // thread or a signal handler may set the flag. It must outlive the device or the next stopOn(); null, the default: nothing stops.
+    void stopOn(const std::atomic<bool>* flag) { stop_ = flag; }
+    const std::atomic<bool>* stopFlag() const { return stop_; }
+    bool stopAsked() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
+    // Whether a dispatch was skipped since the last goOn(), as a whole or in part: buffers then hold old values, new values, or both, and
+    // all further dispatches are skipped too. Their owner calls goOn() before it writes them again; while a stop is asked, that has no
+    // effect. (FluidWorld and Session do both; see FluidWorld::interrupted.)
+    bool interrupted() const { return skipped_.load(std::memory_order_relaxed); }
+    void goOn() { skipped_.store(skipped_.load(std::memory_order_relaxed) && stopAsked(), std::memory_order_relaxed); }
+
     virtual std::vector<PassTime> takeTimes() = 0;
     virtual size_t bytesAllocated() const = 0;
     // From now on allocate() fails if it would raise bytesAllocated() above `bytes`.
@@ -159,9 +173,20 @@ class Device {
 
   protected:
     Status checkLimit(size_t bytes) const;  // error (failed): above limitMemory()
+    // Whether the next dispatch, or the next chunk of one, must not run. From any thread.
+    bool skips() {
+        if (interrupted()) return true;
+        if (!stopAsked()) return false;
+        skipped_.store(true, std::memory_order_relaxed);
+        return true;
+    }
     SpanSink span_;
     size_t mostBytes_ = SIZE_MAX;
     DeviceHealth health_;
+
+  private:
+    const std::atomic<bool>* stop_ = nullptr;
+    std::atomic<bool> skipped_ = false;
 };
 
 }  // namespace rivulet

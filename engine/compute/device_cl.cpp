@@ -425,7 +425,7 @@ void ClDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     const Entry& entry = kernels_[kernel.index];
     ASSERT(entry.args == buffers.size() + 1, "pass a buffer for every row of the kernel's ARGS");
     ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
-    if (threads == 0) return;
+    if (threads == 0 || skips()) return;
     const cl_mem block = this->params(params);
     if (!block) return;
     clSetKernelArg(entry.kernel.get(), 0, sizeof(cl_mem), &block);

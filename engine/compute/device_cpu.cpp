@@ -178,14 +178,23 @@ void CpuDevice::readLater(const Buffer& from, size_t bytes, std::function<void(s
 }
 
 void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {
-    if (count == 0) return;
-    if (count <= grain || threads() == 1) {
+    if (count == 0 || skips()) return;
+    if (count <= grain) {
         body(0, count);
+        return;
+    }
+    if (threads() == 1) {
+        // One call, unless a stop may come in between.
+        const size_t piece = stopFlag() != nullptr ? grain : count;
+        for (size_t begin = 0; begin < count && !skips(); begin += piece) body(begin, std::min(begin + piece, count));
         return;
     }
     const auto work = [&] {
         tbb::parallel_for(
-            tbb::blocked_range<size_t>(0, count, grain), [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); },
+            tbb::blocked_range<size_t>(0, count, grain),
+            [&](const tbb::blocked_range<size_t>& r) {
+                if (!skips()) body(r.begin(), r.end());
+            },
             tbb::simple_partitioner());
     };
     if (impl_->arena)
@@ -196,7 +205,7 @@ void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void
 
 void CpuDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers, uint32_t threads) {
     ASSERT(kernel.index < impl_->kernels.size(), "get the kernel from this device before dispatching it");
-    if (threads == 0) return;
+    if (threads == 0 || skips()) return;
     const double started = hostSeconds();
     const CpuKernelRow& row = impl_->kernels[kernel.index];
     impl_->bindings.clear();

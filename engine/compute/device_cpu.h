@@ -53,7 +53,8 @@ class CpuDevice final : public Device {
 
     Isa isa() const { return isa_; }
     int threads() const;
-    // Calls body(begin, end) for chunks of [0, count), in any order and on any thread. For passes written in C++ (sorting, lists).
+    // Calls body(begin, end) for chunks of [0, count), in any order and on any thread. For passes written in C++ (sorting, lists). Chunks
+    // are skipped as those of a dispatch (Device::stopOn).
     void parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body);
     // Adds `ms` to the time of a pass written in C++, so that takeTimes() reports it beside the kernels.
     void addTime(std::string_view name, double ms);

@@ -337,7 +337,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     ASSERT(entry.bindings <= buffers.size(), "pass a buffer for every row of the kernel's ARGS");
     ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
     entry.passed = buffers.size();
-    if (threads == 0 || !bindParams(params)) return;
+    if (threads == 0 || skips() || !bindParams(params)) return;
     for (size_t k = 0; k < buffers.size(); ++k)
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(k + 1), buffers[k] ? nameOf(*buffers[k]) : 0);
     if (timer_.pending() > kHarvestAbove) harvest();

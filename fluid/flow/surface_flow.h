@@ -115,7 +115,7 @@ class SurfaceFlow {
     void addToBrim(uint32_t place, uint32_t picolitres);  // places count through all brims in their order
     void setGrip(std::span<const float> grip);            // of each of mesh()'s places: factor of the holding force, 1 by default. Waits
     // Error (badInput): fewer positions than the mesh's, not finite or over 1e5 m from zero, inputs that are not finite; (failed): no
-    // memory for the sort. Nothing moves then.
+    // memory for the sort. Nothing moves then. If the device was interrupted (Device::stopOn), the drops are valid no more.
     Status step(const SurfaceFlowInputs& inputs, double seconds);
 
     // Waits for the device.

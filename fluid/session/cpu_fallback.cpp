@@ -32,6 +32,7 @@ Result<OpenedSession> openSession(SceneFile scene, Device& device, const Log& lo
     const std::string why = session ? fmt::format("{} {}", device.info().name, device.health().why) : session.error().message;
     changed = fitToCpu(scene.fluid);
     opened.instead = makeCpu();
+    opened.instead->stopOn(device.stopFlag());
     auto other = Session::create(scene, *opened.instead, log, steps);
     if (!other) {
         device.forgiveFull();  // other sessions on it continue
@@ -49,6 +50,7 @@ Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, cons
     const double reached = session.world().time();
     FluidParams before = session.scene().fluid;
     std::unique_ptr<Device> cpu = makeCpu();
+    cpu->stopOn(device->stopFlag());
     if (Status moved = session.moveTo(*cpu); !moved) {
         session.hold(std::move(cpu));
         return Error{

@@ -93,8 +93,11 @@ void Session::advance(double seconds, double deviceMs) {
     inputs.poses = motion.poses;
     inputs.shapes = motion.shapes;
     world_->step(inputs, seconds);
+    const Device& device = world_->device();
+    if ((interrupted_ = device.interrupted())) return;
     const double gone = world_->time() - before;  // less than asked if the time step limit slows the simulation
     if (Status flowed = flows_.step(scene_, *world_, gone, solids_.nodes()); !flowed) log_.notice(flowed.error().message);
+    if ((interrupted_ = device.interrupted())) return;
     solids_.advance(scene_, gone);
 }
 
@@ -105,10 +108,14 @@ void Session::work(double asked, bool wait, double deviceMs) {
         worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = 0, .costMs = 0};
         return;
     }
+    if (interrupted_) {
+        worked_ = {};
+        return;
+    }
     const double seconds = world_->acceptedSeconds(asked), before = world_->time();
     // Between two poses a solid moves along a straight line and turns the short way: long frames are split to follow its path.
     const int parts = anyMoves() && seconds > 0 ? static_cast<int>(std::min(std::ceil(seconds * kFramesPerSecond - 1.0e-6), 1.0e4)) : 1;
-    for (int k = 0; k < std::max(parts, 1); ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
+    for (int k = 0; k < std::max(parts, 1) && !interrupted_; ++k) advance(seconds / std::max(parts, 1), deviceMs / std::max(parts, 1));
     if (wait) world_->device().finish();
     worked_ = {.ms = 1000 * (hostSeconds() - start), .seconds = world_->time() - before, .costMs = deviceMs};
     // Without a wait a GPU still works after the call: a frame's cost is that of its passes some frames ago.
@@ -121,6 +128,7 @@ double Session::settle() {
         solids_.placeNodes(scene_, replay_->shown());
         return worked_.ms + 1000 * (hostSeconds() - start);
     }
+    if (interrupted_) return worked_.ms;
     if (anyMoves() || solids_.hasBodies()) solids_.placeNodes(scene_, *world_);
     worked_.ms += 1000 * (hostSeconds() - start);
     world_->device().poll();
@@ -154,6 +162,7 @@ void Session::reset() {
     if (Status fresh = flows_.reset(scene_, world_->device(), solids_.nodes(), log_); !fresh) log_.notice(fresh.error().message);
     toStart();
     snapshots_.forget();
+    interrupted_ = world_->device().interrupted();
 }
 
 void Session::toStart() {

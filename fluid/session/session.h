@@ -55,6 +55,9 @@ class Session {
     // changes nothing that drawing reads. Until it returns, no other function of the session may be called.
     void work(double seconds, bool wait, double deviceMs = 0);
     double settle();
+    // Whether the last step was interrupted (FluidWorld::interrupted), in the water or on the skins. What it shows may be of neither the
+    // state before nor that after the step. Steps then do nothing until reset() or restore().
+    bool interrupted() const { return interrupted_; }
     bool canStepInBackground() const;  // on the cpu, without skins and deforming clips: these are drawn from buffers that a step writes
     void reset();
 
@@ -120,6 +123,7 @@ class Session {
         double ms = 0, seconds = 0, costMs = 0;  // wall; simulated; as a budget counts it
     } worked_;
     SnapshotKeeper snapshots_;
+    bool interrupted_ = false;
 };
 
 }  // namespace rivulet

@@ -67,7 +67,8 @@ Status Session::restore(WorldState& state) {
     if (Status done = restoreWorld(state); !done) return done;
     solids_.setTurned(*turned);
     solids_.placeNodes(scene_, *world_);
-    if (world_->device().backend() == Backend::cl) takeSnapshot();
+    interrupted_ = world_->device().interrupted();
+    if (!interrupted_ && world_->device().backend() == Backend::cl) takeSnapshot();
     return ok();
 }
 

@@ -216,6 +216,7 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
     run(sortSegments, j, kScanSegments);
     run(sortOffsets, j, kScanSegments);
     run(sortScatter, j, chunks);
+    if (cpu.interrupted()) return failed("the sort was interrupted");  // cells and groups may not match
     p.id.swap(p.idNext);
     buildGroups();
     while (true) {

@@ -48,7 +48,7 @@ class NeighborGrid {
     // If particles move before the build, call this with none.
     void setCells(std::span<const uint32_t> cells);
     // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error (failed): out
-    // of memory for the lists; the newest state is then as it was, and a later build may succeed.
+    // of memory for the lists, or interrupted (Device::stopOn); the newest state is then as it was, and a later build may succeed.
     Status build(const StepParams& params, Particles& particles);
 
     const Buffer& neighbors() const;   // binding 1 of a kernel with FOR_NEIGHBORS

@@ -96,7 +96,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
         device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, particles.count);
     bodies.place(step, particles);
     if (Status built = grid->build(step, particles); !built) {
-        report(built.error().message);
+        if (!device->interrupted()) report(built.error().message);
         return false;
     }
     if (traits.matter)
@@ -141,7 +141,7 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     method->step(context);
     iterations += solve.iterations;
     sorted = built;
-    if (!built) return false;
+    if (!built || device->interrupted()) return false;
     solids.collide(step, *grid, particles, probes ? &*probes : nullptr);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
     if (last) method->measure(context);
@@ -151,7 +151,7 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
         report(fmt::format("the host's solver gave body {} a state that is not finite: the body keeps its last state", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
     sources.run({step, params, *grid, particles, solids, bodies, remembered}, clock.time + to * clock.frameLength, dt, last);
-    return true;
+    return !device->interrupted();
 }
 
 double FluidWorld::acceptedSeconds(double seconds) {
@@ -167,7 +167,7 @@ double FluidWorld::acceptedSeconds(double seconds) {
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     Impl& w = *impl_;
     w.device->poll();
-    if (!(seconds > 0)) return;
+    if (!(seconds > 0) || w.refusesStep()) return;
     const double now = acceptedSeconds(seconds);
     ++w.clock.frame;
     w.sortedForQuery = false;
@@ -211,6 +211,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         else
             stop = !(cpu ? w.stepper.fitsMeasured(substeps) : w.stepper.fitsPredicted(substeps));
     }
+    if ((w.interrupted = w.device->interrupted())) return;
     w.clock.lastSubsteps = substeps;
     w.clock.time += stepped;
     if (w.probes) w.probes->end(std::shared_ptr<ProbeFrame>(w.figures, &w.figures->loads), w.clock.time, stepped);
@@ -243,6 +244,24 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         w.drawn.forget();
         if (w.foam) w.foam->drawNewest();
     }
+    w.interrupted = w.device->interrupted();
+}
+
+bool FluidWorld::interrupted() const { return impl_->interrupted; }
+
+bool FluidWorld::Impl::refusesStep() {
+    if (device->stopAsked()) return true;
+    if (interrupted) {
+        report(whole().error().message);
+        return true;
+    }
+    device->goOn();  // another owner of buffers may have been interrupted
+    return false;
+}
+
+Status FluidWorld::Impl::whole() const {
+    if (!interrupted) return ok();
+    return failed("the last step was interrupted, so that the state of the water is incomplete: reset or restore it");
 }
 
 // StepParams without the step's length.
@@ -308,7 +327,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
             break;
         }
     }
-    if (done == 0) return 0;
+    if (done == 0 || device->interrupted()) return 0;
     clock.lastPiece = done;
     clock.dtMin = clock.dtMin == 0 ? dt : std::min(clock.dtMin, dt);
     clock.dtMax = std::max(clock.dtMax, dt);
@@ -331,6 +350,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
     std::vector<const Buffer*> buffers = {&grid->cellStart(), &particles.positionNext, &particles.velocityNext, &statsRows};
     if (traits.matter) buffers.insert(buffers.end(), {&particles.id, &particles.matterOf});
     device->dispatch(stats, std::as_bytes(std::span(&step, 1)), buffers, STATS_THREADS);
+    if (device->interrupted()) return;
     const FluidStats now{.frame = clock.frame,
                          .time = until,
                          .particles = particles.count,
@@ -416,10 +436,12 @@ void FluidWorld::setCells(std::span<const uint32_t> cells) {
 }
 
 void FluidWorld::reset() {
+    impl_->device->goOn();
     if (Status back = impl_->solids.reset(); !back) impl_->report(back.error().message);
     impl_->bodies.reset();
     impl_->limits.fastestWall = 0;
     impl_->writeStart();
+    impl_->interrupted = impl_->device->interrupted();
 }
 
 void FluidWorld::deposit(const vec3& place, const vec3& velocity, double volume) {
@@ -513,6 +535,7 @@ ParticleView FluidWorld::particles() const {
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                        const Sources& sources, std::span<const HostForce> forces) {
     if (Status s = checkParams("fluid", params); !s) return s.error();
+    device.goOn();
     const BoxParams& box = params.box;
     if (!glm::all(glm::lessThan(box.min, box.max)))
         return badInput(fmt::format("fluid.box.min [{}, {}, {}] m must lie below fluid.box.max [{}, {}, {}] m on every axis", box.min.x,
@@ -542,6 +565,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     if (Status s = w.prepare(solids); !s) return s.error();
     w.probeTargets = ProbeTargets::of(solids);
     if (Status s = w.prepareProbes(w.params); !s) return s.error();
+    if (device.interrupted() || device.stopAsked()) return failed("the creation of the water was interrupted");
     return world;
 }
 

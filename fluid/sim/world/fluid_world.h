@@ -59,7 +59,8 @@ struct FluidInputs {
 
 class FluidWorld {
   public:
-    // Error (badInput): a value out of its range (docs/parameters.md) or in conflict with another; (failed): out of memory.
+    // Error (badInput): a value out of its range (docs/parameters.md) or in conflict with another; (failed): out of memory, or interrupted
+    // (Device::stopOn).
     // `device` must outlive the world, `forces` are the host's.
     static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                       const Sources& sources = {}, std::span<const HostForce> forces = {});
@@ -71,6 +72,12 @@ class FluidWorld {
     // longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited gives the reason: simulated time
     // slows down, steps do not grow. time() + pending() + dropped() is the sum of all `seconds`.
     void step(const FluidInputs& inputs, double seconds);
+    // Whether the last step was interrupted: the flag of Device::stopOn became true within it. It then ran no further passes, on the cpu
+    // none of their chunks, and returned. time() and stats() are those before the step, or those after it if only its last passes were
+    // skipped, but particles, bodies and counts may be of neither. step() then does nothing but report that, save() and queries return an
+    // Error, until reset(), restore() or continueFrom() set valid values; the flag must be false by then. A step that begins while the flag
+    // is true does nothing, and the world stays valid. create() returns an Error (failed) if it is interrupted.
+    bool interrupted() const;
     // The part of a frame that step() would simulate, s: time beyond fluid.longestFrame is dropped, and reported. For hosts that cut
     // frames.
     double acceptedSeconds(double seconds);
@@ -103,7 +110,8 @@ class FluidWorld {
     void withdraw(std::span<const uint32_t> slots);
 
     // The water at points, and hits of rays (water_query.h), at the current time: at t = 0 and after each step. Particles spawned at the
-    // end of a step are included from the next step on. The world does not change. These calls wait. Error (failed): out of memory.
+    // end of a step are included from the next step on. The world does not change. These calls wait. Error (failed): out of memory; the
+    // last step was interrupted.
     Result<std::vector<FluidSample>> sample(std::span<const vec3> places);
     Result<std::vector<FluidHit>> cast(std::span<const FluidRay> rays);
     // y (m) of the highest surface over (or under) each x, z, looking down from above the box; NaN where there is no water.
@@ -150,7 +158,7 @@ class FluidWorld {
     vec3 fromHost(const dvec3& p) const { return {p - origin()}; }
 
     // Writes all data that the next step depends on into sections of `state`; a cpu continues from it bit for bit. Waits for the device.
-    // Error (failed): the host of the bodies has a state that it cannot save.
+    // Error (failed): the host of the bodies has a state that it cannot save; the last step was interrupted.
     Status savable() const;
     void save(WorldState& state);  // of a savable world
     // Continues from a saved state, on any device. Other owners of sections in `state` take theirs before this call. Error: as

@@ -79,7 +79,8 @@ struct FluidWorld::Impl {
     StepParams step{};
     vec3 gravity{0.0F};
     WorldClock clock;
-    bool cellsValid = false;  // since cellWork()
+    bool cellsValid = false;   // since cellWork()
+    bool interrupted = false;  // the last step was, or the last return to valid values
 
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
@@ -104,12 +105,14 @@ struct FluidWorld::Impl {
     void fillStep();
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
     void report(const std::string& sentence);
+    bool refusesStep();      // a stop is asked, or the state is not valid
+    Status whole() const;    // Error (failed): the last step was interrupted
     void invalidateCells();  // particles are moved between steps
     template <class Answer, class Ask>
     Result<std::vector<Answer>> ask(size_t count, const Ask& how);
     Status prepareQuery(StepParams& params);
     bool build(bool fromPositions, double from, double to);
-    // `last`: of a piece of its frame. false: out of memory; the newest state is as it was.
+    // `last`: of a piece of its frame. false: out of memory; the newest state is as it was. Or interrupted.
     bool substep(double dt, double from, double to, bool last);
     void fillLedger(FluidStats& stats) const;
     void gatherStats(int substeps, double until);

@@ -65,6 +65,7 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
     around.bodyHost = {};
     around.colliders = {};
     const std::unique_ptr<CpuDevice> cpu = makeCpuDevice(cpuKernels());
+    cpu->stopOn(device->stopFlag());
     Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(*cpu, weightless(params), around, {}, {.particles = start});
     if (!made) return;
     Impl& w = *(*made)->impl_;
@@ -73,7 +74,7 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
     for (int round = 0; round < kMostRounds; ++round) {
         cpu->writeAll<vec4>(w.particles.velocityNext, still);
         (*made)->step({vec3(0.0F)}, 1.0e-4);
-        if (w.figures->lost > 0) return;
+        if (w.figures->lost > 0 || w.interrupted) return;
         if (w.figures->maxCompression < kRelaxed) break;
     }
     const std::vector<vec4> position = cpu->readAll<vec4>(w.particles.positionNext, w.particles.count);

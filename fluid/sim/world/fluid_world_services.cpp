@@ -34,6 +34,7 @@ Status FluidWorld::Impl::prepareQuery(StepParams& s) {
 template <class Answer, class Ask>
 Result<std::vector<Answer>> FluidWorld::Impl::ask(size_t count, const Ask& how) {
     if (particles.count == 0) return std::vector<Answer>(count);
+    if (Status valid = whole(); !valid) return valid.error();
     StepParams s;
     if (Status ready = prepareQuery(s); !ready) return ready.error();
     const bool aside = !sorted && !traits.linked;

@@ -11,7 +11,10 @@
 
 namespace rivulet {
 
-Status FluidWorld::savable() const { return impl_->bodies.savable(); }
+Status FluidWorld::savable() const {
+    if (Status whole = impl_->whole(); !whole) return whole;
+    return impl_->bodies.savable();
+}
 
 void FluidWorld::save(WorldState& state) {
     Impl& w = *impl_;
@@ -41,7 +44,7 @@ void FluidWorld::save(WorldState& state) {
 
 Status FluidWorld::restore(WorldState& state) {
     Impl& w = *impl_;
-    if (Status can = savable(); !can) return can;
+    if (Status can = w.bodies.savable(); !can) return can;
     // All of it is read and checked before anything changes.
     Result<std::string> params = state.takeText("world.params");
     if (!params) return params.error();
@@ -92,6 +95,7 @@ Status FluidWorld::restore(WorldState& state) {
     if (Status all = state.allTaken(); !all) return all;
     if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the host is the last that can refuse
 
+    w.device->goOn();
     w.writeStart();
     if (startCount) w.startCount = *startCount;
     w.particles.restore(*w.device, *saved);
@@ -125,11 +129,15 @@ Status FluidWorld::restore(WorldState& state) {
         at = end + 1;
     }
     if (Status watched = w.volumes.restore(*w.device, *volumes, w.slots, volume); !watched) return watched;
-    return w.solids.restore(*places);
+    const Status placed = w.solids.restore(*places);
+    w.interrupted = w.device->interrupted();
+    return placed;
 }
 
 Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes) {
     Impl &w = *impl_, &o = *other.impl_;
+    if (Status whole = o.whole(); !whole) return whole;
+    w.device->goOn();
     const BoxParams &box = w.params.box, &then = o.params.box;
     if (w.params.spacing != o.params.spacing || box.min != then.min || box.max != then.max || box.periodic() != then.periodic())
         return badInput("the box or the spacing is not the same: the water restarts at t = 0");
@@ -142,7 +150,7 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
     o.device->finish();
     o.device->poll();
     bool sameBodies = false;
-    if (w.bodies.any() && savable() && other.savable()) {
+    if (w.bodies.any() && w.bodies.savable() && other.savable()) {
         WorldState state;
         o.bodies.save(state);
         const Result<BodyPasses::Saved> saved = w.bodies.take(state);
@@ -206,6 +214,7 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
     f.time = w.clock.time;
     f.particles = w.startCount;
     f.emitted = w.startCount * std::pow(double{w.params.spacing}, 3);
+    w.interrupted = w.device->interrupted();
     return ok();
 }
 

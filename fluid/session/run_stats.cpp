@@ -123,6 +123,32 @@ void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
         compressionSum_ += sum / static_cast<double>(counted);
         ++compressionFrames_;
     }
+    last_ = endOf(now, *world_);
+}
+
+RunRecorder::End RunRecorder::endOf(const HostParticles& now, const FluidWorld& world) {
+    const FluidParams& params = world.params();
+    End end;
+    end.particles = now.position.size();
+    dvec3 sum(0.0);
+    double counted = 0;
+    for (size_t i = 0; i < now.position.size(); ++i) {
+        vec3 p(now.position[i]), v(now.velocity[i]);
+        if (!isFinite(p) || !isFinite(v)) continue;
+        const auto mass = static_cast<double>(now.mass[i]);
+        sum += mass * dvec3(p);
+        end.kinetic += 0.5 * mass * glm::dot(dvec3(v), dvec3(v));
+        end.potential -= mass * glm::dot(dvec3(params.gravity), dvec3(p));
+        counted += mass;
+    }
+    if (counted > 0) end.centreOfMass = sum / counted;
+    end.front = bulkFront(now.position, params.box, world.particles().spacing);
+    const vec3 slack(2 * world.particles().spacing);
+    for (const vec4& p : now.position) {
+        const vec3 x(p);
+        end.within += isFinite(x) && glm::clamp(x, params.box.min - slack, params.box.max + slack) == x ? 1 : 0;
+    }
+    return end;
 }
 
 void RunRecorder::takeLoads() {
@@ -159,9 +185,13 @@ RunStats RunRecorder::finish(std::string scene) {
     FluidWorld& world = *world_;
     world.device().finish();
     world.device().poll();
-    HostParticles now = readParticles(world);
     takeLoads();
     const FluidStats& late = world.stats();
+    End end = last_;
+    if (!world.interrupted())
+        end = endOf(readParticles(world), world);
+    else if (simulate_.empty())
+        end.particles = end.within = late.particles;
     const FluidParams& params = world.params();
 
     RunStats stats;
@@ -171,7 +201,7 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.device = device.driver.empty() ? device.name : fmt::format("{}, {}", device.name, device.driver);
     stats.backend = backendName(world.device().backend());
     stats.method = params.method;
-    stats.particles = static_cast<uint32_t>(now.position.size());
+    stats.particles = static_cast<uint32_t>(end.particles);
     stats.frames = frame_.size();
     stats.seconds = world.time();
     stats.wallSeconds = wallMs_ * 1e-3;
@@ -183,33 +213,18 @@ RunStats RunRecorder::finish(std::string scene) {
     if (!transfer_.empty()) stats.transfer.bytes /= static_cast<double>(transfer_.size());
     for (const auto& [name, ms] : passes_) stats.passes[name] = spreadOf(ms);
 
-    dvec3 sum(0.0);
-    double counted = 0;
-    for (size_t i = 0; i < now.position.size(); ++i) {
-        vec3 p(now.position[i]), v(now.velocity[i]);
-        if (!isFinite(p) || !isFinite(v)) continue;
-        const auto mass = static_cast<double>(now.mass[i]);
-        sum += mass * dvec3(p);
-        stats.kinetic += 0.5 * mass * glm::dot(dvec3(v), dvec3(v));
-        stats.potential -= mass * glm::dot(dvec3(params.gravity), dvec3(p));
-        counted += mass;
-    }
-    if (counted > 0) stats.centreOfMass = sum / counted;
+    stats.kinetic = end.kinetic;
+    stats.potential = end.potential;
+    stats.centreOfMass = end.centreOfMass;
     stats.avgCompression = compressionFrames_ > 0 ? compressionSum_ / static_cast<double>(compressionFrames_) : late.avgCompression;
     stats.maxCompression = readBack_ ? maxCompression_ : late.maxCompression;
-    stats.front = bulkFront(now.position, params.box, world.particles().spacing);
+    stats.front = end.front;
     stats.volume = stats.particles * std::pow(static_cast<double>(world.particles().spacing), 3);
     // The world's content is counted from positions; sources and sinks are counted by their passes.
     const double volumeOfOne = std::pow(static_cast<double>(world.particles().spacing), 3);
-    const vec3 slack(2 * world.particles().spacing);
-    size_t within = 0;
-    for (const vec4& p : now.position) {
-        const vec3 x(p);
-        within += isFinite(x) && glm::clamp(x, params.box.min - slack, params.box.max + slack) == x ? 1 : 0;
-    }
     const bool skins = flows_ != nullptr && !flows_->empty();
     const SkinFlows::Ledger onSkins = skins ? flows_->ledger() : SkinFlows::Ledger{};
-    stats.ledger = ledgerOf(late, static_cast<double>(within) * volumeOfOne, volumeOfOne, skins ? &onSkins : nullptr);
+    stats.ledger = ledgerOf(late, static_cast<double>(end.within) * volumeOfOne, volumeOfOne, skins ? &onSkins : nullptr);
     stats.lost = late.lost;
     stats.nan = late.nan;
     stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));

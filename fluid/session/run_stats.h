@@ -102,10 +102,19 @@ class RunRecorder {
     void transferred(const TransferFacts& facts);  // of a frame that is drawn
     // From now on the same particles are in another world, which continues the first.
     void follow(FluidWorld& world) { world_ = &world; }
-    // Reads the particles once more, for the figures at the end.
+    // Reads the particles once more, for the figures at the end. After an interrupted step (FluidWorld::interrupted) they are those of the
+    // last whole frame.
     RunStats finish(std::string scene);
 
   private:
+    // The figures of the particles at one time.
+    struct End {
+        size_t particles = 0, within = 0;  // within: the box
+        double kinetic = 0, potential = 0;
+        std::optional<dvec3> centreOfMass = {};
+        std::optional<double> front = {};
+    };
+    static End endOf(const HostParticles& now, const FluidWorld& world);
     bool inSolid(const vec4& p) const;
     void takeLoads();
 
@@ -121,6 +130,7 @@ class RunRecorder {
     double iterations_ = 0;  // of all substeps
     std::vector<ProbeFrame> loads_;
     std::vector<bool> penetrated_;  // by id
+    End last_;                      // after the last frame; only with readBack_
 };
 
 // The processor, its threads and the system: "Intel(R) Xeon(R) ... , 2 threads, Debian GNU/Linux 12 (bookworm)".

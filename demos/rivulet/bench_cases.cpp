@@ -100,7 +100,7 @@ Status report(const BenchContext& context, const std::string& name, Device& devi
                                  }),
                  .passes = {}};
     row.passes = last.passes;
-    if (status && !context.interrupted()) context.report(row);
+    if (status) context.report(row);
     return status;
 }
 
@@ -154,7 +154,7 @@ Status benchDensity(const BenchContext& context) {
                      .value = spread,
                      .passes = {}};
         if (list > 0) row.passes["neighbour lists, not counted above"] = list;
-        if (!context.interrupted()) context.report(row);
+        context.report(row);
     }
     return ok();
 }
@@ -162,7 +162,7 @@ Status benchDensity(const BenchContext& context) {
 Status benchSeries(const BenchContext& context) {
     Devices devices = allDevices(context.log);
     for (const std::unique_ptr<Device>& device : devices.list)
-        for (int i = 1; i <= 8 && !context.interrupted(); ++i) {
+        for (int i = 1; i <= 8; ++i) {
             const FluidParams p = seriesScene(i);
             const double seconds = device->backend() == Backend::cpu || !device->info().software ? 5.0e-3 : 1.0e-3;
             const std::string name = fmt::format("falling column, {} particles, {}", 16384 * i, backendName(device->backend()));

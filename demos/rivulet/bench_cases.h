@@ -26,7 +26,6 @@ struct BenchContext {
     std::string out;                              // output folder of the pages of a case; "": no pages
     Log log;                                      // notices, for example of an absent backend
     std::function<void(const BenchRow&)> report;  // prints a row at once
-    std::function<bool()> interrupted;            // true after Ctrl-C: the case checks it between runs and returns
 };
 
 struct BenchCase {

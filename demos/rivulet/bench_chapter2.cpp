@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "demos/rivulet/bench_cases.h"
+#include "demos/rivulet/interrupt.h"
 #include "engine/app/context_egl.h"
 #include "fluid/validate/chapter2.h"
 
@@ -17,7 +18,6 @@ Status benchChapter2(const BenchContext& context) {
     request.gl = currentGlFacts();
     request.log = context.log;
     request.runs = context.runs;
-    request.goOn = [&context] { return !context.interrupted(); };
     request.report = [&context](const Chapter2Row& row) {
         BenchRow line{.name = fmt::format("chapter 2, {}, {}", row.particles, nameOf(row.way)),
                       .unit = "ms",
@@ -30,7 +30,8 @@ Status benchChapter2(const BenchContext& context) {
     };
     const Result<Chapter2> chapter = runChapter2(request);
     if (!chapter) return chapter.error();
-    if (chapter->stopped || context.out.empty()) return ok();
+    if (context.out.empty()) return ok();
+    const Graceful whole;  // Ctrl-C waits for the files
     return writeChapter2(*chapter, context.out, machineName(), "rivulet bench chapter2 --out " + context.out);
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "demos/rivulet/bench_cases.h"
+#include "demos/rivulet/interrupt.h"
 #include "engine/app/context_egl.h"
 #include "fluid/render/backend.h"
 #include "fluid/validate/chapter4.h"
@@ -19,7 +20,6 @@ Status benchChapter4(const BenchContext& context) {
     Chapter4Request request;
     request.device = device.get();
     request.runs = context.runs;
-    request.goOn = [&context] { return !context.interrupted(); };
     request.report = [&context](const Chapter4Row& row) {
         BenchRow line{
             .name = fmt::format("chapter 4, {}, {}, {}, {}", row.particles, row.grid, row.walk.empty() ? "none" : row.walk, row.workGroup),
@@ -32,7 +32,8 @@ Status benchChapter4(const BenchContext& context) {
     };
     const Result<Chapter4> chapter = runChapter4(request);
     if (!chapter) return chapter.error();
-    if (chapter->stopped || context.out.empty()) return ok();
+    if (context.out.empty()) return ok();
+    const Graceful whole;  // Ctrl-C waits for the files
     return writeChapter4(*chapter, context.out, machineName(), "rivulet bench chapter4 --out " + context.out);
 }
 

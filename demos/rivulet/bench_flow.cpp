@@ -128,7 +128,6 @@ Status benchFlow(const BenchContext& context) {
             return ms;
         });
         if (!status) return status;
-        if (context.interrupted()) return ok();
         context.report(row);
         reportMemory(context, drops, {.flow = before, .maps = device->bytesAllocated() - before, .coarse = coarse},
                      flow->mesh().triangleCount());

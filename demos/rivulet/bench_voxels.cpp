@@ -73,7 +73,7 @@ Status reportTime(const BenchContext& context, const std::string& name, const st
         status = ms.error();
         return 0.0;
     });
-    if (status && !context.interrupted()) context.report({.name = name, .unit = "ms", .value = spread, .passes = {}});
+    if (status) context.report({.name = name, .unit = "ms", .value = spread, .passes = {}});
     return status;
 }
 
@@ -93,7 +93,6 @@ Status benchVoxels(const BenchContext& context) {
         for (const Wanted& w : {Wanted{VoxelMode::solid, "solid", 256}, Wanted{VoxelMode::surface, "surface", 256},
                                 Wanted{VoxelMode::solid, "solid", 512}, Wanted{VoxelMode::surface, "surface", 512},
                                 Wanted{VoxelMode::depth, "depth", 128}, Wanted{VoxelMode::depth, "depth, the thesis's order", 128, true}}) {
-            if (context.interrupted()) return ok();
             const VoxelizeOptions options{.mode = w.mode, .resolution = w.resolution, .thesisOrder = w.thesisOrder, .progress = {}};
             const std::string name =
                 fmt::format("{} {}^3, {}, {}k triangles, cpu", w.name, w.resolution, mesh.name, mesh.indices.size() / 3000);
@@ -146,9 +145,8 @@ Status benchCollide(const BenchContext& context) {
         return 100 * collide / all;
     });
     if (!status) return status;
-    if (!context.interrupted())
-        context.report(
-            {.name = "collision's share of a step, 16,384 particles onto Spot, cpu", .unit = "%", .value = spread, .passes = passes});
+    context.report(
+        {.name = "collision's share of a step, 16,384 particles onto Spot, cpu", .unit = "%", .value = spread, .passes = passes});
     return ok();
 }
 

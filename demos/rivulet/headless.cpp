@@ -131,6 +131,7 @@ struct Loop {
             if (session.replaying() != nullptr) session.seek(static_cast<size_t>(f));
             Clock::time_point start = Clock::now();
             const double simulateMs = work.started() ? work.finish() : work.step(frameSeconds(options.scene), true);
+            if (session.interrupted()) break;
             const Result<bool> moved = keepRunning(session, device, options.log);
             if (!moved) return moved.error();
             if (*moved) {
@@ -264,7 +265,8 @@ int runHeadless(const RunOptions& options) {
         traceKernels(*device, timeline);
         if (painter.renderer) painter.renderer->onSpan(timeline.lane(kDrawingLane));
     }
-    Graceful graceful;  // before this line Ctrl-C exits at once; after it, files are closed first
+    Graceful graceful;                                          // before this line Ctrl-C exits at once; after it, files are closed first
+    if (options.save.empty()) device->stopOn(graceful.flag());  // a state is saved after a whole frame
     Result<Outputs> to = Outputs::open(options);
     if (!to) return report(to.error());
 

@@ -11,16 +11,22 @@ namespace {
 
 // The only global variables of the program: a signal handler takes no user data.
 volatile sig_atomic_t graceful = 0;
-volatile sig_atomic_t interruptions = 0;
+volatile sig_atomic_t terminal = 0;  // stderr is one, and may show a progress bar
+std::atomic<bool> interruption = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 void onSignal(int) {
-    interruptions = interruptions + 1;
-    if (graceful == 0 || interruptions > 1) _exit(kInterrupted);
+    if (interruption.exchange(true) || graceful == 0) {
+        constexpr char kErase[] = "\r\033[K";
+        if (terminal != 0 && write(STDERR_FILENO, kErase, sizeof kErase - 1) < 0) _exit(kInterrupted);
+        _exit(kInterrupted);
+    }
 }
 
 }  // namespace
 
 void installInterrupts() {
+    terminal = isatty(STDERR_FILENO);
     struct sigaction action = {};
     action.sa_handler = onSignal;
     action.sa_flags = SA_RESTART;
@@ -31,6 +37,7 @@ void installInterrupts() {
 
 Graceful::Graceful() { graceful = 1; }
 Graceful::~Graceful() { graceful = 0; }
-bool Graceful::interrupted() const { return interruptions > 0; }
+bool Graceful::interrupted() const { return interruption; }
+const std::atomic<bool>* Graceful::flag() const { return &interruption; }
 
 }  // namespace rivulet

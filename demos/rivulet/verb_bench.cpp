@@ -12,7 +12,7 @@ namespace rivulet {
 Spread repeat(const BenchContext& context, const std::function<double()>& once) {
     once();
     std::vector<double> values;
-    for (int i = 0; i < context.runs && !context.interrupted(); ++i) values.push_back(once());
+    for (int i = 0; i < context.runs; ++i) values.push_back(once());
     return spreadOf(values);
 }
 
@@ -80,7 +80,6 @@ int benchVerb(const Arguments& arguments) {
 
     if (!out.empty())
         if (Status made = makeFolder(out); !made) return report(made.error());
-    Graceful graceful;
     Json::Value all(Json::objectValue);
     all["version"] = RIVULET_VERSION;
     all["machine"] = machineName();
@@ -91,14 +90,14 @@ int benchVerb(const Arguments& arguments) {
         context.runs = runs.value_or(5);
         context.out = out;
         context.log = stderrLog();
-        context.interrupted = [&graceful] { return graceful.interrupted(); };
         context.report = [&all, benchCase](const BenchRow& row) {
             print(row);
             all["rows"].append(jsonOf(benchCase->name, row));
         };
         if (Status done = benchCase->run(context); !done) return report(done.error());
-        if (graceful.interrupted()) return kInterrupted;
+        if (Graceful().interrupted()) return kInterrupted;  // while pages were written
     }
+    const Graceful graceful;  // until here Ctrl-C exits at once: rows are printed, and there is nothing to close
     if (!jsonFile.empty()) {
         Json::StreamWriterBuilder builder;
         builder["indentation"] = "  ";
@@ -108,7 +107,7 @@ int benchVerb(const Arguments& arguments) {
     }
     if (!markdownFile.empty())
         if (Status written = writeFileAtomic(markdownFile, markdownOf(all)); !written) return report(written.error());
-    return kDone;
+    return graceful.interrupted() ? kInterrupted : kDone;
 }
 
 }  // namespace rivulet

@@ -18,43 +18,45 @@ namespace {
 constexpr const char* kStability = "stability";
 constexpr const char* kSurface = "surface";
 
+// Until a page is written, Ctrl-C exits at once: there is nothing to close.
+
 // The stability limits of the methods: stability.md with a table and a chart.
-int chartStability(Device& device, const Graceful& graceful, Progress& progress, const std::string& folder) {
+int chartStability(Device& device, Progress& progress, const std::string& folder) {
     std::vector<EnvelopeFinding> all;
     for (const EnvelopeRow& row : envelope().rows) {
         progress.show(static_cast<double>(&row - envelope().rows.data()) / static_cast<double>(envelope().rows.size()),
                       fmt::format("stability, {}", row.name));
-        const Result<std::vector<EnvelopeFinding>> found = row.run({.device = &device, .goOn = [&] { return !graceful.interrupted(); }});
-        if (graceful.interrupted()) return kInterrupted;
+        const Result<std::vector<EnvelopeFinding>> found = row.run({.device = &device});
         if (!found) return report(found.error());
         all.insert(all.end(), found->begin(), found->end());
     }
+    const Graceful graceful;
     if (Status written = writeEnvelope(folder, all, machineName()); !written) return report(written.error());
     fmt::print("{}\n", (std::filesystem::path(folder) / "stability.md").string());
-    return kDone;
+    return graceful.interrupted() ? kInterrupted : kDone;
 }
 
 // The error of the drawn surface and its cost: surface.md with a table and a chart.
 int chartSurface(const SurfaceChartRequest& request, const std::string& folder, const std::string& command) {
     const Result<SurfaceChart> chart = runSurfaceChart(request);
     if (!chart) return report(chart.error());
-    if (chart->stopped) return kInterrupted;
+    const Graceful graceful;
     if (Status written = writeSurfaceChart(*chart, folder, machineName(), command); !written) return report(written.error());
     fmt::print("{}\n", (std::filesystem::path(folder) / "surface.md").string());
-    return kDone;
+    return graceful.interrupted() ? kInterrupted : kDone;
 }
 
 // Speed against accuracy: speed_accuracy.md with a table and charts.
 int chartMethods(const ChartRequest& request, const std::string& folder) {
     const Result<Chart> chart = runChart(request);
     if (!chart) return report(chart.error());
-    if (chart->stopped) return kInterrupted;
+    const Graceful graceful;
     std::string command = "rivulet chart";
     for (const std::string& name : request.names) command += ' ' + name;
     if (request.quick) command += " --quick";
     if (Status written = writeChart(*chart, folder, machineName(), command); !written) return report(written.error());
     fmt::print("{}\n", (std::filesystem::path(folder) / "speed_accuracy.md").string());
-    return kDone;
+    return graceful.interrupted() ? kInterrupted : kDone;
 }
 
 }  // namespace
@@ -82,15 +84,14 @@ int chartVerb(const Arguments& arguments) {
 
     const std::vector<CpuKernelRow> rows = cpuKernels();
     const std::unique_ptr<Device> device = makeCpuDevice(rows);
-    Graceful graceful;
     Progress progress("chart");
     request.device = device.get();
     request.goOn = [&](double share, const std::string& what) {
         progress.show(share, what);
-        return !graceful.interrupted();
+        return true;
     };
     if (stability)
-        if (const int code = chartStability(*device, graceful, progress, folder); code != kDone) return code;
+        if (const int code = chartStability(*device, progress, folder); code != kDone) return code;
     if (cases)
         if (const int code = chartMethods(request, folder); code != kDone) return code;
     if (surface) {

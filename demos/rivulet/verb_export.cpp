@@ -149,10 +149,12 @@ int exportAs(const ExportRequest& request, const SceneFile& scene) {
     const std::unique_ptr<Session> session = std::move(opened->session);
 
     const Graceful graceful;
+    asked.device->stopOn(graceful.flag());
     const int every = request.every.value_or(1);
     Progress progress(session->scene().name);
     for (int f = 0; f < *frames && !graceful.interrupted(); ++f) {
         session->step(frameSeconds(session->scene()), true);
+        if (graceful.interrupted()) break;
         if (const Result<bool> moved = keepRunning(*session, asked.device, log); !moved) return report(moved.error());
         progress.show(static_cast<double>(f + 1) / *frames, fmt::format("{:.2f} s", session->world().time()));
         if (f % every != 0) continue;

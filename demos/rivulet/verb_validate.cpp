@@ -157,7 +157,7 @@ int validateVerb(const Arguments& arguments) {
     const std::vector<CpuKernelRow> rows = cpuKernels();
     const std::unique_ptr<Device> cpu = onCpu ? nullptr : makeCpuDevice(rows);
 
-    Graceful graceful;
+    // Until files are written, Ctrl-C exits at once: results are printed, and there is nothing to close.
     Json::Value all(Json::arrayValue);
     bool passed = true;
     fmt::print("{}\n    {:<56} {:>11} {:>11} {:<6} {:>9} {:>9}\n", machineName(), "", "measured", "reference", "", "error", "tolerance");
@@ -174,20 +174,18 @@ int validateVerb(const Arguments& arguments) {
             settings.log = stderrLog();
             settings.goOn = [&](double share) {
                 progress.show(share);
-                return !graceful.interrupted();
+                return true;
             };
             if (request.orders) {
                 if (!request.method.empty() || judges(row, method)) {
                     const Result<Orders> orders = measureOrders(row, settings);
                     if (!orders) return report(orders.error());
-                    if (graceful.interrupted()) return kInterrupted;
                     for (const Json::Value& v : printOrders(row, method, *orders)) all.append(v);
                 }
                 continue;
             }
             Result<Outcome> outcome = runCase(row, settings, cpu.get());
             if (!outcome) return report(outcome.error());
-            if (graceful.interrupted()) return kInterrupted;
             for (Finding& f : outcome->findings) {
                 if (onCpu && !judges(row, method)) f.tolerance.reset();
                 passed = passed && !f.fails();
@@ -196,10 +194,13 @@ int validateVerb(const Arguments& arguments) {
             print(row, *outcome);
             if (!request.pictures.empty() && !outcome->plot.curves.empty()) {
                 const std::string path = (std::filesystem::path(request.pictures) / fmt::format("{}_{}.svg", name, method)).string();
+                const Graceful graceful;
                 if (Status drawn = drawPlot(outcome->plot, path); !drawn) return report(drawn.error());
+                if (graceful.interrupted()) return kInterrupted;
             }
         }
     }
+    const Graceful graceful;
     if (!request.json.empty()) {
         Json::StreamWriterBuilder builder;
         builder["indentation"] = "  ";
@@ -207,6 +208,7 @@ int validateVerb(const Arguments& arguments) {
         if (Status written = writeFileAtomic(request.json, Json::writeString(builder, all) + "\n"); !written)
             return report(written.error());
     }
+    if (graceful.interrupted()) return kInterrupted;
     return passed ? kDone : kFailed;
 }
 

@@ -41,7 +41,8 @@ int runWindow(const RunOptions& options) {
                                   .height = options.height,
                                   .seen = seenFile(),
                                   .share = [&window] { return window->shared(); },
-                                  .showing = showing},
+                                  .showing = showing,
+                                  .stop = options.save.empty() ? graceful.flag() : nullptr},  // a state is saved after a whole frame
                                  options.log);
     if (graceful.interrupted()) return kInterrupted;
     if (closed) return kDone;

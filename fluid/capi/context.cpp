@@ -61,6 +61,7 @@ Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     if (Status settled = settleBackend(backend, "auto", device); !settled) return settled;
     const CallScope scope(c, Needs::drawing);
     c.device = makeDevice(backend, c.gl, c.log, device);
+    c.device->stopOn(&c.stop);
     c.memoryLimit = o.memory_limit;
     if (o.memory_limit > 0) c.device->limitMemory(o.memory_limit);
     c.name = fmt::format("{}: {}", backendName(c.device->backend()), c.device->info().name);
@@ -140,6 +141,10 @@ rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time
         if (all.size() <= capacity) context->passes.clear();
         return ok();
     });
+}
+
+void rivulet_context_stop(rivulet_context* context, uint32_t stop) {
+    if (context != nullptr) context->stop.store(stop != 0, std::memory_order_relaxed);
 }
 
 size_t rivulet_context_memory(const rivulet_context* context) {

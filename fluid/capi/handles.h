@@ -1,6 +1,7 @@
 // What is behind rivulet.h's handles.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,6 +28,7 @@ struct rivulet_context {
     int children = 0;                                 // worlds and skins
     void* current = nullptr;                          // the OpenGL context that it was created in; null: none, or not known
     bool busy = false;                                // a call is running
+    std::atomic<bool> stop = false;                   // of the device
 };
 
 namespace rivulet::capi {

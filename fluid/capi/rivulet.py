@@ -169,6 +169,8 @@ for _name in ("context", "world", "skin"):
 _lib.rivulet_version.restype = _lib.rivulet_context_device.restype = c_char_p
 _lib.rivulet_context_device.argtypes = _lib.rivulet_context_memory.argtypes = [c_void_p]
 _lib.rivulet_context_memory.restype = c_size_t
+_lib.rivulet_context_stop.argtypes = [c_void_p, ctypes.c_uint32]
+_lib.rivulet_context_stop.restype = None
 
 
 def version():
@@ -264,6 +266,11 @@ class Context(_Handle):
     def memory(self):
         """Bytes in use now."""
         return _lib.rivulet_context_memory(self._pointer)
+
+    def stop(self, stop=True):
+        """Interrupts steps, now and from now on, from any thread. World.step then raises an Error; after an interrupted step the world must
+        be reset or restored. stop=False: steps run again."""
+        _lib.rivulet_context_stop(self._pointer, int(stop))
 
     def times(self):
         """{pass: (ms, calls)} of the simulation since the last call. A GPU's times arrive two or three frames late."""

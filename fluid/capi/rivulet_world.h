@@ -95,7 +95,9 @@ typedef struct rivulet_stats {
 RIVULET_API rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_world_options* options, rivulet_world** world,
                                                 rivulet_error* why);
 RIVULET_API void rivulet_world_destroy(rivulet_world* world);
-/* Advances by a frame of `seconds`, in as many substeps as stability needs; 0 or less: nothing happens. `inputs` may be NULL. */
+/* Advances by a frame of `seconds`, in as many substeps as stability needs; 0 or less: nothing happens. `inputs` may be NULL.
+   RIVULET_FAILED, after rivulet_context_stop: while a stop is asked a step does nothing, and the world stays as it was; a step that it
+   interrupted leaves the world incomplete: then end the stop, and reset or restore the world before the next step. */
 RIVULET_API rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why);
 /* Sets a parameter: "fluid.viscosity=0.01", "look.quality=fast", "emitters.0.litresPerSecond=2". A parameter that docs/parameters.md calls

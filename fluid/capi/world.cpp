@@ -266,6 +266,8 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         to.deviceMs = context.deviceMs - world->deviceMs;  // of all its worlds: passes are not counted per world
         world->deviceMs = context.deviceMs;
         world->world->step(to, seconds);
+        if (world->world->interrupted()) return failed("the step was interrupted: end the stop, then reset or restore the world");
+        if (context.device->stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
         if (const DeviceHealth health = world->context->device->health(); health.state == DeviceHealth::lost)
             return failed(fmt::format("{} {}; create a context of another backend", world->context->name, health.why));
         return ok();

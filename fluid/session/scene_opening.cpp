@@ -11,6 +11,7 @@
 namespace rivulet {
 
 SceneOpening::SceneOpening(Request request) : request_(std::move(request)) {
+    request_.device->stopOn(&givenUp_);
     thread_ = std::thread([this] {
         Result<OpenedScene> opened = failed("the OpenGL driver cannot make a context current on a second thread");
         if (request_.gl.enter()) {
@@ -34,7 +35,7 @@ Result<OpenedScene> SceneOpening::work() {
     const OpeningSteps steps = [this](const std::string& next, double share) {
         const std::lock_guard<std::mutex> lock(mutex_);
         step_ = {next, share};
-        return !givenUp_;
+        return !givenUp_.load();
     };
     try {
         OpenedScene opened;
@@ -48,7 +49,7 @@ Result<OpenedScene> SceneOpening::work() {
         }
         auto session = openSession(request_.scene, *request_.device, request_.log, request_.backend, steps);
         if (!session) return session.error();
-        if (const std::lock_guard<std::mutex> lock(mutex_); givenUp_)  // its objects are destroyed in the context that made them
+        if (givenUp_)  // its objects are destroyed in the context that made them
             return failed(fmt::format("opening {} was cancelled", request_.scene.name));
         opened.device = session->instead ? std::move(session->instead) : std::move(request_.device);
         opened.session = std::move(session->session);
@@ -66,15 +67,13 @@ bool SceneOpening::ready(double seconds) {
 Result<OpenedScene> SceneOpening::take() {
     thread_.join();
     Result<OpenedScene> opened = std::move(*result_);
+    if (opened) opened->device->stopOn(nullptr);
     if (opened && opened->renderer) opened->renderer->contextChanged();
     if (opened && opened->device->backend() == Backend::gl) contextChanged(*opened->device);
     return opened;
 }
 
-void SceneOpening::giveUp() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    givenUp_ = true;
-}
+void SceneOpening::giveUp() { givenUp_ = true; }
 
 SceneOpening::Step SceneOpening::step() const {
     const std::lock_guard<std::mutex> lock(mutex_);

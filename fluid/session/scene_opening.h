@@ -1,6 +1,7 @@
 // SceneOpening: opens a scene on its own thread while another scene is still shown.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -34,9 +35,10 @@ class SceneOpening {
     ~SceneOpening();  // cancels, and waits
 
     bool ready(double seconds = 0);  // waits up to this, s
-    // Once, when ready, on the thread whose context shares objects with the request's. Error: as openSession; (failed) it was cancelled.
+    // Once, when ready, on the thread whose context shares objects with the request's. Device::stopOn of its device is then null. Error: as
+    // openSession; (failed) it was cancelled.
     Result<OpenedScene> take();
-    void giveUp();
+    void giveUp();  // within milliseconds, but for steps that read and voxelise a mesh
 
     struct Step {
         std::string what = "waiting for a cancelled scene";  // or "voxels of rocks.obj"
@@ -52,7 +54,8 @@ class SceneOpening {
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     Step step_;
-    bool givenUp_ = false, done_ = false;
+    bool done_ = false;
+    std::atomic<bool> givenUp_ = false;  // also interrupts the device
     std::optional<Result<OpenedScene>> result_;
     std::thread thread_;  // last: it uses all of these
 };

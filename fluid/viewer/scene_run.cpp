@@ -8,10 +8,11 @@
 
 namespace rivulet {
 
-void SceneRun::begin(Plan plan, std::vector<CooperationStats::Tried> tried, const Log& log) {
+void SceneRun::begin(Plan plan, std::vector<CooperationStats::Tried> tried, const Log& log, const std::atomic<bool>* stop) {
     plan_ = plan;
     tried_ = std::move(tried);
     log_ = log;
+    stop_ = stop;
     timeline_.restart();  // times of what auto tried may be on their way
 }
 
@@ -20,6 +21,7 @@ void SceneRun::adopt(std::unique_ptr<Session> session, std::unique_ptr<Device> d
     session_ = std::move(session);
     if (device) {  // nothing is on the other any more
         device_ = std::move(device);
+        device_->stopOn(stop_);
         traceKernels(*device_, timeline_);
     }
     work_ = std::make_unique<Cooperation>(*session_, plan_, &timeline_, log_);
@@ -65,6 +67,7 @@ void SceneRun::stepOn() {
 
 // `seconds`: on the wall, of the frame.
 SceneRun::Result SceneRun::stepped(double ms, double seconds, const std::vector<PassTime>& drawn) {
+    if (session_->interrupted()) return std::optional<Stepped>();
     ++steps_;
     Stepped out{.ms = ms, .deviceMs = 0, .passes = {}, .toCpu = false, .repicked = false};
     const rivulet::Result<bool> moved = keepRunning(*session_, device_, log_);

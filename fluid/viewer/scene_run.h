@@ -18,7 +18,8 @@ namespace rivulet {
 class SceneRun {
   public:
     // A plan, and the trials that --cooperate auto chose it by.
-    void begin(Plan plan, std::vector<CooperationStats::Tried> tried, const Log& log);
+    // `stop`: of all devices (Device::stopOn).
+    void begin(Plan plan, std::vector<CooperationStats::Tried> tried, const Log& log, const std::atomic<bool>* stop = nullptr);
     // Continues with this session, on `device`; null: on the same device as before.
     void adopt(std::unique_ptr<Session> session, std::unique_ptr<Device> device);
     void drop() { work_.reset(); }  // drops a step in progress, before the session is replaced
@@ -61,6 +62,7 @@ class SceneRun {
     Result stepped(double ms, double seconds, const std::vector<PassTime>& drawn);
 
     Log log_;
+    const std::atomic<bool>* stop_ = nullptr;
     Timeline timeline_{size_t{1} << 16};
     std::unique_ptr<Device> device_;
     std::unique_ptr<Session> session_;

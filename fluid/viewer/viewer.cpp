@@ -33,6 +33,7 @@ Status Viewer::start(const SceneFile& scene, const ViewerOptions& options) {
     OpenedScene first;
     if (options.showing && options.share && options.cooperate != "auto") {
         first.device = makeDevice(backend, gl_, log_, clDevice_);
+        first.device->stopOn(options.stop);
         if (opener_.aside()) {
             Result<OpenedScene> shown = openShowing(scene, options, backend, std::move(first.device));
             if (!shown) return shown.error();
@@ -68,13 +69,14 @@ Status Viewer::start(const SceneFile& scene, const ViewerOptions& options) {
     }
     if (!first.session) {
         if (!first.device) first.device = makeDevice(backend, gl_, log_, clDevice_);
+        first.device->stopOn(options.stop);
         auto opened = openSession(scene, *first.device, log_, backend);
         if (!opened) return opened.error();
         if (opened->instead) first.device = std::move(opened->instead);
         first.session = std::move(opened->session);
     }
     asked_ = backend;
-    run_.begin(plan, std::move(trials), log_);
+    run_.begin(plan, std::move(trials), log_, options.stop);
     run_.adopt(std::move(first.session), std::move(first.device));
     draft_.scene = this->scene();
     rememberOpened(false);
@@ -107,6 +109,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
         draft_.params.compare(visiting(draft_.scene));
     }
     if (Status stepped = take(run_.step(seconds, renderer().times())); !stepped) return stepped;
+    if (session().interrupted()) return ok();  // there is nothing valid to draw
     Status drawn = draw(input, framebuffer);
     profiler_.endFrame(1000 * seconds);
     return drawn;

@@ -1,6 +1,7 @@
 // ViewerOptions: what a Viewer needs of its window, and how it opens its first scene.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <string>
 
@@ -25,6 +26,9 @@ struct ViewerOptions {
     // closed. None: create() shows nothing until the scene is ready.
     using Draw = std::function<void(const InputEvents& input, GLuint framebuffer)>;
     std::function<bool(const Draw& draw)> showing = {};
+    // Device::stopOn, of the devices that simulate: true interrupts a step, after which the viewer can only be destroyed. Null: nothing
+    // does.
+    const std::atomic<bool>* stop = nullptr;
 };
 
 }  // namespace rivulet

@@ -677,6 +677,17 @@ int main(int count, char** arguments) {
     rivulet_context_destroy(context);
     CHECK(said == 1 && strstr(last, "1 worlds") != NULL);
     run(world, 2);
+    rivulet_stats then = {.size = sizeof then}, now = {.size = sizeof now};
+    DONE(rivulet_world_stats(world, &then, &why));
+    rivulet_context_stop(NULL, 1);
+    rivulet_context_stop(context, 1); /* nothing is stepped, and the world stays as it was */
+    CHECK(rivulet_world_step(world, NULL, 1.0 / 60, &why) == RIVULET_FAILED && strstr(why.message, "rivulet_context_stop") != NULL);
+    DONE(rivulet_world_stats(world, &now, &why));
+    CHECK(now.time == then.time);
+    rivulet_context_stop(context, 0);
+    run(world, 1);
+    DONE(rivulet_world_stats(world, &now, &why));
+    CHECK(now.time > then.time);
     rivulet_world_destroy(world);
     CHECK(rivulet_context_memory(context) == before);
     rivulet_context_destroy(context);

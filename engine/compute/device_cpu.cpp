@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -138,17 +139,22 @@ std::vector<std::string> CpuDevice::kernels() const {
 
 Result<Buffer> CpuDevice::allocate(size_t bytes) {
     if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
-    size_t padded = (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment;
-    void* memory = std::aligned_alloc(kAlignment, padded);
-    if (memory == nullptr)
+    // calloc clears nothing that the system has just cleared: pages of large buffers are first touched by the kernels, on all cores. The
+    // block begins before the aligned address, which has its address in front.
+    void* block = std::calloc(1, (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment + kAlignment);
+    if (block == nullptr)
         return failed(fmt::format("out of memory: cannot allocate {} MiB; use fewer particles or coarser voxels", bytes >> 20U));
-    std::memset(memory, 0, padded);
+    const uintptr_t at = (reinterpret_cast<uintptr_t>(block) / kAlignment + 1) * kAlignment;
+    static_assert(alignof(std::max_align_t) >= sizeof block, "room for an address before the aligned one");
+    std::memcpy(reinterpret_cast<std::byte*>(at) - sizeof block, &block, sizeof block);
     bytesAllocated_ += bytes;
-    return Buffer(*this, reinterpret_cast<uintptr_t>(memory), bytes);
+    return Buffer(*this, at, bytes);
 }
 
 void CpuDevice::release(uint64_t handle, size_t bytes) {
-    std::free(reinterpret_cast<void*>(static_cast<uintptr_t>(handle)));
+    void* block = nullptr;
+    std::memcpy(&block, reinterpret_cast<const std::byte*>(static_cast<uintptr_t>(handle)) - sizeof block, sizeof block);
+    std::free(block);
     bytesAllocated_ -= bytes;
 }
 

@@ -1,6 +1,9 @@
 // Blocks start in disorder and without a surplus of density; against the conservation of energy and the block's own velocity field.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "fluid/sim/world/host_particles.h"
 #include "tests/physics/worlds.h"
 
@@ -24,6 +27,55 @@ TEST(RelaxedStart, DisorderDoesNotBecomeVelocity) {
                 EXPECT_NEAR(world->stats().kinetic / given, 1, 1.0e-3) << method << ", jitter " << jitter << ", frame " << frame;
             }
         }
+}
+
+// A large start takes the inside of blocks from a tile and corrects only what is too dense: it is as still as a small one, also at the seam
+// of two blocks and beside a wall and a plane.
+TEST(RelaxedStart, ALargeStartIsAsStill) {
+    FluidParams p;
+    p.method = "wcsph";
+    p.spacing = 0.01F;
+    p.gravity = vec3(0.0F);
+    p.box.max = vec3(1.2F, 1.0F, 0.7F);
+    p.blocks = {{.min = vec3(0.0F), .max = vec3(0.65F, 0.65F, 0.35F)}, {.min = vec3(0, 0, 0.35F), .max = vec3(0.65F, 0.65F, 0.7F)}};
+    Solids solids;
+    solids.planes = {{.position = vec3(0.08F, 0.06F, 0.0F), .normal = vec3(0.8F, 0.6F, 0.0F)}};
+    auto device = cpu();
+    std::vector<double> shares;
+    auto world = FluidWorld::create(*device, p, solids, {}, {}, {}, [&](double share) {
+        shares.push_back(share);
+        return true;
+    });
+    ASSERT_TRUE(world) << world.error().message;
+    ASSERT_GT((*world)->particles().count, 1U << 18U) << "a large start";
+    (*world)->step({}, 1.0e-6);
+    EXPECT_LT((*world)->stats().maxCompression, 0.012);
+    EXPECT_LT((*world)->stats().avgCompression, 0.0015);
+    EXPECT_GT(shares.size(), 10U);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_GE(shares.front(), 0);
+    EXPECT_LE(shares.back(), 1);
+    // The pressure of 1 % at a speed of sound of ten times a metre per second would give 0.1 m/s.
+    (*world)->step({}, 1.0 / 60);
+    const FluidStats& now = (*world)->stats();
+    EXPECT_LT(std::sqrt(2 * now.kinetic / (now.particles * 1.0e-6 * 1000)), 0.01);
+    EXPECT_EQ(now.lost, 0U);
+}
+
+// Whoever watches a start can cancel it, whatever its size.
+TEST(RelaxedStart, CanBeCancelled) {
+    for (const float spacing : {0.02F, 0.009F}) {
+        FluidParams p;
+        p.spacing = spacing;
+        p.blocks = {{.min = vec3(0.0F), .max = vec3(0.6F)}};
+        auto device = cpu();
+        int calls = 0;
+        const auto world = FluidWorld::create(*device, p, {}, {}, {}, {}, [&](double) { return ++calls < 2; });
+        ASSERT_FALSE(world);
+        EXPECT_EQ(world.error().fault, Fault::failed);
+        EXPECT_NE(world.error().message.find("cancelled"), std::string::npos) << world.error().message;
+        EXPECT_EQ(calls, 2) << "nothing goes on afterwards";
+    }
 }
 
 // Blocks that overlap come apart before time begins: together they have the volume of both, and nothing is thrown.

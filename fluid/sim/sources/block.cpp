@@ -118,7 +118,15 @@ float fastestOf(const BlockParams& b) {
     return fastest;
 }
 
-void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to, std::span<const vec3> triangles) {
+std::vector<vec3> randomTile(float jitter) {
+    std::vector<vec3> offsets(size_t{kTile} * kTile * kTile);
+    for (uint32_t place = 0; place < offsets.size(); ++place)
+        offsets[place] = jitter * vec3(jittered(place, 0), jittered(place, 1), jittered(place, 2));
+    return offsets;
+}
+
+void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to, std::span<const vec3> triangles,
+               std::span<const vec3> tile) {
     const Lattice lattice(b, spacing);
     if (lattice.size() == 0) return;
     const Sites in = b.shape == "box"    ? Sites()
@@ -132,10 +140,13 @@ void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to
     // Along an axis only particles between two others: those at a wall or a surface would come too close to the next layer.
     const auto offset = [&](const ivec3& c, uint32_t place) {
         vec3 away(0.0F);
+        const vec3 ofTile =
+            tile.empty() ? vec3(0.0F) : tile[static_cast<size_t>((c.z % kTile * kTile + c.y % kTile) * kTile + c.x % kTile)];
         for (int axis = 0; axis < 3; ++axis) {
             ivec3 next(0);
             next[axis] = 1;
-            if (has(c - next) && has(c + next)) away[axis] = b.jitter * spacing * jittered(place, static_cast<uint32_t>(axis));
+            if (has(c - next) && has(c + next))
+                away[axis] = spacing * (tile.empty() ? b.jitter * jittered(place, static_cast<uint32_t>(axis)) : ofTile[axis]);
         }
         return away;
     };

@@ -23,8 +23,13 @@ double blockCount(const BlockParams& block, float spacing);
 // as many sites as its volume holds, those next to the axis first: the particles have the volume of the layers to within one spacing^3.
 // Of a mesh the sites that it encloses: `triangles`, m, three corners each; an open mesh by its generalized winding number
 // (voxelize_solid.h). With jitter a particle that lacks a neighbour along an axis keeps its place on that axis, so that surfaces stay flat;
-// the same every time. An empty or inverted block adds nothing.
-void fillBlock(const BlockParams& block, float spacing, std::vector<NewParticle>& to, std::span<const vec3> triangles = {});
+// the same every time. An empty or inverted block adds nothing. `tile`: offsets from the sites, in spacings, of kTile^3 sites, x fastest,
+// which are repeated through the block; none: random ones.
+inline constexpr int kTile = 24;  // sites along an edge
+void fillBlock(const BlockParams& block, float spacing, std::vector<NewParticle>& to, std::span<const vec3> triangles = {},
+               std::span<const vec3> tile = {});
+// Random offsets of such a tile, as those of a block.
+std::vector<vec3> randomTile(float jitter);
 // m/s, the velocity field of a block at `at` (m).
 vec3 velocityAt(const BlockParams& block, const vec3& at);
 // The highest speed of a point between the block's corners at the start, m/s.

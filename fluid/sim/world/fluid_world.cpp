@@ -533,7 +533,8 @@ ParticleView FluidWorld::particles() const {
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
-                                                       const Sources& sources, std::span<const HostForce> forces) {
+                                                       const Sources& sources, std::span<const HostForce> forces,
+                                                       const StartProgress& progress) {
     if (Status s = checkParams("fluid", params); !s) return s.error();
     device.goOn();
     const BoxParams& box = params.box;
@@ -562,9 +563,12 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     w.bodies = std::move(*bodies);
     w.log = std::move(log);
     w.gravity = params.gravity;
+    w.progress = progress;
     if (Status s = w.prepare(solids); !s) return s.error();
     w.probeTargets = ProbeTargets::of(solids);
     if (Status s = w.prepareProbes(w.params); !s) return s.error();
+    w.progress = {};
+    if (w.cancelled) return failed("the creation of the water was cancelled");
     if (device.interrupted() || device.stopAsked()) return failed("the creation of the water was interrupted");
     return world;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -57,13 +58,17 @@ struct FluidInputs {
     double deviceMs = 0;
 };
 
+// Receives the share of a world's start that is done, 0 to 1, some times in a second; false cancels it. On the thread that called create().
+using StartProgress = std::function<bool(double share)>;
+
 class FluidWorld {
   public:
-    // Error (badInput): a value out of its range (docs/parameters.md) or in conflict with another; (failed): out of memory, or interrupted
-    // (Device::stopOn).
+    // Error (badInput): a value out of its range (docs/parameters.md) or in conflict with another; (failed): out of memory, interrupted
+    // (Device::stopOn), or `progress` cancelled it.
     // `device` must outlive the world, `forces` are the host's.
     static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
-                                                      const Sources& sources = {}, std::span<const HostForce> forces = {});
+                                                      const Sources& sources = {}, std::span<const HostForce> forces = {},
+                                                      const StartProgress& progress = {});
     ~FluidWorld();
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;

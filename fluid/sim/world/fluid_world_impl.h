@@ -27,6 +27,8 @@
 
 namespace rivulet {
 
+class CpuDevice;
+
 // The time of a world since t = 0, and how it was stepped.
 struct WorldClock {
     double time = 0, dropped = 0;  // s
@@ -81,6 +83,8 @@ struct FluidWorld::Impl {
     WorldClock clock;
     bool cellsValid = false;   // since cellWork()
     bool interrupted = false;  // the last step was, or the last return to valid values
+    StartProgress progress;    // while it is created
+    bool cancelled = false;    // by it
 
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);
@@ -89,6 +93,11 @@ struct FluidWorld::Impl {
     Status checkStart() const;
     void fillStart();
     void relaxStart(const Solids& given);
+    std::vector<vec4> corrected(CpuDevice& cpu, const FluidParams& p, const Solids& around, std::vector<NewParticle> particles,
+                                double until, int rounds, double from, double to);
+    std::vector<vec3> relaxedTile(float jitter);
+    bool advanced(double share);  // reports the part of the start that is done; false: cancelled
+    bool largeStart() const;      // so that blocks are made of tiles
     bool startsClosed() const;
     const BlockParams& blockOf(const NewParticle& particle) const {
         return particle.block == kNoBlock ? *placed : params.blocks[particle.block];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/sources/liquids.h"
@@ -171,10 +172,15 @@ Status FluidWorld::Impl::checkStart() const {
 // The particles of the blocks, without those that would start inside or too near a mesh or behind a plane; those that the host placed,
 // without those inside a solid: a wall pushes the others out.
 void FluidWorld::Impl::fillStart() {
+    std::map<float, std::vector<vec3>> tiles;  // by jitter
+    const bool large = largeStart();
     for (size_t k = 0; k < params.blocks.size(); ++k) {
         const size_t first = start.size();
-        fillBlock(params.blocks[k], params.spacing, start,
-                  k < sourceSetup.blockTriangles.size() ? std::span<const vec3>(sourceSetup.blockTriangles[k]) : std::span<const vec3>());
+        const BlockParams& b = params.blocks[k];
+        if (large && b.jitter > 0 && !tiles.contains(b.jitter)) tiles[b.jitter] = relaxedTile(b.jitter);
+        fillBlock(b, params.spacing, start,
+                  k < sourceSetup.blockTriangles.size() ? std::span<const vec3>(sourceSetup.blockTriangles[k]) : std::span<const vec3>(),
+                  tiles[b.jitter]);
         for (size_t i = first; i < start.size(); ++i) start[i].block = static_cast<uint32_t>(k);
     }
     if (!sourceSetup.particles.empty()) {
@@ -204,6 +210,10 @@ void FluidWorld::Impl::fillStart() {
 bool FluidWorld::Impl::startsClosed() const {
     if (glm::all(traits.periodic)) return true;
     if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || sourceSetup.expectedDeposit > 0 || start.empty()) return false;
+    // Where nothing but liquid fills the box, half of a box has one.
+    const vec3 box = params.box.max - params.box.min;
+    const double filled = static_cast<double>(start.size()) * std::pow(double{params.spacing}, 3);
+    if (!solids.any() && !bodies.any() && filled < 0.5 * double{box.x} * double{box.y} * double{box.z}) return false;
     return !hasFreeSurface(start, params,
                            [&](const vec3& p) { return solids.maySpawn(p, params.spacing) && bodies.maySpawn(p, params.spacing, 1); });
 }

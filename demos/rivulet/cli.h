@@ -11,6 +11,7 @@
 
 #include "engine/core/result.h"
 #include "engine/core/table.h"
+#include "fluid/session/opening_progress.h"
 
 namespace rivulet {
 
@@ -83,6 +84,14 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     void show(double share, std::string_view note = {});  // share: of the work that is done, 0..1; note: text after the bar
+
+    // Shows the steps of opening a scene: for openSession.
+    OpeningSteps steps() {
+        return [this](const std::string& next, double share) {
+            show(share, next);
+            return true;
+        };
+    }
 
   private:
     std::string label_;

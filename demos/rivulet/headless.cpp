@@ -234,7 +234,9 @@ int runHeadless(const RunOptions& options) {
     if (!choice) return report(choice.error());
     const bool traced = !options.trace.empty() || options.cooperate != "off";
     std::unique_ptr<Device> device = makeDevice(choice->backend, gl, options.log, options.device);
-    auto opened = openSession(options.scene, *device, options.log, choice->backend);
+    std::optional<Progress> opening(std::in_place, options.scene.name);
+    auto opened = openSession(options.scene, *device, options.log, choice->backend, opening->steps());
+    opening.reset();
     if (!opened) return report(opened.error());
     if (opened->instead) device = std::move(opened->instead);
     const std::unique_ptr<Session> session = std::move(opened->session);

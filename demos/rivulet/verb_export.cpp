@@ -143,7 +143,9 @@ int exportAs(const ExportRequest& request, const SceneFile& scene) {
     Writer writer(request, scene.name);
     if (Status writable = writer.open(); !writable) return report(writable.error());
     AskedDevice asked = askedDevice(request.backend, log, request.device);
-    auto opened = openSession(scene, *asked.device, log, request.backend);
+    std::optional<Progress> opening(std::in_place, scene.name);
+    auto opened = openSession(scene, *asked.device, log, request.backend, opening->steps());
+    opening.reset();
     if (!opened) return report(opened.error());
     if (opened->instead) asked.device = std::move(opened->instead);
     const std::unique_ptr<Session> session = std::move(opened->session);

@@ -1,5 +1,7 @@
 #include "engine/core/log.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 
@@ -10,7 +12,8 @@ namespace rivulet {
 Log stderrLog(LogLevel least) {
     return Log{[least](LogLevel level, std::string_view text) {
         if (level < least) return;
-        std::fprintf(stderr, "rivulet: %.*s\n", static_cast<int>(text.size()), text.data());
+        const char* erase = isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";  // a bar of progress may be there
+        std::fprintf(stderr, "%srivulet: %.*s\n", erase, static_cast<int>(text.size()), text.data());
     }};
 }
 

@@ -21,6 +21,11 @@ struct OpeningProgress {
         if (!steps || steps(what, static_cast<double>(done++) / total)) return ok();
         return failed("opening " + scene + " was cancelled");
     }
+
+    // A share of the current step is done, 0..1; it counts as `parts` of the total. false: cancelled.
+    bool within(const std::string& what, double share, int parts) const {
+        return !steps || steps(what, (done - 1 + share * parts) / total);
+    }
 };
 
 }  // namespace rivulet

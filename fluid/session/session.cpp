@@ -7,12 +7,20 @@
 
 #include "engine/core/timeline.h"
 #include "fluid/scene/collider_kinds.h"
+#include "fluid/sim/sources/block.h"
 
 namespace rivulet {
 
 namespace {
 
 FluidParams simulated(const SceneFile& scene) { return fluidForLook(scene.fluid, scene.look); }
+
+// The steps of opening that the start of the water counts for: a hundred thousand particles take about as long as a mesh.
+int waterParts(const FluidParams& p) {
+    double particles = 0;
+    for (const BlockParams& b : p.blocks) particles += blockCount(b, p.spacing);
+    return 1 + static_cast<int>(std::min(particles / 1.0e5, 1000.0));
+}
 
 }  // namespace
 
@@ -23,6 +31,8 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     const auto meshes = std::count_if(scene.colliders.begin(), scene.colliders.end(), hasTriangles);
     OpeningProgress progress{steps, scene.name};
     progress.total = static_cast<int>(2 * meshes) + 1 + (scene.bodies.empty() ? 0 : 1) + 1 + static_cast<int>(scene.flow.size());
+    const int water = waterParts(scene.fluid);
+    progress.total += water - 1;
     Result<std::optional<Budget>> budget = openBudget(scene, device, log);
     if (!budget) return budget.error();
     s.budget_ = std::move(*budget);
@@ -34,7 +44,9 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     Log quiet = log;
     if (!s.scene_.flow.empty() && s.scene_.fluid.blocks.empty() && s.scene_.emitters.empty()) quiet.sink = {};
     if (Status on = progress.next("the water"); !on) return on.error();
-    if (Status made = s.makeWorld(device, simulated(s.scene_), quiet); !made) return made.error();
+    const auto started = [&](double share) { return progress.within("the water", share, water); };
+    if (Status made = s.makeWorld(device, simulated(s.scene_), quiet, started); !made) return made.error();
+    progress.done += water - 1;
     if (!s.scene_.flow.empty())
         if (Status on = progress.next("skins"); !on) return on.error();
     if (Status flows = s.flows_.create(s.scene_, device, s.solids_.nodes(), log); !flows)
@@ -45,8 +57,8 @@ Result<std::unique_ptr<Session>> Session::create(SceneFile scene, Device& device
     return session;
 }
 
-Status Session::makeWorld(Device& device, const FluidParams& params, const Log& log) {
-    auto world = FluidWorld::create(device, params, solids_.ofWorld(), log, sources_.ofWorld());
+Status Session::makeWorld(Device& device, const FluidParams& params, const Log& log, const StartProgress& progress) {
+    auto world = FluidWorld::create(device, params, solids_.ofWorld(), log, sources_.ofWorld(), {}, progress);
     if (!world) return Error{fmt::format("{}: {}", scene_.name, world.error().message), world.error().fault};
     world_ = std::move(*world);
     return ok();

@@ -100,7 +100,7 @@ class Session {
   private:
     Session() = default;
     void report(const Status& status) const;  // logs an error
-    Status makeWorld(Device& device, const FluidParams& params, const Log& log);
+    Status makeWorld(Device& device, const FluidParams& params, const Log& log, const StartProgress& progress = {});
     bool anyMoves() const { return solids_.anyMoves() || !flows_.empty(); }
     void advance(double seconds, double deviceMs);
     void watchBudget(double ms, double seconds);

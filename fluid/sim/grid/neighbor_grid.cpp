@@ -18,6 +18,9 @@ namespace {
 
 // Cells above this would take more memory than the particles of any scene that fits one device.
 constexpr double kMostCells = 64.0e6;
+// A grid that may follow its particles does so if it would have more cells than this, and than this for each particle. A full box has a
+// twelfth of a cell for each.
+constexpr double kFewCells = 4.0e6, kCellsEach = 8;
 
 // Takes the first Error of several allocations.
 struct Allocator {
@@ -43,6 +46,9 @@ struct NeighborGrid::Impl {
     ivec3 cells{0};  // padded
     vec3 scale{0.0F}, period{0.0F};
     uint32_t count = 0;
+    Bounds inside;
+    bool window = false;
+    uint32_t cellRoom = 0;  // totalCells() that memory is for
     PairTraits traits;
     Buffer cellStart, cellOf;
 
@@ -66,6 +72,8 @@ struct NeighborGrid::Impl {
     uint32_t totalCells() const { return traits.samples > 0 ? 2 * sortedCells() : sortedCells(); }
     uint32_t firstSample() const { return count - traits.samples; }
     Status allocate();
+    Status allocateCells();
+    Status follow(Bounds wanted);
     Status findKernels();
     CpuGridJob job(Particles& p) const;
     Status growLists(uint32_t needed);
@@ -83,27 +91,78 @@ Status NeighborGrid::Impl::allocate() {
         cellCounts = take(sorted * sizeof(uint32_t));
         return take.status;
     }
-    cellStart = take((sorted + 4) * sizeof(uint32_t));
+    if (Status cellsFit = allocateCells(); !cellsFit) return cellsFit;
     cellOf = take(count * sizeof(uint32_t));
     if (onCpu()) {
-        chunks = static_cast<uint32_t>(std::clamp(static_cast<CpuDevice*>(device)->threads(), 1, 16));
         for (Buffer* b : {&x, &y, &z}) *b = take((count + 8) * sizeof(float));
-        histogram = take(chunks * (sorted + 3) * sizeof(uint32_t));
         segmentSum = take(kScanSegments * sizeof(uint32_t));
-        // A row's last group may be short: at most one such a row.
-        const size_t rows = sorted / (2 * static_cast<size_t>(cells.x));
-        groups = take((count / 8 + std::min<size_t>(count, rows) + 1) * sizeof(CpuGroup));
         listCursor = take(sizeof(uint32_t));
         lists = take(sizeof(CpuNeighborLists));
         listCapacity = count * 14 + 64 * kListRegion / 8;
         list = take(size_t{listCapacity} * sizeof(uint32_t));
     } else {
-        cellCounts = take((sorted + 4) * sizeof(uint32_t));
         rank = take(count * sizeof(uint32_t));
         order = take(count * sizeof(uint32_t));
-        blockSum = take(((sorted + 4) / SCAN_BLOCK + 1) * sizeof(uint32_t));
     }
     return take.status;
+}
+
+// What has a size of the number of cells. On an Error all of it stays as it was.
+Status NeighborGrid::Impl::allocateCells() {
+    Allocator take{*device};
+    const size_t sorted = totalCells();
+    Buffer starts = take((sorted + 4) * sizeof(uint32_t)), held, lanes;
+    if (onCpu()) {
+        chunks = static_cast<uint32_t>(std::clamp(static_cast<CpuDevice*>(device)->threads(), 1, 16));
+        held = take(chunks * (sorted + 3) * sizeof(uint32_t));
+        // A row's last group may be short: at most one such a row. A window may get other rows.
+        const size_t rows = window ? count : sorted / (2 * static_cast<size_t>(cells.x));
+        lanes = take((count / 8 + std::min<size_t>(count, rows) + 1) * sizeof(CpuGroup));
+    } else {
+        held = take((sorted + 4) * sizeof(uint32_t));
+        lanes = take(((sorted + 4) / SCAN_BLOCK + 1) * sizeof(uint32_t));
+    }
+    if (!take.status) return take.status;
+    cellStart = std::move(starts);
+    (onCpu() ? histogram : cellCounts) = std::move(held);
+    (onCpu() ? groups : blockSum) = std::move(lanes);
+    cellRoom = totalCells();
+    return ok();
+}
+
+Status NeighborGrid::Impl::follow(Bounds wanted) {
+    if (wanted.empty()) wanted = {inside.min, inside.min};
+    wanted = {glm::clamp(wanted.min, inside.min, inside.max), glm::clamp(wanted.max, inside.min, inside.max)};
+    const vec3 edge = 1.0F / glm::max(scale, vec3(1.0e-30F));
+    const Bounds now{origin + 2.0F * edge, origin + (vec3(cells) - 2.0F) * edge};  // a cell more than has to be
+    if (cellRoom > 0 && glm::all(glm::greaterThanEqual(wanted.min, now.min)) && glm::all(glm::lessThanEqual(wanted.max, now.max)))
+        return ok();
+    const double most = std::max(kFewCells, kCellsEach * count);
+    ivec3 low, high;
+    double wide = double{h};
+    for (double all = most + 1; all > most; wide *= 1.1) {
+        for (int k = 0; k < 3; ++k) {
+            const double room = std::max(4 * wide, 0.1 * double{wanted.size()[k]});  // so that the next steps find it in place
+            low[k] = static_cast<int>(std::floor(std::max(double{wanted.min[k]} - room - double{inside.min[k]}, 0.0) / wide)) - 2;
+            high[k] = static_cast<int>(
+                          std::ceil(std::min(double{wanted.max[k]} + room - double{inside.min[k]}, double{inside.size()[k]}) / wide)) +
+                      2;
+        }
+        all = (onCpu() ? 2.0 : 1.0) * (traits.samples > 0 ? 2 : 1);
+        for (int k = 0; k < 3; ++k) all *= high[k] - low[k] + 2;
+        if (all <= most) break;
+    }
+    const ivec3 before = std::exchange(cells, high - low + 2);
+    if (totalCells() > cellRoom)
+        if (Status larger = allocateCells(); !larger) {
+            cells = before;
+            return larger;
+        }
+    for (int k = 0; k < 3; ++k) {
+        scale[k] = static_cast<float>(1 / wide);
+        origin[k] = static_cast<float>(double{inside.min[k]} + (low[k] - 1) * wide);
+    }
+    return ok();
 }
 
 Status NeighborGrid::Impl::findKernels() {
@@ -289,6 +348,14 @@ Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, 
     impl->traits = traits;
     const vec3 size = inside.size() / h;
     const double cells = (std::ceil(double{size.x}) + 3) * (std::ceil(double{size.y}) + 3) * (std::ceil(double{size.z}) + 3);
+    impl->inside = inside;
+    impl->window = traits.follows && !glm::any(traits.periodic) && !traits.linked && cells > std::max(kFewCells, kCellsEach * count);
+    if (impl->window) {
+        if (Status s = impl->findKernels(); !s) return s.error();
+        if (Status s = impl->follow({}); !s) return s.error();
+        if (Status s = impl->allocate(); !s) return s.error();
+        return NeighborGrid(std::move(impl));
+    }
     if (cells > kMostCells)
         return badInput(fmt::format(
             "the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
@@ -340,6 +407,9 @@ void NeighborGrid::fill(StepParams& params) const {
     params.totalCells = g.totalCells();
     params.firstSample = g.firstSample();
 }
+
+bool NeighborGrid::isWindow() const { return impl_->window; }
+Status NeighborGrid::follow(const Bounds& wanted) { return impl_->follow(wanted); }
 
 Status NeighborGrid::build(const StepParams& params, Particles& particles) {
     if (impl_->onCpu()) return impl_->buildCpu(particles);

@@ -24,6 +24,7 @@ struct PairTraits {
     uint32_t samples = 0;    // on bodies: the last ids
     bool walls = true;       // else the box wraps round along all axes and there are no colliders
     bool linked = false;     // fluid.grid linked_list
+    bool follows = false;    // a grid whose cells would be many times the particles may cover a part of its bounds: NeighborGrid::follow
     uint32_t workGroup = 0;  // threads, of a GPU; 0 = the device's default
     // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that tests which particles take part.
     std::vector<Define> threadDefines() const;
@@ -35,13 +36,19 @@ struct PairTraits {
 class NeighborGrid {
   public:
     // `inside`: where particles may be (m); `count`: slots, samples with them. Error: so many cells that memory would not hold them, with
-    // what spacing would fit; a periodic axis shorter than 2 h.
+    // what spacing would fit, unless traits.follows; a periodic axis shorter than 2 h.
     static Result<NeighborGrid> create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits = {});
     NeighborGrid(NeighborGrid&&) noexcept;
     NeighborGrid& operator=(NeighborGrid&&) noexcept;
     ~NeighborGrid();
 
     void fill(StepParams& params) const;  // the grid's part of it
+
+    // Whether it covers a part of its bounds alone, because cells for all of them would be many more than the particles. Then follow() must
+    // be called before each build: it covers `wanted` (m), with room about it, so that it seldom changes, and fill() has other values.
+    // Where that holds too many cells they are wider than h. Error (failed): out of memory; nothing has changed then.
+    bool isWindow() const;
+    Status follow(const Bounds& wanted);
     // Lists reach this times h: for methods that move particles between builds.
     void setMargin(float margin);
     // GPU, sorted: sets the cells of the particles in their present order, as fluid/grid/cell_of computes them; the next build uses them.

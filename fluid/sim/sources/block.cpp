@@ -146,7 +146,7 @@ void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to
             ivec3 next(0);
             next[axis] = 1;
             if (has(c - next) && has(c + next))
-                away[axis] = spacing * (tile.empty() ? b.jitter * jittered(place, static_cast<uint32_t>(axis)) : ofTile[axis]);
+                away[axis] = tile.empty() ? b.jitter * spacing * jittered(place, static_cast<uint32_t>(axis)) : spacing * ofTile[axis];
         }
         return away;
     };

@@ -112,6 +112,10 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), limits.fastestEver) : kAnySpeed;
     bool built = false;
+    if (around) {
+        follow(step);
+        around->moved();
+    }
     StepContext context{
         .device = *device,
         .fluid = params,
@@ -351,6 +355,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
     if (traits.matter) buffers.insert(buffers.end(), {&particles.id, &particles.matterOf});
     device->dispatch(stats, std::as_bytes(std::span(&step, 1)), buffers, STATS_THREADS);
     if (device->interrupted()) return;
+    if (around) around->measure(*device, step, *grid, particles);
     const FluidStats now{.frame = clock.frame,
                          .time = until,
                          .particles = particles.count,
@@ -415,7 +420,7 @@ std::vector<ProbeFrame> FluidWorld::takeLoads() { return impl_->probes ? impl_->
 
 bool FluidWorld::hasCellWork() const {
     const Impl& w = *impl_;
-    return w.device->backend() != Backend::cpu && !w.traits.linked && w.traits.samples == 0 && !glm::any(w.traits.periodic) &&
+    return w.device->backend() != Backend::cpu && !w.around && !w.traits.linked && w.traits.samples == 0 && !glm::any(w.traits.periodic) &&
            !w.method->predicts();
 }
 

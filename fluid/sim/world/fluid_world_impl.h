@@ -8,6 +8,7 @@
 
 #include "fluid/sim/forces/world_forces.h"
 #include "fluid/sim/grid/neighbor_grid.h"
+#include "fluid/sim/grid/particle_bounds.h"
 #include "fluid/sim/methods/method.h"
 #include "fluid/sim/query/volumes.h"
 #include "fluid/sim/query/water_query.h"
@@ -46,6 +47,7 @@ struct FluidWorld::Impl {
     Log log;
     std::unique_ptr<Method> method;
     std::unique_ptr<NeighborGrid> grid;
+    std::optional<ParticleBounds> around;  // of the particles, if the grid is a window
     Particles particles;
     std::vector<NewParticle> start;
     std::optional<BlockParams> placed;  // bounds, highest speed and liquid of the particles that the host placed
@@ -114,9 +116,10 @@ struct FluidWorld::Impl {
     void fillStep();
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
     void report(const std::string& sentence);
-    bool refusesStep();      // a stop is asked, or the state is not valid
-    Status whole() const;    // Error (failed): the last step was interrupted
-    void invalidateCells();  // particles are moved between steps
+    bool refusesStep();          // a stop is asked, or the state is not valid
+    Status whole() const;        // Error (failed): the last step was interrupted
+    void invalidateCells();      // particles are moved between steps
+    void follow(StepParams& s);  // moves a grid that is a window to the particles
     template <class Answer, class Ask>
     Result<std::vector<Answer>> ask(size_t count, const Ask& how);
     Status prepareQuery(StepParams& params);

@@ -18,6 +18,7 @@ Status FluidWorld::Impl::prepareQuery(StepParams& s) {
     s.h = params.supportSpacings * params.spacing;
     s.invH = 1.0F / s.h;
     s.spacing = params.spacing;
+    if (around && !sorted && !sortedForQuery) follow(s);
     grid->fill(s);
     if (sorted || sortedForQuery) return ok();
     if (Status built = grid->build(s, particles); !built) return built;

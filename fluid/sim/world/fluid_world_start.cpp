@@ -43,6 +43,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     traits.periodic = params.box.periodic();
     traits.walls = !glm::all(traits.periodic) || solids.any();
     traits.samples = bodies.sampleCount();
+    traits.follows = sourceSetup.expectedDeposit == 0;  // deposits come at any place
     traits.matter = traits.matter || bodies.any();
     for (const Wanted& w : {Wanted{&stats, "fluid/world/stats",
                                    traits.matter   ? std::vector<Define>{{"MATTER", "1"}}
@@ -68,6 +69,11 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     Result<NeighborGrid> newGrid = NeighborGrid::create(*device, Bounds{params.box.min, params.box.max}, h, count, traits);
     if (!newGrid) return newGrid.error();
     grid = std::make_unique<NeighborGrid>(std::move(*newGrid));
+    if (grid->isWindow()) {
+        Result<ParticleBounds> bounds = ParticleBounds::create(*device);
+        if (!bounds) return bounds.error();
+        around = std::move(*bounds);
+    }
     if (glm::any(traits.periodic)) {
         Result<Buffer> low = device->allocate(sizeof(vec4));
         if (!low) return low.error();
@@ -297,6 +303,7 @@ void FluidWorld::Impl::writeStart() {
     }
     if (coloured) device->writeAll<vec4>(particles.absorptionOf, absorptionOf);
     device->writeAll<vec4>(particles.positionNext, position);
+    if (around) around->set(position);
     device->writeAll<vec4>(particles.velocityNext, velocity);
     device->writeAll<uint32_t>(particles.id, id);
     sources.reset();
@@ -325,6 +332,19 @@ void FluidWorld::Impl::writeStart() {
     for (const NewParticle& p : start) limits.fastestStart = std::max(limits.fastestStart, glm::length(p.velocity));
     assumeFastest(double{limits.fastestStart});
     figures->emitted = static_cast<double>(startCount) * std::pow(double{params.spacing}, 3);
+}
+
+void FluidWorld::Impl::follow(StepParams& s) {
+    // A step takes no particle further than a spacing, unless limits are off.
+    Bounds wanted = around->next((params.limits ? 1.0F : 4.0F) * params.spacing);
+    for (const Emitter& e : sourceSetup.emitters) {
+        const vec3 reach(e.params.radius + glm::length(e.params.size) + e.params.fitSize + params.spacing);
+        wanted.add(e.params.position - reach);
+        wanted.add(e.params.position + reach);
+        for (const vec3& corner : e.triangles) wanted.add(corner);
+    }
+    if (Status there = grid->follow(wanted); !there) report(there.error().message);
+    grid->fill(s);
 }
 
 void FluidWorld::Impl::assumeFastest(double speed) {

@@ -99,6 +99,7 @@ Status FluidWorld::restore(WorldState& state) {
     w.writeStart();
     if (startCount) w.startCount = *startCount;
     w.particles.restore(*w.device, *saved);
+    if (w.around) w.around->set(saved->position);
     w.gatherColours();
     w.sources.restore(*sources);
     w.withdrawn = taken;
@@ -183,6 +184,7 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
         if (k < kept.size()) velocities[k] = velocity[kept[k]];
     }
     w.device->writeAll<vec4>(w.particles.positionNext, positions);
+    if (w.around) w.around->set(positions);
     w.device->writeAll<vec4>(w.particles.velocityNext, velocities);
     const auto handOver = [&](Buffer& of, const Buffer& from, bool has, const vec4& otherwise) {
         if (of.bytes() == 0) return;

@@ -1,0 +1,106 @@
+// A grid that covers a part of a large domain and follows the particles: the water flows as in a small domain, costs what it costs there,
+// and no neighbour is lost where the window moves or its cells are wide.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fluid/sim/world/host_particles.h"
+#include "tests/physics/worlds.h"
+
+namespace rivulet::window_grid_test {
+namespace {
+
+// A drop that flies at `velocity` from `centre`.
+FluidParams drop(const vec3& boxMax, const vec3& centre, const vec3& velocity) {
+    FluidParams p;
+    p.method = "pbf";
+    p.maxSubsteps = 1000;
+    p.spacing = 0.1F;
+    p.box.max = boxMax;
+    p.gravity = vec3(0.0F);
+    p.blocks = {{.min = centre - 0.5F, .max = centre + 0.5F, .velocity = velocity}};
+    return p;
+}
+
+// The box is 1 km x 100 m x 1 km: 7,300 million cells, of which memory for 64 million was the limit.
+TEST(WindowGrid, WaterInAKilometreFlowsAsInASmallBox) {
+    const vec3 velocity(150, 0, 100);  // 13 cells in a frame, more than the room about the window
+    const vec3 far(512, 50, 512), near(2, 2, 2);
+    auto device = cpu(), other = cpu();
+    auto large = makeWorld(*device, drop(vec3(1000, 100, 1000), far, velocity));
+    const size_t bytes = device->bytesAllocated();
+    auto small = makeWorld(*other, drop(vec3(40, 40, 40), near, velocity));
+    ASSERT_TRUE(large && small);
+    EXPECT_LT(bytes, 2 * other->bytesAllocated() + (64U << 20U)) << "4 million cells at most";
+    int substeps = 0;
+    for (int frame = 0; frame < 10; ++frame) {
+        large->step({}, 1.0 / 60);
+        small->step({}, 1.0 / 60);
+        substeps += large->lastSubsteps();
+    }
+    const FluidStats &a = large->stats(), &b = small->stats();
+    EXPECT_EQ(a.lost, 0U);
+    EXPECT_EQ(a.particles, 1000U);
+    // 30 m, many times the window. Each substep rounds a position there to half of 2^-14 m, which pbf takes for a part of its path.
+    const double rounding = 0.5 / 16384, path = 30.05 / substeps;
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(a.centreOfMass[axis] - double{far[axis]}, double{velocity[axis]} / 6, 0.01 + substeps * rounding);
+        EXPECT_NEAR(a.centreOfMass[axis] - double{far[axis]}, b.centreOfMass[axis] - double{near[axis]}, substeps * rounding);
+    }
+    EXPECT_NEAR(a.kinetic / b.kinetic, 1, 2 * rounding / path);
+    EXPECT_NEAR(a.avgCompression, b.avgCompression, 0.1 * b.avgCompression + 1.0e-5);
+    // A question and a start anew, which find the window elsewhere.
+    const std::vector<vec3> inside = {far + vec3(a.centreOfMass[0] - double{far.x}, 0, a.centreOfMass[2] - double{far.z})};
+    auto found = large->sample(inside);
+    ASSERT_TRUE(found);
+    EXPECT_GT((*found)[0].density, 0.9F);
+    large->reset();
+    found = large->sample(std::vector<vec3>{far});
+    ASSERT_TRUE(found);
+    EXPECT_GT((*found)[0].density, 0.9F);
+}
+
+// Two drops a kilometre apart: cells are then wider than the reach, and no pair is missed.
+TEST(WindowGrid, FarApartCellsAreWider) {
+    FluidParams p = drop(vec3(1000, 100, 1000), vec3(2, 50, 2), vec3(0, 0, 0));
+    p.blocks.push_back({.min = vec3(995, 50, 995), .max = vec3(996, 51, 996)});
+    FluidParams q = drop(vec3(10, 100, 10), vec3(2, 50, 2), vec3(0, 0, 0));
+    auto device = cpu(), other = cpu();
+    auto both = makeWorld(*device, p), one = makeWorld(*other, q);
+    both->step({}, 1.0 / 60);
+    one->step({}, 1.0 / 60);
+    EXPECT_EQ(both->stats().lost, 0U);
+    EXPECT_EQ(both->stats().particles, 2000U);
+    const HostParticles now = readParticles(*both), alone = readParticles(*one);
+    double denser = 0, of = 0;
+    for (const vec4& x : now.position) denser += x.x < 500 ? double{x.w} : 0;
+    for (const vec4& x : alone.position) of += double{x.w};
+    EXPECT_NEAR(denser / of, 1, 1.0e-4);
+}
+
+// A world continues from a saved state with its window where the water was.
+TEST(WindowGrid, IsWhereASavedStateWas) {
+    auto device = cpu();
+    auto world = makeWorld(*device, drop(vec3(1000, 100, 1000), vec3(100, 50, 100), vec3(60, 0, 0)));
+    for (int frame = 0; frame < 20; ++frame) world->step({}, 1.0 / 60);
+    WorldState state;
+    world->save(state);
+    world->step({}, 1.0 / 60);
+    const HostParticles first = readParticles(*world);
+    world->reset();
+    world->step({}, 1.0 / 60);
+    ASSERT_TRUE(world->restore(state));
+    world->step({}, 1.0 / 60);
+    EXPECT_EQ(world->stats().lost, 0U);
+    EXPECT_EQ(world->stats().particles, 1000U);
+    const HostParticles again = readParticles(*world);
+    double furthest = 0;
+    std::vector<vec3> byId(first.id.size());
+    for (size_t k = 0; k < first.id.size(); ++k) byId[first.id[k]] = vec3(first.position[k]);
+    for (size_t k = 0; k < again.id.size(); ++k)
+        furthest = std::max(furthest, double{glm::distance(byId[again.id[k]], vec3(again.position[k]))});
+    EXPECT_LT(furthest, 1.0e-3);
+}
+
+}  // namespace
+}  // namespace rivulet::window_grid_test

@@ -102,5 +102,41 @@ TEST(WindowGrid, IsWhereASavedStateWas) {
     EXPECT_LT(furthest, 1.0e-3);
 }
 
+// A host that moves the origin of its coordinates tells the world so: particles, jets and walls stay where they are in space, to double
+// precision, and the water flows on as if nothing had been.
+TEST(OriginShift, MovesNothingInSpace) {
+    FluidParams p = drop(vec3(4, 4, 4), vec3(2, 1, 2), vec3(0, 0, 0));
+    p.gravity = vec3(0, -9.81F, 0);
+    Solids solids;
+    solids.planes = {{.position = vec3(0, 0.3F, 0), .normal = vec3(0.2F, 1, 0)}};
+    Emitter jet;
+    jet.params.position = vec3(3, 3, 3);
+    jet.params.litresPerSecond = 50;
+    jet.params.radius = 0.3F;
+    auto device = cpu(), other = cpu();
+    auto shifted = FluidWorld::create(*device, p, solids, {}, {.emitters = {jet}}),
+         still = FluidWorld::create(*other, p, solids, {}, {.emitters = {jet}});
+    ASSERT_TRUE(shifted && still);
+    const dvec3 first(4.0e6, -12.5, 1.0e5);
+    (*shifted)->setOrigin(first);
+    dvec3 moved(0.0);
+    for (int frame = 0; frame < 20; ++frame) {
+        if (frame % 5 == 4) {
+            const dvec3 by(1024.5 * frame, -3.25, 77.125);  // of the host's origin
+            const dvec3 place = (*shifted)->toHost(vec3(1, 2, 3));
+            (*shifted)->setOrigin((*shifted)->origin() - by);
+            moved += by;
+            EXPECT_EQ((*shifted)->toHost(vec3(1, 2, 3)), place - by);
+        }
+        (*shifted)->step({}, 1.0 / 60);
+        (*still)->step({}, 1.0 / 60);
+    }
+    EXPECT_EQ((*shifted)->origin(), first - moved);
+    EXPECT_EQ(readParticles(**shifted).position, readParticles(**still).position);
+    EXPECT_EQ(readParticles(**shifted).velocity, readParticles(**still).velocity);
+    EXPECT_GT((*shifted)->stats().particles, 1000U) << "the jet runs";
+    EXPECT_EQ((*shifted)->fromHost((*shifted)->toHost(vec3(1, 2, 3))), vec3(1, 2, 3));
+}
+
 }  // namespace
 }  // namespace rivulet::window_grid_test

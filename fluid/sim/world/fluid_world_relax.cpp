@@ -113,14 +113,14 @@ class Surroundings {
 
 }  // namespace
 
-// Up to `rounds` of corrections of `particles`, until none is compressed by more than `until`. Returns where they are, m, with the ratio of
+// Up to `rounds` of corrections of `those`, until none is compressed by more than `until`. Returns where they are, m, with the ratio of
 // density in w, and notes the part of the start that is done, `from` .. `to`. Empty: not possible (too fine for pbf, say), interrupted or
 // cancelled.
-std::vector<vec4> FluidWorld::Impl::corrected(CpuDevice& cpu, const FluidParams& p, const Solids& around,
-                                              std::vector<NewParticle> particles, double until, int rounds, double from, double to) {
-    const size_t count = particles.size();
+std::vector<vec4> FluidWorld::Impl::corrected(CpuDevice& cpu, const FluidParams& p, const Solids& walls, std::vector<NewParticle> those,
+                                              double until, int rounds, double from, double to) {
+    const size_t count = those.size();
     if (!advanced(from)) return {};
-    Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(cpu, p, around, {}, {.particles = std::move(particles)});
+    Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(cpu, p, walls, {}, {.particles = std::move(those)});
     if (!made) return {};
     Impl& w = *(*made)->impl_;
     if (w.start.size() != count) return {};
@@ -142,7 +142,8 @@ std::vector<vec4> FluidWorld::Impl::corrected(CpuDevice& cpu, const FluidParams&
 bool FluidWorld::Impl::largeStart() const {
     double wanted = static_cast<double>(sourceSetup.particles.size());
     for (const BlockParams& b : params.blocks) wanted += blockCount(b, params.spacing);
-    return wanted > static_cast<double>(kMostWhole);
+    // Once the start is filled, it holds the host's particles too.
+    return std::max(wanted, static_cast<double>(start.size())) > static_cast<double>(kMostWhole);
 }
 
 // Offsets of a tile without a surplus of density, in spacings. Empty: not possible.
@@ -151,11 +152,11 @@ std::vector<vec3> FluidWorld::Impl::relaxedTile(float jitter) {
     p.box = {.min = vec3(0.0F), .max = vec3(kTile * p.spacing), .periodicX = true, .periodicY = true, .periodicZ = true};
     std::vector<vec3> offsets = randomTile(jitter);
     const auto site = [&](size_t k) { return p.spacing * (vec3(k % kTile, k / kTile % kTile, k / (kTile * kTile)) + 0.5F); };
-    std::vector<NewParticle> particles(offsets.size());
-    for (size_t k = 0; k < offsets.size(); ++k) particles[k].position = glm::clamp(site(k) + p.spacing * offsets[k], p.box.min, p.box.max);
+    std::vector<NewParticle> those(offsets.size());
+    for (size_t k = 0; k < offsets.size(); ++k) those[k].position = glm::clamp(site(k) + p.spacing * offsets[k], p.box.min, p.box.max);
     const std::unique_ptr<CpuDevice> cpu = makeCpuDevice(cpuKernels());
     cpu->stopOn(device->stopFlag());
-    const std::vector<vec4> at = corrected(*cpu, p, {}, std::move(particles), kTileRelaxed, kTileRounds, 0, kTileShare);
+    const std::vector<vec4> at = corrected(*cpu, p, {}, std::move(those), kTileRelaxed, kTileRounds, 0, kTileShare);
     if (at.empty()) return {};
     for (size_t k = 0; k < offsets.size(); ++k) {
         offsets[k] = (vec3(at[k]) - site(k)) / p.spacing;
@@ -168,7 +169,7 @@ std::vector<vec3> FluidWorld::Impl::relaxedTile(float jitter) {
 // cannot serve (too fine for pbf, say) starts as it is.
 void FluidWorld::Impl::relaxStart(const Solids& given) {
     if (!mayBeDense(params, given) || start.empty()) return;
-    const Solids around = atRest(given);
+    const Solids walls = atRest(given);
     FluidParams p = weightless(params);
     const std::unique_ptr<CpuDevice> cpu = makeCpuDevice(cpuKernels());
     cpu->stopOn(device->stopFlag());
@@ -179,13 +180,13 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
         particle.velocity = velocityAt(params.blocks[particle.block], particle.position);
     };
     if (!largeStart()) {
-        const std::vector<vec4> at = corrected(*cpu, p, around, start, kRelaxed, kMostRounds, 0, 1);
+        const std::vector<vec4> at = corrected(*cpu, p, walls, start, kRelaxed, kMostRounds, 0, 1);
         for (size_t k = 0; k < at.size(); ++k) put(k, at[k]);
         return;
     }
     // One correction of all tells where the surplus is.
     p.pbf.iterations = 1;
-    std::vector<vec4> at = corrected(*cpu, p, around, start, 0, 1, kTileShare, kSearchShare);
+    std::vector<vec4> at = corrected(*cpu, p, walls, start, 0, 1, kTileShare, kSearchShare);
     for (size_t k = 0; k < at.size(); ++k) put(k, at[k]);
     p.pbf.iterations = kCorrections;
     for (int round = 0; round < kMostRounds && !at.empty(); ++round) {
@@ -205,8 +206,8 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
                 part.push_back(start[k]);
                 which.push_back(k);
             }
-        const double step = (1 - kSearchShare) / kMostRounds, from = kSearchShare + step * round;
-        const std::vector<vec4> moved = corrected(*cpu, p, around, std::move(part), 0, 1, from, from + step);
+        const double each = (1 - kSearchShare) / kMostRounds, from = kSearchShare + each * round;
+        const std::vector<vec4> moved = corrected(*cpu, p, walls, std::move(part), 0, 1, from, from + each);
         if (moved.empty()) break;
         for (size_t i = 0; i < which.size(); ++i) {
             const size_t k = which[i];

@@ -17,6 +17,7 @@ constexpr ColourRow kColourRows[] = {
     {"id", "a constant colour for each particle", ColourBy::id},
     {"dye", "absorption of the particle's liquid and dye", ColourBy::dye},
     {"normal", "normal of the surface: x, y, z as red, green, blue", ColourBy::normal, true},
+    {"sleep", "blue: a particle that sleeps (fluid.sleep)", ColourBy::sleep},
     {"surface", "blue: a particle of the surface", ColourBy::surface, true},
 };
 constexpr Table<ColourRow> kColours{kColourRows};

@@ -9,7 +9,7 @@ namespace rivulet {
 struct FilterRow;  // fluid/render/filters.h
 
 // What the colour of a point shows.
-enum class ColourBy { speed, density, id, dye, normal, surface };
+enum class ColourBy { speed, density, id, dye, normal, surface, sleep };
 struct ColourRow {
     const char* name;
     const char* doc;

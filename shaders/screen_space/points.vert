@@ -4,7 +4,7 @@
 ROWS(1, velocities)   // normal, surface: normals, w their length
 layout(binding = 26) uniform usamplerBuffer ids;
 ROWS(3, absorptions)  // see FluidView
-uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye, 4 normal, 5 surface
+uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye, 4 normal, 5 surface, 6 sleep
 uniform int alike;        // 1: all particles have ownAbsorption
 uniform vec3 ownAbsorption;  // 1/m
 uniform float dyeDepth;      // m, depth of liquid and dye that a sphere's colour represents
@@ -25,5 +25,6 @@ void main() {
     }
     else if (colourBy == 4) baseColour = abs(velocity.xyz) / max(length(velocity.xyz), 1.0e-6);  // the thesis's (9)
     else if (colourBy == 5) baseColour = velocity.w > 0.5 ? vec3(0.05, 0.15, 0.9) : vec3(0.9, 0.75, 0.05);
+    else if (colourBy == 6) baseColour = velocity.w < 0.0 ? vec3(0.05, 0.12, 0.45) : vec3(0.95, 0.55, 0.08);
     else baseColour = ramp(fract(float((id * 2654435769u) >> 8) / 16777216.0));
 }

@@ -41,6 +41,8 @@ struct ForceRow {
     StepLimit (*limit)(const ForceLimitInputs& inputs) = nullptr;  // none: it limits no step. Called whether it is on or not
     float (*fastest)(const FluidParams& params) = nullptr;         // m/s, as HostForce::fastest
     float (*pressure)(const FluidParams& params) = nullptr;        // Pa, the most that it causes inside the fluid; none: little
+    // True: its kernels read results of their own of a neighbour, which a sleeping particle does not have, so nothing may sleep.
+    bool keepsAwake = false;
 };
 Table<ForceRow> forces();  // by `order`
 

@@ -24,7 +24,7 @@ Result<ForcePass> make(Device& device, const MethodSetup& setup) {
         Particles& p = c.particles;
         std::vector<const Buffer*> buffers = {&c.grid.cellStart(), &p.velocity, &p.density, &p.acceleration};
         if (differ) buffers.push_back(&p.matter);
-        c.device.dispatch(air, std::as_bytes(std::span(&s, 1)), buffers, p.count);
+        c.device.dispatch(air, std::as_bytes(std::span(&s, 1)), buffers, c.params.awakeSlots);
     });
 }
 

@@ -44,7 +44,8 @@ ForceRow row() {
             .order = 10,
             .remedy = "set fluid.forces.normals to none",
             .on = on,
-            .make = make};
+            .make = make,
+            .keepsAwake = true};
 }
 
 }  // namespace rivulet::force_normals

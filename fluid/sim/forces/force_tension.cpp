@@ -111,7 +111,8 @@ ForceRow row() {
             .make = make,
             .limit = limit,
             .fastest = fastest,
-            .pressure = pressure};
+            .pressure = pressure,
+            .keepsAwake = true};
 }
 
 }  // namespace rivulet::force_tension

@@ -42,7 +42,8 @@ ForceRow row() {
             .order = 20,
             .remedy = "set fluid.forces.thesisTension to 0",
             .on = on,
-            .make = make};
+            .make = make,
+            .keepsAwake = true};
 }
 
 }  // namespace rivulet::force_thesis_tension

@@ -58,7 +58,7 @@ class Viscosity {
         if (!walls_) return;
         std::vector<const Buffer*> buffers = {&c.grid.cellStart(), &p.velocity, &friction, &p.acceleration};
         if (explicit_.matter) buffers.push_back(&p.matter);
-        c.device.dispatch(drag, std::as_bytes(std::span(&c.params, 1)), buffers, p.count);
+        c.device.dispatch(drag, std::as_bytes(std::span(&c.params, 1)), buffers, c.params.awakeSlots);
         if (c.probes != nullptr) c.probes->friction(c.params, friction, p.velocity);
     }
 
@@ -90,7 +90,7 @@ class Viscosity {
         }
         std::vector<const Buffer*> buffers = {&cells, &p.velocity, &p.acceleration, &solved, &left};
         if (explicit_.matter) buffers.push_back(&p.matter);
-        device.dispatch(guess, std::as_bytes(std::span(&c.params, 1)), buffers, p.count);
+        device.dispatch(guess, std::as_bytes(std::span(&c.params, 1)), buffers, c.params.awakeSlots);
         start.run(c, c.params, {&neighbors, &p.position, &solved, &friction, &left}, threads);
         StepParams s = c.params;
         const double tolerance = c.fluid.forces.viscosityTolerance;
@@ -104,12 +104,12 @@ class Viscosity {
                 device.readLater(result, result.bytes(), [&](std::span<const std::byte> b) { *last_ = read(b, tolerance); });
                 if (last_->squared <= last_->goal) break;
             }
-            device.run(update, s, {&cells, &result, &applied, &solved, &left, &direction, &changed}, p.count);
+            device.run(update, s, {&cells, &result, &applied, &solved, &left, &direction, &changed}, c.params.awakeSlots);
         }
         if (!cpu)
             device.readLater(result, result.bytes(),
                              [into = last_, tolerance](std::span<const std::byte> b) { *into = read(b, tolerance); });
-        device.run(finish, c.params, {&cells, &p.velocity, &solved, &left, &p.acceleration}, p.count);
+        device.run(finish, c.params, {&cells, &p.velocity, &solved, &left, &p.acceleration}, c.params.awakeSlots);
         pushSamples(c, solved);
         if (walls_ && c.probes != nullptr) c.probes->friction(c.params, friction, solved);
     }

@@ -43,7 +43,8 @@ ForceRow row() {
             .order = 40,
             .remedy = "set fluid.forces.vorticity to 0",
             .on = on,
-            .make = make};
+            .make = make,
+            .keepsAwake = true};
 }
 
 }  // namespace rivulet::force_vorticity

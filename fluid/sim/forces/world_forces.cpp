@@ -23,10 +23,16 @@ Result<WorldForces> WorldForces::create(std::span<const HostForce> hosts) {
             if (other.name == f.name) return badInput(fmt::format("the host has two forces '{}': give each a name of its own", f.name));
         if (forces().find(f.name) != nullptr)
             return badInput(fmt::format("there is a force '{}' already: give the host's another name", f.name));
-        made.entries_.push_back({f.name, "turn it off", [f](const FluidParams& p, bool) { return f.on == nullptr || f.on(f.self, p); },
-                                 [f](Device& d, const MethodSetup& setup) { return f.make(f.self, d, setup); }});
+        made.entries_.push_back({f.name,
+                                 "turn it off",
+                                 [f](const FluidParams& p, bool) { return f.on == nullptr || f.on(f.self, p); },
+                                 [f](Device& d, const MethodSetup& setup) { return f.make(f.self, d, setup); },
+                                 {},
+                                 false,
+                                 true});
     }
-    for (const ForceRow& force : forces().rows) made.entries_.push_back({force.name, force.remedy, force.on, force.make});
+    for (const ForceRow& force : forces().rows)
+        made.entries_.push_back({force.name, force.remedy, force.on, force.make, {}, false, force.keepsAwake});
     return made;
 }
 
@@ -57,6 +63,12 @@ std::vector<std::string> WorldForces::update(Device& device, const MethodSetup& 
 
 bool WorldForces::anyOn() const {
     return std::any_of(entries_.begin(), entries_.end(), [](const Entry& f) { return f.on; });
+}
+
+const char* WorldForces::keepsAwake() const {
+    for (const Entry& f : entries_)
+        if (f.on && f.keepsAwake) return f.name.c_str();
+    return nullptr;
 }
 
 void WorldForces::run(StepContext& context) const {

@@ -56,6 +56,9 @@ struct NeighborGrid::Impl {
     uint32_t chunks = 1;
     uint32_t groupCount = 0, fluidGroups = 0;
     uint32_t listCapacity = 0;
+    uint32_t awakeSlots = 0;  // slots before those of sleeping particles, as last sorted
+    bool sortAsleep = true;   // the next sort sorts sleeping particles too
+    bool idsBehind = false;   // the ids of sleeping particles are sorted in one of the two copies only
     Buffer x, y, z, histogram, segmentSum, groups, list, listCursor, lists;
     Kernel sortCount, sortSegments, sortOffsets, sortScatter, neighborList;
 
@@ -70,6 +73,7 @@ struct NeighborGrid::Impl {
     }
     uint32_t sortedCells() const { return onCpu() ? 2 * coarseCells() : coarseCells(); }
     uint32_t totalCells() const { return traits.samples > 0 ? 2 * sortedCells() : sortedCells(); }
+    uint32_t asleepCells() const { return traits.sleeps ? sortedCells() : 0; }
     uint32_t firstSample() const { return count - traits.samples; }
     Status allocate();
     Status allocateCells();
@@ -111,16 +115,17 @@ Status NeighborGrid::Impl::allocate() {
 Status NeighborGrid::Impl::allocateCells() {
     Allocator take{*device};
     const size_t sorted = totalCells();
-    Buffer starts = take((sorted + 4) * sizeof(uint32_t)), held, lanes;
+    const size_t counts = sorted + 4 + asleepCells();
+    Buffer starts = take(counts * sizeof(uint32_t)), held, lanes;
     if (onCpu()) {
         chunks = static_cast<uint32_t>(std::clamp(static_cast<CpuDevice*>(device)->threads(), 1, 16));
-        held = take(chunks * (sorted + 3) * sizeof(uint32_t));
+        held = take(chunks * (counts - 1) * sizeof(uint32_t));
         // A row's last group may be short: at most one such a row. A window may get other rows.
         const size_t rows = window ? count : sorted / (2 * static_cast<size_t>(cells.x));
         lanes = take((count / 8 + std::min<size_t>(count, rows) + 1) * sizeof(CpuGroup));
     } else {
-        held = take((sorted + 4) * sizeof(uint32_t));
-        lanes = take(((sorted + 4) / SCAN_BLOCK + 1) * sizeof(uint32_t));
+        held = take(counts * sizeof(uint32_t));
+        lanes = take((counts / SCAN_BLOCK + 1) * sizeof(uint32_t));
     }
     if (!take.status) return take.status;
     cellStart = std::move(starts);
@@ -187,10 +192,12 @@ Status NeighborGrid::Impl::findKernels() {
         const std::vector<Define> scanSize = {{"LOCAL_SIZE", std::to_string(SCAN_THREADS)}};
         std::vector<Define> givenDefines = threads;
         givenDefines.push_back({"GIVEN", "1"});
-        wanted = {{&cellCount, "fluid/grid/cell_count", threads},    {&cellCountGiven, "fluid/grid/cell_count", givenDefines},
-                  {&scanReduce, "fluid/grid/scan_reduce", scanSize}, {&scanBlocks, "fluid/grid/scan_blocks", scanSize},
-                  {&scanApply, "fluid/grid/scan_apply", scanSize},   {&cellScatter, "fluid/grid/cell_scatter", threads},
-                  {&cellSort, "fluid/grid/cell_sort", threads},      {&reorder, "fluid/grid/reorder", threads}};
+        std::vector<Define> countDefines = threads;
+        if (traits.sleeps) countDefines.push_back({"SLEEP", "1"});
+        wanted = {{&cellCount, "fluid/grid/cell_count", countDefines}, {&cellCountGiven, "fluid/grid/cell_count", givenDefines},
+                  {&scanReduce, "fluid/grid/scan_reduce", scanSize},   {&scanBlocks, "fluid/grid/scan_blocks", scanSize},
+                  {&scanApply, "fluid/grid/scan_apply", scanSize},     {&cellScatter, "fluid/grid/cell_scatter", threads},
+                  {&cellSort, "fluid/grid/cell_sort", threads},        {&reorder, "fluid/grid/reorder", threads}};
     }
     for (Wanted& w : wanted) {
         Result<Kernel> found = device->kernel(w.path, w.defines);
@@ -217,7 +224,9 @@ CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
     j.cellsX = cells.x;
     j.cellsY = cells.y;
     j.cellsZ = cells.z;
-    j.count = count;
+    j.count = sortAsleep ? count : awakeSlots;
+    j.asleepCells = asleepCells();
+    j.sortsAsleep = traits.sleeps && sortAsleep;
     j.chunks = chunks;
     j.groupCount = groupCount;
     j.listCapacity = listCapacity;
@@ -270,6 +279,11 @@ Status NeighborGrid::Impl::growLists(uint32_t needed) {
 Status NeighborGrid::Impl::buildCpu(Particles& p) {
     CpuDevice& cpu = *static_cast<CpuDevice*>(device);
     auto run = [&](Kernel k, const CpuGridJob& j, uint32_t threads) { cpu.dispatch(k, std::as_bytes(std::span(&j, 1)), {}, threads); };
+    if (!sortAsleep && std::exchange(idsBehind, false)) {
+        // What sleeps stays in its slots, in both copies of the ids.
+        const uint32_t* ids = hostPointer<uint32_t>(p.id);
+        std::copy(ids + awakeSlots, ids + count, hostPointer<uint32_t>(p.idNext) + awakeSlots);
+    }
     CpuGridJob j = job(p);
     run(sortCount, j, chunks);
     run(sortSegments, j, kScanSegments);
@@ -277,6 +291,12 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
     run(sortScatter, j, chunks);
     if (cpu.interrupted()) return failed("the sort was interrupted");  // cells and groups may not match
     p.id.swap(p.idNext);
+    awakeSlots = hostPointer<uint32_t>(cellStart)[totalCells() + 3];
+    const bool sortedAll = sortAsleep;
+    if (j.sortsAsleep) {
+        sortAsleep = false;
+        idsBehind = true;
+    }
     buildGroups();
     while (true) {
         *hostPointer<uint32_t>(listCursor) = 0;
@@ -286,6 +306,7 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
         if (taken <= listCapacity) break;
         if (Status grown = growLists(taken); !grown) {
             p.id.swap(p.idNext);  // ids go with the newest state, which stays as it was
+            sortAsleep = sortedAll;
             return grown;
         }
     }
@@ -296,15 +317,18 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
 
 void NeighborGrid::Impl::buildGpu(const StepParams& params, Particles& p) {
     device->fill(cellCounts, 0);
-    device->run(std::exchange(given, false) ? cellCountGiven : cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank},
-                count);
-    const uint32_t counts = totalCells() + 4;
+    if (traits.sleeps)
+        device->run(cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank, &p.velocityNext}, count);
+    else
+        device->run(std::exchange(given, false) ? cellCountGiven : cellCount, params, {&p.positionNext, &p.id, &cellCounts, &cellOf, &rank},
+                    count);
+    const uint32_t counts = totalCells() + 4 + asleepCells();
     const ScanParams scan{counts, (counts + SCAN_BLOCK - 1) / SCAN_BLOCK, 0, 0};
     device->run(scanReduce, scan, {&cellCounts, &blockSum}, scan.blocks * SCAN_THREADS);
     device->run(scanBlocks, scan, {&blockSum}, SCAN_THREADS);
     device->run(scanApply, scan, {&cellCounts, &blockSum, &cellStart}, scan.blocks * SCAN_THREADS);
     device->run(cellScatter, params, {&cellStart, &cellOf, &rank, &order}, count);
-    device->run(cellSort, params, {&cellStart, &p.id, &order}, totalCells());
+    device->run(cellSort, params, {&cellStart, &p.id, &order}, totalCells() + asleepCells());
     device->run(reorder, params, {&order, &p.positionNext, &p.velocityNext, &p.id, &p.position, &p.velocity, &p.idNext}, count);
     p.id.swap(p.idNext);
 }
@@ -329,6 +353,7 @@ std::vector<Define> PairTraits::defines() const {
     std::vector<Define> d = threadDefines();
     if (matter) d.push_back({"MATTER", "1"});
     if (glm::any(periodic)) d.push_back({"PERIODIC", "1"});
+    if (asleepRows) d.push_back({"SLEEP", "1"});
     return d;
 }
 
@@ -406,6 +431,8 @@ void NeighborGrid::fill(StepParams& params) const {
     params.cellCount = g.sortedCells();
     params.totalCells = g.totalCells();
     params.firstSample = g.firstSample();
+    params.asleepSets = g.traits.sleeps ? 1 : 0;
+    params.awakeSlots = g.sortAsleep || !g.onCpu() || !g.traits.sleeps ? g.count : g.awakeSlots;
 }
 
 bool NeighborGrid::isWindow() const { return impl_->window; }
@@ -420,6 +447,9 @@ Status NeighborGrid::build(const StepParams& params, Particles& particles) {
     return ok();
 }
 
+void NeighborGrid::sortAsleep() { impl_->sortAsleep = true; }
+bool NeighborGrid::sortsAsleep() const { return impl_->sortAsleep || !impl_->onCpu(); }
+uint32_t NeighborGrid::awakeSlots() const { return impl_->awakeSlots; }
 void NeighborGrid::setMargin(float margin) { impl_->margin = margin; }
 const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }
 const Buffer& NeighborGrid::cellStart() const { return impl_->cellStart; }

@@ -19,16 +19,18 @@ namespace rivulet {
 
 // What decides which form of the pair kernels a world needs.
 struct PairTraits {
-    bvec3 periodic{false};   // axes on which the bounds wrap round
-    bool matter = false;     // particles differ: several liquids, or samples on bodies
-    uint32_t samples = 0;    // on bodies: the last ids
-    bool walls = true;       // else the box wraps round along all axes and there are no colliders
-    bool linked = false;     // fluid.grid linked_list
-    bool follows = false;    // a grid whose cells would be many times the particles may cover a part of its bounds: NeighborGrid::follow
-    uint32_t workGroup = 0;  // threads, of a GPU; 0 = the device's default
+    bvec3 periodic{false};    // axes on which the bounds wrap round
+    bool matter = false;      // particles differ: several liquids, or samples on bodies
+    uint32_t samples = 0;     // on bodies: the last ids
+    bool walls = true;        // else the box wraps round along all axes and there are no colliders
+    bool linked = false;      // fluid.grid linked_list
+    bool follows = false;     // a grid whose cells would be many times the particles may cover a part of its bounds: NeighborGrid::follow
+    bool sleeps = false;      // fluid.sleep: particles may be asleep
+    bool asleepRows = false;  // the same on a GPU: pair kernels visit rows of sleeping particles too
+    uint32_t workGroup = 0;   // threads, of a GPU; 0 = the device's default
     // LINKED_LIST, LOCAL_SIZE: of a kernel with a thread a particle that tests which particles take part.
     std::vector<Define> threadDefines() const;
-    std::vector<Define> defines() const;  // MATTER, PERIODIC and those above: of every kernel with FOR_NEIGHBORS
+    std::vector<Define> defines() const;  // MATTER, PERIODIC, SLEEP and those above: of every kernel with FOR_NEIGHBORS
     // Defines for every kernel with walls; OPEN if there are none. `extra`: further defines.
     std::vector<Define> wallDefines(std::vector<Define> extra = {}) const;
 };
@@ -57,6 +59,12 @@ class NeighborGrid {
     // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error (failed): out
     // of memory for the lists, or interrupted (Device::stopOn); the newest state is then as it was, and a later build may succeed.
     Status build(const StepParams& params, Particles& particles);
+
+    // The cpu keeps the slots of sleeping particles from step to step, the last ones, until some fall asleep or wake: then call
+    // sortAsleep().
+    void sortAsleep();
+    bool sortsAsleep() const;     // the next build() sorts them
+    uint32_t awakeSlots() const;  // cpu: slots before them, after a build()
 
     const Buffer& neighbors() const;   // binding 1 of a kernel with FOR_NEIGHBORS
     const Buffer& cellStart() const;   // [params.cellCount] = how many particles of the fluid are inside; or the linked lists

@@ -21,8 +21,8 @@ void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const float limitX = static_cast<float>(job.cellsX - 1), limitY = static_cast<float>(job.cellsY - 1),
                 limitZ = static_cast<float>(job.cellsZ - 1);
     for (uint32_t c = begin; c < end; ++c) {
-        uint32_t* histogram = job.histogram + size_t{c} * (total + 3);
-        memset(histogram, 0, (total + 3) * sizeof(uint32_t));
+        uint32_t* histogram = job.histogram + size_t{c} * job.bins();
+        memset(histogram, 0, job.bins() * sizeof(uint32_t));
         const Range r = part(job.count, job.chunks, c);
         for (uint32_t i = r.begin; i < r.end; ++i) {
             const Float4& p = job.position[i];
@@ -37,6 +37,7 @@ void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
                            static_cast<uint32_t>(2 * job.cellsX) +
                        static_cast<uint32_t>(static_cast<int>(2.0F * gx)) + (sample ? cells : 0U);
             if (p.w < 0.0F && !sample) cell = total + 2;
+            if (job.sortsAsleep && job.velocity[i].w < 0.0F && cell < cells) cell += total + 3;
             job.cell[i] = cell;
             ++histogram[cell];
         }
@@ -46,12 +47,12 @@ void sortCount(uint32_t begin, uint32_t end, const void* params, void* const*) {
 // A thread for each segment of cells: the number of its particles in all chunks.
 void sortSegmentSums(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
-    const uint32_t cells = job.totalCells;
+    const uint32_t bins = job.bins();
     for (uint32_t s = begin; s < end; ++s) {
-        const Range r = part(cells, kScanSegments, s);
+        const Range r = part(bins, kScanSegments, s);
         uint32_t sum = 0;
         for (uint32_t c = 0; c < job.chunks; ++c) {
-            const uint32_t* histogram = job.histogram + size_t{c} * (cells + 3);
+            const uint32_t* histogram = job.histogram + size_t{c} * bins;
             for (uint32_t cell = r.begin; cell < r.end; ++cell) sum += histogram[cell];
         }
         job.segmentSum[s] = sum;
@@ -61,22 +62,21 @@ void sortSegmentSums(uint32_t begin, uint32_t end, const void* params, void* con
 // A thread for each segment: turns histograms into destinations (of each chunk's particles in a cell), and writes cellStart.
 void sortOffsets(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
-    const uint32_t cells = job.totalCells;
+    const uint32_t bins = job.bins();
     for (uint32_t s = begin; s < end; ++s) {
-        Range r = part(cells, kScanSegments, s);
-        if (s + 1 == kScanSegments) r.end = cells + 3;  // particles in no cell come last
+        const Range r = part(bins, kScanSegments, s);
         uint32_t sum = 0;
         for (uint32_t k = 0; k < s; ++k) sum += job.segmentSum[k];
         for (uint32_t cell = r.begin; cell < r.end; ++cell) {
             job.cellStart[cell] = sum;
             for (uint32_t c = 0; c < job.chunks; ++c) {
-                uint32_t& slot = job.histogram[size_t{c} * (cells + 3) + cell];
+                uint32_t& slot = job.histogram[size_t{c} * bins + cell];
                 const uint32_t held = slot;
                 slot = sum;
                 sum += held;
             }
         }
-        if (s + 1 == kScanSegments) job.cellStart[cells + 3] = sum;
+        if (s + 1 == kScanSegments) job.cellStart[bins] = sum;
     }
 }
 
@@ -84,7 +84,7 @@ void sortOffsets(uint32_t begin, uint32_t end, const void* params, void* const*)
 void sortScatter(uint32_t begin, uint32_t end, const void* params, void* const*) {
     const Job& job = *static_cast<const Job*>(params);
     for (uint32_t c = begin; c < end; ++c) {
-        uint32_t* next = job.histogram + size_t{c} * (job.totalCells + 3);
+        uint32_t* next = job.histogram + size_t{c} * job.bins();
         const Range r = part(job.count, job.chunks, c);
         for (uint32_t i = r.begin; i < r.end; ++i) {
             const uint32_t to = next[job.cell[i]]++;
@@ -163,8 +163,9 @@ INLINE GroupBox boxOf(const Job& job, const CpuGroup& group) {
             static_cast<int>((pz.v[0] - job.originZ) * job.scaleZ)};
 }
 
-// Largest number of stretches of sorted particles with a group's candidates: nine rows, two pieces where a row wraps, fluid and samples.
-constexpr uint32_t kMostStretches = 36;
+// Largest number of stretches of sorted particles with a group's candidates: nine rows, two pieces where a row wraps, fluid, samples and
+// sleeping particles.
+constexpr uint32_t kMostStretches = 54;
 struct Stretches {
     uint32_t from[kMostStretches], to[kMostStretches], count = 0, atMost = 0;
     INLINE void add(const uint32_t* row, int x0, int x1) {
@@ -254,13 +255,15 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
         const GroupBox b = boxOf(job, group);
         Stretches s;
         const bool ofFluid = group.first < job.cellStart[cells];
-        for (uint32_t firstCell = 0; firstCell < job.totalCells; firstCell += cells) {
-            if (firstCell > 0 && !ofFluid) break;  // samples do not interact
+        const auto find = [&](uint32_t firstCell) {
             if (periodic)
                 findWrapped(job, b, firstCell, s);
             else
                 findStretches(job, b, firstCell, s);
-        }
+        };
+        find(0);
+        if (job.totalCells > cells && ofFluid) find(cells);  // samples do not interact
+        if (job.asleepCells > 0) find(job.totalCells + 3);
         if (at + s.atMost + 8 > regionEnd) {
             const uint32_t take = s.atMost + 8 > kListRegion ? s.atMost + 8 : kListRegion;
             at = __atomic_fetch_add(job.listCursor, take, __ATOMIC_RELAXED);

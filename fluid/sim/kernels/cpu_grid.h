@@ -32,7 +32,9 @@ struct CpuGridJob {
     int cellsX, cellsY, cellsZ;       // padded cells, as in StepParams; the sort has 2 * cellsX along x
     uint32_t totalCells;              // cells(), or twice that with body samples
     uint32_t firstSample;             // ids from here on are samples
-    uint32_t count;                   // particles
+    uint32_t count;                   // slots to sort: without those of particles that go on sleeping
+    uint32_t asleepCells;             // that have particles: cells(), or 0 if nothing sleeps
+    bool sortsAsleep;                 // the sleeping particles are sorted too, into cells of their own behind all others
     uint32_t chunks;                  // of the two-histogram sort
     uint32_t groupCount;
     uint32_t listCapacity;  // entries
@@ -43,12 +45,13 @@ struct CpuGridJob {
     uint32_t* idOut;
     float *x, *y, *z;      // sorted positions again, one array for each axis; 8 entries beyond the end may be read
     uint32_t* cell;        // of each unsorted particle
-    uint32_t* histogram;   // chunks * (totalCells + 3)
+    uint32_t* histogram;   // chunks * bins()
     uint32_t* segmentSum;  // kScanSegments
-    uint32_t* cellStart;   // totalCells + 4, see shaders/fluid/grid/grid.h
+    uint32_t* cellStart;   // totalCells + 4, and asleepCells; see shaders/fluid/grid/grid.h
     CpuGroup* groups;
     uint32_t* list;
     uint32_t* listCursor;  // entries in use; above listCapacity the lists do not fit
+    uint32_t bins() const { return totalCells + 3 + (sortsAsleep ? asleepCells : 0); }
     uint32_t cells() const { return static_cast<uint32_t>(2 * cellsX) * static_cast<uint32_t>(cellsY) * static_cast<uint32_t>(cellsZ); }
 };
 inline constexpr uint32_t kScanSegments = 16;

@@ -25,7 +25,7 @@ class Dfsph final : public Method {
   public:
     Kernel integrate, begin, end;
     PairKernel density, rate, push;
-    Buffer solve, kept;  // kept: pressures of the last step, by id
+    Buffer solve, change, kept;  // change: of the pressures in an iteration; kept: pressures of the last step, by id
     SolverResidual residual;
     ParticleShifting shifting;
     float coupling = 1;   // of the iteration, over that with a support of 2 spacings
@@ -46,6 +46,9 @@ class Dfsph final : public Method {
     }
 
     std::vector<NamedBuffer> remembered() override { return {{"pressure", &kept}}; }
+    AsleepValues asleepValues(Particles& p, const StepParams&) override {
+        return {{&p.pressure, &p.pressure, 1.0F, 1.0F}, {{nullptr, &change}}};
+    }
     void reset() override { residual.reset(); }
 
     std::vector<float> pressures(Device& device, const Particles& p, const StepParams& s) const override {
@@ -65,31 +68,32 @@ class Dfsph final : public Method {
         c.forces();
         StepParams allowed = c.params;
         allowed.force.x = c.fluid.dfsph.negativePressure ? 1.0F : 0.0F;
-        c.device.run(begin, allowed, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity}, p.count);
-        pushOn(c, 0, vec3(c.params.gravity) * c.params.dt);
+        c.device.run(begin, allowed, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity, &change},
+                     c.params.awakeSlots);
+        pushOn(c, 0, p.pressure, c.params.dt, vec3(c.params.gravity));
         iterate(c);
         c.solve.iterations = residual.iterations();
         c.solve.residual = residual.value();
-        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept, &p.pressure}, p.count);
+        c.device.run(end, c.params, {&c.grid.cellStart(), &p.id, &solve, &kept, &p.pressure}, c.params.awakeSlots);
         if (c.probes != nullptr) c.probes->solved(c.params, solve);
-        if (c.fluid.dfsph.negativePressure) shifting.run(c, p.pressure, c.params.dt / squared(c.params.spacing), solve);
+        if (c.fluid.dfsph.negativePressure) shifting.run(c, p.pressure, squared(c.params.dt / c.params.spacing), solve);
         const Buffer& from = c.fluid.dfsph.negativePressure ? solve : p.position;
         if (c.probes != nullptr) c.probes->response(c.params, from, p.velocity, p.acceleration, 0.0F);
         c.device.run(integrate, c.params,
                      {&c.grid.cellStart(), &from, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
-                     p.count);
+                     c.params.awakeSlots);
     }
 
   private:
-    // Velocities follow the change in p.pressure in iteration k, which goes on into bodies by `weight` a metre (Adami et al. 2012).
-    void pushOn(StepContext& c, int k, const vec3& weight) {
+    // Velocities follow `unit` times these pressures in iteration k, which go on into bodies by `weight` a metre (Adami et al. 2012).
+    void pushOn(StepContext& c, int k, const Buffer& pressures, float unit, const vec3& weight) {
         Particles& p = c.particles;
         StepParams s = c.params;
         s.iteration = k > 0 ? 1 : 0;
-        s.force = vec4(weight, 0.0F);
-        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &p.pressure, &residual.progress()},
+        s.force = vec4(weight, unit);
+        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &pressures, &residual.progress()},
                  c.grid.pairThreads());
-        c.pushSamples(p.position, p.pressure, 2.0F / c.params.dt, weight);  // MIRRORED
+        c.pushSamples(p.position, pressures, 2.0F * unit / c.params.dt, weight);  // MIRRORED
     }
     // Runs the solver to its tolerance.
     void iterate(StepContext& c) {
@@ -101,9 +105,9 @@ class Dfsph final : public Method {
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         for (int k = 0; k < most; ++k) {
             s.iteration = k > 0 ? 1 : 0;  // not its number: a device keeps few different blocks of params at hand
-            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &solve, &p.pressure, &residual.progress()},
+            rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &solve, &change, &residual.progress()},
                      c.grid.pairThreads());
-            pushOn(c, k, vec3(0.0F));
+            pushOn(c, k, change, 1.0F, vec3(0.0F));
             if (residual.converged(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
         }
         if (!cpu) residual.readLater(c);
@@ -141,7 +145,8 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
     if (!shifting) return shifting.error();
     m->shifting = *shifting;
     const size_t count = setup.count;
-    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->kept, count * sizeof(float))}) {
+    for (auto [buffer, bytes] : {std::pair(&m->solve, count * sizeof(vec4)), std::pair(&m->change, count * sizeof(float)),
+                                 std::pair(&m->kept, count * sizeof(float))}) {
         Result<Buffer> made = device.allocate(bytes);
         if (!made) return made.error();
         *buffer = std::move(*made);

@@ -38,6 +38,8 @@ class Pbf final : public Method {
     double coupling = 1;         // see wendlandCoupling
     Buffer corrected[2], given;  // given: multipliers, summed over the iterations of the last step
     SolverResidual residual;
+    int corrections = 1;   // of a step
+    bool swapped = false;  // position and velocity, see the end of step()
 
     float soundSpeed(const FluidParams&, float) const override { return 0.0F; }
     // A column at rest is as much too dense as its weight asks of the corrections of a step: a g H dt^2 / (k h^2) on its floor, a the
@@ -65,32 +67,44 @@ class Pbf final : public Method {
         return pascal;
     }
 
+    // A neighbour that sleeps moves the others by the same share of its multiplier in each correction: their number must be known.
+    const char* keepsAwake(const FluidParams& p) const override { return p.pbf.tolerance > 0 ? "fluid.pbf.tolerance is above 0" : nullptr; }
+    AsleepValues asleepValues(Particles& p, const StepParams& s) override {
+        const float dt2 = s.dt * s.dt;
+        return {{&given, &p.pressure, 1.0F / dt2, dt2 / static_cast<float>(corrections)}, {{&given, &given}}};
+    }
     void reset() override { residual.reset(); }
 
     bool predicts() const override { return true; }
     void step(StepContext& c) override {
         Particles& p = c.particles;
+        // The sort writes only the slots of particles that are awake: the others' must be where it left them.
+        if (swapped) p.position.swap(p.velocity);
+        swapped = false;
+        corrections = c.fluid.pbf.iterations;
         if (c.probes != nullptr) c.probes->predicted(c.params);
         // On the cpu alone a sort can fail.
         const bool cpu = c.device.backend() == Backend::cpu;
+        const uint32_t slots = c.params.awakeSlots;
+        const size_t bytes = size_t{slots} * sizeof(vec4);
         if (cpu) {
-            c.device.copy(p.positionNext, corrected[0], size_t{p.count} * sizeof(vec4));
-            c.device.copy(p.velocityNext, corrected[1], size_t{p.count} * sizeof(vec4));
+            c.device.copy(p.positionNext, corrected[0], bytes);
+            c.device.copy(p.velocityNext, corrected[1], bytes);
         }
-        c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
+        c.device.run(predict, c.params, {&p.id, &c.planes, &p.positionNext, &p.velocityNext}, slots);
         c.grid.setMargin(1.05F);  // as pbf_lambda keeps
         if (!c.build(true)) {
-            c.device.copy(corrected[0], p.positionNext, size_t{p.count} * sizeof(vec4));
-            c.device.copy(corrected[1], p.velocityNext, size_t{p.count} * sizeof(vec4));
+            c.device.copy(corrected[0], p.positionNext, bytes);
+            c.device.copy(corrected[1], p.velocityNext, bytes);
             return;
         }
         // p.position: predicted; p.velocity: where each particle comes from.
         const uint32_t threads = c.grid.pairThreads();
         const Buffer& neighbors = c.grid.neighbors();
         const Buffer* at = &p.position;
-        // Samples on bodies are never corrected, but looked at there.
-        if (c.params.firstSample < c.params.count)
-            for (Buffer& b : corrected) c.device.copy(p.position, b, size_t{p.count} * sizeof(vec4));
+        // Samples on bodies and sleeping particles are never corrected, but looked at there.
+        if (c.params.firstSample < c.params.count || (c.params.asleepSets > 0 && slots == p.count))
+            for (Buffer& b : corrected) c.device.copy(p.position, b, bytes);
         const PbfParams& pbf = c.fluid.pbf;
         const bool toTolerance = pbf.tolerance > 0;
         const int most = !toTolerance ? pbf.iterations
@@ -123,16 +137,17 @@ class Pbf final : public Method {
         if (toTolerance) c.solve.residual = residual.value();
         if (c.probes != nullptr) c.probes->responseFromPositions(c.params, p.velocity, *at);
         c.device.run(finish, c.params,
-                     {&c.grid.cellStart(), &p.position, at, &p.velocity, &p.density, &c.planes, &p.positionNext, &p.velocityNext}, p.count);
+                     {&c.grid.cellStart(), &p.position, at, &p.velocity, &p.density, &c.planes, &p.positionNext, &p.velocityNext}, slots);
         // The other forces act on the velocity that came out; the next step's prediction follows it.
         if (c.hasForces) {
             p.velocity.swap(p.velocityNext);
-            c.device.run(weigh, c.noGravity(), {&c.grid.cellStart(), &p.acceleration}, p.count);
+            c.device.run(weigh, c.noGravity(), {&c.grid.cellStart(), &p.acceleration}, slots);
             c.forces();
-            c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, p.count);
+            c.device.run(kick, c.params, {&c.grid.cellStart(), &p.acceleration, &p.velocity}, slots);
             p.velocity.swap(p.velocityNext);
         }
         p.position.swap(p.velocity);  // what follows walks from where the step began
+        swapped = true;
     }
 
     void measure(StepContext& c) override {
@@ -141,7 +156,7 @@ class Pbf final : public Method {
         // p.velocity: where the grid was built, see the end of step().
         lambda.run(c, c.params, {&c.grid.neighbors(), &p.velocity, &p.positionNext, &p.nearWalls, &p.density, &p.pressure},
                    c.grid.pairThreads());
-        c.device.run(setRatio, c.params, {&c.grid.cellStart(), &p.density, &p.positionNext}, p.count);
+        c.device.run(setRatio, c.params, {&c.grid.cellStart(), &p.density, &p.positionNext}, c.params.awakeSlots);
     }
 };
 

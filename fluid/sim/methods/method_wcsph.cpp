@@ -48,6 +48,10 @@ class Wcsph final : public Method {
         return pascal;
     }
 
+    AsleepValues asleepValues(Particles& p, const StepParams& s) override {
+        return {{&p.pressure, &p.pressure, s.restDensity, 1.0F / s.restDensity}, {{&p.density, &p.density}}};
+    }
+
     void step(StepContext& c) override {
         if (!c.build(false)) return;
         Particles& p = c.particles;
@@ -78,7 +82,7 @@ class Wcsph final : public Method {
         c.device.run(
             integrate, c.params,
             {&c.grid.cellStart(), &p.position, &p.velocity, &p.acceleration, &p.density, &c.planes, &p.positionNext, &p.velocityNext},
-            p.count);
+            c.params.awakeSlots);
     }
 
   private:

@@ -70,6 +70,7 @@ Result<BodyPasses> BodyPasses::create(Device& device, std::span<const Body> bodi
     push = cubic;
     if (b.friction_) push.push_back({"FRICTION", "1"});
     if (!traits.walls) push.push_back({"OPEN", "1"});
+    if (traits.asleepRows) periodic.push_back({"SLEEP", "1"});
     push.insert(push.end(), periodic.begin(), periodic.end());
     cubic.insert(cubic.end(), periodic.begin(), periodic.end());
     struct Wanted {
@@ -152,7 +153,7 @@ void BodyPasses::place(const StepParams& step, Particles& particles) {
     }
     device_->writeAll<DeviceBody>(deviceBodies_, uploaded_);
     device_->run(place_, step, {&particles.id, &own_, &deviceBodies_, &arm_, &particles.positionNext, &particles.velocityNext},
-                 particles.count);
+                 step.awakeSlots);
 }
 
 void BodyPasses::index(const StepParams& step, const NeighborGrid& grid, Particles& particles) {

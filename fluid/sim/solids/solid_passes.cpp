@@ -446,9 +446,28 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
     return ok();
 }
 
+std::vector<Bounds> SolidPasses::moved() const {
+    std::vector<Bounds> boxes;
+    for (const Moving& m : rigid_) {
+        if (m.from.position == m.target.position && m.from.rotation == m.target.rotation) continue;
+        Bounds box;
+        for (const Pose& pose : {m.from, m.target})
+            for (const float way : {-m.radius, m.radius}) box.add(pose.position + vec3(way));
+        boxes.push_back(box);
+    }
+    for (const Moving& m : deforming_) {
+        if (m.shapeFrom == m.shapeTarget) continue;
+        Bounds box;
+        for (const std::vector<vec3>* shape : {&m.shapeFrom, &m.shapeTarget})
+            for (const vec3& p : *shape) box.add(p);
+        boxes.push_back(box);
+    }
+    return boxes;
+}
+
 void SolidPasses::nearWalls(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& into) {
     if (!walled_) return;
-    const uint32_t n = step.count;
+    const uint32_t n = step.awakeSlots;
     const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
         device_->run(nearWalls_, step, {&start, &position, &planes_, &into, &staticBlock_, &static_.distance}, n);
@@ -459,12 +478,12 @@ void SolidPasses::nearWalls(const StepParams& step, const NeighborGrid& grid, co
 }
 
 void SolidPasses::followWalls(const StepParams& step, const NeighborGrid& grid, const Buffer& from, const Buffer& to, Buffer& walls) {
-    if (walled_) device_->run(followWalls_, step, {&grid.cellStart(), &from, &to, &walls}, step.count);
+    if (walled_) device_->run(followWalls_, step, {&grid.cellStart(), &from, &to, &walls}, step.awakeSlots);
 }
 
 void SolidPasses::friction(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& friction) {
     if (!walled_) return;
-    const uint32_t n = step.count;
+    const uint32_t n = step.awakeSlots;
     const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
         device_->run(friction_, step, {&start, &position, &planes_, &friction, &staticBlock_, &static_.distance}, n);
@@ -479,9 +498,9 @@ void SolidPasses::adhesion(const StepParams& step, const NeighborGrid& grid, Par
     if (!walled_) return;
     const Buffer& start = grid.cellStart();
     if (static_.field != nullptr)
-        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration, &staticBlock_, &static_.distance}, step.count);
+        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration, &staticBlock_, &static_.distance}, step.awakeSlots);
     else
-        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration}, step.count);
+        device_->run(adhesion_, step, {&start, &p.position, &planes_, &p.acceleration}, step.awakeSlots);
 }
 
 std::vector<SolidPasses::FieldView> SolidPasses::movingFields() const {
@@ -499,7 +518,7 @@ std::vector<SolidPasses::FieldView> SolidPasses::movingFields() const {
 
 void SolidPasses::collide(const StepParams& step, const NeighborGrid& grid, Particles& particles, ProbePasses* probes) {
     collide(step,
-            {&particles.position, &particles.positionNext, &particles.velocityNext, &grid.cellStart(), step.cellCount, particles.count},
+            {&particles.position, &particles.positionNext, &particles.velocityNext, &grid.cellStart(), step.cellCount, step.awakeSlots},
             moving(), std::nullopt, probes);
 }
 

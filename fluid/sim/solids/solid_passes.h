@@ -54,6 +54,8 @@ class SolidPasses {
     // Sets the poses and shapes of solids `seconds` from now; empty spans: unchanged. Error (badInput): the number of poses or shapes is
     // wrong, a value is not finite, a vertex is beyond its field's reach; then nothing moves.
     Status beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds);
+    // m: boxes around each solid that moves in this frame, over its whole way.
+    std::vector<Bounds> moved() const;
     float fastestWall() const { return fastestWall_; }  // m/s, of the frame
 
     // Moves the solids from the share `from` to the share `to` of the frame's time, 0..1. `gravity` m/s^2.

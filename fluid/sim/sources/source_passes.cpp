@@ -201,9 +201,9 @@ void SourcePasses::run(const World& world, double time, double dt, bool last) {
     block.crowded = kCrowded;
     if (sinkCount_ > 0) {
         device_->run(drain_, block, {&grid.cellStart(), &sinks_, &particles.positionNext, &particles.velocityNext, &counters_},
-                     particles.count);
+                     step.awakeSlots);
         for (const NamedBuffer& b : world.remembered)
-            if (b.byId) device_->run(forget_, step, {&grid.cellStart(), &particles.positionNext, &particles.id, b.buffer}, particles.count);
+            if (b.byId) device_->run(forget_, step, {&grid.cellStart(), &particles.positionNext, &particles.id, b.buffer}, step.awakeSlots);
     }
     waited_ += dt;
     // Often enough that a particle appears at most about a spacing from its exact place.

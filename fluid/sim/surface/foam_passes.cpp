@@ -104,6 +104,7 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
         device_->copy(foam_, before_, size_t{slots_} * sizeof(vec4));  // their way is done
     }
     const uint32_t threads = grid.pairThreads();
+    if (step.asleepSets > 0) device_->fill(airs_, 0);  // sleeping water has none
     StepParams air = step;
     air.force = vec4(flat_, hat_, 0.0F, 0.0F);
     air_.run(*device_, particles, air, {&grid.neighbors(), position, velocity, &airs_}, threads);

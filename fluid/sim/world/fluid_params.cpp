@@ -104,6 +104,16 @@ void FoamParams::visit(ParamVisitor& v) {
     v.value({"drag", "1/s", "rate at which bubbles adopt the velocity of the water", 0, 1000}, drag);
 }
 
+void SleepParams::visit(ParamVisitor& v) {
+    v.value({.name = "on",
+             .doc = "whether particles of calm water fall asleep: they are not stepped until the water around them, a solid or a parameter "
+                    "moves them; only where there is gravity",
+             .fixed = kFixed},
+            on);
+    v.value({"speed", "", "rms speed below which water is calm, over sqrt(g h), h the support radius", 0, 1, kLog}, speed);
+    v.value({"after", "", "time for which it must be calm, over sqrt(h / g)", 0.5, 1000, kLog}, after);
+}
+
 void FluidParams::visit(ParamVisitor& v) {
     const std::vector<std::string> names = methods().names();
     v.choice({.name = "method", .doc = "pressure solver; rivulet list methods describes each", .fixed = kFixed}, method, names);
@@ -171,6 +181,7 @@ void FluidParams::visit(ParamVisitor& v) {
         if (row.visit != nullptr) row.visit(*this, v);
     v.group({.name = "forces", .doc = "forces in addition to pressure and gravity"}, forces);
     v.group({.name = "foam", .doc = "spray, foam and bubbles"}, foam);
+    v.group({.name = "sleep", .doc = "calm water that is not stepped"}, sleep);
     v.group({.name = "box", .doc = "walls around the fluid; particles that leave the box are lost"}, box);
     v.group({.name = "collision", .doc = "contact of the fluid with solids"}, collision);
     v.list({.name = "blocks", .doc = "blocks of fluid at the start", .fixed = kFixed}, blocks);

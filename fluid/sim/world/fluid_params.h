@@ -69,6 +69,14 @@ struct FoamParams {
     void visit(ParamVisitor& v);
 };
 
+// Particles of calm water are not stepped.
+struct SleepParams {
+    bool on = false;
+    float speed = 0.015F;  // over sqrt(g h), h the support radius
+    float after = 5.0F;    // over sqrt(h / g)
+    void visit(ParamVisitor& v);
+};
+
 struct FluidParams {
     std::string method = "pbf";       // a row of methods()
     std::string kernel = "wendland";  // wendland | cubic_spline
@@ -96,6 +104,7 @@ struct FluidParams {
     DfsphParams dfsph = {};
     ForcesParams forces = {};
     FoamParams foam = {};
+    SleepParams sleep = {};
     BoxParams box = {};
     CollisionParams collision = {};
     std::vector<BlockParams> blocks = {};

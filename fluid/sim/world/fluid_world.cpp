@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/assert.h"
+#include "engine/core/json.h"
 #include "engine/core/param_check.h"
 #include "engine/core/param_fixed.h"
 #include "fluid/sim/sources/liquids.h"
@@ -93,15 +94,18 @@ StepLimit FluidWorld::Impl::stepLimit(double now, double frameSeconds) const {
 
 bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
     if (glm::any(traits.periodic) && fromPositions)
-        device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, particles.count);
+        device->run(wrapFromPositions, step, {&corner, &particles.positionNext, &particles.velocityNext}, step.awakeSlots);
     bodies.place(step, particles);
+    const bool asleepToo = grid->sortsAsleep();
     if (Status built = grid->build(step, particles); !built) {
         if (!device->interrupted()) report(built.error().message);
         return false;
     }
+    if (!asleepToo) step.awakeSlots = grid->awakeSlots();
     if (traits.matter)
         device->run(gatherMatter, step, {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure},
-                    particles.count);
+                    step.awakeSlots);
+    if (sleep && asleepToo) sleep->recall(step, *grid, particles, method->asleepValues(particles, step).pressure);
     bodies.index(step, *grid, particles);
     if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) report(moved.error().message);
     return true;
@@ -111,6 +115,7 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
 bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.dt = static_cast<float>(dt);
     step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), limits.fastestEver) : kAnySpeed;
+    if (sleep) step.awakeSlots = grid->sortsAsleep() ? particles.count : grid->awakeSlots();
     bool built = false;
     if (around) {
         follow(step);
@@ -146,8 +151,9 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     iterations += solve.iterations;
     sorted = built;
     if (!built || device->interrupted()) return false;
+    stepped += figures->particles - figures->asleep;
     solids.collide(step, *grid, particles, probes ? &*probes : nullptr);
-    if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, particles.count);
+    if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, step.awakeSlots);
     if (last) method->measure(context);
     if (probes) probes->bodies(step);
     bodies.advance(step, particles, dt);
@@ -155,6 +161,10 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
         report(fmt::format("the host's solver gave body {} a state that is not finite: the body keeps its last state", *body));
     const std::vector<NamedBuffer> remembered = method->remembered();
     sources.run({step, params, *grid, particles, solids, bodies, remembered}, clock.time + to * clock.frameLength, dt, last);
+    if (device->interrupted()) return false;
+    if (sleep)
+        sleep->run(params, step, glm::length(gravity), *grid, particles, clock.time + to * clock.frameLength,
+                   method->asleepValues(particles, step).pressure);
     return !device->interrupted();
 }
 
@@ -196,6 +206,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     constexpr double kForget = 0.5;  // s
     w.limits.fastestWall = std::max(w.limits.fastestWall * static_cast<float>(std::exp(-now / kForget)), w.solids.fastestWall());
     for (const std::string& off : w.forces.update(*w.device, {p, w.particles.count, w.traits, methodOf(p).doesViscosity})) w.report(off);
+    if (w.sleep) w.disturbSleep();
     w.iterations = 0;
     if (w.probes) w.probes->begin();
     double stepped = 0;
@@ -224,6 +235,9 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     if (p.ellipsoids && substeps > 0) {
         if (Status ready = w.ellipsoids.prepare(*w.device, w.traits, w.particles.count); !ready) w.report(ready.error().message);
         w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
+        if (w.sleep)
+            if (Status kept = w.sleep->keepEllipsoids(w.step, *w.grid, w.particles, w.ellipsoids.buffers()); !kept)
+                w.report(kept.error().message);
     }
     if (!p.ellipsoids) w.ellipsoids.forget();
     if (w.foam && stepped > 0) w.foam->run(p, w.step, *w.grid, w.particles, w.solids, stepped);
@@ -362,6 +376,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                          .substeps = substeps,
                          .iterations = iterations / substeps,
                          .sweeps = solve.sweeps,
+                         .stepped = stepped,
                          .residual = solve.residual,
                          .dtMin = clock.dtMin,
                          .dtMax = clock.dtMax,
@@ -374,7 +389,8 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
             if (!into) return;  // the world was reset meanwhile, or destroyed
             const StatsRow* rows = reinterpret_cast<const StatsRow*>(bytes.data());
             FluidStats f = now;
-            double centre[3] = {0, 0, 0}, inside = 0, masses = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0;
+            double centre[3] = {0, 0, 0}, inside = 0, masses = 0, compression = 0, speed2 = 0, limited = 0, nan = 0, lost = 0, fastest2 = 0,
+                   asleep = 0;
             for (uint32_t k = 0; k < STATS_THREADS; ++k) {
                 for (int axis = 0; axis < 3; ++axis) centre[axis] += double{rows[k].centre[axis]};
                 masses += double{rows[k].centre.w};
@@ -382,6 +398,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
                 compression += double{rows[k].compression};
                 speed2 += double{rows[k].speed2Sum};
                 limited += double{rows[k].limited};
+                asleep += double{rows[k].asleep};
                 nan += double{rows[k].nans};
                 lost += double{rows[k].lost};
                 f.maxCompression = std::max(f.maxCompression, double{rows[k].worst});
@@ -389,6 +406,7 @@ void FluidWorld::Impl::gatherStats(int substeps, double until) {
             }
             f.particles = static_cast<uint32_t>(inside + lost);
             f.lost = static_cast<uint32_t>(lost);
+            f.asleep = static_cast<uint32_t>(asleep);
             f.nan = static_cast<uint32_t>(nan);
             f.speedLimited = static_cast<uint32_t>(limited);
             f.maxSpeed = std::sqrt(fastest2);
@@ -420,8 +438,8 @@ std::vector<ProbeFrame> FluidWorld::takeLoads() { return impl_->probes ? impl_->
 
 bool FluidWorld::hasCellWork() const {
     const Impl& w = *impl_;
-    return w.device->backend() != Backend::cpu && !w.around && !w.traits.linked && w.traits.samples == 0 && !glm::any(w.traits.periodic) &&
-           !w.method->predicts();
+    return w.device->backend() != Backend::cpu && !w.around && !w.traits.linked && !w.traits.sleeps && w.traits.samples == 0 &&
+           !glm::any(w.traits.periodic) && !w.method->predicts();
 }
 
 std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
@@ -433,7 +451,9 @@ std::optional<FluidWorld::CellWork> FluidWorld::cellWork() {
 
 void FluidWorld::Impl::invalidateCells() {
     cellsValid = sortedForQuery = false;
-    if (grid) grid->setCells({});
+    if (!grid) return;
+    grid->setCells({});
+    grid->sortAsleep();
 }
 
 void FluidWorld::setCells(std::span<const uint32_t> cells) {
@@ -451,6 +471,12 @@ void FluidWorld::reset() {
 
 void FluidWorld::deposit(const vec3& place, const vec3& velocity, double volume) {
     impl_->sources.deposit(place, velocity, volume);
+    if (impl_->sleep) {
+        StepParams cells{};
+        impl_->grid->fill(cells);
+        const vec3 near(2.0F * impl_->params.supportSpacings * impl_->params.spacing);
+        impl_->sleep->disturb(cells, {place - near, place + near}, impl_->clock.time);
+    }
     impl_->figures->pendingVolume = impl_->sources.pending() * std::pow(double{impl_->params.spacing}, 3);
 }
 
@@ -466,15 +492,21 @@ void FluidWorld::withdraw(std::span<const uint32_t> slots) {
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);
     w.withdrawn += slots.size();
+    if (w.sleep) w.sleep->disturbAll(w.clock.time);
+    w.grid->sortAsleep();
     w.figures->withdrawn = static_cast<double>(w.withdrawn) * std::pow(double{w.params.spacing}, 3);
 }
 
-Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) { return impl_->solids.setSurfaces(surfaces); }
+Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {
+    if (impl_->sleep) impl_->sleep->disturbAll(impl_->clock.time);
+    return impl_->solids.setSurfaces(surfaces);
+}
 
 Status FluidWorld::setSources(const Sources& next) {
     Impl& w = *impl_;
     if (Status s = w.sources.set(next); !s) return s;
     for (size_t k = 0; k < next.emitters.size(); ++k) w.sourceSetup.emitters[k].params = next.emitters[k].params;
+    w.sourceSetup.sinks = next.sinks;
     return ok();
 }
 
@@ -505,6 +537,10 @@ Status FluidWorld::setParams(const FluidParams& params) {
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
     if (next.probes != old.probes)
         if (Status s = impl_->prepareProbes(next); !s) return s;
+    if (impl_->sleep) {
+        const auto text = [](FluidParams p) { return writeJson([&p](ParamVisitor& v) { p.visit(v); }); };
+        if (text(next) != text(old)) impl_->sleep->disturbAll(impl_->clock.time);
+    }
     impl_->params = next;
     return ok();
 }
@@ -563,7 +599,9 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     Result<SolidPasses> passes = SolidPasses::create(device, solids, w.params, w.traits.threadDefines());
     if (!passes) return passes.error();
     w.solids = std::move(*passes);
-    Result<BodyPasses> bodies = BodyPasses::create(device, solids.bodies, solids.bodyHost, w.params, {.periodic = params.box.periodic()});
+    Result<BodyPasses> bodies =
+        BodyPasses::create(device, solids.bodies, solids.bodyHost, w.params,
+                           {.periodic = params.box.periodic(), .asleepRows = params.sleep.on && device.backend() != Backend::cpu});
     if (!bodies) return bodies.error();
     w.bodies = std::move(*bodies);
     w.log = std::move(log);

@@ -12,6 +12,7 @@
 #include "fluid/sim/methods/method.h"
 #include "fluid/sim/query/volumes.h"
 #include "fluid/sim/query/water_query.h"
+#include "fluid/sim/sleep/sleep_passes.h"
 #include "fluid/sim/solids/body_passes.h"
 #include "fluid/sim/solids/probe_passes.h"
 #include "fluid/sim/solids/solid_passes.h"
@@ -61,10 +62,12 @@ struct FluidWorld::Impl {
     WaterQuery query;             // created at the first query
     bool sortedForQuery = false;  // as `sorted`, for position and velocity before the first step
     std::optional<FoamPasses> foam;
-    bool sorted = false;    // the grid matches the current order of particles
-    uint32_t slots = 0;     // slots of particles: those of the blocks and free ones
-    bool coloured = false;  // particles differ in colour
-    float mostViscous = 0;  // m^2/s, of the world's liquids
+    std::optional<SleepPasses> sleep;  // empty: fluid.sleep.on is off
+    vec3 sleptUnder{0.0F};             // gravity of the last frame
+    bool sorted = false;               // the grid matches the current order of particles
+    uint32_t slots = 0;                // slots of particles: those of the blocks and free ones
+    bool coloured = false;             // particles differ in colour
+    float mostViscous = 0;             // m^2/s, of the world's liquids
     BodyPasses bodies;
     ProbeTargets probeTargets;
     std::optional<ProbePasses> probes;  // empty: the scene has none
@@ -75,6 +78,7 @@ struct FluidWorld::Impl {
     StepLimits limits;
     SolveFigures solve;
     double iterations = 0;  // sum over the substeps of this frame
+    double stepped = 0;     // FluidStats::stepped
     FrameStepper stepper;
     DrawnPositions drawn;
     Ellipsoids ellipsoids;
@@ -123,6 +127,8 @@ struct FluidWorld::Impl {
     template <class Answer, class Ask>
     Result<std::vector<Answer>> ask(size_t count, const Ask& how);
     Status prepareQuery(StepParams& params);
+    Status prepareSleep();
+    void disturbSleep();  // before a frame: where something other than water may move it
     bool build(bool fromPositions, double from, double to);
     // `last`: of a piece of its frame. false: out of memory; the newest state is as it was. Or interrupted.
     bool substep(double dt, double from, double to, bool last);

@@ -28,6 +28,7 @@ Status FluidWorld::Impl::prepareQuery(StepParams& s) {
     } else {
         particles.id.swap(particles.idNext);
     }
+    grid->sortAsleep();
     sortedForQuery = true;
     return ok();
 }

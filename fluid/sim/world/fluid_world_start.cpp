@@ -43,7 +43,9 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     traits.periodic = params.box.periodic();
     traits.walls = !glm::all(traits.periodic) || solids.any();
     traits.samples = bodies.sampleCount();
-    traits.follows = sourceSetup.expectedDeposit == 0;  // deposits come at any place
+    traits.sleeps = params.sleep.on;
+    traits.asleepRows = traits.sleeps && device->backend() != Backend::cpu;
+    traits.follows = sourceSetup.expectedDeposit == 0 && !traits.sleeps;  // deposits come at any place
     traits.matter = traits.matter || bodies.any();
     for (const Wanted& w : {Wanted{&stats, "fluid/world/stats",
                                    traits.matter   ? std::vector<Define>{{"MATTER", "1"}}
@@ -101,6 +103,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
         if (!foaming) return foaming.error();
         foam = std::move(*foaming);
     }
+    if (Status s = prepareSleep(); !s) return s;
     if (count == 0) log.notice("the scene has no particles");
     relaxStart(given);
     writeStart();
@@ -119,6 +122,8 @@ Status FluidWorld::Impl::mayLink() const {
     }
     if (!sourceSetup.emitters.empty() || !sourceSetup.sinks.empty() || sourceSetup.expectedDeposit > 0)
         return badInput("fluid.grid linked_list does not support emitters, sinks and skins: remove them, or choose fluid.grid sorted");
+    if (params.sleep.on)
+        return badInput("fluid.grid linked_list does not support fluid.sleep: set fluid.sleep.on to false, or choose fluid.grid sorted");
     if (params.foam.most > 0)
         return badInput("fluid.grid linked_list does not support foam: set fluid.foam.most to 0, or choose fluid.grid sorted");
     return forces.refuseForLinkedLists(params, methodOf(params).doesViscosity);
@@ -314,6 +319,9 @@ void FluidWorld::Impl::writeStart() {
     sorted = false;
     invalidateCells();
     gatherColours();
+    if (sleep) sleep->reset(0);
+    stepped = 0;
+    sleptUnder = vec3(0.0F);
     clock.time = clock.dropped = 0;
     clock.frame = 0;
     clock.dtMin = clock.dtMax = 0;

@@ -34,6 +34,10 @@ void FluidWorld::save(WorldState& state) {
     w.particles.save(*w.device, state);
     for (const NamedBuffer& b : w.method->remembered())
         state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
+    if (w.sleep) {
+        w.sleep->save(state);
+        state.put<vec3>("sleep.gravity", std::span(&w.sleptUnder, 1));
+    }
     w.solids.save(state);
     w.sources.save(state);
     if (w.foam) w.foam->save(state);
@@ -72,6 +76,17 @@ Status FluidWorld::restore(WorldState& state) {
         if (!values) return values.error();
         memory.push_back(std::move(*values));
     }
+    SleepPasses::Saved slept;
+    vec3 sleptUnder(0.0F);
+    if (w.sleep) {
+        Result<SleepPasses::Saved> passes = w.sleep->take(state);
+        if (!passes) return passes.error();
+        slept = std::move(*passes);
+        Result<std::vector<vec3>> gravity = state.take<vec3>("sleep.gravity", 1);
+        if (!gravity) return gravity.error();
+        sleptUnder = (*gravity)[0];
+        if (!isFinite(sleptUnder)) return badInput("the saved state's numbers are not finite or negative: save it again");
+    }
     Result<SolidPasses::Places> places = w.solids.take(state);
     if (!places) return places.error();
     Result<SourcePasses::Saved> sources = w.sources.take(state);
@@ -105,6 +120,8 @@ Status FluidWorld::restore(WorldState& state) {
     w.withdrawn = taken;
     if (w.foam) w.foam->restore(foam);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
+    if (w.sleep) w.sleep->restore(slept);
+    w.sleptUnder = sleptUnder;
     w.clock.time = n[0];
     w.stepper.reset(n[1]);
     w.clock.dropped = n[2];
@@ -181,7 +198,7 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
                       velocities(w.particles.count, vec4(0.0F));
     for (uint32_t k = 0; k < w.slots; ++k) {
         positions[k] = k < kept.size() ? position[kept[k]] : vec4(box.min, -1.0F);
-        if (k < kept.size()) velocities[k] = velocity[kept[k]];
+        if (k < kept.size()) velocities[k] = vec4(vec3(velocity[kept[k]]), 0.0F);  // all awake
     }
     w.device->writeAll<vec4>(w.particles.positionNext, positions);
     if (w.around) w.around->set(positions);
@@ -203,6 +220,7 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
         if (const auto saved = w.foam->take(state)) w.foam->restore(*saved);  // else another number may be: it begins without
     }
     w.startCount = static_cast<uint32_t>(kept.size());
+    if (w.sleep) w.sleep->reset(o.clock.time);
     w.clock.time = o.clock.time;
     w.stepper.reset(o.stepper.pending());
     w.clock.dropped = o.clock.dropped;

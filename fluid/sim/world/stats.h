@@ -17,6 +17,7 @@ struct FluidStats {
     uint32_t particles = 0;     // all of them, frozen ones too; not free slots
     uint32_t lost = 0;          // left the grid or NaN: counted, frozen, indexed nowhere
     uint32_t nan = 0;           // of those, NaN or infinite
+    uint32_t asleep = 0;        // of them: see fluid.sleep
     double emitted = 0;         // m^3, put in so far: blocks, what emitters let out, and particles spawned from deposits
     double deposited = 0;       // m^3, of that: particles spawned from deposits
     double pendingVolume = 0;   // m^3, deposited and not yet spawned
@@ -33,6 +34,7 @@ struct FluidStats {
     int substeps = 0;                  // of that frame
     double iterations = 0;             // of the pressure solver, mean over those substeps; on a GPU over some frames earlier
     uint64_t sweeps = 0;               // over all neighbours, since the start: what a step costs, whatever the machine
+    double stepped = 0;                // particles times substeps, since the start: without those asleep, late on a GPU
     std::optional<double> residual;    // mean compression after the last of them, as the solver predicts it; nothing: it predicts none
     double dtMin = 0, dtMax = 0;       // s, since the start
     ProbeFrame loads = {};             // what fluid.probes measured, of its own last frame

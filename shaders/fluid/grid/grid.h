@@ -1,6 +1,7 @@
 // The padded grid: the cell of a position. One empty cell on every side, so that the 27 cells around a particle always exist.
 // Particles are sorted by cell: first those of the fluid, then body samples in cells of their own, then, from cell totalCells on,
-// samples outside the grid (+ 0), lost particles (+ 1: outside, NaN or infinite), free slots (+ 2), and at + 3 the count of all.
+// samples outside the grid (+ 0), lost particles (+ 1: outside, NaN or infinite), free slots (+ 2), and at + 3 the count of all these. With
+// fluid.sleep the sleeping particles follow (velocity.w negative), in cells of their own, the first of them at totalCells + 3.
 #if !defined(RIVULET_GRID_H)
 #define RIVULET_GRID_H
 // The cell of `x` (m), x fastest, or cellCount if x is outside the unpadded cells, NaN or infinite. (The cpu's sort has finer cells; there

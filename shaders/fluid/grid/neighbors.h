@@ -1,5 +1,5 @@
 // The loop over a particle's neighbours on a GPU: the nine rows of cells around it, each with three cells contiguous in memory; with MATTER
-// also the same rows of body samples; with PERIODIC cell by cell, because rows may wrap around; with LINKED_LIST the lists of the 27
+// also the same rows of body samples, with SLEEP those of sleeping particles; with PERIODIC cell by cell, because rows may wrap around; with LINKED_LIST the lists of the 27
 // cells. (On the CPU, lang_neighbors.h defines the same macros over a neighbour list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1,
 // Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart or the lists. `home`: the particle's position when the grid was built.
 // j includes the particle itself.
@@ -25,10 +25,19 @@
 #if !defined(__cplusplus)
 #undef FOR_NEIGHBORS
 #undef SETS_
+#undef AWAKE_SETS_
+#undef SET_AT_
 #if defined(MATTER)
-#define SETS_ (PARAMS.totalCells > PARAMS.cellCount ? 2 : 1)
+#define AWAKE_SETS_ (PARAMS.totalCells > PARAMS.cellCount ? 2 : 1)
 #else
-#define SETS_ 1
+#define AWAKE_SETS_ 1
+#endif
+#if defined(SLEEP)
+#define SETS_ (AWAKE_SETS_ + 1)
+#define SET_AT_(set) TO_INT((set) == AWAKE_SETS_ ? PARAMS.totalCells + 3u : TO_UINT(set) * PARAMS.cellCount)
+#else
+#define SETS_ AWAKE_SETS_
+#define SET_AT_(set) ((set)*TO_INT(PARAMS.cellCount))
 #endif
 #define HOME_CELL(home)                                              \
     vec3 g_ = (home - PARAMS.gridOrigin.xyz) * PARAMS.gridScale.xyz; \
@@ -56,7 +65,7 @@ FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 
             int x_ = wrapped_(cx_ + k_ % nx_ - 1, PARAMS.cellsX, PARAMS.period.x);                                          \
             int y_ = wrapped_(cy_ + k_ / nx_ % ny_ - 1, PARAMS.cellsY, PARAMS.period.y);                                    \
             int z_ = wrapped_(cz_ + k_ / (nx_ * ny_) % nz_ - 1, PARAMS.cellsZ, PARAMS.period.z);                            \
-            int cell_ = (z_ * PARAMS.cellsY + y_) * PARAMS.cellsX + x_ + k_ / (nx_ * ny_ * nz_) * TO_INT(PARAMS.cellCount); \
+            int cell_ = (z_ * PARAMS.cellsY + y_) * PARAMS.cellsX + x_ + SET_AT_(k_ / (nx_ * ny_ * nz_));                    \
             uint end_ = neighbors[cell_ + 1];                                                                               \
             for (uint j = neighbors[cell_]; j < end_; ++j) {
 #else
@@ -65,7 +74,7 @@ FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 
         HOME_CELL(home)                                                                                         \
         for (int row_ = 0; row_ < 9 * SETS_; ++row_) {                                                          \
             int cell_ = ((cz_ + row_ / 3 % 3 - 1) * PARAMS.cellsY + cy_ + row_ % 3 - 1) * PARAMS.cellsX + cx_ + \
-                        row_ / 9 * TO_INT(PARAMS.cellCount);                                                    \
+                        SET_AT_(row_ / 9);                                                                      \
             uint end_ = neighbors[cell_ + 2];                                                                   \
             for (uint j = neighbors[cell_ - 1]; j < end_; ++j) {
 #endif

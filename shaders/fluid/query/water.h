@@ -22,10 +22,12 @@ FN Water waterAt(GLOBAL(uint, cellStart) GLOBAL(vec4, position) GLOBAL(vec4, vel
         int y = cellAround(cy, c / 3 % 3, s.cellsY, s.period.y);
         int z = cellAround(cz, c / 9, s.cellsZ, s.period.z);
         if (x < 0 || y < 0 || z < 0) continue;
-        uint first = TO_UINT((z * s.cellsY + y) * s.cellsX + x) * perCell;
 #if defined(LINKED_LIST)
+        uint first = TO_UINT((z * s.cellsY + y) * s.cellsX + x) * perCell;
         for (uint j = cellStart[first]; j != LIST_END; j = cellStart[NEXT_OF(s.cellCount, j)]) {
 #else
+        for (uint set = 0u; set <= s.asleepSets; ++set) {
+        uint first = cellsOf(set, s) + TO_UINT((z * s.cellsY + y) * s.cellsX + x) * perCell;
         uint end = cellStart[first + perCell];
         for (uint j = cellStart[first]; j < end; ++j) {
 #endif
@@ -40,6 +42,9 @@ FN Water waterAt(GLOBAL(uint, cellStart) GLOBAL(vec4, position) GLOBAL(vec4, vel
             w.velocity += velocity[j].xyz * share;
             w.gradient -= d * (20.0f * t * t * t * s.invH * s.invH * weight);
         }
+#if !defined(LINKED_LIST)
+        }
+#endif
     }
     return w;
 }

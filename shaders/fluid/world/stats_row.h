@@ -15,9 +15,13 @@ STRUCT(StatsRow) {
     float nans;         // of the lost ones: NaN or infinite
     float lost;         // particles outside the grid or NaN
     float inside;       // particles counted
+    float asleep;       // of them
+    float padding0;
+    float padding1;
+    float padding2;
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
-static_assert(sizeof(StatsRow) == 48);
+static_assert(sizeof(StatsRow) == 64);
 }  // namespace rivulet
 #include "shaders/common/lang_end.h"
 #endif

@@ -41,9 +41,9 @@ STRUCT(StepParams) {
     float warmStart;    // share of the last step's pressures that the next step starts with
     uint iteration;     // of a solver, from 0; dfsph: 1 of all but the first
     float correction;   // share of a density error that a step corrects
-    float padding1;
+    uint awakeSlots;    // cpu: slots before those of sleeping particles; else, and in a step that sorts them anew, count
     float sampleScale;  // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)
-    float padding2;
+    uint asleepSets;    // 1: sleeping particles have cells of their own, see grid.h; else 0
     float momentum;  // share of the last iteration's change that is repeated (heavy ball)
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)

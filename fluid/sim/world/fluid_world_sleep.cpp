@@ -1,0 +1,51 @@
+// Sleeping water of a world: what it needs, and what disturbs it from outside.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fluid/sim/world/fluid_world_impl.h"
+
+namespace rivulet {
+
+Status FluidWorld::Impl::prepareSleep() {
+    if (!params.sleep.on) return ok();
+    StepParams s{};
+    grid->fill(s);
+    Result<SleepPasses> made = SleepPasses::create(*device, s, particles.count, method->asleepValues(particles, s));
+    if (!made) return made.error();
+    sleep.emplace(std::move(*made));
+    return ok();
+}
+
+// Water falls asleep under forces that stay as they are. What may move it otherwise is looked for here, before every frame.
+void FluidWorld::Impl::disturbSleep() {
+    const double now = clock.time;
+    if (gravity != sleptUnder) sleep->disturbAll(now);
+    sleptUnder = gravity;
+    const char *force = forces.keepsAwake(), *setting = method->keepsAwake(params);
+    if (force != nullptr) report(fmt::format("fluid.sleep: water stays awake while the force '{}' is on", force));
+    if (setting != nullptr) report(fmt::format("fluid.sleep: water stays awake while {}", setting));
+    if (force != nullptr || setting != nullptr) {
+        sleep->disturbAll(now);
+        return;
+    }
+    const vec3 near(2.0F * params.supportSpacings * params.spacing);
+    StepParams cells{};
+    grid->fill(cells);
+    const auto around = [&](const Bounds& box) { sleep->disturb(cells, {box.min - near, box.max + near}, now); };
+    for (const Bounds& box : solids.moved()) around(box);
+    for (const Emitter& e : sourceSetup.emitters) {
+        const EmitterParams& p = e.params;
+        if (!(p.litresPerSecond > 0) || now + clock.frameLength < p.start || (p.stop > 0 && now > p.stop)) continue;
+        const vec3 half = vec3(std::max(p.radius, 0.5F * glm::length(p.size)));
+        Bounds box{p.position - half, p.position + half};
+        for (const vec3& corner : e.triangles) box.add(corner);
+        around(box);
+    }
+    for (const SinkParams& p : sourceSetup.sinks) {
+        const vec3 half = p.shape == "box" ? 0.5F * p.size : vec3(p.radius);
+        around({p.position - half, p.position + half});
+    }
+}
+
+}  // namespace rivulet

@@ -1,0 +1,304 @@
+// fluid.sleep: calm water falls asleep where it is, everything that moves water wakes it, and what floats on it moves as without sleep.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "fluid/sim/solids/body_shapes.h"
+#include "tests/physics/baked_mesh.h"
+#include "tests/physics/worlds.h"
+
+namespace rivulet::sleep_test {
+namespace {
+
+constexpr float kSpacing = 0.02F;
+constexpr double kFrame = 1.0 / 60;
+
+FluidParams pool(const std::string& method, bool sleeps = true, const vec3& size = vec3(0.24F, 0.2F, 0.24F), float jitter = 0) {
+    FluidParams p;
+    p.method = method;
+    p.spacing = kSpacing;
+    p.sleep.on = sleeps;
+    p.box.max = vec3(size.x, 2.0F * size.y, size.z);
+    p.blocks = {{.min = vec3(0.0F), .max = size}};
+    p.blocks[0].jitter = jitter;
+    return p;
+}
+
+void run(FluidWorld& world, int frames) {
+    for (int k = 0; k < frames; ++k) world.step({}, kFrame);
+}
+
+// Runs until all particles sleep; returns the frames that it took, or `most`.
+int settle(FluidWorld& world, int most = 600) {
+    int k = 0;
+    for (; k < most && world.stats().asleep < world.stats().particles; ++k) run(world, 1);
+    return k;
+}
+
+std::vector<vec4> byId(const FluidWorld& world, bool velocities = false) {
+    const ParticleView view = world.particles();
+    Device& device = world.device();
+    const auto x = device.readAll<vec4>(velocities ? *view.velocity : *view.position, view.count);
+    const auto id = device.readAll<uint32_t>(*view.id, view.slots);
+    std::vector<vec4> all(view.slots);
+    for (size_t k = 0; k < x.size(); ++k) all[id[k]] = x[k];
+    return all;
+}
+
+class SleepOf : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, SleepOf, testing::Values("dfsph", "pbf", "wcsph"), [](const auto& of) { return std::string(of.param); });
+
+TEST_P(SleepOf, APoolComesToRestWhereItWouldWithoutSleepAndThenStaysBitForBit) {
+    auto device = cpu();
+    auto world = makeWorld(*device, pool(GetParam(), true, vec3(0.24F, 0.2F, 0.24F), 0.2F)),
+         awake = makeWorld(*device, pool(GetParam(), false, vec3(0.24F, 0.2F, 0.24F), 0.2F));
+    ASSERT_TRUE(world && awake);
+    const int frames = settle(*world);
+    ASSERT_LT(frames, 600) << world->stats().asleep << " of " << world->stats().particles << " sleep after ten seconds";
+    ASSERT_GT(frames, 20) << "it is not at rest at the start";
+    run(*awake, frames);
+    const FluidStats f = world->stats();
+    EXPECT_EQ(f.particles, awake->stats().particles);
+    EXPECT_EQ(f.lost, 0U);
+    EXPECT_EQ(f.kinetic, 0);
+    EXPECT_NEAR(f.centreOfMass[1], awake->stats().centreOfMass[1], 0.01 * kSpacing);
+    EXPECT_NEAR(f.avgCompression, awake->stats().avgCompression, 0.1 * awake->stats().avgCompression + 1.0e-4);
+    const std::vector<vec4> before = byId(*world);
+    run(*world, 30);
+    EXPECT_EQ(before, byId(*world));
+    EXPECT_EQ(world->stats().stepped, f.stepped) << "nothing was stepped";
+    EXPECT_NEAR(world->time(), (frames + 30) * kFrame, 1.0e-9);
+}
+
+TEST_P(SleepOf, WhatFloatsMovesAsWithoutSleep) {
+    auto device = cpu();
+    const vec3 size(0.36F, 0.16F, 0.36F);
+    Solids solids;
+    solids.bodies.resize(1);
+    solids.bodies[0].shape = sphereShape(0.04F, 300, kSpacing);
+    solids.bodies[0].state.pose.position = vec3(0.18F, 0.28F, 0.18F);
+    auto world = makeWorld(*device, pool(GetParam(), true, size), solids),
+         awake = makeWorld(*device, pool(GetParam(), false, size), solids);
+    ASSERT_TRUE(world && awake);
+    double apart = 0, deepest = 1;
+    const int frames = std::string(GetParam()) == "pbf" ? 360 : 180;  // it is calm later
+    for (int k = 0; k < frames; ++k) {
+        run(*world, 1);
+        run(*awake, 1);
+        const vec3 a = world->bodies()[0].pose.position, b = awake->bodies()[0].pose.position;
+        apart = std::max(apart, double{std::abs(a.y - b.y)});
+        deepest = std::min(deepest, double{b.y});
+    }
+    EXPECT_LT(apart, 0.01 * (0.28 - deepest)) << "of the height of its fall";
+    EXPECT_LT(world->stats().stepped, 0.95 * awake->stats().stepped) << "some of the water slept";
+}
+
+TEST_P(SleepOf, ASavedStateContinuesBitForBit) {
+    auto device = cpu();
+    const vec3 size(0.4F, 0.16F, 0.4F);
+    Solids solids;
+    solids.bodies.resize(1);
+    solids.bodies[0].shape = sphereShape(0.04F, 300, kSpacing);
+    solids.bodies[0].state.pose.position = vec3(0.12F, 0.3F, 0.12F);
+    const FluidParams p = pool(GetParam(), true, size);
+    auto whole = makeWorld(*device, p, solids), second = makeWorld(*device, p, solids);
+    ASSERT_TRUE(whole && second);
+    int k = 0;
+    // Until a part of it sleeps.
+    for (; k < 400 && (whole->stats().asleep < 100 || whole->stats().asleep > whole->stats().particles - 100); ++k) run(*whole, 1);
+    ASSERT_LT(k, 400);
+    WorldState state;
+    whole->save(state);
+    const Status back = second->restore(state);
+    ASSERT_TRUE(back) << back.error().message;
+    run(*whole, 40);
+    run(*second, 40);
+    EXPECT_EQ(byId(*whole), byId(*second));
+    EXPECT_EQ(byId(*whole, true), byId(*second, true));
+    EXPECT_EQ(whole->bodies()[0].pose.position, second->bodies()[0].pose.position);
+    EXPECT_EQ(whole->stats().asleep, second->stats().asleep);
+}
+
+TEST_P(SleepOf, OffIsWhatItIsWithBoundsThatNothingMeets) {
+    auto device = cpu();
+    FluidParams never = pool(GetParam());
+    never.sleep.speed = 0;
+    auto world = makeWorld(*device, never), off = makeWorld(*device, pool(GetParam(), false));
+    ASSERT_TRUE(world && off);
+    run(*world, 30);
+    run(*off, 30);
+    EXPECT_EQ(byId(*world), byId(*off));
+    EXPECT_EQ(world->stats().asleep, 0U);
+}
+
+// What wakes a pool. `start` may change the world before it is made, `cause` acts on it when it sleeps.
+struct Cause {
+    const char* name;
+    std::function<void(FluidParams&, Solids&, Sources&)> start;
+    std::function<void(FluidWorld&, FluidInputs&)> cause;
+};
+
+// A ball above the pool that stays where it is until it is let go.
+struct Held {
+    bool released = false;
+    BodyHost host() {
+        return {.self = this,
+                .advance =
+                    [](void* self, std::span<const BodyLoad>, const vec3&, double seconds, std::span<BodyState> states) {
+                        if (!static_cast<Held*>(self)->released) return;
+                        states[0].velocity = vec3(0, -0.5F, 0);
+                        states[0].pose.position.y -= static_cast<float>(0.5 * seconds);
+                    },
+                .reset = [](void*, std::span<const BodyState>) {},
+                .remembersNothing = true};
+    }
+};
+
+class Wakes : public testing::TestWithParam<const char*> {
+  protected:
+    // Lets a pool fall asleep, runs it on for a quarter of a second in which nothing happens, and then for one second with the cause.
+    void wakes(const std::function<void(FluidParams&, Solids&, Sources&)>& start,
+               const std::function<void(FluidWorld&, FluidInputs&)>& cause) {
+        auto device = cpu();
+        FluidParams p = pool(GetParam());
+        Solids solids;
+        Sources sources;
+        if (start) start(p, solids, sources);
+        auto made = FluidWorld::create(*device, p, solids, {}, sources);
+        ASSERT_TRUE(made) << made.error().message;
+        FluidWorld& world = **made;
+        ASSERT_LT(settle(world), 600);
+        run(world, 15);
+        ASSERT_EQ(world.stats().asleep, world.stats().particles);
+        uint32_t fewest = world.stats().asleep;
+        const std::vector<vec4> before = byId(world);
+        FluidInputs inputs;
+        for (int k = 0; k < 60; ++k) {
+            if (cause) cause(world, inputs);
+            world.step(inputs, kFrame);
+            fewest = std::min(fewest, world.stats().asleep);
+        }
+        EXPECT_LT(fewest, world.stats().particles / 2);
+        EXPECT_EQ(world.stats().lost, 0U);
+        const std::vector<vec4> after = byId(world);
+        float furthest = 0;
+        for (size_t k = 0; k < before.size(); ++k)
+            if (before[k].w >= 0 && after[k].w >= 0) furthest = std::max(furthest, glm::length(vec3(after[k] - before[k])));
+        EXPECT_GT(furthest, 0.2F * kSpacing) << "the water moves";
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Methods, Wakes, testing::Values("dfsph", "pbf"), [](const auto& of) { return std::string(of.param); });
+
+TEST_P(Wakes, ByGravityThatTurns) {
+    wakes({}, [](FluidWorld&, FluidInputs& in) { in.gravity = vec3(3, -9.3F, 0); });
+}
+
+TEST_P(Wakes, ByAParameter) {
+    wakes({}, [](FluidWorld& world, FluidInputs&) {
+        FluidParams p = world.params();
+        p.gravity = vec3(0, -9.3F, 3);
+        ASSERT_TRUE(world.setParams(p));
+    });
+}
+
+TEST_P(Wakes, ByABodyThatFallsIn) {
+    Held held;
+    wakes(
+        [&](FluidParams&, Solids& solids, Sources&) {
+            solids.bodies.resize(1);
+            solids.bodies[0].shape = sphereShape(0.05F, 300, kSpacing);
+            solids.bodies[0].state.pose.position = vec3(0.12F, 0.33F, 0.12F);
+            solids.bodyHost = held.host();
+        },
+        [&](FluidWorld&, FluidInputs&) { held.released = true; });
+}
+
+TEST_P(Wakes, ByAWallThatMoves) {
+    const VoxelField field = test::baked(test::makeBox(vec3(-0.05F), vec3(0.05F)), 0.01F, kSpacing);
+    std::vector<Pose> poses(1);
+    poses[0].position = vec3(0.12F, 0.33F, 0.12F);
+    wakes(
+        [&](FluidParams&, Solids& solids, Sources&) {
+            solids.rigid = {{&field, poses[0]}};
+        },
+        [&](FluidWorld&, FluidInputs& in) {
+            poses[0].position.y = std::max(poses[0].position.y - 0.01F, 0.16F);
+            in.poses = poses;
+        });
+}
+
+TEST_P(Wakes, ByAnEmitter) {
+    wakes(
+        [](FluidParams&, Solids&, Sources& sources) {
+            sources.emitters.resize(1);
+            EmitterParams& e = sources.emitters[0].params;
+            e.litresPerSecond = 0.0F;
+            e.position = vec3(0.12F, 0.36F, 0.12F);
+            e.radius = 0.03F;
+        },
+        [](FluidWorld& world, FluidInputs&) {
+            Sources on;
+            on.emitters.resize(1);
+            EmitterParams& e = on.emitters[0].params;
+            e.litresPerSecond = 1;
+            e.position = vec3(0.12F, 0.36F, 0.12F);
+            e.radius = 0.03F;
+            ASSERT_TRUE(world.setSources(on));
+        });
+}
+
+TEST_P(Wakes, ByASinkThatOpens) {
+    Sources open;
+    open.sinks.resize(1);
+    open.sinks[0].position = vec3(0.12F, -1, 0.12F);  // outside
+    open.sinks[0].size = vec3(0.1F);
+    wakes([&](FluidParams&, Solids&, Sources& sources) { sources = open; },
+          [&](FluidWorld& world, FluidInputs&) {
+              open.sinks[0].position.y = 0;
+              ASSERT_TRUE(world.setSources(open));
+          });
+}
+
+TEST_P(Wakes, ByWaterThatAHostDeposits) {
+    int frame = 0;
+    wakes([](FluidParams&, Solids&, Sources& sources) { sources.expectedDeposit = 1.0e-3; },
+          [&](FluidWorld& world, FluidInputs&) {
+              if (++frame < 40) world.deposit(vec3(0.12F, 0.3F, 0.12F), vec3(0, -1, 0), 4.0e-5);
+          });
+}
+
+TEST_P(Wakes, ByWaterThatAHostTakes) {
+    wakes([](FluidParams&, Solids&, Sources& sources) { sources.expectedDeposit = 1.0e-3; },
+          [](FluidWorld& world, FluidInputs&) {
+              const std::vector<WorldParticle> there = world.within({vec3(0.08F, 0.0F, 0.08F), vec3(0.16F, 0.1F, 0.16F)});
+              std::vector<uint32_t> slots;
+              for (const WorldParticle& p : there) slots.push_back(p.slot);
+              world.withdraw(slots);
+          });
+}
+
+TEST(Sleep, WithoutGravityNothingSleeps) {
+    auto device = cpu();
+    FluidParams p = pool("dfsph");
+    p.gravity = vec3(0.0F);
+    auto world = makeWorld(*device, p);
+    ASSERT_TRUE(world);
+    run(*world, 60);
+    EXPECT_EQ(world->stats().asleep, 0U);
+}
+
+TEST(Sleep, AForceThatReadsMoreOfItsNeighboursKeepsWaterAwakeAndIsNamed) {
+    auto device = cpu();
+    FluidParams p = pool("dfsph");
+    p.forces.tension = 0.07F;
+    auto world = makeWorld(*device, p);
+    ASSERT_TRUE(world);
+    run(*world, 90);
+    EXPECT_EQ(world->stats().asleep, 0U);
+    ASSERT_EQ(world->stats().limited.size(), 1U);
+    EXPECT_NE(world->stats().limited[0].find("'tension'"), std::string::npos) << world->stats().limited[0];
+}
+
+}  // namespace
+}  // namespace rivulet::sleep_test

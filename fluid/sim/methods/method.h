@@ -27,9 +27,9 @@ struct NamedBuffer {
 
 // What the pair forces read of a particle that sleeps, slot by slot, beside its position and density; its velocity is 0.
 struct AsleepPressure {
-    const Buffer* from;  // floats; times `scale`: pressure over density, m^2/s^2. Its mean over the last steps is what stays
-    Buffer* to;          // floats: that mean times `back`
-    float scale, back;
+    const Buffer* from = nullptr;  // floats; times `scale`: pressure over density, m^2/s^2. Its mean over the last steps is what stays
+    Buffer* to = nullptr;          // floats: that mean times `back`
+    float scale = 1, back = 1;
 };
 struct AsleepValue {
     const Buffer* from;  // floats, kept as they are when a particle falls asleep; null: `to` is 0
@@ -65,8 +65,8 @@ class Method {
     // All data that a step depends on in addition to particles, params and solids. The world saves and restores it, and fills it with 0 at
     // t = 0.
     virtual std::vector<NamedBuffer> remembered() { return {}; }
-    // The values of sleeping particles. `step`: of the last substep.
-    virtual AsleepValues asleepValues(Particles& particles, const StepParams& step) = 0;
+    // The values of sleeping particles. `step`: of the last substep. Without pressures: the method does not support fluid.sleep.
+    virtual AsleepValues asleepValues(Particles&, const StepParams&) { return {}; }
     // A setting with which no water may fall asleep, "fluid.pbf.tolerance is above 0"; null: there is none.
     virtual const char* keepsAwake(const FluidParams&) const { return nullptr; }
     // Resets the estimates of a solver's iterations: the world begins at t = 0.

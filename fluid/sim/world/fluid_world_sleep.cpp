@@ -11,7 +11,11 @@ Status FluidWorld::Impl::prepareSleep() {
     if (!params.sleep.on) return ok();
     StepParams s{};
     grid->fill(s);
-    Result<SleepPasses> made = SleepPasses::create(*device, s, particles.count, method->asleepValues(particles, s));
+    const AsleepValues values = method->asleepValues(particles, s);
+    if (values.pressure.from == nullptr)
+        return badInput(
+            fmt::format("method {} does not support fluid.sleep: set fluid.sleep.on to false, or choose another method", params.method));
+    Result<SleepPasses> made = SleepPasses::create(*device, s, particles.count, values);
     if (!made) return made.error();
     sleep.emplace(std::move(*made));
     return ok();

@@ -59,8 +59,8 @@ class WorldState {
 
 // The Params that are `fixed`, a line each: "fluid.spacing = 0.02". What a state can be resumed with must have the same.
 std::string fixedValues(const VisitFn& visit);
-// Error (badInput): names the first line that differs. A parameter that `saved` lacks in a group that it has was added by a later version,
-// and may have any value.
+// Error (badInput): names the first line that differs. A parameter that `saved` lacks in a group that it has, or a group that it lacks, was
+// added by a later version, and may have any value.
 Status sameFixedValues(std::string_view saved, std::string_view now);
 
 // Error (failed): out of memory.

@@ -156,9 +156,9 @@ class FluidWorld {
     uint64_t voxelsRewritten() const;                // of deforming solids, since the start
     Device& device() const;
 
-    // Everything in a world, its inputs included, is float and relative to its origin, a place (m) in the host's world. setOrigin() moves all
-    // of it in the host's world and costs nothing. A host that moves the origin of its own coordinates by `by` calls
-    // setOrigin(origin() - by): particles, solids and sources then stay where they are in space, and poses that it passes stay the same.
+    // Everything in a world, its inputs included, is float and relative to its origin, a place (m) in the host's world. setOrigin() moves
+    // all of it in the host's world and costs nothing. A host that moves the origin of its own coordinates by `by` calls setOrigin(origin()
+    // - by): particles, solids and sources then stay where they are in space, and poses that it passes stay the same.
     const dvec3& origin() const;
     void setOrigin(const dvec3& origin);
     dvec3 toHost(const vec3& p) const { return origin() + dvec3(p); }

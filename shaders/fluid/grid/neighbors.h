@@ -1,8 +1,8 @@
 // The loop over a particle's neighbours on a GPU: the nine rows of cells around it, each with three cells contiguous in memory; with MATTER
-// also the same rows of body samples, with SLEEP those of sleeping particles; with PERIODIC cell by cell, because rows may wrap around; with LINKED_LIST the lists of the 27
-// cells. (On the CPU, lang_neighbors.h defines the same macros over a neighbour list for each group of 8.) Needs PARAMS of StepParams and a buffer RO(1,
-// Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart or the lists. `home`: the particle's position when the grid was built.
-// j includes the particle itself.
+// also the same rows of body samples, with SLEEP those of sleeping particles; with PERIODIC cell by cell, because rows may wrap around;
+// with LINKED_LIST the lists of the 27 cells. (On the CPU, lang_neighbors.h defines the same macros over a neighbour list for each group
+// of 8.) Needs PARAMS of StepParams and a buffer RO(1, Neighbors, NEIGHBOR_TYPE, neighbors), which on a GPU is cellStart or the lists.
+// `home`: the particle's position when the grid was built. j includes the particle itself.
 #include "shaders/fluid/grid/linked_list.h"
 #if !defined(FOR_NEIGHBORS)
 #define SELF(i)         \
@@ -15,8 +15,8 @@
     }                 \
     }                 \
     }
-// The same among images (fluid/solids/images.h). In the first sweep of a step, KEEP marks the neighbours that later sweeps need, and those of
-// which images may be seen; a GPU keeps no list.
+// The same among images (fluid/solids/images.h). In the first sweep of a step, KEEP marks the neighbours that later sweeps need, and those
+// of which images may be seen; a GPU keeps no list.
 #define FOR_SEEN(i, home, j) FOR_NEIGHBORS(i, home, j)
 #define FOR_ALL_SEEN(i, home, j) FOR_NEIGHBORS(i, home, j)
 #define KEEP(condition, seen)
@@ -55,27 +55,26 @@
 // On a periodic axis cells 1 .. n - 2 wrap around; if there are only two of them, the lower and the upper neighbour are the same cell.
 FN int wrapped_(int c, int n, float period) { return period > 0.0f ? (c < 1 ? n - 2 : c > n - 2 ? 1 : c) : c; }
 FN int cellsAround_(int n, float period) { return period > 0.0f && n == 4 ? 2 : 3; }
-#define FOR_NEIGHBORS(i, home, j)                                                                                           \
-    {                                                                                                                       \
-        HOME_CELL(home)                                                                                                     \
-        int nx_ = cellsAround_(PARAMS.cellsX, PARAMS.period.x);                                                             \
-        int ny_ = cellsAround_(PARAMS.cellsY, PARAMS.period.y);                                                             \
-        int nz_ = cellsAround_(PARAMS.cellsZ, PARAMS.period.z);                                                             \
-        for (int k_ = 0; k_ < nx_ * ny_ * nz_ * SETS_; ++k_) {                                                              \
-            int x_ = wrapped_(cx_ + k_ % nx_ - 1, PARAMS.cellsX, PARAMS.period.x);                                          \
-            int y_ = wrapped_(cy_ + k_ / nx_ % ny_ - 1, PARAMS.cellsY, PARAMS.period.y);                                    \
-            int z_ = wrapped_(cz_ + k_ / (nx_ * ny_) % nz_ - 1, PARAMS.cellsZ, PARAMS.period.z);                            \
-            int cell_ = (z_ * PARAMS.cellsY + y_) * PARAMS.cellsX + x_ + SET_AT_(k_ / (nx_ * ny_ * nz_));                    \
-            uint end_ = neighbors[cell_ + 1];                                                                               \
+#define FOR_NEIGHBORS(i, home, j)                                                                         \
+    {                                                                                                     \
+        HOME_CELL(home)                                                                                   \
+        int nx_ = cellsAround_(PARAMS.cellsX, PARAMS.period.x);                                           \
+        int ny_ = cellsAround_(PARAMS.cellsY, PARAMS.period.y);                                           \
+        int nz_ = cellsAround_(PARAMS.cellsZ, PARAMS.period.z);                                           \
+        for (int k_ = 0; k_ < nx_ * ny_ * nz_ * SETS_; ++k_) {                                            \
+            int x_ = wrapped_(cx_ + k_ % nx_ - 1, PARAMS.cellsX, PARAMS.period.x);                        \
+            int y_ = wrapped_(cy_ + k_ / nx_ % ny_ - 1, PARAMS.cellsY, PARAMS.period.y);                  \
+            int z_ = wrapped_(cz_ + k_ / (nx_ * ny_) % nz_ - 1, PARAMS.cellsZ, PARAMS.period.z);          \
+            int cell_ = (z_ * PARAMS.cellsY + y_) * PARAMS.cellsX + x_ + SET_AT_(k_ / (nx_ * ny_ * nz_)); \
+            uint end_ = neighbors[cell_ + 1];                                                             \
             for (uint j = neighbors[cell_]; j < end_; ++j) {
 #else
-#define FOR_NEIGHBORS(i, home, j)                                                                               \
-    {                                                                                                           \
-        HOME_CELL(home)                                                                                         \
-        for (int row_ = 0; row_ < 9 * SETS_; ++row_) {                                                          \
-            int cell_ = ((cz_ + row_ / 3 % 3 - 1) * PARAMS.cellsY + cy_ + row_ % 3 - 1) * PARAMS.cellsX + cx_ + \
-                        SET_AT_(row_ / 9);                                                                      \
-            uint end_ = neighbors[cell_ + 2];                                                                   \
+#define FOR_NEIGHBORS(i, home, j)                                                                                                  \
+    {                                                                                                                              \
+        HOME_CELL(home)                                                                                                            \
+        for (int row_ = 0; row_ < 9 * SETS_; ++row_) {                                                                             \
+            int cell_ = ((cz_ + row_ / 3 % 3 - 1) * PARAMS.cellsY + cy_ + row_ % 3 - 1) * PARAMS.cellsX + cx_ + SET_AT_(row_ / 9); \
+            uint end_ = neighbors[cell_ + 2];                                                                                      \
             for (uint j = neighbors[cell_ - 1]; j < end_; ++j) {
 #endif
 #endif

@@ -27,9 +27,9 @@ FN Water waterAt(GLOBAL(uint, cellStart) GLOBAL(vec4, position) GLOBAL(vec4, vel
         for (uint j = cellStart[first]; j != LIST_END; j = cellStart[NEXT_OF(s.cellCount, j)]) {
 #else
         for (uint set = 0u; set <= s.asleepSets; ++set) {
-        uint first = cellsOf(set, s) + TO_UINT((z * s.cellsY + y) * s.cellsX + x) * perCell;
-        uint end = cellStart[first + perCell];
-        for (uint j = cellStart[first]; j < end; ++j) {
+            uint first = cellsOf(set, s) + TO_UINT((z * s.cellsY + y) * s.cellsX + x) * perCell;
+            uint end = cellStart[first + perCell];
+            for (uint j = cellStart[first]; j < end; ++j) {
 #endif
             vec4 other = position[j];
             vec3 d = vec3(shortest(at.x - other.x, s.period.x, s.invPeriod.x), shortest(at.y - other.y, s.period.y, s.invPeriod.y),
@@ -43,9 +43,9 @@ FN Water waterAt(GLOBAL(uint, cellStart) GLOBAL(vec4, position) GLOBAL(vec4, vel
             w.gradient -= d * (20.0f * t * t * t * s.invH * s.invH * weight);
         }
 #if !defined(LINKED_LIST)
-        }
-#endif
     }
-    return w;
+#endif
+}
+return w;
 }
 #endif

@@ -1,8 +1,8 @@
 // The parameter block of the kernels of fluid/sim/sleep.
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 #pragma once
-#include "shaders/fluid/world/step_params.h"
 #include "shaders/common/lang.h"
+#include "shaders/fluid/world/step_params.h"
 namespace rivulet {
 #endif
 STRUCT(SleepStep) {

@@ -44,7 +44,7 @@ STRUCT(StepParams) {
     uint awakeSlots;    // cpu: slots before those of sleeping particles; else, and in a step that sorts them anew, count
     float sampleScale;  // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)
     uint asleepSets;    // 1: sleeping particles have cells of their own, see grid.h; else 0
-    float momentum;  // share of the last iteration's change that is repeated (heavy ball)
+    float momentum;     // share of the last iteration's change that is repeated (heavy ball)
 };
 #if defined(__cplusplus) && !defined(RIVULET_KERNEL_UNIT)
 static_assert(sizeof(StepParams) % 16 == 0);

@@ -35,8 +35,8 @@ class SceneOpening {
     ~SceneOpening();  // cancels, and waits
 
     bool ready(double seconds = 0);  // waits up to this, s
-    // Once, when ready, on the thread whose context shares objects with the request's. Device::stopOn of its device is then null. Error: as
-    // openSession; (failed) it was cancelled.
+    // Call it once, when the scene is ready, on the thread whose context shares objects with the request's. The device's stop flag
+    // (Device::stopOn) is null afterwards. Error: as openSession; (failed) opening was cancelled.
     Result<OpenedScene> take();
     void giveUp();  // within milliseconds, but for steps that read and voxelise a mesh
 

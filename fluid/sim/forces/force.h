@@ -41,7 +41,7 @@ struct ForceRow {
     StepLimit (*limit)(const ForceLimitInputs& inputs) = nullptr;  // none: it limits no step. Called whether it is on or not
     float (*fastest)(const FluidParams& params) = nullptr;         // m/s, as HostForce::fastest
     float (*pressure)(const FluidParams& params) = nullptr;        // Pa, the most that it causes inside the fluid; none: little
-    // True: its kernels read results of their own of a neighbour, which a sleeping particle does not have, so nothing may sleep.
+    // True: no water may sleep while the force is on, because its kernels read values of neighbours that sleeping particles do not have.
     bool keepsAwake = false;
 };
 Table<ForceRow> forces();  // by `order`

@@ -21,7 +21,7 @@ class WorldForces {
     // Makes the passes of what is on from now. Returns a sentence for each force that has to stay off.
     std::vector<std::string> update(Device& device, const MethodSetup& setup);
     bool anyOn() const;
-    const char* keepsAwake() const;  // the name of one that is on and in whose presence no water may fall asleep; null: none
+    const char* keepsAwake() const;  // the name of an active force with ForceRow::keepsAwake; null: there is none
     void run(StepContext& context) const;
     float fastest(const FluidParams& params) const;   // m/s, the most that a force drives water to
     float pressure(const FluidParams& params) const;  // Pa, the most that a force causes inside the fluid

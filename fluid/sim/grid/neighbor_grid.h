@@ -24,7 +24,7 @@ struct PairTraits {
     uint32_t samples = 0;     // on bodies: the last ids
     bool walls = true;        // else the box wraps round along all axes and there are no colliders
     bool linked = false;      // fluid.grid linked_list
-    bool follows = false;     // a grid whose cells would be many times the particles may cover a part of its bounds: NeighborGrid::follow
+    bool follows = false;     // the grid of a very large box may cover only the particles: NeighborGrid::follow
     bool sleeps = false;      // fluid.sleep: particles may be asleep
     bool asleepRows = false;  // the same on a GPU: pair kernels visit rows of sleeping particles too
     uint32_t workGroup = 0;   // threads, of a GPU; 0 = the device's default

@@ -25,7 +25,7 @@ namespace rivulet {
 
 class SleepPasses {
   public:
-    // For a world with `count` slots whose StepParams, filled by the grid, are `step`. Error (failed): out of memory.
+    // `step`: as NeighborGrid::fill leaves it; `count`: slots of the world; `values`: those of its method. Error (failed): out of memory.
     static Result<SleepPasses> create(Device& device, const StepParams& step, uint32_t count, const AsleepValues& values);
 
     // Before the steps of a frame: cells that this box (m) touches are disturbed at `now` (s).

@@ -188,7 +188,7 @@ std::string fixedValues(const VisitFn& visit) {
 namespace {
 
 // True if `line` is of a parameter that `saved` lacks in a group that it has, or of a group that it lacks in one that it has: a later
-// version added it. Items of lists, whose names are numbers, are no groups.
+// version added it. The items of a list have numbers as names; they do not count as groups.
 bool isLater(std::string_view line, std::string_view saved) {
     const auto has = [&](std::string_view start) {
         return saved.starts_with(start) || saved.find(fmt::format("\n{}", start)) != std::string_view::npos;

@@ -11,8 +11,8 @@ namespace rivulet {
 
 Spread repeat(const BenchContext& context, const std::function<double()>& once) {
     once();
-    std::vector<double> values;
-    for (int i = 0; i < context.runs; ++i) values.push_back(once());
+    std::vector<double> values(context.runs);
+    for (double& value : values) value = once();
     return spreadOf(values);
 }
 

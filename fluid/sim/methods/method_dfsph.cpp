@@ -19,11 +19,13 @@ constexpr float kSound = 100.0F;
 // The same without a free surface: the mean density of a disordered fluid is above that of a lattice, no particle can escape, and a
 // stiff fluid's pressure for it would drown all others.
 constexpr float kSoundClosed = 10.0F;
+// Iterations that remove most of what a step compresses. Long waves remain, as in deep water, and need more momentum.
+constexpr int kFirst = 6;
 float squared(float x) { return x * x; }
 
 class Dfsph final : public Method {
   public:
-    Kernel integrate, begin, end;
+    Kernel integrate, warm, begin, end;
     PairKernel density, rate, push;
     Buffer solve, change, kept;  // change: of the pressures in an iteration; kept: pressures of the last step, by id
     SolverResidual residual;
@@ -63,14 +65,15 @@ class Dfsph final : public Method {
         if (!c.build(false)) return;
         Particles& p = c.particles;
         c.nearWalls(p.position);
+        StepParams allowed = c.params;
+        allowed.force.x = c.fluid.dfsph.negativePressure ? 1.0F : 0.0F;
+        c.device.run(warm, allowed, {&c.grid.cellStart(), &p.id, &kept, &p.velocity, &change}, c.params.awakeSlots);
         density.run(c, c.params, {&c.grid.neighbors(), &p.position, &p.nearWalls, &p.density, &solve, &p.velocity, &p.acceleration},
                     c.grid.pairThreads());
         c.forces();
-        StepParams allowed = c.params;
-        allowed.force.x = c.fluid.dfsph.negativePressure ? 1.0F : 0.0F;
-        c.device.run(begin, allowed, {&c.grid.cellStart(), &p.id, &kept, &p.acceleration, &solve, &p.pressure, &p.velocity, &change},
-                     c.params.awakeSlots);
-        pushOn(c, 0, p.pressure, c.params.dt, vec3(c.params.gravity));
+        c.device.run(begin, allowed, {&c.grid.neighbors(), &p.acceleration, &p.nearWalls, &solve, &p.pressure, &p.velocity},
+                     c.grid.pairThreads());
+        pushBodies(c, p.pressure, c.params.dt, vec3(c.params.gravity));
         iterate(c);
         c.solve.iterations = residual.iterations();
         c.solve.residual = residual.value();
@@ -85,15 +88,9 @@ class Dfsph final : public Method {
     }
 
   private:
-    // Velocities follow `unit` times these pressures in iteration k, which go on into bodies by `weight` a metre (Adami et al. 2012).
-    void pushOn(StepContext& c, int k, const Buffer& pressures, float unit, const vec3& weight) {
-        Particles& p = c.particles;
-        StepParams s = c.params;
-        s.iteration = k > 0 ? 1 : 0;
-        s.force = vec4(weight, unit);
-        push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &pressures, &residual.progress()},
-                 c.grid.pairThreads());
-        c.pushSamples(p.position, pressures, 2.0F * unit / c.params.dt, weight);  // MIRRORED
+    // `unit` times these pressures, m^2/s, push bodies, and go on into them by `weight` a metre (Adami et al. 2012).
+    void pushBodies(StepContext& c, const Buffer& pressures, float unit, const vec3& weight) {
+        c.pushSamples(c.particles.position, pressures, 2.0F * unit / c.params.dt, weight);  // MIRRORED
     }
     // Runs the solver to its tolerance.
     void iterate(StepContext& c) {
@@ -104,10 +101,14 @@ class Dfsph final : public Method {
         StepParams s = c.params;
         s.stiffness = std::max(s.stiffness, squared((closed ? kSoundClosed : kSound) * static_cast<float>(c.fastest)));
         for (int k = 0; k < most; ++k) {
-            s.iteration = k > 0 ? 1 : 0;  // not its number: a device keeps few different blocks of params at hand
+            // Not its number: a device keeps few different blocks of params at hand.
+            s.iteration = k < 1 ? 0 : k < kFirst ? 1 : 2;
+            s.momentum = k < kFirst ? d.momentum : 1.0F - squared(1.0F - d.momentum);
             rate.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &solve, &change, &residual.progress()},
                      c.grid.pairThreads());
-            pushOn(c, k, change, 1.0F, vec3(0.0F));
+            push.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &change, &residual.progress()},
+                     c.grid.pairThreads());
+            pushBodies(c, change, 1.0F, vec3(0.0F));
             if (residual.converged(c, solve, double{d.tolerance}, double{d.reach * c.fluid.spacing}, k)) break;
         }
         if (!cpu) residual.readLater(c);
@@ -127,7 +128,9 @@ Result<std::unique_ptr<Method>> makeDfsph(Device& device, const MethodSetup& set
         std::vector<Define> defines;
     };
     for (const Wanted& w : {Wanted{&m->integrate, "fluid/methods/integrate", setup.traits.wallDefines({{"COAST", "1"}})},
-                            Wanted{&m->begin, "fluid/methods/dfsph_begin", {}}, Wanted{&m->end, "fluid/methods/dfsph_end", {}}}) {
+                            Wanted{&m->warm, "fluid/methods/dfsph_warm", {}},
+                            Wanted{&m->begin, "fluid/methods/dfsph_begin", setup.traits.wallDefines(setup.traits.threadDefines())},
+                            Wanted{&m->end, "fluid/methods/dfsph_end", {}}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
         *w.kernel = *found;
@@ -170,9 +173,12 @@ void DfsphParams::visit(ParamVisitor& v) {
     v.value({"warmStart", "", "share of the last substep's pressure that the solver starts from", 0, 1}, warmStart);
     v.value({"relaxation", "", "share of each Jacobi correction that is applied; above 0.6 the solver may not converge", 0.05, 1},
             relaxation);
-    v.value({"momentum", "",
-             "momentum of the Jacobi iteration: share of the last change that is added again, unless it points the wrong way", 0, 0.95},
-            momentum);
+    v.value(
+        {"momentum", "",
+         "momentum of the Jacobi iteration: share of the last change that is added again, unless it points the wrong way; from the seventh "
+         "iteration on 1 - (1 - momentum)^2",
+         0, 0.95},
+        momentum);
     v.value({"reach", "", "longest path of the fastest particle in one substep, in spacings", 0.05, 1}, reach);
     v.value({"minSubsteps", "", "minimum of substeps per 1/60 s: more keeps the density more accurate", 1, 100}, minSubsteps);
     v.value({.name = "negativePressure",

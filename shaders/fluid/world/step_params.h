@@ -39,7 +39,7 @@ STRUCT(StepParams) {
     float friction;     // Coulomb friction of the box walls
     float relaxation;   // relaxation factor of the pressure solvers
     float warmStart;    // share of the last step's pressures that the next step starts with
-    uint iteration;     // of a solver, from 0; dfsph: 1 of all but the first
+    uint iteration;     // of a solver, from 0; dfsph: 0 of the first, 1 of the next, 2 of later ones
     float correction;   // share of a density error that a step corrects
     uint awakeSlots;    // cpu: slots before those of sleeping particles; else, and in a step that sorts them anew, count
     float sampleScale;  // of push_samples.kernel: an acceleration (m/s^2) over pressure times gradient (1/m)

@@ -92,6 +92,7 @@ std::optional<BudgetPick> pickSetting(std::span<const ChartRow> chart, std::span
     };
     const double coarsest = std::max(size.finest, size.spacing * std::cbrt(size.particlesAt / kFewest));
     for (const ChartSetting& setting : chartSettings().rows) {
+        if (!setting.picked) continue;
         BudgetPick pick{.setting = &setting, .spacing = size.finest, .densityError = densityErrorOf(chart, setting)};
         std::optional<double> ms = frameCost(chart, costs, size, setting, pick.spacing);
         if (!ms) continue;
@@ -143,7 +144,7 @@ bool Budget::again(double ms, double densityError, std::string& sentence) {
                  error = std::max(densityErrorOf(chart_, *pick_.setting), 1e-9);
     BudgetPick best;
     for (const ChartSetting& setting : chartSettings().rows) {
-        if (missed_.contains(&setting) || std::string_view(setting.method) != pick_.setting->method) continue;
+        if (!setting.picked || missed_.contains(&setting) || std::string_view(setting.method) != pick_.setting->method) continue;
         const std::optional<double> other = frameCost(chart_, costs_, size_, setting, pick_.spacing);
         if (!other) continue;
         BudgetPick pick = pick_;

@@ -18,6 +18,7 @@ struct ChartSetting {
     const char* method;
     const char* assignments;  // "; " between them
     bool quick;               // whether `rivulet chart --quick` runs it
+    bool picked = true;       // whether a budget may choose it: sleep is the scene's choice
 };
 std::vector<std::string> assignmentsOf(std::string_view joined);  // separated by "; "
 // Per method from the cheapest to the most accurate; the one without assignments has the method's default settings.
@@ -31,7 +32,7 @@ struct ChartRow {
     uint32_t particles = 0;
     double error = 0;            // a fraction
     double wallPerSecond = 0;    // s of wall time per simulated second, steps alone
-    double sweepsPerSecond = 0;  // sweeps over neighbours
+    double sweepsPerSecond = 0;  // sweeps over neighbours, of the particles awake
     double stepsPerSecond = 0;
     double compression = 0;  // mean over particles and frames, a fraction
     double fastest = 0;      // m/s, reached by falling: FluidWorld::fastestFall

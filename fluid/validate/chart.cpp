@@ -10,14 +10,16 @@ namespace rivulet {
 
 namespace {
 
-// A case of the chart: assignments for a coarser and a finer size than that of `validate --quick`.
+// A case of the chart: assignments for a coarser and a finer size than that of `validate --quick`, and for all sizes.
 struct ChartCase {
     const char* name;
     bool quick;
     const char *coarse, *fine;
+    const char* all = "";
 };
 constexpr ChartCase kChartCases[] = {
-    {"hydrostatic", true, "fluid.spacing=0.0357142857", "fluid.spacing=0.0178571429"},
+    // Long enough for water that may sleep.
+    {"hydrostatic", true, "fluid.spacing=0.0357142857", "fluid.spacing=0.0178571429", "duration=8"},
     {"dam_break", true, "fluid.spacing=0.00238125; fluid.box.max=0.3429,0.15,0.01190625; fluid.blocks.0.max=0.05715,0.1143,0.01190625",
      "fluid.spacing=0.00119062500; fluid.box.max=0.3429,0.15,0.005953125; fluid.blocks.0.max=0.05715,0.1143,0.005953125"},
     {"standing_wave", true, "fluid.spacing=0.025; fluid.box.max=1,0.8,0.125; fluid.blocks.0.max=1,0.5,0.125",
@@ -75,6 +77,11 @@ std::vector<std::string> chartCases() {
     return names;
 }
 
+std::string_view chartAssignments(std::string_view name) {
+    const auto* found = std::find_if(std::begin(kChartCases), std::end(kChartCases), [&](const ChartCase& c) { return name == c.name; });
+    return found == std::end(kChartCases) ? "" : found->all;
+}
+
 void markFront(std::vector<ChartRow>& rows) {
     for (ChartRow& row : rows)
         row.onFront = std::none_of(rows.begin(), rows.end(), [&](const ChartRow& other) {
@@ -103,6 +110,7 @@ Result<Chart> runChart(const ChartRequest& request) {
         settings.assignments.clear();
         settings.quick = run.size == kMiddle;
         if (run.size != kMiddle) add(settings.assignments, run.size == kCoarse ? run.of->coarse : run.of->fine);
+        add(settings.assignments, run.of->all);
         add(settings.assignments, run.setting->assignments);
         const std::string what = fmt::format("{}, {}", run.of->name, run.setting->name);
         onWay(what);

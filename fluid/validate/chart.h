@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fluid/session/chart_table.h"
@@ -31,6 +32,8 @@ struct ChartRequest {
 };
 Result<Chart> runChart(const ChartRequest& request);
 std::vector<std::string> chartCases();  // names
+// What the chart sets in a case at all sizes: "duration=8"; empty: nothing.
+std::string_view chartAssignments(std::string_view name);
 
 void markFront(std::vector<ChartRow>& rows);
 

@@ -183,7 +183,8 @@ Status writeChart(const Chart& chart, const std::string& folder, const std::stri
     const std::filesystem::path to(folder);
     std::string page = fmt::format(
         "# Speed against accuracy\n\nWritten by `{}` on: {}. All rows come from one run. Cost is the wall time of the steps per simulated "
-        "second. A sweep is one pass over all neighbours; its count does not depend on the machine. Errors are the fractions that `rivulet "
+        "second. A sweep is one pass over all neighbours, counted by the share of the particles that are awake; its count does not depend "
+        "on the machine. Errors are the fractions that `rivulet "
         "validate` reports for the case. The table is `speed_accuracy.csv`; its copy in `assets/reference` is the one that the `budget` of "
         "a scene uses.\n\n| setting | "
         "meaning |\n| --- | --- |\n",
@@ -198,8 +199,9 @@ Status writeChart(const Chart& chart, const std::string& folder, const std::stri
         const std::vector<ChartRow> rows = rowsOf(chart, name);
         const std::string picture = fmt::format("speed_accuracy_{}.svg", name);
         if (Status drawn = drawPlot(plotOf(rows), (to / picture).string()); !drawn) return drawn;
-        page += fmt::format("\n## {}\n\n{}.\n\n![error against cost]({})\n\n{}\n\n{}", name, physicsCases().find(name)->doc, picture,
-                            bestOf(rows), tableOf(rows));
+        const std::string_view set = chartAssignments(name);
+        page += fmt::format("\n## {}\n\n{}{}.\n\n![error against cost]({})\n\n{}\n\n{}", name, physicsCases().find(name)->doc,
+                            set.empty() ? "" : fmt::format("; here with {}", set), picture, bestOf(rows), tableOf(rows));
     }
     if (!chart.refused.empty()) {
         page += "\n## Combinations that could not be run\n\n";

@@ -49,7 +49,7 @@ struct Outcome {
     double spacing = 0;        // m
     uint32_t particles = 0;
     double wallPerSecond = 0;    // wall seconds of the steps per simulated second
-    double sweepsPerSecond = 0;  // sweeps over all neighbours per simulated second: a cost that does not depend on the machine
+    double sweepsPerSecond = 0;  // sweeps over all neighbours per simulated second, of the share that is awake: a cost that no machine changes
     double stepsPerSecond = 0;
     double compression = 0;  // mean over particles and frames, a fraction
     double fastest = 0;      // m/s that falling water reaches

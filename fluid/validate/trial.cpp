@@ -81,6 +81,7 @@ bool Trial::run(double frame, const std::function<void()>& each, double until) {
         const double before = time();
         wall_ += 1e-3 * session_->step(std::min(frame, end - time()), true);
         steps_ += world().lastSubsteps();
+        awake_ += static_cast<double>(world().lastSubsteps()) * world().stats().particles;
         compression_ += world().stats().avgCompression * (time() - before);
         each();
     }
@@ -98,7 +99,8 @@ Outcome Trial::outcome(std::vector<Finding> findings, Plot plot) const {
     if (w.time() > 0) {
         o.wallPerSecond = wall_ / w.time();
         o.stepsPerSecond = static_cast<double>(steps_) / w.time();
-        o.sweepsPerSecond = static_cast<double>(w.stats().sweeps) / w.time();
+        const double share = w.params().sleep.on && awake_ > 0 ? std::min(w.stats().stepped / awake_, 1.0) : 1.0;
+        o.sweepsPerSecond = share * static_cast<double>(w.stats().sweeps) / w.time();
     }
     o.fastest = double{w.fastestFall()};
     o.compression = w.time() > 0 ? compression_ / w.time() : 0;

@@ -46,6 +46,7 @@ class Trial {
     std::function<bool(double)> goOn_;
     double wall_ = 0, compression_ = 0;
     uint64_t steps_ = 0;
+    double awake_ = 0;  // particles times substeps, if none slept
 };
 
 }  // namespace rivulet

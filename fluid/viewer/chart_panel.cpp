@@ -61,7 +61,7 @@ std::string readableCount(double n) { return readableFigure(n, ""); }
 
 const ChartSetting* settingOf(const FluidParams& params) {
     for (const ChartSetting& setting : chartSettings().rows) {
-        if (params.method != setting.method) continue;
+        if (params.method != setting.method || !setting.picked) continue;
         SceneFile scene;
         scene.fluid = params;
         applySetting(setting, scene);  // changes nothing but what settings name

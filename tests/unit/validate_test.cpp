@@ -263,6 +263,24 @@ TEST(PhysicsCases, ATrialGivesVelocitiesByPlaceAndCountsItsSweeps) {
     EXPECT_GT(trial->outcome({}, {}).wallPerSecond, 0);
 }
 
+// Sweeps are those of the particles that are awake: a pool that sleeps for half of the time has fewer than two a step.
+TEST(PhysicsCases, ATrialCountsNoSweepsOfSleepingWater) {
+    auto device = cpu();
+    CaseSettings settings;
+    settings.device = device.get();
+    settings.method = "wcsph";
+    settings.assignments = {"fluid.spacing=0.1", "fluid.sleep.on=true", "duration=6"};
+    Result<Trial> trial = Trial::open("hydrostatic", settings);
+    ASSERT_TRUE(trial) << trial.error().message;
+    double share = 0;  // of the time, without the particles that still were awake
+    EXPECT_TRUE(trial->run(1.0 / 60, [&] { share += trial->world().stats().asleep == trial->world().stats().particles ? 1.0 / 60 : 0; }));
+    share /= trial->time();
+    const Outcome o = trial->outcome({}, {});
+    EXPECT_GT(share, 0.2);
+    EXPECT_LT(o.sweepsPerSecond, 2 * (1.02 - share) * o.stepsPerSecond);
+    EXPECT_GT(o.sweepsPerSecond, 0.2 * o.stepsPerSecond);
+}
+
 TEST(PhysicsCases, AStoppedTrialStops) {
     auto device = cpu();
     CaseSettings settings;

@@ -14,7 +14,7 @@ namespace rivulet {
 
 namespace {
 
-constexpr float kSpacing = 0.02F, kDepth = 0.4F;  // m
+constexpr float kSpacing = 0.02F, kDepth = 0.2F;  // m
 constexpr int kRace = 600, kMostSettling = 600;   // frames of 1/60 s
 
 // A free body that stays where it is until it is let go.

@@ -58,6 +58,7 @@ struct NeighborGrid::Impl {
     uint32_t listCapacity = 0;
     uint32_t awakeSlots = 0;  // slots before those of sleeping particles, as last sorted
     bool sortAsleep = true;   // the next sort sorts sleeping particles too
+    bool listed = false;      // some lists were built
     bool idsBehind = false;   // the ids of sleeping particles are sorted in one of the two copies only
     Buffer x, y, z, histogram, segmentSum, groups, list, listCursor, lists;
     Kernel sortCount, sortSegments, sortOffsets, sortScatter, neighborList;
@@ -81,7 +82,7 @@ struct NeighborGrid::Impl {
     Status findKernels();
     CpuGridJob job(Particles& p) const;
     Status growLists(uint32_t needed);
-    Status buildCpu(Particles& p);
+    Status buildCpu(const StepParams& params, Particles& p);
     void buildGroups();
     void buildGpu(const StepParams& params, Particles& p);
     void buildLinked(const StepParams& params, Particles& p);
@@ -276,7 +277,7 @@ Status NeighborGrid::Impl::growLists(uint32_t needed) {
     return ok();
 }
 
-Status NeighborGrid::Impl::buildCpu(Particles& p) {
+Status NeighborGrid::Impl::buildCpu(const StepParams& params, Particles& p) {
     CpuDevice& cpu = *static_cast<CpuDevice*>(device);
     auto run = [&](Kernel k, const CpuGridJob& j, uint32_t threads) { cpu.dispatch(k, std::as_bytes(std::span(&j, 1)), {}, threads); };
     if (!sortAsleep && std::exchange(idsBehind, false)) {
@@ -298,6 +299,13 @@ Status NeighborGrid::Impl::buildCpu(Particles& p) {
         idsBehind = true;
     }
     buildGroups();
+    if (!std::exchange(listed, true)) {
+        // A group of 8 particles of a liquid at rest lists about 15 (reach / spacing)^3 entries, and growLists adds a quarter. Too little
+        // room costs a second pass.
+        const double reach = double{h} * double{margin} / double{params.spacing};
+        const double likely = std::min(15 * reach * reach * reach * groupCount, double{UINT32_MAX / 4});
+        if (likely > listCapacity) (void)growLists(static_cast<uint32_t>(likely));
+    }
     while (true) {
         *hostPointer<uint32_t>(listCursor) = 0;
         j = job(p);
@@ -439,7 +447,7 @@ bool NeighborGrid::isWindow() const { return impl_->window; }
 Status NeighborGrid::follow(const Bounds& wanted) { return impl_->follow(wanted); }
 
 Status NeighborGrid::build(const StepParams& params, Particles& particles) {
-    if (impl_->onCpu()) return impl_->buildCpu(particles);
+    if (impl_->onCpu()) return impl_->buildCpu(params, particles);
     if (impl_->traits.linked)
         impl_->buildLinked(params, particles);
     else

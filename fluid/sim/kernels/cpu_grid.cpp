@@ -243,6 +243,7 @@ INLINE real outside(real x, float lo, float hi, float period, float invPeriod) {
 }
 
 // A thread for each group: lists every particle within reach of the box around the group. The first sweep drops entries that no lane needs.
+// Entries beyond the capacity are counted and not written: the host sees the cursor, makes room for that many, and has them listed again.
 template <bool periodic>
 INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
     const float h2 = periodic ? job.reach * job.reach * 1.0001F : job.reach * job.reach;
@@ -266,12 +267,14 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
         if (job.asleepCells > 0) find(job.totalCells + 3);
         if (at + s.atMost + 8 > regionEnd) {
             const uint32_t take = s.atMost + 8 > kListRegion ? s.atMost + 8 : kListRegion;
-            at = __atomic_fetch_add(job.listCursor, take, __ATOMIC_RELAXED);
+            at = __atomic_fetch_add(job.listCursor, take, __ATOMIC_ACQUIRE);
             regionEnd = at + take;
         }
+        const bool fits = regionEnd <= job.listCapacity && regionEnd >= at;
+        uint32_t spare[8];
+        uint32_t* const list = fits ? job.list : spare;
+        const uint32_t written = fits ? ~0U : 0U;
         group.listBegin = at;
-        group.listCount = group.seenCount = 0;
-        if (regionEnd > job.listCapacity || regionEnd < at) continue;  // the host sees the cursor above the capacity and rebuilds
         for (uint32_t r = 0; r < s.count; ++r)
             for (uint32_t j = s.from[r]; j < s.to[r]; j += 8) {
                 const real x = load8(job.x + j), y = load8(job.y + j), z = load8(job.z + j);
@@ -291,10 +294,14 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
                     const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
                     keep &= lane < static_cast<int>(s.to[r] - j);
                 }
-                at += appendLanes(job.list + at, j, keep);
+                at += appendLanes(list + (at & written), j, keep);
             }
-        group.listCount = group.seenCount = at - group.listBegin;
+        group.listCount = group.seenCount = (at - group.listBegin) & written;
     }
+    // The rest of the last region goes back, unless another chunk has taken the next one. Of a region beyond the capacity nothing does: the
+    // cursor tells the host that lists are missing.
+    if (at < regionEnd && regionEnd <= job.listCapacity)
+        __atomic_compare_exchange_n(job.listCursor, &regionEnd, at, false, __ATOMIC_RELEASE, __ATOMIC_RELAXED);
 }
 void neighborList(uint32_t begin, uint32_t end, const void* params, void* const*) {
     listNeighbors<false>(begin, end, *static_cast<const Job*>(params));

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/large_pages.h"
 #include "engine/core/result.h"
 #include "engine/core/timeline.h"
 
@@ -166,7 +167,7 @@ class Device {
     }
     template <class T>
     std::vector<T> readAll(const Buffer& from, size_t count) {
-        std::vector<T> items(count);
+        std::vector<T> items = largeVector<T>(count);
         read(from, std::as_writable_bytes(std::span(items)));
         return items;
     }

@@ -11,10 +11,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <new>
 #include <optional>
 
 #include "engine/core/assert.h"
+#include "engine/core/large_pages.h"
 
 namespace rivulet {
 
@@ -83,6 +85,19 @@ std::string inOrder(std::string_view defines) {
 constexpr size_t kAlignment = 64;
 constexpr size_t kMostParams = 1024;  // bytes
 
+// Memory from calloc, with what stands in front of the aligned address of a buffer.
+struct Block {
+    void* from = nullptr;
+    size_t bytes = 0;
+};
+static_assert(alignof(std::max_align_t) >= sizeof(Block), "room for it before the aligned address");
+
+uintptr_t placeIn(const Block& block) {
+    const uintptr_t at = (reinterpret_cast<uintptr_t>(block.from) / kAlignment + 1) * kAlignment;
+    std::memcpy(reinterpret_cast<std::byte*>(at) - sizeof block, &block, sizeof block);
+    return at;
+}
+
 }  // namespace
 
 struct CpuDevice::Impl {
@@ -91,6 +106,21 @@ struct CpuDevice::Impl {
     std::optional<tbb::task_arena> arena;  // with the requested number of threads; empty: the caller's arena
     std::vector<PassTime> times;
     std::vector<void*> bindings;
+    std::multimap<size_t, void*> kept;  // released blocks by their bytes, see keepReleased
+
+    // `bytes` zeros at the begin of a kept or a new block. Null: out of memory.
+    Block take(size_t bytes) {
+        if (const auto found = kept.lower_bound(bytes); found != kept.end()) {
+            const Block block{found->second, found->first};
+            kept.erase(found);
+            std::memset(block.from, 0, bytes);
+            return block;
+        }
+        // calloc clears nothing that the system has just cleared: pages of large buffers are first touched by the kernels, on all cores.
+        const Block block{std::calloc(1, bytes), bytes};
+        if (block.from != nullptr) useLargePages(block.from, bytes);
+        return block;
+    }
 
     PassTime& timeOf(std::string_view name) {
         for (PassTime& t : times)
@@ -109,7 +139,9 @@ CpuDevice::CpuDevice(std::span<const CpuKernelRow> rows, const CpuOptions& optio
     info_.name = fmt::format("{}, {} thread{}, {}", processorName(), threads(), threads() == 1 ? "" : "s", isaName(isa_));
 }
 
-CpuDevice::~CpuDevice() = default;
+CpuDevice::~CpuDevice() {
+    for (const auto& [bytes, block] : impl_->kept) std::free(block);
+}
 
 int CpuDevice::threads() const { return impl_->arena ? impl_->arena->max_concurrency() : tbb::this_task_arena::max_concurrency(); }
 
@@ -139,22 +171,20 @@ std::vector<std::string> CpuDevice::kernels() const {
 
 Result<Buffer> CpuDevice::allocate(size_t bytes) {
     if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
-    // calloc clears nothing that the system has just cleared: pages of large buffers are first touched by the kernels, on all cores. The
-    // block begins before the aligned address, which has its address in front.
-    void* block = std::calloc(1, (std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment + kAlignment);
-    if (block == nullptr)
+    const Block block = impl_->take((std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment + kAlignment);
+    if (block.from == nullptr)
         return failed(fmt::format("out of memory: cannot allocate {} MiB; use fewer particles or coarser voxels", bytes >> 20U));
-    const uintptr_t at = (reinterpret_cast<uintptr_t>(block) / kAlignment + 1) * kAlignment;
-    static_assert(alignof(std::max_align_t) >= sizeof block, "room for an address before the aligned one");
-    std::memcpy(reinterpret_cast<std::byte*>(at) - sizeof block, &block, sizeof block);
     bytesAllocated_ += bytes;
-    return Buffer(*this, at, bytes);
+    return Buffer(*this, placeIn(block), bytes);
 }
 
 void CpuDevice::release(uint64_t handle, size_t bytes) {
-    void* block = nullptr;
+    Block block;
     std::memcpy(&block, reinterpret_cast<const std::byte*>(static_cast<uintptr_t>(handle)) - sizeof block, sizeof block);
-    std::free(block);
+    if (keepsReleased_)
+        impl_->kept.emplace(block.bytes, block.from);
+    else
+        std::free(block.from);
     bytesAllocated_ -= bytes;
 }
 

@@ -56,6 +56,9 @@ class CpuDevice final : public Device {
     // Calls body(begin, end) for chunks of [0, count), in any order and on any thread. For passes written in C++ (sorting, lists). Chunks
     // are skipped as those of a dispatch (Device::stopOn).
     void parallelFor(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body);
+    // From now on the memory of released buffers is kept for those allocated later, until the device ends: for one that makes and releases
+    // buffers of many particles again and again.
+    void keepReleased() { keepsReleased_ = true; }
     // Adds `ms` to the time of a pass written in C++, so that takeTimes() reports it beside the kernels.
     void addTime(std::string_view name, double ms);
 
@@ -65,6 +68,7 @@ class CpuDevice final : public Device {
     DeviceInfo info_;
     Isa isa_;
     size_t bytesAllocated_ = 0;
+    bool keepsReleased_ = false;
 };
 
 // The memory behind a cpu Buffer.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/core/large_pages.h"
 #include "fluid/voxel/mesh_defects.h"
 #include "fluid/voxel/voxelize_solid.h"
 
@@ -150,7 +151,7 @@ void fillBlock(const BlockParams& b, float spacing, std::vector<NewParticle>& to
         }
         return away;
     };
-    to.reserve(to.size() + (in.empty() ? lattice.size() : static_cast<size_t>(std::count(in.begin(), in.end(), true))));
+    reserveLarge(to, to.size() + (in.empty() ? lattice.size() : static_cast<size_t>(std::count(in.begin(), in.end(), true))));
     uint32_t place = 0;
     for (ivec3 c(0); c.z < lattice.count.z; ++c.z)
         for (c.y = 0; c.y < lattice.count.y; ++c.y)

@@ -18,6 +18,10 @@ Result<ParticleBounds> ParticleBounds::create(Device& device) {
 void ParticleBounds::set(std::span<const vec4> position) {
     known_ = std::make_shared<Known>();  // what arrives late is of particles that are no more
     steps_ = 0;
+    add(position);
+}
+
+void ParticleBounds::add(std::span<const vec4> position) {
     for (const vec4& p : position)
         if (!(p.w < 0) && isFinite(vec3(p))) known_->bounds.add(vec3(p));
 }

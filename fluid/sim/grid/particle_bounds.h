@@ -16,6 +16,7 @@ class ParticleBounds {
     static Result<ParticleBounds> create(Device& device);
     // They are at these places (m; w negative: none).
     void set(std::span<const vec4> position);
+    void add(std::span<const vec4> position);  // and at these, before the first substep
     // Measures the newest positions of a sorted grid; the result arrives with Device::poll, on the cpu at once.
     void measure(Device& device, const StepParams& step, const NeighborGrid& grid, const Particles& particles);
     void moved() { ++steps_; }  // the particles made a substep

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/assert.h"
 #include "engine/core/json.h"
@@ -493,8 +494,7 @@ ParticleView FluidWorld::particles() const {
 }
 
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
-                                                       const Sources& sources, std::span<const HostForce> forces,
-                                                       const StartProgress& progress) {
+                                                       Sources sources, std::span<const HostForce> forces, const StartProgress& progress) {
     if (Status s = checkParams("fluid", params); !s) return s.error();
     device.goOn();
     const BoxParams& box = params.box;
@@ -505,7 +505,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     Impl& w = *world->impl_;
     w.device = &device;
     w.params = params;
-    w.sourceSetup = sources;
+    w.sourceSetup = std::move(sources);
     Result<WorldForces> worldForces = WorldForces::create(forces);
     if (!worldForces) return worldForces.error();
     w.forces = std::move(*worldForces);

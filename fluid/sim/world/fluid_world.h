@@ -67,7 +67,7 @@ class FluidWorld {
     // (Device::stopOn), or `progress` cancelled it.
     // `device` must outlive the world, `forces` are the host's.
     static Result<std::unique_ptr<FluidWorld>> create(Device& device, const FluidParams& params, const Solids& solids, Log log,
-                                                      const Sources& sources = {}, std::span<const HostForce> forces = {},
+                                                      Sources sources = {}, std::span<const HostForce> forces = {},
                                                       const StartProgress& progress = {});
     ~FluidWorld();
     FluidWorld(const FluidWorld&) = delete;

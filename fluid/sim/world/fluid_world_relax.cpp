@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "engine/compute/device_cpu.h"
+#include "engine/core/large_pages.h"
 #include "fluid/sim/grid/sparse_cells.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/sim/world/fluid_world_impl.h"
@@ -120,22 +121,25 @@ std::vector<vec4> FluidWorld::Impl::corrected(CpuDevice& cpu, const FluidParams&
                                               double until, int rounds, double from, double to) {
     const size_t count = those.size();
     if (!advanced(from)) return {};
-    Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(cpu, p, walls, {}, {.particles = std::move(those)});
+    Sources setup;
+    setup.particles = std::move(those);
+    Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(cpu, p, walls, {}, std::move(setup));
     if (!made) return {};
     Impl& w = *(*made)->impl_;
     if (w.start.size() != count) return {};
-    const std::vector<vec4> still(w.particles.count, vec4(0.0F));
     for (int round = 0; round < rounds; ++round) {
-        cpu.writeAll<vec4>(w.particles.velocityNext, still);
+        cpu.fill(w.particles.velocityNext, 0);
         (*made)->step({vec3(0.0F)}, 1.0e-4);
         if (w.figures->lost > 0 || w.interrupted || !advanced(from + (to - from) * (round + 1) / rounds)) return {};
         if (w.figures->maxCompression < until) break;
     }
-    const std::vector<vec4> position = cpu.readAll<vec4>(w.particles.positionNext, w.particles.count);
-    const std::vector<uint32_t> id = cpu.readAll<uint32_t>(w.particles.id, w.particles.count);
-    std::vector<vec4> at(count);
-    for (size_t k = 0; k < id.size(); ++k)
-        if (id[k] < count) at[id[k]] = position[k];  // not a sample
+    const vec4* position = hostPointer<vec4>(w.particles.positionNext);
+    const uint32_t* id = hostPointer<uint32_t>(w.particles.id);
+    std::vector<vec4> at = largeVector<vec4>(count);
+    cpu.parallelFor(w.particles.count, 4096, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k)
+            if (id[k] < count) at[id[k]] = position[k];  // not a sample
+    });
     return at;
 }
 
@@ -173,6 +177,7 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
     FluidParams p = weightless(params);
     const std::unique_ptr<CpuDevice> cpu = makeCpuDevice(cpuKernels());
     cpu->stopOn(device->stopFlag());
+    cpu->keepReleased();
     const auto put = [&](size_t k, const vec4& at) {
         NewParticle& particle = start[k];
         if (particle.block == kNoBlock) return;  // the host's
@@ -199,8 +204,11 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
         cpu->parallelFor(start.size(), 4096, [&](size_t begin, size_t end) {
             for (size_t k = begin; k < end; ++k) acts[k] = surroundings.acts(start[k].position) ? 1 : 0;
         });
+        const auto acting = static_cast<size_t>(std::count(acts.begin(), acts.end(), 1));
         std::vector<NewParticle> part;
         std::vector<uint32_t> which;
+        reserveLarge(part, acting);
+        reserveLarge(which, acting);
         for (uint32_t k = 0; k < start.size(); ++k)
             if (acts[k] != 0) {
                 part.push_back(start[k]);

@@ -197,11 +197,15 @@ void FluidWorld::Impl::fillStart() {
     if (!sourceSetup.particles.empty()) {
         Bounds bounds;
         float fastest = 0;
-        for (const NewParticle& p : sourceSetup.particles) {
+        for (NewParticle& p : sourceSetup.particles) {
             bounds.add(p.position);
             fastest = std::max(fastest, glm::length(p.velocity));
-            start.push_back({p.position, p.velocity});
+            p.block = kNoBlock;
         }
+        if (start.empty())
+            start = std::move(sourceSetup.particles);
+        else
+            start.insert(start.end(), sourceSetup.particles.begin(), sourceSetup.particles.end());
         placed = BlockParams{.min = bounds.min, .max = bounds.max, .velocity = vec3(fastest, 0.0F, 0.0F)};
     }
     sourceSetup.particles = {};
@@ -272,34 +276,39 @@ void FluidWorld::Impl::findLiquids() {
 }
 
 void FluidWorld::Impl::writeStart() {
+    // Piece by piece, so that a large world does not stand in memory twice.
+    constexpr uint32_t kPiece = 65536;
     std::vector<vec4> position, velocity;
     std::vector<uint32_t> id;
-    position.reserve(particles.count);
-    velocity.reserve(particles.count);
-    id.reserve(particles.count);
-    for (const NewParticle& p : start) {
-        position.emplace_back(p.position, 1.0F);
-        velocity.emplace_back(p.velocity, 0.0F);
-        id.push_back(static_cast<uint32_t>(id.size()));
-    }
-    for (uint32_t k = static_cast<uint32_t>(start.size()); k < slots; ++k) {
-        position.emplace_back(params.box.min, -1.0F);
-        velocity.emplace_back(0.0F);
-        id.push_back(k);
-    }
-    // Samples on bodies come last; each substep puts them where they are.
-    for (uint32_t k = 0; k < traits.samples; ++k) {
-        position.emplace_back(0.0F, 0.0F, 0.0F, -1.0F);
-        velocity.emplace_back(0.0F);
-        id.push_back(static_cast<uint32_t>(id.size()));
+    if (around) around->set({});
+    for (uint32_t first = 0; first < particles.count; first += kPiece) {
+        position.clear();
+        velocity.clear();
+        id.clear();
+        for (uint32_t k = first; k < std::min(first + kPiece, particles.count); ++k) {
+            id.push_back(k);
+            if (k < start.size()) {
+                position.emplace_back(start[k].position, 1.0F);
+                velocity.emplace_back(start[k].velocity, 0.0F);
+            } else {
+                // A free slot, or a sample on a body: these come last, and each substep puts them where they are.
+                position.emplace_back(k < slots ? params.box.min : vec3(0.0F), -1.0F);
+                velocity.emplace_back(0.0F);
+            }
+        }
+        device->write(particles.positionNext, std::as_bytes(std::span(position)), size_t{first} * sizeof(vec4));
+        device->write(particles.velocityNext, std::as_bytes(std::span(velocity)), size_t{first} * sizeof(vec4));
+        device->write(particles.id, std::as_bytes(std::span(id)), size_t{first} * sizeof(uint32_t));
+        if (around) around->add(position);
     }
     std::vector<vec4> matterOf, absorptionOf;
-    for (const NewParticle& p : start) {
-        const BlockParams& b = blockOf(p);
-        const LiquidOf liquid = liquidOf(params, b.liquid);
-        if (traits.matter) matterOf.emplace_back(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
-        if (coloured) absorptionOf.push_back(dyed(liquid, b.dye, b.dyeAmount, b.dyeScattering));
-    }
+    if (traits.matter || coloured)
+        for (const NewParticle& p : start) {
+            const BlockParams& b = blockOf(p);
+            const LiquidOf liquid = liquidOf(params, b.liquid);
+            if (traits.matter) matterOf.emplace_back(1.0F, params.restDensity / liquid.density, liquid.viscosity, liquid.row);
+            if (coloured) absorptionOf.push_back(dyed(liquid, b.dye, b.dyeAmount, b.dyeScattering));
+        }
     if (traits.matter) {
         matterOf.resize(slots, vec4(1.0F, 1.0F, params.viscosity * params.restDensity, 0.0F));
         const std::vector<vec4> samples = bodies.matter();
@@ -307,10 +316,6 @@ void FluidWorld::Impl::writeStart() {
         device->writeAll<vec4>(particles.matterOf, matterOf);
     }
     if (coloured) device->writeAll<vec4>(particles.absorptionOf, absorptionOf);
-    device->writeAll<vec4>(particles.positionNext, position);
-    if (around) around->set(position);
-    device->writeAll<vec4>(particles.velocityNext, velocity);
-    device->writeAll<uint32_t>(particles.id, id);
     sources.reset();
     withdrawn = 0;
     if (foam) foam->reset();

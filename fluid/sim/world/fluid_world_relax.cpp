@@ -184,15 +184,19 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
         particle.position = vec3(at);
         particle.velocity = velocityAt(params.blocks[particle.block], particle.position);
     };
+    const auto putAll = [&](const std::vector<vec4>& at) {
+        cpu->parallelFor(at.size(), 4096, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k < end; ++k) put(k, at[k]);
+        });
+    };
     if (!largeStart()) {
-        const std::vector<vec4> at = corrected(*cpu, p, walls, start, kRelaxed, kMostRounds, 0, 1);
-        for (size_t k = 0; k < at.size(); ++k) put(k, at[k]);
+        putAll(corrected(*cpu, p, walls, start, kRelaxed, kMostRounds, 0, 1));
         return;
     }
     // One correction of all tells where the surplus is.
     p.pbf.iterations = 1;
     std::vector<vec4> at = corrected(*cpu, p, walls, start, 0, 1, kTileShare, kSearchShare);
-    for (size_t k = 0; k < at.size(); ++k) put(k, at[k]);
+    putAll(at);
     p.pbf.iterations = kCorrections;
     for (int round = 0; round < kMostRounds && !at.empty(); ++round) {
         std::vector<vec3> dense;
@@ -217,12 +221,14 @@ void FluidWorld::Impl::relaxStart(const Solids& given) {
         const double each = (1 - kSearchShare) / kMostRounds, from = kSearchShare + each * round;
         const std::vector<vec4> moved = corrected(*cpu, p, walls, std::move(part), 0, 1, from, from + each);
         if (moved.empty()) break;
-        for (size_t i = 0; i < which.size(); ++i) {
-            const size_t k = which[i];
-            if (!surroundings.moves(start[k].position)) continue;
-            at[k] = moved[i];
-            put(k, moved[i]);
-        }
+        cpu->parallelFor(which.size(), 4096, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const size_t k = which[i];
+                if (!surroundings.moves(start[k].position)) continue;
+                at[k] = moved[i];
+                put(k, moved[i]);
+            }
+        });
     }
 }
 

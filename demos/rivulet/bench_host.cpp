@@ -1,8 +1,10 @@
 // The cost of water in a host's frame: saving and restoring its OpenGL state, uploading the particles, drawing into its framebuffer.
+#include <fmt/format.h>
 #include <rivulet_glad/gl.h>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
+#include <optional>
 
 #include "demos/rivulet/bench_cases.h"
 #include "engine/app/context_egl.h"
@@ -16,13 +18,75 @@
 
 namespace rivulet {
 
+namespace {
+
+constexpr int kWidth = 640, kHeight = 360;
+
+// A pool that sleeps, drawn with a camera that rests: with what is kept, and as if no particle were known to sleep.
+Status benchAsleep(const BenchContext& context, const gpu::Framebuffer& host, const FrameView& view, Device& device, WaterRenderer& water) {
+    FluidParams params;
+    params.method = "dfsph";
+    params.spacing = 0.02F;
+    params.ellipsoids = params.sleep.on = true;
+    params.box.max = vec3(1.0F, 0.6F, 0.6F);
+    params.blocks = {{vec3(0.0F), vec3(1.0F, 0.2F, 0.6F), vec3(0.0F)}};
+    auto made = FluidWorld::create(device, params, {}, context.log);
+    if (!made) return made.error();
+    FluidWorld& world = **made;
+    for (int k = 0; k < 600 && world.stats().asleep < world.stats().particles; ++k) world.step({}, 1.0 / 60);
+    world.step({}, 1.0 / 60);
+    const Result<FluidLook> looks = fluidLookOf({}, {});
+    if (!looks) return looks.error();
+    for (const bool keeps : {false, true}) {
+        std::optional<FluidUpload> upload(std::in_place);
+        Status wrong = ok();
+        size_t bytes = 0;
+        const auto frame = [&] {
+            host.clearColour(vec4(0.3F, 0.4F, 0.5F, 1.0F));
+            host.clearDepth();
+            glFinish();
+            const double start = hostSeconds();
+            if (!keeps) upload.emplace();
+            Result<FluidView> fluid = [&] {
+                const gpu::HostState keep;
+                return upload->view(world, {});
+            }();
+            bytes = upload->facts().bytes;
+            if (!fluid) wrong = fluid.error();
+            if (fluid && !keeps) {
+                fluid->asleep = fluid->awake = 0;
+                fluid->sleepers = nullptr;
+            }
+            if (fluid)
+                if (Status done = water.draw(view, *fluid, *looks, {.framebuffer = host.name(), .width = kWidth, .height = kHeight}); !done)
+                    wrong = done;
+            glFinish();
+            return 1000 * (hostSeconds() - start);
+        };
+        for (int k = 0; k < 4; ++k) (void)frame();
+        const Spread drawn = repeat(context, frame);
+        if (!wrong) return wrong;
+        BenchRow result{.name = fmt::format("host: pool of {} asleep, {}", world.stats().particles, keeps ? "kept" : "drawn anew"),
+                        .unit = "ms",
+                        .value = drawn,
+                        .passes = {}};
+        for (const PassTime& pass : water.times()) result.passes[pass.name] = pass.ms;
+        context.report(result);
+        context.report(
+            {.name = result.name + ", uploaded", .unit = "bytes", .value = spreadOf({static_cast<double>(bytes)}), .passes = {}});
+    }
+    return ok();
+}
+
+}  // namespace
+
 Status benchHost(const BenchContext& context) {
     Result<ContextEgl> egl = ContextEgl::create();
     if (!egl) {
         context.log.notice("the case host needs OpenGL, which is not available: it is skipped");
         return ok();
     }
-    constexpr int kWidth = 640, kHeight = 360, kScopes = 100;
+    constexpr int kScopes = 100;
     Result<gpu::Texture> colour = gpu::Texture::create({.width = kWidth, .height = kHeight});
     if (!colour) return colour.error();
     Result<gpu::Texture> depth = gpu::Texture::create({.width = kWidth, .height = kHeight, .format = gpu::Format::depth32f});
@@ -85,7 +149,7 @@ Status benchHost(const BenchContext& context) {
                         .value = drawn,
                         .passes = {{"upload", uploaded}}});
     }
-    return ok();
+    return benchAsleep(context, host, view, *cpu, **water);
 }
 
 }  // namespace rivulet

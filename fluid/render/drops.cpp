@@ -34,7 +34,7 @@ void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& 
         p.texture("sceneDepth", 1, c.texture(d.depth));
         if (layers.fluidDepth) p.texture("waterDepth", 2, c.texture(layers.fluidDepth));
         const QuadRows rows[] = {{d.fluid.drops}};
-        programs.drawQuads(p, d.fluid.dropCount, rows);
+        programs.drawQuads(p, {0, d.fluid.dropCount}, rows);
     });
 }
 

@@ -115,24 +115,26 @@ Status FluidPrograms::fits(const FluidView& fluid) const {
     return ok();
 }
 
-void FluidPrograms::drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows) {
+void FluidPrograms::drawQuads(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows) {
+    const uint32_t count = range.count;
     if (count == 0) return;
     for (GLuint k = 0; k < rows.size(); ++k) {
         if (rows[k].buffer == 0) continue;
         glTextureBuffer(rowTextures[k].name(), rows[k].format, rows[k].buffer);
         glBindTextureUnit(kRowUnit + k, rowTextures[k].name());
     }
-    program.set("rows", count);
+    program.set("firstRow", range.first);
+    program.set("rows", range.first + count);
     quads.bind();
     const uint32_t instances = (count + kQuadRows - 1) / kQuadRows, quadsEach = instances > 1 ? kQuadRows : count;
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * quadsEach), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
     for (GLuint k = 0; k < rows.size(); ++k) glBindTextureUnit(kRowUnit + k, 0);
 }
 
-void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t count) {
+void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid, const RowRange& range) {
     const QuadRows rows[] = {{fluid.position},      {fluid.velocity},      {fluid.id, GL_R32UI}, {fluid.absorption},
                              {fluid.ellipsoids[0]}, {fluid.ellipsoids[1]}, {fluid.ellipsoids[2]}};
-    drawQuads(program, count, rows);
+    drawQuads(program, range, rows);
 }
 
 void FluidPrograms::drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit) {

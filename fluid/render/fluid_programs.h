@@ -15,6 +15,7 @@
 #include "engine/gpu/program.h"
 #include "engine/gpu/vertex_array.h"
 #include "fluid/render/fluid_view.h"
+#include "fluid/render/kept_pictures.h"
 
 namespace rivulet {
 
@@ -31,6 +32,11 @@ struct QuadRows {
     GLenum format = GL_RGBA32F;
 };
 
+// Rows of a buffer, from `first` on.
+struct RowRange {
+    uint32_t first = 0, count = 0;
+};
+
 struct FilterRow;  // fluid/render/filters.h
 struct MarchedReference;
 
@@ -40,6 +46,7 @@ struct FluidPrograms {
     gpu::Buffer quadIndices;
     std::array<gpu::TextureName, 7> rowTextures;
     std::shared_ptr<MarchedReference> marched;  // the last picture of the row `reference`
+    KeptPictures kept;                          // of sleeping particles
     uint32_t mostTexels = 0;                    // of a buffer that shaders read as a texture: the limit of this GPU
 
     // The programs of renderers() and filters(), and those that all share. Error (failed): a shader does not compile; out of memory.
@@ -53,10 +60,10 @@ struct FluidPrograms {
     void contextChanged();
     // Error (failed): there are more rows than this GPU can read.
     Status fits(const FluidView& fluid) const;
-    // Draws a quad for each of `count` rows with the program in use. Its vertex shader includes quads.glsl; rows[k] is its ROWS(k, ...).
-    void drawQuads(gpu::Program& program, uint32_t count, std::span<const QuadRows> rows);
-    // The same for the first `count` particles. The vertex shader includes particle.glsl.
-    void drawParticles(gpu::Program& program, const FluidView& fluid, uint32_t count);
+    // Draws a quad for each row in `range` with the program in use. Its vertex shader includes quads.glsl; rows[k] is its ROWS(k, ...).
+    void drawQuads(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows);
+    // The same for particles. The vertex shader includes particle.glsl.
+    void drawParticles(gpu::Program& program, const FluidView& fluid, const RowRange& range);
     // Draws the marked tiles with the program in use. Its vertex shader is tile.vert; the mask is bound to `unit`.
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 };

@@ -25,6 +25,13 @@ constexpr const char* kSameMemory = "same memory";
 constexpr const char* kSharedWithOpenCl = "shared with OpenCL";
 constexpr const char* kRing = "ring";
 
+// How many of them hold all particles: free slots and samples on bodies have a negative w.
+uint32_t lastDrawn(std::span<const vec4> positions) {
+    size_t last = positions.size();
+    while (last > 0 && positions[last - 1].w < 0) --last;
+    return static_cast<uint32_t>(last);
+}
+
 template <class T>
 std::span<T> as(std::span<std::byte> bytes) {
     return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
@@ -50,6 +57,7 @@ Status FluidUpload::Target::makeRoom(size_t bytes) {
 void FluidUpload::dropTargets() {
     for (Target* to : {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
         to->drop();
+    held_ = {};
 }
 
 size_t FluidUpload::bytes() const {
@@ -87,6 +95,10 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     facts_ = {.way = same ? kSameMemory : kRing, .why = std::move(offered.whyNot), .ms = 0, .bytes = 0, .waits = ring_.waits()};
     FluidView out;
     out.count = particles.count > 0 ? particles.slots : 0;
+    if (out.count > 0) {
+        out.asleep = particles.asleep;
+        out.sleepers = particles.sleepers;
+    }
     out.spacing = particles.spacing;
     out.radius = look.radiusSpacings * particles.spacing;
     out.bounds.add(world.params().box.min);
@@ -129,9 +141,10 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         facts_.way = kSharedWithOpenCl;
     } else if (!arrays.empty()) {
         if (sharing_) facts_.why = refused_;
-        ids_.resize(out.count);
-        if (out.count > 0) device.read(*particles.id, std::as_writable_bytes(std::span(ids_)));
-        if (Status s = bringOver(&device, arrays, look.quality != "fine", out); !s) return s.error();
+        const bool hurried = look.quality != "fine";
+        ids_.resize(holdsSleepers(arrays, hurried, out) ? out.count - out.asleep : out.count);
+        if (!ids_.empty()) device.read(*particles.id, std::as_writable_bytes(std::span(ids_)));
+        if (Status s = bringOver(&device, arrays, hurried, out); !s) return s.error();
     }
     facts_.ms = 1000 * (hostSeconds() - start);
     facts_.waits = ring_.waits();
@@ -143,6 +156,7 @@ Status FluidUpload::share(std::span<const Array> arrays) {
     std::vector<GlSharing::Copy> copies;
     Status done = ok();
     if (Status fits = room(arrays, 0, false); !fits) return fits;
+    held_ = {};
     for (const Array& a : arrays) {
         if (Status room = a.to->makeRoom(a.bytes); !room) return room;
         if (!a.to->seen) {
@@ -191,17 +205,29 @@ Result<FluidView> FluidUpload::view(const RecordedFrame& frame, const FluidLookP
     return out;
 }
 
-// Of ids_ and `arrays`; `device`: whose buffers they are, null where they are the host's.
+bool FluidUpload::holdsSleepers(std::span<const Array> arrays, bool hurried, const FluidView& of) const {
+    const auto held = [this](const Array& a) {
+        return !a.ofParticles || (a.to->memory.bytes() >= a.bytes && std::find(held_.of.begin(), held_.of.end(), a.to) != held_.of.end());
+    };
+    return of.sleepers != nullptr && of.sleepers == held_.sleepers && hurried == held_.hurried &&
+           std::all_of(arrays.begin(), arrays.end(), held);
+}
+
+// Of ids_ and `arrays`: all particles, or those before the ones that sleep, as many as ids_ has. `device`: whose buffers they are, null
+// where they are the host's.
 Status FluidUpload::bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out) {
-    size_t bytes = 64 + out.count * sizeof(uint32_t);
-    for (const Array& a : arrays) bytes += 64 + a.bytes;
+    const auto count = static_cast<uint32_t>(ids_.size());
+    const uint32_t awake = out.count - out.asleep;
+    const auto bytesOf = [&](const Array& a) { return a.ofParticles ? count * sizeof(vec4) : a.bytes; };
+    size_t bytes = 64 + ids_.size() * sizeof(uint32_t);
+    for (const Array& a : arrays) bytes += 64 + bytesOf(a);
     if (Status fits = room(arrays, out.count * sizeof(uint32_t), true); !fits) return fits;
     if (Status s = ring_.begin(bytes); !s) return s;
     const struct End {
         gpu::StagingRing& ring;
         ~End() { ring.end(); }  // whatever fails, copies may be under way
     } end{ring_};
-    facts_.bytes = bytes;
+    if (count == out.count) held_ = {};
     const auto read = [&](const Array& a, std::span<std::byte> into) {
         if (a.from != nullptr)
             device->read(*a.from, into);
@@ -210,32 +236,45 @@ Status FluidUpload::bringOver(Device* device, std::span<const Array> arrays, boo
     };
     // Those of even number first: half of them by place would be another half whenever a particle changes its cell, and still water would
     // flicker.
-    order_.resize(out.count);
+    order_.resize(count);
     std::iota(order_.begin(), order_.end(), 0U);
     if (hurried) {
-        const auto odd = std::stable_partition(order_.begin(), order_.end(), [this](uint32_t i) { return ids_[i] % 2 == 0; });
-        out.half = static_cast<uint32_t>(odd - order_.begin());
+        const auto even = [this](uint32_t i) { return ids_[i] % 2 == 0; };
+        const auto asleep = order_.begin() + awake;
+        out.half = static_cast<uint32_t>(std::stable_partition(order_.begin(), asleep, even) - order_.begin());
+        if (count > awake) held_.half = static_cast<uint32_t>(std::stable_partition(asleep, order_.end(), even) - asleep);
+        out.asleepHalf = held_.half;
     }
+    // `to` keeps what it holds beyond what is copied.
+    const auto bring = [&](std::span<std::byte> from, size_t whole, Target& to, unsigned& name) {
+        if (Status room = to.makeRoom(whole); !room) return room;
+        if (!from.empty()) ring_.copyTo(to.memory);
+        name = to.memory.name();
+        facts_.bytes += from.size();
+        return ok();
+    };
     for (const Array& a : arrays) {
-        const std::span<std::byte> into = ring_.take(a.bytes);
+        const std::span<std::byte> into = ring_.take(bytesOf(a));
         if (hurried && a.ofParticles) {
-            vectors_.resize(out.count);
+            vectors_.resize(count);
             read(a, std::as_writable_bytes(std::span(vectors_)));
             std::transform(order_.begin(), order_.end(), as<vec4>(into).begin(), [this](uint32_t i) { return vectors_[i]; });
         } else {
             read(a, into);
         }
-        if (Status room = a.to->makeRoom(into.size()); !room) return room;
-        ring_.copyTo(a.to->memory);
-        *a.name = a.to->memory.name();
+        if (out.asleep > 0 && a.to == &position_) out.awake = lastDrawn(as<vec4>(into).first(awake));
+        if (Status room = bring(into, a.bytes, *a.to, *a.name); !room) return room;
     }
     if (out.count > 0) {
-        const std::span<uint32_t> into = as<uint32_t>(ring_.take(out.count * sizeof(uint32_t)));
+        const std::span<uint32_t> into = as<uint32_t>(ring_.take(ids_.size() * sizeof(uint32_t)));
         std::transform(order_.begin(), order_.end(), into.begin(), [this](uint32_t i) { return ids_[i]; });
-        if (Status room = id_.makeRoom(into.size_bytes()); !room) return room;
-        ring_.copyTo(id_.memory);
-        out.id = id_.memory.name();
+        if (Status room = bring(std::as_writable_bytes(into), out.count * sizeof(uint32_t), id_, out.id); !room) return room;
     }
+    if (count < out.count) return ok();
+    held_.sleepers = out.sleepers;
+    held_.hurried = hurried;
+    for (const Array& a : arrays)
+        if (a.ofParticles) held_.of.push_back(a.to);
     return ok();
 }
 

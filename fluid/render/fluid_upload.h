@@ -22,7 +22,7 @@ struct TransferFacts {
     const char* way = "";
     std::string why;     // of the ring: why no memory is shared, half a sentence
     double ms = 0;       // on the wall, of the last view(), with the wait for the simulation
-    size_t bytes = 0;    // copied through host memory
+    size_t bytes = 0;    // copied through host memory: of what sleeps once
     uint64_t waits = 0;  // frames so far in which the ring was full
 };
 std::string sentenceOf(const TransferFacts& facts);  // "ring: 0.31 ms, 1.2 MB (the cpu simulates)"
@@ -65,6 +65,7 @@ class FluidUpload {
     void follow(std::shared_ptr<const GlSharing> sharing);
     void dropTargets();
     Status share(std::span<const Array> arrays);
+    bool holdsSleepers(std::span<const Array> arrays, bool hurried, const FluidView& of) const;
     Status bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out);
 
     gpu::StagingRing ring_;
@@ -76,6 +77,13 @@ class FluidUpload {
     std::string refused_;                       // why sharing_ is no longer used, half a sentence
     std::vector<vec4> vectors_;
     std::vector<uint32_t> ids_, order_;  // ids_: of the copied particles
+    // What sleeps in the Targets `of`, in the order of `hurried`, is not copied again.
+    struct Sleepers {
+        std::shared_ptr<const void> sleepers;
+        std::vector<const Target*> of;
+        bool hurried = false;
+        uint32_t half = 0;
+    } held_;
     TransferFacts facts_;
     size_t mostBytes_ = SIZE_MAX;
 };

@@ -30,7 +30,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
             if (side != FoamSide::all) p.texture("glassDepth", 3, c.texture(d.glassDepth));
         }
         const QuadRows rows[] = {{d.fluid.foam[0]}, {d.fluid.foam[1]}};
-        programs.drawQuads(p, d.fluid.foamCount, rows);
+        programs.drawQuads(p, {0, d.fluid.foamCount}, rows);
     });
 }
 

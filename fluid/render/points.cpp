@@ -34,7 +34,7 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
         p.set("alike", d.fluid.absorption == 0 ? 1 : 0);
         p.set("ownAbsorption", d.look.absorption);
         p.set("dyeDepth", 5.0F * d.fluid.spacing);
-        programs.drawParticles(p, d.fluid, d.fluid.count);
+        programs.drawParticles(p, d.fluid, {0, d.fluid.count});
     });
     const gpu::TextureHandle tiles = addTiles(graph, programs, d);
     graph.pass("points shade", {{d.frame, Usage::uniform}, surface, normal, d.depth, tiles, d.shadowSharp, d.shadowSoft, d.waterLight},

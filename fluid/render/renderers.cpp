@@ -39,7 +39,7 @@ gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, con
         mark.use();
         mark.set("radius", d.fluid.radius);
         mark.set("tiles", vec2(size.width, size.height));
-        programs.drawParticles(mark, d.fluid, d.fluid.count);
+        programs.drawParticles(mark, d.fluid, {0, d.fluid.count});
     });
     return tiles;
 }

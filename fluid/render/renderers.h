@@ -67,8 +67,9 @@ struct WaterSurface {
     gpu::TextureHandle normals;    // xyz view space, w m of water instead of thickness.x; empty: they come from the depth
     gpu::TextureHandle fades;      // absorption of red, green and blue; empty: particles are alike
 };
-// Sets tiles, thickness and fades: of the spheres, blurred.
-WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles);
+// Sets tiles, thickness and fades: of the spheres, blurred. `kept`: of this view, or null.
+WaterSurface addThickness(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle tiles,
+                          const std::shared_ptr<KeptPicture>& kept = {});
 FluidLayers addShade(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const WaterSurface& water);
 
 FluidLayers addScreenSpace(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw);

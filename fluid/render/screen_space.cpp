@@ -1,6 +1,9 @@
 // A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a row of filters().
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <memory>
 
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
@@ -30,6 +33,8 @@ constexpr ProgramRow kScreenSpacePrograms[] = {
     {"thickness, ellipsoids", "screen_space/sphere.vert", "screen_space/thickness.frag", {"ELLIPSOIDS"}},
     {"thickness, ink", "screen_space/sphere.vert", "screen_space/thickness.frag", {"INK"}},
     {"thickness, ink, ellipsoids", "screen_space/sphere.vert", "screen_space/thickness.frag", {"INK", "ELLIPSOIDS"}},
+    {"scene at", "render/fullscreen.vert", "screen_space/scene_at.frag"},
+    {"scene at, changed", "screen_space/tile.vert", "screen_space/scene_at.frag", {"CHANGED"}},
     {"water blocks", "render/fullscreen.vert", "screen_space/water_blocks.frag"},
     {"water tiles", "render/fullscreen.vert", "screen_space/water_tiles.frag"},
     {"refine", "screen_space/tile.vert", "screen_space/refine.frag"},
@@ -44,48 +49,93 @@ constexpr ProgramRow kScreenSpacePrograms[] = {
     {"shade, normals, ink", "screen_space/tile.vert", "screen_space/shade.frag", {"NORMALS", "INK"}},
 };
 
-// With look.quality fast, half of the particles represent all of them, with twice the volume.
+// The rows of particles that are drawn. With look.quality fast, half of them represent all, with twice the volume.
 struct Drawn {
-    uint32_t count;
-    float standsFor, larger;
+    RowRange awake, asleep;
+    float standsFor = 1, larger = 1;
 };
+Drawn allOf(const FluidView& f) {
+    if (f.asleep == 0) return {.awake = {0, f.count}, .asleep = {}};
+    return {.awake = {0, f.awake}, .asleep = {f.count - f.asleep, f.asleep}};
+}
 Drawn drawnOf(const FluidDraw& d) {
-    if (d.look.fast && d.fluid.half > 0) return {d.fluid.half, 2.0F, std::cbrt(2.0F)};
-    return {d.fluid.count, 1.0F, 1.0F};
+    Drawn drawn = allOf(d.fluid);
+    if (!d.look.fast || d.fluid.half + d.fluid.asleepHalf == 0) return drawn;
+    drawn.awake.count = std::min(drawn.awake.count, d.fluid.half);
+    drawn.asleep.count = d.fluid.asleepHalf;
+    drawn.standsFor = 2.0F;
+    drawn.larger = std::cbrt(2.0F);
+    return drawn;
 }
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
+using Kept = std::shared_ptr<KeptPicture>;
+TextureHandle importKept(FrameGraph& graph, const Kept& kept, KeptPicture::Part part) {
+    return graph.importTexture("kept", kept->textures[part]);
+}
+
+void copyTexels(FrameGraph& graph, const char* name, TextureHandle from, TextureHandle to, std::function<void()> done = {}) {
+    graph.pass(name, {{from, Usage::copy}}, {{to, Usage::copy}}, [=](PassContext& c) {
+        const gpu::Texture &a = c.texture(from), &b = c.texture(to);
+        glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);
+        if (done) done();
+    });
+}
+
+// A texture of the particles in `rows`, those that sleep first in any case, so that sums are rounded alike, drawn by `draw(into, rows,
+// clears, done)`: those that sleep once, into what is kept, and those that are awake over a copy of it.
+template <class Draw>
+TextureHandle addKept(FrameGraph& graph, const char* name, const TextureDesc& desc, const Drawn& rows, const Kept& kept,
+                      KeptPicture::Part part, const Draw& draw) {
+    if (!kept) {
+        const TextureHandle all = graph.texture(name, desc);
+        draw(all, std::array{rows.asleep, rows.awake}, true, std::function<void()>());
+        return all;
+    }
+    const TextureHandle asleep = importKept(graph, kept, part);
+    if (!kept->drawn[part]) draw(asleep, std::array{rows.asleep, RowRange()}, true, [=] { kept->drawn[part] = true; });
+    if (rows.awake.count == 0) return asleep;
+    const TextureHandle all = graph.texture(name, desc);
+    copyTexels(graph, name, asleep, all);
+    draw(all, std::array{rows.awake, RowRange()}, false, std::function<void()>());
+    return all;
+}
+
+TextureDesc sphereDepthDesc(const FluidDraw& d) { return {.width = d.view.width, .height = d.view.height, .format = Format::rg32f}; }
+
 // x: depth of the bulk, y: of the spray; m. `prepare`: first draws occluders for spheres deep in the water; this pays off if spheres cover
 // many pixels.
-TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, bool prepare) {
-    TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::rg32f};
-    const TextureHandle depth = graph.texture("sphere depth", size);
+TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, bool prepare, const Kept& kept) {
+    TextureDesc size = sphereDepthDesc(d);
     size.format = Format::depth32f;
-    const TextureHandle hidden = graph.texture("fluid occluders", size);
-    graph.pass("fluid depth", splatReads(d), {depth, hidden}, [=, &programs](PassContext& c) {
-        const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
-        useFrame(c, d);
-        target.clearColour(vec4(kNoDepth));
-        target.clearDepth();
-        if (prepare) {
-            glEnable(GL_DEPTH_TEST);
-            glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-            Program& occluder = programs.splat("occluder", d.fluid);
-            occluder.use();
-            occluder.set("radius", d.fluid.radius);
-            programs.drawParticles(occluder, d.fluid, d.fluid.count);
-            glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-            glDepthMask(GL_FALSE);
-        }
-        glEnable(GL_BLEND);
-        glBlendEquation(GL_MIN);
-        Program& p = programs.splat("depth", d.fluid);
-        p.use();
-        p.set("radius", d.fluid.radius);
-        programs.drawParticles(p, d.fluid, d.fluid.count);
-    });
-    return depth;
+    const auto draw = [&](TextureHandle depth, const std::array<RowRange, 2>& rows, bool clears, const std::function<void()>& done) {
+        const TextureHandle hidden = graph.texture("fluid occluders", size);
+        graph.pass("fluid depth", splatReads(d), {depth, hidden}, [=, &programs](PassContext& c) {
+            const gpu::Framebuffer& target = c.drawTo({depth}, hidden);
+            useFrame(c, d);
+            if (clears) target.clearColour(vec4(kNoDepth));
+            target.clearDepth();
+            if (prepare) {
+                glEnable(GL_DEPTH_TEST);
+                glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+                Program& occluder = programs.splat("occluder", d.fluid);
+                occluder.use();
+                occluder.set("radius", d.fluid.radius);
+                for (const RowRange& range : rows) programs.drawParticles(occluder, d.fluid, range);
+                glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+                glDepthMask(GL_FALSE);
+            }
+            glEnable(GL_BLEND);
+            glBlendEquation(GL_MIN);
+            Program& p = programs.splat("depth", d.fluid);
+            p.use();
+            p.set("radius", d.fluid.radius);
+            for (const RowRange& range : rows) programs.drawParticles(p, d.fluid, range);
+            if (done) done();
+        });
+    };
+    return addKept(graph, "sphere depth", sphereDepthDesc(d), allOf(d.fluid), kept, KeptPicture::spheres, draw);
 }
 
 // Finds the tiles that contain water from the spheres' depth, which costs less than drawing all particles again.
@@ -149,26 +199,67 @@ void addView(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, con
 
 }  // namespace
 
-WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles) {
+namespace {
+
+struct ThicknessSize {
+    int scale;
+    TextureDesc thickness, ink;
+};
+ThicknessSize thicknessSize(const FluidDraw& d) {
     const int scale = d.look.fast ? kThicknessScaleFast : kThicknessScale;
-    const TextureDesc size{
-        .width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::rg16f};
+    TextureDesc size{.width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::rg16f};
+    TextureDesc ink = size;
+    ink.format = Format::rgba16f;
+    return {scale, size, ink};
+}
+
+using Condition = std::shared_ptr<gpu::QueryName>;
+
+// Whether the scene has moved, within the tiles of the water, since the thickness that is kept was cut at it; the GPU alone finds out.
+Condition addSceneChanged(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, TextureHandle scene,
+                          TextureHandle changed) {
+    const auto query = std::make_shared<gpu::QueryName>();
+    graph.pass("thickness", {{d.frame, Usage::uniform}, d.depth, scene, tiles}, {changed}, [=, &programs](PassContext& c) {
+        c.drawTo({changed});
+        useFrame(c, d);
+        Program& p = programs["scene at, changed"];
+        p.use();
+        p.texture("sceneDepth", 0, c.texture(d.depth));
+        p.texture("kept", 1, c.texture(scene));
+        p.set("scale", thicknessSize(d).scale);
+        GLuint name = 0;
+        glGenQueries(1, &name);
+        *query = gpu::QueryName(name);
+        glBeginQuery(GL_ANY_SAMPLES_PASSED, name);
+        programs.drawTiles(p, c.texture(tiles), 2);
+        glEndQuery(GL_ANY_SAMPLES_PASSED);
+    });
+    return query;
+}
+
+// Draws `rows` into `thickness` and, with ink, `depths`. `condition`: only if it holds; the GPU reads `changed` first.
+struct ThicknessInto {
+    TextureHandle thickness, depths;
+    std::array<RowRange, 2> rows;
+    bool clears = true;
+    TextureHandle changed = {};
+    Condition condition = {};
+};
+void addThicknessOf(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const ThicknessInto& to) {
     const bool ink = d.fluid.absorption != 0;
-    TextureDesc inkSize = size;
-    inkSize.format = Format::rgba16f;
-    TextureHandle thickness = graph.texture("thickness", size), depths;
     std::vector<gpu::Read> reads = splatReads(d);
     reads.emplace_back(d.depth);
-    std::vector<gpu::Write> writes = {thickness};
+    std::vector<gpu::Write> writes = {to.thickness};
     if (ink) {
-        depths = graph.texture("ink depths", inkSize);
         reads.emplace_back(d.absorption, Usage::sampled);
-        writes.emplace_back(depths);
+        writes.emplace_back(to.depths);
     }
+    if (to.changed) reads.emplace_back(to.changed);
     graph.pass("thickness", reads, writes, [=, &programs](PassContext& c) {
-        const gpu::Framebuffer& target = ink ? c.drawTo({thickness, depths}) : c.drawTo({thickness});
-        target.clearColour(vec4(0.0F), 0);
-        if (ink) target.clearColour(vec4(0.0F), 1);
+        const gpu::Framebuffer& target = ink ? c.drawTo({to.thickness, to.depths}) : c.drawTo({to.thickness});
+        if (to.condition) glBeginConditionalRender(to.condition->name(), GL_QUERY_WAIT);
+        if (to.clears) target.clearColour(vec4(0.0F), 0);
+        if (to.clears && ink) target.clearColour(vec4(0.0F), 1);
         useFrame(c, d);
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE);
@@ -179,14 +270,108 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         p.set("radius", d.fluid.radius * some.larger);
         p.set("standsFor", some.standsFor);
         p.set("spacing", d.fluid.spacing);
-        p.set("scale", scale);
+        p.set("scale", thicknessSize(d).scale);
         p.texture("sceneDepth", 0, c.texture(d.depth));
-        programs.drawParticles(p, d.fluid, some.count);
+        for (const RowRange& range : to.rows) programs.drawParticles(p, d.fluid, range);
+        if (to.condition) glEndConditionalRender();
     });
+}
+
+// The same of particles that sleep, into what is kept, and the scene that cuts it.
+ThicknessInto addKeptThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles, const Kept& kept) {
+    const ThicknessSize size = thicknessSize(d);
+    ThicknessInto to{.thickness = importKept(graph, kept, KeptPicture::thickness), .depths = {}, .rows = {drawnOf(d).asleep, RowRange()}};
+    if (d.fluid.absorption != 0) to.depths = importKept(graph, kept, KeptPicture::ink);
+    const TextureHandle scene = importKept(graph, kept, KeptPicture::scene);
+    if (kept->drawn[KeptPicture::thickness]) {
+        TextureDesc flags = size.thickness;
+        flags.format = Format::r8;
+        to.changed = graph.texture("scene changed", flags);
+        to.condition = addSceneChanged(graph, programs, d, tiles, scene, to.changed);
+    }
+    addThicknessOf(graph, programs, d, to);
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, d.depth};
+    if (to.changed) reads.emplace_back(to.changed);
+    graph.pass("thickness", reads, {scene}, [=, &programs, condition = to.condition](PassContext& c) {
+        c.drawTo({scene});
+        useFrame(c, d);
+        if (condition) glBeginConditionalRender(condition->name(), GL_QUERY_WAIT);
+        Program& p = programs["scene at"];
+        p.use();
+        p.texture("sceneDepth", 0, c.texture(d.depth));
+        p.set("scale", size.scale);
+        c.drawFullscreen();
+        if (condition) glEndConditionalRender();
+        kept->drawn[KeptPicture::thickness] = true;
+    });
+    graph.output(scene);
+    return to;
+}
+
+// What is kept of particles that sleep, for this view; null: nothing.
+Kept keptOf(FluidPrograms& programs, const FluidDraw& d) {
+    programs.kept.next();
+    const FluidView& f = d.fluid;
+    if (!f.sleepers || f.asleep == 0) return nullptr;
+    KeptPictures::Key key{f.sleepers, d.look.filter, {}};
+    for (const mat4& m : {d.view.view, d.view.projection})
+        for (int k = 0; k < 16; ++k) key.values.push_back(m[k / 4][k % 4]);
+    const FluidLook& look = d.look;
+    key.values.insert(
+        key.values.end(),
+        {static_cast<float>(d.view.width), static_cast<float>(d.view.height), d.view.nearPlane, d.view.farPlane, f.radius, f.spacing,
+         f.bounds.min.x, f.bounds.min.y, f.bounds.min.z, f.bounds.max.x, f.bounds.max.y, f.bounds.max.z, look.smoothing,
+         look.smoothingRange, look.absorption.x, look.absorption.y, look.absorption.z, look.scattering.y, static_cast<float>(look.view)});
+    for (const bool is : {look.fast, static_cast<bool>(d.coarse), f.half + f.asleepHalf > 0, f.ellipsoids[0] != 0, f.absorption != 0})
+        key.values.push_back(is ? 1.0F : 0.0F);
+    TextureDesc spheres = sphereDepthDesc(d), surface = spheres;
+    if (look.fast && d.coarse) {
+        spheres.width = d.view.half().width;
+        spheres.height = d.view.half().height;
+    }
+    surface.format = Format::r32f;
+    const ThicknessSize size = thicknessSize(d);
+    TextureDesc scene = size.thickness;
+    scene.format = Format::r32f;
+    std::vector<KeptPictures::Wanted> wanted = {
+        {KeptPicture::spheres, spheres}, {KeptPicture::thickness, size.thickness}, {KeptPicture::scene, scene}};
+    if (f.absorption != 0) wanted.emplace_back(KeptPicture::ink, size.ink);
+    if (f.awake == 0) {
+        wanted.emplace_back(KeptPicture::surface, surface);
+        wanted.emplace_back(KeptPicture::tiles, tilesOf(d.view));
+    }
+    return programs.kept.find(key, wanted);
+}
+
+}  // namespace
+
+WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles,
+                          const std::shared_ptr<KeptPicture>& kept) {
+    const auto [scale, size, inkSize] = thicknessSize(d);
+    const bool ink = d.fluid.absorption != 0;
+    const Drawn some = drawnOf(d);
+    TextureHandle thickness, depths;
+    if (kept) {
+        const ThicknessInto asleep = addKeptThickness(graph, programs, d, tiles, kept);
+        thickness = asleep.thickness;
+        depths = asleep.depths;
+    }
+    if (!kept || some.awake.count > 0) {
+        const ThicknessInto to{.thickness = graph.texture("thickness", size),
+                               .depths = ink ? graph.texture("ink depths", inkSize) : TextureHandle(),
+                               .rows = {kept ? RowRange() : some.asleep, some.awake},
+                               .clears = !kept};
+        if (kept) copyTexels(graph, "thickness", thickness, to.thickness);
+        if (kept && ink) copyTexels(graph, "thickness", depths, to.depths);
+        addThicknessOf(graph, programs, d, to);
+        thickness = to.thickness;
+        depths = to.depths;
+    }
+    const int reduced = scale;
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
             p.set("axis", axis);
-            p.set("reach", kThicknessBlur * kThicknessScale / scale);
+            p.set("reach", kThicknessBlur * kThicknessScale / reduced);
         };
         thickness = addTiled(graph, "thickness blur", programs, d, programs["blur"], tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addTiled(graph, "ink blur", programs, d, programs["blur"], tiles, depths, inkSize, 0.0F, setup);
@@ -198,21 +383,31 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const int side = d.look.fast ? kLightMapFast : kLightMap;
     const TextureDesc raw{.width = side, .height = side, .format = Format::rg16f};
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
-    const TextureHandle drawn = graph.texture("water light, raw", raw);
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
     const Drawn some = drawnOf(d);  // the blur hides the larger radius
-    graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {drawn}, [=, &programs](PassContext& c) {
-        c.drawTo({drawn}).clearColour(vec4(0.0F));
-        useFrame(c, d);
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ONE, GL_ONE);
-        Program& p = programs["light water"];
-        p.use();
-        p.set("clipRadius", some.larger * clipRadius);
-        p.set("radius", some.larger * d.fluid.radius);
-        p.set("volumeScale", volumeScale(d.fluid));
-        programs.drawParticles(p, d.fluid, some.count);
-    });
+    Kept kept;
+    if (d.fluid.sleepers && d.fluid.asleep > 0) {
+        KeptPictures::Key key{d.fluid.sleepers, nullptr, {static_cast<float>(side), d.fluid.radius, d.fluid.spacing, some.standsFor}};
+        for (int k = 0; k < 16; ++k) key.values.push_back(projection[k / 4][k % 4]);
+        kept = programs.kept.find(key, std::array{KeptPictures::Wanted(KeptPicture::light, raw)});
+    }
+    const auto draw = [&](TextureHandle into, const std::array<RowRange, 2>& rows, bool clears, const std::function<void()>& done) {
+        graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {into}, [=, &programs](PassContext& c) {
+            const gpu::Framebuffer& target = c.drawTo({into});
+            if (clears) target.clearColour(vec4(0.0F));
+            useFrame(c, d);
+            glEnable(GL_BLEND);
+            glBlendFunc(GL_ONE, GL_ONE);
+            Program& p = programs["light water"];
+            p.use();
+            p.set("clipRadius", some.larger * clipRadius);
+            p.set("radius", some.larger * d.fluid.radius);
+            p.set("volumeScale", volumeScale(d.fluid));
+            for (const RowRange& range : rows) programs.drawParticles(p, d.fluid, range);
+            if (done) done();
+        });
+    };
+    const TextureHandle drawn = addKept(graph, "water light, raw", raw, some, kept, KeptPicture::light, draw);
     // The narrow blur hides single particles: its reach is 1.5 spacings of the drawn particles.
     const float texels = 1.5F * some.larger * d.fluid.spacing / d.fluid.radius * clipRadius * 0.5F * static_cast<float>(side);
     const int reach = std::clamp(static_cast<int>(texels), 2, 6);
@@ -237,10 +432,7 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
     const bool ink = d.fluid.absorption != 0;
     d.behind(d.colour, water.depth);
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
-    graph.pass("copy scene", {{d.colour, Usage::copy}}, {{colour, Usage::copy}}, [=](PassContext& c) {
-        const gpu::Texture &from = c.texture(d.colour), &to = c.texture(colour);
-        glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
-    });
+    copyTexels(graph, "copy scene", d.colour, colour);
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, water.tiles,   d.colour,     d.depth,     water.depth,
                                     water.thickness,           d.shadowSharp, d.shadowSoft, d.waterLight};
     if (ink) reads.emplace_back(water.fades);
@@ -286,15 +478,30 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
         s.frame = d.coarse;
         s.view = d.view.half();
     }
-    const TextureHandle spheres = addSphereDepth(graph, programs, s, !half);
-    const TextureHandle tiles = addTilesOf(graph, programs, d, spheres);
-    TextureHandle depth = filter.add(filter, graph, programs, s, tiles, spheres);
-    if (half) {
-        const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
-        depth = addTiled(graph, "refine", programs, d, programs["refine"], tiles, depth, size, kNoDepth,
-                         [=](Program& p, const PassContext&) { p.set("range", filterReach(d.look, d.fluid.spacing).range); });
+    const Kept kept = keptOf(programs, d);
+    const bool still = kept && d.fluid.awake == 0;
+    TextureHandle depth, tiles;
+    if (still && kept->drawn[KeptPicture::surface]) {
+        depth = importKept(graph, kept, KeptPicture::surface);
+        tiles = importKept(graph, kept, KeptPicture::tiles);
+    } else {
+        const TextureHandle spheres = addSphereDepth(graph, programs, s, !half, kept);
+        tiles = addTilesOf(graph, programs, d, spheres);
+        depth = filter.add(filter, graph, programs, s, tiles, spheres);
+        if (half) {
+            const TextureDesc size{.width = d.view.width, .height = d.view.height, .format = Format::r32f};
+            depth = addTiled(graph, "refine", programs, d, programs["refine"], tiles, depth, size, kNoDepth,
+                             [=](Program& p, const PassContext&) { p.set("range", filterReach(d.look, d.fluid.spacing).range); });
+        }
     }
-    WaterSurface water = addThickness(graph, programs, d, tiles);
+    if (still && !kept->drawn[KeptPicture::surface]) {
+        const TextureHandle surface = importKept(graph, kept, KeptPicture::surface), marked = importKept(graph, kept, KeptPicture::tiles);
+        copyTexels(graph, "keep surface", tiles, marked);
+        copyTexels(graph, "keep surface", depth, surface, [=] { kept->drawn[KeptPicture::surface] = true; });
+        graph.output(marked);
+        graph.output(surface);
+    }
+    WaterSurface water = addThickness(graph, programs, d, tiles, kept);
     water.depth = depth;
     return addShade(graph, programs, d, water);
 }

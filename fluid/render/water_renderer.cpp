@@ -66,7 +66,8 @@ Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
 
 Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row) {
     const FrameView& view = picture.view();
-    pool.limit(most - std::min(most, ownBytes() + picture.bytes()));
+    fluid.kept.limit(most - std::min(most, ownBytes() + picture.bytes() + pool.bytes()));
+    pool.limit(most - std::min(most, ownBytes() + picture.bytes() + fluid.kept.bytes()));
     Studio studio;
     studio.showFloor = false;
     const Bounds water = fluidView.count > 0 ? fluidView.bounds : Bounds();
@@ -154,6 +155,6 @@ Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const 
 
 const std::vector<PassTime>& WaterRenderer::times() const { return impl_->pool.times(); }
 
-size_t WaterRenderer::bytes() const { return impl_->pool.bytes() + impl_->picture.bytes() + impl_->ownBytes(); }
+size_t WaterRenderer::bytes() const { return impl_->pool.bytes() + impl_->picture.bytes() + impl_->fluid.kept.bytes() + impl_->ownBytes(); }
 
 }  // namespace rivulet

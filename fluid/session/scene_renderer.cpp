@@ -127,7 +127,10 @@ Result<size_t> SceneRenderer::reload() {
     std::vector<gpu::Program*> programs = render_.all();
     for (gpu::Program* program : fluid_.all()) programs.push_back(program);
     Result<size_t> others = gpu::Program::reload(programs);
-    if (others && *others > 0) shadowOf_.clear();
+    if (others && *others > 0) {
+        shadowOf_.clear();
+        fluid_.kept.clear();
+    }
     return others;
 }
 

@@ -1,8 +1,8 @@
 // Quads, one per row of buffers, drawn by FluidPrograms::drawQuads: four vertices per row, and kRows rows per instance.
 // One instance per quad was three times slower on llvmpipe, and leaves most of a wave idle on a GPU.
-uniform uint rows;
+uniform uint firstRow, rows;  // the first that is drawn, and the end
 const uint kRows = 4096u;
-uint wanted() { return uint(gl_InstanceID) * kRows + uint(gl_VertexID >> 2); }
+uint wanted() { return firstRow + uint(gl_InstanceID) * kRows + uint(gl_VertexID >> 2); }
 int row() { return int(min(wanted(), rows - 1u)); }
 bool beyond() { return wanted() >= rows; }  // no such row: nothing is drawn
 vec2 corner() { return vec2(float(gl_VertexID & 1), float((gl_VertexID >> 1) & 1)); }

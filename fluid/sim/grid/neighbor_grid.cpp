@@ -59,6 +59,7 @@ struct NeighborGrid::Impl {
     uint32_t awakeSlots = 0;  // slots before those of sleeping particles, as last sorted
     bool sortAsleep = true;   // the next sort sorts sleeping particles too
     bool listed = false;      // some lists were built
+    std::shared_ptr<const void> sleepers;
     bool idsBehind = false;   // the ids of sleeping particles are sorted in one of the two copies only
     Buffer x, y, z, histogram, segmentSum, groups, list, listCursor, lists;
     Kernel sortCount, sortSegments, sortOffsets, sortScatter, neighborList;
@@ -297,6 +298,7 @@ Status NeighborGrid::Impl::buildCpu(const StepParams& params, Particles& p) {
     if (j.sortsAsleep) {
         sortAsleep = false;
         idsBehind = true;
+        sleepers = std::make_shared<char>();
     }
     buildGroups();
     if (!std::exchange(listed, true)) {
@@ -457,6 +459,7 @@ Status NeighborGrid::build(const StepParams& params, Particles& particles) {
 
 void NeighborGrid::sortAsleep() { impl_->sortAsleep = true; }
 bool NeighborGrid::sortsAsleep() const { return impl_->sortAsleep || !impl_->onCpu(); }
+std::shared_ptr<const void> NeighborGrid::sleepers() const { return sortsAsleep() ? nullptr : impl_->sleepers; }
 uint32_t NeighborGrid::awakeSlots() const { return impl_->awakeSlots; }
 void NeighborGrid::setMargin(float margin) { impl_->margin = margin; }
 const Buffer& NeighborGrid::neighbors() const { return impl_->onCpu() ? impl_->lists : impl_->cellStart; }

@@ -65,6 +65,9 @@ class NeighborGrid {
     void sortAsleep();
     bool sortsAsleep() const;     // the next build() sorts them
     uint32_t awakeSlots() const;  // cpu: slots before them, after a build()
+    // cpu: another object whenever the particles in those slots, or their values, may have changed. Null: what sleeps has no slots of its
+    // own, or the next build() sorts it.
+    std::shared_ptr<const void> sleepers() const;
 
     const Buffer& neighbors() const;   // binding 1 of a kernel with FOR_NEIGHBORS
     const Buffer& cellStart() const;   // [params.cellCount] = how many particles of the fluid are inside; or the linked lists

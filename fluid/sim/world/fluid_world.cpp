@@ -217,6 +217,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
             if (Status ready = w.drawn.prepare(*w.device, w.particles.count); !ready) w.report(ready.error().message);
             w.drawn.remember(*w.device, w.particles);
             w.posesBefore = w.solids.poses();
+            w.sleepersBefore = w.grid->sleepers();
         }
         stepped += w.stepPiece(frame.length, stepped, span, substeps, stop);
         ++done;
@@ -475,6 +476,9 @@ std::vector<Pose> FluidWorld::drawnPoses() const {
 
 ParticleView FluidWorld::particles() const {
     const Impl& w = *impl_;
+    // What fell asleep within the last fixed step is still drawn on its way.
+    std::shared_ptr<const void> sleepers = w.sleep ? w.grid->sleepers() : nullptr;
+    if (w.params.fixedStep > 0 && sleepers != w.sleepersBefore) sleepers = nullptr;
     return {.position = &w.particles.positionNext,
             .velocity = &w.particles.velocityNext,
             .id = &w.particles.id,
@@ -487,6 +491,8 @@ ParticleView FluidWorld::particles() const {
             .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
             .drawn = &w.drawn.positions(w.particles),
             .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{},
+            .asleep = sleepers ? w.particles.count - w.grid->awakeSlots() : 0,
+            .sleepers = sleepers,
             .foam = w.foam ? &w.foam->foam() : nullptr,
             .foamDrawn = w.foam ? &w.foam->drawn() : nullptr,
             .foamVelocity = w.foam ? &w.foam->velocity() : nullptr,

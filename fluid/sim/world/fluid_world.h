@@ -40,6 +40,10 @@ struct ParticleView {
     const Buffer* drawn = nullptr;  // vec4: as position
     // The ellipsoids about them: Ellipsoids::buffers(). Null if fluid.ellipsoids is off, and before the first step.
     std::array<const Buffer*, 3> ellipsoids = {};
+    // The last `asleep` slots hold sleeping particles: all arrays are the same there while `sleepers` is the same object. On a GPU, and
+    // where it is not known, 0 and null.
+    uint32_t asleep = 0;
+    std::shared_ptr<const void> sleepers = {};
     // Spray, foam and bubbles, one vec4 each: xyz position, m, w remaining life, s (0: free slot); and xyz velocity, m/s, w size (0.5 to 1)
     // plus 1 for spray, 2 for foam, 3 for a bubble. Null if fluid.foam.most is 0.
     const Buffer* foam = nullptr;

@@ -83,6 +83,7 @@ struct FluidWorld::Impl {
     DrawnPositions drawn;
     Ellipsoids ellipsoids;
     std::vector<Pose> posesBefore;                                         // the rigid solids', before the last fixed step
+    std::shared_ptr<const void> sleepersBefore;                            // NeighborGrid::sleepers(), before it
     std::shared_ptr<FluidStats> figures = std::make_shared<FluidStats>();  // shared with reads in flight
     StepParams step{};
     vec3 gravity{0.0F};

@@ -19,6 +19,7 @@ const Table<RendererRow>& renderers() {
 
 std::vector<gpu::Read> splatReads(const FluidDraw& d) {
     std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, {d.position, gpu::Usage::sampled}};
+    if (d.id) reads.emplace_back(d.id, gpu::Usage::sampled);
     for (const gpu::BufferHandle ellipsoids : d.ellipsoids) reads.emplace_back(ellipsoids, gpu::Usage::sampled);
     return reads;
 }

@@ -70,6 +70,9 @@ Drawn drawnOf(const FluidDraw& d) {
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
+// Ids decide which particles represent others.
+float detailOf(const FluidDraw& d) { return d.fluid.id != 0 ? d.look.detail : 0.0F; }
+
 using Kept = std::shared_ptr<KeptPicture>;
 TextureHandle importKept(FrameGraph& graph, const Kept& kept, KeptPicture::Part part) {
     return graph.importTexture("kept", kept->textures[part]);
@@ -122,6 +125,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
                 Program& occluder = programs.splat("occluder", d.fluid);
                 occluder.use();
                 occluder.set("radius", d.fluid.radius);
+                occluder.set("detail", detailOf(d));
                 for (const RowRange& range : rows) programs.drawParticles(occluder, d.fluid, range);
                 glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
                 glDepthMask(GL_FALSE);
@@ -131,6 +135,7 @@ TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const F
             Program& p = programs.splat("depth", d.fluid);
             p.use();
             p.set("radius", d.fluid.radius);
+            p.set("detail", detailOf(d));
             for (const RowRange& range : rows) programs.drawParticles(p, d.fluid, range);
             if (done) done();
         });
@@ -268,6 +273,7 @@ void addThicknessOf(FrameGraph& graph, FluidPrograms& programs, const FluidDraw&
         if (ink) p.set("ownAbsorption", vec4(d.look.absorption, d.look.scattering.y));
         const Drawn some = drawnOf(d);
         p.set("radius", d.fluid.radius * some.larger);
+        p.set("detail", detailOf(d) * static_cast<float>(thicknessSize(d).scale));  // of its own pixels
         p.set("standsFor", some.standsFor);
         p.set("spacing", d.fluid.spacing);
         p.set("scale", thicknessSize(d).scale);
@@ -317,11 +323,26 @@ Kept keptOf(FluidPrograms& programs, const FluidDraw& d) {
     for (const mat4& m : {d.view.view, d.view.projection})
         for (int k = 0; k < 16; ++k) key.values.push_back(m[k / 4][k % 4]);
     const FluidLook& look = d.look;
-    key.values.insert(
-        key.values.end(),
-        {static_cast<float>(d.view.width), static_cast<float>(d.view.height), d.view.nearPlane, d.view.farPlane, f.radius, f.spacing,
-         f.bounds.min.x, f.bounds.min.y, f.bounds.min.z, f.bounds.max.x, f.bounds.max.y, f.bounds.max.z, look.smoothing,
-         look.smoothingRange, look.absorption.x, look.absorption.y, look.absorption.z, look.scattering.y, static_cast<float>(look.view)});
+    key.values.insert(key.values.end(), {static_cast<float>(d.view.width),
+                                         static_cast<float>(d.view.height),
+                                         d.view.nearPlane,
+                                         d.view.farPlane,
+                                         f.radius,
+                                         f.spacing,
+                                         f.bounds.min.x,
+                                         f.bounds.min.y,
+                                         f.bounds.min.z,
+                                         f.bounds.max.x,
+                                         f.bounds.max.y,
+                                         f.bounds.max.z,
+                                         look.smoothing,
+                                         look.smoothingRange,
+                                         look.absorption.x,
+                                         look.absorption.y,
+                                         look.absorption.z,
+                                         look.scattering.y,
+                                         look.detail,
+                                         static_cast<float>(look.view)});
     for (const bool is : {look.fast, static_cast<bool>(d.coarse), f.half + f.asleepHalf > 0, f.ellipsoids[0] != 0, f.absorption != 0})
         key.values.push_back(is ? 1.0F : 0.0F);
     TextureDesc spheres = sphereDepthDesc(d), surface = spheres;

@@ -7,7 +7,9 @@ ROWS(5, spreads)    // xx, yy, zz of the squared half axes, a round particle's 1
 ROWS(6, slants)     // yz, zx, xy
 #endif
 vec4 particle = texelFetch(particles, row());
+layout(binding = 26) uniform usamplerBuffer ids;
 uniform float radius;                   // m
+uniform float detail;                   // pixels: see representedBy(); 0: every particle is drawn
 
 const float kOverlap = 1.35;  // radii: drawn so large, they cover the water without gaps. Spheres make it 0.3 radii too thick by that
 // The mean of a particle's neighbours lies inward of the surface: a displacement of up to this, in radii, is not noise but the shrinking
@@ -16,9 +18,28 @@ const float kOverlap = 1.35;  // radii: drawn so large, they cover the water wit
 const float kShrunk = 0.77;
 // Spray is finer than the particles that represent it: those with few neighbours are drawn smaller.
 float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
-float drawnRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
+float ownRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
+
+// Level of detail by size on the screen: of particles whose radius is less than `detail` pixels, a share is drawn, with so large a radius that
+// the sum of their areas stays what it was. The share is the square of their radius over `detail`: as many splats for a pixel at any distance.
+// Which ones, their ids decide: multiples of the golden ratio, of which any share is spread evenly. Those next to be left out shrink first, so
+// that none pops as the camera moves (stochastic simplification, Cook et al. 2007).
+// Returns the number of particles that this one represents: 1 where all are drawn, 0 where others represent it.
+const float kFades = 0.25, kFewest = 1.0 / 64.0;
+float representedBy(vec4 p, uint id) {
+    float depth = max(-(frame.view * vec4(p.xyz, 1.0)).z, frame.planes.x), pixels = ownRadius(p) / (depth * frame.ray.y);
+    if (!(pixels < detail)) return 1.0;
+    float share = max(pixels * pixels / (detail * detail), kFewest);
+    float at = float((id * 2654435769u) >> 8) / 16777216.0 * (1.0 - kFades) / share;
+    float end = min(share / (1.0 - kFades), 1.0), past = end - share;
+    // The mean over all ids of the weight below.
+    float mean = share + past * (1.0 - (end + share) * 0.5 * (1.0 - kFades) / share) / kFades;
+    return clamp((1.0 - at) / kFades, 0.0, 1.0) / mean;
+}
+float represents = detail > 0.0 ? representedBy(particle, texelFetch(ids, row()).r) : 1.0;
+float drawnRadius(vec4 p) { return ownRadius(p) * sqrt(represents); }
 // Also for NaN, for a free slot and for a body sample.
-bool lost(vec4 p) { return beyond() || p.w < 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
+bool lost(vec4 p) { return beyond() || p.w < 0.0 || represents <= 0.0 || !(dot(p.xyz, p.xyz) < 1.0e12); }
 
 // What is drawn, in view space: the points p with (p - centre)^T squares^-1 (p - centre) < 1.
 struct Splat {
@@ -33,7 +54,7 @@ Splat splatOf(vec4 p) {
     // A particle spawned after the ellipsoids were computed has none yet.
     float sum = spread.x + spread.y + spread.z;
     if (sum > 0.05 && sum < 50.0 && dot(toCentre, toCentre) < 9.0 * radius * radius) {
-        float wide = radius * kOverlap;
+        float wide = radius * kOverlap * sqrt(represents);
         mat3 view = mat3(frame.view);
         // In a thin sheet there is no shrinking to reverse; the rest is noise.
         float way = length(toCentre) / radius;

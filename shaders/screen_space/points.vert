@@ -2,7 +2,6 @@
 #include "shaders/screen_space/particle.glsl"
 #include "shaders/screen_space/ramp.glsl"
 ROWS(1, velocities)   // normal, surface: normals, w their length
-layout(binding = 26) uniform usamplerBuffer ids;
 ROWS(3, absorptions)  // see FluidView
 uniform int colourBy;     // 0 speed, 1 density, 2 id, 3 dye, 4 normal, 5 surface, 6 sleep
 uniform int alike;        // 1: all particles have ownAbsorption

@@ -6,6 +6,7 @@ uniform vec4 ownAbsorption;  // 1/m; w: scattering
 flat out vec4 ink;           // 1/m; w: scattering
 #endif
 flat out float sprayed;
+flat out float represented;  // particles by this one
 flat out vec4 centreView;  // w: radius, of an ellipsoid that of the ball of its volume
 #if defined(ELLIPSOIDS)
 flat out mat3 shapeView;  // 1/m^2: 1 on the surface
@@ -21,5 +22,6 @@ void main() {
     ink = absorption.w < 0.0 ? vec4(absorption.xyz, -1.0 - absorption.w) : absorption + ownAbsorption;
 #endif
     sprayed = spray(particle);
+    represented = represents;
     gl_Position = lost(particle) ? kNowhere : splatQuad(s);
 }

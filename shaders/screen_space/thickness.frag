@@ -7,6 +7,7 @@ uniform int scale;
 uniform sampler2D sceneDepth;
 flat in vec4 centreView;
 flat in float sprayed;
+flat in float represented;  // particles by this one
 #if defined(ELLIPSOIDS)
 flat in mat3 shapeView;
 #endif
@@ -25,7 +26,7 @@ void main() {
 #endif
     float scene = depthOfWindow(texelFetch(sceneDepth, min(ivec2(pixel), ivec2(frame.viewport.xy) - 1), 0).r);
     float r = centreView.w / spacing;
-    float share = min(0.2387324 * standsFor / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
+    float share = min(0.2387324 * standsFor * represented / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
     float water = share * clamp(scene - front, 0.0, through);
     thickness = vec2(water, water * sprayed);
 #if defined(INK)

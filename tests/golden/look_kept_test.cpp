@@ -23,6 +23,9 @@ int worstDifference(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b
     return worst;
 }
 
+// Half floats added in another order, as a picture's 0..255.
+constexpr int kRounding = 6;
+
 class LookKept : public LookTest {
   protected:
     void SetUp() override {
@@ -259,7 +262,7 @@ TEST_P(UploadOfSleepers, HasWhatTheWorldHasAndCopiesWhatMoves) {
         FluidView plain = *view;
         plain.asleep = plain.awake = 0;
         plain.sleepers = nullptr;
-        if (frames % 8 == 0) EXPECT_LT(meanAbsoluteError(shot(*view), shot(plain)), 0.02) << "frame " << frames;
+        if (frames % 8 == 0) EXPECT_LE(worstDifference(shot(*view), shot(plain)), kRounding) << "frame " << frames;
         shown = *view;
         ++frames;
     };
@@ -278,9 +281,9 @@ TEST_P(UploadOfSleepers, HasWhatTheWorldHasAndCopiesWhatMoves) {
         jet.emitters[0].params.litresPerSecond = rate;
         ASSERT_TRUE(world.setSources(jet));
         for (int k = 0; k < 20; ++k) frame();
+        if (rate > 0) EXPECT_GT(worstDifference(before, shot(shown)), 4 * kRounding) << "the jet is seen";
     }
     EXPECT_GT(mixed, mixedBefore) << "some water sleeps beside the jet";
-    EXPECT_GT(meanAbsoluteError(before, shot(shown)), 0.1) << "the jet is seen";
 }
 
 }  // namespace

@@ -21,10 +21,10 @@ struct FluidView {
     // GL buffer names, vec4 each, of the ellipsoids around the particles (shaders/fluid/surface/ellipsoids.kernel): centre, spread, slant.
     // 0: particles are drawn as spheres.
     std::array<unsigned, 3> ellipsoids = {};
-    uint32_t count = 0;     // particles; 0: nothing is drawn, and the names may be 0. Particles with NaN are not drawn
-    uint32_t half = 0;      // the first `half` particles (of those awake) are every second one, the same in each frame; 0: no such order
-    // Particles that sleep come last, and are the same while `sleepers` is the same object: what is drawn of them may be kept. Of the others
-    // the first `awake` hold all that is drawn. `asleepHalf`: of those that sleep, as `half`. 0 and null: none is known to sleep.
+    uint32_t count = 0;  // particles; 0: nothing is drawn, and the names may be 0. Particles with NaN are not drawn
+    uint32_t half = 0;   // the first `half` particles (of those awake) are every second one, the same in each frame; 0: no such order
+    // Particles that sleep come last, and are the same while `sleepers` is the same object: what is drawn of them may be kept. Of the
+    // others the first `awake` hold all that is drawn. `asleepHalf`: of those that sleep, as `half`. 0 and null: none is known to sleep.
     uint32_t asleep = 0, awake = 0, asleepHalf = 0;
     std::shared_ptr<const void> sleepers = {};
     float radius = 0.01F;   // m, of a drawn sphere

@@ -60,7 +60,7 @@ struct NeighborGrid::Impl {
     bool sortAsleep = true;   // the next sort sorts sleeping particles too
     bool listed = false;      // some lists were built
     std::shared_ptr<const void> sleepers;
-    bool idsBehind = false;   // the ids of sleeping particles are sorted in one of the two copies only
+    bool idsBehind = false;  // the ids of sleeping particles are sorted in one of the two copies only
     Buffer x, y, z, histogram, segmentSum, groups, list, listCursor, lists;
     Kernel sortCount, sortSegments, sortOffsets, sortScatter, neighborList;
 

@@ -172,7 +172,8 @@ Result<SleepPasses::Saved> SleepPasses::take(WorldState& state) {
         if (!values) return values.error();
         saved.values.push_back(std::move(*values));
     }
-    for (size_t k = 0; k < ellipsoids_.size() && state.sections().contains("sleep.ellipsoids0"); ++k) {
+    const bool drawn = state.sections().contains("sleep.ellipsoids0");
+    for (size_t k = 0; drawn && k < ellipsoids_.size(); ++k) {
         Result<std::vector<vec4>> values = state.take<vec4>("sleep.ellipsoids" + std::to_string(k), count_);
         if (!values) return values.error();
         saved.ellipsoids.push_back(std::move(*values));

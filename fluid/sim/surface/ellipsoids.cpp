@@ -11,7 +11,10 @@ Status Ellipsoids::prepare(Device& device, const PairTraits& traits, uint32_t co
     if (prepared_) return ok();
     Result<PairKernel> kernel = PairKernel::find(device, "fluid/surface/ellipsoids", traits);
     if (!kernel) return kernel.error();
+    Result<Kernel> free = device.kernel("fluid/surface/ellipsoids_free");
+    if (!free) return free.error();
     kernel_ = *kernel;
+    free_ = *free;
     for (Buffer& buffer : of_) {
         Result<Buffer> made = device.allocate(size_t{count} * sizeof(vec4));
         if (!made) return made.error();
@@ -30,6 +33,10 @@ void Ellipsoids::find(Device& device, const StepParams& params, NeighborGrid& gr
     if (kernel_.matter) buffers.push_back(&particles.matter);
     device.dispatch(kernel_.kernel, std::as_bytes(std::span(&s, 1)), buffers, grid.pairThreads());
     found_ = true;
+}
+
+void Ellipsoids::clearFree(Device& device, const StepParams& params, const NeighborGrid& grid, uint32_t count) {
+    if (prepared_) device.run(free_, params, {&grid.cellStart(), &of_[0], &of_[1], &of_[2]}, count);
 }
 
 Result<HostEllipsoids> ellipsoidsOf(Device& device, std::span<const vec4> particles, float spacing) {

@@ -18,6 +18,8 @@ class Ellipsoids {
     Status prepare(Device& device, const PairTraits& traits, uint32_t count);
     // `params`: of the last step.
     void find(Device& device, const StepParams& params, NeighborGrid& grid, const Particles& particles);
+    // The same, of slots that particles are spawned into: they have no ellipsoid until their first step.
+    void clearFree(Device& device, const StepParams& params, const NeighborGrid& grid, uint32_t count);
     // There is no state that they belong to.
     void forget() { found_ = false; }
     // vec4 each, in the particles' order, as shaders/fluid/surface/ellipsoids.kernel writes them: centre, spread, slant. Null: not found.
@@ -27,6 +29,7 @@ class Ellipsoids {
 
   private:
     PairKernel kernel_;
+    Kernel free_;
     std::array<Buffer, 3> of_;
     bool prepared_ = false, found_ = false;
 };

@@ -236,6 +236,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     if (p.ellipsoids && substeps > 0) {
         if (Status ready = w.ellipsoids.prepare(*w.device, w.traits, w.particles.count); !ready) w.report(ready.error().message);
         w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
+        if (w.sources.any() && !w.traits.linked) w.ellipsoids.clearFree(*w.device, w.step, *w.grid, w.particles.count);
         if (w.sleep)
             if (Status kept = w.sleep->keepEllipsoids(w.step, *w.grid, w.particles, w.ellipsoids.buffers()); !kept)
                 w.report(kept.error().message);

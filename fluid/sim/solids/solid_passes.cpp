@@ -227,6 +227,11 @@ bool SolidPasses::maySpawn(const vec3& p, float spacing, float near) const {
     return static_.field == nullptr || (static_.maySpawn(p, spacing, near) && !inWall(static_.field->surface, p));
 }
 
+bool SolidPasses::hasSurfaces(std::span<const Surface> surfaces) const {
+    return std::ranges::equal(
+        surfaces, surfaces_, [](const Surface& a, const Surface& b) { return a.friction == b.friction && a.restitution == b.restitution; });
+}
+
 Status SolidPasses::setSurfaces(std::span<const Surface> surfaces) {
     if (Status sound = check(surfaces); !sound) return sound;
     surfaces_.assign(surfaces.begin(), surfaces.end());

@@ -37,6 +37,7 @@ class SolidPasses {
 
     // Error (badInput): as create; nothing has changed then.
     Status setSurfaces(std::span<const Surface> surfaces);
+    bool hasSurfaces(std::span<const Surface> surfaces) const;  // whether it has these already
     // Returns to the poses at t = 0.
     Status reset();
 

@@ -420,8 +420,11 @@ void FluidWorld::withdraw(std::span<const uint32_t> slots) {
 }
 
 Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {
+    // A session sets them again whenever a slider moves, of the look too.
+    if (impl_->solids.hasSurfaces(surfaces)) return ok();
+    if (Status set = impl_->solids.setSurfaces(surfaces); !set) return set;
     if (impl_->sleep) impl_->sleep->disturbAll(impl_->clock.time);
-    return impl_->solids.setSurfaces(surfaces);
+    return ok();
 }
 
 Status FluidWorld::setSources(const Sources& next) {

@@ -27,6 +27,9 @@ void FluidWorld::Impl::disturbSleep() {
     if (gravity != sleptUnder) sleep->disturbAll(now);
     sleptUnder = gravity;
     const char *force = forces.keepsAwake(), *setting = method->keepsAwake(params);
+    // Water that sleeps gives walls no impulse. The load on a body is found from its own samples, whatever sleeps around them.
+    const bool measured = std::ranges::any_of(params.probes, [](const ProbeParams& p) { return p.on != "body"; });
+    if (measured) setting = "a probe measures the load on a wall";
     if (force != nullptr) report(fmt::format("fluid.sleep: water stays awake while the force '{}' is on", force));
     if (setting != nullptr) report(fmt::format("fluid.sleep: water stays awake while {}", setting));
     if (force != nullptr || setting != nullptr) {

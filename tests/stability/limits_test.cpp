@@ -92,6 +92,31 @@ TEST_P(Limits, NoneOneAndTwoAtTheSamePoint) {
         }
 }
 
+// Water that is woken again and again, by frames of any length, gains no energy and loses nothing: the envelope's criteria.
+TEST(LimitsOfSleep, WakingAgainAndAgainAddsNoEnergy) {
+    for (const char* method : {"wcsph", "pbf", "dfsph"})
+        for (const double frame : {1.0 / 60, 0.1}) {
+            auto device = cpu();
+            FluidParams p = column(method, 0.05F, 0.3F);
+            p.sleep = {.on = true, .speed = 0.1F, .after = 1};
+            auto world = makeWorld(*device, p);
+            world->step({}, frame);
+            const FluidStats& s = world->stats();
+            const double start = s.kinetic + s.potential;
+            int wakings = 0;
+            for (int k = 0; k < 120; ++k) {
+                if (k % 20 == 19) wakings += s.asleep > 0 ? 1 : 0;
+                // A push that is over before the water falls asleep again.
+                const vec3 pull = k % 20 == 19 ? vec3(0.5F, -9.81F, 0) : p.gravity;
+                world->step({.gravity = pull}, frame);
+                EXPECT_LT(s.kinetic - static_cast<double>(s.particles) * 0.125 * -9.81 * s.centreOfMass[1], 1.1 * start)
+                    << method << ", frame " << k;
+                EXPECT_EQ(s.lost, 0U);
+            }
+            EXPECT_GE(wakings, 3) << method << ", frames of " << frame << " s";
+        }
+}
+
 // PBF: a metre of water, with default settings, at any spacing. Its corrections support a limited weight: with steps of 4 ms a column of
 // fifty layers boiled (18 m/s).
 TEST(PbfWeight, AMetreOfWaterRestsAtAnySpacing) {

@@ -103,7 +103,10 @@ void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
     simulate_.push_back(simulateMs);
     for (const PassTime& pass : passes) passes_[pass.name].push_back(pass.ms);
     substeps_ += static_cast<uint64_t>(world_->lastSubsteps());
-    iterations_ += world_->stats().iterations * world_->lastSubsteps();
+    const FluidStats& f = world_->stats();
+    iterations_ += f.iterations * world_->lastSubsteps();
+    awake_ += static_cast<double>(f.particles - f.asleep) * world_->lastSubsteps();
+    present_ += static_cast<double>(f.particles) * world_->lastSubsteps();
     takeLoads();
     if (!readBack_) return;
 
@@ -230,6 +233,8 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.penetrations = static_cast<uint32_t>(std::count(penetrated_.begin(), penetrated_.end(), true));
     stats.substeps = substeps_;
     stats.iterations = substeps_ > 0 ? iterations_ / static_cast<double>(substeps_) : 0.0;
+    stats.asleep = late.asleep;
+    stats.awakeShare = present_ > 0 ? awake_ / present_ : 1.0;
     stats.residual = late.residual;
     stats.origin = world.origin();
     stats.dropped = world.dropped();
@@ -337,6 +342,8 @@ std::string writeRunStats(const RunStats& stats) {
     v["voxelsRewritten"] = Json::UInt64(stats.voxelsRewritten);
     v["substeps"] = Json::UInt64(stats.substeps);
     v["iterations"] = number(stats.iterations);
+    v["sleep"]["asleep"] = stats.asleep;
+    v["sleep"]["awakeShare"] = number(stats.awakeShare);
     v["residual"] = stats.residual ? number(*stats.residual) : Json::Value();
     v["origin"] = Json::Value(Json::arrayValue);
     for (int axis = 0; axis < 3; ++axis) v["origin"].append(number(stats.origin[axis]));

@@ -74,6 +74,8 @@ struct RunStats {
         standOff;  // m, beyond half a spacing: distance of particles at rest from a mesh, the largest of all fields; nothing without a mesh
     uint64_t substeps = 0;
     double iterations = 0;           // of the pressure solver, mean over substeps
+    uint32_t asleep = 0;             // particles, at the end: fluid.sleep
+    double awakeShare = 1;           // particles that do not sleep, over all, mean over substeps: those that are stepped
     std::optional<double> residual;  // mean compression after the last iteration, as the solver predicts it; nothing: it has no prediction
     dvec3 origin{0.0};               // m: positions above are relative to it
     double dropped = 0;              // s requested but not simulated
@@ -127,7 +129,8 @@ class RunRecorder {
     std::map<std::string, std::vector<double>> passes_;
     double compressionSum_ = 0, maxCompression_ = 0, wallMs_ = 0;
     uint64_t compressionFrames_ = 0, substeps_ = 0;
-    double iterations_ = 0;  // of all substeps
+    double iterations_ = 0;           // of all substeps
+    double awake_ = 0, present_ = 0;  // particles times substeps
     std::vector<ProbeFrame> loads_;
     std::vector<bool> penetrated_;  // by id
     End last_;                      // after the last frame; only with readBack_

@@ -245,7 +245,7 @@ TEST(ProgramRun, StatsHoldAllKeys) {
     for (const char* key :
          {"version",      "scene",    "machine",  "device", "backend", "method",     "particles",    "frames", "seconds", "wallSeconds",
           "simulateMs",   "renderMs", "frameMs",  "passes", "density", "energy",     "centreOfMass", "front",  "volume",  "lost",
-          "penetrations", "nan",      "substeps", "dt",     "limited", "iterations", "residual",     "origin", "dropped"})
+          "penetrations", "nan",      "substeps", "dt",     "limited", "iterations", "residual",     "origin", "dropped", "sleep"})
         EXPECT_TRUE(stats.isMember(key)) << key;
     for (const char* group : {"simulateMs", "renderMs", "frameMs"})
         for (const char* key : {"min", "median", "p95"}) EXPECT_TRUE(stats[group].isMember(key)) << group << "." << key;

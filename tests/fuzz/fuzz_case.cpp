@@ -117,8 +117,24 @@ SceneFile bodies() {
     return s;
 }
 
-// The thesis's method refuses bodies in every scene.
-bool fits(const std::string& base, const std::string& method) { return base != "bodies" || method != "wcsph_thesis"; }
+// A pool with a ball in which water sleeps some frames after it has become calm: each drag wakes it, and it falls asleep again.
+SceneFile calm() {
+    SceneFile s;
+    s.fluid.maxSubsteps = kSubsteps;
+    s.duration = 1;
+    s.fluid.sleep = {.on = true, .speed = 1, .after = 0.5F};
+    s.fluid.soundSpeed = 8;  // so that kSubsteps steps are a frame
+    s.fluid.box = {.min = vec3(0), .max = vec3(0.4F, 0.4F, 0.24F)};
+    s.fluid.blocks = {{.min = vec3(0), .max = vec3(0.4F, 0.12F, 0.24F)}};
+    s.bodies.resize(1);
+    s.bodies[0].shape = "sphere";
+    s.bodies[0].radius = 0.04F;
+    s.bodies[0].position = vec3(0.1F, 0.2F, 0.12F);
+    return s;
+}
+
+// The thesis's method refuses bodies in every scene, and sleeping water.
+bool fits(const std::string& base, const std::string& method) { return (base != "bodies" && base != "calm") || method != "wcsph_thesis"; }
 
 Status set(Case& c, const std::string& assignment) {
     const VisitFn visit = visiting(c.scene);
@@ -185,10 +201,10 @@ Status sweep(Case& c, const std::vector<Slider>& sliders, const std::string& pat
     const Slider* s = find(sliders, path);
     if (s == nullptr) return badInput(path + " is no Param of this base");
     const std::vector<std::string> values = s->values();
-    constexpr int kEach = 2;
-    for (size_t k = 0; k < values.size(); ++k) c.drags.push_back({kEach * static_cast<int>(k + 1), path, values[k]});
-    c.drags.push_back({kEach * static_cast<int>(values.size() + 1), path, s->text});
-    c.frames = kEach * static_cast<int>(values.size() + 2);
+    const int each = c.scene.fluid.sleep.on ? 6 : 2;  // until it sleeps again
+    for (size_t k = 0; k < values.size(); ++k) c.drags.push_back({each * static_cast<int>(k + 1), path, values[k]});
+    c.drags.push_back({each * static_cast<int>(values.size() + 1), path, s->text});
+    c.frames = each * static_cast<int>(values.size() + 2);
     return setAll(c, {path + "=" + values.back()});
 }
 
@@ -217,7 +233,13 @@ Status combination(Case& c, const std::string& method, const std::string& number
     if (wrong != std::errc{} || end != number.data() + number.size()) return badInput(number + " is no seed: give a whole number");
     Random random(seed * 0x9e3779b97f4a7c15ULL + hashOf(method));
     // Most often the scene that shows most.
-    const std::array<const char*, 6> often = {"tank", "forces", "forces", "tank", "solids", fits("bodies", method) ? "bodies" : "solids"};
+    const std::array<const char*, 7> often = {"tank",
+                                              "forces",
+                                              "forces",
+                                              "tank",
+                                              "solids",
+                                              fits("bodies", method) ? "bodies" : "solids",
+                                              fits("calm", method) ? "calm" : "solids"};
     Result<SceneFile> base = baseScene(often[below(random, often.size())], method);
     if (!base) return base.error();
     c.scene = std::move(*base);
@@ -263,7 +285,7 @@ std::string chosen(const std::string& key, const std::string& base) {
 }  // namespace
 
 std::span<const BaseRow> bases() {
-    static constexpr BaseRow rows[] = {{"tank", tank}, {"forces", forces}, {"solids", solids}, {"bodies", bodies}};
+    static constexpr BaseRow rows[] = {{"tank", tank}, {"forces", forces}, {"solids", solids}, {"bodies", bodies}, {"calm", calm}};
     return rows;
 }
 
@@ -321,7 +343,7 @@ std::vector<std::string> singles(const std::string& method, bool sample) {
     std::set<std::string> done = {"fluid.method"};  // every test has each
     for (const BaseRow& row : bases()) {
         Result<SceneFile> base = baseScene(row.name, method);
-        if (!base || !fits(row.name, method)) continue;
+        if (!base || !fits(row.name, method) || std::string_view(row.name) == "calm") continue;
         for (const Slider& s : slidersOf(*base)) {
             // An item of a list is another thing in each base.
             const std::string key = s.path.find('[') == std::string::npos ? s.path : fmt::format("{} {}", row.name, s.path);
@@ -360,6 +382,22 @@ std::vector<std::string> pairs(const std::string& method, bool sample) {
                     for (const std::string& v : sliders[b].ends())
                         names.push_back(fmt::format("{} pair {} {}={} {}={}", method, name, x, u, y, v));
             }
+    }
+    return names;
+}
+
+std::vector<std::string> sleeping(const std::string& method, bool sample) {
+    std::vector<std::string> names;
+    Result<SceneFile> base = baseScene("calm", method);
+    if (!base || !fits("calm", method)) return names;
+    for (const Slider& s : slidersOf(*base)) {
+        if (!isSimulated(s) || s.path == "fluid.method") continue;
+        if (sample && s.fixed) continue;
+        if (sample) {
+            names.push_back(fmt::format("{} sweep calm {}", method, s.path));
+            continue;
+        }
+        for (const std::string& value : s.values()) names.push_back(fmt::format("{} single calm {}={}", method, s.path, value));
     }
     return names;
 }

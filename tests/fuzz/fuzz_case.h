@@ -45,10 +45,12 @@ struct Case {
 // Error: a name that is none, or what readers of scenes say of it.
 Result<Case> caseOf(const std::string& name);
 
-// The names of the tiers. A Param is tried in the first base that has it, an item's in each. Pairs are of what the simulation reads: what
-// is below fluid and in the lists.
+// The names of the tiers. A Param is tried in the first base that has it, an item's in each but the last, whose water sleeps. Pairs are of
+// what the simulation reads: what is below fluid and in the lists.
 std::vector<std::string> singles(const std::string& method, bool sample);
 std::vector<std::string> pairs(const std::string& method, bool sample);
+// The same as singles, of a pool that sleeps and of what the simulation reads. None for a method without sleep.
+std::vector<std::string> sleeping(const std::string& method, bool sample);
 
 std::string sceneText(SceneFile scene);  // as a file, without what is as in the smallest scene
 

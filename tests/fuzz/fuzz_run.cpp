@@ -129,6 +129,7 @@ class Runner {
         const FluidStats& stats = world.stats();
         wrong_ = judge(world, stats, seconds, world.time() - before);
         sweeps_ = stats.sweeps;
+        outcome_.slept += stats.asleep > 0 ? 1 : 0;
         if (sweeps_ > kDear && outcome_.slowed == 0) {
             outcome_.slowed = frame_ + 1;
             draft_.fluid.maxSubsteps = 1;
@@ -157,6 +158,10 @@ class Runner {
         if (std::string bad = notFinite(stats); !bad.empty()) return bad;
         if (stats.nan > 0) return fmt::format("{} particles are NaN", stats.nan);
         if (stats.lost > 0) return fmt::format("{} particles are lost", stats.lost);
+        const auto resting =
+            std::count_if(p.velocity.begin(), p.velocity.end(), [](const vec4& v) { return v.w < 0 && vec3(v) == vec3(0.0F); });
+        if (stepped > 0 && resting != static_cast<std::ptrdiff_t>(stats.asleep))
+            return fmt::format("{} particles sleep and stand still, {} in the stats", resting, stats.asleep);
         if (std::set<uint32_t>(p.id.begin(), p.id.end()).size() != p.id.size()) return "two particles have one id";
         const double volume = std::pow(double{spacing}, 3), there = (stats.emitted - stats.drained) / volume;
         if (p.position.size() != stats.particles || std::abs(there - stats.particles) > 0.01)
@@ -191,12 +196,12 @@ class Runner {
 
 // The result that a child process sends to its parent.
 std::string packed(const Outcome& o) {
-    return fmt::format("{} {} {} {} {}", static_cast<int>(o.verdict), o.refusedDrags, o.slowed, o.limited, o.sentence);
+    return fmt::format("{} {} {} {} {} {}", static_cast<int>(o.verdict), o.refusedDrags, o.slowed, o.limited, o.slept, o.sentence);
 }
 
 bool unpack(const std::string& text, Outcome& o) {
     int verdict = 0, at = 0;
-    if (std::sscanf(text.c_str(), "%d %d %d %d %n", &verdict, &o.refusedDrags, &o.slowed, &o.limited, &at) != 4) return false;
+    if (std::sscanf(text.c_str(), "%d %d %d %d %d %n", &verdict, &o.refusedDrags, &o.slowed, &o.limited, &o.slept, &at) != 5) return false;
     o.verdict = static_cast<Outcome::Verdict>(verdict);
     o.sentence = text.substr(static_cast<size_t>(at));
     return true;

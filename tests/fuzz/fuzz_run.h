@@ -14,6 +14,7 @@ struct Outcome {
     int refusedDrags = 0;  // those that made no sense: a sentence is shown, and the scene stays
     int slowed = 0;        // the frame from which on there was but one step a frame, for the time it took; 0: none
     int limited = 0;       // plain notices of what the program limited
+    int slept = 0;         // frames in which water slept
     double seconds = 0;    // on the processor
 };
 
@@ -23,6 +24,7 @@ struct Outcome {
 //  - no speed is above what the step limits: a spacing a step. Where solids or bodies move, three: a wall that itself goes no further than
 //  that
 //    in a step throws back with twice its speed besides;
+//  - sleeping particles stand still, and there are as many as the stats say;
 //  - time + pending + dropped is the requested time.
 // Refused with one plain sentence at the start is an outcome of its own, as the window does it: nothing was simulated.
 Outcome run(const Case& c);

@@ -52,9 +52,10 @@ std::string kindOf(const std::string& sentence) {
 }
 
 // Runs the cases one after the other, fails for each that fails, and reports how many were refused, so that not all can be refused.
-void runAll(const std::vector<std::string>& names, size_t leastRun) {
+// Returns in how many water slept.
+size_t runAll(const std::vector<std::string>& names, size_t leastRun) {
     constexpr size_t kShown = 12;
-    size_t ran = 0, refused = 0, failed = 0, slowed = 0, limited = 0, drags = 0;
+    size_t ran = 0, refused = 0, failed = 0, slowed = 0, limited = 0, drags = 0, slept = 0;
     double seconds = 0, longest = 0;
     std::string slowest;
     std::map<std::string, size_t> refusals;
@@ -73,6 +74,7 @@ void runAll(const std::vector<std::string>& names, size_t leastRun) {
         }
         drags += static_cast<size_t>(o.refusedDrags);
         slowed += o.slowed > 0 ? 1 : 0;
+        slept += o.slept > 0 ? 1 : 0;
         limited += o.limited > 0 ? 1 : 0;
         if (o.verdict == Outcome::Verdict::refused) {
             ++refused;
@@ -85,11 +87,12 @@ void runAll(const std::vector<std::string>& names, size_t leastRun) {
             fmt::print("also: {}: {}\n", name, o.sentence);
     }
     fmt::print(
-        "{} cases: {} failed, {} refused at the start (and {} drags), {} had something limited, {} became dear; {:.1f} s, at most {:.1f} "
-        "s: {}\n",
-        ran, failed, refused, drags, limited, slowed, seconds, longest, slowest);
+        "{} cases: {} failed, {} refused at the start (and {} drags), {} had something limited, {} had water that slept, {} became dear; "
+        "{:.1f} s, at most {:.1f} s: {}\n",
+        ran, failed, refused, drags, limited, slept, slowed, seconds, longest, slowest);
     for (const auto& [kind, count] : refusals) fmt::print("  refused {:4}: {}\n", count, kind);
     EXPECT_GE(ran - refused, leastRun) << "too much is refused to have tried anything";
+    return slept;
 }
 
 // Every so many of them, `count` in all, the first picked by the list itself.
@@ -118,10 +121,10 @@ std::vector<std::string> combinations(const std::string& method, size_t count) {
 class SliderFuzz : public ::testing::TestWithParam<std::string> {
   protected:
     // A part of the full list, or a sample of another.
-    void runThese(const std::vector<std::string>& full, const std::vector<std::string>& sample, size_t count) {
+    size_t runThese(const std::vector<std::string>& full, const std::vector<std::string>& sample, size_t count) {
         const Mode m = mode();
         const std::vector<std::string> names = m.full ? partOf(full, m) : sampled(sample, count);
-        runAll(names, names.size() / 2);
+        return runAll(names, names.size() / 2);
     }
 };
 
@@ -133,6 +136,12 @@ TEST_P(SliderFuzz, EveryParamAloneOverItsWholeRange) {
 }
 
 TEST_P(SliderFuzz, PairsOfParamsAtTheirEnds) { runThese(pairs(GetParam(), false), pairs(GetParam(), true), 40); }
+
+TEST_P(SliderFuzz, ParamsOfAPoolThatSleeps) {
+    const std::vector<std::string> sample = sleeping(GetParam(), true);
+    if (sample.empty()) return;  // a method without fluid.sleep
+    EXPECT_GT(runThese(sleeping(GetParam(), false), sample, 8), 0U) << "water sleeps in none";
+}
 
 TEST_P(SliderFuzz, RandomCombinations) { runThese(combinations(GetParam(), 2000), combinations(GetParam(), 2000), 12); }
 

@@ -48,8 +48,9 @@ struct Outcome {
     std::string refused = {};  // the sentence with which the method refused the case; empty: the case ran
     double spacing = 0;        // m
     uint32_t particles = 0;
-    double wallPerSecond = 0;    // wall seconds of the steps per simulated second
-    double sweepsPerSecond = 0;  // sweeps over all neighbours per simulated second, of the share that is awake: a cost that no machine changes
+    double wallPerSecond = 0;  // wall seconds of the steps per simulated second
+    double sweepsPerSecond =
+        0;  // sweeps over all neighbours per simulated second, of the share that is awake: a cost that no machine changes
     double stepsPerSecond = 0;
     double compression = 0;  // mean over particles and frames, a fraction
     double fastest = 0;      // m/s that falling water reaches

@@ -78,7 +78,7 @@ TextureHandle importKept(FrameGraph& graph, const Kept& kept, KeptPicture::Part 
     return graph.importTexture("kept", kept->textures[part]);
 }
 
-void copyTexels(FrameGraph& graph, const char* name, TextureHandle from, TextureHandle to, std::function<void()> done = {}) {
+void copyTexels(FrameGraph& graph, const char* name, TextureHandle from, TextureHandle to, const std::function<void()>& done = {}) {
     graph.pass(name, {{from, Usage::copy}}, {{to, Usage::copy}}, [=](PassContext& c) {
         const gpu::Texture &a = c.texture(from), &b = c.texture(to);
         glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);

@@ -373,7 +373,7 @@ std::vector<std::string> pairs(const std::string& method, bool sample) {
             for (size_t b = a + 1; b < sliders.size(); ++b) {
                 const std::string& x = sliders[a].path;
                 const std::string& y = sliders[b].path;
-                if (!done.insert(x + " " + y).second) continue;
+                if (!done.insert(fmt::format("{} {}", x, y)).second) continue;
                 if (sample) {
                     names.push_back(fmt::format("{} corners {} {} {}", method, name, x, y));
                     continue;

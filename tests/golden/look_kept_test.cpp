@@ -79,6 +79,7 @@ class LookKept : public LookTest {
         view.id = id.name();
         if (ink) {
             std::vector<vec4> each;
+            each.reserve(ids.size());
             for (const uint32_t k : ids) each.emplace_back(0.1F * static_cast<float>(k % 40), 2.0F, 0.5F, 0.3F);
             absorption = std::move(*gpu::Buffer::from(each));
             view.absorption = absorption.name();
@@ -169,7 +170,8 @@ TEST_F(LookKept, theSceneMayMoveInTheWater) {
     node.mesh = std::make_shared<const Mesh>(std::move(*mesh));
     scene.add(std::move(node));
     for (int k = 0; k < 6; ++k) {
-        scene.nodes()[0].local = Transform::fitted(size, 0.4F, vec3(0.3F + 0.06F * static_cast<float>(k / 2), 0.12F, 0.7F), vec3(0.0F));
+        const int place = k / 2;
+        scene.nodes()[0].local = Transform::fitted(size, 0.4F, vec3(0.3F + 0.06F * static_cast<float>(place), 0.12F, 0.7F), vec3(0.0F));
         setAwake(vec3(0.0F), 0);
         EXPECT_EQ(apart(), 0) << k;
     }

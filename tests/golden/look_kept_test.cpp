@@ -279,7 +279,7 @@ TEST_P(UploadOfSleepers, HasWhatTheWorldHasAndCopiesWhatMoves) {
     EXPECT_LE(upload.facts().bytes, emptyRows * (5 * sizeof(vec4) + 4)) << "what sleeps is not copied again";
     const std::vector<uint8_t> before = shot(shown);
     const int mixedBefore = mixed;
-    for (const float rate : {0.5F, 0.0F}) {
+    for (const float rate : {1.5F, 0.0F}) {
         jet.emitters[0].params.litresPerSecond = rate;
         ASSERT_TRUE(world.setSources(jet));
         for (int k = 0; k < 20; ++k) frame();

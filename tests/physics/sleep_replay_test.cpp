@@ -13,7 +13,7 @@
 namespace rivulet::sleep_replay_test {
 namespace {
 
-constexpr int kFrames = 130, kLook = 45, kTilt = 50, kSaved = 71, kFriction = 90, kJet = 110;
+constexpr int kFrames = 130, kLook = 45, kTilt = 50, kSaved = 84, kFriction = 90, kJet = 110;
 
 // A pool with a ball that floats, and a jet that begins later.
 SceneFile scene(const std::string& method) {

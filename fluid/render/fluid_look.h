@@ -36,7 +36,7 @@ struct FluidLook {
     vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
     vec3 scattering{0.05F, 0.30F, 0.27F};  // 1/m, reduced, per channel
     float refractiveIndex = 1.333F;        // > 1
-    float detail = 0.0F;                   // pixels: of particles with a smaller radius a share is drawn, larger; 0: all
+    float detail = 0.0F;                   // pixels: below this radius only some particles are drawn, each larger; 0: all
     WaterView view = WaterView::water;     // screen_space
     bool fast = false;                     // the surface at half the resolution, no reflection of the picture in itself
 };

@@ -213,8 +213,8 @@ bool FluidUpload::holdsSleepers(std::span<const Array> arrays, bool hurried, con
            std::all_of(arrays.begin(), arrays.end(), held);
 }
 
-// Of ids_ and `arrays`: all particles, or those before the ones that sleep, as many as ids_ has. `device`: whose buffers they are, null
-// where they are the host's.
+// Uploads the first ids_.size() particles of `arrays`, and their ids: all particles, or only those awake, which come first. `device` owns
+// the buffers; null: they are memory of the host.
 Status FluidUpload::bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out) {
     const auto count = static_cast<uint32_t>(ids_.size());
     const uint32_t awake = out.count - out.asleep;

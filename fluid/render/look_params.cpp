@@ -39,11 +39,10 @@ void FluidLookParams::visit(ParamVisitor& v) {
              filter, filterNames);
     v.value({"smoothing", "m", "width of the surface filter, two standard deviations; 0 = 1.8 spacings", 0, 10}, smoothing);
     v.value({"smoothingRange", "m", "largest depth difference within one surface; 0 = 4.2 spacings", 0, 100}, smoothingRange);
-    v.value(
-        {"detail", "pixels",
-         "level of detail: of particles whose radius in the picture is smaller, a share is drawn, with a larger radius; 0 = all are drawn",
-         0, 100},
-        detail);
+    v.value({"detail", "pixels",
+             "level of detail: the radius in the picture below which only some of the particles are drawn, each larger; 0 = all are drawn",
+             0, 100},
+            detail);
     v.value({"absorption", "1/m",
              "absorption coefficient for red, green and blue (Beer-Lambert); -1 = that of fluid.liquid, or 4.5, 1.1, 0.5 if it is empty",
              -1, 1.0e5},

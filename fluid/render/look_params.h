@@ -23,7 +23,7 @@ struct FluidLookParams {
     std::string filter = "narrow_range";    // a row of filters()
     float smoothing = 0.0F;                 // m, reach of the smoothing, two standard deviations; 0 = 1.8 spacings
     float smoothingRange = 0.0F;            // m, largest difference of depths on one surface; 0 = 4.2 spacings
-    float detail = 0.5F;                    // pixels: of particles with a smaller radius a share is drawn, larger; 0 = all
+    float detail = 0.5F;                    // pixels: below this radius only some particles are drawn, each larger; 0 = all
     vec3 absorption{-1.0F};                 // 1/m, Beer-Lambert per channel; -1 = of the liquid
     vec3 scattering{-1.0F};                 // 1/m, reduced, per channel; -1 = of the liquid
     float refractiveIndex = 0.0F;           // 0 = of the liquid

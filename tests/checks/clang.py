@@ -2,8 +2,8 @@
 """Reads every C++ file of the project a second time, with clang: `clang.py tidy BUILD` runs clang-tidy with .clang-tidy, which tells
 of the compiler's own warnings too; `clang.py syntax BUILD` compiles the others, the tests, with -Werror and writes nothing. A file that
 passed is not read again until its command, one of the files it includes, or .clang-tidy changes (stamps in BUILD/clang_stamps).
-With RIVULET_LINT=part only some files are read: those that the last 25 commits changed, those whose header they changed, and a sixth of
-the others. With each commit it is another sixth. Without git's history all files are read. Exit 77: clang is not installed."""
+With RIVULET_LINT=part it reads only the files that changed in the last 25 commits, files whose header changed, and a sixth of all others: a different
+sixth for each commit. Without git's history it reads all files. Exit 77: clang is not installed."""
 import hashlib, json, os, shlex, shutil, subprocess, sys
 from concurrent.futures import ThreadPoolExecutor
 

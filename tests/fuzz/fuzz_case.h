@@ -45,8 +45,8 @@ struct Case {
 // Error: a name that is none, or what readers of scenes say of it.
 Result<Case> caseOf(const std::string& name);
 
-// The names of the tiers. A Param is tried in the first base that has it, an item's in each but the last, whose water sleeps. Pairs are of
-// what the simulation reads: what is below fluid and in the lists.
+// The names of the cases of each tier. A Param is tried in the first base scene that has it; a Param of a list's item in each base scene
+// except the last, in which water sleeps. Pairs are of Params that the simulation reads: those below fluid and in the lists.
 std::vector<std::string> singles(const std::string& method, bool sample);
 std::vector<std::string> pairs(const std::string& method, bool sample);
 // The same as singles, of a pool that sleeps and of what the simulation reads. None for a method without sleep.

@@ -30,7 +30,7 @@ struct Seen {
     size_t bytes = 0;
 };
 
-// `late`: nobody waits for the device, so that the bounds of the particles arrive when they do.
+// `late`: the test does not wait for the device, so the bounds of the particles arrive some frames late.
 Seen run(Device& device, const FluidParams& p, const Sources& sources, int frames, bool late) {
     Seen seen;
     auto world = FluidWorld::create(device, p, {}, {}, sources);

@@ -1,5 +1,5 @@
-// A session whose water sleeps: a run with changes of sliders is the same each time, also from a saved state on, and its recording shows
-// it.
+// A session with sleeping water: two runs with the same changes of sliders are equal, a run continued from a saved state is equal to them,
+// and a replay of the recording shows the same frames.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

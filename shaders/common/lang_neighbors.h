@@ -22,7 +22,8 @@
         for (uint k_ = 0; k_ < n_; ++k_) {                         \
             const uint j = list_[k_];
 // FOR_SEEN in a step's first sweep: the list keeps only the entries for which KEEP's condition holds in some lane, those of which an image
-// may be seen (a bool) before the others.
+// may be seen (a bool) before the others. Each entry is written, and overwritten by the next one if
+// it is not kept: a branch instead would be mispredicted often.
 #define FOR_ALL_SEEN(i, home, j)                                   \
     {                                                              \
         uint* list_ = neighbors->list + i.listBegin;               \
@@ -30,15 +31,16 @@
         uint kept_ = 0, seen_ = 0;                                 \
         for (uint k_ = 0; k_ < n_; ++k_) {                         \
             const uint j = list_[k_];
-#define KEEP(condition, seen)             \
-    if (IMAGE == 0 && anyLane(condition)) { \
-        list_[kept_] = j;                 \
-        if (seen) {                       \
-            list_[kept_] = list_[seen_];  \
-            list_[seen_] = j;             \
-            ++seen_;                      \
-        }                                 \
-        ++kept_;                          \
+#define KEEP(condition, seen)                   \
+    if (IMAGE == 0) {                           \
+        const bool some_ = anyLane(condition);  \
+        list_[kept_] = j;                       \
+        if (some_ & (seen)) {                   \
+            list_[kept_] = list_[seen_];        \
+            list_[seen_] = j;                   \
+            ++seen_;                            \
+        }                                       \
+        kept_ += some_ ? 1u : 0u;               \
     }
 #define END_ALL_SEEN(i)                              \
     }                                                \

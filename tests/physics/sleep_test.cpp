@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fluid/sim/solids/body_shapes.h"
+#include "fluid/sim/surface/ellipsoids.h"
 #include "tests/physics/baked_mesh.h"
 #include "tests/physics/worlds.h"
 
@@ -130,6 +131,38 @@ TEST_P(SleepOf, OffIsWhatItIsWithBoundsThatNothingMeets) {
     run(*off, 30);
     EXPECT_EQ(byId(*world), byId(*off));
     EXPECT_EQ(world->stats().asleep, 0U);
+}
+
+// What is drawn beside sleeping water is shaped by it: each share of neighbours is that which the places alone give.
+TEST_P(SleepOf, EllipsoidsHaveTheirNeighboursThatSleep) {
+    auto device = cpu();
+    FluidParams p = pool(GetParam(), true, vec3(0.4F, 0.16F, 0.4F));
+    p.ellipsoids = true;
+    Solids solids;
+    solids.bodies.resize(1);
+    solids.bodies[0].shape = sphereShape(0.04F, 300, kSpacing);
+    solids.bodies[0].state.pose.position = vec3(0.12F, 0.3F, 0.12F);
+    auto world = makeWorld(*device, p, solids);
+    ASSERT_TRUE(world);
+    const auto partly = [](const FluidStats& f) { return f.asleep > f.particles / 8 && f.asleep < 7 * (f.particles / 8); };
+    int k = 0;
+    for (; k < 400 && !partly(world->stats()); ++k) run(*world, 1);
+    ASSERT_LT(k, 400);
+    const ParticleView view = world->particles();
+    const auto id = device->readAll<uint32_t>(*view.id, view.slots);
+    const auto at = device->readAll<vec4>(*view.position, view.slots), centre = device->readAll<vec4>(*view.ellipsoids[0], view.slots);
+    std::vector<vec4> places(view.count);
+    std::vector<float> share(view.count);
+    for (size_t n = 0; n < id.size(); ++n)
+        if (id[n] < view.count) {
+            places[id[n]] = at[n];
+            share[id[n]] = centre[n].w;
+        }
+    const auto alone = ellipsoidsOf(*device, places, kSpacing);
+    ASSERT_TRUE(alone);
+    float furthest = 0;
+    for (size_t n = 0; n < places.size(); ++n) furthest = std::max(furthest, std::abs(share[n] - (*alone)[0][n].w));
+    EXPECT_LT(furthest, 0.1F) << "without the sleeping ones it is half";
 }
 
 // What wakes a pool. `start` may change the world before it is made, `cause` acts on it when it sleeps.
@@ -276,6 +309,90 @@ TEST_P(Wakes, ByWaterThatAHostTakes) {
               for (const WorldParticle& p : there) slots.push_back(p.slot);
               world.withdraw(slots);
           });
+}
+
+// A ball that goes down by 5 mm a second: in the time between two looks by less than counts as moved.
+TEST_P(Wakes, ByABodyThatCreeps) {
+    struct Creeping {
+        BodyHost host() {
+            return {.self = this,
+                    .advance =
+                        [](void*, std::span<const BodyLoad>, const vec3&, double seconds, std::span<BodyState> states) {
+                            states[0].velocity = vec3(0, -0.005F, 0);
+                            states[0].pose.position.y -= static_cast<float>(0.005 * seconds);
+                        },
+                    .reset = [](void*, std::span<const BodyState>) {},
+                    .remembersNothing = true};
+        }
+    } creeping;
+    auto device = cpu();
+    Solids solids;
+    solids.bodies.resize(1);
+    solids.bodies[0].shape = sphereShape(0.05F, 300, kSpacing);
+    solids.bodies[0].state.pose.position = vec3(0.12F, 0.26F, 0.12F);
+    solids.bodyHost = creeping.host();
+    auto world = makeWorld(*device, pool(GetParam()), solids);
+    ASSERT_TRUE(world);
+    run(*world, 12 * 60);
+    const vec3 ball = world->bodies()[0].pose.position;
+    ASSERT_NEAR(ball.y, 0.2F, 0.001F) << "it is half under water";
+    float nearest = 1;
+    for (const vec4& x : byId(*world)) nearest = std::min(nearest, glm::length(vec3(x) - ball));
+    EXPECT_GT(nearest, 0.05F - 0.75F * kSpacing) << "the water made way";
+}
+
+// A world whose host looks for water to take, and finds none.
+TEST(Sleep, WaterThatNobodyTakesSleeps) {
+    auto device = cpu();
+    auto made = FluidWorld::create(*device, pool("dfsph"), {}, {}, {.expectedDeposit = 1.0e-3});
+    ASSERT_TRUE(made) << made.error().message;
+    int k = 0;
+    for (; k < 600 && (*made)->stats().asleep < (*made)->stats().particles; ++k) {
+        run(**made, 1);
+        (*made)->withdraw({});
+    }
+    EXPECT_LT(k, 600);
+}
+
+// What is taken out of sleeping water wakes its surroundings alone.
+TEST(Sleep, WaterThatIsTakenWakesWhatIsAroundIt) {
+    auto device = cpu();
+    auto made = FluidWorld::create(*device, pool("dfsph", true, vec3(1.2F, 0.12F, 0.12F)), {}, {}, {.expectedDeposit = 1.0e-3});
+    ASSERT_TRUE(made) << made.error().message;
+    FluidWorld& world = **made;
+    ASSERT_LT(settle(world), 600);
+    const std::vector<WorldParticle> there = world.within({vec3(0.0F, 0.1F, 0.08F), vec3(0.02F, 0.12F, 0.12F)});
+    ASSERT_FALSE(there.empty());
+    const std::vector<uint32_t> slots = {there[0].slot};
+    world.withdraw(slots);
+    uint32_t fewest = world.stats().particles;
+    for (int k = 0; k < 5; ++k) {
+        run(world, 1);
+        fewest = std::min(fewest, world.stats().asleep);
+    }
+    EXPECT_LT(fewest, world.stats().particles);
+    EXPECT_GT(fewest, world.stats().particles / 3);
+}
+
+// Tension moves particles aside after the solve, in buffers that sleeping particles are in, too.
+TEST(Sleep, WaterUnderTensionSleepsOn) {
+    auto device = cpu();
+    FluidParams p = pool("dfsph");
+    p.dfsph.negativePressure = true;
+    auto world = makeWorld(*device, p);
+    ASSERT_TRUE(world);
+    ASSERT_LT(settle(*world), 600);
+    const std::vector<vec4> before = byId(*world);
+    run(*world, 60);
+    EXPECT_EQ(world->stats().asleep, world->stats().particles);
+    EXPECT_EQ(before, byId(*world));
+    EXPECT_TRUE(world->stats().limited.empty());
+    ASSERT_TRUE(world->setParams(p)) << "no change, so that nothing wakes";
+    FluidInputs tilt;
+    tilt.gravity = vec3(2, -9.6F, 0);
+    for (int k = 0; k < 30; ++k) world->step(tilt, kFrame);
+    EXPECT_EQ(world->stats().asleep, 0U);
+    EXPECT_EQ(world->stats().lost, 0U);
 }
 
 TEST(Sleep, WithoutGravityNothingSleeps) {

@@ -17,15 +17,17 @@ void ParticleShifting::run(StepContext& c, const Buffer& pressure, float scale, 
     StepParams s = c.params;
     s.force = vec4(scale, 0.0F, 0.0F, 0.0F);
     Buffer& wishes = shifted;
+    if (s.asleepSets > 0) c.device.fill(wishes, 0);  // sleeping particles wish for nothing
     wish_.run(c, s, {&c.grid.neighbors(), &p.position, &p.nearWalls, &pressure, &wishes}, c.grid.pairThreads());
-    // Samples on bodies and lost particles keep what they have.
-    const size_t bytes = size_t{p.count} * sizeof(vec4);
+    // Samples on bodies and lost particles keep what they have. So do sleeping particles, whose slots integration does not write again:
+    // their velocities must stay in the same buffer.
+    const size_t bytes = size_t{c.params.awakeSlots} * sizeof(vec4);
     c.device.copy(p.position, p.positionNext, bytes);
     c.device.copy(p.velocity, p.velocityNext, bytes);
     shift_.run(c, s, {&c.grid.neighbors(), &p.position, &p.velocity, &p.nearWalls, &wishes, &p.positionNext, &p.velocityNext},
                c.grid.pairThreads());
     c.device.copy(p.positionNext, shifted, bytes);
-    p.velocity.swap(p.velocityNext);
+    c.device.copy(p.velocityNext, p.velocity, bytes);
 }
 
 }  // namespace rivulet

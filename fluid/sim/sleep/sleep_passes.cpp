@@ -29,9 +29,10 @@ Result<SleepPasses> SleepPasses::create(Device& device, const StepParams& step, 
     };
     for (const Wanted& w :
          {Wanted{&s.watch_, "fluid/sleep/sleep_watch"}, Wanted{&s.note_, "fluid/sleep/sleep_note"},
-          Wanted{&s.disturb_, "fluid/sleep/sleep_disturb"}, Wanted{&s.turn_, "fluid/sleep/sleep_turn"},
-          Wanted{&s.apply_, "fluid/sleep/sleep_apply"}, Wanted{&s.keep_, "fluid/sleep/sleep_keep"},
-          Wanted{&s.recall_, "fluid/sleep/sleep_recall"}, Wanted{&s.recallPressure_, "fluid/sleep/sleep_recall", {{"PRESSURE", "1"}}},
+          Wanted{&s.noteAll_, "fluid/sleep/sleep_note", {{"SAMPLES", "1"}}}, Wanted{&s.disturb_, "fluid/sleep/sleep_disturb"},
+          Wanted{&s.turn_, "fluid/sleep/sleep_turn"}, Wanted{&s.apply_, "fluid/sleep/sleep_apply"},
+          Wanted{&s.keep_, "fluid/sleep/sleep_keep"}, Wanted{&s.recall_, "fluid/sleep/sleep_recall"},
+          Wanted{&s.recallPressure_, "fluid/sleep/sleep_recall", {{"PRESSURE", "1"}}},
           Wanted{&s.recallZero_, "fluid/sleep/sleep_recall", {{"ZERO", "1"}}}, Wanted{&s.drawn_, "fluid/sleep/sleep_drawn"}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
@@ -98,7 +99,7 @@ void SleepPasses::run(const FluidParams& fluid, const StepParams& step, float gr
         device_->run(watch_, s, {&grid.cellStart(), &particles.id, &particles.positionNext, pressure.from, &noted_, &disturbed_}, cells_);
     device_->run(turn_, s, {&grid.cellStart(), &disturbed_, &asleep_, &changed_}, cells_);
     if (first || s.mayRest > 0) {
-        device_->run(note_, s, {&grid.cellStart(), &particles.id, &particles.positionNext, &noted_}, slots);
+        device_->run(first ? noteAll_ : note_, s, {&grid.cellStart(), &particles.id, &particles.positionNext, &noted_}, slots);
         since_ = now;
     }
     const bool turned = !cpu || *hostPointer<uint32_t>(changed_) != 0;
@@ -134,7 +135,8 @@ Status SleepPasses::prepareEllipsoids() {
 }
 
 Status SleepPasses::keepEllipsoids(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
-                                   const std::array<const Buffer*, 3>& ellipsoids) {
+                                   const std::array<const Buffer*, 3>& ellipsoids, double now) {
+    if (!ellipsoids_[0]) disturbAll(now);
     if (Status room = prepareEllipsoids(); !room) return room;
     const bool all = std::exchange(resorted_, false) || device_->backend() != Backend::cpu;
     for (size_t k = 0; k < ellipsoids.size(); ++k)
@@ -170,6 +172,8 @@ Result<SleepPasses::Saved> SleepPasses::take(WorldState& state) {
     for (const auto& [name, buffer] : remembered()) {
         Result<std::vector<float>> values = state.take<float>(name, buffer->bytes() / sizeof(float));
         if (!values) return values.error();
+        if (!std::ranges::all_of(*values, [](float v) { return std::isfinite(v); }))
+            return badInput("the saved state's " + name + " is not finite: save it again");
         saved.values.push_back(std::move(*values));
     }
     const bool drawn = state.sections().contains("sleep.ellipsoids0");
@@ -185,10 +189,11 @@ void SleepPasses::restore(const Saved& saved) {
     since_ = saved.since;
     const auto buffers = remembered();
     for (size_t k = 0; k < buffers.size(); ++k) device_->writeAll<float>(*buffers[k].second, saved.values[k]);
-    if (!saved.ellipsoids.empty() && prepareEllipsoids())  // without memory for them they are found again when water wakes
+    ellipsoids_ = {};                                      // of other water
+    if (!saved.ellipsoids.empty() && prepareEllipsoids())  // without memory for them the water wakes, and they are found again
         for (size_t k = 0; k < ellipsoids_.size(); ++k) device_->writeAll<vec4>(ellipsoids_[k], saved.ellipsoids[k]);
     resorted_ = true;
-    device_->fill(changed_, 1);
+    slotsChange();
 }
 
 }  // namespace rivulet

@@ -4,7 +4,7 @@
 // A cell of the neighbour grid is disturbed when the rms way of its particles since they were last noted, or the way of one of them, or of
 // a sample on a body, exceeds a bound, when its pressures are off their mean, and when a moving wall, an emitter, a sink or a host touches
 // it. A cell sleeps if neither it nor a neighbour was disturbed for a time. A disturbed cell wakes its neighbours in the same step; so what
-// moves is always a support radius or more away from what sleeps.
+// moves is a support radius or more away from what sleeps, but for the one step in which a fast particle arrives.
 #pragma once
 
 #include <array>
@@ -39,13 +39,15 @@ class SleepPasses {
     // `gravity` m/s^2; `pressure`: the method's.
     void run(const FluidParams& fluid, const StepParams& step, float gravity, NeighborGrid& grid, Particles& particles, double now,
              const AsleepPressure& pressure);
+    // The next sort changes slots of sleeping particles, although no cell falls asleep or wakes: a host has removed some.
+    void slotsChange() { device_->fill(changed_, 1); }
     // After a sort of sleeping particles: puts back what neighbours read of them.
     void recall(const StepParams& step, const NeighborGrid& grid, const Particles& particles, const AsleepPressure& pressure);
 
-    // At the end of a frame: the ellipsoids of sleeping particles, which are not found anew, follow them to their slots. Error (failed):
-    // out of memory.
+    // At the end of a frame: the ellipsoids of sleeping particles, which are not found anew, follow them to their slots. Where they were
+    // never found, because nothing was drawn when the water fell asleep, it wakes at `now` (s). Error (failed): out of memory.
     Status keepEllipsoids(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
-                          const std::array<const Buffer*, 3>& ellipsoids);
+                          const std::array<const Buffer*, 3>& ellipsoids, double now);
 
     // All data that a step depends on, as part of a saved state. Error: as WorldState::take.
     struct Saved {
@@ -67,7 +69,7 @@ class SleepPasses {
     Status prepareEllipsoids();
 
     Device* device_ = nullptr;
-    Kernel watch_, note_, disturb_, turn_, apply_, keep_, recall_, recallPressure_, recallZero_, drawn_;
+    Kernel watch_, note_, noteAll_, disturb_, turn_, apply_, keep_, recall_, recallPressure_, recallZero_, drawn_;
     Buffer disturbed_, asleep_, changed_, noted_;
     std::vector<Kept> kept_;
     std::array<Buffer, 3> ellipsoids_;  // by id; made when they are first drawn

@@ -62,11 +62,17 @@ void ExchangePasses::take(const StepParams& step, const NeighborGrid& grid, Part
     ExchangeParams block{};
     block.step = step;
     block.count = static_cast<uint32_t>(slots.size());
-    device_->run(take_, block, {&slots_, &particles.positionNext, &particles.velocityNext}, block.count);
+    device_->run(take_, block, {&slots_, &particles.positionNext, &particles.velocityNext, &found_}, block.count);
     // Before the first sort no method has stored anything per particle.
     for (const NamedBuffer& b : remembered)
         if (b.byId && sorted)
             device_->run(forget_, step, {&grid.cellStart(), &particles.positionNext, &particles.id, b.buffer}, particles.count);
+}
+
+Bounds ExchangePasses::taken(size_t count) {
+    Bounds box;
+    for (const vec4& place : device_->readAll<vec4>(found_, count)) box.add(vec3(place));
+    return box;
 }
 
 }  // namespace rivulet

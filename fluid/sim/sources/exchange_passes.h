@@ -25,6 +25,7 @@ class ExchangePasses {
     // At most as many as one call of within() returns. `sorted`: the grid matches the current order of particles.
     void take(const StepParams& step, const NeighborGrid& grid, Particles& particles, std::span<const NamedBuffer> remembered,
               std::span<const uint32_t> slots, bool sorted);
+    Bounds taken(size_t count);  // around the places of the `count` that take() has just removed, m; waits
 
   private:
     Device* device_ = nullptr;

@@ -238,7 +238,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
         w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
         if (w.sources.any() && !w.traits.linked) w.ellipsoids.clearFree(*w.device, w.step, *w.grid, w.particles.count);
         if (w.sleep)
-            if (Status kept = w.sleep->keepEllipsoids(w.step, *w.grid, w.particles, w.ellipsoids.buffers()); !kept)
+            if (Status kept = w.sleep->keepEllipsoids(w.step, *w.grid, w.particles, w.ellipsoids.buffers(), w.clock.time); !kept)
                 w.report(kept.error().message);
     }
     if (!p.ellipsoids) w.ellipsoids.forget();
@@ -393,12 +393,7 @@ void FluidWorld::reset() {
 
 void FluidWorld::deposit(const vec3& place, const vec3& velocity, double volume) {
     impl_->sources.deposit(place, velocity, volume);
-    if (impl_->sleep) {
-        StepParams cells{};
-        impl_->grid->fill(cells);
-        const vec3 near(2.0F * impl_->params.supportSpacings * impl_->params.spacing);
-        impl_->sleep->disturb(cells, {place - near, place + near}, impl_->clock.time);
-    }
+    if (impl_->sleep) impl_->disturbAround({place, place});
     impl_->figures->pendingVolume = impl_->sources.pending() * std::pow(double{impl_->params.spacing}, 3);
 }
 
@@ -410,11 +405,15 @@ std::vector<WorldParticle> FluidWorld::within(const Bounds& box, float faster, f
 void FluidWorld::withdraw(std::span<const uint32_t> slots) {
     Impl& w = *impl_;
     ASSERT(w.exchange.any(), "an exchange of water needs Sources::expectedDeposit > 0");
+    if (slots.empty()) return;
     w.invalidateCells();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     w.exchange.take(w.step, *w.grid, w.particles, remembered, slots, w.sorted);
     w.withdrawn += slots.size();
-    if (w.sleep) w.sleep->disturbAll(w.clock.time);
+    if (w.sleep) {
+        w.disturbAround(w.exchange.taken(slots.size()));
+        w.sleep->slotsChange();
+    }
     w.grid->sortAsleep();
     w.figures->withdrawn = static_cast<double>(w.withdrawn) * std::pow(double{w.params.spacing}, 3);
 }

@@ -129,7 +129,8 @@ struct FluidWorld::Impl {
     Result<std::vector<Answer>> ask(size_t count, const Ask& how);
     Status prepareQuery(StepParams& params);
     Status prepareSleep();
-    void disturbSleep();  // before a frame: where something other than water may move it
+    void disturbSleep();                    // before a frame: where something other than water may move it
+    void disturbAround(const Bounds& box);  // m: water in it and a little further
     bool build(bool fromPositions, double from, double to);
     // `last`: of a piece of its frame. false: out of memory; the newest state is as it was. Or interrupted.
     bool substep(double dt, double from, double to, bool last);

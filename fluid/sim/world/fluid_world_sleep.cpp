@@ -21,6 +21,13 @@ Status FluidWorld::Impl::prepareSleep() {
     return ok();
 }
 
+void FluidWorld::Impl::disturbAround(const Bounds& box) {
+    const vec3 near(2.0F * params.supportSpacings * params.spacing);
+    StepParams cells{};
+    grid->fill(cells);
+    sleep->disturb(cells, {box.min - near, box.max + near}, clock.time);
+}
+
 // Water falls asleep under forces that stay as they are. What may move it otherwise is looked for here, before every frame.
 void FluidWorld::Impl::disturbSleep() {
     const double now = clock.time;
@@ -36,22 +43,18 @@ void FluidWorld::Impl::disturbSleep() {
         sleep->disturbAll(now);
         return;
     }
-    const vec3 near(2.0F * params.supportSpacings * params.spacing);
-    StepParams cells{};
-    grid->fill(cells);
-    const auto around = [&](const Bounds& box) { sleep->disturb(cells, {box.min - near, box.max + near}, now); };
-    for (const Bounds& box : solids.moved()) around(box);
+    for (const Bounds& box : solids.moved()) disturbAround(box);
     for (const Emitter& e : sourceSetup.emitters) {
         const EmitterParams& p = e.params;
         if (!(p.litresPerSecond > 0) || now + clock.frameLength < p.start || (p.stop > 0 && now > p.stop)) continue;
         const vec3 half = vec3(std::max(p.radius, 0.5F * glm::length(p.size)));
         Bounds box{p.position - half, p.position + half};
         for (const vec3& corner : e.triangles) box.add(corner);
-        around(box);
+        disturbAround(box);
     }
     for (const SinkParams& p : sourceSetup.sinks) {
         const vec3 half = p.shape == "box" ? 0.5F * p.size : vec3(p.radius);
-        around({p.position - half, p.position + half});
+        disturbAround({p.position - half, p.position + half});
     }
 }
 

@@ -141,6 +141,9 @@ Status FluidWorld::restore(WorldState& state) {
     f.particles =
         static_cast<uint32_t>(std::count_if(saved->position.begin(), saved->position.end(), [](const vec4& p) { return !(p.w < 0); }));
     w.fillLedger(f);
+    if (w.sleep)
+        f.asleep =
+            static_cast<uint32_t>(std::count_if(saved->velocity.begin(), saved->velocity.end(), [](const vec4& v) { return v.w < 0; }));
     for (size_t at = 0; at < limited->size();) {
         const size_t end = std::min(limited->find('\n', at), limited->size());
         f.limited.push_back(limited->substr(at, end - at));
@@ -149,6 +152,7 @@ Status FluidWorld::restore(WorldState& state) {
     if (Status watched = w.volumes.restore(*w.device, *volumes, w.slots, volume); !watched) return watched;
     const Status placed = w.solids.restore(*places);
     w.interrupted = w.device->interrupted();
+    if (w.interrupted) return failed("the restore was interrupted: end the stop, then restore again");
     return placed;
 }
 

@@ -78,6 +78,33 @@ TEST(WindowGrid, FarApartCellsAreWider) {
     EXPECT_NEAR(denser / of, 1, 1.0e-4);
 }
 
+// A nozzle in an empty domain: what it sends out is found, although nothing was there to be measured before.
+TEST(WindowGrid, AFastJetIsFollowedFromTheStart) {
+    auto device = cpu();
+    FluidParams p;
+    p.method = "pbf";
+    p.maxSubsteps = 1000;
+    p.spacing = 0.02F;
+    p.box.max = vec3(1000, 100, 1000);
+    p.gravity = vec3(0.0F);
+    Sources sources;
+    sources.emitters.resize(1);
+    EmitterParams& e = sources.emitters[0].params;
+    e.position = vec3(500, 50, 500);
+    e.direction = vec3(1, 0, 0);
+    e.radius = 0.05F;
+    e.litresPerSecond = 157;  // 20 m/s
+    auto made = FluidWorld::create(*device, p, {}, {}, sources);
+    ASSERT_TRUE(made) << made.error().message;
+    for (int frame = 0; frame < 12; ++frame) (*made)->step({}, 1.0 / 60);
+    const FluidStats& f = (*made)->stats();
+    EXPECT_GT(f.particles, 2000U);
+    EXPECT_EQ(f.lost, 0U);
+    float furthest = 0;
+    for (const vec4& x : readParticles(**made).position) furthest = std::max(furthest, x.x - 500);
+    EXPECT_NEAR(furthest, 20 * 12 / 60.0, 0.5);
+}
+
 // A world continues from a saved state with its window where the water was.
 TEST(WindowGrid, IsWhereASavedStateWas) {
     auto device = cpu();

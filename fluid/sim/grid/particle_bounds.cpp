@@ -43,8 +43,12 @@ void ParticleBounds::measure(Device& device, const StepParams& step, const Neigh
                      });
 }
 
-Bounds ParticleBounds::next(float reach) const {
+Bounds ParticleBounds::next(float reach, const Bounds& sources) const {
     Bounds b = known_->bounds;
+    if (!sources.empty()) {
+        b.add(sources.min);
+        b.add(sources.max);
+    }
     if (b.empty()) return b;
     const vec3 grown(reach * static_cast<float>(steps_ - known_->step + 1));
     b.min -= grown;

@@ -20,8 +20,9 @@ class ParticleBounds {
     // Measures the newest positions of a sorted grid; the result arrives with Device::poll, on the cpu at once.
     void measure(Device& device, const StepParams& step, const NeighborGrid& grid, const Particles& particles);
     void moved() { ++steps_; }  // the particles made a substep
-    // Where they may be, and may be after the next substep, if none moves further than `reach` (m) in one.
-    Bounds next(float reach) const;
+    // Where they may be, and may be after the next substep, if none moves further than `reach` (m) in one. `sources`: where particles may
+    // be spawned (m); those that were since the last measurement have moved, too.
+    Bounds next(float reach, const Bounds& sources = {}) const;
 
   private:
     struct Known {

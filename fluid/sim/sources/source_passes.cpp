@@ -247,6 +247,12 @@ uint64_t SourcePasses::deposited() const { return deposits_ ? late_->counters[(f
 
 double SourcePasses::pending() const { return deposits_ ? feeds_.back().due() - static_cast<double>(deposited()) : 0; }
 
+std::span<const vec3> SourcePasses::depositPlaces() const {
+    if (!deposits_) return {};
+    const EmitterFeed::Flight& flight = feeds_.back().flight();
+    return std::span(flight.places).first(flight.count);
+}
+
 uint64_t SourcePasses::drained() const {
     uint64_t sum = 0;
     for (size_t k = 0; k < sinkCount_; ++k) sum += late_->counters[feeds_.size() * EMITTER_COUNTERS + k];

@@ -49,12 +49,13 @@ class SourcePasses {
     void report();
 
     // By the last counts that arrived.
-    uint64_t emitted() const;    // particles, by all emitters and deposits
-    uint64_t deposited() const;  // of these, from deposits
-    uint64_t drained() const;    // particles
-    bool full() const;           // whether a particle had to wait because no slot was free
-    double backlog() const;      // particles due and not yet spawned
-    double pending() const;      // of these, from deposits
+    uint64_t emitted() const;                     // particles, by all emitters and deposits
+    uint64_t deposited() const;                   // of these, from deposits
+    uint64_t drained() const;                     // particles
+    bool full() const;                            // whether a particle had to wait because no slot was free
+    double backlog() const;                       // particles due and not yet spawned
+    double pending() const;                       // of these, from deposits
+    std::span<const vec3> depositPlaces() const;  // of the last ones, m
 
     // The emitters' accounts and what is counted. Before save, report and wait for the device.
     struct Saved {

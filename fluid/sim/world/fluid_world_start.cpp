@@ -348,14 +348,19 @@ void FluidWorld::Impl::writeStart() {
 }
 
 void FluidWorld::Impl::follow(StepParams& s) {
-    // A step takes no particle further than a spacing, unless limits are off.
-    Bounds wanted = around->next((params.limits ? 1.0F : 4.0F) * params.spacing);
+    Bounds spawned;
     for (const Emitter& e : sourceSetup.emitters) {
         const vec3 reach(e.params.radius + glm::length(e.params.size) + e.params.fitSize + params.spacing);
-        wanted.add(e.params.position - reach);
-        wanted.add(e.params.position + reach);
-        for (const vec3& corner : e.triangles) wanted.add(corner);
+        spawned.add(e.params.position - reach);
+        spawned.add(e.params.position + reach);
+        for (const vec3& corner : e.triangles) spawned.add(corner);
     }
+    for (const vec3& place : sources.depositPlaces()) {
+        spawned.add(place - vec3(params.spacing));
+        spawned.add(place + vec3(params.spacing));
+    }
+    // A step takes no particle further than a spacing, unless limits are off.
+    const Bounds wanted = around->next((params.limits ? 1.0F : 4.0F) * params.spacing, spawned);
     if (Status there = grid->follow(wanted); !there) report(there.error().message);
     grid->fill(s);
 }

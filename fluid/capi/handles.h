@@ -72,4 +72,5 @@ struct rivulet_skin {
     std::optional<rivulet::FlowMaps> maps;
     std::optional<rivulet::FlowLayer> layer;
     std::vector<rivulet::vec3> positions;
+    bool interrupted = false;  // its last step was: the drops are not valid any more
 };

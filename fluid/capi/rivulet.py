@@ -97,7 +97,7 @@ class _Inputs(Structure):
 class _Stats(Structure):
     _fields_ = [("size", c_size_t), ("time", c_double), ("dropped", c_double), ("particles", c_uint32), ("lost", c_uint32), ("average_compression", c_double),
                 ("kinetic", c_double), ("potential", c_double), ("maximum_speed", c_double), ("centre_of_mass", c_double * 3),
-                ("substeps", c_int32)]
+                ("substeps", c_int32), ("asleep", c_uint32)]
 
 
 class _PassTime(Structure):
@@ -123,7 +123,7 @@ class _SkinStats(Structure):
 
 
 Stats = namedtuple("Stats", [name for name, _ in _Stats._fields_[1:]])
-Stats.__doc__ = "time, dropped (s); particles, lost; average_compression; kinetic, potential (J); maximum_speed (m/s); centre_of_mass (m); substeps."
+Stats.__doc__ = "time, dropped (s); particles, lost; average_compression; kinetic, potential (J); maximum_speed (m/s); centre_of_mass (m); substeps; asleep, of the particles."
 SkinStats = namedtuple("SkinStats", [name for name, _ in _SkinStats._fields_[1:]])
 SkinStats.__doc__ = "drops; added, on_skin, left, evaporated, refused (m^3)."
 Box = namedtuple("Box", ["id", "position", "size"])

@@ -90,6 +90,7 @@ typedef struct rivulet_stats {
     double maximum_speed;                           /* m/s */
     double centre_of_mass[3];                       /* m */
     int32_t substeps;                               /* in the last frame */
+    uint32_t asleep;                                /* of the particles: see fluid.sleep in docs/parameters.md */
 } rivulet_stats;
 
 RIVULET_API rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_world_options* options, rivulet_world** world,

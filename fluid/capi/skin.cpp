@@ -93,7 +93,14 @@ rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* 
             to.positions = skin->positions;
         }
         if (!isFinite(to.gravity) || !isFinite(to.wind)) return badInput("inputs.gravity or inputs.wind is not finite");
-        return seconds > 0 ? skin->flow->step(to, seconds) : ok();
+        if (!(seconds > 0)) return ok();
+        Device& device = *skin->context->device;
+        device.goOn();  // another owner of buffers may have been interrupted
+        if (skin->interrupted) return failed("an earlier step of the skin was interrupted: create it anew");
+        if (device.stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
+        const Status stepped = skin->flow->step(to, seconds);
+        if ((skin->interrupted = device.interrupted())) return failed("the step was interrupted: end the stop, then create the skin anew");
+        return stepped;
     });
 }
 

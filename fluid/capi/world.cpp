@@ -315,6 +315,7 @@ rivulet_status rivulet_world_stats(const rivulet_world* world, rivulet_stats* st
         full.maximum_speed = s.maxSpeed;
         std::copy(std::begin(s.centreOfMass), std::end(s.centreOfMass), full.centre_of_mass);
         full.substeps = world->world->lastSubsteps();
+        full.asleep = s.asleep;
         return writeStruct(full, stats, "rivulet_stats", "stats");
     });
 }

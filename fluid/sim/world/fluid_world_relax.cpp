@@ -124,13 +124,18 @@ std::vector<vec4> FluidWorld::Impl::corrected(CpuDevice& cpu, const FluidParams&
     Sources setup;
     setup.particles = std::move(those);
     Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(cpu, p, walls, {}, std::move(setup));
-    if (!made) return {};
+    // A stop that has ended since must not leave a start that is corrected in part.
+    const auto stopped = [&] {
+        cancelled = cancelled || cpu.interrupted() || cpu.stopAsked();
+        return cancelled;
+    };
+    if (stopped() || !made) return {};
     Impl& w = *(*made)->impl_;
     if (w.start.size() != count) return {};
     for (int round = 0; round < rounds; ++round) {
         cpu.fill(w.particles.velocityNext, 0);
         (*made)->step({vec3(0.0F)}, 1.0e-4);
-        if (w.figures->lost > 0 || w.interrupted || !advanced(from + (to - from) * (round + 1) / rounds)) return {};
+        if (stopped() || w.figures->lost > 0 || w.interrupted || !advanced(from + (to - from) * (round + 1) / rounds)) return {};
         if (w.figures->maxCompression < until) break;
     }
     const vec4* position = hostPointer<vec4>(w.particles.positionNext);

@@ -37,10 +37,17 @@ template <class Answer, class Ask>
 Result<std::vector<Answer>> FluidWorld::Impl::ask(size_t count, const Ask& how) {
     if (particles.count == 0) return std::vector<Answer>(count);
     if (Status valid = whole(); !valid) return valid.error();
+    device->goOn();  // another owner of buffers may have been interrupted
     StepParams s;
     if (Status ready = prepareQuery(s); !ready) return ready.error();
     const bool aside = !sorted && !traits.linked;
-    return how({s, *grid, aside ? particles.position : particles.positionNext, aside ? particles.velocity : particles.velocityNext});
+    Result<std::vector<Answer>> answer =
+        how({s, *grid, aside ? particles.position : particles.positionNext, aside ? particles.velocity : particles.velocityNext});
+    if (device->interrupted() || device->stopAsked()) {
+        if (!sorted) sortedForQuery = false;
+        return failed("the question was interrupted: end the stop, then ask again");
+    }
+    return answer;
 }
 
 Result<std::vector<FluidSample>> FluidWorld::sample(std::span<const vec3> places) {

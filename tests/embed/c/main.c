@@ -82,7 +82,7 @@ static void it_falls_and_is_all_there(rivulet_context* context) {
     CHECK(a.count == 512 && each_id_once(&a));
     const double start = mean(&a, a.x, 1);
     CHECK(fabs(start - 1.2) < 1e-3); /* particles start disordered */
-    run(world, 15); /* a quarter of a second: 0.307 m of the metre below it */
+    run(world, 15);                  /* a quarter of a second: 0.307 m of the metre below it */
     read(world, &b);
     CHECK(fabs(mean(&b, b.v, 1) + 9.81 * 0.25) < 0.02 * 9.81 * 0.25);
     CHECK(fabs(start - mean(&b, b.x, 1) - 0.5 * 9.81 * 0.0625) < 0.05 * 0.5 * 9.81 * 0.0625);
@@ -205,7 +205,8 @@ static void walls_stop_it_and_lift_it(rivulet_context* context) {
 /* Two plates, one that moves and one that stands still, bear the weight of their water; a reset starts the sums again. */
 static void walls_report_their_loads(rivulet_context* context) {
     const char* json =
-        "{\"fluid\": {\"spacing\": 0.05, \"box\": {\"max\": [1, 1, 1]}, \"blocks\": [{\"min\": [0, 0.25, 0], \"max\": [1, 0.5, 1]}], \"probes\": ["
+        "{\"fluid\": {\"spacing\": 0.05, \"box\": {\"max\": [1, 1, 1]}, \"blocks\": [{\"min\": [0, 0.25, 0], \"max\": [1, 0.5, 1]}], "
+        "\"probes\": ["
         "{\"name\": \"floor\", \"face\": \"-y\"}, {\"name\": \"plate\", \"on\": \"collider\", \"index\": 0, \"area\": 1}]}}";
     float at[12];
     memcpy(at, kPlate, sizeof at);
@@ -429,6 +430,9 @@ static void drops_run_down_a_skin(rivulet_context* context) {
     DONE(rivulet_skin_step(skin, &in, 1.0 / 60, &why));
     DONE(rivulet_skin_stats_of(skin, &s, &why));
     CHECK(s.drops == 1 && fabs(s.added - 20e-9) < 1e-14);
+    rivulet_context_stop(context, 1); /* nothing moves, and nothing is lost */
+    CHECK(rivulet_skin_step(skin, NULL, 1.0 / 60, &why) == RIVULET_FAILED && strstr(why.message, "rivulet_context_stop") != NULL);
+    rivulet_context_stop(context, 0);
     for (int k = 0; k < 120; ++k) DONE(rivulet_skin_step(skin, NULL, 1.0 / 60, &why));
     DONE(rivulet_skin_stats_of(skin, &s, &why));
     CHECK(fabs(s.added - s.on_skin - s.left - s.evaporated - s.refused) < 1e-14);
@@ -684,7 +688,11 @@ int main(int count, char** arguments) {
     CHECK(rivulet_world_step(world, NULL, 1.0 / 60, &why) == RIVULET_FAILED && strstr(why.message, "rivulet_context_stop") != NULL);
     DONE(rivulet_world_stats(world, &now, &why));
     CHECK(now.time == then.time);
+    rivulet_sample sample[1];
+    const float place[3] = {0, 0, 0};
+    CHECK(rivulet_world_sample(world, place, 1, sample, &why) == RIVULET_FAILED && strstr(why.message, "stop") != NULL);
     rivulet_context_stop(context, 0);
+    DONE(rivulet_world_sample(world, place, 1, sample, &why));
     run(world, 1);
     DONE(rivulet_world_stats(world, &now, &why));
     CHECK(now.time > then.time);

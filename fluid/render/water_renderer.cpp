@@ -67,7 +67,6 @@ Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
 Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& look, const RendererRow& row) {
     const FrameView& view = picture.view();
     fluid.kept.limit(most - std::min(most, ownBytes() + picture.bytes() + pool.bytes()));
-    pool.limit(most - std::min(most, ownBytes() + picture.bytes() + fluid.kept.bytes()));
     Studio studio;
     studio.showFloor = false;
     const Bounds water = fluidView.count > 0 ? fluidView.bounds : Bounds();
@@ -123,6 +122,7 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
     }
     graph.output(layers.colour);
     if (layers.fluidDepth) graph.output(layers.fluidDepth);
+    pool.limit(most - std::min(most, ownBytes() + picture.bytes() + fluid.kept.bytes()));
     if (Status ran = graph.execute(); !ran) return ran;
     picture.give(graph.result(layers.colour), layers.fluidDepth ? &graph.result(layers.fluidDepth) : nullptr);
     return ok();
@@ -150,7 +150,13 @@ Status WaterRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const gpu::HostState keep;
     impl_->picture.limit(impl_->most - impl_->ownBytes());
     if (Status taken = impl_->picture.take(target, depth, view); !taken) return taken;
-    return impl_->draw(fluid, look, row != nullptr ? *row : *renderers().find(FluidLookParams().renderer));
+    const RendererRow& by = row != nullptr ? *row : *renderers().find(FluidLookParams().renderer);
+    Status drawn = impl_->draw(fluid, look, by);
+    if (!drawn && impl_->fluid.kept.bytes() > 0) {  // what is kept only saves time: it gives way to the pictures of this frame
+        impl_->fluid.kept.clear();
+        drawn = impl_->draw(fluid, look, by);
+    }
+    return drawn;
 }
 
 const std::vector<PassTime>& WaterRenderer::times() const { return impl_->pool.times(); }

@@ -110,7 +110,8 @@ struct CpuDevice::Impl {
 
     // `bytes` zeros at the begin of a kept or a new block. Null: out of memory.
     Block take(size_t bytes) {
-        if (const auto found = kept.lower_bound(bytes); found != kept.end()) {
+        // Not one of more than twice the size: a later request would have to be met by a new block.
+        if (const auto found = kept.lower_bound(bytes); found != kept.end() && found->first <= 2 * bytes) {
             const Block block{found->second, found->first};
             kept.erase(found);
             std::memset(block.from, 0, bytes);

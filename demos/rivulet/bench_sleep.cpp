@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <string_view>
 
 #include "demos/rivulet/bench_cases.h"
 #include "engine/compute/device_cpu.h"
@@ -61,8 +62,8 @@ Status benchSleep(const BenchContext& context) {
         Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(*device, params, solids, context.log);
         if (!made) return made.error();
         FluidWorld& world = **made;
-        const std::string name = fmt::format("duck race, {} particles", world.stats().particles);
-        const auto measure = [&](const std::string& what, int frames) {
+        const auto measure = [&, particles = world.stats().particles](std::string_view what, int frames) {
+            const std::string name = fmt::format("duck race, {} particles, {}", particles, what);
             const double before = world.stats().stepped;
             int steps = 0;
             const auto start = std::chrono::steady_clock::now();
@@ -71,8 +72,8 @@ Status benchSleep(const BenchContext& context) {
                 steps += world.lastSubsteps();
             }
             const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-            context.report({.name = name + ", " + what, .unit = "ms/step", .value = spreadOf({ms / steps}), .passes = {}});
-            context.report({.name = name + ", " + what + ", awake",
+            context.report({.name = name, .unit = "ms/step", .value = spreadOf({ms / steps}), .passes = {}});
+            context.report({.name = name + ", awake",
                             .unit = "particles",
                             .value = spreadOf({(world.stats().stepped - before) / steps}),
                             .passes = {}});

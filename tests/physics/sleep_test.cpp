@@ -306,6 +306,7 @@ TEST_P(Wakes, ByWaterThatAHostTakes) {
           [](FluidWorld& world, FluidInputs&) {
               const std::vector<WorldParticle> there = world.within({vec3(0.08F, 0.0F, 0.08F), vec3(0.16F, 0.1F, 0.16F)});
               std::vector<uint32_t> slots;
+              slots.reserve(there.size());
               for (const WorldParticle& p : there) slots.push_back(p.slot);
               world.withdraw(slots);
           });

@@ -540,7 +540,7 @@ Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const Flu
     if (Status s = w.prepareProbes(w.params); !s) return s.error();
     w.progress = {};
     if (w.cancelled) return failed("the creation of the water was cancelled");
-    if (device.interrupted() || device.stopAsked()) return failed("the creation of the water was interrupted");
+    if (w.startInterrupted || device.interrupted() || device.stopAsked()) return failed("the creation of the water was interrupted");
     return world;
 }
 

@@ -88,10 +88,11 @@ struct FluidWorld::Impl {
     StepParams step{};
     vec3 gravity{0.0F};
     WorldClock clock;
-    bool cellsValid = false;   // since cellWork()
-    bool interrupted = false;  // the last step was, or the last return to valid values
-    StartProgress progress;    // while it is created
-    bool cancelled = false;    // by it
+    bool cellsValid = false;        // since cellWork()
+    bool interrupted = false;       // the last step was, or the last return to valid values
+    StartProgress progress;         // while it is created
+    bool cancelled = false;         // by it
+    bool startInterrupted = false;  // while it was corrected
 
     Status prepare(const Solids& given);
     Status prepareProbes(const FluidParams& next);

@@ -126,8 +126,8 @@ std::vector<vec4> FluidWorld::Impl::corrected(CpuDevice& cpu, const FluidParams&
     Result<std::unique_ptr<FluidWorld>> made = FluidWorld::create(cpu, p, walls, {}, std::move(setup));
     // A stop that has ended since must not leave a start that is corrected in part.
     const auto stopped = [&] {
-        cancelled = cancelled || cpu.interrupted() || cpu.stopAsked();
-        return cancelled;
+        startInterrupted = startInterrupted || cpu.interrupted() || cpu.stopAsked();
+        return startInterrupted;
     };
     if (stopped() || !made) return {};
     Impl& w = *(*made)->impl_;

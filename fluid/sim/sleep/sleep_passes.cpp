@@ -29,10 +29,9 @@ Result<SleepPasses> SleepPasses::create(Device& device, const StepParams& step, 
     };
     for (const Wanted& w :
          {Wanted{&s.watch_, "fluid/sleep/sleep_watch"}, Wanted{&s.note_, "fluid/sleep/sleep_note"},
-          Wanted{&s.noteAll_, "fluid/sleep/sleep_note", {{"SAMPLES", "1"}}}, Wanted{&s.disturb_, "fluid/sleep/sleep_disturb"},
-          Wanted{&s.turn_, "fluid/sleep/sleep_turn"}, Wanted{&s.apply_, "fluid/sleep/sleep_apply"},
-          Wanted{&s.keep_, "fluid/sleep/sleep_keep"}, Wanted{&s.recall_, "fluid/sleep/sleep_recall"},
-          Wanted{&s.recallPressure_, "fluid/sleep/sleep_recall", {{"PRESSURE", "1"}}},
+          Wanted{&s.disturb_, "fluid/sleep/sleep_disturb"}, Wanted{&s.turn_, "fluid/sleep/sleep_turn"},
+          Wanted{&s.apply_, "fluid/sleep/sleep_apply"}, Wanted{&s.keep_, "fluid/sleep/sleep_keep"},
+          Wanted{&s.recall_, "fluid/sleep/sleep_recall"}, Wanted{&s.recallPressure_, "fluid/sleep/sleep_recall", {{"PRESSURE", "1"}}},
           Wanted{&s.recallZero_, "fluid/sleep/sleep_recall", {{"ZERO", "1"}}}, Wanted{&s.drawn_, "fluid/sleep/sleep_drawn"}}) {
         Result<Kernel> found = device.kernel(w.path, w.defines);
         if (!found) return found.error();
@@ -99,7 +98,7 @@ void SleepPasses::run(const FluidParams& fluid, const StepParams& step, float gr
         device_->run(watch_, s, {&grid.cellStart(), &particles.id, &particles.positionNext, pressure.from, &noted_, &disturbed_}, cells_);
     device_->run(turn_, s, {&grid.cellStart(), &disturbed_, &asleep_, &changed_}, cells_);
     if (first || s.mayRest > 0) {
-        device_->run(first ? noteAll_ : note_, s, {&grid.cellStart(), &particles.id, &particles.positionNext, &noted_}, slots);
+        device_->run(note_, s, {&grid.cellStart(), &particles.id, &particles.positionNext, &noted_}, slots);
         since_ = now;
     }
     const bool turned = !cpu || *hostPointer<uint32_t>(changed_) != 0;

@@ -69,7 +69,7 @@ class SleepPasses {
     Status prepareEllipsoids();
 
     Device* device_ = nullptr;
-    Kernel watch_, note_, noteAll_, disturb_, turn_, apply_, keep_, recall_, recallPressure_, recallZero_, drawn_;
+    Kernel watch_, note_, disturb_, turn_, apply_, keep_, recall_, recallPressure_, recallZero_, drawn_;
     Buffer disturbed_, asleep_, changed_, noted_;
     std::vector<Kept> kept_;
     std::array<Buffer, 3> ellipsoids_;  // by id; made when they are first drawn

@@ -34,8 +34,8 @@ RIVULET_API rivulet_status rivulet_skin_create(rivulet_context* context, const r
 RIVULET_API void rivulet_skin_destroy(rivulet_skin* skin);
 /* Adds a drop, which appears with the next step, at the point of the skin nearest to `place` (m, in the mesh's frame). */
 RIVULET_API rivulet_status rivulet_skin_add(rivulet_skin* skin, const float* place, double microlitres, rivulet_error* why);
-/* 0 or less seconds: nothing happens. RIVULET_FAILED after rivulet_context_stop, as for rivulet_world_step; a skin whose step was
-   interrupted must be created anew. */
+/* Advances the skin by `seconds`; 0 or less: nothing happens. RIVULET_FAILED after rivulet_context_stop: while a stop is asked, nothing is
+   stepped. If the stop interrupts a step, the drops are not valid any more: destroy the skin and create another. */
 RIVULET_API rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* inputs, double seconds, rivulet_error* why);
 /* Updates the map, a GL texture over the mesh's uvs, rgba16f with mips: r, g the slope of the liquid's height (m a unit of u, of v), b the
    height (mm), a the wetness, 0 to 1. */

@@ -2,8 +2,8 @@
 """Reads every C++ file of the project a second time, with clang: `clang.py tidy BUILD` runs clang-tidy with .clang-tidy, which tells
 of the compiler's own warnings too; `clang.py syntax BUILD` compiles the others, the tests, with -Werror and writes nothing. A file that
 passed is not read again until its command, one of the files it includes, or .clang-tidy changes (stamps in BUILD/clang_stamps).
-With RIVULET_LINT=part it reads only the files that changed in the last 25 commits, files whose header changed, and a sixth of all others: a different
-sixth for each commit. Without git's history it reads all files. Exit 77: clang is not installed."""
+With RIVULET_LINT=part it reads the files that changed in the last 25 commits, the files that include a changed header, and a sixth of all others.
+Which sixth depends on the number of commits. Without git's history it reads all files. Exit 77: clang is not installed."""
 import hashlib, json, os, shlex, shutil, subprocess, sys
 from concurrent.futures import ThreadPoolExecutor
 

@@ -312,7 +312,7 @@ TEST_P(Wakes, ByWaterThatAHostTakes) {
           });
 }
 
-// A world whose host looks for water to take, and finds none.
+// A host that calls withdraw() in every frame, without particles, does not keep the water awake.
 TEST(Sleep, WaterThatNobodyTakesSleeps) {
     auto device = cpu();
     auto made = FluidWorld::create(*device, pool("dfsph"), {}, {}, {.expectedDeposit = 1.0e-3});

@@ -19,8 +19,8 @@ void ParticleShifting::run(StepContext& c, const Buffer& pressure, float scale, 
     Buffer& wishes = shifted;
     if (s.asleepSets > 0) c.device.fill(wishes, 0);  // sleeping particles wish for nothing
     wish_.run(c, s, {&c.grid.neighbors(), &p.position, &p.nearWalls, &pressure, &wishes}, c.grid.pairThreads());
-    // Samples on bodies and lost particles keep what they have. So do sleeping particles, whose slots integration does not write again:
-    // their velocities must stay in the same buffer.
+    // Samples on bodies and lost particles are not shifted. Sleeping particles are not copied either: integration does not write their
+    // velocities again, so these must stay in the buffer where they are.
     const size_t bytes = size_t{c.params.awakeSlots} * sizeof(vec4);
     c.device.copy(p.position, p.positionNext, bytes);
     c.device.copy(p.velocity, p.velocityNext, bytes);

@@ -1,5 +1,7 @@
 #include "fluid/session/surface_probe.h"
 
+#include <utility>
+
 #include "engine/render/passes.h"
 
 namespace rivulet {
@@ -37,7 +39,7 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     FluidDraw d;
     d.view = view;
     d.look = look;
-    d.fluid = fluid;
+    d.fluid = std::move(fluid);
     d.fluid.position = d.fluid.velocity = d.fluid.id = position->name();
     d.fluid.count = static_cast<uint32_t>(particles.size());
     d.frame = graph.importBuffer("frame", block->name(), block->bytes());

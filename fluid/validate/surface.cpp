@@ -65,7 +65,7 @@ Result<Outcome> runSurface(const CaseSettings& settings) {
         if (!pool) return pool.error();
         if (trial->stopped()) return u.outcome;
         u.found(fmt::format("still pool over {} frames: flicker, rms", stillFrames), "/255", pool->flicker.front(), 0, kMostFlicker);
-        u.found("still pool: fastest particle", "mm/s", pool->fastest, 0);
+        u.found("still pool: speed, rms", "mm/s", pool->speed, 0);
     }
     if (settings.method != surfaceMethods().front())
         for (Finding& f : u.outcome.findings) f.tolerance.reset();

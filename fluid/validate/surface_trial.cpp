@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <chrono>
 
 #include "engine/core/assert.h"
@@ -195,7 +196,9 @@ Result<StillPool> SurfaceTrial::flicker(std::span<const SurfaceLook> looks, int 
         if (f < kSettling) continue;
         if (f == kSettling) {
             const HostParticles now = readParticles(world);
-            for (const vec4& v : now.velocity) pool.fastest = std::max(pool.fastest, 1000 * double{glm::length(vec3(v))});
+            double sum = 0;
+            for (const vec4& v : now.velocity) sum += double{glm::dot(vec3(v), vec3(v))};
+            pool.speed = 1000 * std::sqrt(sum / std::max<double>(1, static_cast<double>(now.velocity.size())));
             const SurfaceMap map = referenceMap({now.position, scene->fluid.spacing, {}}, view);
             std::vector<bool> water(map.depth.size());  // pictures store the top row first
             const auto row = static_cast<size_t>(width()), rows = static_cast<size_t>(height());

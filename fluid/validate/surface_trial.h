@@ -40,7 +40,7 @@ struct DrawTimes {
 };
 struct StillPool {
     std::vector<double> flicker;  // of 255, one per look
-    double fastest = 0;           // mm/s, of its particles in the first picture
+    double speed = 0;             // mm/s, rms over its particles in the first picture
 };
 
 class SurfaceTrial {

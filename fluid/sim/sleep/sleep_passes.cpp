@@ -68,12 +68,25 @@ void SleepPasses::disturb(const StepParams& step, const Bounds& box, double now)
     device_->run(disturb_, s, {&disturbed_}, cells_);
 }
 
+void SleepPasses::disturbBodies(const StepParams& step, const BodyPasses& bodies, float way, double now) {
+    for (size_t k = 0; k < bodies.states().size(); ++k) {
+        const Pose& pose = bodies.states()[k].pose;
+        if (k == poses_.size()) poses_.push_back(pose);
+        Pose& from = poses_[k];
+        if (!bodies.movedBy(k, from, way)) continue;
+        const vec3 half(bodies.reach(k));
+        disturb(step, {glm::min(pose.position, from.position) - half, glm::max(pose.position, from.position) + half}, now);
+        from = pose;
+    }
+}
+
 void SleepPasses::disturbAll(double now) { device_->fill(disturbed_, std::bit_cast<uint32_t>(static_cast<float>(now))); }
 
 void SleepPasses::reset(double now) {
     disturbAll(now);
     device_->fill(asleep_, 0);
     since_ = -1;
+    poses_.clear();
 }
 
 void SleepPasses::run(const FluidParams& fluid, const StepParams& step, float gravity, NeighborGrid& grid, Particles& particles, double now,
@@ -155,6 +168,7 @@ std::vector<std::pair<std::string, Buffer*>> SleepPasses::remembered() {
 
 void SleepPasses::save(WorldState& state) {
     state.put<double>("sleep.since", std::span(&since_, 1));
+    if (!poses_.empty()) state.put<Pose>("sleep.poses", poses_);
     for (const auto& [name, buffer] : remembered())
         state.put<float>(name, device_->readAll<float>(*buffer, buffer->bytes() / sizeof(float)));
     if (!ellipsoids_[0]) return;
@@ -162,12 +176,20 @@ void SleepPasses::save(WorldState& state) {
         state.put<vec4>("sleep.ellipsoids" + std::to_string(k), device_->readAll<vec4>(ellipsoids_[k], count_));
 }
 
-Result<SleepPasses::Saved> SleepPasses::take(WorldState& state) {
+Result<SleepPasses::Saved> SleepPasses::take(WorldState& state, size_t bodies) {
     Saved saved;
     Result<std::vector<double>> since = state.take<double>("sleep.since", 1);
     if (!since) return since.error();
     saved.since = (*since)[0];
     if (!std::isfinite(saved.since)) return badInput("the saved state's sleep.since is not finite: save it again");
+    if (state.sections().contains("sleep.poses")) {
+        Result<std::vector<Pose>> poses = state.take<Pose>("sleep.poses", bodies);
+        if (!poses) return poses.error();
+        for (const Pose& p : *poses)
+            if (!isFinite(p.position) || !std::isfinite(glm::length(p.rotation)))
+                return badInput("the saved state's sleep.poses is not finite: save it again");
+        saved.poses = std::move(*poses);
+    }
     for (const auto& [name, buffer] : remembered()) {
         Result<std::vector<float>> values = state.take<float>(name, buffer->bytes() / sizeof(float));
         if (!values) return values.error();
@@ -186,6 +208,7 @@ Result<SleepPasses::Saved> SleepPasses::take(WorldState& state) {
 
 void SleepPasses::restore(const Saved& saved) {
     since_ = saved.since;
+    poses_ = saved.poses;
     const auto buffers = remembered();
     for (size_t k = 0; k < buffers.size(); ++k) device_->writeAll<float>(*buffers[k].second, saved.values[k]);
     ellipsoids_ = {};                                      // of other water

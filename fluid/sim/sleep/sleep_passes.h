@@ -2,9 +2,9 @@
 // with the pressure that they had, and wake when the water around them moves.
 //
 // A cell of the neighbour grid is disturbed when the rms way of its particles since they were last noted, or the way of one of them, or of
-// a sample on a body, exceeds a bound, when its pressures are off their mean, and when a moving wall, an emitter, a sink or a host touches
-// it. A cell sleeps if neither it nor a neighbour was disturbed for a time. A disturbed cell wakes its neighbours in the same step; so what
-// moves is a support radius or more away from what sleeps, but for the one step in which a fast particle arrives.
+// a sample on a body, exceeds a bound, when its pressures are off their mean, and when a moving wall, a body that has crept on, an emitter,
+// a sink or a host touches it. A cell sleeps if neither it nor a neighbour was disturbed for a time. A disturbed cell wakes its neighbours
+// in the same step; so what moves is a support radius or more away from what sleeps, but for the one step in which a fast particle arrives.
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 #include "engine/core/math.h"
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/methods/method.h"
+#include "fluid/sim/solids/body_passes.h"
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/particles.h"
 #include "fluid/sim/world/world_state.h"
@@ -30,6 +31,9 @@ class SleepPasses {
 
     // Before the steps of a frame: cells that this box (m) touches are disturbed at `now` (s).
     void disturb(const StepParams& step, const Bounds& box, double now);
+    // The same around each body that has crept: whose surface has moved by more than `way` (m) since it last disturbed cells here. Faster
+    // ones are found by run().
+    void disturbBodies(const StepParams& step, const BodyPasses& bodies, float way, double now);
     // All cells are: gravity, a parameter or something else that acts everywhere has changed.
     void disturbAll(double now);
     // The same for a world that starts or continues at `now`, from particles that were not noted.
@@ -54,9 +58,10 @@ class SleepPasses {
         double since = -1;
         std::vector<std::vector<float>> values;
         std::vector<std::vector<vec4>> ellipsoids;  // none: they were not drawn
+        std::vector<Pose> poses;
     };
     void save(WorldState& state);
-    Result<Saved> take(WorldState& state);
+    Result<Saved> take(WorldState& state, size_t bodies);
     void restore(const Saved& saved);
 
   private:
@@ -75,7 +80,8 @@ class SleepPasses {
     std::array<Buffer, 3> ellipsoids_;  // by id; made when they are first drawn
     bool resorted_ = true;              // cpu: sleeping particles were, since keepEllipsoids
     uint32_t cells_ = 0, count_ = 0;
-    double since_ = -1;  // s, when ways were last noted; negative: never
+    std::vector<Pose> poses_;  // of the bodies, from where disturbBodies measures their ways
+    double since_ = -1;        // s, when ways were last noted; negative: never
 };
 
 }  // namespace rivulet

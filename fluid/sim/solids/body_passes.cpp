@@ -133,6 +133,18 @@ std::vector<vec4> BodyPasses::matter() const {
     return rows;
 }
 
+bool BodyPasses::movedBy(size_t body, const Pose& from, float way) const {
+    const Pose& to = states_[body].pose;
+    const BodyShape& shape = bodies_[body].shape;
+    // The chord of the turn at the farthest sample: |q - r| of unit quaternions is 2 sin(angle / 4).
+    const float turn = std::min(glm::length(to.rotation - from.rotation), glm::length(to.rotation + from.rotation));
+    if (glm::length(to.position - from.position) + 2.0F * turn * reach_[body] <= way) return false;
+    return std::ranges::any_of(shape.samples, [&](const vec3& own) {
+        const vec3 then = from.toOwn(to.toWorld(own));
+        return (shape.distance ? std::abs(shape.distance(then) - shape.distance(own)) : glm::length(then - own)) > way;
+    });
+}
+
 float BodyPasses::fastest() const {
     float speed = 0;
     for (size_t k = 0; k < states_.size(); ++k)

@@ -34,6 +34,9 @@ class BodyPasses {
     std::vector<vec4> matter() const;
 
     const std::vector<BodyState>& states() const { return states_; }
+    float reach(size_t body) const { return reach_[body]; }  // m, from the centre of mass to the farthest sample
+    // True if the body's surface has moved by more than `way` (m) from where it was at the pose `from`. A ball that turns has not moved.
+    bool movedBy(size_t body, const Pose& from, float way) const;
     const std::vector<BodyLoad>& loads() const { return loads_; }  // of the last substep
     // m/s, speed of the fastest point of all bodies.
     float fastest() const;
@@ -79,7 +82,7 @@ class BodyPasses {
     std::vector<BodyState> states_;
     std::vector<BodyLoad> loads_;
     std::optional<size_t> misled_;
-    std::vector<float> reach_;  // m, of each body's farthest sample
+    std::vector<float> reach_;
     BodyLoads filter_{{}, FluidParams{}};
     std::shared_ptr<FreeBodies> free_;  // used if there is no other host
     BodyHost host_;

@@ -44,6 +44,10 @@ void FluidWorld::Impl::disturbSleep() {
         return;
     }
     for (const Bounds& box : solids.moved()) disturbAround(box);
+    StepParams cells{};
+    grid->fill(cells);
+    const float way = params.sleep.speed * params.sleep.after * params.supportSpacings * params.spacing;  // of sleep_watch
+    sleep->disturbBodies(cells, bodies, way, now);
     for (const Emitter& e : sourceSetup.emitters) {
         const EmitterParams& p = e.params;
         if (!(p.litresPerSecond > 0) || now + clock.frameLength < p.start || (p.stop > 0 && now > p.stop)) continue;

@@ -79,7 +79,7 @@ Status FluidWorld::restore(WorldState& state) {
     SleepPasses::Saved slept;
     vec3 sleptUnder(0.0F);
     if (w.sleep) {
-        Result<SleepPasses::Saved> passes = w.sleep->take(state);
+        Result<SleepPasses::Saved> passes = w.sleep->take(state, w.bodies.states().size());
         if (!passes) return passes.error();
         slept = std::move(*passes);
         Result<std::vector<vec3>> gravity = state.take<vec3>("sleep.gravity", 1);

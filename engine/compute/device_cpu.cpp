@@ -32,7 +32,9 @@ const char* isaName(Isa isa) {
     return "generic";
 }
 
-Isa bestIsa() {
+namespace {
+
+Isa machineIsa() {
 #if defined(__x86_64__)
     __builtin_cpu_init();
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2")) return Isa::generic;
@@ -43,6 +45,29 @@ Isa bestIsa() {
 #else
     return Isa::generic;
 #endif
+}
+
+// What RIVULET_ISA names; empty: it is not set, or names none.
+std::optional<Isa> wantedIsa() {
+    const char* name = std::getenv("RIVULET_ISA");
+    for (const Isa isa : {Isa::generic, Isa::avx2, Isa::avx512})
+        if (name != nullptr && std::string_view(name) == isaName(isa)) return isa;
+    return {};
+}
+
+}  // namespace
+
+Isa bestIsa() { return std::min(machineIsa(), wantedIsa().value_or(Isa::avx512)); }
+
+Status checkIsa() {
+    const char* name = std::getenv("RIVULET_ISA");
+    if (name == nullptr || *name == 0) return ok();
+    const std::optional<Isa> wanted = wantedIsa();
+    if (!wanted) return badInput("RIVULET_ISA in the environment must be generic, avx2 or avx512: set it to one of them, or unset it");
+    if (*wanted > machineIsa())
+        return badInput(fmt::format("RIVULET_ISA in the environment is {}, which this processor lacks: set it to {}, or unset it",
+                                    isaName(*wanted), isaName(machineIsa())));
+    return ok();
 }
 
 namespace {

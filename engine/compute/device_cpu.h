@@ -9,7 +9,10 @@ namespace rivulet {
 
 enum class Isa { generic, avx2, avx512 };
 const char* isaName(Isa isa);
-Isa bestIsa();  // the best instruction set that this machine supports
+// The best instruction set that this machine supports, but none better than the environment's RIVULET_ISA (generic, avx2, avx512). Results
+// are the same bit for bit with each.
+Isa bestIsa();
+Status checkIsa();  // error (badInput): RIVULET_ISA names none, or one that this machine lacks
 
 // One compiled kernel. `defines` as "A=1;B=2", empty for none.
 using CpuKernelFn = void (*)(uint32_t begin, uint32_t end, const void* params, void* const* buffers);

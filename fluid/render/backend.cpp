@@ -56,6 +56,7 @@ BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl) {
 }
 
 Status settleBackend(std::string& backend, const char* otherwise, const std::string& device) {
+    if (Status isa = checkIsa(); !isa) return isa;
     if (backend.empty()) backend = device.empty() ? otherwise : "cl";
     const std::vector<std::string> names = backends().names();
     if (std::find(names.begin(), names.end(), backend) == names.end()) {

@@ -35,7 +35,7 @@ struct BackendChoice {
 BackendChoice chooseBackend(std::string_view wanted, const GlFacts& gl);
 
 // Resolves --backend and --device. An empty `backend` becomes `otherwise`, or cl if a device is given.
-// Error (badInput): an unknown backend; a device for a backend other than cl; an OpenCL device that does not exist.
+// Error (badInput): of checkIsa(); an unknown backend; a device for a backend other than cl; an OpenCL device that does not exist.
 Status settleBackend(std::string& backend, const char* otherwise, const std::string& device);
 
 // The wanted device; of cl the one that `clDevice` names (ClOptions::device). If it is absent, a cpu device is returned and `log` gets a

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/compute/device_cpu.h"
+#include "fluid/sim/world/state_check.h"
 
 namespace rivulet {
 
@@ -166,18 +167,20 @@ Result<SleepPasses::Saved> SleepPasses::take(WorldState& state) {
     Result<std::vector<double>> since = state.take<double>("sleep.since", 1);
     if (!since) return since.error();
     saved.since = (*since)[0];
-    if (!std::isfinite(saved.since)) return badInput("the saved state's sleep.since is not finite: save it again");
+    if (Status sound = checkRange("sleep.since", *since, -1, double{kLatest}); !sound) return sound.error();
     for (const auto& [name, buffer] : remembered()) {
         Result<std::vector<float>> values = state.take<float>(name, buffer->bytes() / sizeof(float));
         if (!values) return values.error();
-        if (!std::ranges::all_of(*values, [](float v) { return std::isfinite(v); }))
-            return badInput("the saved state's " + name + " is not finite: save it again");
+        if (Status sound = checkRange(name, *values, -kHighestPressure, kHighestPressure); !sound) return sound.error();
         saved.values.push_back(std::move(*values));
     }
     const bool drawn = state.sections().contains("sleep.ellipsoids0");
     for (size_t k = 0; drawn && k < ellipsoids_.size(); ++k) {
         Result<std::vector<vec4>> values = state.take<vec4>("sleep.ellipsoids" + std::to_string(k), count_);
         if (!values) return values.error();
+        // Drawn only; those of particles that are awake are found anew.
+        for (vec4& v : *values)
+            if (!isWithin(vec3(v), kMostDistance) || !(std::abs(v.w) <= kMostDistance)) v = vec4(0.0F);
         saved.ellipsoids.push_back(std::move(*values));
     }
     return saved;

@@ -79,10 +79,10 @@ Status writeInto(const std::string& path, std::string_view bytes) {
 }
 
 // A new file beside `target`; its name goes to `name`.
-int openBeside(const std::string& target, std::string& name) {
+int openBeside(const std::string& target, std::string& name, unsigned mode) {
     for (int attempt = 0;; ++attempt) {
         name = fmt::format("{}.{}-{}.tmp", target, ::getpid(), attempt);
-        const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         if (fd >= 0 || errno != EEXIST) return fd;
     }
 }
@@ -114,7 +114,7 @@ Result<std::string> readFile(const std::string& path, size_t maxBytes) {
 }
 
 // Against a full disk and a crash of the program, not of the machine: nothing waits for the disk (fsync).
-Status writeFileAtomic(const std::string& path, std::string_view bytes) {
+Status writeFileAtomic(const std::string& path, std::string_view bytes, unsigned mode) {
     std::error_code error;
     const fs::file_status existing = fs::status(path, error);
     if (fs::is_directory(existing)) return cannotWrite(path, "it is a folder");
@@ -126,7 +126,7 @@ Status writeFileAtomic(const std::string& path, std::string_view bytes) {
     }
 
     std::string temporary;
-    Descriptor file(openBeside(target, temporary));
+    Descriptor file(openBeside(target, temporary, mode));
     if (!file.valid()) {
         const int why = errno;
         const fs::path folder = fs::path(target).parent_path();

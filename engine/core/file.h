@@ -13,7 +13,7 @@ namespace rivulet {
 Result<std::string> readFile(const std::string& path, size_t maxBytes = size_t{1} << 30);
 
 // Writes a whole file by temporary name and rename: a reader never sees a part of it. A link is followed; a device or pipe is written into.
-// Error (failed): disk full, not writable; the old file stays.
-Status writeFileAtomic(const std::string& path, std::string_view bytes);
+// A new file gets the permissions `mode`, less the umask. Error (failed): disk full, not writable; the old file stays.
+Status writeFileAtomic(const std::string& path, std::string_view bytes, unsigned mode = 0666);
 
 }  // namespace rivulet

@@ -2,7 +2,6 @@
 #include "fluid/voxel/voxel_file.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <array>
 #include <cstring>
@@ -111,7 +110,7 @@ class Writer {
         std::vector<std::byte> head(bytes.begin(), bytes.begin() + offsetof(Header, checksum));
         const auto table = bytes.subspan(sizeof(Header), tableBytes);
         head.insert(head.end(), table.begin(), table.end());
-        return XXH3_64bits(head.data(), head.size());
+        return checksum(head);
     }
 
   private:
@@ -140,7 +139,7 @@ class Writer {
         (packer.put(arrays), ...);
         packer.finish();
         section.packedBytes = out_.size() - section.offset;
-        section.checksum = XXH3_64bits(out_.data() + section.offset, section.packedBytes);
+        section.checksum = checksum(std::as_bytes(std::span(out_)).subspan(section.offset, section.packedBytes));
         table_.push_back(section);
     }
 
@@ -259,7 +258,7 @@ class Reader {
             at += s.packedBytes;
             if (s.bytes / kMostBytesPerPackedByte > s.packedBytes)
                 return damaged(place, fmt::format("{} bytes cannot be packed into {}", s.bytes, s.packedBytes));
-            if (XXH3_64bits(bytes_.data() + s.offset, s.packedBytes) != s.checksum)
+            if (checksum(bytes_.subspan(s.offset, s.packedBytes)) != s.checksum)
                 return damaged(s, "its checksum is wrong: the section is damaged");
         }
         if (at != bytes_.size()) return damaged(at, "these bytes belong to no section");

@@ -68,18 +68,6 @@ void SleepPasses::disturb(const StepParams& step, const Bounds& box, double now)
     device_->run(disturb_, s, {&disturbed_}, cells_);
 }
 
-void SleepPasses::disturbBodies(const StepParams& step, const BodyPasses& bodies, float way, double now) {
-    for (size_t k = 0; k < bodies.states().size(); ++k) {
-        const Pose& pose = bodies.states()[k].pose;
-        if (k == poses_.size()) poses_.push_back(pose);
-        Pose& from = poses_[k];
-        if (!bodies.movedBy(k, from, way)) continue;
-        const vec3 half(bodies.reach(k));
-        disturb(step, {glm::min(pose.position, from.position) - half, glm::max(pose.position, from.position) + half}, now);
-        from = pose;
-    }
-}
-
 void SleepPasses::disturbAll(double now) { device_->fill(disturbed_, std::bit_cast<uint32_t>(static_cast<float>(now))); }
 
 void SleepPasses::reset(double now) {

@@ -16,9 +16,9 @@
 #include "engine/core/math.h"
 #include "fluid/sim/grid/neighbor_grid.h"
 #include "fluid/sim/methods/method.h"
-#include "fluid/sim/solids/body_passes.h"
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/particles.h"
+#include "fluid/sim/world/pose.h"
 #include "fluid/sim/world/world_state.h"
 #include "shaders/fluid/sleep/sleep_params.h"
 
@@ -31,9 +31,8 @@ class SleepPasses {
 
     // Before the steps of a frame: cells that this box (m) touches are disturbed at `now` (s).
     void disturb(const StepParams& step, const Bounds& box, double now);
-    // The same around each body that has crept: whose surface has moved by more than `way` (m) since it last disturbed cells here. Faster
-    // ones are found by run().
-    void disturbBodies(const StepParams& step, const BodyPasses& bodies, float way, double now);
+    // Of the bodies when each last disturbed cells: the world's, from where it measures how far they have crept. Part of a saved state.
+    std::vector<Pose>& bodyPoses() { return poses_; }
     // All cells are: gravity, a parameter or something else that acts everywhere has changed.
     void disturbAll(double now);
     // The same for a world that starts or continues at `now`, from particles that were not noted.
@@ -80,7 +79,7 @@ class SleepPasses {
     std::array<Buffer, 3> ellipsoids_;  // by id; made when they are first drawn
     bool resorted_ = true;              // cpu: sleeping particles were, since keepEllipsoids
     uint32_t cells_ = 0, count_ = 0;
-    std::vector<Pose> poses_;  // of the bodies, from where disturbBodies measures their ways
+    std::vector<Pose> poses_;  // see bodyPoses()
     double since_ = -1;        // s, when ways were last noted; negative: never
 };
 

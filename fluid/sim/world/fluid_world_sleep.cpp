@@ -47,7 +47,16 @@ void FluidWorld::Impl::disturbSleep() {
     StepParams cells{};
     grid->fill(cells);
     const float way = params.sleep.speed * params.sleep.after * params.supportSpacings * params.spacing;  // of sleep_watch
-    sleep->disturbBodies(cells, bodies, way, now);
+    // Faster bodies are found by sleep_watch.
+    std::vector<Pose>& last = sleep->bodyPoses();
+    for (size_t k = 0; k < bodies.states().size(); ++k) {
+        const Pose& pose = bodies.states()[k].pose;
+        if (k == last.size()) last.push_back(pose);
+        if (!bodies.movedBy(k, last[k], way)) continue;
+        const vec3 half(bodies.reach(k));
+        sleep->disturb(cells, {glm::min(pose.position, last[k].position) - half, glm::max(pose.position, last[k].position) + half}, now);
+        last[k] = pose;
+    }
     for (const Emitter& e : sourceSetup.emitters) {
         const EmitterParams& p = e.params;
         if (!(p.litresPerSecond > 0) || now + clock.frameLength < p.start || (p.stop > 0 && now > p.stop)) continue;

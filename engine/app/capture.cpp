@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <stb_image_write.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,7 +17,9 @@
 #include <vector>
 
 #include "engine/core/assert.h"
+#include "engine/core/descriptor.h"
 #include "engine/core/file.h"
+#include "engine/core/new_file.h"
 
 namespace rivulet {
 
@@ -24,18 +27,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string reason(int number) { return std::generic_category().message(number); }
-
 bool isOrdinaryTarget(const std::string& path) {
     std::error_code error;
-    fs::file_status status = fs::status(path, error);
+    const fs::file_status status = fs::status(path, error);
     return !fs::exists(status) || fs::is_regular_file(status);
-}
-
-// Beside the target, so that the rename stays on one file system; with the target's ending, by which ffmpeg chooses the container.
-std::string hiddenNameBeside(const std::string& path) {
-    fs::path target(path);
-    return (target.parent_path() / fmt::format(".rivulet-{}-{}", getpid(), target.filename().string())).string();
 }
 
 }  // namespace
@@ -62,22 +57,15 @@ Status makeFolder(const std::string& path) {
     return ok();
 }
 
-Status checkWritable(const std::string& path) {
-    bool ordinary = isOrdinaryTarget(path);
-    std::string probe = ordinary ? hiddenNameBeside(path) : path;
-    int file = ::open(probe.c_str(), O_WRONLY | O_CLOEXEC | (ordinary ? O_CREAT | O_EXCL : 0), 0666);
-    if (file < 0) return failed(fmt::format("{} cannot be written: {}", path, reason(errno)));
-    ::close(file);
-    if (ordinary) ::unlink(probe.c_str());
-    return ok();
-}
-
 struct VideoWriter::Impl {
-    std::string path, temporary;  // temporary is empty when the target is written directly
+    explicit Impl(NewFile into) : file(std::move(into)) {}
+
+    std::string path;
+    NewFile file;  // which ffmpeg writes, by its name
     size_t frameBytes = 0;
     uint64_t frames = 0;
     int input = -1;     // our end of ffmpeg's standard input: a socket, since send() can be told not to raise SIGPIPE
-    int messages = -1;  // ffmpeg's standard error, an unlinked file
+    int messages = -1;  // ffmpeg's standard error, kept in memory
     pid_t child = -1;
     std::string broken;  // why, once something failed
 
@@ -88,7 +76,6 @@ struct VideoWriter::Impl {
             wait();
         }
         if (messages >= 0) ::close(messages);
-        if (!temporary.empty()) ::unlink(temporary.c_str());
     }
 
     // ffmpeg's exit status; -1 when a signal ended it.
@@ -127,33 +114,32 @@ VideoWriter::~VideoWriter() = default;
 
 Result<VideoWriter> VideoWriter::open(const std::string& path, int width, int height, int framesPerSecond) {
     ASSERT(width > 0 && height > 0 && framesPerSecond > 0, "a video has a size and a frame rate");
-    Status writable = checkWritable(path);
-    if (!writable) return writable.error();
-    auto impl = std::make_unique<Impl>();
+    const bool ordinary = isOrdinaryTarget(path);
+    Result<NewFile> file = NewFile::open(path);
+    if (!file) return file.error();
+    auto impl = std::make_unique<Impl>(std::move(*file));
     impl->path = path;
-    if (isOrdinaryTarget(path)) impl->temporary = hiddenNameBeside(path);
     impl->frameBytes = 4 * static_cast<size_t>(width) * static_cast<size_t>(height);
 
     int ends[2];
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return failed(fmt::format("no pipe to ffmpeg: {}", reason(errno)));
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+        return failed(fmt::format("no pipe to ffmpeg: {}", reasonOf(errno)));
     impl->input = ends[0];
-    std::string log = (fs::temp_directory_path() / "rivulet-ffmpeg-XXXXXX").string();
-    impl->messages = ::mkostemp(log.data(), O_CLOEXEC);
+    impl->messages = ::memfd_create("messages of ffmpeg", MFD_CLOEXEC);
     if (impl->messages < 0) {
+        const int error = errno;
         ::close(ends[1]);
-        return failed(fmt::format("ffmpeg's messages cannot be kept in {}: {}", log, reason(errno)));
+        return failed(fmt::format("no memory for the messages of ffmpeg: {}", reasonOf(error)));
     }
-    ::unlink(log.c_str());
 
     std::string size = fmt::format("{}x{}", width, height), rate = std::to_string(framesPerSecond);
-    std::string target = impl->temporary.empty() ? path : impl->temporary;
-    if (target.starts_with('-')) target = "./" + target;
+    const std::string target = "file:" + impl->file.name();  // a name may look like an option, or like the address of a server
     std::vector<const char*> words = {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo", "-pixel_format",
                                       "rgba", "-video_size", size.c_str(), "-framerate", rate.c_str(), "-i", "pipe:0", "-an",
                                       // H.264 with 4:2:0 colour, which every player reads, needs even sides
                                       "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18",
                                       "-pix_fmt", "yuv420p", "-movflags", "+faststart"};
-    if (impl->temporary.empty())
+    if (!ordinary)
         words.insert(words.end(), {"-f", "matroska"});  // a device: it has no ending, and may not seek
     else if (!fs::path(path).has_extension())
         words.insert(words.end(), {"-f", "mp4"});
@@ -175,7 +161,7 @@ Result<VideoWriter> VideoWriter::open(const std::string& path, int width, int he
     if (error != 0) {
         impl->child = -1;
         return failed(error == ENOENT ? std::string("a video needs ffmpeg, which is not installed (Debian package: ffmpeg)")
-                                      : fmt::format("ffmpeg could not be started: {}", reason(error)));
+                                      : fmt::format("ffmpeg could not be started: {}", reasonOf(error)));
     }
     return VideoWriter(std::move(impl));
 }
@@ -209,10 +195,7 @@ Status VideoWriter::close() {
         if (status != 0 || ::lseek(impl_->messages, 0, SEEK_END) > 0) return impl_->failure();
     }
     if (!impl_->broken.empty()) return impl_->failure();
-    if (!impl_->temporary.empty() && ::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0)
-        return failed(fmt::format("the video {} could not be written: {}", impl_->path, reason(errno)));
-    impl_->temporary.clear();
-    return ok();
+    return impl_->file.commit();
 }
 
 }  // namespace rivulet

@@ -13,14 +13,11 @@ namespace rivulet {
 // `rgba`: 4 * width * height bytes, sRGB, top row first; alpha is dropped. Error (failed): not writable, disk full.
 Status writePng(const std::string& path, std::span<const uint8_t> rgba, int width, int height);
 
-// Error (failed) when a file of this name could not be made: says why. Leaves nothing behind. Call it before long work, not after.
-Status checkWritable(const std::string& path);
-
 // Makes the folder and its parents. Error (failed): not writable, or a file is in the way.
 Status makeFolder(const std::string& path);
 
 // H.264 in the container that the name's ending selects. ffmpeg runs in a process group of its own, so Ctrl-C at the terminal does not
-// reach it, and writes to a hidden file beside the target, which takes the target's name in close(). A target that is
+// reach it, and writes to the temporary file of a NewFile, which takes the target's name in close(). A target that is
 // no ordinary file (/dev/null) is written directly. Dropped without close(): ffmpeg is ended and nothing is left.
 class VideoWriter {
   public:

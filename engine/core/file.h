@@ -9,11 +9,13 @@
 
 namespace rivulet {
 
-// The bytes of a file. Error (badInput): the file cannot be read, is a folder or is larger than `maxBytes`.
+// The bytes of a file. Error (badInput): as openInput; the file is larger than `maxBytes`.
 Result<std::string> readFile(const std::string& path, size_t maxBytes = size_t{1} << 30);
 
-// Writes a whole file by temporary name and rename: a reader never sees a part of it. A link is followed; a device or pipe is written into.
-// Error (failed): disk full, not writable; the old file stays.
+// Writes a whole file by NewFile: a reader never sees a part of it. Error (failed): disk full, not writable; the old file stays.
 Status writeFileAtomic(const std::string& path, std::string_view bytes);
+
+// Error (failed) if a file of this name cannot be made. Leaves nothing behind. Call it before long work, not after.
+Status checkWritable(const std::string& path);
 
 }  // namespace rivulet

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "engine/core/assert.h"
+#include "engine/core/message_line.h"
 
 namespace rivulet {
 
@@ -13,7 +14,7 @@ Log stderrLog(LogLevel least) {
     return Log{[least](LogLevel level, std::string_view text) {
         if (level < least) return;
         const char* erase = isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";  // a bar of progress may be there
-        std::fprintf(stderr, "%srivulet: %.*s\n", erase, static_cast<int>(text.size()), text.data());
+        std::fprintf(stderr, "%srivulet: %s\n", erase, messageLine(text).c_str());
     }};
 }
 

@@ -5,15 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
+
+#include "engine/core/file.h"
 
 namespace rivulet {
 namespace {
 
-constexpr int kWidest = 16384;  // texels
+constexpr int kWidest = 16384;                                // texels
+constexpr size_t kLargest = std::numeric_limits<int>::max();  // bytes: what stb_image takes
 
 Error about(const std::string& name, std::string_view what) { return badInput(fmt::format("the image '{}' {}", name, what)); }
 
@@ -21,7 +21,7 @@ Error about(const std::string& name, std::string_view what) { return badInput(fm
 
 Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.empty()) return about(name, "is empty");
-    if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) return about(name, "is larger than 2 GiB");
+    if (bytes.size() > kLargest) return about(name, "is larger than 2 GiB");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());
     Image image;
@@ -41,30 +41,16 @@ Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& n
     return image;
 }
 
-namespace {
-
-Result<std::string> bytesOf(const std::string& path) {
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) return about(path, "cannot be read: there is no such file");
-    if (!std::filesystem::is_regular_file(path, error)) return about(path, "is not a plain file; name a PNG, JPEG or HDR");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return about(path, "cannot be opened: check its permissions");
-    return std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-}  // namespace
-
 Result<Image> loadImage(const std::string& path) {
-    const Result<std::string> bytes = bytesOf(path);
+    const Result<std::string> bytes = readFile(path, kLargest);
     if (!bytes) return bytes.error();
     return decodeImage(std::as_bytes(std::span(*bytes)), path);
 }
 
 Result<HdrImage> loadHdr(const std::string& path) {
-    const Result<std::string> bytes = bytesOf(path);
+    const Result<std::string> bytes = readFile(path, kLargest);
     if (!bytes) return bytes.error();
     if (bytes->empty()) return about(path, "is empty");
-    if (bytes->size() > static_cast<size_t>(std::numeric_limits<int>::max())) return about(path, "is larger than 2 GiB");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes->data());
     const int size = static_cast<int>(bytes->size());
     HdrImage image;

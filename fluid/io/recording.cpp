@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -9,6 +10,7 @@
 #include <new>
 
 #include "engine/core/assert.h"
+#include "engine/core/input_file.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
@@ -169,9 +171,9 @@ bool sensible(const RecordedFrame& f) {
 }  // namespace
 
 Result<RecordingWriter> RecordingWriter::open(const std::string& path, const std::string& about) {
-    File file(std::fopen(path.c_str(), "wb"), std::fclose);
-    if (!file) return failed(fmt::format("{} cannot be written: {}", path, std::strerror(errno)));
-    RecordingWriter writer(std::move(file), path);
+    Result<NewFile> file = NewFile::open(path);
+    if (!file) return file.error();
+    RecordingWriter writer(std::move(*file), path);
     const std::string text = about.substr(0, kMostAbout);
     Header header{kMagic, kByteOrder, kVersion, static_cast<uint32_t>(text.size()), 0, 0};
     header.checksum = headerSum(header, text);
@@ -180,10 +182,8 @@ Result<RecordingWriter> RecordingWriter::open(const std::string& path, const std
     return writer;
 }
 
-// Flushed, so that a killed run leaves its frames, and a full disk is an error at once.
 Status RecordingWriter::put(const std::string& bytes, const std::string& what) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size() || std::fflush(file_.get()) != 0)
-        return failed(fmt::format("{}: {} cannot be written: {}", path_, what, std::strerror(errno)));
+    if (Status written = file_.write(bytes, what); !written) return written;
     at_ += bytes.size();
     return ok();
 }
@@ -201,6 +201,7 @@ Status RecordingWriter::add(const RecordedFrame& frame) {
             !done)
             return done;
         offsets_.push_back(at);
+        if (offsets_.size() == 1) file_.publish();
         return ok();
     } catch (const std::bad_alloc&) {
         return failed(fmt::format("{}: there is not enough memory to pack frame {}", path_, offsets_.size()));
@@ -213,26 +214,31 @@ Status RecordingWriter::close() {
     std::string out(reinterpret_cast<const char*>(&head), sizeof(head));
     out.append(reinterpret_cast<const char*>(offsets_.data()), offsets_.size() * sizeof(uint64_t));
     out.append(reinterpret_cast<const char*>(&tail), sizeof(tail));
-    return put(out, "its index");
+    if (Status done = put(out, "its index"); !done) return done;
+    return file_.commit();
 }
 
 Error RecordingReader::damaged(const std::string& what) const {
     return badInput(fmt::format("{}: {}; record the run again with rivulet run --record", path_, what));
 }
 
-bool RecordingReader::take(uint64_t at, void* to, size_t bytes) {
-    return at <= size_ && bytes <= size_ - at && fseeko(file_.get(), static_cast<off_t>(at), SEEK_SET) == 0 &&
-           std::fread(to, 1, bytes, file_.get()) == bytes;
+bool RecordingReader::take(uint64_t at, void* to, size_t bytes) const {
+    if (at > size_ || bytes > size_ - at) return false;
+    for (size_t done = 0; done < bytes;) {
+        const ssize_t got = ::pread(file_.get(), static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(at + done));
+        if (got == 0 || (got < 0 && errno != EINTR)) return false;
+        if (got > 0) done += static_cast<size_t>(got);
+    }
+    return true;
 }
 
 Result<RecordingReader> RecordingReader::open(const std::string& path) {
     try {
-        File file(std::fopen(path.c_str(), "rb"), std::fclose);
+        Result<Descriptor> file = openInput(path);
+        if (!file) return file.error();
         struct stat facts = {};
-        if (!file || fstat(fileno(file.get()), &facts) != 0)
-            return badInput(fmt::format("{} cannot be read: {}", path, std::strerror(errno)));
-        if (!S_ISREG(facts.st_mode)) return badInput(fmt::format("{} cannot be read: it is not a regular file", path));
-        RecordingReader reader(std::move(file), path);
+        if (fstat(file->get(), &facts) != 0) return badInput(fmt::format("{} cannot be read: {}", path, reasonOf(errno)));
+        RecordingReader reader(std::move(*file), path);
         reader.size_ = static_cast<uint64_t>(facts.st_size);
         if (Status head = reader.readHeader(); !head) return head.error();
         if (!reader.readIndex())

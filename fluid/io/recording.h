@@ -4,15 +4,18 @@
 // with a text, then for each frame 48 bytes of head and one zstd frame (packed_array.h) of its arrays, each sorted into planes of bytes;
 // at the end an index. A run that was killed leaves no index: the reader rebuilds it frame by frame and leaves out a frame that was cut
 // off. XXH3 checks the header with the text, each head, each frame's bytes, the index.
+//
+// An older recording of the name stays until the new one is complete. If there is none, the file has its name from its first frame on, so
+// that the frames of a killed run can be shown.
 #pragma once
 
 #include <array>
-#include <cstdio>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "engine/core/descriptor.h"
 #include "engine/core/math.h"
+#include "engine/core/new_file.h"
 #include "engine/core/result.h"
 
 namespace rivulet {
@@ -33,22 +36,21 @@ struct RecordedFrame {
 
 class RecordingWriter {
   public:
-    // Begins the file and replaces an existing one. `about`: a text that the reader returns unchanged. Error (failed): not writable.
+    // Begins the file. `about`: a text that the reader returns unchanged. Error (failed): not writable.
     static Result<RecordingWriter> open(const std::string& path, const std::string& about);
-    // Writes a frame before it returns. Error (failed): disk full, out of memory; frames added before stay valid.
+    // Writes a frame before it returns. Error (failed): disk full, out of memory; without an older file, frames added before stay valid.
     Status add(const RecordedFrame& frame);
-    // Writes the index. Error as add.
+    // Writes the index and replaces an older file. Error as add.
     Status close();
 
     size_t frames() const { return offsets_.size(); }
     uint64_t bytes() const { return at_; }
 
   private:
-    using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-    RecordingWriter(File file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
+    RecordingWriter(NewFile file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
     Status put(const std::string& bytes, const std::string& what);
 
-    File file_;
+    NewFile file_;
     std::string path_;
     uint64_t at_ = 0;
     std::vector<uint64_t> offsets_;
@@ -67,15 +69,14 @@ class RecordingReader {
     Result<RecordedFrame> read(size_t k, size_t memoryLimit = size_t{16} << 30U);
 
   private:
-    using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-    RecordingReader(File file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
+    RecordingReader(Descriptor file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
     Error damaged(const std::string& what) const;
     Status readHeader();
     bool readIndex();
     Status scan();
-    bool take(uint64_t at, void* to, size_t bytes);
+    bool take(uint64_t at, void* to, size_t bytes) const;
 
-    File file_;
+    Descriptor file_;
     std::string path_, about_, cut_;
     uint64_t size_ = 0, first_ = 0;  // bytes: of the file; where the first frame is
     std::vector<uint64_t> offsets_;

@@ -1,12 +1,14 @@
 // Plots of curves as SVG, by gnuplot.
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
+#include "engine/core/descriptor.h"
 #include "engine/core/file.h"
 #include "fluid/validate/physics_case.h"
 
@@ -53,10 +55,8 @@ std::string scriptOf(const Plot& plot) {
 Status drawPlot(const Plot& plot, const std::string& path) {
     const std::string script = scriptOf(plot);
     if (script.empty()) return ok();
-    std::string name = (std::filesystem::temp_directory_path() / "rivulet-plot-XXXXXX").string();
-    const int file = ::mkstemp(name.data());  // inherited by gnuplot, which reads it by its descriptor
-    if (file < 0) return failed("the folder for temporary files cannot be written");
-    ::unlink(name.c_str());
+    const int file = ::memfd_create("plot", 0);  // inherited by gnuplot, which reads it by its descriptor
+    if (file < 0) return failed(fmt::format("no memory for the plot {}: {}", path, reasonOf(errno)));
     const bool whole = ::write(file, script.data(), script.size()) == static_cast<ssize_t>(script.size());
     ::lseek(file, 0, SEEK_SET);
     std::FILE* from = whole ? ::popen(fmt::format("exec gnuplot /dev/fd/{} 2>/dev/null", file).c_str(), "r") : nullptr;

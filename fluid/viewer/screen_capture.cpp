@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/core/file.h"
 #include "fluid/session/scene_renderer.h"
 #include "fluid/session/session.h"
 

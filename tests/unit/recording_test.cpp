@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 
@@ -64,7 +65,7 @@ bool same(const RecordedFrame& a, const RecordedFrame& b) {
 
 // The bytes of a recording of kFrames, and where each frame begins.
 std::string recorded(const Scratch& scratch, bool closed, std::vector<uint64_t>* offsets = nullptr) {
-    const std::string path = scratch.file("whole.rrec");
+    const std::string path = scratch.file(closed ? "whole.rrec" : "open.rrec");
     {
         Result<RecordingWriter> writer = RecordingWriter::open(path, kAbout);
         EXPECT_TRUE(writer);
@@ -94,7 +95,7 @@ void expectSentence(const std::string& text, const std::string& path) {
 
 Opened opened(const Scratch& scratch, const std::string& bytes) {
     const std::string path = scratch.file("a.rrec");
-    EXPECT_TRUE(writeFileAtomic(path, bytes));
+    std::ofstream(path, std::ios::binary) << bytes;
     Opened out;
     Result<RecordingReader> reader = RecordingReader::open(path);
     if (!reader) {
@@ -117,6 +118,24 @@ Opened opened(const Scratch& scratch, const std::string& bytes) {
         }
     }
     return out;
+}
+
+// A recording that is not complete replaces none.
+TEST(Recording, AnOlderFileStaysUntilTheNewOneIsComplete) {
+    const Scratch scratch;
+    const std::string path = scratch.file("a.rrec", "older");
+    for (const bool closed : {false, true}) {
+        {
+            Result<RecordingWriter> writer = RecordingWriter::open(path, kAbout);
+            ASSERT_TRUE(writer);
+            for (size_t k = 0; k < kFrames; ++k) EXPECT_TRUE(writer->add(frameNumber(k)));
+            EXPECT_EQ(readFile(path).value(), "older");
+            if (closed) EXPECT_TRUE(writer->close());
+        }
+        EXPECT_EQ(readFile(path).value() == "older", !closed);
+        EXPECT_EQ(scratch.contents(), std::vector<std::string>{"a.rrec"});
+    }
+    EXPECT_TRUE(readFile(path).value() == recorded(scratch, true));
 }
 
 TEST(Recording, GivesBackEachFrameInAnyOrder) {
@@ -224,7 +243,7 @@ TEST(Recording, AFullDiskIsReported) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
     const Result<RecordingWriter> writer = RecordingWriter::open("/dev/full", kAbout);
     ASSERT_FALSE(writer);
-    EXPECT_NE(writer.error().message.find("/dev/full: its header cannot be written: No space left"), std::string::npos)
+    EXPECT_NE(writer.error().message.find("/dev/full: its header cannot be written: the disk is full"), std::string::npos)
         << writer.error().message;
     EXPECT_FALSE(RecordingWriter::open("/dev/null/x.rrec", kAbout));
 }

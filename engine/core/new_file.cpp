@@ -1,0 +1,186 @@
+#include "engine/core/new_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "engine/core/descriptor.h"
+
+namespace rivulet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The names of temporary files. Global, because a signal handler takes no argument.
+using Place = std::atomic<const char*>;
+using Text = std::unique_ptr<char, void (*)(void*)>;
+constexpr size_t kMost = 256;  // of those that a signal removes
+std::array<Place, kMost> temporaries = {};
+std::atomic<pid_t> owner = 0;  // of the list: a process that was forked must not remove these files
+static_assert(Place::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
+
+// Nothing: all places are taken.
+Place* enlist(const char* name) {
+    const pid_t self = ::getpid();
+    if (owner.exchange(self) != self)  // a forked process begins anew
+        for (Place& place : temporaries) place = nullptr;
+    for (Place& place : temporaries) {
+        const char* none = nullptr;
+        if (place.compare_exchange_strong(none, name)) return &place;
+    }
+    return nullptr;
+}
+
+// Hidden, so that nobody takes it for a file of the series; with the name's end, by which other programs choose the format.
+std::string nameBeside(const fs::path& target, int attempt) {
+    constexpr size_t kEnd = 100;  // bytes: the whole must not be too long for a name
+    std::string end = target.filename().string();
+    if (end.size() > kEnd) end.erase(0, end.size() - kEnd);
+    return (target.parent_path() / fmt::format(".rivulet-{}-{}-{}", ::getpid(), attempt, end)).string();
+}
+
+void syncFolderOf(const std::string& path) {  // some file systems cannot: the file is complete all the same
+    const fs::path folder = fs::path(path).parent_path();
+    const Descriptor at = openDescriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY);
+    if (at.valid()) (void)::fsync(at.get());
+}
+
+}  // namespace
+
+struct NewFile::Impl {
+    std::string path;                 // as given
+    std::string target;               // its links followed
+    std::string temporary;            // empty: the file has its name
+    Text listed{nullptr, std::free};  // `temporary`, for the signal handler
+    Place* place = nullptr;           // of `listed`
+    Descriptor file;
+    bool older = false;  // a file of the name exists
+    int error = 0;       // of a write that failed
+
+    ~Impl() {
+        if (temporary.empty()) return;
+        (void)::unlink(temporary.c_str());
+        forget();
+    }
+
+    void forget() {
+        const char* name = listed.get();
+        if (place != nullptr && !place->compare_exchange_strong(name, nullptr)) (void)listed.release();  // the handler is reading it
+        place = nullptr;
+        listed.reset();
+        temporary.clear();
+    }
+
+    // 0, or errno.
+    int create(mode_t mode) {
+        for (int attempt = 0;; ++attempt) {
+            temporary = nameBeside(target, attempt);
+            listed.reset(::strdup(temporary.c_str()));
+            place = listed ? enlist(listed.get()) : nullptr;
+            file = openDescriptor(temporary, O_WRONLY | O_CREAT | O_EXCL);
+            if (file.valid()) break;
+            const int failure = errno;
+            forget();
+            if (failure != EEXIST) return failure;
+        }
+        if (older) (void)::fchmod(file.get(), mode);
+        return 0;
+    }
+};
+
+NewFile::NewFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+NewFile::NewFile(NewFile&&) noexcept = default;
+NewFile& NewFile::operator=(NewFile&&) noexcept = default;
+NewFile::~NewFile() = default;
+
+Error NewFile::cannotWrite(int error, std::string_view part) const {
+    return failed(fmt::format("{}{}{} cannot be written: {}{}", impl_->path, part.empty() ? "" : ": ", part,
+                              error == ENOENT ? "its folder is gone" : reasonOf(error),
+                              impl_->older ? "; the older file is unchanged" : ""));
+}
+
+Result<NewFile> NewFile::open(const std::string& path) {
+    NewFile made(std::make_unique<Impl>());
+    Impl& to = *made.impl_;
+    to.path = to.target = path;
+    const auto refused = [&](std::string_view why) { return failed(fmt::format("{} cannot be written: {}", path, why)); };
+    struct stat facts = {};
+    const bool exists = ::stat(path.c_str(), &facts) == 0;
+    if (!exists && errno != ENOENT) return refused(reasonOf(errno));
+    if (exists && S_ISDIR(facts.st_mode)) return refused(reasonOf(EISDIR));
+    if (exists && !S_ISREG(facts.st_mode)) {
+        to.file = openDescriptor(path, O_WRONLY | O_NOCTTY);
+        return to.file.valid() ? Result<NewFile>(std::move(made)) : refused(reasonOf(errno));
+    }
+    const fs::path folder = fs::path(path).parent_path();
+    if (fs::path(path).filename().empty()) return refused("it is the name of a folder");
+    if (exists) {
+        const Text whole(::realpath(path.c_str(), nullptr), std::free);
+        if (whole) to.target = whole.get();
+        if (!whole || ::access(path.c_str(), W_OK) != 0) return refused(reasonOf(errno));
+        to.older = true;
+    }
+    if (const int error = to.create(facts.st_mode & 07777U); error != 0) {
+        std::error_code ignored;
+        if (error == ENOENT)
+            return refused(folder.empty() || fs::exists(folder, ignored) ? "no file can be made in its folder"
+                                                                         : "its folder does not exist");
+        return refused(reasonOf(error));
+    }
+    return made;
+}
+
+Status NewFile::write(std::string_view bytes, std::string_view part) {
+    Impl& to = *impl_;
+    while (to.error == 0 && !bytes.empty()) {
+        const ssize_t written = ::write(to.file.get(), bytes.data(), bytes.size());
+        if (written >= 0)
+            bytes.remove_prefix(static_cast<size_t>(written));
+        else if (errno != EINTR)
+            to.error = errno;
+    }
+    return to.error == 0 ? ok() : Status(cannotWrite(to.error, part));
+}
+
+Status NewFile::commit() {
+    Impl& to = *impl_;
+    const bool cannotSync = to.error == 0 && ::fsync(to.file.get()) != 0;
+    if (cannotSync && errno != EINVAL && errno != ENOTSUP) to.error = errno;  // a pipe has no disk
+    if (const int closed = to.file.close(); closed != 0 && to.error == 0) to.error = closed;
+    if (to.error == 0 && !to.temporary.empty()) {
+        if (::rename(to.temporary.c_str(), to.target.c_str()) != 0)
+            to.error = errno;
+        else
+            to.forget();
+    }
+    if (to.error != 0) return cannotWrite(to.error);
+    syncFolderOf(to.target);
+    return ok();
+}
+
+void NewFile::publish() {
+    Impl& to = *impl_;
+    // A hard link fails if the name is taken, at whatever moment; a file system without them keeps the temporary name.
+    if (to.temporary.empty() || to.older || to.error != 0 || ::link(to.temporary.c_str(), to.target.c_str()) != 0) return;
+    (void)::unlink(to.temporary.c_str());
+    to.forget();
+}
+
+const std::string& NewFile::name() const { return impl_->temporary.empty() ? impl_->target : impl_->temporary; }
+
+void removeTemporaryFiles() noexcept {
+    if (owner != ::getpid()) return;
+    for (Place& place : temporaries)
+        if (const char* name = place.exchange(nullptr); name != nullptr) (void)::unlink(name);
+}
+
+}  // namespace rivulet

@@ -5,13 +5,33 @@
 
 #include <CLI/CLI.hpp>
 #include <cctype>
+#include <cerrno>
 #include <cstdio>
+#include <system_error>
+
+#include "engine/core/message_line.h"
 
 namespace rivulet {
 
+namespace {
+
+// Never fails: stderr may be closed, or a terminal that has gone.
+void printToStderr(const std::string& text) {
+    (void)std::fwrite(text.data(), 1, text.size(), stderr);
+    (void)std::fflush(stderr);
+}
+
+}  // namespace
+
 int report(const Error& error) {
-    fmt::print(stderr, "rivulet: {}\n", error.message);
+    printToStderr(fmt::format("rivulet: {}\n", messageLine(error.message)));
     return error.fault == Fault::badInput ? kBadUse : kFailed;
+}
+
+void flushOutput() {
+    errno = 0;
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+    throw std::system_error(errno != 0 ? errno : EIO, std::generic_category());
 }
 
 Status checkWord(std::string_view what, std::string_view word, std::span<const std::string> names) {
@@ -138,10 +158,14 @@ Result<std::pair<int, int>> parseSize(const std::string& text) {
     return std::pair(width, height);
 }
 
-Progress::Progress(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
+namespace {
+constexpr size_t kLabel = 60;  // characters
+}
+
+Progress::Progress(const std::string& label) : label_(messageLine(label, kLabel)), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-    if (drawn_) fmt::print(stderr, "\r\033[K");
+    if (drawn_) printToStderr("\r\033[K");
 }
 
 void Progress::show(double share, std::string_view note) {
@@ -152,8 +176,8 @@ void Progress::show(double share, std::string_view note) {
     constexpr int kCells = 32;
     share = std::clamp(share, 0.0, 1.0);
     int filled = static_cast<int>(share * kCells);
-    fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} %  {}", label_, "", filled, "", kCells - filled, 100 * share, note);
-    std::fflush(stderr);
+    printToStderr(fmt::format("\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} %  {}", label_, "", filled, "", kCells - filled, 100 * share,
+                              messageLine(note, kLabel)));
 }
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-// Shared by all verbs: exit codes, parsing of arguments, error messages, a progress bar.
+// Shared by all verbs: exit codes, parsing of arguments, messages and output, a progress bar.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@
 
 namespace rivulet {
 
-enum ExitCode : int { kDone = 0, kFailed = 1, kBadUse = 2, kInterrupted = 130 };
+enum ExitCode : int { kDone = 0, kFailed = 1, kBadUse = 2 };  // or 128 + the signal that interrupted: Graceful::status()
 
 using Arguments = std::vector<std::string>;  // after the verb
 
@@ -35,8 +35,11 @@ int validateVerb(const Arguments& arguments);
 int chartVerb(const Arguments& arguments);
 int exportVerb(const Arguments& arguments);
 
-// Prints "rivulet: MESSAGE" on stderr. Returns kBadUse for Fault::badInput, else kFailed.
+// Prints "rivulet: MESSAGE" on stderr, made fit for a terminal. Returns kBadUse for Fault::badInput, else kFailed.
 int report(const Error& error);
+
+// Writes to stdout what was printed. Throws std::system_error if that fails, so that long work does not go on unseen; main() reports it.
+void flushOutput();
 
 // The arguments and options of a verb. Only cli.cpp includes CLI11, which parses them: its templates take seconds to compile.
 class ArgumentReader {
@@ -79,7 +82,7 @@ Result<std::pair<int, int>> parseSize(const std::string& text);
 // A progress bar on stderr. Drawn only if stderr is a terminal, at most 10 times a second; the destructor erases it.
 class Progress {
   public:
-    explicit Progress(std::string label);
+    explicit Progress(const std::string& label);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;

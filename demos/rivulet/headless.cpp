@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "demos/rivulet/cli.h"
@@ -11,6 +10,7 @@
 #include "engine/app/capture.h"
 #include "engine/app/context_egl.h"
 #include "engine/core/file.h"
+#include "engine/core/message_line.h"
 #include "engine/core/wall_clock.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
@@ -26,7 +26,6 @@ namespace rivulet {
 
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 // The frames that are written as PNG: the first, the last, and four at equal distances between them.
@@ -39,16 +38,11 @@ std::set<int> pictureFrames(int frames) {
 }
 
 // The output files. Opened before the first step, so that a file that cannot be written is reported before the work starts.
-struct Outputs {
-    std::string stats, video, picturePrefix;
+struct Outputs : OutputNames {
     std::optional<VideoWriter> writer;
 
     static Result<Outputs> open(const RunOptions& options) {
-        Outputs to;
-        std::string name = fileNameOf(options.scene.name);
-        to.stats = options.stats.empty() ? (fs::path(options.out) / "stats.json").string() : options.stats;
-        to.picturePrefix = (fs::path(options.out) / name).string();
-        to.video = options.video.empty() ? to.picturePrefix + ".mp4" : options.video;
+        Outputs to{namesOf(options), {}};
         if (options.render || options.stats.empty())
             if (Status made = makeFolder(options.out); !made) return made.error();
         if (options.replay.empty())
@@ -291,8 +285,8 @@ int runHeadless(const RunOptions& options) {
     const std::string shown = fmt::format("{}{} image{} {}_*.png", to->writer ? to->video + ", " : "", loop.pictures,
                                           loop.pictures == 1 ? "" : "s", to->picturePrefix);
     if (!loop.recorder) {
-        fmt::print("{}\n", shown);
-        return graceful.interrupted() ? kInterrupted : kDone;
+        fmt::print("{}\n", printable(shown));
+        return graceful.status();
     }
     RunStats stats = loop.recorder->finish(options.scene.name);
     stats.cooperation = work.stats();
@@ -309,8 +303,8 @@ int runHeadless(const RunOptions& options) {
         where += fmt::format(" and {}, {} frames, {:.1f} MB", options.record, loop.recording->frames(),
                              1.0e-6 * static_cast<double>(loop.recording->bytes()));
     if (options.explain) fmt::print("{}", explain(*session, stats));
-    fmt::print("{}\n", where);
-    return graceful.interrupted() ? kInterrupted : kDone;
+    fmt::print("{}\n", printable(where));
+    return graceful.status();
 }
 
 }  // namespace rivulet

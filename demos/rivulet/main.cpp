@@ -1,16 +1,22 @@
 // The program `rivulet`: finds the verb (run, list, ...) and runs it. Each verb is one file, verb_*.cpp.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <new>
+#include <system_error>
 
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "engine/core/descriptor.h"
+#include "engine/core/exception_error.h"
+#include "engine/core/new_file.h"
 #include "engine/core/table.h"
 #include "fluid/scene/scene_file.h"
 
@@ -32,20 +38,59 @@ Table<Verb> verbs() {
 
 namespace {
 
-void printHelp(FILE* to) {
-    fmt::print(to, "rivulet {}: real-time water for OpenGL\n\nUsage: rivulet VERB [arguments]\n\nVerbs:\n", RIVULET_VERSION);
-    for (const Verb& verb : verbs().rows) fmt::print(to, "  {:<10}{}\n", verb.name, verb.doc);
-    fmt::print(
-        to, "\nRun 'rivulet VERB --help' for the arguments of a verb.\nStart with 'rivulet list scenes', then 'rivulet run dam_break'.\n");
+std::string helpText() {
+    std::string text =
+        fmt::format("rivulet {}: real-time water for OpenGL\n\nUsage: rivulet VERB [arguments]\n\nVerbs:\n", RIVULET_VERSION);
+    for (const Verb& verb : verbs().rows) text += fmt::format("  {:<10}{}\n", verb.name, verb.doc);
+    return text +
+           "\nRun 'rivulet VERB --help' for the arguments of a verb.\nStart with 'rivulet list scenes', then 'rivulet run dam_break'.\n";
+}
+
+// A file that is opened takes the lowest free descriptor: if stderr is closed, messages would be written into a data file. /dev/null takes
+// the place of closed ones, opened so that their use fails as before. False: there is no /dev/null.
+bool holdStandardStreams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+        if (open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream) return false;  // children inherit it
+    }
+    return true;
+}
+
+// Reports the exception that is being handled. Returns the exit status.
+int reportThrown() noexcept {
+    try {
+        const std::exception_ptr thrown = std::current_exception();
+        try {
+            std::rethrow_exception(thrown);
+        } catch (const std::system_error& error) {
+            if (std::ferror(stdout) == 0) return report(errorOf(thrown));
+            if (const int status = Graceful().status(); status != 0) return status;  // the terminal has gone, and said so by SIGHUP
+            if (error.code().value() == EPIPE)
+                return 128 + SIGPIPE;  // the reader has seen enough: no message, the status of other programs
+            return report(failed("the output cannot be written: " + reasonOf(error.code().value())));
+        } catch (...) {
+            return report(errorOf(thrown));
+        }
+    } catch (...) {  // there is no memory for a message either
+        (void)std::fputs("rivulet: out of memory\n", stderr);
+        return kFailed;
+    }
+}
+
+// An exception that nothing can handle, on another thread or in a destructor.
+[[noreturn]] void endAtOnce() {
+    removeTemporaryFiles();
+    if (std::current_exception() == nullptr) std::abort();
+    std::_Exit(reportThrown());
 }
 
 int dispatch(const Arguments& words) {
     if (words.empty()) {
-        printHelp(stderr);
+        (void)std::fputs(helpText().c_str(), stderr);
         return kBadUse;
     }
     if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
-        printHelp(stdout);
+        fmt::print("{}", helpText());
         return kDone;
     }
     if (words[0] == "--version") {
@@ -69,15 +114,14 @@ int dispatch(const Arguments& words) {
 }  // namespace rivulet
 
 int main(int argc, char** argv) {
-    rivulet::installInterrupts();
+    if (!rivulet::holdStandardStreams()) return rivulet::kFailed;
+    rivulet::installSignals();
+    std::set_terminate(rivulet::endAtOnce);
     try {
-        int code = rivulet::dispatch({argv + std::min(argc, 1), argv + argc});
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-            code = rivulet::report(rivulet::failed(fmt::format("cannot write the output: {}", std::strerror(errno))));
+        const int code = rivulet::dispatch({argv + std::min(argc, 1), argv + argc});
+        if (code == rivulet::kDone) rivulet::flushOutput();
         return code;
-    } catch (const std::bad_alloc&) {
-        return rivulet::report(rivulet::failed("out of memory; use fewer particles or coarser voxels"));
-    } catch (const std::exception& error) {  // thrown by a third-party library and not handled nearer to its cause
-        return rivulet::report(rivulet::failed(error.what()));
+    } catch (...) {
+        return rivulet::reportThrown();
     }
 }

@@ -33,6 +33,13 @@ struct RunOptions {
     Log log;
 };
 
+// The files of a headless run.
+struct OutputNames {
+    std::string stats, video;
+    std::string picturePrefix;  // "out/dam_break", of out/dam_break_0000.png
+};
+OutputNames namesOf(const RunOptions& options);
+
 // Each returns an ExitCode.
 int runHeadless(const RunOptions& options);
 int runWindow(const RunOptions& options);

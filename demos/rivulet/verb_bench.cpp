@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 #include <json/json.h>
 
+#include <filesystem>
+
 #include "demos/rivulet/bench_cases.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "demos/rivulet/outputs.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
 
@@ -35,7 +38,7 @@ void print(const BenchRow& row) {
     fmt::print("{:<44} {:>10.3f} {:>10.3f} {:>10.3f}  {:<10} {} runs\n", row.name, row.value.median, row.value.min, row.value.max, row.unit,
                row.value.count);
     for (const auto& [pass, ms] : row.passes) fmt::print("    {:<40} {:>10.3f}\n", pass, ms);
-    std::fflush(stdout);
+    flushOutput();
 }
 
 // The results as a Markdown page: one table row for each measurement, with the times of its passes.
@@ -78,6 +81,13 @@ int benchVerb(const Arguments& arguments) {
         cases.push_back(benchCases().find(name));
     }
 
+    const auto inOut = [&](const char* names) { return out.empty() ? "" : (std::filesystem::path(out) / names).string(); };
+    const NamedFile outputs[] = {
+        {"--json", jsonFile}, {"--markdown", markdownFile}, {"--out", inOut("chapter2.*"), true}, {"--out", inOut("chapter4.*"), true}};
+    if (Status apart = checkOutputs(outputs, {}); !apart) return report(apart.error());
+    for (const std::string& file : {jsonFile, markdownFile})
+        if (!file.empty())
+            if (Status writable = checkWritable(file); !writable) return report(writable.error());
     if (!out.empty())
         if (Status made = makeFolder(out); !made) return report(made.error());
     Json::Value all(Json::objectValue);
@@ -95,7 +105,7 @@ int benchVerb(const Arguments& arguments) {
             all["rows"].append(jsonOf(benchCase->name, row));
         };
         if (Status done = benchCase->run(context); !done) return report(done.error());
-        if (Graceful().interrupted()) return kInterrupted;  // while pages were written
+        if (const Graceful pages; pages.interrupted()) return pages.status();  // while pages were written
     }
     const Graceful graceful;  // until here Ctrl-C exits at once: rows are printed, and there is nothing to close
     if (!jsonFile.empty()) {
@@ -107,7 +117,7 @@ int benchVerb(const Arguments& arguments) {
     }
     if (!markdownFile.empty())
         if (Status written = writeFileAtomic(markdownFile, markdownOf(all)); !written) return report(written.error());
-    return graceful.interrupted() ? kInterrupted : kDone;
+    return graceful.status();
 }
 
 }  // namespace rivulet

@@ -5,6 +5,7 @@
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
 #include "engine/app/capture.h"
+#include "engine/core/message_line.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/validate/chart.h"
@@ -32,8 +33,8 @@ int chartStability(Device& device, Progress& progress, const std::string& folder
     }
     const Graceful graceful;
     if (Status written = writeEnvelope(folder, all, machineName()); !written) return report(written.error());
-    fmt::print("{}\n", (std::filesystem::path(folder) / "stability.md").string());
-    return graceful.interrupted() ? kInterrupted : kDone;
+    fmt::print("{}\n", printable((std::filesystem::path(folder) / "stability.md").string()));
+    return graceful.status();
 }
 
 // The error of the drawn surface and its cost: surface.md with a table and a chart.
@@ -42,8 +43,8 @@ int chartSurface(const SurfaceChartRequest& request, const std::string& folder, 
     if (!chart) return report(chart.error());
     const Graceful graceful;
     if (Status written = writeSurfaceChart(*chart, folder, machineName(), command); !written) return report(written.error());
-    fmt::print("{}\n", (std::filesystem::path(folder) / "surface.md").string());
-    return graceful.interrupted() ? kInterrupted : kDone;
+    fmt::print("{}\n", printable((std::filesystem::path(folder) / "surface.md").string()));
+    return graceful.status();
 }
 
 // Speed against accuracy: speed_accuracy.md with a table and charts.
@@ -55,8 +56,8 @@ int chartMethods(const ChartRequest& request, const std::string& folder) {
     for (const std::string& name : request.names) command += ' ' + name;
     if (request.quick) command += " --quick";
     if (Status written = writeChart(*chart, folder, machineName(), command); !written) return report(written.error());
-    fmt::print("{}\n", (std::filesystem::path(folder) / "speed_accuracy.md").string());
-    return graceful.interrupted() ? kInterrupted : kDone;
+    fmt::print("{}\n", printable((std::filesystem::path(folder) / "speed_accuracy.md").string()));
+    return graceful.status();
 }
 
 }  // namespace

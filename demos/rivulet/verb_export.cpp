@@ -7,12 +7,15 @@
 #include "demos/rivulet/asked_device.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "demos/rivulet/outputs.h"
 #include "demos/rivulet/run_options.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
+#include "engine/core/message_line.h"
 #include "fluid/io/export.h"
 #include "fluid/io/marching_cubes.h"
 #include "fluid/io/mesh_file.h"
+#include "fluid/scene/scene_inputs.h"
 #include "fluid/session/cpu_fallback.h"
 #include "fluid/session/run_stats.h"
 
@@ -55,8 +58,15 @@ class Writer {
         frame_.up = request.up == "z" ? UpAxis::z : UpAxis::y;
     }
 
-    // Creates the folder and checks that the files can be written, before the simulation starts.
-    Status open() const {
+    // Creates the folder and checks that the files can be written and replace no file that is read, before the simulation starts.
+    Status open(const SceneFile& scene) const {
+        std::vector<NamedFile> outputs, inputs;
+        if (particles_ != nullptr)
+            outputs.push_back({"--format", inFolder(fmt::format("{}_particles_*.{}", name_, particles_->ending)), true});
+        if (particles_ != nullptr) outputs.push_back({"--format", inFolder(collection())});
+        if (surfaces_ != nullptr) outputs.push_back({"--surface", inFolder(fmt::format("{}_*.{}", name_, surfaces_->name)), true});
+        for (const SceneInput& input : inputsOf(scene)) inputs.push_back({input.name, input.path});
+        if (Status apart = checkOutputs(outputs, inputs); !apart) return apart;
         if (Status made = makeFolder(folder_.string()); !made) return made;
         if (particles_ != nullptr)
             if (Status writable = checkWritable(inFolder(particleFile(0))); !writable) return writable;
@@ -83,12 +93,12 @@ class Writer {
         const std::string at = (folder_ / name_).string();
         if (!files_.empty()) {
             const std::string list = particles_->name == std::string_view("vtk") ? fmt::format(" and {}", inFolder(collection())) : "";
-            fmt::print("{} {} {}_particles_*.{}{}, {} particles on average\n", files_.size(), files_.size() == 1 ? "file" : "files", at,
-                       particles_->ending, list, counted_ / files_.size());
+            fmt::print("{} {} {}_particles_*.{}{}, {} particles on average\n", files_.size(), files_.size() == 1 ? "file" : "files",
+                       printable(at), particles_->ending, printable(list), counted_ / files_.size());
         }
         if (meshes_ > 0)
-            fmt::print("{} {} {}_*.{}, {} triangles on average\n", meshes_, meshes_ == 1 ? "surface" : "surfaces", at, surfaces_->name,
-                       triangles_ / meshes_);
+            fmt::print("{} {} {}_*.{}, {} triangles on average\n", meshes_, meshes_ == 1 ? "surface" : "surfaces", printable(at),
+                       surfaces_->name, triangles_ / meshes_);
     }
 
   private:
@@ -141,7 +151,7 @@ int exportAs(const ExportRequest& request, const SceneFile& scene) {
     const Result<int> frames = framesOf(request.seconds.value_or(scene.duration), scene, request.seconds ? "--seconds" : "duration");
     if (!frames) return report(frames.error());
     Writer writer(request, scene.name);
-    if (Status writable = writer.open(); !writable) return report(writable.error());
+    if (Status writable = writer.open(scene); !writable) return report(writable.error());
     AskedDevice asked = askedDevice(request.backend, log, request.device);
     std::optional<Progress> opening(std::in_place, scene.name);
     auto opened = openSession(scene, *asked.device, log, request.backend, opening->steps());
@@ -163,7 +173,7 @@ int exportAs(const ExportRequest& request, const SceneFile& scene) {
         if (Status written = writer.add(f, session->world()); !written) return report(written.error());
     }
     if (Status closed = writer.close(); !closed) return report(closed.error());
-    if (graceful.interrupted()) return kInterrupted;
+    if (graceful.interrupted()) return graceful.status();
     if (writer.empty())
         return report(failed(fmt::format("{} has no particles in its first {:.3g} s, so nothing was written; use a larger --seconds",
                                          session->scene().name, session->world().time())));

@@ -3,6 +3,7 @@
 #include "demos/rivulet/cli.h"
 #include "engine/compute/device_cl.h"
 #include "engine/core/json.h"
+#include "engine/core/message_line.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
@@ -15,7 +16,7 @@ namespace rivulet {
 
 namespace {
 
-void row(std::string_view name, std::string_view doc) { fmt::print("{:<18}{}\n", name, doc); }
+void row(std::string_view name, std::string_view doc) { fmt::print("{:<18}{}\n", messageLine(name), messageLine(doc)); }
 
 template <class Row>
 void rows(const Table<Row>& table) {
@@ -25,7 +26,7 @@ void rows(const Table<Row>& table) {
 void scenes() {
     for (const SceneListing& scene : listScenes()) {
         row(scene.name, scene.doc);
-        fmt::print("{:<18}{}\n", "", scene.path);
+        fmt::print("{:<18}{}\n", "", printable(scene.path));
     }
 }
 

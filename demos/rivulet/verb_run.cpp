@@ -3,10 +3,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "demos/rivulet/cli.h"
+#include "demos/rivulet/outputs.h"
 #include "demos/rivulet/run_options.h"
 #include "fluid/render/backend.h"
+#include "fluid/scene/scene_inputs.h"
 #include "fluid/session/cooperation.h"
 #include "fluid/session/session.h"
 
@@ -41,7 +44,30 @@ Status checkReplay(const RunOptions& options, bool noRender) {
     return ok();
 }
 
+// The names of all files that the run reads and writes are known before it starts.
+Status checkFiles(const RunOptions& options, bool headless) {
+    const OutputNames to = namesOf(options);
+    const bool statistics = options.replay.empty() && (headless || !options.stats.empty());
+    std::vector<NamedFile> outputs = {
+        {"--stats", statistics ? to.stats : ""}, {"--trace", options.trace}, {"--save", options.save}, {"--record", options.record}};
+    if (headless && options.render) {
+        outputs.push_back({"--video", options.stills.empty() ? to.video : ""});
+        outputs.push_back({"--out", to.picturePrefix + "_*.png", true});
+    }
+    std::vector<NamedFile> inputs = {{"--resume", options.resume}, {"--replay", options.replay}};
+    for (const SceneInput& input : inputsOf(options.scene)) inputs.push_back({input.name, input.path});
+    return checkOutputs(outputs, inputs);
+}
+
 }  // namespace
+
+OutputNames namesOf(const RunOptions& options) {
+    const std::filesystem::path folder(options.out);
+    const std::string prefix = (folder / fileNameOf(options.scene.name)).string();
+    return {.stats = options.stats.empty() ? (folder / "stats.json").string() : options.stats,
+            .video = options.video.empty() ? prefix + ".mp4" : options.video,
+            .picturePrefix = prefix};
+}
 
 std::string fileNameOf(const std::string& sceneName) {
     std::string name;
@@ -184,6 +210,7 @@ int runVerb(const Arguments& arguments) {
         headless = true;
     }
     if (!options.stills.empty()) headless = true;
+    if (Status apart = checkFiles(options, headless || noRender); !apart) return report(apart.error());
     return headless || noRender ? runHeadless(options) : runWindow(options);
 }
 

@@ -9,8 +9,10 @@
 #include "demos/rivulet/asked_device.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "demos/rivulet/outputs.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
+#include "engine/core/message_line.h"
 #include "fluid/render/backend.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/sim/methods/method.h"
@@ -48,7 +50,7 @@ Json::Value jsonOf(const PhysicsCase& row, const char* backend, const Outcome& o
 
 void print(const PhysicsCase& row, const Outcome& o) {
     if (!o.refused.empty()) {
-        fmt::print("{}, {}: refused: {}\n", row.name, o.method, o.refused);
+        fmt::print("{}, {}: refused: {}\n", row.name, o.method, messageLine(o.refused));
         return;
     }
     if (o.wallPerSecond == 0)
@@ -65,7 +67,7 @@ void print(const PhysicsCase& row, const Outcome& o) {
                    : f.pass()   ? "ok"
                    : f.fails()  ? "MISSED"
                                 : "missed: " + f.known);
-    std::fflush(stdout);
+    flushOutput();
 }
 
 // Errors of a case at its spacings, with the fitted order.
@@ -88,7 +90,7 @@ Json::Value printOrders(const PhysicsCase& row, const std::string& method, const
         all.append(v);
         fmt::print("{}   {}\n", line, std::isfinite(r.order) ? fmt::format("order {:.2f}", r.order) : "no order: an error is 0");
     }
-    std::fflush(stdout);
+    flushOutput();
     return all;
 }
 
@@ -112,6 +114,10 @@ Status checkRequest(ValidateRequest& request) {
             return badInput(fmt::format("the case {} has no sizes for --orders: name another case, or none for all that can", name));
     if (request.orders && !request.pictures.empty()) return badInput("--orders draws no pictures: leave out --pictures");
     if (request.orders && request.backend != "cpu") return badInput("--orders runs on the cpu: leave out --backend and --device");
+    const NamedFile outputs[] = {
+        {"--json", request.json},
+        {"--pictures", request.pictures.empty() ? "" : (std::filesystem::path(request.pictures) / "*.svg").string(), true}};
+    if (Status apart = checkOutputs(outputs, {}); !apart) return apart;
     if (!request.json.empty())
         if (Status writable = checkWritable(request.json); !writable) return writable;
     if (!request.pictures.empty()) return makeFolder(request.pictures);
@@ -196,7 +202,7 @@ int validateVerb(const Arguments& arguments) {
                 const std::string path = (std::filesystem::path(request.pictures) / fmt::format("{}_{}.svg", name, method)).string();
                 const Graceful graceful;
                 if (Status drawn = drawPlot(outcome->plot, path); !drawn) return report(drawn.error());
-                if (graceful.interrupted()) return kInterrupted;
+                if (graceful.interrupted()) return graceful.status();
             }
         }
     }
@@ -208,7 +214,7 @@ int validateVerb(const Arguments& arguments) {
         if (Status written = writeFileAtomic(request.json, Json::writeString(builder, all) + "\n"); !written)
             return report(written.error());
     }
-    if (graceful.interrupted()) return kInterrupted;
+    if (graceful.interrupted()) return graceful.status();
     return passed ? kDone : kFailed;
 }
 

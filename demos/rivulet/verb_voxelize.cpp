@@ -7,8 +7,11 @@
 #include "demos/rivulet/asked_device.h"
 #include "demos/rivulet/cli.h"
 #include "demos/rivulet/interrupt.h"
+#include "demos/rivulet/outputs.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
+#include "engine/core/input_file.h"
+#include "engine/core/message_line.h"
 #include "engine/core/readable_bytes.h"
 #include "engine/scene/import_assimp.h"
 #include "fluid/render/backend.h"
@@ -47,24 +50,18 @@ Status checkRequest(VoxelizeRequest& request) {
     if (Status right = checkEnding("--out", request.out, ".rvox"); !right) return right;
     if (Status right = checkEnding("--slices", request.slices, ".png"); !right) return right;
     if (Status right = checkEnding("--picture", request.picture, ".png"); !right) return right;
-    const std::string* files[] = {&request.out, &request.stats, &request.slices, &request.picture};
-    for (const std::string* file : files) {
-        if (file->empty()) continue;
-        for (const std::string* other : files) {
-            if (file < other && *file == *other)
-                return badInput(fmt::format("two outputs have the same file name '{}'; change one of them", *file));
-        }
-        if (*file == request.mesh)
-            return badInput(fmt::format("the output '{}' would overwrite the mesh; choose another file name", *file));
-    }
+    const NamedFile outputs[] = {
+        {"--out", request.out}, {"--stats", request.stats}, {"--slices", request.slices}, {"--picture", request.picture}};
+    const NamedFile inputs[] = {{"MESH", request.mesh}};
+    if (Status apart = checkOutputs(outputs, inputs); !apart) return apart;
     std::error_code none;
-    for (const std::string* file : files) {
-        if (fs::is_directory(*file, none)) return badInput(fmt::format("the output '{}' is a folder; choose a file name", *file));
+    for (const NamedFile& file : outputs) {
+        if (fs::is_directory(file.path, none)) return badInput(fmt::format("the output '{}' is a folder; choose a file name", file.path));
     }
-    if (!fs::exists(request.mesh, none)) return badInput(fmt::format("{} cannot be read: it does not exist", request.mesh));
-    for (const std::string* file : files) {
-        if (file->empty()) continue;
-        if (Status writable = checkWritable(*file); !writable) return writable;
+    if (Status readable = checkInput(request.mesh); !readable) return readable;
+    for (const NamedFile& file : outputs) {
+        if (file.path.empty()) continue;
+        if (Status writable = checkWritable(file.path); !writable) return writable;
     }
     return ok();
 }
@@ -126,7 +123,7 @@ void printMaterials(const std::vector<VoxelMaterial>& materials) {
 void printFigures(const VoxelizeRequest& request, const VoxelModel& model, const VoxelFile& file, size_t bytes, const Device& device,
                   double wholeMs) {
     const ivec3& size = model.bits.size;
-    fmt::print("{}\n", request.out);
+    fmt::print("{}\n", printable(request.out));
     fmt::print("{:<{}}{} x {} x {}, mode {}\n", "voxels", kColumn, size.x, size.y, size.z, request.mode);
     fmt::print("{:<{}}{:.6g} of the mesh's units\n", "edge", kColumn, model.bits.voxel);
     fmt::print("{:<{}}{} voxels\n", "surface", kColumn, model.labels.surface);
@@ -201,7 +198,7 @@ int voxelizeAs(const VoxelizeRequest& request) {
     const Graceful graceful;
     const Result<size_t> bytes = writeAll(request, *model, file, slices, picture, graceful);
     if (!bytes) return report(bytes.error());
-    if (graceful.interrupted()) return kInterrupted;
+    if (graceful.interrupted()) return graceful.status();
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     printFigures(request, *model, file, *bytes, *device, ms);
     return kDone;

@@ -9,14 +9,19 @@
 #include "engine/app/capture.h"
 #include "engine/app/window_glfw.h"
 #include "engine/core/file.h"
+#include "engine/core/message_line.h"
 #include "fluid/session/explain.h"
 #include "fluid/viewer/viewer.h"
 
 namespace rivulet {
 
+namespace {
+constexpr size_t kTitle = 80;  // characters
+}
+
 int runWindow(const RunOptions& options) {
     WindowGlfw::Options wish;
-    wish.title = "opening " + options.scene.name + " - rivulet";
+    wish.title = "opening " + messageLine(options.scene.name, kTitle) + " - rivulet";
     wish.width = options.width;
     wish.height = options.height;
     wish.scaled = !options.sized;
@@ -44,7 +49,7 @@ int runWindow(const RunOptions& options) {
                                   .showing = showing,
                                   .stop = options.save.empty() ? graceful.flag() : nullptr},  // a state is saved after a whole frame
                                  options.log);
-    if (graceful.interrupted()) return kInterrupted;
+    if (graceful.interrupted()) return graceful.status();
     if (closed) return kDone;
     if (!viewer) return report(viewer.error());
     Viewer& v = **viewer;
@@ -75,7 +80,7 @@ int runWindow(const RunOptions& options) {
         window->swap();
         if (v.scene().name != shown) {
             shown = v.scene().name;
-            window->setTitle(shown + " - rivulet");
+            window->setTitle(messageLine(shown, kTitle) + " - rivulet");
         }
         if (input.framebuffer.x <= 0 || input.framebuffer.y <= 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));  // nothing paces it
@@ -93,7 +98,7 @@ int runWindow(const RunOptions& options) {
         if (Status written = writeTrace(options.trace, v.wholeTimeline(), options.log); !written) return report(written.error());
     if (!options.save.empty())
         if (Status saved = saveTo(options.save, v.session()); !saved) return report(saved.error());
-    return graceful.interrupted() ? kInterrupted : kDone;
+    return graceful.status();
 }
 
 }  // namespace rivulet

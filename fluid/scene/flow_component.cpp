@@ -157,8 +157,9 @@ Status FlowComponent::readMarks(const std::string& meshPath, const std::string& 
     if (path.empty()) {
         fs::path beside(meshPath);
         beside.replace_extension(".json");
-        if (!fs::exists(beside)) beside = beside.parent_path() / "landmarks.json";
-        if (!fs::exists(beside)) return ok();
+        std::error_code ignored;
+        if (!fs::exists(beside, ignored)) beside = beside.parent_path() / "landmarks.json";
+        if (!fs::exists(beside, ignored)) return ok();
         path = beside.string();
     } else {
         Result<std::string> found = findAsset(path, sceneFolder);

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "engine/core/file.h"
+#include "engine/core/input_file.h"
 #include "engine/core/json.h"
 #include "engine/core/table.h"
 #include "fluid/sim/solids/solids.h"
@@ -289,7 +290,8 @@ class FileMover final : public ParamVisitor {
         const Result<std::string> before = findAsset(v, from_), then = findAsset(v, to_);
         std::error_code error;
         if (!before || (then && fs::equivalent(*before, *then, error))) return;
-        v = fs::absolute(*before).lexically_normal().string();
+        const fs::path whole = fs::absolute(*before, error);
+        if (!error) v = whole.lexically_normal().string();
     }
 
   protected:
@@ -325,7 +327,10 @@ Result<std::string> findAsset(const std::string& path, const std::string& sceneF
         for (const fs::path& folder : assetFolders()) places.push_back(folder / path);
     }
     for (const fs::path& place : places)
-        if (isFile(place)) return place.string();
+        if (isFile(place)) {
+            const Status readable = checkInput(place.string());
+            return readable ? Result<std::string>(place.string()) : readable.error();
+        }
     std::error_code error;
     if (fs::is_directory(path, error)) return badInput(fmt::format("{} is a folder, not a file", path));
     if (places.size() == 1) return badInput(fmt::format("{} does not exist", path));

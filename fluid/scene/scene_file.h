@@ -104,7 +104,7 @@ Status applyPreset(SceneFile& scene, const std::string& name);
 Status checkScene(const SceneFile& scene);
 
 // The first that exists of: `path` itself; `path` in the scene's folder, in the folders of RIVULET_ASSETS (separated by colons), in the
-// assets/ of the source tree, in the installed assets/. Error (badInput): none exists; the sentence lists all places.
+// assets/ of the source tree, in the installed assets/. Error (badInput): none exists; the sentence lists all places. Or as openInput.
 Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder);
 
 // Every scene file found in the places that findAsset searches under scenes/, with its name and doc.

@@ -44,6 +44,7 @@ Outcome runCommand(const std::vector<std::string>& words, const RunOptions& opti
         dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
         dup2(open(out.c_str(), O_WRONLY | (options.stdoutFile.empty() ? O_CREAT | O_TRUNC : 0), 0600), STDOUT_FILENO);
         dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+        if (options.before) options.before();
         execvp(argv[0], argv.data());
         _exit(127);
     }

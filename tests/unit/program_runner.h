@@ -22,6 +22,7 @@ struct RunOptions {
     std::map<std::string, std::string> environment;  // set on top; an empty value takes the variable away
     std::function<int(pid_t)> whileRunning;          // called every 10 ms with the process; returns a signal to send, or 0
     std::string stdoutFile;                          // empty: captured
+    std::function<void()> before = {};               // called in the new process before the program starts
 };
 
 // There is no display for the program unless `environment` gives one.

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <new>
 #include <optional>
 #include <string>
 
+#include "engine/core/exception_error.h"
+#include "engine/core/message_line.h"
 #include "engine/gpu/current_context.h"
 #include "engine/gpu/host_state.h"
 #include "fluid/capi/handles.h"
@@ -52,8 +53,9 @@ inline rivulet_status statusOf(const Status& status, rivulet_error* why) {
     if (why != nullptr) why->message[0] = '\0';
     if (status) return RIVULET_OK;
     if (why != nullptr) {
-        const std::string& text = status.error().message;
-        const size_t n = std::min(text.size(), sizeof why->message - 1);
+        const std::string text = messageLine(status.error().message);
+        size_t n = std::min(text.size(), sizeof why->message - 1);
+        while (n > 0 && n < text.size() && (static_cast<unsigned char>(text[n]) & 0xC0U) == 0x80) --n;  // no half character
         std::memcpy(why->message, text.data(), n);
         why->message[n] = '\0';
     }
@@ -65,12 +67,8 @@ template <class Work>
 rivulet_status guarded(rivulet_error* why, const Work& work) {
     try {
         return statusOf(work(), why);
-    } catch (const std::bad_alloc&) {
-        return statusOf(failed("out of memory"), why);
-    } catch (const std::exception& e) {
-        return statusOf(failed(e.what()), why);
     } catch (...) {
-        return statusOf(failed("an unknown exception was thrown"), why);
+        return statusOf(errorOf(std::current_exception()), why);
     }
 }
 

@@ -48,7 +48,7 @@ namespace {
 Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     if (o.log != nullptr)
         c.log.sink = [log = o.log, user = o.log_user](LogLevel level, std::string_view text) {
-            log(user, static_cast<rivulet_level>(level), std::string(text).c_str());
+            log(user, static_cast<rivulet_level>(level), messageLine(text).c_str());
         };
     c.gl = noGl("no function was given that finds OpenGL's functions");
     if (o.find != nullptr) {

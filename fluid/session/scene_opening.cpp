@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "engine/core/exception_error.h"
 #include "engine/gpu/device_gl.h"
 
 namespace rivulet {
@@ -56,6 +57,8 @@ Result<OpenedScene> SceneOpening::work() {
         return opened;
     } catch (const std::bad_alloc&) {
         return failed(request_.scene.name + ": the computer has not enough memory for it");
+    } catch (...) {  // on this thread nothing else handles it
+        return errorOf(std::current_exception());
     }
 }
 

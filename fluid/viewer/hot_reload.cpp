@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/message_line.h"
 #include "engine/core/param_list.h"
 #include "engine/ui/style.h"
 
@@ -86,7 +87,7 @@ void HotReload::takeShaders(const std::vector<std::string>& written, SceneRender
 std::optional<SceneFile> HotReload::takeScene(const SceneFile& shown) {
     Result<SceneFile> read = loadScene(read_.source.path, read_.source.assignments, read_.source.preset);
     if (!read) {
-        sceneTrouble_ = read.error().message;
+        sceneTrouble_ = messageLine(read.error().message);
         return std::nullopt;
     }
     sceneTrouble_.clear();

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/message_line.h"
+
 namespace rivulet {
 
 void MessageBar::draw(std::string text, double seconds, bool hidden) {
     constexpr double kReading = 12;  // s
+    text = messageLine(text);
     const bool same = text == shown_;
     shownFor_ = same ? shownFor_ + seconds : 0;
     shown_ = std::move(text);

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/message_line.h"
+
 namespace rivulet {
 
 class Notices {
@@ -14,7 +16,7 @@ class Notices {
         constexpr size_t kMost = 4;
         const std::lock_guard<std::mutex> lock(mutex_);
         if (sentences_.size() == kMost) sentences_.erase(sentences_.begin());
-        sentences_.emplace_back(text);
+        sentences_.push_back(messageLine(text));
     }
     std::vector<std::string> all() const {
         const std::lock_guard<std::mutex> lock(mutex_);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "engine/core/message_line.h"
 #include "engine/ui/style.h"
 #include "fluid/viewer/screen_capture.h"
 
@@ -50,7 +51,7 @@ std::optional<std::string> SaveDialog::draw(const SceneFile& scene) {
     if (!(pressed || (entered && !there)) || path_.empty()) return std::nullopt;
     SceneFile written = scene;
     if (Status saved = saveScene(written, path); !saved) {
-        trouble_ = saved.error().message;
+        trouble_ = messageLine(saved.error().message);
         refocus_ = true;
         return std::nullopt;
     }

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "engine/core/message_line.h"
 #include "engine/scene/load_image.h"
 #include "engine/ui/style.h"
 
@@ -30,8 +31,15 @@ bool holds(const std::string& text, const std::string& part) {
 void SceneBrowser::show(bool yes) {
     shown_ = yes;
     trouble_.clear();
-    if (yes) scenes_ = listScenes();
+    if (!yes) return;
+    scenes_ = listScenes();
+    for (SceneListing& scene : scenes_) {
+        scene.name = messageLine(scene.name);
+        scene.doc = messageLine(scene.doc);
+    }
 }
+
+void SceneBrowser::refuse(const std::string& why) { trouble_ = messageLine(why); }
 
 const gpu::Texture* SceneBrowser::pictureOf(const std::string& scene) {
     const auto known = pictures_.find(scene);

@@ -18,7 +18,7 @@ class SceneBrowser {
     bool shown() const { return shown_; }
     // Call it while shown. Returns the path of a chosen scene, for loadScene; the caller then calls show(false) or refuse().
     std::optional<std::string> draw();
-    void refuse(std::string why) { trouble_ = std::move(why); }
+    void refuse(const std::string& why);
 
   private:
     bool card(size_t index, float width);

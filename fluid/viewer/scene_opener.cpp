@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "engine/core/message_line.h"
+
 namespace rivulet {
 
 void SceneOpener::begin(Share share, std::string clDevice, const GlFacts& gl, const Log& log) {
@@ -75,7 +77,8 @@ bool SceneOpener::drawProgress(const SceneOpening& work, float height) {
         "opening", nullptr,
         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());  // without the focus, which a person may need elsewhere
-    ImGui::Text("%s: %s", work.scene().name.c_str(), step.what.c_str());
+    constexpr size_t kName = 60;                                  // characters
+    ImGui::Text("%s: %s", messageLine(work.scene().name, kName).c_str(), step.what.c_str());
     ImGui::ProgressBar(static_cast<float>(step.share), ImVec2(ImGui::GetFontSize() * 20, 0));
     ImGui::SameLine();
     const bool cancel = ImGui::Button("cancel");

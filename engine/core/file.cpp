@@ -8,7 +8,6 @@
 #include <cerrno>
 
 #include "engine/core/input_file.h"
-#include "engine/core/new_file.h"
 
 namespace rivulet {
 
@@ -36,11 +35,11 @@ Result<std::string> readFile(const std::string& path, size_t maxBytes) {
     return text;
 }
 
-Status writeFileAtomic(const std::string& path, std::string_view bytes) {
-    Result<NewFile> file = NewFile::open(path);
+Status writeFileAtomic(const std::string& path, std::string_view bytes, unsigned mode, Sync sync) {
+    Result<NewFile> file = NewFile::open(path, mode);
     if (!file) return file.error();
     if (Status written = file->write(bytes); !written) return written;
-    return file->commit();
+    return file->commit(sync);
 }
 
 Status checkWritable(const std::string& path) {

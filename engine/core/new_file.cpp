@@ -81,12 +81,12 @@ struct NewFile::Impl {
     }
 
     // 0, or errno.
-    int create(mode_t mode) {
+    int create(unsigned mode) {
         for (int attempt = 0;; ++attempt) {
             temporary = nameBeside(target, attempt);
             listed.reset(::strdup(temporary.c_str()));
             place = listed ? enlist(listed.get()) : nullptr;
-            file = openDescriptor(temporary, O_WRONLY | O_CREAT | O_EXCL);
+            file = openDescriptor(temporary, O_WRONLY | O_CREAT | O_EXCL, mode);
             if (file.valid()) break;
             const int failure = errno;
             forget();
@@ -108,7 +108,7 @@ Error NewFile::cannotWrite(int error, std::string_view part) const {
                               impl_->older ? "; the older file is unchanged" : ""));
 }
 
-Result<NewFile> NewFile::open(const std::string& path) {
+Result<NewFile> NewFile::open(const std::string& path, unsigned mode) {
     NewFile made(std::make_unique<Impl>());
     Impl& to = *made.impl_;
     to.path = to.target = path;
@@ -129,7 +129,7 @@ Result<NewFile> NewFile::open(const std::string& path) {
         if (!whole || ::access(path.c_str(), W_OK) != 0) return refused(reasonOf(errno));
         to.older = true;
     }
-    if (const int error = to.create(facts.st_mode & 07777U); error != 0) {
+    if (const int error = to.create(exists ? facts.st_mode & 07777U : mode); error != 0) {
         std::error_code ignored;
         if (error == ENOENT)
             return refused(folder.empty() || fs::exists(folder, ignored) ? "no file can be made in its folder"
@@ -151,9 +151,9 @@ Status NewFile::write(std::string_view bytes, std::string_view part) {
     return to.error == 0 ? ok() : Status(cannotWrite(to.error, part));
 }
 
-Status NewFile::commit() {
+Status NewFile::commit(Sync sync) {
     Impl& to = *impl_;
-    const bool cannotSync = to.error == 0 && ::fsync(to.file.get()) != 0;
+    const bool cannotSync = to.error == 0 && sync == Sync::disk && ::fsync(to.file.get()) != 0;
     if (cannotSync && errno != EINVAL && errno != ENOTSUP) to.error = errno;  // a pipe has no disk
     if (const int closed = to.file.close(); closed != 0 && to.error == 0) to.error = closed;
     if (to.error == 0 && !to.temporary.empty()) {
@@ -163,7 +163,7 @@ Status NewFile::commit() {
             to.forget();
     }
     if (to.error != 0) return cannotWrite(to.error);
-    syncFolderOf(to.target);
+    if (sync == Sync::disk) syncFolderOf(to.target);
     return ok();
 }
 

@@ -10,10 +10,15 @@
 
 namespace rivulet {
 
+// Whether a file must be on the disk before it takes its name, so that it is whole after a power failure too: true of all but caches, whose
+// entries have checksums.
+enum class Sync { disk, none };
+
 class NewFile {
   public:
-    // Follows a link. A device or pipe is opened and written into. Error (failed): no such file can be made, and why; nothing has changed.
-    static Result<NewFile> open(const std::string& path);
+    // Follows a link. A device or pipe is opened and written into. `mode`: permissions, less the umask, if no older file gives its own.
+    // Error (failed): no such file can be made, and why; nothing has changed.
+    static Result<NewFile> open(const std::string& path, unsigned mode = 0666);
     // Without commit(): the temporary file is removed.
     ~NewFile();
     NewFile(NewFile&&) noexcept;
@@ -21,8 +26,8 @@ class NewFile {
 
     // Appends. `part`: what the bytes are, for the message. Error (failed): disk full; commit() then fails too.
     Status write(std::string_view bytes, std::string_view part = {});
-    // Waits until the disk has the bytes, then gives the file its name. Error (failed): an older file of this name is unchanged.
-    Status commit();
+    // Gives the file its name. Error (failed): an older file of this name is unchanged.
+    Status commit(Sync sync = Sync::disk);
     // Gives the file its name now, if no file has it. What is written then stays, complete or not: for a file that is read up to where it
     // ends.
     void publish();

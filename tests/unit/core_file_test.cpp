@@ -60,6 +60,10 @@ TEST_F(FileTest, AnExistingFileKeepsItsModeAndALinkStaysALink) {
     EXPECT_TRUE(fs::is_symlink(path("link")));
     EXPECT_EQ(*readFile(path("a")), "2");
     EXPECT_EQ(static_cast<unsigned>(fs::status(path("a")).permissions()), 0640U);
+    ASSERT_EQ(errorOf(writeFileAtomic(path("a"), "3", 0600, Sync::none)), "");
+    EXPECT_EQ(static_cast<unsigned>(fs::status(path("a")).permissions()), 0640U) << "the older file's";
+    ASSERT_EQ(errorOf(writeFileAtomic(path("private"), "1", 0600, Sync::none)), "");
+    EXPECT_EQ(static_cast<unsigned>(fs::status(path("private")).permissions()), 0600U);
 }
 
 TEST_F(FileTest, AFailedWriteReportsTheReasonAndLeavesNoFile) {

@@ -505,8 +505,8 @@ TEST(ProgramFiles, NamesDoNotControlTheTerminal) {
     size_t printed = 0;
     for (const Words& words :
          {Words{"run", evil + ".json", "--no-render", "--backend", "cpu", "--frames", "1", "--stats", evil + ".stats"},
-          Words{"list", "scenes"}, Words{evil}, Words{"run", evil}, Words{"run", "s", "--" + evil},
-          Words{"run", "mesh.json", "--no-render", "--backend", "cpu"}, Words{"list", evil},
+          Words{"list", "scenes"}, Words{evil}, Words{"run", evil, "--no-render", "--backend", "cpu", "--frames", "1"},
+          Words{"run", "s", "--" + evil}, Words{"run", "mesh.json", "--no-render", "--backend", "cpu"}, Words{"list", evil},
           Words{"run", evil + ".json", "--no-render", "--backend", "cpu", "--set", evil + "=1"},
           Words{"run", evil + ".json", "--no-render", "--backend", "cpu", "--preset", evil}, Words{"voxelize", evil},
           Words{"voxelize", evil + ".json"}, Words{"run", evil + ".json", "--no-render", "--backend", "cpu", "--resume", evil},

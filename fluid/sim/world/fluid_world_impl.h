@@ -1,4 +1,4 @@
-// FluidWorld::Impl: the parts of a world, only for fluid_world*.cpp: created in _start, stepped in fluid_world.cpp, saved in _state.
+// FluidWorld::Impl: the parts of a world, only for fluid_world*.cpp: created in _start, stepped in _step, saved in _state.
 #pragma once
 
 #include <memory>

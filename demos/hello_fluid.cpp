@@ -54,6 +54,7 @@ Status run(GLFWwindow* window, int frames, const char* picture, bool dry) {
         {
             const gpu::HostState keep;  // saves the host's state: stepping and uploading may use OpenGL
             (*world)->step({}, 1.0 / 60);
+            if (Status stepped = (*world)->lastStep(); !stepped) return stepped;
             auto fluid = upload.view(**world, {});
             if (!fluid) return fluid.error();
             if (Status drawn = dry ? ok() : (*water)->draw(view, *fluid, {}, {.width = kWidth, .height = kHeight}); !drawn) return drawn;

@@ -76,6 +76,7 @@ Status benchMethods(const BenchContext& context) {
             while ((*world)->time() < kSeconds - 1.0e-9) {
                 const auto begin = std::chrono::steady_clock::now();
                 (*world)->step({.gravity = p.gravity}, 1.0 / 60);
+                if (status = (*world)->lastStep(); !status) return 0.0;
                 wall += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
                 compression += (*world)->stats().avgCompression;
                 worst = std::max(worst, (*world)->stats().maxCompression);

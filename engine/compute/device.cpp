@@ -20,9 +20,13 @@ const char* backendName(Backend backend) {
 }
 
 Status Device::checkLimit(size_t bytes) const {
-    if (bytesAllocated() + bytes <= mostBytes_) return ok();
-    return failed(fmt::format("cannot allocate {}: {} of the allowed {} are in use; raise the limit or use fewer particles",
-                              readableBytes(bytes), readableBytes(bytesAllocated()), readableBytes(mostBytes_)));
+    const size_t used = bytesAllocated();
+    if (used > mostBytes_ || bytes > mostBytes_ - used)
+        return noMemory(fmt::format("cannot allocate {}: {} of the allowed {} are in use; raise the limit or use fewer particles",
+                                    readableBytes(bytes), readableBytes(used), readableBytes(mostBytes_)));
+    if (mayAllocate_ && !mayAllocate_(bytes))
+        return noMemory(fmt::format("cannot allocate {}: the host refuses it; use fewer particles", readableBytes(bytes)));
+    return ok();
 }
 
 Buffer::~Buffer() {

@@ -119,7 +119,8 @@ class Device {
     // The kernels made so far, with their defines: "fluid/methods/wcsph_density;MATTER=1;PERIODIC=1".
     virtual std::vector<std::string> kernels() const = 0;
 
-    // A Buffer filled with zeros. 0 bytes give a valid Buffer of 0 bytes. Error (failed): out of memory, or above limitMemory().
+    // A Buffer filled with zeros. 0 bytes give a valid Buffer of 0 bytes. Error (noMemory): out of memory, above limitMemory(), or
+    // onAllocate() refuses.
     virtual Result<Buffer> allocate(size_t bytes) = 0;
     virtual void release(uint64_t handle, size_t bytes) = 0;  // Buffer's destructor calls it
     virtual void write(Buffer& to, std::span<const std::byte> bytes, size_t offset = 0) = 0;
@@ -157,6 +158,9 @@ class Device {
     virtual size_t bytesAllocated() const = 0;
     // From now on allocate() fails if it would raise bytesAllocated() above `bytes`.
     void limitMemory(size_t bytes) { mostBytes_ = bytes; }
+    // From now on allocate() asks `may` first, and fails if that returns false: for a host that divides memory itself. Empty: it never
+    // asks.
+    void onAllocate(std::function<bool(size_t bytes)> may) { mayAllocate_ = std::move(may); }
     // From now on `sink` receives the span of each dispatch, on a GPU some frames late, during poll() or takeTimes(). An empty sink ends
     // it.
     void onSpan(SpanSink sink) { span_ = std::move(sink); }
@@ -173,7 +177,7 @@ class Device {
     }
 
   protected:
-    Status checkLimit(size_t bytes) const;  // error (failed): above limitMemory()
+    Status checkLimit(size_t bytes) const;  // error (failed): above limitMemory(), or onAllocate() refuses
     // Whether the next dispatch, or the next chunk of one, must not run. From any thread.
     bool skips() {
         if (interrupted()) return true;
@@ -183,6 +187,7 @@ class Device {
     }
     SpanSink span_;
     size_t mostBytes_ = SIZE_MAX;
+    std::function<bool(size_t)> mayAllocate_;
     DeviceHealth health_;
 
   private:

@@ -289,8 +289,8 @@ Result<Buffer> ClDevice::allocate(size_t bytes) {
     if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
     if (bytes > info_.maxBufferBytes) {
         if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("allows no buffer of {} MiB", bytes >> 20U)};
-        return failed(fmt::format("{} allows buffers of up to {} MiB, but {} MiB are needed; use fewer particles or coarser voxels",
-                                  info_.name, info_.maxBufferBytes >> 20U, bytes >> 20U));
+        return noMemory(fmt::format("{} allows buffers of up to {} MiB, but {} MiB are needed; use fewer particles or coarser voxels",
+                                    info_.name, info_.maxBufferBytes >> 20U, bytes >> 20U));
     }
     const size_t padded = paddedBytes(bytes);
     cl_int code = bytesAllocated_ + bytes > memoryLimit_ ? CL_MEM_OBJECT_ALLOCATION_FAILURE : CL_SUCCESS;
@@ -307,7 +307,7 @@ Result<Buffer> ClDevice::allocate(size_t bytes) {
             return failed(fmt::format("OpenCL on {} {}; use --backend cpu", info_.name, health_.why));
         }
         if (health_.state == DeviceHealth::works) health_ = {DeviceHealth::full, fmt::format("is out of memory: {}", clErrorName(code))};
-        return failed(
+        return noMemory(
             fmt::format("{} is out of memory: cannot allocate {} MiB, {} MiB are in use ({}); use fewer particles or coarser voxels",
                         info_.name, bytes >> 20U, bytesAllocated_ >> 20U, clErrorName(code)));
     }

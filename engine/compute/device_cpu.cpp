@@ -197,9 +197,11 @@ std::vector<std::string> CpuDevice::kernels() const {
 
 Result<Buffer> CpuDevice::allocate(size_t bytes) {
     if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
-    const Block block = impl_->take((std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment + kAlignment);
+    // More than half of all addresses is a size that overflowed.
+    const Block block =
+        bytes > SIZE_MAX / 2 ? Block{} : impl_->take((std::max<size_t>(bytes, 1) + kAlignment - 1) / kAlignment * kAlignment + kAlignment);
     if (block.from == nullptr)
-        return failed(fmt::format("out of memory: cannot allocate {} MiB; use fewer particles or coarser voxels", bytes >> 20U));
+        return noMemory(fmt::format("out of memory: cannot allocate {} MiB; use fewer particles or coarser voxels", bytes >> 20U));
     bytesAllocated_ += bytes;
     return Buffer(*this, placeIn(block), bytes);
 }
@@ -207,11 +209,15 @@ Result<Buffer> CpuDevice::allocate(size_t bytes) {
 void CpuDevice::release(uint64_t handle, size_t bytes) {
     Block block;
     std::memcpy(&block, reinterpret_cast<const std::byte*>(static_cast<uintptr_t>(handle)) - sizeof block, sizeof block);
-    if (keepsReleased_)
-        impl_->kept.emplace(block.bytes, block.from);
-    else
-        std::free(block.from);
     bytesAllocated_ -= bytes;
+    if (keepsReleased_) {
+        try {
+            impl_->kept.emplace(block.bytes, block.from);
+            return;
+        } catch (const std::bad_alloc&) {  // a destructor calls this
+        }
+    }
+    std::free(block.from);
 }
 
 void CpuDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {

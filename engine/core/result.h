@@ -17,10 +17,12 @@ enum class Fault { badInput, failed };
 struct Error {
     std::string message;  // one sentence, no trailing newline
     Fault fault = Fault::badInput;
+    bool memory = false;  // memory ran out: the same may succeed when there is some again
 };
 
 inline Error badInput(std::string message) { return {std::move(message), Fault::badInput}; }
 inline Error failed(std::string message) { return {std::move(message), Fault::failed}; }
+inline Error noMemory(std::string message) { return {std::move(message), Fault::failed, true}; }
 
 template <class T>
 class [[nodiscard]] Result {

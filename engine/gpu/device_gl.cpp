@@ -204,13 +204,14 @@ Result<size_t> GlDevice::reload() {
 Result<Buffer> GlDevice::allocate(size_t bytes) {
     if (Status allowed = checkLimit(bytes); !allowed) return allowed.error();
     if (bytes > info_.maxBufferBytes)
-        return failed(fmt::format(
+        return noMemory(fmt::format(
             "a buffer of {} bytes ({:.1f} MiB) is needed, but {} allows {} bytes ({:.1f} MiB); use fewer particles or coarser voxels",
             bytes, static_cast<double>(bytes) / 1048576.0, info_.name, info_.maxBufferBytes,
             static_cast<double>(info_.maxBufferBytes) / 1048576.0));
     Result<gpu::Buffer> buffer = gpu::Buffer::create(bytes);
     if (!buffer)
-        return failed(fmt::format("{} ({:.1f} MiB are in use)", buffer.error().message, static_cast<double>(bytesAllocated_) / 1048576.0));
+        return noMemory(
+            fmt::format("{} ({:.1f} MiB are in use)", buffer.error().message, static_cast<double>(bytesAllocated_) / 1048576.0));
     bytesAllocated_ += bytes;
     return Buffer(*this, buffer->release(), bytes);
 }

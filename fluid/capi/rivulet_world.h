@@ -97,6 +97,8 @@ RIVULET_API rivulet_status rivulet_world_create(rivulet_context* context, const 
                                                 rivulet_error* why);
 RIVULET_API void rivulet_world_destroy(rivulet_world* world);
 /* Advances by a frame of `seconds`, in as many substeps as stability needs; 0 or less: nothing happens. `inputs` may be NULL.
+   RIVULET_FAILED: memory ran out. The world keeps the substeps of the frame that were whole, as the time of its statistics says, and is
+   valid; if there were none, nothing has changed, and the same call succeeds with the same results once memory is free.
    RIVULET_FAILED, after rivulet_context_stop: while a stop is asked a step does nothing, and the world stays as it was; a step that it
    interrupted leaves the world incomplete: then end the stop, and reset or restore the world before the next step. */
 RIVULET_API rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why);

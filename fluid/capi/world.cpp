@@ -270,7 +270,7 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (context.device->stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
         if (const DeviceHealth health = world->context->device->health(); health.state == DeviceHealth::lost)
             return failed(fmt::format("{} {}; create a context of another backend", world->context->name, health.why));
-        return ok();
+        return world->world->lastStep();
     });
 }
 
@@ -278,7 +278,7 @@ rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         world->world->reset();
         world->poses = world->world->poses();
-        return ok();
+        return world->world->lastStep();
     });
 }
 

@@ -46,7 +46,12 @@ Result<OpenedSession> openSession(SceneFile scene, Device& device, const Log& lo
 Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, const Log& log) {
     if (!session.replayed()) return session.replayed().error();
     const DeviceHealth health = device->health();
-    if (health.state == DeviceHealth::works) return false;
+    if (health.state == DeviceHealth::works) {
+        if (Status stepped = session.world().lastStep(); !stepped)
+            return Error{fmt::format("{} cannot go on from {:.3f} s: {}", session.scene().name, session.time(), stepped.error().message),
+                         stepped.error().fault};
+        return false;
+    }
     const double reached = session.world().time();
     FluidParams before = session.scene().fluid;
     std::unique_ptr<Device> cpu = makeCpu();

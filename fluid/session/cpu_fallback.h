@@ -21,7 +21,7 @@ Result<OpenedSession> openSession(SceneFile scene, Device& device, const Log& lo
 
 // Call after each step. If `device`, which the session runs on, has failed, it is replaced by the cpu and the session continues there; the
 // log reports the simulated time it continues from. Returns whether that happened: session.world() is then another object. Error: out of
-// memory (failed); a recorded frame is damaged (badInput).
+// memory (failed), as FluidWorld::lastStep on the cpu; a recorded frame is damaged (badInput).
 Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, const Log& log);
 
 // For measurements, which must not continue on another device. Error (failed): the device has failed and its results are invalid.

@@ -31,7 +31,7 @@ struct Frame {
     double speed = 0, lid = 0;
 };
 
-Outcome measure(Trial& trial, const Frame& frame, const char* published, const char* title, double tolerance) {
+Result<Outcome> measure(Trial& trial, const Frame& frame, const char* published, const char* title, double tolerance) {
     const FluidParams p = trial.params();
     const BlockParams& water = p.blocks[0];
     const double width = double{water.max.x - water.min.x}, height = double{water.max.y - water.min.y};

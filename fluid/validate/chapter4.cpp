@@ -74,7 +74,10 @@ Result<Moment> reach(int particles) {
     if (!session) return session.error();
     moment.session = std::move(*session);
     FluidWorld& world = moment.session->world();
-    while (world.time() < kFall) moment.session->step(1.0 / kFramesPerSecond, true);
+    while (world.time() < kFall) {
+        moment.session->step(1.0 / kFramesPerSecond, true);
+        if (const Status stepped = world.lastStep(); !stepped) return stepped.error();
+    }
     world.save(moment.state);
     return moment;
 }

@@ -65,6 +65,7 @@ Result<Seen> watch(const EnvelopeSettings& settings, const StabilityRun& run) {
         if (!settings.goOn()) return failed("the stability envelope was stopped");
         const double now = run.frameOf ? run.frameOf(k) : frame;
         session.step(now, true);
+        if (const Status stepped = session.world().lastStep(); !stepped && !session.world().interrupted()) return stepped.error();
         asked += now;
         look(session.world(), seen);
         if (run.each) run.each(session);

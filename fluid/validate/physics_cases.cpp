@@ -236,7 +236,9 @@ Result<Half> halfSecond(const PhysicsCase& row, CaseSettings settings, Device& d
     half.kinetic = kineticOf(all);
     half.centre /= std::max(mass, 1e-30);
     half.compression = compression / std::max(frames, 1);
-    half.outcome = trial->outcome({}, {});
+    Result<Outcome> outcome = trial->outcome({}, {});
+    if (!outcome) return outcome.error();
+    half.outcome = std::move(*outcome);
     return half;
 }
 

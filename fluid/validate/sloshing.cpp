@@ -74,7 +74,10 @@ Result<Outcome> runSloshing(const CaseSettings& settings) {
             const double t = periods * i / 200;
             plot.curves.back().points.emplace_back(t, 1 - std::cos(2 * std::numbers::pi * t));
         }
-        if (!outcome) outcome = trial->outcome({}, {});  // cost of the tank that all sizes run
+        if (outcome) continue;
+        Result<Outcome> cost = trial->outcome({}, {});  // of the tank that all sizes run
+        if (!cost) return cost.error();
+        outcome = std::move(*cost);
     }
     outcome->findings = findings;
     outcome->plot = plot;

@@ -112,6 +112,7 @@ Status SurfaceTrial::reachMoment() {
     while (world.time() < kMoment - 1e-6) {
         if (!goOn(kMomentShare * world.time() / kMoment)) return ok();
         session_->step(1.0 / kFramesPerSecond, true);
+        if (Status stepped = world.lastStep(); !stepped && !world.interrupted()) return stepped;
     }
     const ParticleView water = world.particles();
     Device& device = world.device();

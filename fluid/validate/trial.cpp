@@ -80,6 +80,8 @@ bool Trial::run(double frame, const std::function<void()>& each, double until) {
         if (world().device().health().state != DeviceHealth::works) return false;  // runCase() reports it
         const double before = time();
         wall_ += 1e-3 * session_->step(std::min(frame, end - time()), true);
+        if (world().interrupted()) return false;
+        if (stepped_ = world().lastStep(); !stepped_) return false;
         steps_ += world().lastSubsteps();
         awake_ += static_cast<double>(world().lastSubsteps()) * world().stats().particles;
         compression_ += world().stats().avgCompression * (time() - before);
@@ -88,7 +90,8 @@ bool Trial::run(double frame, const std::function<void()>& each, double until) {
     return true;
 }
 
-Outcome Trial::outcome(std::vector<Finding> findings, Plot plot) const {
+Result<Outcome> Trial::outcome(std::vector<Finding> findings, Plot plot) const {
+    if (!stepped_) return stepped_.error();
     const FluidWorld& w = session_->world();
     Outcome o;
     o.findings = std::move(findings);

@@ -37,8 +37,8 @@ class Trial {
     bool run(double frame, const std::function<void()>& each, double until = 3600);
     HostParticles particles() const { return readParticles(session_->world()); }
 
-    // The findings with the cost of the run.
-    Outcome outcome(std::vector<Finding> findings, Plot plot) const;
+    // The findings with the cost of the run. Error (failed): as FluidWorld::lastStep, if that ended the run.
+    Result<Outcome> outcome(std::vector<Finding> findings, Plot plot) const;
 
   private:
     Trial() = default;
@@ -47,6 +47,7 @@ class Trial {
     double wall_ = 0, compression_ = 0;
     uint64_t steps_ = 0;
     double awake_ = 0;  // particles times substeps, if none slept
+    Status stepped_ = ok();
 };
 
 }  // namespace rivulet

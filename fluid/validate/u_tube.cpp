@@ -67,7 +67,9 @@ Result<Outcome> runUTube(const CaseSettings& settings) {
         plot.curves.push_back(measured);
         if (!outcome) {
             plot.curves.push_back(reference);
-            outcome = trial->outcome({}, {});  // cost of the scene's own size
+            Result<Outcome> cost = trial->outcome({}, {});  // of the scene's own size
+            if (!cost) return cost.error();
+            outcome = std::move(*cost);
         }
     }
     outcome->findings = findings;

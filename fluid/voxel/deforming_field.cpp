@@ -114,7 +114,7 @@ Result<DeformingField::Change> DeformingField::update(std::span<const vec3> posi
         stale_ = false;
         return change;
     } catch (const std::bad_alloc&) {
-        return failed("Not enough memory to voxelise a deforming mesh again; lower its resolution.");
+        return noMemory("Not enough memory to voxelise a deforming mesh again; lower its resolution.");
     }
 }
 

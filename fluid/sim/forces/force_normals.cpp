@@ -1,19 +1,13 @@
 #include "fluid/sim/forces/force_normals.h"
 
+#include <memory>
+
 #include "fluid/sim/forces/force.h"
 #include "fluid/sim/forces/surface_normals.h"
 
 namespace rivulet::force_normals {
 
 namespace {
-
-// Allocates particles.normal at the first call: one vec4 a particle.
-bool hasNormals(StepContext& c) {
-    if (c.particles.normal) return true;
-    Result<Buffer> made = c.device.allocate(size_t{c.particles.count} * sizeof(vec4));
-    if (made) c.particles.normal = std::move(*made);
-    return static_cast<bool>(made);
-}
 
 bool on(const FluidParams& p, bool) { return p.forces.normals != "none"; }
 
@@ -22,9 +16,12 @@ Result<ForcePass> make(Device& device, const MethodSetup& setup) {
     if (!coulomb) return coulomb.error();
     Result<SurfaceNormals> gradient = SurfaceNormals::find(device, setup.traits, false, true);
     if (!gradient) return gradient.error();
-    return ForcePass([coulomb = *coulomb, gradient = *gradient](StepContext& c) {
-        c.particles.hasNormals = hasNormals(c);
-        if (c.particles.hasNormals) (c.fluid.forces.normals == "thesis" ? coulomb : gradient).run(c, c.particles.normal);
+    Result<Buffer> made = device.allocate(size_t{setup.count} * sizeof(vec4));
+    if (!made) return made.error();
+    return ForcePass([coulomb = *coulomb, gradient = *gradient, normal = std::make_shared<Buffer>(std::move(*made))](StepContext& c) {
+        if (!c.particles.normal) c.particles.normal = std::move(*normal);
+        c.particles.hasNormals = true;
+        (c.fluid.forces.normals == "thesis" ? coulomb : gradient).run(c, c.particles.normal);
     });
 }
 

@@ -42,7 +42,7 @@ Status WorldForces::refuseForLinkedLists(const FluidParams& params, bool doesVis
     return ok();
 }
 
-std::vector<std::string> WorldForces::update(Device& device, const MethodSetup& setup) {
+Result<std::vector<std::string>> WorldForces::update(Device& device, const MethodSetup& setup) {
     std::vector<std::string> off;
     for (Entry& f : entries_) {
         f.on = f.wanted(setup.params, setup.doesViscosity);
@@ -52,6 +52,8 @@ std::vector<std::string> WorldForces::update(Device& device, const MethodSetup& 
         }
         if (!f.on || f.pass) continue;
         Result<ForcePass> made = f.make(device, setup);
+        if (!made && made.error().memory)
+            return noMemory(fmt::format("the force '{}' has not enough memory: {}; or {}", f.name, made.error().message, f.remedy));
         if (made)
             f.pass = std::move(*made);
         else

@@ -18,8 +18,9 @@ class WorldForces {
 
     // fluid.grid linked_list supports no force. Error (badInput): the first that these Params turn on, and how to turn it off.
     Status refuseForLinkedLists(const FluidParams& params, bool doesViscosity) const;
-    // Makes the passes of what is on from now. Returns a sentence for each force that has to stay off.
-    std::vector<std::string> update(Device& device, const MethodSetup& setup);
+    // Makes the passes of what is on from now. Returns a sentence for each force that has to stay off. Error (noMemory): for one of them;
+    // those made before it are kept.
+    Result<std::vector<std::string>> update(Device& device, const MethodSetup& setup);
     bool anyOn() const;
     const char* keepsAwake() const;  // the name of an active force with ForceRow::keepsAwake; null: there is none
     void run(StepContext& context) const;

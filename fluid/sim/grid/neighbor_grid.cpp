@@ -21,6 +21,8 @@ constexpr double kMostCells = 64.0e6;
 // A grid that may follow its particles does so if it would have more cells than this, and than this for each particle. A full box has a
 // twelfth of a cell for each.
 constexpr double kFewCells = 4.0e6, kCellsEach = 8;
+// Of the neighbour lists of the cpu: a group names the first of its own by 32 bits.
+constexpr uint64_t kMostEntries = UINT32_MAX;
 
 // Takes the first Error of several allocations.
 struct Allocator {
@@ -82,7 +84,7 @@ struct NeighborGrid::Impl {
     Status follow(Bounds wanted);
     Status findKernels();
     CpuGridJob job(Particles& p) const;
-    Status growLists(uint32_t needed);
+    Status growLists(uint64_t needed);
     Status buildCpu(const StepParams& params, Particles& p);
     void buildGroups();
     void buildGpu(const StepParams& params, Particles& p);
@@ -98,17 +100,18 @@ Status NeighborGrid::Impl::allocate() {
         return take.status;
     }
     if (Status cellsFit = allocateCells(); !cellsFit) return cellsFit;
-    cellOf = take(count * sizeof(uint32_t));
+    cellOf = take(size_t{count} * sizeof(uint32_t));
     if (onCpu()) {
-        for (Buffer* b : {&x, &y, &z}) *b = take((count + 8) * sizeof(float));
+        for (Buffer* b : {&x, &y, &z}) *b = take((size_t{count} + 8) * sizeof(float));
         segmentSum = take(kScanSegments * sizeof(uint32_t));
-        listCursor = take(sizeof(uint32_t));
+        listCursor = take(sizeof(uint64_t));
         lists = take(sizeof(CpuNeighborLists));
-        listCapacity = count * 14 + 64 * kListRegion / 8;
-        list = take(size_t{listCapacity} * sizeof(uint32_t));
+        const uint64_t first = std::min(uint64_t{count} * 14 + 64 * kListRegion / 8, kMostEntries);
+        list = take(first * sizeof(uint32_t));
+        listCapacity = static_cast<uint32_t>(first);
     } else {
-        rank = take(count * sizeof(uint32_t));
-        order = take(count * sizeof(uint32_t));
+        rank = take(size_t{count} * sizeof(uint32_t));
+        order = take(size_t{count} * sizeof(uint32_t));
     }
     return take.status;
 }
@@ -247,7 +250,7 @@ CpuGridJob NeighborGrid::Impl::job(Particles& p) const {
     j.cellStart = hostPointer<uint32_t>(cellStart);
     j.groups = hostPointer<CpuGroup>(groups);
     j.list = hostPointer<uint32_t>(list);
-    j.listCursor = hostPointer<uint32_t>(listCursor);
+    j.listCursor = hostPointer<uint64_t>(listCursor);
     return j;
 }
 
@@ -267,14 +270,17 @@ void NeighborGrid::Impl::buildGroups() {
 }
 
 // Makes room for `needed` entries and a quarter more. On an Error the lists and their capacity stay as they were.
-Status NeighborGrid::Impl::growLists(uint32_t needed) {
-    if (needed > UINT32_MAX / 2)
-        return failed("the particles are packed so closely that their neighbour lists do not fit: enlarge the box or the spacing");
-    const uint32_t capacity = needed + needed / 4;
-    Result<Buffer> larger = device->allocate(size_t{capacity} * sizeof(uint32_t));
-    if (!larger) return failed("not enough memory for the neighbour lists: " + larger.error().message);
+Status NeighborGrid::Impl::growLists(uint64_t needed) {
+    if (needed > kMostEntries)
+        return failed(
+            fmt::format("the particles are packed so closely that their neighbour lists need {} entries, more than the {} that "
+                        "there may be: enlarge the box or the spacing",
+                        needed, kMostEntries));
+    const uint64_t capacity = std::min(needed + needed / 4, kMostEntries);
+    Result<Buffer> larger = device->allocate(capacity * sizeof(uint32_t));
+    if (!larger) return noMemory("not enough memory for the neighbour lists: " + larger.error().message);
     list = std::move(*larger);
-    listCapacity = capacity;
+    listCapacity = static_cast<uint32_t>(capacity);
     return ok();
 }
 
@@ -306,13 +312,13 @@ Status NeighborGrid::Impl::buildCpu(const StepParams& params, Particles& p) {
         // room costs a second pass.
         const double reach = double{h} * double{margin} / double{params.spacing};
         const double likely = std::min(15 * reach * reach * reach * groupCount, double{UINT32_MAX / 4});
-        if (likely > listCapacity) (void)growLists(static_cast<uint32_t>(likely));
+        if (likely > listCapacity) (void)growLists(static_cast<uint64_t>(likely));
     }
     while (true) {
-        *hostPointer<uint32_t>(listCursor) = 0;
+        *hostPointer<uint64_t>(listCursor) = 0;
         j = job(p);
         run(neighborList, j, groupCount);
-        const uint32_t taken = *hostPointer<uint32_t>(listCursor);
+        const uint64_t taken = *hostPointer<uint64_t>(listCursor);
         if (taken <= listCapacity) break;
         if (Status grown = growLists(taken); !grown) {
             p.id.swap(p.idNext);  // ids go with the newest state, which stays as it was
@@ -455,6 +461,16 @@ Status NeighborGrid::build(const StepParams& params, Particles& particles) {
     else
         impl_->buildGpu(params, particles);
     return ok();
+}
+
+void NeighborGrid::undo(Particles& particles) {
+    if (impl_->traits.linked) {  // it takes them as they lie
+        particles.position.swap(particles.positionNext);
+        particles.velocity.swap(particles.velocityNext);
+    } else {
+        particles.id.swap(particles.idNext);
+    }
+    impl_->sortAsleep = true;
 }
 
 void NeighborGrid::sortAsleep() { impl_->sortAsleep = true; }

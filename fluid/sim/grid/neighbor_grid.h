@@ -48,7 +48,7 @@ class NeighborGrid {
 
     // Whether it covers a part of its bounds alone, because cells for all of them would be many more than the particles. Then follow() must
     // be called before each build: it covers `wanted` (m), with room about it, so that it seldom changes, and fill() has other values.
-    // Where that holds too many cells they are wider than h. Error (failed): out of memory; nothing has changed then.
+    // Where that holds too many cells they are wider than h. Error (noMemory): nothing has changed.
     bool isWindow() const;
     Status follow(const Bounds& wanted);
     // Lists reach this times h: for methods that move particles between builds.
@@ -56,9 +56,12 @@ class NeighborGrid {
     // GPU, sorted: sets the cells of the particles in their present order, as fluid/grid/cell_of computes them; the next build uses them.
     // If particles move before the build, call this with none.
     void setCells(std::span<const uint32_t> cells);
-    // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error (failed): out
-    // of memory for the lists, or interrupted (Device::stopOn); the newest state is then as it was, and a later build may succeed.
+    // Sorts the newest state into position, velocity, id, and prepares neighbours; of linked lists it keeps the order. Error: (noMemory)
+    // for the lists; (failed) more entries than lists may have, or interrupted (Device::stopOn). The newest state is then as it was, and a
+    // later build may succeed.
     Status build(const StepParams& params, Particles& particles);
+    // After a build(): the newest state is as it was before it, and what is sorted serves queries alone.
+    void undo(Particles& particles);
 
     // The cpu keeps the slots of sleeping particles from step to step, the last ones, until some fall asleep or wake: then call
     // sortAsleep().

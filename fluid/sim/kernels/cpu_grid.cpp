@@ -250,7 +250,7 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
     const uint32_t cells = job.cells();
     const float invX = job.periodX > 0 ? 1.0F / job.periodX : 0.0F, invY = job.periodY > 0 ? 1.0F / job.periodY : 0.0F,
                 invZ = job.periodZ > 0 ? 1.0F / job.periodZ : 0.0F;
-    uint32_t at = 0, regionEnd = 0;
+    uint64_t at = 0, regionEnd = 0;
     for (uint32_t g = begin; g < end; ++g) {
         CpuGroup& group = job.groups[g];
         const GroupBox b = boxOf(job, group);
@@ -266,15 +266,16 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
         if (job.totalCells > cells && ofFluid) find(cells);  // samples do not interact
         if (job.asleepCells > 0) find(job.totalCells + 3);
         if (at + s.atMost + 8 > regionEnd) {
-            const uint32_t take = s.atMost + 8 > kListRegion ? s.atMost + 8 : kListRegion;
+            const uint64_t take = s.atMost + 8 > kListRegion ? s.atMost + 8 : kListRegion;
             at = __atomic_fetch_add(job.listCursor, take, __ATOMIC_ACQUIRE);
             regionEnd = at + take;
         }
-        const bool fits = regionEnd <= job.listCapacity && regionEnd >= at;
+        const bool fits = regionEnd <= job.listCapacity;
         uint32_t spare[8];
         uint32_t* const list = fits ? job.list : spare;
         const uint32_t written = fits ? ~0U : 0U;
-        group.listBegin = at;
+        const uint32_t first = static_cast<uint32_t>(at);  // exact if it fits
+        uint32_t next = first;
         for (uint32_t r = 0; r < s.count; ++r)
             for (uint32_t j = s.from[r]; j < s.to[r]; j += 8) {
                 const real x = load8(job.x + j), y = load8(job.y + j), z = load8(job.z + j);
@@ -294,9 +295,11 @@ INLINE void listNeighbors(uint32_t begin, uint32_t end, const Job& job) {
                     const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
                     keep &= lane < static_cast<int>(s.to[r] - j);
                 }
-                at += appendLanes(list + (at & written), j, keep);
+                next += appendLanes(list + (next & written), j, keep);
             }
-        group.listCount = group.seenCount = (at - group.listBegin) & written;
+        at += next - first;
+        group.listBegin = first;
+        group.listCount = group.seenCount = (next - first) & written;
     }
     // The rest of the last region goes back, unless another chunk has taken the next one. Of a region beyond the capacity nothing does: the
     // cursor tells the host that lists are missing.

@@ -50,7 +50,7 @@ struct CpuGridJob {
     uint32_t* cellStart;   // totalCells + 4, and asleepCells; see shaders/fluid/grid/grid.h
     CpuGroup* groups;
     uint32_t* list;
-    uint32_t* listCursor;  // entries in use; above listCapacity the lists do not fit
+    uint64_t* listCursor;  // entries in use; above listCapacity the lists do not fit
     uint32_t bins() const { return totalCells + 3 + (sortsAsleep ? asleepCells : 0); }
     uint32_t cells() const { return static_cast<uint32_t>(2 * cellsX) * static_cast<uint32_t>(cellsY) * static_cast<uint32_t>(cellsZ); }
 };

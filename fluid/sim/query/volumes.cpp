@@ -201,9 +201,8 @@ Result<VolumePasses::Saved> VolumePasses::take(WorldState& state, uint32_t slots
     return saved;
 }
 
-Status VolumePasses::restore(Device& device, const Saved& saved, uint32_t slots, double particle) {
-    if (saved.volumes.empty()) return ok();
-    if (Status s = prepare(device, slots); !s) return s;
+void VolumePasses::restore(Device& device, const Saved& saved, double particle) {
+    if (saved.volumes.empty()) return;
     *rows_ = {};
     volumes_ = saved.volumes;
     bits_.clear();
@@ -220,7 +219,6 @@ Status VolumePasses::restore(Device& device, const Saved& saved, uint32_t slots,
     device.writeAll<uint32_t>(inside_, saved.inside);
     keep_ = ~0U;
     write();
-    return ok();
 }
 
 }  // namespace rivulet

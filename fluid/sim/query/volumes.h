@@ -64,7 +64,9 @@ class VolumePasses {
     };
     // Of a state that has none: those that are set stay, empty. Error: as WorldState::take; counts that do not add up.
     static Result<Saved> take(WorldState& state, uint32_t slots);
-    Status restore(Device& device, const Saved& saved, uint32_t slots, double particle);
+    // The memory for volumes of a world with so many slots: nothing the second time. Error (noMemory).
+    Status prepare(Device& device, uint32_t slots);
+    void restore(Device& device, const Saved& saved, double particle);  // of volumes that were prepared
 
   private:
     struct Row {
@@ -74,7 +76,6 @@ class VolumePasses {
         uint64_t serial = 0;                     // unlike all others'; 0: this bit is no volume's
     };
     using Rows = std::array<Row, kMost>;  // by bit
-    Status prepare(Device& device, uint32_t slots);
     void write();
 
     Device* device_ = nullptr;

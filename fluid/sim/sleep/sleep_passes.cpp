@@ -134,16 +134,15 @@ Status SleepPasses::prepareEllipsoids() {
     return ok();
 }
 
-Status SleepPasses::keepEllipsoids(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
-                                   const std::array<const Buffer*, 3>& ellipsoids, double now) {
-    if (!ellipsoids_[0]) disturbAll(now);
-    if (Status room = prepareEllipsoids(); !room) return room;
+void SleepPasses::keepEllipsoids(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
+                                 const std::array<const Buffer*, 3>& ellipsoids, double now) {
+    if (!ellipsoids_[2]) return;
+    if (!std::exchange(holdsEllipsoids_, true)) disturbAll(now);
     const bool all = std::exchange(resorted_, false) || device_->backend() != Backend::cpu;
     for (size_t k = 0; k < ellipsoids.size(); ++k)
         if (ellipsoids[k] != nullptr)
             device_->run(drawn_, block(step, 0), {&grid.cellStart(), &particles.id, ellipsoids[k], &ellipsoids_[k]},
                          all ? count_ : grid.awakeSlots());
-    return ok();
 }
 
 std::vector<std::pair<std::string, Buffer*>> SleepPasses::remembered() {
@@ -159,7 +158,7 @@ void SleepPasses::save(WorldState& state) {
     if (!poses_.empty()) state.put<Pose>("sleep.poses", poses_);
     for (const auto& [name, buffer] : remembered())
         state.put<float>(name, device_->readAll<float>(*buffer, buffer->bytes() / sizeof(float)));
-    if (!ellipsoids_[0]) return;
+    if (!holdsEllipsoids_) return;
     for (size_t k = 0; k < ellipsoids_.size(); ++k)
         state.put<vec4>("sleep.ellipsoids" + std::to_string(k), device_->readAll<vec4>(ellipsoids_[k], count_));
 }
@@ -199,9 +198,8 @@ void SleepPasses::restore(const Saved& saved) {
     poses_ = saved.poses;
     const auto buffers = remembered();
     for (size_t k = 0; k < buffers.size(); ++k) device_->writeAll<float>(*buffers[k].second, saved.values[k]);
-    ellipsoids_ = {};                                      // of other water
-    if (!saved.ellipsoids.empty() && prepareEllipsoids())  // without memory for them the water wakes, and they are found again
-        for (size_t k = 0; k < ellipsoids_.size(); ++k) device_->writeAll<vec4>(ellipsoids_[k], saved.ellipsoids[k]);
+    holdsEllipsoids_ = !saved.ellipsoids.empty() && prepareEllipsoids();  // else the water wakes when it is drawn, and they are found again
+    for (size_t k = 0; holdsEllipsoids_ && k < ellipsoids_.size(); ++k) device_->writeAll<vec4>(ellipsoids_[k], saved.ellipsoids[k]);
     resorted_ = true;
     slotsChange();
 }

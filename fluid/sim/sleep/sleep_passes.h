@@ -48,9 +48,11 @@ class SleepPasses {
     void recall(const StepParams& step, const NeighborGrid& grid, const Particles& particles, const AsleepPressure& pressure);
 
     // At the end of a frame: the ellipsoids of sleeping particles, which are not found anew, follow them to their slots. Where they were
-    // never found, because nothing was drawn when the water fell asleep, it wakes at `now` (s). Error (failed): out of memory.
-    Status keepEllipsoids(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
-                          const std::array<const Buffer*, 3>& ellipsoids, double now);
+    // never found, because nothing was drawn when the water fell asleep, it wakes at `now` (s). prepareEllipsoids() comes first: nothing
+    // the second time. Error (noMemory).
+    Status prepareEllipsoids();
+    void keepEllipsoids(const StepParams& step, const NeighborGrid& grid, const Particles& particles,
+                        const std::array<const Buffer*, 3>& ellipsoids, double now);
 
     // All data that a step depends on, as part of a saved state. Error: as WorldState::take.
     struct Saved {
@@ -70,13 +72,13 @@ class SleepPasses {
     };
     SleepStep block(const StepParams& step, double now) const;
     std::vector<std::pair<std::string, Buffer*>> remembered();
-    Status prepareEllipsoids();
 
     Device* device_ = nullptr;
     Kernel watch_, note_, disturb_, turn_, apply_, keep_, recall_, recallPressure_, recallZero_, drawn_;
     Buffer disturbed_, asleep_, changed_, noted_;
     std::vector<Kept> kept_;
-    std::array<Buffer, 3> ellipsoids_;  // by id; made when they are first drawn
+    std::array<Buffer, 3> ellipsoids_;  // by id
+    bool holdsEllipsoids_ = false;      // of this water
     bool resorted_ = true;              // cpu: sleeping particles were, since keepEllipsoids
     uint32_t cells_ = 0, count_ = 0;
     std::vector<Pose> poses_;  // see bodyPoses()

@@ -428,6 +428,21 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
         if (blockDt_ != step.dt) device_->write(staticBlock_, std::as_bytes(std::span(&block_, 1)));
         blockDt_ = step.dt;
     }
+    Status deformed = ok();
+    for (Moving& m : deforming_) {
+        m.motion.carried = 0.0F;
+        // A substep can take one update: where they are fewer, each goes further, and the wall is in time.
+        if (m.updated == 0) m.updates = std::clamp(static_cast<int>(std::lround(1.0 / std::max(to - from, 1.0e-6))), 1, m.updates);
+        m.motion.field = fieldParams(*m.on.field, contact);
+        if (m.updated < m.updates && from * m.updates >= m.updated - 1.0e-6) {
+            m.motion.carried = 1.0F;
+            const Status done = deform(m, static_cast<double>(m.updated + 1) / m.updates, frameSeconds_);
+            if (!done && done.error().memory) return done;
+            if (!done) deformed = done;
+        }
+        setMotion(m.motion, {}, {}, step.dt);
+        device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
+    }
     for (size_t k = 0; k < rigid_.size(); ++k) {
         Moving& m = rigid_[k];
         const Pose start = poses_[k];
@@ -436,19 +451,7 @@ Status SolidPasses::advance(const FluidParams& params, const StepParams& step, f
         setMotion(m.motion, start, poses_[k], step.dt);
         device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
     }
-    for (Moving& m : deforming_) {
-        m.motion.carried = 0.0F;
-        // A substep can take one update: where they are fewer, each goes further, and the wall is in time.
-        if (m.updated == 0) m.updates = std::clamp(static_cast<int>(std::lround(1.0 / std::max(to - from, 1.0e-6))), 1, m.updates);
-        m.motion.field = fieldParams(*m.on.field, contact);
-        if (m.updated < m.updates && from * m.updates >= m.updated - 1.0e-6) {
-            m.motion.carried = 1.0F;
-            if (Status done = deform(m, static_cast<double>(m.updated + 1) / m.updates, frameSeconds_); !done) return done;
-        }
-        setMotion(m.motion, {}, {}, step.dt);
-        device_->write(m.block, std::as_bytes(std::span(&m.motion, 1)));
-    }
-    return ok();
+    return deformed;
 }
 
 std::vector<Bounds> SolidPasses::moved() const {

@@ -59,7 +59,8 @@ class SolidPasses {
     std::vector<Bounds> moved() const;
     float fastestWall() const { return fastestWall_; }  // m/s, of the frame
 
-    // Moves the solids from the share `from` to the share `to` of the frame's time, 0..1. `gravity` m/s^2.
+    // Moves the solids from the share `from` to the share `to` of the frame's time, 0..1. `gravity` m/s^2. Error: (noMemory), and none of
+    // the rigid ones has moved; another, and the solid that cannot deform stays as it was.
     Status advance(const FluidParams& params, const StepParams& step, float gravity, double from, double to);
     // Fills `into` with the walls near each particle and body sample at `position`, sorted: see shaders/fluid/solids/near_walls.h.
     void nearWalls(const StepParams& step, const NeighborGrid& grid, const Buffer& position, Buffer& into);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "engine/core/param_fixed.h"
 #include "fluid/sim/sources/liquids.h"
@@ -103,14 +104,20 @@ EmitterFeed::EmitterFeed(const Emitter& emitter, uint32_t index, float spacing) 
         sum += 0.5 * static_cast<double>(glm::length(glm::cross(b - a, c - a)));
         areas_.push_back(sum);
     }
-    layOut();
+    take(prepare(emitter_.params));
 }
 
-void EmitterFeed::take(const EmitterParams& params) {
-    EmitterParams next = params;
-    keepFixed(next, emitter_.params);
-    emitter_.params = next;
-    layOut();
+EmitterFeed::Next EmitterFeed::prepare(const EmitterParams& params) const {
+    Next next{params, params.speed, {}};
+    keepFixed(next.params, emitter_.params);
+    layOut(next);
+    return next;
+}
+
+void EmitterFeed::take(Next next) noexcept {
+    emitter_.params = std::move(next.params);
+    speed_ = next.speed;
+    layers_ = std::move(next.layers);
 }
 
 float EmitterFeed::fastest() const {
@@ -160,12 +167,11 @@ void EmitterFeed::offerDeposits(const vec3& gravity, size_t most, std::vector<Ca
 // The closest packing of spheres as layers across the jet, stretched by a hair: the smoothing kernel finds that lattice 1.3 % denser than
 // the cubic one it is calibrated on, and a jet that is spawned compressed bursts. So many a layer that at the jet's speed layers follow
 // each other as the packing wants.
-void EmitterFeed::layOut() {
-    const EmitterParams& p = emitter_.params;
-    speed_ = p.speed;
+void EmitterFeed::layOut(Next& to) const {
+    const EmitterParams& p = to.params;
     if (p.shape != "nozzle" || !(p.litresPerSecond > 0)) return;
     const double s = spacing_, a = latticeEdge(spacing_), v = nozzleSpeed(p);
-    speed_ = static_cast<float>(v);
+    to.speed = static_cast<float>(v);
     const double sideways = 1.0e-3 * double{p.litresPerSecond} / v;  // m^2, of the jet
     const auto n = static_cast<size_t>(layerOf(p, spacing_));
     const auto [u, w] = across(glm::normalize(p.direction));
@@ -183,10 +189,8 @@ void EmitterFeed::layOut() {
                 places.push_back({x, y, std::llround((x * x + y * y) / (s * s) * 1.0e6)});
             }
         std::stable_sort(places.begin(), places.end(), [](const Place& l, const Place& r) { return l.order < r.order; });
-        std::vector<vec3>& to = layers_[layer];
-        to.clear();
         for (size_t k = 0; k < std::min(n, places.size()); ++k)
-            to.push_back(u * static_cast<float>(places[k].x) + w * static_cast<float>(places[k].y));
+            to.layers[static_cast<size_t>(layer)].push_back(u * static_cast<float>(places[k].x) + w * static_cast<float>(places[k].y));
     }
 }
 

@@ -83,7 +83,14 @@ class EmitterFeed {
     void offer(double time, double seconds, const vec3& gravity, size_t most, std::vector<Candidate>& to);
     // `count` of the offered were not taken: they stay in the backlog.
     void refuse(uint64_t count) { account_.refused += count; }
-    void take(const EmitterParams& params);  // live values; fixed ones stay
+    // Other values: live ones, fixed ones stay. Where there is no memory for them nothing changes (std::bad_alloc leaves prepare()).
+    struct Next {
+        EmitterParams params;
+        float speed = 0;
+        std::array<std::vector<vec3>, 2> layers;
+    };
+    Next prepare(const EmitterParams& params) const;
+    void take(Next next) noexcept;
     void reset();
 
     // Its accounts, for a saved state.
@@ -109,7 +116,7 @@ class EmitterFeed {
   private:
     EmitterFeed(uint32_t index, float spacing) : index_(index), spacing_(spacing) {}
     void offerDeposits(const vec3& gravity, size_t most, std::vector<Candidate>& to);
-    void layOut();
+    void layOut(Next& to) const;
     vec3 onBox(uint64_t k) const;
     void onMesh(uint64_t k, vec3& p, vec3& normal) const;
 
@@ -118,8 +125,9 @@ class EmitterFeed {
     float spacing_;
     float speed_ = 0;
     Account account_;
-    std::vector<vec3> layers_[2];  // m, nozzle: offsets of a layer's particles in the opening, one layer after the other in turn
-    std::vector<double> areas_;    // mesh: running sum over the triangles
+    std::array<std::vector<vec3>, 2>
+        layers_;                 // m, nozzle: offsets of a layer's particles in the opening, one layer after the other in turn
+    std::vector<double> areas_;  // mesh: running sum over the triangles
     bool deposits_ = false;
     Flight flight_;
 };

@@ -126,8 +126,10 @@ Status SourcePasses::set(const Sources& sources) {
     if (sources.emitters.size() + (deposits_ ? 1 : 0) != feeds_.size() || sources.sinks.size() != sinkCount_)
         return badInput("the number of emitters or sinks has changed: create a new world");
     if (Status s = check(sources, spacing_); !s) return s;
-    for (size_t k = 0; k < sources.emitters.size(); ++k) feeds_[k].take(sources.emitters[k].params);
+    std::vector<EmitterFeed::Next> next;
+    for (size_t k = 0; k < sources.emitters.size(); ++k) next.push_back(feeds_[k].prepare(sources.emitters[k].params));
     writeSinks(sources.sinks);
+    for (size_t k = 0; k < next.size(); ++k) feeds_[k].take(std::move(next[k]));
     return ok();
 }
 

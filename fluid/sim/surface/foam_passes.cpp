@@ -127,18 +127,20 @@ void FoamPasses::run(const FluidParams& fluid, const StepParams& step, NeighborG
     });
 }
 
-Status FoamPasses::drawEarlier(double seconds) {
-    if (!drawn_) {
-        Result<Buffer> made = device_->allocate(size_t{slots_} * sizeof(vec4));
-        if (!made) return made.error();
-        drawn_ = std::move(*made);
-    }
+Status FoamPasses::prepareDrawn() {
+    if (drawn_) return ok();
+    Result<Buffer> made = device_->allocate(size_t{slots_} * sizeof(vec4));
+    if (!made) return made.error();
+    drawn_ = std::move(*made);
+    return ok();
+}
+
+void FoamPasses::drawEarlier(double seconds) {
     FoamStep f{};
     f.slots = slots_;
     f.seconds = static_cast<float>(seconds);
     device_->run(back_, f, {&foam_, &velocity_, &drawn_}, slots_);
     earlier_ = true;
-    return ok();
 }
 
 void FoamPasses::save(WorldState& state) const {

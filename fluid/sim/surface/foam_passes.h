@@ -23,8 +23,10 @@ class FoamPasses {
     void run(const FluidParams& fluid, const StepParams& step, NeighborGrid& grid, const Particles& particles, SolidPasses& solids,
              double seconds);
 
-    // For pictures between steps: sets the time before the newest state, s, at which foam is drawn. Error (failed): out of memory.
-    Status drawEarlier(double seconds);
+    // For pictures between steps: sets the time before the newest state, s, at which foam is drawn. prepareDrawn() comes first: nothing the
+    // second time. Error (noMemory).
+    Status prepareDrawn();
+    void drawEarlier(double seconds);
     void drawNewest() { earlier_ = false; }
 
     // The foam as part of a saved state. Error: as WorldState::take; another number of slots.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include "engine/core/assert.h"
@@ -112,12 +113,23 @@ void FluidWorld::setCells(std::span<const uint32_t> cells) {
 }
 
 void FluidWorld::reset() {
-    impl_->device->goOn();
-    if (Status back = impl_->solids.reset(); !back) impl_->report(back.error().message);
-    impl_->bodies.reset();
-    impl_->limits.fastestWall = 0;
-    impl_->writeStart();
-    impl_->interrupted = impl_->device->interrupted();
+    Impl& w = *impl_;
+    w.device->goOn();
+    w.last = ok();
+    w.changing = true;
+    try {
+        if (Status back = w.solids.reset(); !back) {
+            w.report(back.error().message);
+            if (back.error().memory) return;
+        }
+        w.bodies.reset();
+        w.limits.fastestWall = 0;
+        w.writeStart();
+    } catch (const std::bad_alloc&) {
+        return;  // lastStep() says so
+    }
+    w.changing = false;
+    w.interrupted = w.device->interrupted();
 }
 
 void FluidWorld::deposit(const vec3& place, const vec3& velocity, double volume) {
@@ -157,9 +169,13 @@ Status FluidWorld::setSurfaces(std::span<const Surface> surfaces) {
 
 Status FluidWorld::setSources(const Sources& next) {
     Impl& w = *impl_;
+    std::vector<EmitterParams> emitters;
+    emitters.reserve(next.emitters.size());
+    for (const Emitter& e : next.emitters) emitters.push_back(e.params);
+    std::vector<SinkParams> sinks = next.sinks;
     if (Status s = w.sources.set(next); !s) return s;
-    for (size_t k = 0; k < next.emitters.size(); ++k) w.sourceSetup.emitters[k].params = next.emitters[k].params;
-    w.sourceSetup.sinks = next.sinks;
+    for (size_t k = 0; k < emitters.size(); ++k) w.sourceSetup.emitters[k].params = std::move(emitters[k]);
+    w.sourceSetup.sinks = std::move(sinks);
     return ok();
 }
 
@@ -188,13 +204,12 @@ Status FluidWorld::setParams(const FluidParams& params) {
     }
     // A scene gives the origin in floats: a double that rounds to them stays.
     if (vec3(next.origin) == vec3(old.origin)) next.origin = old.origin;
+    const auto text = [](FluidParams p) { return writeJson([&p](ParamVisitor& v) { p.visit(v); }); };
+    const bool wakes = impl_->sleep && text(next) != text(old);
     if (next.probes != old.probes)
         if (Status s = impl_->prepareProbes(next); !s) return s;
-    if (impl_->sleep) {
-        const auto text = [](FluidParams p) { return writeJson([&p](ParamVisitor& v) { p.visit(v); }); };
-        if (text(next) != text(old)) impl_->sleep->disturbAll(impl_->clock.time);
-    }
-    impl_->params = next;
+    if (wakes) impl_->sleep->disturbAll(impl_->clock.time);
+    impl_->params = std::move(next);
     return ok();
 }
 

@@ -79,8 +79,13 @@ class FluidWorld {
 
     // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits require. 0 or less: no effect. A frame
     // longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited gives the reason: simulated time
-    // slows down, steps do not grow. time() + pending() + dropped() is the sum of all `seconds`.
+    // slows down, steps do not grow. time() + pending() + dropped() is the sum of all `seconds`, but for steps that fail: see lastStep().
     void step(const FluidInputs& inputs, double seconds);
+    // Error (failed) of the last step() or reset(): memory ran out. After its first substeps a frame that fails keeps them, as time() says;
+    // before them nothing has moved, and the same call later, with memory, has the same results as if this one had never been. Time that
+    // was not simulated counts as not requested. Or the state is incomplete, as below, or because memory ran out within a substep, or
+    // because a function of the host (BodyHost, HostForce) threw or did not return: then as after an interruption. A stop is no error.
+    Status lastStep() const;
     // Whether the last step was interrupted: the flag of Device::stopOn became true within it. It then ran no further passes, on the cpu
     // none of their chunks, and returned. time() and stats() are those before the step, or those after it if only its last passes were
     // skipped, but particles, bodies and counts may be of neither. step() then does nothing but report that, save() and queries return an

@@ -90,6 +90,9 @@ struct FluidWorld::Impl {
     WorldClock clock;
     bool cellsValid = false;        // since cellWork()
     bool interrupted = false;       // the last step was, or the last return to valid values
+    bool changing = false;          // values are neither those before nor those after a change; at its end again, unless it had none
+    Status last = ok();             // of step() or reset()
+    std::optional<Error> shortage;  // memory that this frame, or the start, lacks
     StartProgress progress;         // while it is created
     bool cancelled = false;         // by it
     bool startInterrupted = false;  // while it was corrected
@@ -120,12 +123,15 @@ struct FluidWorld::Impl {
     void warn();
     StepLimit stepLimit(double now, double frameSeconds) const;  // s
     void fillStep();
+    double accepted(double seconds);
+    Status prepareFrame();
+    int stepFrame(const FluidInputs& inputs, double seconds);
+    void endFrame(const FrameStepper::Frame& frame, double seconds, double simulated, int substeps);
     double stepPiece(double length, double begin, double span, int& substeps, bool& stop);
     void report(const std::string& sentence);
-    bool refusesStep();          // a stop is asked, or the state is not valid
-    Status whole() const;        // Error (failed): the last step was interrupted
-    void invalidateCells();      // particles are moved between steps
-    void follow(StepParams& s);  // moves a grid that is a window to the particles
+    Status whole() const;          // Error (failed): the last step was interrupted, or did not end
+    void invalidateCells();        // particles are moved between steps
+    Status follow(StepParams& s);  // moves a grid that is a window to the particles. Error (noMemory): nothing has changed
     template <class Answer, class Ask>
     Result<std::vector<Answer>> ask(size_t count, const Ask& how);
     Status prepareQuery(StepParams& params);
@@ -133,7 +139,7 @@ struct FluidWorld::Impl {
     void disturbSleep();                    // before a frame: where something other than water may move it
     void disturbAround(const Bounds& box);  // m: water in it and a little further
     bool build(bool fromPositions, double from, double to);
-    // `last`: of a piece of its frame. false: out of memory; the newest state is as it was. Or interrupted.
+    // `last`: of a piece of its frame. false: out of memory (`shortage`); the newest state is as it was. Or interrupted.
     bool substep(double dt, double from, double to, bool last);
     void fillLedger(FluidStats& stats) const;
     void gatherStats(int substeps, double until);

@@ -18,17 +18,12 @@ Status FluidWorld::Impl::prepareQuery(StepParams& s) {
     s.h = params.supportSpacings * params.spacing;
     s.invH = 1.0F / s.h;
     s.spacing = params.spacing;
-    if (around && !sorted && !sortedForQuery) follow(s);
+    if (around && !sorted && !sortedForQuery)
+        if (Status there = follow(s); !there) return there;
     grid->fill(s);
     if (sorted || sortedForQuery) return ok();
     if (Status built = grid->build(s, particles); !built) return built;
-    if (traits.linked) {  // it takes them as they lie
-        particles.position.swap(particles.positionNext);
-        particles.velocity.swap(particles.velocityNext);
-    } else {
-        particles.id.swap(particles.idNext);
-    }
-    grid->sortAsleep();
+    grid->undo(particles);
     sortedForQuery = true;
     return ok();
 }

@@ -106,6 +106,7 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
     if (Status s = prepareSleep(); !s) return s;
     if (count == 0) log.notice("the scene has no particles");
     relaxStart(given);
+    if (shortage) return *shortage;
     writeStart();
     return ok();
 }
@@ -347,7 +348,7 @@ void FluidWorld::Impl::writeStart() {
     figures->emitted = static_cast<double>(startCount) * std::pow(double{params.spacing}, 3);
 }
 
-void FluidWorld::Impl::follow(StepParams& s) {
+Status FluidWorld::Impl::follow(StepParams& s) {
     Bounds spawned;
     for (const Emitter& e : sourceSetup.emitters) {
         const vec3 reach(e.params.radius + glm::length(e.params.size) + e.params.fitSize + params.spacing);
@@ -361,8 +362,9 @@ void FluidWorld::Impl::follow(StepParams& s) {
     }
     // A step takes no particle further than a spacing, unless limits are off.
     const Bounds wanted = around->next((params.limits ? 1.0F : 4.0F) * params.spacing, spawned);
-    if (Status there = grid->follow(wanted); !there) report(there.error().message);
+    if (Status there = grid->follow(wanted); !there) return there;
     grid->fill(s);
+    return ok();
 }
 
 void FluidWorld::Impl::assumeFastest(double speed) {

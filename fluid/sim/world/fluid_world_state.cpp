@@ -108,8 +108,11 @@ Status FluidWorld::restore(WorldState& state) {
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
     if (!bodies) return bodies.error();
     if (Status all = state.allTaken(); !all) return all;
+    if (!volumes->volumes.empty())
+        if (Status room = w.volumes.prepare(*w.device, w.slots); !room) return room;
     if (Status moved = w.bodies.restore(*bodies); !moved) return moved;  // the host is the last that can refuse
 
+    w.changing = true;  // what fails from here on leaves the world incomplete, until it is restored again
     w.device->goOn();
     w.writeStart();
     if (startCount) w.startCount = *startCount;
@@ -149,11 +152,13 @@ Status FluidWorld::restore(WorldState& state) {
         f.limited.push_back(limited->substr(at, end - at));
         at = end + 1;
     }
-    if (Status watched = w.volumes.restore(*w.device, *volumes, w.slots, volume); !watched) return watched;
-    const Status placed = w.solids.restore(*places);
+    w.volumes.restore(*w.device, *volumes, volume);
+    if (Status placed = w.solids.restore(*places); !placed) return placed;
+    w.last = ok();
+    w.changing = false;
     w.interrupted = w.device->interrupted();
     if (w.interrupted) return failed("the restore was interrupted: end the stop, then restore again");
-    return placed;
+    return ok();
 }
 
 Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes) {
@@ -197,6 +202,7 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
             fmt::format("the state holds {1} particles, more than the limit of {0}: the water restarts at t = 0", w.slots, kept.size()));
     if (met > 0) w.log.notice(fmt::format("{} particles were removed: a solid is now where they were", met));
 
+    w.changing = true;
     w.writeStart();
     std::vector<vec4> positions = w.device->readAll<vec4>(w.particles.positionNext, w.particles.count),
                       velocities(w.particles.count, vec4(0.0F));
@@ -238,6 +244,8 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
     f.time = w.clock.time;
     f.particles = w.startCount;
     f.emitted = w.startCount * std::pow(double{w.params.spacing}, 3);
+    w.last = ok();
+    w.changing = false;
     w.interrupted = w.device->interrupted();
     return ok();
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "fluid/sim/world/fluid_world_impl.h"
 
@@ -21,16 +22,24 @@ bool FluidWorld::Impl::build(bool fromPositions, double from, double to) {
     bodies.place(step, particles);
     const bool asleepToo = grid->sortsAsleep();
     if (Status built = grid->build(step, particles); !built) {
-        if (!device->interrupted()) report(built.error().message);
+        if (!device->interrupted()) shortage = built.error();
         return false;
     }
+    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) {
+        if (moved.error().memory) {
+            grid->undo(particles);
+            shortage = moved.error();
+            return false;
+        }
+        report(moved.error().message);
+    }
+    particles.hasNormals = false;
     if (!asleepToo) step.awakeSlots = grid->awakeSlots();
     if (traits.matter)
         device->run(gatherMatter, step, {&grid->cellStart(), &particles.id, &particles.matterOf, &particles.matter, &particles.pressure},
                     step.awakeSlots);
     if (sleep && asleepToo) sleep->recall(step, *grid, particles, method->asleepValues(particles, step).pressure);
     bodies.index(step, *grid, particles);
-    if (Status moved = solids.advance(params, step, glm::length(gravity), from, to); !moved) report(moved.error().message);
     return true;
 }
 
@@ -40,10 +49,11 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     step.maxSpeed = params.limits ? std::min(static_cast<float>(params.spacing / dt), limits.fastestEver) : kAnySpeed;
     if (sleep) step.awakeSlots = grid->sortsAsleep() ? particles.count : grid->awakeSlots();
     bool built = false;
-    if (around) {
-        follow(step);
-        around->moved();
-    }
+    if (around)
+        if (Status there = follow(step); !there) {
+            shortage = there.error();
+            return false;
+        }
     StepContext context{
         .device = *device,
         .fluid = params,
@@ -68,12 +78,12 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
             },
         .probes = probes ? &*probes : nullptr};
     context.hasForces = forces.anyOn();
-    particles.hasNormals = false;
     context.forces = [&] { forces.run(context); };
     method->step(context);
-    iterations += solve.iterations;
     sorted = built;
     if (!built || device->interrupted()) return false;
+    iterations += solve.iterations;
+    if (around) around->moved();
     stepped += figures->particles - figures->asleep;
     solids.collide(step, *grid, particles, probes ? &*probes : nullptr);
     if (glm::any(traits.periodic)) device->run(wrap, step, {&corner, &particles.positionNext}, step.awakeSlots);
@@ -91,120 +101,186 @@ bool FluidWorld::Impl::substep(double dt, double from, double to, bool last) {
     return !device->interrupted();
 }
 
-double FluidWorld::acceptedSeconds(double seconds) {
-    Impl& w = *impl_;
+double FluidWorld::acceptedSeconds(double seconds) { return impl_->accepted(seconds); }
+
+double FluidWorld::Impl::accepted(double seconds) {
     if (!(seconds > 0)) return 0;
-    const double most = w.params.longestFrame;
-    if (seconds <= most || !w.params.limits) return seconds;
-    w.clock.dropped += seconds - most;
-    w.report(fmt::format("a frame was longer than fluid.longestFrame = {} s: the rest of it was dropped", w.params.longestFrame));
+    const double most = params.longestFrame;
+    if (seconds <= most || !params.limits) return seconds;
+    clock.dropped += seconds - most;
+    report(fmt::format("a frame was longer than fluid.longestFrame = {} s: the rest of it was dropped", params.longestFrame));
     return most;
+}
+
+Status FluidWorld::lastStep() const {
+    if (Status whole = impl_->whole(); !whole) return whole;
+    return impl_->last;
 }
 
 void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     Impl& w = *impl_;
+    w.last = ok();
     w.device->poll();
-    if (!(seconds > 0) || w.refusesStep()) return;
-    const double now = acceptedSeconds(seconds);
-    ++w.clock.frame;
-    w.sortedForQuery = false;
-    if (w.particles.count == 0) {
-        w.clock.time += now;
-        return;
+    if (!(seconds > 0) || w.device->stopAsked()) return;
+    if (w.last = w.whole(); !w.last) return w.report(w.last.error().message);
+    w.device->goOn();  // another owner of buffers may have been interrupted
+    const WorldClock clock = w.clock;
+    const StepLimits limits = w.limits;
+    const bool lacked = w.shortage.has_value();
+    w.shortage.reset();
+    int substeps = 0;
+    try {
+        if (Status room = w.prepareFrame(); room)
+            substeps = w.stepFrame(inputs, seconds);
+        else
+            w.shortage = room.error();
+    } catch (const std::bad_alloc&) {
+        w.shortage = w.changing ? w.whole().error() : noMemory("there is not enough memory for a step: use fewer particles");
     }
-    const FluidParams& p = w.params;
-    const bool cpu = w.device->backend() == Backend::cpu;
-    if (!cpu) w.stepper.recordTime(inputs.deviceMs, w.clock.lastSubsteps);
-    const FrameStepper::Frame frame = w.stepper.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
-    w.warn();
+    if (!w.shortage) return;
+    w.last = *w.shortage;
+    if (substeps == 0 && w.whole()) {  // as it was before
+        w.clock = clock;
+        w.limits = limits;
+    }
+    if (!w.interrupted && !lacked) w.report(w.shortage->message);  // once, although its figures may differ
+}
+
+// All memory that a frame needs, but for neighbour lists, before anything moves. What is not possible for another reason is reported and
+// left out.
+Status FluidWorld::Impl::prepareFrame() {
+    const FluidParams& p = params;
+    if (particles.count == 0) return ok();
+    const auto prepare = [this](const Status& done) {
+        if (done || done.error().memory) return done;
+        report(done.error().message);
+        return ok();
+    };
+    if (p.fixedStep > 0) {
+        if (Status room = prepare(drawn.prepare(*device, particles.count)); !room) return room;
+        if (foam)
+            if (Status room = prepare(foam->prepareDrawn()); !room) return room;
+    }
+    if (p.ellipsoids) {
+        if (Status room = prepare(ellipsoids.prepare(*device, traits, particles.count)); !room) return room;
+        if (sleep)
+            if (Status room = prepare(sleep->prepareEllipsoids()); !room) return room;
+    }
+    Result<std::vector<std::string>> off = forces.update(*device, {p, particles.count, traits, methodOf(p).doesViscosity});
+    if (!off) return off.error();
+    for (const std::string& sentence : *off) report(sentence);
+    return ok();
+}
+
+// The number of substeps. Those that were whole are kept if a lack of memory ends the frame (`shortage`); none: nothing has moved.
+int FluidWorld::Impl::stepFrame(const FluidInputs& inputs, double seconds) {
+    const double now = accepted(seconds);
+    const FluidParams& p = params;
+    const bool cpu = device->backend() == Backend::cpu;
+    ++clock.frame;
+    sortedForQuery = false;
+    if (particles.count == 0) {
+        clock.time += now;
+        return 0;
+    }
+    if (!cpu) stepper.recordTime(inputs.deviceMs, clock.lastSubsteps);
+    const FrameStepper::Frame frame = stepper.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
+    warn();
     const double span = frame.before + seconds;  // until the solids reach their target poses
-    w.clock.frameLength = span;
-    const vec3 gravity = inputs.gravity.value_or(p.gravity);
-    if (isFinite(gravity))
-        w.gravity = gravity;
+    clock.frameLength = span;
+    const vec3 wanted = inputs.gravity.value_or(p.gravity);
+    if (isFinite(wanted))
+        gravity = wanted;
     else
-        w.report("the gravity given to a step is not finite: the last gravity is kept");
-    if (Status asked = w.solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) w.report(asked.error().message);
+        report("the gravity given to a step is not finite: the last gravity is kept");
+    if (Status asked = solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) report(asked.error().message);
     // It decays slowly: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
     constexpr double kForget = 0.5;  // s
-    w.limits.fastestWall = std::max(w.limits.fastestWall * static_cast<float>(std::exp(-now / kForget)), w.solids.fastestWall());
-    for (const std::string& off : w.forces.update(*w.device, {p, w.particles.count, w.traits, methodOf(p).doesViscosity})) w.report(off);
-    if (w.sleep) w.disturbSleep();
-    w.iterations = 0;
-    if (w.probes) w.probes->begin();
-    double stepped = 0;
+    limits.fastestWall = std::max(limits.fastestWall * static_cast<float>(std::exp(-now / kForget)), solids.fastestWall());
+    if (sleep) disturbSleep();
+    iterations = 0;
+    if (probes) probes->begin();
+    double simulated = 0;
     int substeps = 0, done = 0;
     bool stop = false;
+    changing = true;
     while (done < frame.pieces && !stop) {
         if (p.fixedStep > 0) {
-            if (Status ready = w.drawn.prepare(*w.device, w.particles.count); !ready) w.report(ready.error().message);
-            w.drawn.remember(*w.device, w.particles);
-            w.posesBefore = w.solids.poses();
-            w.sleepersBefore = w.grid->sleepers();
+            drawn.remember(*device, particles);
+            posesBefore = solids.poses();
+            sleepersBefore = grid->sleepers();
         }
-        stepped += w.stepPiece(frame.length, stepped, span, substeps, stop);
+        simulated += stepPiece(frame.length, simulated, span, substeps, stop);
         ++done;
         if (done == frame.pieces || stop) break;
         if (p.fixedStep > 0)
-            stop = !(cpu ? w.stepper.fitsMeasured(done) : w.stepper.fitsPredicted(substeps + w.clock.lastPiece - 1));
+            stop = !(cpu ? stepper.fitsMeasured(done) : stepper.fitsPredicted(substeps + clock.lastPiece - 1));
         else
-            stop = !(cpu ? w.stepper.fitsMeasured(substeps) : w.stepper.fitsPredicted(substeps));
+            stop = !(cpu ? stepper.fitsMeasured(substeps) : stepper.fitsPredicted(substeps));
     }
-    if ((w.interrupted = w.device->interrupted())) return;
-    w.clock.lastSubsteps = substeps;
-    w.clock.time += stepped;
-    if (w.probes) w.probes->end(std::shared_ptr<ProbeFrame>(w.figures, &w.figures->loads), w.clock.time, stepped);
-    w.gatherColours();
-    if (stepped > 0) w.volumes.count(w.step, w.particles, w.clock.time);
+    if ((interrupted = device->interrupted())) {
+        changing = false;
+        shortage = whole().error();
+        return substeps;
+    }
+    if (!shortage || substeps > 0) endFrame(frame, seconds, simulated, substeps);
+    changing = false;
+    if ((interrupted = device->interrupted())) shortage = whole().error();
+    return substeps;
+}
+
+// What a frame has for those who look at the water, and its time. Where a lack of memory ended it the rest of its time counts as not asked
+// for, and the neighbour lists are of no use.
+void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds, double simulated, int substeps) {
+    const FluidParams& p = params;
+    clock.lastSubsteps = substeps;
+    clock.time += simulated;
+    if (probes) probes->end(std::shared_ptr<ProbeFrame>(figures, &figures->loads), clock.time, simulated);
+    gatherColours();
+    if (simulated > 0) volumes.count(step, particles, clock.time);
+    if (shortage) {
+        ellipsoids.forget();
+        drawn.forget();
+        if (foam) foam->drawNewest();
+        return;
+    }
     if (p.ellipsoids && substeps > 0) {
-        if (Status ready = w.ellipsoids.prepare(*w.device, w.traits, w.particles.count); !ready) w.report(ready.error().message);
-        w.ellipsoids.find(*w.device, w.step, *w.grid, w.particles);
-        if (w.sources.any() && !w.traits.linked) w.ellipsoids.clearFree(*w.device, w.step, *w.grid, w.particles.count);
-        if (w.sleep)
-            if (Status kept = w.sleep->keepEllipsoids(w.step, *w.grid, w.particles, w.ellipsoids.buffers(), w.clock.time); !kept)
-                w.report(kept.error().message);
+        ellipsoids.find(*device, step, *grid, particles);
+        if (sources.any() && !traits.linked) ellipsoids.clearFree(*device, step, *grid, particles.count);
+        if (sleep) sleep->keepEllipsoids(step, *grid, particles, ellipsoids.buffers(), clock.time);
     }
-    if (!p.ellipsoids) w.ellipsoids.forget();
-    if (w.foam && stepped > 0) w.foam->run(p, w.step, *w.grid, w.particles, w.solids, stepped);
-    const double lost = w.stepper.end(stepped);
+    if (!p.ellipsoids) ellipsoids.forget();
+    if (foam && simulated > 0) foam->run(p, step, *grid, particles, solids, simulated);
+    const double lost = stepper.end(simulated);
     // The rounding of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
-        w.clock.dropped += lost;
-        if (substeps < p.maxSubsteps && p.frameBudget > 0 && !w.clock.budgetReported) {
-            w.clock.budgetReported = true;
-            w.report(
+        clock.dropped += lost;
+        if (substeps < p.maxSubsteps && p.frameBudget > 0 && !clock.budgetReported) {
+            clock.budgetReported = true;
+            report(
                 fmt::format("a frame's steps take longer than fluid.frameBudget = {} ms, their length limited by {}: simulated time runs "
                             "slower than requested",
-                            p.frameBudget, w.stepLimit(w.clock.time, frame.length).why));
+                            p.frameBudget, stepLimit(clock.time, frame.length).why));
         }
     }
     if (p.fixedStep > 0) {
-        w.drawn.draw(*w.device, w.particles, w.stepper.share(), static_cast<float>(std::max(w.clock.lastPiece, 1) + 1) * p.spacing);
-        if (w.foam)
-            if (Status back = w.foam->drawEarlier((1.0 - double{w.stepper.share()}) * double{p.fixedStep}); !back)
-                w.report(back.error().message);
+        drawn.draw(*device, particles, stepper.share(), static_cast<float>(std::max(clock.lastPiece, 1) + 1) * p.spacing);
+        if (foam) foam->drawEarlier((1.0 - double{stepper.share()}) * double{p.fixedStep});
     } else {
-        w.drawn.forget();
-        if (w.foam) w.foam->drawNewest();
+        drawn.forget();
+        if (foam) foam->drawNewest();
     }
-    w.interrupted = w.device->interrupted();
 }
 
 bool FluidWorld::interrupted() const { return impl_->interrupted; }
 
-bool FluidWorld::Impl::refusesStep() {
-    if (device->stopAsked()) return true;
-    if (interrupted) {
-        report(whole().error().message);
-        return true;
-    }
-    device->goOn();  // another owner of buffers may have been interrupted
-    return false;
-}
-
 Status FluidWorld::Impl::whole() const {
-    if (!interrupted) return ok();
-    return failed("the last step was interrupted, so that the state of the water is incomplete: reset or restore it");
+    if (interrupted) return failed("the last step was interrupted, so that the state of the water is incomplete: reset or restore it");
+    if (changing)
+        return failed(
+            "the last step did not end, because memory ran out or a function of the host did not return, so that the state of the water is "
+            "incomplete: reset or restore it");
+    return ok();
 }
 
 // StepParams without the step's length.
@@ -275,7 +351,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
     clock.dtMin = clock.dtMin == 0 ? dt : std::min(clock.dtMin, dt);
     clock.dtMax = std::max(clock.dtMax, dt);
     sources.report();
-    gatherStats(substeps, clock.time + begin + dt * done);
+    if (!shortage) gatherStats(substeps, clock.time + begin + dt * done);
     return dt * done;
 }
 

@@ -1,0 +1,56 @@
+// A run under a limit of the process's memory ends with a sentence, wherever the limit is: never by a signal, and never without steps.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/program_runner.h"
+
+namespace rivulet::testing::program_memory_test {
+namespace {
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED
+#endif
+
+// On one core, so that the memory of threads is the same on every machine.
+Outcome limited(long kilobytes, const std::vector<std::string>& arguments, const RunOptions& options) {
+    std::vector<std::string> words = {"bash", "-c", fmt::format("ulimit -v {}; exec taskset -c 0 \"$0\" \"$@\"", kilobytes),
+                                      RIVULET_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return runCommand(words, options);
+}
+
+// Two hundred blocks in one place: neighbour lists far larger than those of water at rest.
+TEST(ProgramMemory, ARunUnderALimitEndsWithASentence) {
+#if defined(SANITIZED)
+    GTEST_SKIP() << "a sanitizer reserves more than any limit";
+#endif
+    Scratch scratch;
+    RunOptions options;
+    options.folder = scratch.path();
+    if (runCommand({"taskset", "-c", "0", "true"}, options).code != 0) GTEST_SKIP() << "taskset is not there";
+    std::string blocks;
+    for (int k = 0; k < 200; ++k) blocks += fmt::format("{}{{\"max\": [0.2, 0.2, 0.24], \"jitter\": 0}}", k == 0 ? "" : ", ");
+    const std::string scene = scratch.file(
+        "dense.json", fmt::format(R"({{"name": "dense", "fluid": {{"spacing": 0.04, "maxSubsteps": 4, "pbf": {{"iterations": 1}},
+            "box": {{"max": [0.4, 0.4, 0.24]}}, "blocks": [{}]}}}})",
+                                  blocks));
+    long least = 64 << 10;  // kB: the program starts
+    while (limited(least, {"list", "methods"}, options).code != 0 && least < 8 << 20) least += 32 << 10;
+    int refused = 0;
+    for (const long more : {0L, 16L, 32L, 48L, 64L, 96L, 128L, 192L}) {
+        const Outcome run = limited(least + (more << 10), {"run", scene, "--no-render", "--frames", "2", "--backend", "cpu"}, options);
+        ASSERT_TRUE(run.code == 0 || run.code == 1) << more << " MB: " << run.code << ' ' << run.err;
+        if (run.code == 0) continue;
+        ++refused;
+        EXPECT_NE(run.err.find("memory"), std::string::npos) << run.err;
+    }
+    EXPECT_GT(refused, 0);
+}
+
+}  // namespace
+}  // namespace rivulet::testing::program_memory_test

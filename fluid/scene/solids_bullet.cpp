@@ -366,11 +366,9 @@ BodyHost BulletSolids::host() {
             std::memcpy(target.data(), bytes.data() + poses, poses);
         }
         std::memcpy(&left, bytes.data() + 2 * poses, sizeof left);
-        const auto sound = [](const Pose& p) {
-            return isFinite(p.position) && std::abs(glm::dot(p.rotation, p.rotation) - 1.0F) < 1.0e-3F;
-        };
-        if (!std::all_of(now.begin(), now.end(), sound) || !std::all_of(target.begin(), target.end(), sound) || !(left >= 0))
-            return badInput("the saved poses of solids that bodies touch are invalid; save the state again");
+        constexpr double kLongest = 1.0e9;  // s
+        if (!std::ranges::all_of(now, isSound) || !std::ranges::all_of(target, isSound) || !(left >= 0 && left <= kLongest))
+            return badInput("section bodies.host of the saved state has invalid poses of solids that bodies touch: save it again");
         w.now = std::move(now);
         w.target = std::move(target);
         w.left = left;

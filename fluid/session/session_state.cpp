@@ -1,9 +1,8 @@
 // A session's whole state: saved and restored, replayed, moved to another device, continued in another session.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "fluid/session/session.h"
+#include "fluid/sim/world/state_check.h"
 
 namespace rivulet {
 
@@ -62,8 +61,8 @@ Status Session::restore(WorldState& state) {
     if (Status same = sameFixedValues(*params, fixedValues([this](ParamVisitor& v) { scene_.visit(v); })); !same) return same;
     Result<std::vector<double>> turned = state.take<double>("session.turned", solids_.ofWorld().rigid.size());
     if (!turned) return turned.error();
-    for (double degrees : *turned)
-        if (!std::isfinite(degrees)) return badInput("the saved state has angles that are not numbers: save it again");
+    constexpr double kMostTurned = 1.0e12;  // deg
+    if (Status sound = checkRange("session.turned", *turned, -kMostTurned, kMostTurned); !sound) return sound;
     if (Status done = restoreWorld(state); !done) return done;
     solids_.setTurned(*turned);
     solids_.placeNodes(scene_, *world_);

@@ -186,7 +186,7 @@ Result<VolumePasses::Saved> VolumePasses::take(WorldState& state, uint32_t slots
     Result<std::vector<uint32_t>> inside = state.take<uint32_t>("volumes.inside", slots);
     if (!inside) return inside.error();
     saved = {std::move(*volumes), std::move(*numbers), std::move(*times), std::move(*inside)};
-    if (Status s = check(saved.volumes); !s) return badInput("the saved state has invalid volumes: " + s.error().message);
+    if (Status s = check(saved.volumes); !s) return badInput("section volumes.shapes of the saved state is invalid: " + s.error().message);
     uint32_t used = 0;
     bool sound = true;
     for (size_t k = 0; k < count && sound; ++k) {
@@ -197,7 +197,7 @@ Result<VolumePasses::Saved> VolumePasses::take(WorldState& state, uint32_t slots
         const auto in = std::count_if(saved.inside.begin(), saved.inside.end(), [n](uint32_t bits) { return (bits >> n[0] & 1U) != 0; });
         sound = n[1] - n[2] == static_cast<uint64_t>(in);
     }
-    if (!sound) return badInput("the saved state's counts of its volumes are inconsistent: save it again");
+    if (!sound) return badInput("sections volumes.numbers, times and inside of the saved state do not add up: save it again");
     return saved;
 }
 

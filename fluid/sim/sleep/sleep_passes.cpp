@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/compute/device_cpu.h"
+#include "fluid/sim/world/state_check.h"
 
 namespace rivulet {
 
@@ -168,26 +169,28 @@ Result<SleepPasses::Saved> SleepPasses::take(WorldState& state, size_t bodies) {
     Result<std::vector<double>> since = state.take<double>("sleep.since", 1);
     if (!since) return since.error();
     saved.since = (*since)[0];
-    if (!std::isfinite(saved.since)) return badInput("the saved state's sleep.since is not finite: save it again");
+    if (Status sound = checkRange("sleep.since", *since, -1, double{kLatest}); !sound) return sound.error();
     if (state.sections().contains("sleep.poses")) {
         Result<std::vector<Pose>> poses = state.take<Pose>("sleep.poses", bodies);
         if (!poses) return poses.error();
-        for (const Pose& p : *poses)
-            if (!isFinite(p.position) || !std::isfinite(glm::length(p.rotation)))
-                return badInput("the saved state's sleep.poses is not finite: save it again");
+        for (size_t k = 0; k < poses->size(); ++k)
+            if (!isSound((*poses)[k]))
+                return badInput(fmt::format("section sleep.poses of the saved state has an invalid pose of body {}: save it again", k));
         saved.poses = std::move(*poses);
     }
     for (const auto& [name, buffer] : remembered()) {
         Result<std::vector<float>> values = state.take<float>(name, buffer->bytes() / sizeof(float));
         if (!values) return values.error();
-        if (!std::ranges::all_of(*values, [](float v) { return std::isfinite(v); }))
-            return badInput("the saved state's " + name + " is not finite: save it again");
+        if (Status sound = checkRange(name, *values, -kHighestPressure, kHighestPressure); !sound) return sound.error();
         saved.values.push_back(std::move(*values));
     }
     const bool drawn = state.sections().contains("sleep.ellipsoids0");
     for (size_t k = 0; drawn && k < ellipsoids_.size(); ++k) {
         Result<std::vector<vec4>> values = state.take<vec4>("sleep.ellipsoids" + std::to_string(k), count_);
         if (!values) return values.error();
+        // Drawn only; those of particles that are awake are found anew.
+        for (vec4& v : *values)
+            if (!isWithin(vec3(v), kMostDistance) || !(std::abs(v.w) <= kMostDistance)) v = vec4(0.0F);
         saved.ellipsoids.push_back(std::move(*values));
     }
     return saved;

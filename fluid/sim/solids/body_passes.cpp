@@ -7,26 +7,24 @@
 
 #include "engine/core/assert.h"
 #include "fluid/sim/methods/method.h"
+#include "fluid/sim/world/state_check.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
 
 namespace {
 
-bool isFinite(const BodyState& s) {
-    const quat& q = s.pose.rotation;
-    return rivulet::isFinite(s.pose.position) && rivulet::isFinite(s.velocity) && rivulet::isFinite(s.spin) &&
-           std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0F) < 1.0e-3F;
-}
+bool isSound(const BodyState& s) { return rivulet::isSound(s.pose) && isWithin(s.velocity, kMostSpeed) && isWithin(s.spin, kMostSpeed); }
 
+constexpr double kSecondParts = 1.0e6;  // 1/s: a load acts for longer than the inverse
 bool isFinite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // Returns "", or the fault of the body.
 std::string fault(const Body& body) {
     const BodyShape& s = body.shape;
     if (s.samples.empty()) return "has no samples on its surface";
-    if (!std::all_of(s.samples.begin(), s.samples.end(), [](const vec3& p) { return rivulet::isFinite(p); }) || !isFinite(body.state))
-        return "is not finite";
+    if (!std::all_of(s.samples.begin(), s.samples.end(), [](const vec3& p) { return isWithin(p, kMostDistance); }) || !isSound(body.state))
+        return fmt::format("is not finite, or its rotation has no unit length, or it is beyond {} m or {} m/s", kMostDistance, kMostSpeed);
     if (!(s.mass >= 0) || !std::isfinite(s.mass)) return fmt::format("weighs {} kg, must weigh 0 (it never moves) or more", s.mass);
     if (!(s.volume >= 0) || !std::isfinite(s.volume)) return fmt::format("displaces {} m^3, must displace 0 or more", s.volume);
     if (!(s.sticks >= 0 && s.sticks <= 1)) return fmt::format("sticks by {}, must be between 0 (slips) and 1 (no-slip)", s.sticks);
@@ -216,7 +214,7 @@ void BodyPasses::advance(const StepParams& step, Particles& particles, double se
     std::vector<BodyState> next = states_;
     host_.advance(host_.self, loads_, vec3(step.gravity), seconds, next);
     for (size_t k = 0; k < bodies; ++k) {
-        if (isFinite(next[k]))
+        if (isSound(next[k]))
             states_[k] = next[k];
         else
             misled_ = k;
@@ -267,10 +265,18 @@ Result<BodyPasses::Saved> BodyPasses::take(WorldState& state) const {
     Result<std::vector<BodyLoad>> loads = state.take<BodyLoad>("bodies.loads", bodies_.size());
     if (!loads) return loads.error();
     for (size_t k = 0; k < bodies_.size(); ++k) {
+        if (!isSound((*states)[k]))
+            return badInput(
+                fmt::format("section bodies.states of the saved state has an invalid place or motion of body {}: save it again", k));
+        // What a load would make of the body's speed.
         const BodyLoad& l = (*loads)[k];
-        if (!isFinite((*states)[k]) || !isFinite(l.force) || !isFinite(l.torque) || !isFinite(l.pendingImpulse) ||
-            !isFinite(l.pendingAngularImpulse))
-            return badInput(fmt::format("the saved state of body {} is not finite or its rotation has no unit length: save it again", k));
+        const BodyShape& shape = bodies_[k].shape;
+        const double mass = shape.mass > 0 ? double{shape.mass} : 1,
+                     inertia = shape.mass > 0 ? double{std::min({shape.inertia.x, shape.inertia.y, shape.inertia.z})} : 1;
+        const auto within = [](const dvec3& v, double most) { return glm::length(v) <= most; };
+        if (!within(l.force, mass * double{kMostSpeed} * kSecondParts) || !within(l.torque, inertia * double{kMostSpeed} * kSecondParts) ||
+            !within(l.pendingImpulse, mass * double{kMostSpeed}) || !within(l.pendingAngularImpulse, inertia * double{kMostSpeed}))
+            return badInput(fmt::format("section bodies.loads of the saved state has an impossible load on body {}: save it again", k));
     }
     Saved saved{std::move(*states), std::move(*loads), {}};
     if (host_.save != nullptr) {

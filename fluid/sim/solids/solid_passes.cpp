@@ -7,17 +7,13 @@
 #include <tuple>
 
 #include "fluid/sim/solids/probe_passes.h"
+#include "fluid/sim/world/state_check.h"
 #include "fluid/voxel/labels.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
 
 namespace {
-
-bool sound(const Pose& p) {
-    const float length = glm::dot(p.rotation, p.rotation);
-    return isFinite(p.position) && std::isfinite(length) && std::abs(length - 1.0F) < 1.0e-3F;
-}
 
 // World -> own frame, as rows.
 std::array<vec4, 3> rows(const Pose& p) {
@@ -120,7 +116,9 @@ Result<SolidPasses> SolidPasses::create(Device& device, const Solids& solids, co
         s.staticBlock_ = std::move(*block);
     }
     for (const RigidSolid& rigid : solids.rigid) {
-        if (!sound(rigid.pose)) return badInput("a moving solid's pose is not finite, or its rotation has no unit length");
+        if (!isSound(rigid.pose))
+            return badInput(fmt::format("the pose of moving solid {} is not finite, farther than {} m, or its rotation has no unit length",
+                                        s.rigid_.size(), kMostDistance));
         if (rigid.field != nullptr)
             if (Status wide = reaches(*rigid.field, params.spacing); !wide) return wide.error();
         Moving m;
@@ -296,13 +294,16 @@ Result<SolidPasses::Places> SolidPasses::take(WorldState& state) const {
     if (n[1] != rigid_.size() || n[2] != deforming_.size())
         return badInput(fmt::format("the state was saved with {} moving and {} deforming solids, this scene has {} and {}", n[1], n[2],
                                     rigid_.size(), deforming_.size()));
+    if (n[3] > uint64_t{1} << 62U) return outOfRange("solids.numbers", 3, static_cast<double>(n[3]), 0, 0x1p62);
     if (n[0] != voxelsHash())
         return badInput("the state was saved among other voxels: a mesh, its place or its resolution is not what it was");
     Result<std::vector<Pose>> poses = state.take<Pose>("solids.poses", rigid_.size());
     if (!poses) return poses.error();
     Places places{std::move(*poses), {}, n[3]};
     for (size_t k = 0; k < places.poses.size(); ++k)
-        if (!sound(places.poses[k])) return badInput(fmt::format("the saved pose of moving solid {} is invalid", k));
+        if (!isSound(places.poses[k]))
+            return badInput(
+                fmt::format("section solids.poses of the saved state has an invalid pose of moving solid {}: save it again", k));
     for (size_t k = 0; k < deforming_.size(); ++k) {
         const std::string name = fmt::format("solids.shape.{}", k);
         Result<std::vector<vec3>> shape = state.take<vec3>(name, deforming_[k].shapeAtStart.size());
@@ -328,8 +329,9 @@ Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std:
     if (!shapes.empty() && shapes.size() != deforming_.size())
         return badInput(fmt::format("{} shapes were given for {} deforming solids: give one for each", shapes.size(), deforming_.size()));
     for (size_t k = 0; k < poses.size(); ++k)
-        if (!sound(poses[k]))
-            return badInput(fmt::format("the pose of moving solid {} is not finite, or its rotation has no unit length", k));
+        if (!isSound(poses[k]))
+            return badInput(fmt::format("the pose of moving solid {} is not finite, farther than {} m, or its rotation has no unit length",
+                                        k, kMostDistance));
     for (size_t k = 0; k < shapes.size(); ++k)
         if (shapes[k].size() != deforming_[k].shapeAtStart.size())
             return badInput(fmt::format("{} vertices were given for deforming solid {}, which has {}", shapes[k].size(), k,

@@ -11,6 +11,7 @@
 #include "engine/core/param_path.h"
 #include "fluid/sim/methods/smoothing.h"
 #include "fluid/sim/sources/liquids.h"
+#include "fluid/sim/world/state_check.h"
 #include "fluid/voxel/packed_array.h"
 
 namespace rivulet {
@@ -309,22 +310,26 @@ Result<SourcePasses::Saved> SourcePasses::take(WorldState& state) const {
     if (!counters) return counters.error();
     Result<std::vector<double>> waited = state.take<double>("sources.waited", 1);
     if (!waited) return waited.error();
-    bool sound = std::isfinite((*waited)[0]) && (*waited)[0] >= 0;
+    constexpr double kLongestWait = 100, kMostDue = 0x1p53;  // s; particles
+    if (Status within = checkRange("sources.waited", *waited, 0, kLongestWait); !within) return within.error();
+    bool sound = true;
     EmitterFeed::Flight flight;
     if (deposits_) {
         Result<std::vector<EmitterFeed::Flight>> saved = state.take<EmitterFeed::Flight>("sources.poured", 1);
         if (!saved) return saved.error();
         flight = (*saved)[0];
-        sound = sound && flight.count <= flight.places.size() && flight.next < flight.places.size() && isFinite(flight.velocity);
+        if (flight.count > flight.places.size() || flight.next >= flight.places.size() || !isWithin(flight.velocity, kMostSpeed) ||
+            !std::ranges::all_of(flight.places, [](const vec3& p) { return isWithin(p, kMostDistance); }))
+            return badInput("section sources.poured of the saved state has impossible places or velocities: save it again");
     }
     for (size_t k = 0; k < feeds_.size(); ++k) {
         const EmitterFeed::Account& a = (*accounts)[k];
         const uint32_t* c = &(*counters)[k * EMITTER_COUNTERS];
         // What was offered has been taken or refused: the feed has counted it, or will when it next reads the counters.
         const auto taken = static_cast<uint32_t>(a.offered - a.refused) - (c[1] + c[2] - (*reported)[k]);
-        sound = sound && std::isfinite(a.due) && a.due >= 0 && a.refused <= a.offered && a.offered < uint64_t{1} << 53U && taken == c[0];
+        sound = sound && a.due >= 0 && a.due <= kMostDue && a.refused <= a.offered && a.offered < uint64_t{1} << 53U && taken == c[0];
     }
-    if (!sound) return badInput("the saved state's counts of the emitters are inconsistent: save it again");
+    if (!sound) return badInput("sections sources.accounts, heard and counters of the saved state do not add up: save it again");
     return Saved{std::move(*accounts), std::move(*reported), std::move(*counters), (*waited)[0], flight};
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fluid/sim/methods/smoothing.h"
+#include "fluid/sim/world/state_check.h"
 
 namespace rivulet {
 
@@ -157,6 +158,9 @@ Result<FoamPasses::Saved> FoamPasses::take(WorldState& state) const {
     if (!velocity) return velocity.error();
     Result<std::vector<uint32_t>> numbers = state.take<uint32_t>("foam.numbers", 2);
     if (!numbers) return numbers.error();
+    if (Status sound = checkRange("foam.slots", *foam, kMostDistance, -kLatest, kLatest); !sound) return sound.error();
+    if (Status sound = checkRange("foam.velocity", *velocity, kMostSpeed, 0, 4); !sound) return sound.error();
+    if ((*numbers)[0] > slots_) return outOfRange("foam.numbers", 0, static_cast<double>((*numbers)[0]), 0, static_cast<double>(slots_));
     return Saved{std::move(*foam), std::move(*velocity), (*numbers)[0], (*numbers)[1]};
 }
 

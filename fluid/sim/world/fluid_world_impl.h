@@ -117,6 +117,7 @@ struct FluidWorld::Impl {
     void findLiquids();
     void writeStart();
     void gatherColours();
+    Bounds reachable() const;  // m
     StepLimits::Inputs limitInputs() const;
     float fastestFall() const { return limits.fastestFall(limitInputs()); }
     void assumeFastest(double speed);  // m/s; used before the first measurement

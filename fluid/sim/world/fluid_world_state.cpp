@@ -8,8 +8,15 @@
 #include "engine/core/assert.h"
 #include "fluid/sim/sources/liquids.h"
 #include "fluid/sim/world/fluid_world_impl.h"
+#include "fluid/sim/world/state_check.h"
 
 namespace rivulet {
+
+// Where a particle may be that is not lost: the grid's outermost cells reach beyond the box.
+Bounds FluidWorld::Impl::reachable() const {
+    const vec3 h(params.supportSpacings * params.spacing);
+    return {params.box.min - h, params.box.max + 2.0F * h};
+}
 
 Status FluidWorld::savable() const {
     if (Status whole = impl_->whole(); !whole) return whole;
@@ -31,7 +38,7 @@ void FluidWorld::save(WorldState& state) {
     state.put<double>("world.numbers", numbers);
     if (w.startCount != w.start.size()) state.put<uint32_t>("world.begun", std::span(&w.startCount, 1));
     state.putText("world.limited", fmt::format("{}", fmt::join(f.limited, "\n")));
-    w.particles.save(*w.device, state);
+    w.particles.save(*w.device, state, w.reachable(), w.traits.samples);
     for (const NamedBuffer& b : w.method->remembered())
         state.put<float>(fmt::format("method.{}", b.name), w.device->readAll<float>(*b.buffer, b.buffer->bytes() / sizeof(float)));
     if (w.sleep) {
@@ -56,24 +63,32 @@ Status FluidWorld::restore(WorldState& state) {
     Result<std::vector<double>> numbers = state.take<double>("world.numbers", 12);
     if (!numbers) return numbers.error();
     const std::vector<double>& n = *numbers;
-    if (std::any_of(n.begin(), n.end(), [](double v) { return !std::isfinite(v); }) ||
-        std::any_of(n.begin(), n.begin() + 9, [](double v) { return v < 0; }))
-        return badInput("the saved state's numbers are not finite or negative: save it again");
+    // As save() writes them; the last three are an origin.
+    constexpr double kMost[] = {kLatest, 0.2, 1.0e12, kLatest, kLatest, 1.0e9, 1.0e9, 1.0e9, 0x1p53, 1.0e15, 1.0e15, 1.0e15};
+    for (size_t k = 0; k < n.size(); ++k)
+        if (const double least = k < 9 ? 0 : -kMost[k]; !(n[k] >= least && n[k] <= kMost[k]))
+            return outOfRange("world.numbers", k, n[k], least, kMost[k]);
     std::optional<uint32_t> startCount;
     if (state.sections().contains("world.begun")) {
         Result<std::vector<uint32_t>> count = state.take<uint32_t>("world.begun", 1);
         if (!count) return count.error();
         startCount = (*count)[0];
+        if (*startCount > w.slots) return outOfRange("world.begun", 0, static_cast<double>(*startCount), 0, static_cast<double>(w.slots));
     }
     Result<std::string> limited = state.takeText("world.limited");
     if (!limited) return limited.error();
-    Result<Particles::Saved> saved = w.particles.take(state, w.bodies.matter());
+    constexpr size_t kLongestText = size_t{1} << 16U;
+    if (limited->size() > kLongestText ||
+        std::ranges::any_of(*limited, [](char c) { return c != '\n' && static_cast<unsigned char>(c) < ' '; }))
+        return badInput("section world.limited of the saved state is not a text: save it again");
+    Result<Particles::Saved> saved = w.particles.take(state, w.reachable(), w.bodies.matter());
     if (!saved) return saved.error();
     const std::vector<NamedBuffer> remembered = w.method->remembered();
     std::vector<std::vector<float>> memory;
     for (const NamedBuffer& b : remembered) {
         Result<std::vector<float>> values = state.take<float>(fmt::format("method.{}", b.name), b.buffer->bytes() / sizeof(float));
         if (!values) return values.error();
+        if (Status sound = checkRange(fmt::format("method.{}", b.name), *values, -kHighestPressure, kHighestPressure); !sound) return sound;
         memory.push_back(std::move(*values));
     }
     SleepPasses::Saved slept;
@@ -85,7 +100,7 @@ Status FluidWorld::restore(WorldState& state) {
         Result<std::vector<vec3>> gravity = state.take<vec3>("sleep.gravity", 1);
         if (!gravity) return gravity.error();
         sleptUnder = (*gravity)[0];
-        if (!isFinite(sleptUnder)) return badInput("the saved state's numbers are not finite or negative: save it again");
+        if (!isWithin(sleptUnder, kMostSpeed)) return badInput("section sleep.gravity of the saved state is not finite: save it again");
     }
     Result<SolidPasses::Places> places = w.solids.take(state);
     if (!places) return places.error();
@@ -96,6 +111,7 @@ Status FluidWorld::restore(WorldState& state) {
         Result<std::vector<uint64_t>> count = state.take<uint64_t>("world.taken", 1);
         if (!count) return count.error();
         taken = (*count)[0];
+        if (taken > uint64_t{1} << 53U) return outOfRange("world.taken", 0, static_cast<double>(taken), 0, 0x1p53);
     }
     FoamPasses::Saved foam;
     if (w.foam) {

@@ -31,15 +31,16 @@ struct Particles {
     // `matter`: whether particles differ; `absorption`: whether they do to the eye.
     static Result<Particles> create(Device& device, uint32_t count, bool matter = false, bool absorption = false);
 
-    // The newest state.
+    // The newest state. Lost particles, and they alone, may be outside `inside` (m) or have values that are not finite: a section names
+    // them.
     struct Saved {
         std::vector<vec4> position, velocity, matter, absorption;
         std::vector<uint32_t> id;
     };
-    void save(Device& device, WorldState& state) const;
-    // `samples`: the matter of the samples on bodies (BodyPasses::matter). Error (badInput): as WorldState::take; ids that are not each
-    // there once; matter that no particle of this world can have.
-    Result<Saved> take(WorldState& state, std::span<const vec4> samples) const;
+    void save(Device& device, WorldState& state, const Bounds& inside, uint32_t samples) const;
+    // `samples`: the matter of the samples on bodies (BodyPasses::matter). Error (badInput): as WorldState::take; values that no particle
+    // of this world can have; ids that are not each there once.
+    Result<Saved> take(WorldState& state, const Bounds& inside, std::span<const vec4> samples) const;
     void restore(Device& device, const Saved& saved);
 };
 

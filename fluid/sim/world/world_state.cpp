@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <new>
 
@@ -93,7 +94,8 @@ class Reader {
         std::string before;
         for (const Section& s : table_) {
             const std::string title(s.name.data(), strnlen(s.name.data(), s.name.size()));
-            const bool named = !title.empty() && title > before && title.size() <= WorldState::kLongestName;
+            const bool named = !title.empty() && title > before && title.size() <= WorldState::kLongestName &&
+                               std::ranges::all_of(title, [](char c) { return c > ' ' && c < 127; });
             if (!named || s.offset != at || s.packedBytes > bytes_.size() - at || s.bytes / kMostBytesPerPackedByte > s.packedBytes)
                 return damaged("its table of sections is invalid");
             held += s.bytes;

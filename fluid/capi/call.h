@@ -1,4 +1,5 @@
-// What each call of rivulet.h has around it: nothing is thrown, one call at a time, OpenGL's state is kept.
+// What each call of rivulet.h has around it: nothing is thrown, one call at a time, OpenGL's state is kept. A call that the host left by
+// longjmp, out of one of its own functions, is ended by the next one.
 #pragma once
 
 #include <fmt/format.h>
@@ -6,13 +7,11 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <optional>
 #include <string>
 
 #include "engine/core/exception_error.h"
 #include "engine/core/message_line.h"
 #include "engine/gpu/current_context.h"
-#include "engine/gpu/host_state.h"
 #include "fluid/capi/handles.h"
 
 namespace rivulet::capi {
@@ -25,11 +24,17 @@ inline bool needsGl(const rivulet_context& context, Needs needs) {
 }
 
 // Error (badInput): another call of the same context is running; OpenGL is needed, and the context's OpenGL context is not current.
-inline Status ready(const rivulet_context& context, Needs needs) {
-    if (context.busy)
+inline Status ready(rivulet_context& context, Needs needs) {
+    const bool left = context.callback.left();
+    if ((context.busy || context.callback.frame != nullptr) && !left)
         return badInput("the context is in use: callbacks must not call back into it, and only one thread at a time may use it");
-    if (needsGl(context, needs) && context.current != nullptr && gpu::currentContext().context != context.current)
+    if ((needsGl(context, needs) || context.hostGl) && context.current != nullptr && gpu::currentContext().context != context.current)
         return badInput("the OpenGL context that this was created in is not current on this thread: make it current first");
+    if (left) {
+        context.hostGl.reset();  // restores the host's state
+        context.callback = {};
+        context.busy = false;
+    }
     return ok();
 }
 
@@ -38,15 +43,17 @@ class CallScope {
   public:
     CallScope(rivulet_context& context, Needs needs) : context_(context) {
         context_.busy = true;
-        if (needsGl(context, needs)) state_.emplace();
+        if (needsGl(context, needs)) context_.hostGl.emplace();
     }
-    ~CallScope() { context_.busy = false; }
+    ~CallScope() {
+        context_.hostGl.reset();
+        context_.busy = false;
+    }
     CallScope(const CallScope&) = delete;
     CallScope& operator=(const CallScope&) = delete;
 
   private:
     rivulet_context& context_;
-    std::optional<gpu::HostState> state_;
 };
 
 inline rivulet_status statusOf(const Status& status, rivulet_error* why) {
@@ -78,12 +85,14 @@ inline const char* kindOf(const rivulet_skin*) { return "skin"; }
 // Runs `work` in the CallScope of a world or a skin. Error (badInput): NULL, or as ready().
 template <class Handle, class Work>
 rivulet_status with(Handle* handle, rivulet_error* why, Needs needs, const Work& work) {
-    return guarded(why, [&]() -> Status {
+    const rivulet_status status = guarded(why, [&]() -> Status {
         if (handle == nullptr) return badInput(fmt::format("{} is NULL", kindOf(handle)));
         if (Status can = ready(*handle->context, needs); !can) return can;
         const CallScope scope(*handle->context, needs);
         return work();
     });
+    if (handle != nullptr) handle->context->hostLog.deliver(handle->context->callback);
+    return status;
 }
 
 // If it cannot be destroyed now, this is logged.
@@ -91,11 +100,14 @@ template <class Handle>
 void destroy(Handle* handle) {
     if (handle == nullptr) return;
     rivulet_context& context = *handle->context;
-    if (Status can = ready(context, Needs::drawing); !can)
-        return context.log.error(fmt::format("a {} was not destroyed: {}", kindOf(handle), can.error().message));
-    const CallScope scope(context, Needs::drawing);
-    --context.children;
-    delete handle;
+    if (Status can = ready(context, Needs::drawing); can) {
+        const CallScope scope(context, Needs::drawing);
+        --context.children;
+        delete handle;
+    } else {
+        context.log.error(fmt::format("a {} was not destroyed: {}", kindOf(handle), can.error().message));
+    }
+    context.hostLog.deliver(context.callback);
 }
 
 }  // namespace rivulet::capi

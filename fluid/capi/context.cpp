@@ -1,6 +1,8 @@
 // rivulet.h: contexts.
 #include <fmt/format.h>
 
+#include <span>
+
 #include "engine/gpu/load.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
@@ -34,11 +36,22 @@ Result<HostMesh> meshOf(const rivulet_mesh& mesh, const std::string& name) {
     if (mesh.positions == nullptr || mesh.indices == nullptr || mesh.vertices == 0 || mesh.indices_count == 0)
         return badInput(fmt::format("{} has no triangles: give positions and indices", name));
     if (mesh.indices_count % 3 != 0) return badInput(fmt::format("{} has {} indices: give a multiple of three", name, mesh.indices_count));
+    constexpr size_t kMost = UINT32_MAX;
+    if (mesh.vertices > kMost || mesh.indices_count > kMost)
+        return badInput(
+            fmt::format("{} has {} vertices and {} indices: give fewer than 2^32 of each", name, mesh.vertices, mesh.indices_count));
     HostMesh out;
-    for (size_t k = 0; k < mesh.vertices; ++k) out.positions.push_back(vectorOf(mesh.positions + 3 * k));
+    for (size_t k = 0; k < mesh.vertices; ++k) {
+        const vec3& p = out.positions.emplace_back(vectorOf(mesh.positions + 3 * k));
+        if (!isWithin(p, kMostDistance))
+            return badInput(fmt::format("{}.positions has ({}, {}, {}) m as number {}: give finite values of at most {} m", name, p.x, p.y,
+                                        p.z, k, kMostDistance));
+    }
     out.indices.assign(mesh.indices, mesh.indices + mesh.indices_count);
     for (const uint32_t i : out.indices)
         if (i >= mesh.vertices) return badInput(fmt::format("{} has an index {} and {} vertices", name, i, mesh.vertices));
+    if (mesh.uvs != nullptr && !areWithin({mesh.uvs, 2 * mesh.vertices}, kMostDistance))
+        return badInput(fmt::format("{}.uvs are not finite", name));
     for (size_t k = 0; mesh.uvs != nullptr && k < mesh.vertices; ++k) out.uvs.emplace_back(mesh.uvs[2 * k], mesh.uvs[2 * k + 1]);
     return out;
 }
@@ -46,10 +59,14 @@ Result<HostMesh> meshOf(const rivulet_mesh& mesh, const std::string& name) {
 namespace {
 
 Status createContext(const rivulet_context_options& o, rivulet_context& c) {
+    c.hostLog.function = o.log;
+    c.hostLog.user = o.log_user;
     if (o.log != nullptr)
-        c.log.sink = [log = o.log, user = o.log_user](LogLevel level, std::string_view text) {
-            log(user, static_cast<rivulet_level>(level), messageLine(text).c_str());
-        };
+        c.log.sink = [&c](LogLevel level, std::string_view text) { c.hostLog.add(static_cast<rivulet_level>(level), messageLine(text)); };
+    for (const auto& [name, values] :
+         {std::pair("sky_horizon", std::span<const float>(o.sky_horizon)), std::pair("sky_zenith", std::span<const float>(o.sky_zenith)),
+          std::pair("sky_sun", std::span<const float>(o.sky_sun)), std::pair("clouds", std::span<const float>(&o.clouds, 1))})
+        if (!areWithin(values, kBrightest)) return badInput(fmt::format("options.{} is not finite, or beyond {}", name, kBrightest));
     c.gl = noGl("no function was given that finds OpenGL's functions");
     if (o.find != nullptr) {
         if (Status loaded = gpu::load(o.find); !loaded) return loaded;
@@ -88,7 +105,7 @@ using namespace rivulet::capi;
 const char* rivulet_version(void) { return RIVULET_VERSION; }
 
 rivulet_status rivulet_context_create(const rivulet_context_options* options, rivulet_context** context, rivulet_error* why) {
-    return guarded(why, [&]() -> Status {
+    const rivulet_status status = guarded(why, [&]() -> Status {
         if (context == nullptr) return badInput("context is NULL: pass the address of a handle");
         *context = nullptr;
         const Result<rivulet_context_options> o = readStruct(options, "rivulet_context_options", "options");
@@ -101,21 +118,24 @@ rivulet_status rivulet_context_create(const rivulet_context_options* options, ri
         *context = made.release();
         return ok();
     });
+    if (status == RIVULET_OK) (*context)->hostLog.deliver((*context)->callback);
+    return status;
 }
 
 void rivulet_context_destroy(rivulet_context* context) {
     if (context == nullptr) return;
-    if (context->children > 0) {
-        context->log.error(fmt::format("a context was not destroyed: destroy its {} worlds and skins first", context->children));
-        return;
+    Status can = ready(*context, Needs::drawing);
+    if (context->children > 0) can = badInput(fmt::format("destroy its {} worlds and skins first", context->children));
+    if (!can) {
+        context->log.error(fmt::format("a context was not destroyed: {}", can.error().message));
+        return context->hostLog.deliver(context->callback);
     }
-    if (Status can = ready(*context, Needs::drawing); !can)
-        return context->log.error(fmt::format("a context was not destroyed: {}", can.error().message));
     {
         const CallScope scope(*context, Needs::drawing);
         context->water.reset();
         context->device.reset();
     }
+    context->hostLog.deliver(context->callback);
     delete context;
 }
 
@@ -123,7 +143,7 @@ const char* rivulet_context_device(const rivulet_context* context) { return cont
 
 rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time* times, size_t capacity, size_t* count,
                                      rivulet_error* why) {
-    return guarded(why, [&]() -> Status {
+    const rivulet_status status = guarded(why, [&]() -> Status {
         if (context == nullptr) return badInput("context is NULL");
         if (count == nullptr || (times == nullptr && capacity > 0)) return badInput("count or times is NULL");
         if (Status can = ready(*context, Needs::device); !can) return can;
@@ -141,6 +161,8 @@ rivulet_status rivulet_context_times(rivulet_context* context, rivulet_pass_time
         if (all.size() <= capacity) context->passes.clear();
         return ok();
     });
+    if (context != nullptr) context->hostLog.deliver(context->callback);
+    return status;
 }
 
 void rivulet_context_stop(rivulet_context* context, uint32_t stop) {

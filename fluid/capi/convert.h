@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,11 @@
 namespace rivulet::capi {
 
 inline void put(const vec3& v, float* to) { std::copy_n(&v.x, 3, to); }
+// Whether all are from -most to most; NaN is not.
+inline bool areWithin(std::span<const float> values, float most) {
+    return std::all_of(values.begin(), values.end(), [most](float v) { return std::abs(v) <= most; });
+}
+inline constexpr float kBrightest = 1.0e6F;  // radiance, over 1
 inline bool isSet(const float* v) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
 inline vec3 vectorOf(const float* v) { return {v[0], v[1], v[2]}; }
 inline mat4 matrixOf(const float* m) {
@@ -25,7 +32,7 @@ inline mat4 matrixOf(const float* m) {
 Pose poseOf(const rivulet_pose& pose);
 rivulet_pose poseOf(const Pose& pose);
 
-// A caller's mesh. Error (badInput): NULL arrays, counts that give no triangles, an index without a vertex.
+// A caller's mesh. Error (badInput): NULL arrays, counts that give no triangles, an index without a vertex, values that are not finite.
 struct HostMesh {
     std::vector<vec3> positions;
     std::vector<vec2> uvs;

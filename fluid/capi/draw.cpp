@@ -1,4 +1,8 @@
 // rivulet.h: drawing.
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
@@ -18,7 +22,7 @@ Status drawable(const rivulet_context& context) {
 }  // namespace
 
 rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view, const rivulet_target* target, rivulet_error* why) {
-    return guarded(why, [&]() -> Status {
+    const rivulet_status status = guarded(why, [&]() -> Status {
         if (world == nullptr) return badInput("world is NULL");
         if (Status there = drawable(*world->context); !there) return there;
         if (Status can = ready(*world->context, Needs::drawing); !can) return can;
@@ -31,6 +35,13 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (t.colours < RIVULET_AUTOMATIC || t.colours > RIVULET_SRGB)
             return badInput(fmt::format("target.colours is {}: use RIVULET_AUTOMATIC, RIVULET_LINEAR or RIVULET_SRGB", t.colours));
         if (v.view == nullptr || v.projection == nullptr) return badInput("view.view or view.projection is NULL: 16 floats each");
+        if (!areWithin({v.view, 16}, kMostDistance) || !areWithin({v.projection, 16}, kMostDistance))
+            return badInput(fmt::format("view.view or view.projection is not finite, or beyond {}", kMostDistance));
+        if (!(v.near_plane > 0 && v.far_plane > v.near_plane && std::isfinite(v.far_plane)))
+            return badInput(
+                fmt::format("view.near_plane is {} m and far_plane {} m: give 0 < near_plane < far_plane", v.near_plane, v.far_plane));
+        if (!areWithin(v.light_direction, kBrightest) || !areWithin(v.light_colour, kBrightest))
+            return badInput(fmt::format("view.light_direction or view.light_colour is not finite, or beyond {}", kBrightest));
         Result<FluidLook> look = fluidLookOf(world->params.look, world->params.fluid.liquid);
         if (!look) return look.error();
         const RendererRow* row = renderers().find(world->params.look.renderer);
@@ -60,6 +71,8 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (!fluid) return fluid.error();
         return world->context->water->draw(frame, *fluid, *look, to, row);
     });
+    if (world != nullptr) world->context->hostLog.deliver(world->context->callback);
+    return status;
 }
 
 rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buffers, rivulet_error* why) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/gpu/host_state.h"
+#include "fluid/capi/callbacks.h"
 #include "fluid/capi/rivulet.h"
 #include "fluid/flow/flow_layer.h"
 #include "fluid/flow/flow_maps.h"
@@ -17,7 +19,8 @@
 #include "fluid/sim/world/fluid_world.h"
 
 struct rivulet_context {
-    rivulet::Log log;
+    rivulet::Log log;  // into hostLog
+    rivulet::capi::HostLog hostLog;
     rivulet::GlFacts gl;
     std::unique_ptr<rivulet::Device> device;
     std::unique_ptr<rivulet::WaterRenderer> water;  // null: no OpenGL
@@ -28,6 +31,8 @@ struct rivulet_context {
     int children = 0;                                 // worlds and skins
     void* current = nullptr;                          // the OpenGL context that it was created in; null: none, or not known
     bool busy = false;                                // a call is running
+    rivulet::capi::Callback callback;                 // of that call
+    std::optional<rivulet::gpu::HostState> hostGl;    // of that call, if it uses OpenGL
     std::atomic<bool> stop = false;                   // of the device
 };
 
@@ -46,7 +51,9 @@ struct WorldParams {
 
 // A host's functions as a BodyHost.
 struct BodyCallbacks {
+    rivulet_context* context = nullptr;
     rivulet_body_host host{};
+    std::string thrown;  // by one of them, in this call; the bodies then stay where they are
     std::vector<rivulet_body_load> loads;
     std::vector<rivulet_body_state> states;
 };

@@ -20,8 +20,16 @@
  * where, and the remedy. Nothing is thrown. A NULL handle gives RIVULET_BAD_INPUT; destroying NULL does nothing.
  *
  * Threads: one thread at a time uses a context and everything made from it; with OpenGL, a thread on which the context's OpenGL context is
- * current. Contexts are independent: different threads may use different ones at the same time. Callbacks (log, bodies) run on the calling
- * thread, before the call returns. A callback that calls back into the same context gets RIVULET_BAD_INPUT.
+ * current. Contexts are independent: different threads may use different ones at the same time.
+ *
+ * Callbacks (log, bodies) run on the calling thread, before the call returns; log is called at the end of the call. A callback that calls
+ * back into the same context gets RIVULET_BAD_INPUT. A C++ callback may throw: the call then goes on and returns RIVULET_FAILED, with the
+ * exception's text; what log throws is dropped. A callback may be left by longjmp on the same thread: the next call ends the unfinished one,
+ * and a world that was being stepped, reset or created is incomplete (see rivulet_world_step); a little memory is lost.
+ *
+ * Bounds: what is not finite or absurd is RIVULET_BAD_INPUT. Values of a scene have the ranges of docs/parameters.md, and blocks, emitters,
+ * bodies and particles lie in the box. Lengths and positions are at most 1e6 m, speeds of walls, bodies and particles at most 1e6 m/s,
+ * gravity at most 1,000 m/s^2 along an axis, wind 1,000 m/s, a step 3,600 s, radiances 1e6.
  *
  * OpenGL: functions that need it are all with backend gl, else those that create, destroy and draw. They return RIVULET_BAD_INPUT if the
  * OpenGL context of their rivulet_context is not current. They restore all OpenGL state, with two exceptions: pending errors of glGetError

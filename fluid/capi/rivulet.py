@@ -370,7 +370,11 @@ class World(_Handle):
         self._pointer = pointer
 
     def _checked(self, *arguments):
-        _call(*arguments)
+        self._raised.clear()
+        try:
+            _call(*arguments)
+        except Error as error:
+            raise error from (self._raised[0] if self._raised else None)
         if self._raised:
             raise self._raised.pop()
 

@@ -47,7 +47,7 @@ typedef struct rivulet_context_options {
     rivulet_find_function find;
     const char* backend; /* auto (NULL), cpu, gl or cl. auto: gl if OpenGL runs on a GPU, else cpu */
     const char* device;  /* for backend cl: its number or a part of its name; NULL: the first */
-    void (*log)(void* user, rivulet_level level, const char* sentence); /* NULL: silent */
+    void (*log)(void* user, rivulet_level level, const char* sentence); /* called at the end of a call; NULL: silent */
     void* log_user;
     /* A limit in bytes, applied to each of: the device's buffers, the renderer's images, what a world of backend cpu or cl copies to
        OpenGL, the voxels of one wall. A call that would exceed it returns RIVULET_FAILED. 0: no limit. */

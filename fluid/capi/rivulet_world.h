@@ -100,7 +100,8 @@ RIVULET_API void rivulet_world_destroy(rivulet_world* world);
    RIVULET_FAILED: memory ran out. The world keeps the substeps of the frame that were whole, as the time of its statistics says, and is
    valid; if there were none, nothing has changed, and the same call succeeds with the same results once memory is free.
    RIVULET_FAILED, after rivulet_context_stop: while a stop is asked a step does nothing, and the world stays as it was; a step that it
-   interrupted leaves the world incomplete: then end the stop, and reset or restore the world before the next step. */
+   interrupted leaves the world incomplete: then end the stop, and reset or restore the world before the next step. A callback that was left
+   by longjmp leaves it incomplete, too; one that threw does not: its bodies stay where they are for the rest of the frame. */
 RIVULET_API rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* inputs, double seconds, rivulet_error* why);
 RIVULET_API rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why);
 /* Sets a parameter: "fluid.viscosity=0.01", "look.quality=fast", "emitters.0.litresPerSecond=2". A parameter that docs/parameters.md calls

@@ -7,6 +7,7 @@
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
+#include "fluid/sim/world/contradictions.h"
 
 using namespace rivulet;
 using namespace rivulet::capi;
@@ -46,7 +47,7 @@ Status createSkin(rivulet_context& context, const rivulet_skin_options& o, rivul
 }  // namespace
 
 rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_options* options, rivulet_skin** skin, rivulet_error* why) {
-    return guarded(why, [&]() -> Status {
+    const rivulet_status status = guarded(why, [&]() -> Status {
         if (skin == nullptr) return badInput("skin is NULL: pass the address of a handle");
         *skin = nullptr;
         if (context == nullptr) return badInput("context is NULL: create one with rivulet_context_create");
@@ -60,6 +61,8 @@ rivulet_status rivulet_skin_create(rivulet_context* context, const rivulet_skin_
         *skin = made.release();
         return ok();
     });
+    if (context != nullptr) context->hostLog.deliver(context->callback);
+    return status;
 }
 
 void rivulet_skin_destroy(rivulet_skin* skin) { destroy(skin); }
@@ -82,7 +85,8 @@ rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* 
         const Result<rivulet_skin_inputs> input = readStruct(inputs, "rivulet_skin_inputs", "inputs");
         if (!input) return input.error();
         const rivulet_skin_inputs& in = *input;
-        if (!std::isfinite(seconds)) return badInput("seconds is not finite");
+        if (!std::isfinite(seconds) || seconds > kLongestFrame)
+            return badInput(fmt::format("seconds is {}: give a finite time of at most {} s", seconds, kLongestFrame));
         SurfaceFlowInputs to;
         if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
         if (in.wind != nullptr) to.wind = vectorOf(in.wind);
@@ -92,7 +96,10 @@ rivulet_status rivulet_skin_step(rivulet_skin* skin, const rivulet_skin_inputs* 
             for (size_t k = 0; k < skin->vertices; ++k) skin->positions.push_back(vectorOf(in.positions + 3 * k));
             to.positions = skin->positions;
         }
-        if (!isFinite(to.gravity) || !isFinite(to.wind)) return badInput("inputs.gravity or inputs.wind is not finite");
+        if (!isWithin(to.gravity, kMostGravity) || !isWithin(to.wind, kMostGravity))
+            return badInput(fmt::format("inputs.gravity or inputs.wind is not finite, or beyond {} m/s^2 or m/s", kMostGravity));
+        if (in.to_world != nullptr && !areWithin({in.to_world, 16}, kMostDistance))
+            return badInput(fmt::format("inputs.to_world is not finite, or beyond {}", kMostDistance));
         if (!(seconds > 0)) return ok();
         Device& device = *skin->context->device;
         device.goOn();  // another owner of buffers may have been interrupted

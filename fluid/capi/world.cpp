@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "engine/core/json.h"
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
+#include "fluid/sim/world/contradictions.h"
 #include "fluid/sim/world/host_particles.h"
 #include "fluid/sim/world/world_state.h"
 
@@ -31,15 +33,21 @@ Result<Sources> sourcesOf(const WorldParams& params) {
     for (size_t k = 0; k < params.emitters.size(); ++k) {
         if (params.emitters[k].shape == "mesh")
             return badInput(fmt::format("emitters[{}].shape is mesh: use nozzle or box, a mesh needs a scene file", k));
-        if (const std::string wrong = contradiction(params.emitters[k]); !wrong.empty())
-            return badInput(fmt::format("emitters[{}].{}", k, wrong));
+        if (const std::string wrong = contradiction(params.emitters[k], k, params.fluid.box); !wrong.empty()) return badInput(wrong);
         sources.emitters.push_back({params.emitters[k], {}});
     }
     return sources;
 }
 
-FluidParams simulated(const rivulet_world& w) {
-    return w.context->gl.present() ? fluidForLook(w.params.fluid, w.params.look) : w.params.fluid;
+FluidParams simulated(const rivulet_world& w, const WorldParams& params) {
+    return w.context->gl.present() ? fluidForLook(params.fluid, params.look) : params.fluid;
+}
+
+// What a scene file is checked for. Error (badInput): values that contradict each other.
+Status checkScene(const WorldParams& params) {
+    for (const std::string& wrong : {contradiction(params.fluid), contradiction(params.look)})
+        if (!wrong.empty()) return badInput(wrong);
+    return ok();
 }
 
 Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, std::span<const uint8_t> surfaces, int resolution,
@@ -65,8 +73,8 @@ Result<std::unique_ptr<VoxelField>> fieldOf(std::span<const HostMesh> meshes, st
 // Error (badInput): it is not finite, or its rotation is not of unit length.
 Result<Pose> soundPose(const rivulet_pose& given, const std::string& name) {
     Pose pose = poseOf(given);
-    if (!isFinite(pose.position) || !(std::abs(glm::length(pose.rotation) - 1) < 0.01F))
-        return badInput(fmt::format("{} is not finite, or its rotation is not of unit length", name));
+    if (!isWithin(pose.position, kMostDistance) || !(std::abs(glm::length(pose.rotation) - 1) < 0.01F))
+        return badInput(fmt::format("{} is not finite, farther than {} m, or its rotation is not of unit length", name, kMostDistance));
     pose.rotation = glm::normalize(pose.rotation);  // a host's own arithmetic loses precision
     return pose;
 }
@@ -132,13 +140,34 @@ void toStates(std::span<const BodyState> from, std::vector<rivulet_body_state>& 
     for (const BodyState& s : from) to.push_back(stateOf(s));
 }
 
+// Runs `call`, a function of the host. What it throws is kept, for the call that is under way.
+template <class Call>
+void callHost(BodyCallbacks& c, const char* name, const Call& call) {
+    const CallbackScope scope(c.context->callback);
+    try {
+        call();
+    } catch (const std::exception& e) {
+        c.thrown = fmt::format("body_host.{} threw an exception: {}", name, e.what());
+    } catch (...) {
+        c.thrown = fmt::format("body_host.{} threw an exception", name);
+    }
+}
+
+// The error of what was thrown in this call.
+Status thrown(rivulet_world& w) {
+    if (!w.callbacks || w.callbacks->thrown.empty()) return ok();
+    return failed(std::exchange(w.callbacks->thrown, {}) + "; the bodies stay where they are");
+}
+
 void advance(void* self, std::span<const BodyLoad> loads, const vec3& gravity, double seconds, std::span<BodyState> states) {
     auto& c = *static_cast<BodyCallbacks*>(self);
+    if (!c.thrown.empty()) return;
     c.loads.clear();
     for (const BodyLoad& l : loads) c.loads.push_back({{l.force.x, l.force.y, l.force.z}, {l.torque.x, l.torque.y, l.torque.z}});
     toStates(states, c.states);
     const float g[3] = {gravity.x, gravity.y, gravity.z};
-    c.host.advance(c.host.user, c.loads.data(), g, seconds, c.states.data(), states.size());
+    callHost(c, "advance", [&] { c.host.advance(c.host.user, c.loads.data(), g, seconds, c.states.data(), states.size()); });
+    if (!c.thrown.empty()) return;
     for (size_t k = 0; k < states.size(); ++k)
         states[k] = {poseOf(c.states[k].pose), vectorOf(c.states[k].velocity), vectorOf(c.states[k].spin)};
 }
@@ -146,7 +175,7 @@ void advance(void* self, std::span<const BodyLoad> loads, const vec3& gravity, d
 void reset(void* self, std::span<const BodyState> states) {
     auto& c = *static_cast<BodyCallbacks*>(self);
     toStates(states, c.states);
-    c.host.reset(c.host.user, c.states.data(), states.size());
+    callHost(c, "reset", [&] { c.host.reset(c.host.user, c.states.data(), states.size()); });
 }
 
 Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solids) {
@@ -166,7 +195,12 @@ Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solid
         body.shape.mass = given.mass;
         body.shape.inertia = vectorOf(given.inertia);
         body.shape.volume = given.volume;
-        body.state.pose = poseOf(given.pose);
+        const Result<Pose> pose = soundPose(given.pose, fmt::format("bodies[{}].pose", k));
+        if (!pose) return pose.error();
+        body.state.pose = *pose;
+        if (const std::string wrong = outside(fmt::format("bodies[{}].pose.position", k), pose->position, w.params.fluid.box);
+            !wrong.empty())
+            return badInput(wrong);
         solids.bodies.push_back(std::move(body));
     }
     const Result<rivulet_body_host> hosting = readStruct(o.body_host, "rivulet_body_host", "body_host");
@@ -180,6 +214,7 @@ Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solid
         return ok();
     }
     w.callbacks = std::make_unique<BodyCallbacks>();
+    w.callbacks->context = w.context;
     w.callbacks->host = host;
     solids.bodyHost.self = w.callbacks.get();
     solids.bodyHost.advance = advance;
@@ -200,6 +235,7 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     if (context.memoryLimit > 0) w.upload.limitMemory(context.memoryLimit);
     if (o.json != nullptr)
         if (Status read = readJson(o.json, "json", visiting(w.params)); !read) return read;
+    if (Status sense = checkScene(w.params); !sense) return sense;
     Solids solids;
     if (Status added = addWalls(o, w, solids); !added) return added;
     if (Status added = addBodies(o, w, solids); !added) return added;
@@ -209,10 +245,10 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     for (size_t k = 0; k < w.params.fluid.blocks.size(); ++k)
         if (w.params.fluid.blocks[k].shape == "mesh")
             return badInput(fmt::format("fluid.blocks[{}].shape is mesh: use another shape or particles, a mesh needs a scene file", k));
-    auto made = FluidWorld::create(*context.device, simulated(w), solids, context.log, *sources);
+    auto made = FluidWorld::create(*context.device, simulated(w, w.params), solids, context.log, *sources);
     if (!made) return made.error();
     w.world = std::move(*made);
-    return ok();
+    return thrown(w);
 }
 
 }  // namespace
@@ -223,7 +259,7 @@ using namespace rivulet::capi;
 
 rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_world_options* options, rivulet_world** world,
                                     rivulet_error* why) {
-    return guarded(why, [&]() -> Status {
+    const rivulet_status status = guarded(why, [&]() -> Status {
         if (world == nullptr) return badInput("world is NULL: pass the address of a handle");
         *world = nullptr;
         if (context == nullptr) return badInput("context is NULL: create one with rivulet_context_create");
@@ -237,6 +273,8 @@ rivulet_status rivulet_world_create(rivulet_context* context, const rivulet_worl
         *world = made.release();
         return ok();
     });
+    if (context != nullptr) context->hostLog.deliver(context->callback);
+    return status;
 }
 
 void rivulet_world_destroy(rivulet_world* world) { destroy(world); }
@@ -252,13 +290,15 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
                 fmt::format("{} poses were given for {} walls that move: give one for each", in.poses_count, world->poses.size()));
         FluidInputs to;
         if (in.gravity != nullptr) to.gravity = vectorOf(in.gravity);
-        if (to.gravity && !isFinite(*to.gravity)) return badInput("inputs.gravity is not finite");
         std::vector<Pose> poses;
         for (size_t k = 0; in.poses != nullptr && k < in.poses_count; ++k) {
             const Result<Pose> pose = soundPose(in.poses[k], fmt::format("inputs.poses[{}]", k));
             if (!pose) return pose.error();
             poses.push_back(*pose);
         }
+        to.poses = poses;
+        if (Status sound = world->world->checkInputs(to, seconds); !sound) return sound;
+        if (world->callbacks) world->callbacks->thrown.clear();
         if (in.poses != nullptr) world->poses = std::move(poses);
         to.poses = world->poses;
         rivulet_context& context = *world->context;
@@ -270,15 +310,18 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         if (context.device->stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
         if (const DeviceHealth health = world->context->device->health(); health.state == DeviceHealth::lost)
             return failed(fmt::format("{} {}; create a context of another backend", world->context->name, health.why));
-        return world->world->lastStep();
+        if (Status stepped = world->world->lastStep(); !stepped) return stepped;
+        return thrown(*world);
     });
 }
 
 rivulet_status rivulet_world_reset(rivulet_world* world, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
+        if (world->callbacks) world->callbacks->thrown.clear();
         world->world->reset();
         world->poses = world->world->poses();
-        return world->world->lastStep();
+        if (Status back = world->world->lastStep(); !back) return back;
+        return thrown(*world);
     });
 }
 
@@ -291,13 +334,17 @@ rivulet_status rivulet_world_set(rivulet_world* world, const char* assignment, r
             return badInput(fmt::format("{}: this parameter is fixed; create a new world to change it", assignment));
         if (changed.emitters.size() != world->params.emitters.size() || changed.sinks.size() != world->params.sinks.size())
             return badInput(fmt::format("{}: the number of emitters and sinks is fixed; create a new world to change it", assignment));
+        if (Status sense = checkScene(changed); !sense) return sense;
         Result<Sources> sources = sourcesOf(changed);
         if (!sources) return sources.error();
+        const FluidParams before = world->world->params();
+        if (Status taken = world->world->setParams(simulated(*world, changed)); !taken) return taken;
+        if (Status taken = world->world->setSources(*sources); !taken) {
+            (void)world->world->setParams(before);
+            return taken;
+        }
         std::swap(world->params, changed);
-        Status taken = world->world->setParams(simulated(*world));
-        if (taken) taken = world->world->setSources(*sources);
-        if (!taken) std::swap(world->params, changed);
-        return taken;
+        return ok();
     });
 }
 

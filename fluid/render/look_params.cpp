@@ -68,6 +68,11 @@ bool FluidLookParams::showsEllipsoids() const {
     return splats == "ellipsoids" && quality != "fast" && (draws(renderer) || draws(split));
 }
 
+std::string contradiction(const FluidLookParams& params) {
+    if (params.refractiveIndex == 0 || params.refractiveIndex >= 1) return "";
+    return fmt::format("look.refractiveIndex is {}: give 1 or more, or 0 for the liquid's", params.refractiveIndex);
+}
+
 Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& liquidName) {
     const ColourRow* colour = colourings().find(params.colourBy);
     if (colour == nullptr)

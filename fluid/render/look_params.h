@@ -32,6 +32,9 @@ struct FluidLookParams {
     bool showsEllipsoids() const;  // particles are drawn as ellipsoids, in the whole picture or in its right half
 };
 
+// "", or a value that is in its range and makes no sense.
+std::string contradiction(const FluidLookParams& params);
+
 // Returns the look of these params; values of -1 or 0 come from the liquid (a row of liquids(), or ""). Error (badInput): an unknown name.
 Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& liquid);
 

@@ -6,13 +6,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <set>
-#include <tuple>
 
 #include "engine/core/file.h"
 #include "engine/core/input_file.h"
 #include "engine/core/json.h"
 #include "engine/core/table.h"
 #include "fluid/sim/solids/solids.h"
+#include "fluid/sim/world/contradictions.h"
 
 namespace rivulet {
 
@@ -22,27 +22,13 @@ namespace fs = std::filesystem;
 
 std::string shown(const vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
-bool inside(const vec3& p, const BoxParams& box) { return glm::clamp(p, box.min, box.max) == p; }
-
 // "", or which values contradict each other. The range of each value was checked when it was read.
 std::string contradiction(const SceneFile& scene) {
     const BoxParams& box = scene.fluid.box;
-    if (!glm::all(glm::lessThan(box.min, box.max)))
-        return fmt::format("fluid.box.min {} must lie below fluid.box.max {} on every axis", shown(box.min), shown(box.max));
-    for (size_t i = 0; i < scene.fluid.blocks.size(); ++i) {
-        const BlockParams& block = scene.fluid.blocks[i];
-        if (!glm::all(glm::lessThanEqual(block.min, block.max)))
-            return fmt::format("fluid.blocks[{}].min {} must not lie above its max {}", i, shown(block.min), shown(block.max));
-        if (block.shape == "mesh" && block.mesh.empty())
+    if (std::string wrong = contradiction(scene.fluid); !wrong.empty()) return wrong;
+    for (size_t i = 0; i < scene.fluid.blocks.size(); ++i)
+        if (scene.fluid.blocks[i].shape == "mesh" && scene.fluid.blocks[i].mesh.empty())
             return fmt::format("fluid.blocks[{}].mesh is empty: name a mesh file, or set another shape", i);
-        if (!inside(block.min, box) || !inside(block.max, box))
-            return fmt::format("fluid.blocks[{}] from {} to {} reaches outside fluid.box from {} to {}", i, shown(block.min),
-                               shown(block.max), shown(box.min), shown(box.max));
-    }
-    const FoamParams& foam = scene.fluid.foam;
-    for (const auto& [name, from, to] : {std::tuple("air", foam.airFrom, foam.airTo), std::tuple("crest", foam.crestFrom, foam.crestTo),
-                                         std::tuple("speed", foam.speedFrom, foam.speedTo)})
-        if (!(from < to)) return fmt::format("fluid.foam.{0}From is {1}: it must lie below {0}To, which is {2}", name, from, to);
     std::set<std::pair<float, float>> kinds;
     for (const ColliderParams& collider : scene.colliders) kinds.emplace(collider.friction, collider.restitution);
     if (scene.colliders.size() > kMostSurfaces && kinds.size() > kMostSurfaces)
@@ -53,21 +39,15 @@ std::string contradiction(const SceneFile& scene) {
         if (const std::string wrong = contradiction(scene.colliders[i]); !wrong.empty()) return fmt::format("colliders[{}]{}", i, wrong);
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const EmitterParams& emitter = scene.emitters[i];
-        if (const std::string wrong = contradiction(emitter); !wrong.empty()) return fmt::format("emitters[{}].{}", i, wrong);
+        if (std::string wrong = contradiction(emitter, i, box); !wrong.empty()) return wrong;
         if (emitter.shape == "mesh" && emitter.mesh.empty())
             return fmt::format("emitters[{}].mesh is empty: name a mesh file, or set shape to nozzle or box", i);
-        if (emitter.shape != "mesh" && !inside(emitter.position, box))
-            return fmt::format("emitters[{}].position {} is outside fluid.box from {} to {}", i, shown(emitter.position), shown(box.min),
-                               shown(box.max));
     }
-    if (scene.look.refractiveIndex != 0 && scene.look.refractiveIndex < 1)
-        return fmt::format("look.refractiveIndex is {}: give 1 or more, or 0 for the liquid's", scene.look.refractiveIndex);
+    if (std::string wrong = contradiction(scene.look); !wrong.empty()) return wrong;
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
         const BodyParams& body = scene.bodies[i];
         if (const std::string wrong = contradiction(body); !wrong.empty()) return fmt::format("bodies[{}]{}", i, wrong);
-        if (!inside(body.position, box))
-            return fmt::format("bodies[{}].position {} must lie in fluid.box from {} to {}", i, shown(body.position), shown(box.min),
-                               shown(box.max));
+        if (std::string wrong = outside(fmt::format("bodies[{}].position", i), body.position, box); !wrong.empty()) return wrong;
     }
     const vec3 sight = scene.camera.target - scene.camera.position;
     if (glm::length(sight) < 1.0e-6F) return fmt::format("camera.target {} must differ from camera.position", shown(scene.camera.target));

@@ -28,6 +28,7 @@ std::string fault(const Body& body) {
     if (!(s.mass >= 0) || !std::isfinite(s.mass)) return fmt::format("weighs {} kg, must weigh 0 (it never moves) or more", s.mass);
     if (!(s.volume >= 0) || !std::isfinite(s.volume)) return fmt::format("displaces {} m^3, must displace 0 or more", s.volume);
     if (!(s.sticks >= 0 && s.sticks <= 1)) return fmt::format("sticks by {}, must be between 0 (slips) and 1 (no-slip)", s.sticks);
+    if (!rivulet::isFinite(s.inertia)) return "has an inertia that is not finite";
     if (s.mass > 0 && !(s.inertia.x > 0 && s.inertia.y > 0 && s.inertia.z > 0))
         return "has a mass but no inertia: give it a shape with a volume, or a mass of 0";
     return "";

@@ -314,16 +314,7 @@ Result<SolidPasses::Places> SolidPasses::take(WorldState& state) const {
     return places;
 }
 
-Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) {
-    // Refused or not: nothing moves but to where this frame asks.
-    frameSeconds_ = seconds;
-    fastestWall_ = 0;
-    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
-    for (Moving& m : deforming_) {
-        m.shapeFrom = m.shapeTarget = m.shapeNow;
-        m.updates = 1;
-        m.updated = 0;
-    }
+Status SolidPasses::checkFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) const {
     if (!poses.empty() && poses.size() != rigid_.size())
         return badInput(fmt::format("{} poses were given for {} moving solids: give one for each", poses.size(), rigid_.size()));
     if (!shapes.empty() && shapes.size() != deforming_.size())
@@ -338,6 +329,25 @@ Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std:
                                         deforming_[k].shapeAtStart.size()));
     for (size_t k = 0; k < shapes.size(); ++k)
         if (Status fits = deforming_[k].shape->checkPlaces(shapes[k]); !fits) return fits;
+    for (size_t k = 0; k < poses.size() && seconds > 0; ++k)
+        if (const double speed = glm::distance(dvec3(poses[k].position), dvec3(poses_[k].position)) / seconds; speed > double{kMostSpeed})
+            return badInput(
+                fmt::format("moving solid {} would move at {:.3g} m/s, more than {:.3g}: give it a nearer pose or a longer step", k, speed,
+                            kMostSpeed));
+    return ok();
+}
+
+Status SolidPasses::beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) {
+    // Refused or not: nothing moves but to where this frame asks.
+    frameSeconds_ = seconds;
+    fastestWall_ = 0;
+    for (size_t k = 0; k < rigid_.size(); ++k) rigid_[k].from = rigid_[k].target = poses_[k];
+    for (Moving& m : deforming_) {
+        m.shapeFrom = m.shapeTarget = m.shapeNow;
+        m.updates = 1;
+        m.updated = 0;
+    }
+    if (Status asked = checkFrame(poses, shapes, seconds); !asked) return asked;
     for (size_t k = 0; k < rigid_.size(); ++k) {
         Moving& m = rigid_[k];
         if (!poses.empty()) m.target = poses[k];

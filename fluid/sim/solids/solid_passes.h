@@ -54,6 +54,8 @@ class SolidPasses {
 
     // Sets the poses and shapes of solids `seconds` from now; empty spans: unchanged. Error (badInput): the number of poses or shapes is
     // wrong, a value is not finite, a vertex is beyond its field's reach; then nothing moves.
+    // What beginFrame() refuses.
+    Status checkFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds) const;
     Status beginFrame(std::span<const Pose> poses, std::span<const std::span<const vec3>> shapes, double seconds);
     // m: boxes around each solid that moves in this frame, over its whole way.
     std::vector<Bounds> moved() const;

@@ -149,7 +149,7 @@ void FluidParams::visit(ParamVisitor& v) {
             soundSpeed);
     v.value({"stiffness", "m^2/s^2", "k of the thesis's pressure k (density - rest density); only method wcsph_thesis", 0.01, 1.0e6, kLog},
             stiffness);
-    v.value({"gravity", "m/s^2", "gravitational acceleration", -1000, 1000}, gravity);
+    v.value({"gravity", "m/s^2", "gravitational acceleration", -kMostGravity, kMostGravity}, gravity);
     v.value({"cfl", "", "CFL number: length of a substep over the time in which sound crosses a smoothing length", 0.01, 4, kLog}, cfl);
     v.value({"maxSubsteps", "", "limit on substeps per frame; beyond it simulated time slows down", 1, 100000, kLog}, maxSubsteps);
     v.value({"longestFrame", "s", "limit on the simulated time of one frame: the rest of a longer frame is dropped", 0.001, 10, kLog},

@@ -77,6 +77,8 @@ struct SleepParams {
     void visit(ParamVisitor& v);
 };
 
+inline constexpr float kMostGravity = 1000;  // m/s^2, along each axis
+
 struct FluidParams {
     std::string method = "pbf";       // a row of methods()
     std::string kernel = "wendland";  // wendland | cubic_spline

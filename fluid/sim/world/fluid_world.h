@@ -77,6 +77,9 @@ class FluidWorld {
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;
 
+    // Error (badInput): what step() would not take of these: poses and shapes that do not fit the solids, are not finite or too fast; gravity
+    // beyond 1,000 m/s^2; a step that is not finite or longer than an hour. step() reports it, and goes on without that input.
+    Status checkInputs(const FluidInputs& inputs, double seconds) const;
     // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits require. 0 or less: no effect. A frame
     // longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited gives the reason: simulated time
     // slows down, steps do not grow. time() + pending() + dropped() is the sum of all `seconds`, but for steps that fail: see lastStep().

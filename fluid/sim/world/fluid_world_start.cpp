@@ -168,10 +168,11 @@ Status FluidWorld::Impl::checkStart() const {
     const BoxParams& box = params.box;
     for (size_t k = 0; k < sourceSetup.particles.size(); ++k) {
         const vec3 &at = sourceSetup.particles[k].position, &velocity = sourceSetup.particles[k].velocity;
-        if (!isFinite(at) || !std::isfinite(glm::dot(velocity, velocity)))
+        if (!isFinite(at) || !isWithin(velocity, kMostSpeed))
             return badInput(
-                fmt::format("particles[{}] has the position ({}, {}, {}) m and the velocity ({}, {}, {}) m/s: give finite numbers", k, at.x,
-                            at.y, at.z, velocity.x, velocity.y, velocity.z));
+                fmt::format("particles[{}] has the position ({}, {}, {}) m and the velocity ({}, {}, {}) m/s: give finite numbers, and at "
+                            "most {} m/s",
+                            k, at.x, at.y, at.z, velocity.x, velocity.y, velocity.z, kMostSpeed));
         if (glm::clamp(at, box.min, box.max) != at)
             return badInput(
                 fmt::format("particles[{}] at ({}, {}, {}) m is outside fluid.box from ({}, {}, {}) to ({}, {}, {}) m: move it "

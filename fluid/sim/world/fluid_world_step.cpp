@@ -5,6 +5,7 @@
 #include <cmath>
 #include <new>
 
+#include "fluid/sim/world/contradictions.h"
 #include "fluid/sim/world/fluid_world_impl.h"
 
 namespace rivulet {
@@ -13,6 +14,11 @@ namespace {
 
 // m/s, where speeds have no limit: its square is still a float.
 constexpr float kAnySpeed = 1.0e18F;
+
+std::string refusedGravity(const vec3& g) {
+    return fmt::format("the gravity ({}, {}, {}) m/s^2 given to a step is not finite, or beyond {} along an axis", g.x, g.y, g.z,
+                       kMostGravity);
+}
 
 }  // namespace
 
@@ -112,6 +118,14 @@ double FluidWorld::Impl::accepted(double seconds) {
     return most;
 }
 
+Status FluidWorld::checkInputs(const FluidInputs& inputs, double seconds) const {
+    if (!(seconds <= kLongestFrame))
+        return badInput(fmt::format("a step of {} s is not finite, or longer than {} s: step in frames of a fraction of a second", seconds,
+                                    kLongestFrame));
+    if (inputs.gravity && !isWithin(*inputs.gravity, kMostGravity)) return badInput(refusedGravity(*inputs.gravity));
+    return impl_->solids.checkFrame(inputs.poses, inputs.shapes, impl_->stepper.pending() + seconds);
+}
+
 Status FluidWorld::lastStep() const {
     if (Status whole = impl_->whole(); !whole) return whole;
     return impl_->last;
@@ -122,6 +136,7 @@ void FluidWorld::step(const FluidInputs& inputs, double seconds) {
     w.last = ok();
     w.device->poll();
     if (!(seconds > 0) || w.device->stopAsked()) return;
+    if (!(seconds <= kLongestFrame)) return w.report(checkInputs({}, seconds).error().message);
     if (w.last = w.whole(); !w.last) return w.report(w.last.error().message);
     w.device->goOn();  // another owner of buffers may have been interrupted
     const WorldClock clock = w.clock;
@@ -189,10 +204,10 @@ int FluidWorld::Impl::stepFrame(const FluidInputs& inputs, double seconds) {
     const double span = frame.before + seconds;  // until the solids reach their target poses
     clock.frameLength = span;
     const vec3 wanted = inputs.gravity.value_or(p.gravity);
-    if (isFinite(wanted))
+    if (isWithin(wanted, kMostGravity))
         gravity = wanted;
     else
-        report("the gravity given to a step is not finite: the last gravity is kept");
+        report(refusedGravity(wanted) + ": the last gravity is kept");
     if (Status asked = solids.beginFrame(inputs.poses, inputs.shapes, span); !asked) report(asked.error().message);
     // It decays slowly: the speed of sound should not jump from frame to frame, nor keep a jump of a slider for ever.
     constexpr double kForget = 0.5;  // s

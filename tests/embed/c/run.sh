@@ -36,13 +36,19 @@ for name in $shown; do
     grep -qx "$name" <<<"$declared" || { echo "$name is not in rivulet.h"; exit 1; }
 done
 
-for program in main gl many; do
+for program in main faults gl many; do
     packages=rivulet
-    [ $program = main ] || packages="rivulet egl gl"
+    [ $program = main ] || [ $program = faults ] || packages="rivulet egl gl"
     read -ra flags <<<"$(pkg-config --cflags --libs $packages)"
     "${cc[@]}" -std=c11 $warnings "$here/$program.c" "${flags[@]}" -Wl,-rpath,"$(dirname "$library")" -lm -lpthread -o "$work/$program"
 done
+read -ra flags <<<"$(pkg-config --cflags --libs rivulet)"
+cxx=(c++ -O1)
+[ "${cc[0]}" = cc ] || cxx=(clang++ "${cc[@]:1}")
+"${cxx[@]}" -std=c++17 $warnings "$here/throws.cpp" "${flags[@]}" -Wl,-rpath,"$(dirname "$library")" -o "$work/throws"
 "$work/main" "$work"
+"$work/faults"
+"$work/throws"
 for program in gl many; do
     status=0
     "$work/$program" || status=$?

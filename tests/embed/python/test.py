@@ -65,6 +65,10 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         refused(lambda: world.set("fluid.spacing", 0.1), "fixed")
         refused(lambda: world.step(float("nan")), "finite")
         refused(lambda: world.step(0.01, gravity=(1, 2)), "shape")
+        refused(lambda: world.step(0.01, gravity=(0, -3e38, 0)), "gravity")
+        refused(lambda: world.step(1e300), "3600")
+        refused(lambda: context.world({"fluid": {"blocks": [{"min": [2, 2, 2], "max": [3, 3, 3]}]}}), "fluid.blocks[0]", "outside fluid.box")
+        refused(lambda: context.world({"emitters": [{"position": [0, 9, 0]}]}), "emitters[0].position", "outside fluid.box")
         refused(lambda: world.step(0.01, poses=[[0, 0, 0, 0, 0, 0, 1]]), "1 poses")
     assert context.memory == before
     refused(lambda: world.step(0.01), "world is NULL")  # closed
@@ -200,6 +204,9 @@ with rivulet.Context(backend="cpu", log=lambda level, sentence: heard.append((le
         except KeyError:
             pass
         hand.broken = False
+        calls = hand.calls
+        world.step(1 / 60)  # nothing of it is left
+        assert hand.calls > calls
         world.reset()
         assert hand.resets >= 1
 

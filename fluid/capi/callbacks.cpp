@@ -1,0 +1,70 @@
+#include "fluid/capi/callbacks.h"
+
+#include <unwind.h>
+
+#include <cstdint>
+#include <new>
+
+namespace rivulet::capi {
+
+namespace {
+
+// The frames of this thread, from the newest on. Each begins where the one that it called ends, at its canonical frame address.
+struct Search {
+    uintptr_t frame = 0, by = 0;
+    uintptr_t function = 0;  // of the frame before
+    bool passed = false, waits = false;
+};
+
+_Unwind_Reason_Code look(_Unwind_Context* context, void* to) {
+    auto& search = *static_cast<Search*>(to);
+    if (_Unwind_GetCFA(context) > search.frame) {
+        search.passed = true;
+        search.waits = search.function == search.by;
+        return _URC_END_OF_STACK;
+    }
+    search.function = _Unwind_GetRegionStart(context);
+    return _URC_NO_REASON;
+}
+
+void tell(Callback& callback, const HostLog& log, rivulet_level level, const std::string& sentence) {
+    const CallbackScope scope(callback);
+    try {
+        log.function(log.user, level, sentence.c_str());
+    } catch (...) {  // NOLINT(bugprone-empty-catch): a log that throws has no one to tell it
+    }
+}
+
+}  // namespace
+
+CallbackScope::CallbackScope(Callback& callback) : callback_(callback) {
+    auto* caller = static_cast<char*>(__builtin_return_address(0)) - 1;
+    callback_ = {.frame = this, .by = _Unwind_FindEnclosingFunction(caller), .thread = std::this_thread::get_id()};
+}
+
+// Unless all frames up to that one could be seen, nobody is known to have left it.
+bool Callback::left() const {
+    if (frame == nullptr || thread != std::this_thread::get_id()) return false;
+    Search search{.frame = reinterpret_cast<uintptr_t>(frame), .by = reinterpret_cast<uintptr_t>(by)};
+    _Unwind_Backtrace(look, &search);
+    return search.passed && !search.waits;
+}
+
+void HostLog::add(rivulet_level level, std::string sentence) {
+    if (function == nullptr) return;
+    try {
+        waiting_.emplace_back(level, std::move(sentence));
+    } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): a sentence less, and the call goes on
+    }
+}
+
+void HostLog::deliver(Callback& callback) {
+    if (callback.frame != nullptr) return;
+    while (!waiting_.empty()) {
+        const auto [level, sentence] = std::move(waiting_.front());
+        waiting_.pop_front();
+        tell(callback, *this, level, sentence);
+    }
+}
+
+}  // namespace rivulet::capi

@@ -1,0 +1,49 @@
+// The host's functions, as the library calls them: what they throw does not pass, they may not call back, and a host may leave one by
+// longjmp.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "fluid/capi/rivulet.h"
+
+namespace rivulet::capi {
+
+// A function of the host that is running.
+struct Callback {
+    const void* frame = nullptr;  // in the stack frame of the function that called it; null: none is running
+    const void* by = nullptr;     // where that function begins
+    std::thread::id thread;
+    // Whether the host has left it by longjmp: then that function is no more among those that wait for this thread's present call.
+    bool left() const;
+};
+
+// Around a call of a host's function: a local variable.
+class CallbackScope {
+  public:
+    [[gnu::noinline]] explicit CallbackScope(Callback& callback);
+    ~CallbackScope() { callback_ = {}; }
+    CallbackScope(const CallbackScope&) = delete;
+    CallbackScope& operator=(const CallbackScope&) = delete;
+
+  private:
+    Callback& callback_;
+};
+
+// Sentences for the host's log. They wait until the call that has them is done: what the log function does can then leave nothing half
+// done.
+class HostLog {
+  public:
+    void (*function)(void* user, rivulet_level level, const char* sentence) = nullptr;
+    void* user = nullptr;
+    void add(rivulet_level level, std::string sentence);
+    void deliver(Callback& callback);  // unless a function of the host is running: the call that runs it delivers them
+
+  private:
+    std::deque<std::pair<rivulet_level, std::string>> waiting_;
+};
+
+}  // namespace rivulet::capi

@@ -37,9 +37,6 @@ rivulet_status rivulet_world_draw(rivulet_world* world, const rivulet_view* view
         if (v.view == nullptr || v.projection == nullptr) return badInput("view.view or view.projection is NULL: 16 floats each");
         if (!areWithin({v.view, 16}, kMostDistance) || !areWithin({v.projection, 16}, kMostDistance))
             return badInput(fmt::format("view.view or view.projection is not finite, or beyond {}", kMostDistance));
-        if (!(v.near_plane > 0 && v.far_plane > v.near_plane && std::isfinite(v.far_plane)))
-            return badInput(
-                fmt::format("view.near_plane is {} m and far_plane {} m: give 0 < near_plane < far_plane", v.near_plane, v.far_plane));
         if (!areWithin(v.light_direction, kBrightest) || !areWithin(v.light_colour, kBrightest))
             return badInput(fmt::format("view.light_direction or view.light_colour is not finite, or beyond {}", kBrightest));
         Result<FluidLook> look = fluidLookOf(world->params.look, world->params.fluid.liquid);

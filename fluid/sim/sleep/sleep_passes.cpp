@@ -1,5 +1,7 @@
 #include "fluid/sim/sleep/sleep_passes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>

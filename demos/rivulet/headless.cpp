@@ -220,7 +220,7 @@ int runHeadless(const RunOptions& options) {
     if (options.render) {
         const auto surroundings = surroundingsOf(options.scene);
         if (!surroundings) return report(surroundings.error());
-        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
+        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr, options.log);
         if (!renderer) return report(renderer.error());
         painter.renderer = std::move(*renderer);
     }

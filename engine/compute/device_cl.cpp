@@ -139,7 +139,7 @@ ClDevice::ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& 
       context_(std::move(opened.context)),
       queue_(std::move(opened.queue)),
       share_(std::move(opened.share)),
-      cache_(options.cache),
+      cache_(options.cache, log_),
       memoryLimit_(options.memoryLimit),
       failAfter_(options.failAfter),
       eventFailsAfter_(options.eventFailsAfter) {

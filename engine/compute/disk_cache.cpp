@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "engine/core/file.h"
+#include "engine/core/private_file.h"
 
 namespace rivulet {
 
@@ -73,6 +74,14 @@ std::string hashOf(std::span<const std::byte> bytes) {
     return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+DiskCache::DiskCache(std::string folder, Log log) : folder_(std::move(folder)), log_(std::move(log)) {
+    if (folder_.empty()) return;
+    const Status trusted = checkPrivateFolder(folder_);
+    if (trusted) return;
+    log_.notice(fmt::format("the cache is not used: {}", trusted.error().message));
+    folder_.clear();
+}
+
 std::string DiskCache::pathOf(std::string_view key) const {
     return (fs::path(folder_) / (hashOf(std::as_bytes(std::span(key))) + kEnding)).string();
 }
@@ -82,6 +91,10 @@ std::optional<std::vector<std::byte>> DiskCache::find(std::string_view key) cons
     const fs::path path = pathOf(key);
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+    if (Status trusted = checkPrivateFile(path.string()); !trusted) {
+        log_.notice(fmt::format("an entry of the cache is made again: {}", trusted.error().message));
+        return std::nullopt;
+    }
     const Result<std::string> file = readFile(path.string(), kMostBytes);
     Header header{};
     if (!file || file->size() < sizeof header) return std::nullopt;
@@ -103,9 +116,7 @@ void DiskCache::keep(std::string_view key, std::span<const std::byte> data) cons
     file.append(reinterpret_cast<const char*>(data.data()), data.size());
     const Header header{kMagic, key.size(), data.size(), XXH3_64bits(file.data() + sizeof(Header), file.size() - sizeof(Header))};
     std::memcpy(file.data(), &header, sizeof header);
-    std::error_code ignored;
-    fs::create_directories(folder_, ignored);
-    if (writeFileAtomic(pathOf(key), file)) trimCache(folder_, kEnding, kMostFiles, kMostBytes);
+    if (makePrivateFolder(folder_) && writePrivateFile(pathOf(key), file)) trimCache(folder_, kEnding, kMostFiles, kMostBytes);
 }
 
 }  // namespace rivulet

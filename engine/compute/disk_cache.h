@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/log.h"
+
 namespace rivulet {
 
 // $XDG_CACHE_HOME/rivulet/NAME, else ~/.cache/rivulet/NAME; "" if neither variable holds an absolute path: then nothing is stored.
@@ -21,13 +23,14 @@ std::string hashOf(std::span<const std::byte> bytes);
 void trimCache(const std::string& folder, std::string_view ending, size_t mostFiles, size_t mostBytes);
 
 // A folder of entries, each with a key that states all its inputs. An entry that cannot be read is a miss; one that cannot be written is
-// not stored; neither is reported as an error. Any number of processes may share a folder.
+// not stored; neither is reported. A folder or an entry that others may have written is not used (private_file.h); that is a notice. Any
+// number of processes of one user may share a folder.
 class DiskCache {
   public:
     // Limits of the folder: the least recently used entries are deleted first.
     static constexpr size_t kMostFiles = 256, kMostBytes = size_t{64} << 20U;
 
-    explicit DiskCache(std::string folder) : folder_(std::move(folder)) {}  // "": nothing is stored
+    explicit DiskCache(std::string folder, Log log = {});  // "": nothing is stored
 
     // The data of exactly this key, checked by its checksum; empty: none.
     std::optional<std::vector<std::byte>> find(std::string_view key) const;
@@ -37,6 +40,7 @@ class DiskCache {
 
   private:
     std::string folder_;
+    Log log_;
 };
 
 }  // namespace rivulet

@@ -84,6 +84,7 @@ Status createContext(const rivulet_context_options& o, rivulet_context& c) {
     c.name = fmt::format("{}: {}", backendName(c.device->backend()), c.device->info().name);
     if (!c.gl.present()) return ok();
     WaterRendererOptions look;
+    look.log = c.log;
     if (o.memory_limit > 0) look.memoryLimit = o.memory_limit;
     if (isSet(o.sky_horizon)) look.sky.horizon = vectorOf(o.sky_horizon);
     if (isSet(o.sky_zenith)) look.sky.zenith = vectorOf(o.sky_zenith);

@@ -37,7 +37,7 @@ Status WaterRenderer::Impl::create(const WaterRendererOptions& options) {
     std::optional<HdrImage> made;
     if (options.surroundings == nullptr) made = makeSky(options.sky);
     const HdrImage& around = made ? *made : *options.surroundings;
-    const Environment filtered = cachedEnvironment(around, DiskCache(cacheFolder("surroundings")));
+    const Environment filtered = cachedEnvironment(around, DiskCache(cacheFolder("surroundings"), options.log));
     Result<gpu::Texture> map = makeEnvironmentMap(filtered);
     if (!map) return map.error();
     surroundings = std::move(*map);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/compute/device.h"
+#include "engine/core/log.h"
 #include "engine/core/result.h"
 #include "engine/render/frame_view.h"
 #include "engine/render/made_sky.h"
@@ -27,6 +28,7 @@ struct WaterRendererOptions {
     // Reflected by the water beside the picture itself: a map of the surroundings (read once; radiance in the target's units); null: `sky`.
     const HdrImage* surroundings = nullptr;
     SkyLook sky = {};
+    Log log = {};                   // receives why the cache of surroundings is not used
     size_t memoryLimit = SIZE_MAX;  // bytes of its textures, the surroundings included; create() and draw() fail beyond it
 };
 

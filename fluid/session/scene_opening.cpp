@@ -44,7 +44,7 @@ Result<OpenedScene> SceneOpening::work() {
             steps("surroundings", 0);
             const auto surroundings = surroundingsOf(request_.scene);
             if (!surroundings) return surroundings.error();
-            auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
+            auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr, request_.log);
             if (!renderer) return renderer.error();
             opened.renderer = std::move(*renderer);
         }

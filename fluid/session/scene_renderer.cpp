@@ -86,11 +86,11 @@ FrameView frameViewOf(const Camera& camera, const LightParams& light, int width,
     return view;
 }
 
-Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& from, const HdrImage* surroundings) {
+Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& from, const HdrImage* surroundings, const Log& log) {
     std::unique_ptr<SceneRenderer> r(new SceneRenderer());
     ShaderFiles files = from;
     if (surroundings != nullptr) {
-        const Environment made = cachedEnvironment(*surroundings, DiskCache(cacheFolder("surroundings")));
+        const Environment made = cachedEnvironment(*surroundings, DiskCache(cacheFolder("surroundings"), log));
         Result<gpu::Texture> map = makeEnvironmentMap(made);
         if (!map) return map.error();
         r->surroundings_ = std::move(*map);

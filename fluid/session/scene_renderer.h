@@ -34,8 +34,9 @@ FrameView frameViewOf(const Camera& camera, const LightParams& light, int width,
 class SceneRenderer {
   public:
     // `surroundings`: lights the scene beside the key light and is its background; null: the studio.
-    // Error (failed): a shader does not compile, or is missing.
-    static Result<std::unique_ptr<SceneRenderer>> create(const ShaderFiles& files, const HdrImage* surroundings = nullptr);
+    // `log`: whether the cache of surroundings can be used. Error (failed): a shader does not compile, or is missing.
+    static Result<std::unique_ptr<SceneRenderer>> create(const ShaderFiles& files, const HdrImage* surroundings = nullptr,
+                                                         const Log& log = {});
 
     // Draws into its own picture, of the view's size. Error: an unknown renderer or colouring (badInput); out of GPU memory (failed).
     Status draw(const FrameView& view, const FluidView& fluid, const Scene& scene, const SceneFile& settings);

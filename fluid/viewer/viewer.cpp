@@ -43,7 +43,7 @@ Status Viewer::start(const SceneFile& scene, const ViewerOptions& options) {
     if (!first.renderer) {
         const auto surroundings = surroundingsOf(scene);
         if (!surroundings) return surroundings.error();
-        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
+        auto renderer = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr, log_);
         if (!renderer) return renderer.error();
         first.renderer = std::move(*renderer);
     }

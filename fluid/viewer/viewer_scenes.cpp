@@ -93,7 +93,7 @@ void Viewer::startOpening(SceneFile scene, Cause cause) {
     if (renderer) {
         const auto surroundings = surroundingsOf(scene);
         if (!surroundings) return refuse(surroundings.error(), cause, before);
-        auto made = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr);
+        auto made = SceneRenderer::create(ShaderFiles::developer(), *surroundings ? &**surroundings : nullptr, log_);
         if (!made) return refuse(made.error(), cause, before);
         opened.renderer = std::move(*made);
     }

@@ -9,6 +9,7 @@
 #include <new>
 
 #include "engine/compute/disk_cache.h"
+#include "engine/core/private_file.h"
 #include "fluid/voxel/voxel_file.h"
 
 namespace rivulet {
@@ -46,9 +47,9 @@ std::string keyOf(std::span<const MeshView> meshes, const VoxelFieldOptions& opt
     return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-VoxelFile fileOf(VoxelField field) {
+VoxelFile fileOf(VoxelField field, const std::string& key) {
     return {VoxelMode::surface, std::move(field.surface), std::nullopt,
-            VoxelBand{field.band, field.closed, std::move(field.distance), std::move(field.normal)}};
+            VoxelBand{field.band, field.closed, std::move(field.distance), std::move(field.normal)}, key};
 }
 
 VoxelField fieldOf(VoxelFile file) {
@@ -60,29 +61,29 @@ bool isFieldFor(const VoxelFile& file, const VoxelFieldOptions& options) {
     return file.band && file.band->band >= options.band && file.band->band >= 0.999F * kBandVoxels * file.bits.voxel;
 }
 
-// The field at `path`; empty if there is no valid file.
-std::optional<VoxelField> readField(const fs::path& path, const VoxelFieldOptions& options, const Log& log) {
+// The field at `path`; empty if there is no valid file of this key.
+std::optional<VoxelField> readField(const fs::path& path, const std::string& key, const VoxelFieldOptions& options, const Log& log) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) return std::nullopt;
+    const auto again = [&log](const std::string& why) {
+        log.notice(fmt::format("the cached voxels are baked again: {}", why));
+        return std::nullopt;
+    };
+    if (Status trusted = checkPrivateFile(path.string()); !trusted) return again(trusted.error().message);
     Result<VoxelFile> file = readVoxelFile(path.string(), options.memoryLimit);
-    if (!file) {
-        log.notice(fmt::format("the cached voxels are baked again: {}", file.error().message));
-        return std::nullopt;
-    }
-    if (!isFieldFor(*file, options)) {
-        log.notice(fmt::format("the cached voxels are baked again: the content of {} does not match its name", path.string()));
-        return std::nullopt;
-    }
+    if (!file) return again(file.error().message);
+    if (file->key != key) return again(fmt::format("{} holds the voxels of another mesh or of other parameters", path.string()));
+    if (!isFieldFor(*file, options)) return again(fmt::format("the content of {} does not match its name", path.string()));
     fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);  // marks it as used, so trimCache keeps it longer
     return fieldOf(std::move(*file));
 }
 
 // Writes the field to the disk if possible, and returns it unchanged.
-VoxelField writeField(const fs::path& path, VoxelField field, const Log& log) {
-    std::error_code error;
-    fs::create_directories(path.parent_path(), error);
-    VoxelFile file = fileOf(std::move(field));
-    const Result<size_t> written = writeVoxelFile(path.string(), file);
+VoxelField writeField(const fs::path& path, const std::string& key, VoxelField field, const Log& log) {
+    VoxelFile file = fileOf(std::move(field), key);
+    const Result<std::string> bytes = packVoxelFile(file);
+    Status written = bytes ? makePrivateFolder(path.parent_path().string()) : Status(bytes.error());
+    if (written) written = writePrivateFile(path.string(), *bytes);
     if (!written)
         log.notice(fmt::format("the voxels of the scene's meshes are not stored for the next start: {}", written.error().message));
     if (written) trimCache(path.parent_path().string(), kEnding, SIZE_MAX, kVoxelCacheBytes);
@@ -96,11 +97,16 @@ std::string voxelCacheFolder() { return cacheFolder("voxels"); }
 Result<VoxelField> cachedVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options, const Log& log) {
     const std::string folder = voxelCacheFolder();
     if (folder.empty()) return bakeVoxelField(meshes, options);
-    const fs::path path = fs::path(folder) / (keyOf(meshes, options) + kEnding);
-    if (std::optional<VoxelField> field = readField(path, options, log)) return std::move(*field);
+    if (Status trusted = checkPrivateFolder(folder); !trusted) {
+        log.notice(fmt::format("the voxels of the scene's meshes are not cached: {}", trusted.error().message));
+        return bakeVoxelField(meshes, options);
+    }
+    const std::string key = keyOf(meshes, options);
+    const fs::path path = fs::path(folder) / (key + kEnding);
+    if (std::optional<VoxelField> field = readField(path, key, options, log)) return std::move(*field);
     Result<VoxelField> field = bakeVoxelField(meshes, options);
     if (!field) return field;
-    return writeField(path, std::move(*field), log);
+    return writeField(path, key, std::move(*field), log);
 }
 
 }  // namespace rivulet

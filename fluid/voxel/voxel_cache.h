@@ -17,8 +17,9 @@ std::string voxelCacheFolder();
 inline constexpr size_t kVoxelCacheBytes = size_t{1} << 30U;
 
 // Returns bakeVoxelField(meshes, options), bit for bit, from the disk if an intact file exists. The key is a hash of the meshes, the
-// options and the sources of the bakers. Errors are those of bakeVoxelField: a cache that is broken, full or not writable causes at most a
-// notice. Any number of programs may use the folder at once.
+// options and the sources of the bakers; it is the name of the file and stands in it. A file with another key, or one that others may have
+// written, is baked again with a notice; a folder that others may write to is not used (private_file.h). Errors are those of
+// bakeVoxelField: a cache that is broken, full or not writable causes at most a notice. Any number of programs may use the folder at once.
 Result<VoxelField> cachedVoxelField(std::span<const MeshView> meshes, const VoxelFieldOptions& options, const Log& log);
 
 }  // namespace rivulet

@@ -20,6 +20,7 @@ namespace {
 constexpr std::array<uint8_t, 8> kMagic = {0x89, 'R', 'V', 'O', 'X', '\r', '\n', 0x1A};
 constexpr uint32_t kByteOrder = 0x01020304, kOtherByteOrder = 0x04030201;
 constexpr uint32_t kVersion = 1;
+constexpr size_t kMostKeyBytes = 1024;
 constexpr int kLongestSide = 65536;  // voxels: products of three stay far below 2^63
 
 struct Header {
@@ -39,8 +40,8 @@ struct Header {
 static_assert(sizeof(Header) == 80 && std::is_trivially_copyable_v<Header>);
 
 // In the order of the file. For the arrays in each see write() and read().
-enum class Kind : uint32_t { bits = 1, labels, materials, distance, normal, end };
-constexpr const char* kNames[] = {"", "bits", "labels", "materials", "distance", "normal"};
+enum class Kind : uint32_t { bits = 1, labels, materials, distance, normal, key, end };
+constexpr const char* kNames[] = {"", "bits", "labels", "materials", "distance", "normal", "key"};
 static_assert(std::size(kNames) == static_cast<size_t>(Kind::end));
 
 struct Section {
@@ -79,11 +80,12 @@ class Writer {
   public:
     std::string write(const VoxelFile& file) {
         check(file);
-        const size_t sections = 1 + (file.labels ? 2 : 0) + (file.band ? countColumns(*file.band) : 0);
+        const size_t sections = 1 + (file.labels ? 2 : 0) + (file.band ? countColumns(*file.band) : 0) + (file.key.empty() ? 0 : 1);
         out_.resize(sizeof(Header) + sections * sizeof(Section));
         add<uint8_t>(Kind::bits, file.bits.bits);
         if (file.labels) addLabels(*file.labels);
         if (file.band) eachColumn(*file.band, [this](Kind kind, const auto& items) { add(kind, std::span(items)); });
+        if (!file.key.empty()) add<char>(Kind::key, file.key);
 
         Header header{};
         header.magic = kMagic;
@@ -120,6 +122,7 @@ class Writer {
         ASSERT(grid.count() > 0 && grid.bits.size() == bitBytesOf(grid), "the number of bits must match the size of the grid");
         ASSERT(!file.labels || (file.labels->size == grid.size && file.labels->rowStart.size() == rowsOf(grid.size) + 1),
                "labels must have the size of the grid");
+        ASSERT(file.key.size() <= kMostKeyBytes, "the key of a voxel file has at most 1,024 bytes");
         if (!file.band) return;
         ASSERT(file.band->band > 0, "the width of a band must be above 0");
         eachColumn(*file.band, [&grid](Kind, const auto& items) {
@@ -174,7 +177,7 @@ class Reader {
 
     Result<VoxelFile> read() {
         try {
-            if (readHead() && readFrame() && readTable() && checkMemory() && readBits() && readLabels() && readBand())
+            if (readHead() && readFrame() && readTable() && checkMemory() && readBits() && readLabels() && readBand() && readKey())
                 return std::move(file_);
             return *error_;
         } catch (const std::bad_alloc&) {
@@ -289,6 +292,9 @@ class Reader {
             columns = columns && needs(kind, header_.band > 0, pointsOf(grid.size) * sizeof(items[0]));
         });
         if (!columns) return false;
+        const Section* key = find(Kind::key);
+        if (key != nullptr && (key->bytes == 0 || key->bytes > kMostKeyBytes))
+            return damaged(*key, fmt::format("a key of {} bytes is not possible (1 to {})", key->bytes, kMostKeyBytes));
         const Section* labels = find(Kind::labels);
         const Section* materials = find(Kind::materials);
         if ((labels == nullptr) != (materials == nullptr))
@@ -415,6 +421,14 @@ class Reader {
         return wrong == band.distance.end() ||
                damaged(*find(Kind::distance), fmt::format("distance {} is {}, which is outside the band of {} m",
                                                           wrong - band.distance.begin(), *wrong, band.band));
+    }
+
+    bool readKey() {
+        const Section* section = find(Kind::key);
+        std::vector<char> key;
+        if (section != nullptr && !unpack(*section, key)) return false;
+        file_.key.assign(key.begin(), key.end());
+        return true;
     }
 
     std::span<const std::byte> bytes_;

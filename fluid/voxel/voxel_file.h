@@ -32,6 +32,7 @@ struct VoxelFile {
     VoxelGrid bits;
     std::optional<VoxelLabels> labels;  // of the same size
     std::optional<VoxelBand> band;
+    std::string key = {};  // what the voxels were made from (voxel_cache.cpp), at most 1,024 bytes; empty: the file states none
 };
 
 // The whole file as bytes. Error (failed): out of memory.

@@ -84,6 +84,41 @@ TEST(DiskCacheTest, AnothersFileUnderThisNameIsAMiss) {
     EXPECT_FALSE(cache.find("mine"));
 }
 
+// Kernels' binaries of another user are not run: neither from a folder nor from a file that others may have written.
+TEST(DiskCacheTest, WhatOthersMayHaveWrittenIsNotRead) {
+    const Scratch scratch;
+    std::vector<std::string> notices;
+    const Log log{[&](LogLevel, std::string_view text) { notices.emplace_back(text); }};
+    const std::string folder = (scratch.path() / "rivulet/cl").string();
+    DiskCache(folder, log).keep("key", bytesOf("program"));
+    const std::string path = DiskCache(folder).pathOf("key");
+    struct stat status {};
+    ASSERT_EQ(::stat(path.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777U, 0600U);
+    ASSERT_EQ(::stat(folder.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777U, 0700U);
+    EXPECT_TRUE(DiskCache(folder, log).find("key"));
+    EXPECT_TRUE(notices.empty());
+
+    ASSERT_EQ(::chmod(path.c_str(), 0666), 0);
+    const DiskCache cache(folder, log);
+    EXPECT_FALSE(cache.find("key"));
+    ASSERT_EQ(notices.size(), 1U);
+    EXPECT_NE(notices[0].find(path), std::string::npos) << notices[0];
+    cache.keep("key", bytesOf("program"));
+    EXPECT_TRUE(cache.find("key"));
+    EXPECT_EQ(notices.size(), 1U);
+
+    ASSERT_EQ(::chmod(folder.c_str(), 0777), 0);
+    const DiskCache open(folder, log);
+    ASSERT_EQ(notices.size(), 2U);
+    EXPECT_NE(notices[1].find(folder), std::string::npos) << notices[1];
+    EXPECT_FALSE(open.find("key"));
+    open.keep("other", bytesOf("program"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+    EXPECT_EQ(notices.size(), 2U);
+}
+
 TEST(DiskCacheTest, AFolderThatCannotBeIsNoTrouble) {
     const Scratch scratch;
     const std::string file = scratch.file("a_file", "text");

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -157,6 +159,115 @@ TEST_F(VoxelCache, ADamagedFileIsBakedAgain) {
         for (float& d : file->band->distance) d *= 0.25F;
         ASSERT_TRUE(writeVoxelFile(path.string(), *file));
     });
+}
+
+// An intact file of other voxels under this name.
+TEST_F(VoxelCache, AnEntryOfAnotherMeshIsBakedAgain) {
+    const test::Mesh other = test::makeBox(vec3(-0.3F), vec3(0.7F));
+    ASSERT_TRUE(get(other));
+    const fs::path theirs = onlyFile();
+    expectRight(0);
+    for (const fs::path& path : files())
+        if (path != theirs) fs::copy_file(theirs, path, fs::copy_options::overwrite_existing);
+    expectRight(1);
+    expectRight(0);
+
+    // The same mesh at another resolution, and voxels of a file that states no key.
+    fs::remove(theirs);
+    const fs::path mine = onlyFile();
+    Result<VoxelFile> coarse = readVoxelFile(mine.string());
+    ASSERT_TRUE(coarse) << coarse.error().message;
+    coarse->key.clear();
+    ASSERT_TRUE(writeVoxelFile(mine.string(), *coarse));
+    expectRight(1);
+    options_.resolution = 17;
+    expectRight(0);
+    for (const fs::path& path : files())
+        if (path != mine) fs::copy_file(mine, path, fs::copy_options::overwrite_existing);
+    expectRight(1);
+    EXPECT_EQ(files().size(), 2U);
+}
+
+// Permissions of a file, as ls -l shows them.
+unsigned modeOf(const fs::path& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 ? status.st_mode & 0777U : 0U;
+}
+
+constexpr uid_t kSomebody = 54321;
+
+TEST_F(VoxelCache, OnlyThisUserCanReadAndWriteIt) {
+    const mode_t before = ::umask(0);
+    expectRight(0);
+    ::umask(before);
+    EXPECT_EQ(modeOf(folder()), 0700U);
+    EXPECT_EQ(modeOf(folder().parent_path()), 0700U);
+    EXPECT_EQ(modeOf(onlyFile()), 0600U);
+    // A folder that others could read, as older versions made it.
+    ASSERT_EQ(::chmod(folder().c_str(), 0755), 0);
+    expectRight(0);
+    EXPECT_EQ(modeOf(folder()), 0700U);
+}
+
+TEST_F(VoxelCache, AnEntryThatOthersMayHaveWrittenIsBakedAgain) {
+    expectRight(0);
+    const fs::path path = onlyFile();
+    const auto distrusted = [&](const char* what) {
+        SCOPED_TRACE(what);
+        expectRight(1);
+        EXPECT_EQ(modeOf(onlyFile()), 0600U);
+        expectRight(0);
+    };
+    for (const mode_t mode : {0666U, 0620U, 0602U}) {
+        ASSERT_EQ(::chmod(path.c_str(), mode), 0);
+        distrusted("others may write");
+    }
+    if (::geteuid() == 0) {  // only root can give a file away
+        ASSERT_EQ(::chown(path.c_str(), kSomebody, kSomebody), 0);
+        distrusted("another user's");
+    }
+    const fs::path elsewhere = scratch_.path() / "elsewhere.rvox";
+    fs::rename(path, elsewhere);
+    fs::create_symlink(elsewhere, path);
+    distrusted("a link");
+    EXPECT_FALSE(fs::is_symlink(path));
+    fs::remove(path);
+    ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+    distrusted("a pipe");
+}
+
+TEST_F(VoxelCache, AFolderThatOthersMayWriteToIsNotUsed) {
+    expectRight(0);
+    const fs::path path = onlyFile();
+    // A wrong field, which would be believed if it were read.
+    Result<VoxelFile> file = readVoxelFile(path.string());
+    ASSERT_TRUE(file);
+    ASSERT_NE(file->band->distance[5], 0.0F);
+    file->band->distance[5] = 0;
+    ASSERT_TRUE(writeVoxelFile(path.string(), *file));
+    const auto refused = [&](const std::string& mentions) {
+        const Result<VoxelField> got = get(mesh_), baked = bake(mesh_);
+        ASSERT_TRUE(got) << got.error().message;
+        EXPECT_TRUE(got->distance == baked->distance);
+        ASSERT_EQ(notices_.size(), 1U);
+        EXPECT_NE(notices_[0].find(mentions), std::string::npos) << notices_[0];
+        EXPECT_NE(notices_[0].find("XDG_CACHE_HOME"), std::string::npos) << notices_[0];
+        notices_.clear();
+        EXPECT_EQ(readVoxelFile(path.string())->band->distance[5], file->band->distance[5]) << "nothing was written";
+    };
+    for (const fs::path& open : {folder(), folder().parent_path()}) {
+        for (const mode_t mode : {0777U, 0770U, 0702U}) {
+            ASSERT_EQ(::chmod(open.c_str(), mode), 0);
+            refused(open.string() + " may be written to by other users");
+        }
+        ASSERT_EQ(::chmod(open.c_str(), 0700), 0);
+        if (::geteuid() != 0) continue;
+        ASSERT_EQ(::chown(open.c_str(), kSomebody, kSomebody), 0);
+        refused(open.string() + " belongs to another user");
+        ASSERT_EQ(::chown(open.c_str(), 0, 0), 0);
+    }
+    ASSERT_TRUE(get(mesh_));
+    EXPECT_TRUE(notices_.empty()) << "its own folder is used again";
 }
 
 TEST_F(VoxelCache, ACacheThatCannotBeWrittenIsANotice) {

@@ -88,6 +88,7 @@ VoxelFile makeFile(unsigned seed, const ivec3& size, bool labels, bool band) {
             b.normal.push_back(static_cast<uint32_t>(random()));
         }
     }
+    if (seed % 2 == 0) f.key = std::string("a key, with \0 in it", 19);
     return f;
 }
 
@@ -96,6 +97,7 @@ void expectSame(const VoxelFile& a, const VoxelFile& b) {
     EXPECT_EQ(a.bits.size, b.bits.size);
     EXPECT_EQ(a.bits.origin, b.bits.origin);
     EXPECT_EQ(a.bits.voxel, b.bits.voxel);
+    EXPECT_EQ(a.key, b.key);
     EXPECT_TRUE(a.bits.bits == b.bits.bits);
     ASSERT_EQ(a.labels.has_value(), b.labels.has_value());
     if (a.labels) {
@@ -453,6 +455,11 @@ TEST(VoxelFile, ForgedFramesAndSectionsAreRefused) {
         Forgery f = plain;
         f.add(2, Words{1, 1, 1, 1}, Words(4, 0), Words(4, 0));
         refused(f, "labels and materials must both be present");
+    }
+    for (const size_t bytes : {size_t{0}, size_t{1025}, size_t{100000}}) {
+        Forgery f = plain;
+        f.add(6, std::vector<char>(bytes, 'k'));
+        refused(f, "section key");
     }
     EXPECT_NE(errorOf(unpack("")).find("empty"), std::string::npos);
     EXPECT_NE(errorOf(unpack("# a scene\n")).find("not the beginning of a voxel file"), std::string::npos);

@@ -7,7 +7,7 @@
 #include "demos/rivulet/bench_cases.h"
 #include "engine/compute/device_cpu.h"
 #include "engine/core/wall_clock.h"
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
 #include "fluid/voxel/voxel_field.h"

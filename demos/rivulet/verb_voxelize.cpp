@@ -13,7 +13,7 @@
 #include "engine/core/input_file.h"
 #include "engine/core/message_line.h"
 #include "engine/core/readable_bytes.h"
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "fluid/render/backend.h"
 #include "fluid/session/cpu_fallback.h"
 #include "fluid/voxel/distance_band.h"

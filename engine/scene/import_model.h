@@ -1,5 +1,4 @@
-// Reads a model file through assimp: glTF or FBX with its materials, textures, morph targets, bones, clips, cameras and lights, or a plain
-// mesh as a model of one part.
+// Imports a mesh or a model from a file: OBJ, glTF, FBX, PLY, STL and the other formats of assimp.
 #pragma once
 
 #include <string>
@@ -9,6 +8,13 @@
 
 namespace rivulet {
 
+// All triangles of the file as one mesh, with each node's transform applied, in the unit of the file. Polygons become triangles; points and
+// lines are dropped. Normals are the file's, or smooth ones for a part without normals; uvs are the first channel, if every part has it.
+// Error (badInput): the file is missing, a folder, empty, unreadable or of an unknown format; it has no triangles, vertices that are not
+// finite (with their number), or an index out of range.
+Result<Mesh> importMesh(const std::string& path);
+
+// A model with its materials, textures, morph targets, bones, clips, cameras and lights, or a plain mesh as a model of one part.
 // In the unit of the file; each part in the frame of its node. Polygons become triangles. Normals are the file's, or smooth ones for a part
 // without normals. A part with morphs or bones keeps the vertices of the file in their order; in other parts identical vertices are merged.
 // Textures are in the file or beside it.

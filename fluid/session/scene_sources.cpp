@@ -1,6 +1,6 @@
 #include "fluid/session/scene_sources.h"
 
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "engine/scene/transform.h"
 #include "fluid/scene/skin_flows.h"
 

@@ -7,7 +7,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/core/log.h"
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "engine/scene/transform.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/sim/world/cpu_kernels.h"

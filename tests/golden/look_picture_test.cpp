@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "engine/scene/transform.h"
 #include "tests/golden/look_fixture.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/core/mesh_view.h"
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "fluid/flow/flow_mesh.h"
 #include "fluid/validate/flow_shapes.h"
 

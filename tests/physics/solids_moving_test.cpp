@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/compute/device_cpu.h"
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "engine/scene/transform.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/session/session.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "engine/scene/transform.h"
 #include "fluid/session/session.h"
 #include "fluid/sim/sources/block.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "fluid/flow/flow_maps.h"
 #include "fluid/flow/unwrap.h"
 #include "fluid/flow/uv_triangle.h"

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "engine/core/file.h"
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "fluid/io/export.h"
 #include "fluid/io/mesh_file.h"
 #include "fluid/render/backend.h"

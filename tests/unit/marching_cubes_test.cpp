@@ -8,7 +8,7 @@
 #include <random>
 
 #include "engine/core/file.h"
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "fluid/io/mesh_file.h"
 #include "tests/unit/mesh_volume.h"
 #include "tests/unit/program_runner.h"

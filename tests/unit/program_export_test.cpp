@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 #include "tests/unit/mesh_volume.h"
 #include "tests/unit/program_runner.h"
 

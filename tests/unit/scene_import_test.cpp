@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "engine/scene/import_assimp.h"
+#include "engine/scene/import_model.h"
 
 namespace rivulet::scene_import_test {
 namespace {

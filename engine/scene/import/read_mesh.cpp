@@ -1,13 +1,10 @@
-#include "engine/scene/import_assimp.h"
-
-#include <fmt/format.h>
-
+// All triangles of a file as one mesh.
 #include <assimp/postprocess.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "engine/scene/assimp_file.h"
+#include "engine/scene/import/assimp_file.h"
 
 namespace rivulet {
 namespace {
@@ -42,14 +39,6 @@ Result<Mesh> meshFrom(Assimp::Importer& importer, const std::string& path) {
     for (unsigned m = 0; m < (*scene)->mNumMeshes; ++m) append(*(*scene)->mMeshes[m], withUvs, mesh);
     if (mesh.indices.empty()) return meshFileError(path, "has no triangles");
     return mesh;
-}
-
-Result<Mesh> importMesh(const std::string& path) try {
-    Assimp::Importer importer;
-    if (Result<const aiScene*> raw = readMeshFile(importer, path); !raw) return raw.error();
-    return meshFrom(importer, path);
-} catch (const std::exception& e) {  // assimp reports most errors by text, but out of memory and the like by throwing
-    return meshFileError(path, fmt::format("cannot be read: {}", e.what()));
 }
 
 }  // namespace rivulet

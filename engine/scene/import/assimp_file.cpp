@@ -1,4 +1,4 @@
-#include "engine/scene/assimp_file.h"
+#include "engine/scene/import/assimp_file.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// Reads the animations, cameras and lights of a file, for importModel.
+// Reads the animations, cameras and lights of a file, for readModel.
 #pragma once
 
 #include <assimp/scene.h>
@@ -17,6 +17,6 @@ vec3 vectorOf(const aiVector3D& v);
 // Fills model.clips, cameras and lights. `nodeOf`: indices of model.nodes by name. Tracks, cameras and lights of other nodes are dropped,
 // and so are keys that are not finite or not later than the previous one. `gltf`: the file is glTF, for which assimp reports angles
 // differently.
-void importMotion(const aiScene& scene, const std::map<std::string, int>& nodeOf, bool gltf, Model& model);
+void readMotion(const aiScene& scene, const std::map<std::string, int>& nodeOf, bool gltf, Model& model);
 
 }  // namespace rivulet

@@ -1,4 +1,4 @@
-#include "engine/scene/import_motion.h"
+#include "engine/scene/import/read_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -96,7 +96,7 @@ float verticalView(const aiCamera& from, bool gltf) {
 
 }  // namespace
 
-void importMotion(const aiScene& scene, const std::map<std::string, int>& nodeOf, bool gltf, Model& model) {
+void readMotion(const aiScene& scene, const std::map<std::string, int>& nodeOf, bool gltf, Model& model) {
     for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
         Clip clip = clipOf(*scene.mAnimations[a], nodeOf);
         if (!clip.nodes.empty() || !clip.morphs.empty()) model.clips.push_back(std::move(clip));

@@ -22,7 +22,7 @@ Result<const aiScene*> readMeshFile(Assimp::Importer& importer, const std::strin
 // Applies `steps` (aiProcess flags) to the scene that was read. Error: no triangles are left.
 Result<const aiScene*> prepareMeshFile(Assimp::Importer& importer, const std::string& path, unsigned steps);
 
-// The result of importMesh for a file that was read. Error: as prepareMeshFile.
+// All triangles of a file that was read, as one mesh. Error: as prepareMeshFile.
 Result<Mesh> meshFrom(Assimp::Importer& importer, const std::string& path);
 
 }  // namespace rivulet

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 #include "engine/scene/import_model.h"
 #include "engine/scene/transform.h"
@@ -65,7 +66,25 @@ void weighDown(SceneBody& b, const vec3& way) {
     b.form.centre -= way;
 }
 
-Result<SceneBody> bodyOf(const BodyParams& params, const std::string& folder, float spacing) {
+// Mesh files, each of which is read once: ten ducks are one file.
+class MeshFiles {
+  public:
+    explicit MeshFiles(const std::string& folder) : folder_(folder) {}
+    Result<const Mesh*> find(const std::string& name) {
+        Result<std::string> path = findAsset(name, folder_);
+        if (!path) return path.error();
+        if (const auto found = read_.find(*path); found != read_.end()) return &found->second;
+        Result<Mesh> mesh = importMesh(*path);
+        if (!mesh) return mesh.error();
+        return &read_.emplace(std::move(*path), std::move(*mesh)).first->second;
+    }
+
+  private:
+    std::string folder_;
+    std::map<std::string, Mesh> read_;
+};
+
+Result<SceneBody> bodyOf(const BodyParams& params, MeshFiles& files, float spacing) {
     SceneBody made;
     BodyState& state = made.body.state;
     BodyShape& shape = made.body.shape;
@@ -91,13 +110,11 @@ Result<SceneBody> bodyOf(const BodyParams& params, const std::string& folder, fl
         state.pose.position = params.position;
         state.pose.rotation = glm::normalize(glm::quat_cast(mat3(placed.matrix())));
     } else {
-        Result<std::string> path = findAsset(params.mesh, folder);
-        if (!path) return path.error();
-        Result<Mesh> mesh = importMesh(*path);
+        const Result<const Mesh*> mesh = files.find(params.mesh);
         if (!mesh) return mesh.error();
-        const mat4 place = params.fitSize > 0 ? Transform::fitted(mesh->bounds(), params.fitSize, params.position, params.rotation)
+        const mat4 place = params.fitSize > 0 ? Transform::fitted((*mesh)->bounds(), params.fitSize, params.position, params.rotation)
                                               : Transform{params.position, params.rotation, params.scale}.matrix();
-        made.mesh = transformed(*mesh, place);
+        made.mesh = transformed(**mesh, place);
         const bool hull = params.shape == "hull";
         HullMesh around;
         if (hull) around = convexHull(made.mesh.positions);
@@ -107,11 +124,9 @@ Result<SceneBody> bodyOf(const BodyParams& params, const std::string& folder, fl
         state.pose = solid->frame;
         toOwn(made.mesh, state.pose);
         for (const BodyPartParams& part : params.parts) {
-            Result<std::string> file = findAsset(part.mesh, folder);
-            if (!file) return file.error();
-            Result<Mesh> drawn = importMesh(*file);
+            const Result<const Mesh*> drawn = files.find(part.mesh);
             if (!drawn) return drawn.error();
-            made.parts.push_back(transformed(*drawn, place));
+            made.parts.push_back(transformed(**drawn, place));
             toOwn(made.parts.back(), state.pose);
         }
         made.form.kind = hull ? BodyForm::Kind::hull : BodyForm::Kind::cells;
@@ -140,9 +155,10 @@ Result<SceneBody> bodyOf(const BodyParams& params, const std::string& folder, fl
 
 Result<std::vector<SceneBody>> sceneBodies(const SceneFile& scene) {
     std::vector<SceneBody> all;
+    MeshFiles files(scene.folder);
     for (size_t i = 0; i < scene.bodies.size(); ++i) {
         const BodyParams& params = scene.bodies[i];
-        Result<SceneBody> made = bodyOf(params, scene.folder, scene.fluid.spacing);
+        Result<SceneBody> made = bodyOf(params, files, scene.fluid.spacing);
         if (!made)
             return Error{fmt::format("bodies[{}]{}: {}", i, params.mesh.empty() ? "" : " (" + params.mesh + ")", made.error().message),
                          made.error().fault};

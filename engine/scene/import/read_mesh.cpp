@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "engine/scene/import/assimp_file.h"
+#include "engine/scene/model_check.h"
 
 namespace rivulet {
 namespace {
@@ -17,7 +18,7 @@ void append(const aiMesh& part, bool withUvs, Mesh& mesh) {
         vec3 n = part.HasNormals() ? vec3(part.mNormals[i].x, part.mNormals[i].y, part.mNormals[i].z) : vec3(0.0F);
         float length = glm::length(n);
         mesh.normals.push_back(length > 0.0F && std::isfinite(length) ? n / length : vec3(0.0F, 1.0F, 0.0F));
-        if (withUvs) mesh.uvs.emplace_back(part.mTextureCoords[0][i].x, part.mTextureCoords[0][i].y);
+        if (withUvs) mesh.uvs.push_back(uvOf(part, i));
     }
     for (unsigned f = 0; f < part.mNumFaces; ++f)
         if (part.mFaces[f].mNumIndices == 3)
@@ -26,10 +27,15 @@ void append(const aiMesh& part, bool withUvs, Mesh& mesh) {
 
 }  // namespace
 
+vec2 uvOf(const aiMesh& part, unsigned vertex) {
+    const aiVector3D& uv = part.mTextureCoords[0][vertex];
+    return std::abs(uv.x) <= kFarthest && std::abs(uv.y) <= kFarthest ? vec2(uv.x, uv.y) : vec2(0.0F);
+}
+
 Result<Mesh> meshFrom(Assimp::Importer& importer, const std::string& path) {
-    Result<const aiScene*> scene = prepareMeshFile(importer, path,
-                                                   aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices |
-                                                       aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
+    Result<const aiScene*> scene =
+        prepareMeshFile(importer, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices |
+                                      aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
     if (!scene) return scene.error();
 
     Mesh mesh;
@@ -37,7 +43,7 @@ Result<Mesh> meshFrom(Assimp::Importer& importer, const std::string& path) {
     bool withUvs = true;
     for (unsigned m = 0; m < (*scene)->mNumMeshes; ++m) withUvs = withUvs && (*scene)->mMeshes[m]->HasTextureCoords(0);
     for (unsigned m = 0; m < (*scene)->mNumMeshes; ++m) append(*(*scene)->mMeshes[m], withUvs, mesh);
-    if (mesh.indices.empty()) return meshFileError(path, "has no triangles");
+    if (mesh.indices.empty()) return badInput("has no triangles");
     return mesh;
 }
 

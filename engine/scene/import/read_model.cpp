@@ -22,7 +22,7 @@ namespace {
 // The textures of a file; each is decoded once.
 class Textures {
   public:
-    Textures(const aiScene& scene, const std::string& path) : scene_(scene), path_(path) {}
+    Textures(const aiScene& scene, const FolderFiles& files, const std::string& path) : scene_(scene), files_(files), path_(path) {}
 
     // Null if the material has no texture of that kind.
     Result<std::shared_ptr<const Image>> of(const aiMaterial& material, aiTextureType type, unsigned index = 0) {
@@ -31,19 +31,24 @@ class Textures {
         const std::string key = name.C_Str();
         if (const auto found = done_.find(key); found != done_.end()) return found->second;
         Result<Image> image = read(key);
-        if (!image) return meshFileError(path_, fmt::format("cannot be read: {}", image.error().message));
+        if (!image) return image.error();
         return done_[key] = std::make_shared<const Image>(std::move(*image));
     }
 
   private:
     Result<Image> read(const std::string& name) const {
         const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
-        if (embedded == nullptr) return loadImage((std::filesystem::path(path_).parent_path() / name).string());
+        if (embedded == nullptr) {
+            const Result<std::string> file = files_.resolve((std::filesystem::path(path_).parent_path() / name).string());
+            if (!file) return file.error();
+            return loadImage(*file);
+        }
         const std::string called = fmt::format("{}, embedded texture {}", path_, name);
         if (embedded->mHeight != 0) return badInput(fmt::format("the picture '{}' is not compressed; use PNG or JPEG", called));
         return decodeImage(std::as_bytes(std::span(reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth)), called);
     }
     const aiScene& scene_;
+    const FolderFiles& files_;
     const std::string& path_;
     std::map<std::string, std::shared_ptr<const Image>> done_;
 };
@@ -157,7 +162,7 @@ Mesh meshOf(const aiMesh& from) {
         const vec3 n = from.HasNormals() ? vectorOf(from.mNormals[i]) : vec3(0.0F);
         const float length = glm::length(n);
         mesh.normals.push_back(length > 0.0F && std::isfinite(length) ? n / length : vec3(0.0F, 1.0F, 0.0F));
-        if (from.HasTextureCoords(0)) mesh.uvs.emplace_back(from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y);
+        if (from.HasTextureCoords(0)) mesh.uvs.push_back(uvOf(from, i));
     }
     for (unsigned f = 0; f < from.mNumFaces; ++f)
         if (from.mFaces[f].mNumIndices == 3)
@@ -194,15 +199,15 @@ bool hasMoreThanTriangles(const aiScene& scene, bool gltf) {
     return anyDressed(scene, gltf) || moves(scene) || scene.mNumAnimations > 0 || scene.mNumCameras > 0 || scene.mNumLights > 0;
 }
 
-Result<Model> modelFrom(Assimp::Importer& importer, const std::string& path) {
+Result<Model> modelFrom(Assimp::Importer& importer, const FolderFiles& files, const std::string& path) {
     const bool gltf = isGltf(path);
     unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals;
     if (!moves(*importer.GetScene())) steps |= aiProcess_JoinIdenticalVertices;
-    Result<const aiScene*> scene = prepareMeshFile(importer, path, steps);
+    Result<const aiScene*> scene = prepareMeshFile(importer, steps);
     if (!scene) return scene.error();
 
     Model model;
-    Textures textures(**scene, path);
+    Textures textures(**scene, files, path);
     std::vector<Material> materials;
     for (unsigned m = 0; m < (*scene)->mNumMaterials; ++m) {
         Result<Material> material = materialOf(*(*scene)->mMaterials[m], textures);
@@ -232,10 +237,10 @@ Result<Model> modelFrom(Assimp::Importer& importer, const std::string& path) {
         part.node = node;
         part.morphs = morphsOf(from);
         rest(from, part);
-        if (Status held = gripsOf(from, nodeOf, part); !held) return meshFileError(path, held.error().message);
+        if (Status held = gripsOf(from, nodeOf, part); !held) return held.error();
         model.parts.push_back(std::move(part));
     }
-    if (model.parts.empty()) return meshFileError(path, "has no triangles");
+    if (model.parts.empty()) return badInput("has no triangles");
     readMotion(**scene, nodeOf, gltf, model);
     return model;
 }
@@ -244,10 +249,12 @@ Result<Model> modelFrom(Assimp::Importer& importer, const std::string& path) {
 
 Result<Model> readModel(const std::string& path, ReadAs as) try {
     Assimp::Importer importer;
-    Result<const aiScene*> raw = readMeshFile(importer, path);
+    auto* files = new FolderFiles(path);
+    importer.SetIOHandler(files);  // which owns it
+    Result<const aiScene*> raw = readMeshFile(importer, *files, path);
     if (!raw) return raw.error();
     const aiScene& scene = **raw;
-    if (as == ReadAs::model || (as == ReadAs::whole && hasMoreThanTriangles(scene, isGltf(path)))) return modelFrom(importer, path);
+    if (as == ReadAs::model || (as == ReadAs::whole && hasMoreThanTriangles(scene, isGltf(path)))) return modelFrom(importer, *files, path);
     Result<Mesh> mesh = meshFrom(importer, path);
     if (!mesh) return mesh.error();
     Model model;
@@ -257,8 +264,8 @@ Result<Model> readModel(const std::string& path, ReadAs as) try {
     part.mesh = std::move(*mesh);
     model.parts.push_back(std::move(part));
     return model;
-} catch (const std::exception& e) {  // assimp reports most errors by text, but out of memory and the like by throwing
-    return meshFileError(path, fmt::format("cannot be read: {}", e.what()));
+} catch (const std::exception& e) {  // assimp reports most errors by text, others by throwing
+    return badInput(fmt::format("cannot be read: {}", e.what()));
 }
 
 }  // namespace rivulet

@@ -8,7 +8,8 @@
 
 namespace rivulet {
 
-// What importMesh, importModel and importWhole (engine/scene/import_model.h) return; a mesh is the only part of its model.
+// What importMesh, importModel and importWhole (engine/scene/import_model.h) return; a mesh is the only part of its model. Error: a phrase
+// about the file.
 enum class ReadAs { mesh, model, whole };
 Result<Model> readModel(const std::string& path, ReadAs as);
 

@@ -23,6 +23,12 @@ c++ -std=c++20 -O1 "$here/main.cpp" "${flags[@]}" -o "$work/by_pkg_config"
     "$work/prefix/bin/rivulet" list scenes >"$work/scenes.txt" && grep -q "$work/prefix" "$work/scenes.txt" || { echo "the installed program does not find its own scenes"; exit 1; }
     "$work/prefix/bin/rivulet" run "$work/prefix/share/rivulet/assets/scenes/sheet_on_sphere.json" --headless --frames 1 --size 64x48
     [ -s "$work/out/sheet_on_sphere.mp4" ]
+    # Models are read by a program beside it, which alone links assimp.
+    if ldd "$work/prefix/bin/rivulet" | grep -q assimp; then echo "rivulet links assimp"; exit 1; fi
+    mv "$work/prefix/bin/rivulet_import" "$work/prefix/bin/elsewhere"
+    status=0
+    "$work/prefix/bin/rivulet" voxelize "$work/prefix/share/rivulet/assets/meshes/plate.obj" --resolution 8 --out plate.rvox 2>error.txt || status=$?
+    [ $status -eq 1 ] && grep -q 'rivulet_import' error.txt || { echo "without rivulet_import, rivulet ended with $status:"; cat error.txt; exit 1; }
 )
 
 # What the guide for hosts shows.

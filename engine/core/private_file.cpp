@@ -66,7 +66,7 @@ Status checkPrivateFile(const std::string& path) {
 
 Status writePrivateFile(const std::string& path, std::string_view bytes) {
     if (!checkPrivateFile(path)) (void)::unlink(path.c_str());  // a folder stays, and is an error below
-    return writeFileAtomic(path, bytes, S_IRUSR | S_IWUSR);
+    return writeFileAtomic(path, bytes, S_IRUSR | S_IWUSR, Sync::none);
 }
 
 }  // namespace rivulet

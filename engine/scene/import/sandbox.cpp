@@ -82,13 +82,14 @@ constexpr uint32_t kArchitecture = 0;
 
 // The calls of a reader. Any other fails with EPERM.
 constexpr uint32_t kCalls[] = {
-    SYS_read,         SYS_readv,        SYS_pread64,        SYS_write,        SYS_writev,      SYS_close,      SYS_fstat,
-    SYS_newfstatat,   SYS_statx,        SYS_lseek,          SYS_readlinkat,   SYS_faccessat,   SYS_faccessat2, SYS_getcwd,
-    SYS_getdents64,   SYS_mmap,         SYS_munmap,         SYS_mremap,       SYS_mprotect,    SYS_madvise,    SYS_brk,
-    SYS_futex,        SYS_rt_sigaction, SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_sigaltstack, SYS_getrandom,  SYS_clock_gettime,
-    SYS_gettimeofday, SYS_getpid,       SYS_gettid,         SYS_uname,        SYS_sched_yield, SYS_exit,       SYS_exit_group,
+    SYS_read,           SYS_readv,        SYS_pread64,     SYS_write,       SYS_writev,        SYS_close,
+    SYS_fstat,          SYS_fstatfs,      SYS_newfstatat,  SYS_statx,       SYS_lseek,         SYS_readlinkat,
+    SYS_faccessat,      SYS_faccessat2,   SYS_getcwd,      SYS_getdents64,  SYS_mmap,          SYS_munmap,
+    SYS_mremap,         SYS_mprotect,     SYS_madvise,     SYS_brk,         SYS_futex,         SYS_rt_sigaction,
+    SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_sigaltstack, SYS_getrandom,   SYS_clock_gettime, SYS_gettimeofday,
+    SYS_getpid,         SYS_gettid,       SYS_uname,       SYS_sched_yield, SYS_exit,          SYS_exit_group,
 #if defined(__x86_64__)
-    SYS_stat,         SYS_lstat,        SYS_readlink,       SYS_access,       SYS_getrlimit,   SYS_setrlimit,
+    SYS_stat,           SYS_lstat,        SYS_readlink,    SYS_access,      SYS_getrlimit,     SYS_setrlimit,
 #endif
 };
 

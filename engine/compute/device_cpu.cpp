@@ -1,9 +1,7 @@
 #include "engine/compute/device_cpu.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +15,7 @@
 
 #include "engine/core/assert.h"
 #include "engine/core/large_pages.h"
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 
@@ -258,7 +257,7 @@ void CpuDevice::parallelFor(size_t count, size_t grain, const std::function<void
         return;
     }
     const auto work = [&] {
-        tbb::parallel_for(
+        parallelRanges(
             tbb::blocked_range<size_t>(0, count, grain),
             [&](const tbb::blocked_range<size_t>& r) {
                 if (!skips()) body(r.begin(), r.end());

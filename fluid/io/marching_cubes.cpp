@@ -2,12 +2,13 @@
 #include "fluid/io/marching_cubes.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <unordered_map>
+
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 
@@ -77,7 +78,7 @@ std::vector<Crossed> crossedCells(const IsoSurface& surface, int fine) {
     const double step = surface.cells().edge() / fine;
     std::vector<std::vector<Crossed>> found(coarse.size());
     const auto corners = static_cast<size_t>(fine + 1);
-    tbb::parallel_for(size_t{0}, coarse.size(), [&](size_t c) {
+    parallelFor(size_t{0}, coarse.size(), [&](size_t c) {
         std::vector<uint8_t> in(corners * corners * corners);
         const ivec3 first = fine * coarse[c];
         size_t at = 0;
@@ -176,12 +177,12 @@ Result<SurfaceMesh> marchingCubes(const IsoSurface& surface, int cellsPerSpacing
     mesh.positions.resize(onEdges + rings.size());
     mesh.normals.resize(mesh.positions.size());
     std::vector<dvec3> at(mesh.positions.size());
-    tbb::parallel_for(size_t{0}, onEdges, [&](size_t i) { at[i] = crossingOf(surface, edges[i], step); });
+    parallelFor(size_t{0}, onEdges, [&](size_t i) { at[i] = crossingOf(surface, edges[i], step); });
     for (size_t i = 0; i < rings.size(); ++i) {
         for (const uint32_t k : rings[i]) at[onEdges + i] += at[k];
         at[onEdges + i] /= static_cast<double>(rings[i].size());
     }
-    tbb::parallel_for(size_t{0}, at.size(), [&](size_t i) {
+    parallelFor(size_t{0}, at.size(), [&](size_t i) {
         mesh.positions[i] = vec3(at[i]);
         mesh.normals[i] = vec3(surface.normal(at[i]));
     });

@@ -1,12 +1,12 @@
 #include "fluid/render/raymarch.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <mutex>
+
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 
@@ -196,7 +196,7 @@ RaymarchPicture raymarch(const IsoSurface& surface, const FrameView& view, const
         picture.depth[at] = static_cast<float>(hit.depth);
         picture.water[at] = vec4(vec3(glm::transpose(turn) * hit.normal), static_cast<float>(hit.water));
     };
-    tbb::parallel_for(0, tiles, [&](int tile) {
+    parallelFor(0, tiles, [&](int tile) {
         if (stopped) return;
         const int left = kTile * (tile % across), bottom = kTile * (tile / across);
         for (int y = bottom; y < std::min(bottom + kTile, picture.height); ++y)

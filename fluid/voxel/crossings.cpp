@@ -1,7 +1,6 @@
 #include "fluid/voxel/crossings.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstring>
@@ -10,6 +9,7 @@
 #include <string>
 
 #include "engine/core/assert.h"
+#include "engine/core/parallel.h"
 #include "shaders/fluid/grid/scan_params.h"
 #include "shaders/voxel/crossing.h"
 
@@ -90,7 +90,7 @@ void setRun(VoxelGrid& grid, size_t first, size_t end) {
 void sortAndSet(ColumnCrossings& crossings, VoxelGrid& grid) {
     // 32 columns fill whole words, so tasks share no word.
     const size_t columns = columnsOf(grid), blocks = (columns + 31) / 32, across = static_cast<size_t>(grid.size.x);
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, blocks, 8), [&](const tbb::blocked_range<size_t>& range) {
+    parallelRanges(tbb::blocked_range<size_t>(0, blocks, 8), [&](const tbb::blocked_range<size_t>& range) {
         for (size_t k = 32 * range.begin(); k < std::min(32 * range.end(), columns); ++k) {
             const auto first = crossings.items.begin() + crossings.start[k], end = crossings.items.begin() + crossings.start[k + 1];
             if (first == end) continue;
@@ -112,7 +112,7 @@ void sortAndSet(ColumnCrossings& crossings, VoxelGrid& grid) {
 
 ColumnCrossings crossColumns(const CrossedTriangles& triangles, VoxelGrid& grid) {
     std::vector<std::vector<Found>> found((triangles.size() + kChunk - 1) / kChunk);
-    tbb::parallel_for(size_t{0}, found.size(), [&](size_t chunk) {
+    parallelFor(size_t{0}, found.size(), [&](size_t chunk) {
         for (size_t k = chunk * kChunk; k < std::min((chunk + 1) * kChunk, triangles.size()); ++k)
             crossTriangle(triangles[k], grid, found[chunk]);
     });

@@ -2,11 +2,11 @@
 #include "fluid/voxel/deforming_field.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <array>
 #include <new>
 
+#include "engine/core/parallel.h"
 #include "fluid/voxel/distance_band.h"
 #include "fluid/voxel/nearest_weights.h"
 #include "fluid/voxel/voxelize_surface.h"
@@ -143,7 +143,7 @@ void DeformingField::bakeAll() {
     std::fill(occupied_.begin(), occupied_.end(), uint8_t{0});
     band.bake(list, surfaces_, {}, {}, occupied_, {field_.distance, field_.normal, nearest_});
     const ivec3 bricks = band.bricks();
-    tbb::parallel_for(0, bricks.z, [&](int z) {
+    parallelFor(0, bricks.z, [&](int z) {
         for (int y = 0; y < bricks.y; ++y) {
             for (int x = 0; x < bricks.x; ++x) {
                 const ivec3 brick(x, y, z);
@@ -236,7 +236,7 @@ DeformingField::Change DeformingField::displace(const std::vector<vec3>& before)
     const ivec3 bricks = band.bricks();
     std::vector<size_t> rewritten(static_cast<size_t>(bricks.z), 0);  // of each layer of bricks
     std::vector<uint8_t> touched(static_cast<size_t>(bricks.z), 0);
-    tbb::parallel_for(0, bricks.z, [&](int z) {
+    parallelFor(0, bricks.z, [&](int z) {
         for (int y = 0; y < bricks.y; ++y) {
             for (int x = 0; x < bricks.x; ++x) {
                 const ivec3 brick(x, y, z);

@@ -1,12 +1,11 @@
 // Projects triangles along the axes, and draws them by scan lines.
 #include "fluid/voxel/depth_jobs.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
+
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 namespace {
@@ -112,7 +111,7 @@ std::vector<DepthJob> depthJobs(std::span<const MeshView> meshes, const VoxelGri
     }
     const dvec3 origin(grid.origin);
     const auto voxel = static_cast<double>(grid.voxel);
-    tbb::parallel_for(size_t{0}, pieces.size(), [&](size_t p) {
+    parallelFor(size_t{0}, pieces.size(), [&](size_t p) {
         Piece& piece = pieces[p];
         for (size_t k = piece.first; k < piece.end; ++k) {
             std::array<dvec3, 3> triangle;
@@ -132,7 +131,7 @@ std::vector<DepthJob> depthJobs(std::span<const MeshView> meshes, const VoxelGri
 }
 
 void drawDepthJobs(std::span<const DepthJob> jobs, const DepthParams& params, std::span<const DepthBox> boxes, std::span<uint32_t> images) {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, jobs.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
+    parallelRanges(tbb::blocked_range<size_t>(0, jobs.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
         for (size_t k = range.begin(); k != range.end(); ++k) draw(jobs[k], params, boxes, images);
     });
 }

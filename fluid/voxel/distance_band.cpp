@@ -3,11 +3,11 @@
 #include "fluid/voxel/distance_band.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <array>
 #include <bit>
 
+#include "engine/core/parallel.h"
 #include "fluid/voxel/kernels/band_brick.h"
 
 RIVULET_BAND_UNIT(kernels_generic)
@@ -175,7 +175,7 @@ struct Bake {
         if (triangles.size() <= kTargetsAtOnce) {
             all.resize(triangles.size());
             allDiscs.resize(triangles.size());
-            tbb::parallel_for(tbb::blocked_range<size_t>(0, all.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+            parallelRanges(tbb::blocked_range<size_t>(0, all.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
                 for (size_t k = range.begin(); k != range.end(); ++k) {
                     const Target target = targetOf(triangles[k], width, furthest);
                     all[k] = target.exact;
@@ -184,14 +184,14 @@ struct Bake {
             });
         }
         tbb::enumerable_thread_specific<Workspace> workspaces;
-        tbb::parallel_for(0, band.bricks().z, [&](int layer) { bakeLayer(layer, workspaces.local()); });
+        parallelFor(0, band.bricks().z, [&](int layer) { bakeLayer(layer, workspaces.local()); });
     }
 
     void sortIntoLayers() {
         const auto layers = static_cast<size_t>(band.bricks().z);
         layerStart.assign(layers + 1, 0);
         reaches.resize(triangles.size());
-        tbb::parallel_for(tbb::blocked_range<size_t>(0, reaches.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
+        parallelRanges(tbb::blocked_range<size_t>(0, reaches.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
             for (size_t k = range.begin(); k != range.end(); ++k) reaches[k] = reachOf(band, triangles[k]);
         });
         const auto forLayers = [&](const auto& body) {

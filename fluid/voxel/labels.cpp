@@ -1,14 +1,13 @@
 // Finds runs of equal kind along x, 64 voxels at a time; then union-find over runs, one stack of layers per task.
 #include "fluid/voxel/labels.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <new>
 
 #include "engine/core/assert.h"
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 namespace {
@@ -58,8 +57,8 @@ void forRuns(const VoxelGrid& surface, const VoxelGrid* inside, size_t row, cons
 
 template <class Body>
 void forRowChunks(size_t rows, const Body& body) {
-    tbb::parallel_for(size_t{0}, (rows + kRowChunk - 1) / kRowChunk,
-                      [&](size_t chunk) { body(chunk * kRowChunk, std::min(rows, (chunk + 1) * kRowChunk)); });
+    parallelFor(size_t{0}, (rows + kRowChunk - 1) / kRowChunk,
+                [&](size_t chunk) { body(chunk * kRowChunk, std::min(rows, (chunk + 1) * kRowChunk)); });
 }
 
 void findRuns(const VoxelGrid& surface, const VoxelGrid* inside, VoxelLabels& labels) {
@@ -95,7 +94,7 @@ class RunJoiner {
     // Layers in stacks side by side, then the stacks' borders.
     std::vector<uint32_t> join() {
         const int depth = labels_.size.z;
-        tbb::parallel_for(0, (depth + kLayers - 1) / kLayers, [&](int stack) {
+        parallelFor(0, (depth + kLayers - 1) / kLayers, [&](int stack) {
             const int first = stack * kLayers, end = std::min(depth, first + kLayers);
             const size_t from = labels_.rowStart[row(0, first)], to = labels_.rowStart[row(0, end)];
             for (size_t k = from; k < to; ++k) parent_[k] = static_cast<uint32_t>(k);

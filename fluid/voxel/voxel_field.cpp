@@ -2,13 +2,13 @@
 #include "fluid/voxel/voxel_field.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <new>
 #include <optional>
 
 #include "engine/core/assert.h"
+#include "engine/core/parallel.h"
 #include "engine/core/readable_bytes.h"
 #include "fluid/voxel/distance_band.h"
 #include "fluid/voxel/mesh_check.h"
@@ -84,7 +84,7 @@ void signInside(std::span<const MeshView> meshes, VoxelField& field) {
     inside.origin = field.surface.origin - 0.5F * field.surface.voxel;
     for (const CleanMesh& mesh : cleaned) {
         voxelizeSolid(mesh, inside);
-        tbb::parallel_for(tbb::blocked_range<size_t>(0, field.distance.size(), 65536), [&](const tbb::blocked_range<size_t>& range) {
+        parallelRanges(tbb::blocked_range<size_t>(0, field.distance.size(), 65536), [&](const tbb::blocked_range<size_t>& range) {
             for (size_t k = range.begin(); k != range.end(); ++k) {
                 if (((inside.bits[k >> 3U] >> (k & 7U)) & 1U) != 0) field.distance[k] = -std::abs(field.distance[k]);
             }

@@ -1,13 +1,12 @@
 // Slices: a plane of labels or distances, with several samples per pixel.
 #include "fluid/voxel/voxel_picture.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "engine/core/assert.h"
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 namespace {
@@ -180,7 +179,7 @@ VoxelPicture drawBandSlice(std::span<const float> distance, float band, const iv
     const ivec2 axes = sliceAxes(axis);
     constexpr int kPerVoxel = 3;  // pixels
     VoxelPicture picture = blank(kPerVoxel * size[axes.x], kPerVoxel * size[axes.y]);
-    tbb::parallel_for(0, picture.height, [&](int y) {
+    parallelFor(0, picture.height, [&](int y) {
         for (int x = 0; x < picture.width; ++x) {
             const float u = (static_cast<float>(x) + 0.5F) / kPerVoxel, v = (static_cast<float>(picture.height - 1 - y) + 0.5F) / kPerVoxel;
             const float d = plane(u, v), away = std::min(std::abs(d) / band, 1.0F);
@@ -201,7 +200,7 @@ VoxelPicture drawSlices(const VoxelLabels& labels, std::span<const float> distan
     const uint32_t paper = srgbBytes(kPaper);
     for (size_t k = 0; k < sheet.rgba.size(); ++k) sheet.rgba[k] = static_cast<uint8_t>(paper >> (8 * (k % 4)));
 
-    tbb::parallel_for(0, count, [&](int k) {
+    parallelFor(0, count, [&](int k) {
         const int z = count == 1 ? layers.x : layers.x + (layers.y - layers.x) * k / (count - 1);
         const LabelPlane plane(labels, 2, z);
         const DistancePlane away(distance, labels.size, 2, static_cast<float>(z) + 0.5F);

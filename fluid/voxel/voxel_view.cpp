@@ -1,14 +1,13 @@
 // The view from outside: rays through the grid, voxel by voxel near solid voxels (Amanatides and Woo 1987), one brick of 16^3
 // at a time in empty space. Light from the whole sky and one soft sun, also by rays: a few per pixel, shared among pixels of one face
 // (interleaved sampling, Keller and Heidrich 2001).
-#include <oneapi/tbb/blocked_range2d.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <mutex>
 
+#include "engine/core/parallel.h"
 #include "fluid/voxel/voxel_picture.h"
 
 namespace rivulet {
@@ -36,7 +35,7 @@ class Cells {
         size_ = (labels.size + ivec3(block - 1)) / block;
         bricks_ = (size_ + ivec3(kSkippedBrick - 1)) / kSkippedBrick;
         cells_.assign(volume(size_), kAir);
-        tbb::parallel_for(0, size_.z, [&](int z) {
+        parallelFor(0, size_.z, [&](int z) {
             for (int y = z * block; y < std::min((z + 1) * block, labels.size.z); ++y) fill(labels, y, block);
         });
         low = size_;
@@ -311,7 +310,7 @@ class View {
     template <class Body>
     void forTiles(const Body& body) const {
         constexpr int kTile = 16;
-        tbb::parallel_for(tbb::blocked_range2d<int>(0, options_.height, kTile, 0, options_.width, kTile), body);
+        parallelRanges(tbb::blocked_range2d<int>(0, options_.height, kTile, 0, options_.width, kTile), body);
     }
     template <class Tile, class Body>
     static void forPixels(const Tile& tile, const Body& body) {

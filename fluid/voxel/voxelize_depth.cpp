@@ -2,13 +2,13 @@
 #include "fluid/voxel/voxelize_depth.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <optional>
 
 #include "engine/core/assert.h"
+#include "engine/core/parallel.h"
 #include "fluid/voxel/depth_jobs.h"
 
 namespace rivulet {
@@ -139,7 +139,7 @@ class Filler {
     void see(const DepthBox& box, std::span<const uint32_t> images) {
         const auto width = static_cast<uint32_t>(box.highX - box.lowX + 1), height = static_cast<uint32_t>(box.highY - box.lowY + 1),
                    depth = static_cast<uint32_t>(box.highZ - box.lowZ + 1);
-        tbb::parallel_for(uint32_t{0}, depth, [&](uint32_t k) {
+        parallelFor(uint32_t{0}, depth, [&](uint32_t k) {
             for (uint32_t j = 0; j < height; ++j) {
                 const int y = box.lowY + static_cast<int>(j), z = box.lowZ + static_cast<int>(k);
                 uint8_t* state = &state_[at({box.lowX, y, z})];
@@ -205,7 +205,7 @@ class Filler {
     uint32_t regions() const { return static_cast<uint32_t>(parent_.size()); }
 
     void takeSurface(VoxelGrid& grid) const {
-        tbb::parallel_for(size_t{0}, (state_.size() + 7) / 8, [&](size_t byte) {
+        parallelFor(size_t{0}, (state_.size() + 7) / 8, [&](size_t byte) {
             unsigned bits = 0;
             for (size_t k = 8 * byte; k < std::min(state_.size(), 8 * byte + 8); ++k)
                 bits |= ((state_[k] & kHit) != 0 ? 1U : 0U) << (k & 7U);

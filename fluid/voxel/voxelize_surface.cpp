@@ -1,7 +1,6 @@
 #include "fluid/voxel/voxelize_surface.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <array>
@@ -10,6 +9,7 @@
 #include <new>
 
 #include "engine/compute/device_cpu.h"
+#include "engine/core/parallel.h"
 #include "shaders/voxel/overlap.h"
 
 namespace rivulet {
@@ -188,7 +188,7 @@ Status onDevice(Device& device, const GridTriangles& triangles, VoxelGrid& grid)
 }  // namespace
 
 void voxelizeSurface(const GridTriangles& triangles, VoxelGrid& grid) {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, triangles.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+    parallelRanges(tbb::blocked_range<size_t>(0, triangles.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
         PreparedOverlap p;
         for (size_t k = range.begin(); k != range.end(); ++k) {
             prepareOverlap(triangles, k, grid, p);

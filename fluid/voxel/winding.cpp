@@ -1,13 +1,12 @@
 #include "fluid/voxel/winding.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <numbers>
 
 #include "engine/core/assert.h"
+#include "engine/core/parallel.h"
 #include "fluid/voxel/voxelize_surface.h"
 #include "fluid/voxel/winding_tree.h"
 
@@ -314,7 +313,7 @@ class BoundaryCaps::Descent {
             descend(child);
         };
         if (cell.size > kTask)
-            tbb::parallel_for(0, 8, half);
+            parallelFor(0, 8, half);
         else
             for (int k = 0; k < 8; ++k) half(k);
     }

@@ -3,14 +3,14 @@
 // 1) t^k A / (4 pi R^2), A the area and t the sum of both radii over R: this bounds the remainder.
 #include "fluid/voxel/winding_tree.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <thread>
+
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 namespace {
@@ -67,7 +67,7 @@ WindingTree::WindingTree(std::span<const Corners> triangles, std::span<const uin
     nodes_.reserve(patches_.size() / 2 + 1);
     nodes_.emplace_back();
     build(0, 0, static_cast<uint32_t>(patches_.size()));
-    tbb::parallel_for(size_t{0}, nodes_.size(), [&](size_t k) { measure(nodes_[k]); });
+    parallelFor(size_t{0}, nodes_.size(), [&](size_t k) { measure(nodes_[k]); });
 }
 
 void WindingTree::build(uint32_t node, uint32_t first, uint32_t end) {
@@ -196,7 +196,7 @@ class WindingTree::Descent {
             descend(child);
         };
         if (cell.size > kPatchCell)
-            tbb::parallel_for(0, 8, half, tbb::simple_partitioner());
+            parallelFor(0, 8, half, tbb::simple_partitioner());
         else
             for (int k = 0; k < 8; ++k) half(k);
     }

@@ -3,11 +3,12 @@
 #include "fluid/sim/surface/iso_surface.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "engine/core/parallel.h"
 
 namespace rivulet {
 
@@ -40,7 +41,7 @@ struct Neighborhood {
 // How far each particle is from the mean of its neighbours.
 std::vector<dvec3> offsetsOf(const Neighborhood& near) {
     std::vector<dvec3> offsets(near.at.size());
-    tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(near.at.size()), [&](uint32_t i) {
+    parallelFor(uint32_t{0}, static_cast<uint32_t>(near.at.size()), [&](uint32_t i) {
         dvec3 sum(0.0);
         double weights = 0;
         near.around(i, [&](uint32_t j, double w) {
@@ -113,7 +114,7 @@ Result<IsoSurface> IsoSurface::create(std::span<const vec4> particles, float spa
     const std::vector<dvec3> offsets = offsetsOf(near);
     made.kernels_.resize(at.size());
     const double round = params.kernel * s;
-    tbb::parallel_for(uint32_t{0}, made.count(), [&](uint32_t i) {
+    parallelFor(uint32_t{0}, made.count(), [&](uint32_t i) {
         const Axes axes = axesOf(near, i, offsets[i], s);
         Kernel& k = made.kernels_[i];
         k.centre = at[i] + params.smoothing * (offsets[i] - sharedOffset(near, offsets, i));

@@ -23,6 +23,25 @@ Spread spreadOf(std::vector<double> values) {
     return spread;
 }
 
+void Samples::add(double value) {
+    all_.min = all_.count == 0 ? value : std::min(all_.min, value);
+    all_.max = all_.count == 0 ? value : std::max(all_.max, value);
+    if (all_.count++ % every_ != 0) return;
+    kept_.push_back(value);
+    if (kept_.size() < kMost) return;
+    for (size_t k = 0; k < kMost / 2; ++k) kept_[k] = kept_[2 * k];
+    kept_.resize(kMost / 2);
+    every_ *= 2;
+}
+
+Spread Samples::spread() const {
+    Spread spread = spreadOf(kept_);
+    spread.count = all_.count;
+    spread.min = all_.min;
+    spread.max = all_.max;
+    return spread;
+}
+
 std::optional<double> bulkFront(std::span<const vec4> positions, const BoxParams& box, float spacing) {
     // The floor in squares of half a spacing: a particle covers the nearest 2 x 2, a slab is four squares wide.
     double square = 0.5 * static_cast<double>(spacing);
@@ -85,14 +104,14 @@ bool RunRecorder::inSolid(const vec4& p) const {
 }
 
 void RunRecorder::drawn(double renderMs, double frameMs, std::span<const PassTime> passes) {
-    if (renderMs > 0) render_.push_back(renderMs);
-    frame_.push_back(frameMs);
+    if (renderMs > 0) render_.add(renderMs);
+    frame_.add(frameMs);
     wallMs_ += frameMs;
-    for (const PassTime& pass : passes) passes_["render: " + pass.name].push_back(pass.ms);
+    for (const PassTime& pass : passes) passes_["render: " + pass.name].add(pass.ms);
 }
 
 void RunRecorder::transferred(const TransferFacts& facts) {
-    transfer_.push_back(facts.ms);
+    transfer_.add(facts.ms);
     transferStats_.way = facts.way;
     transferStats_.why = facts.why;
     transferStats_.bytes += static_cast<double>(facts.bytes);
@@ -100,8 +119,8 @@ void RunRecorder::transferred(const TransferFacts& facts) {
 }
 
 void RunRecorder::stepped(double simulateMs, std::span<const PassTime> passes) {
-    simulate_.push_back(simulateMs);
-    for (const PassTime& pass : passes) passes_[pass.name].push_back(pass.ms);
+    simulate_.add(simulateMs);
+    for (const PassTime& pass : passes) passes_[pass.name].add(pass.ms);
     substeps_ += static_cast<uint64_t>(world_->lastSubsteps());
     const FluidStats& f = world_->stats();
     iterations_ += f.iterations * world_->lastSubsteps();
@@ -193,7 +212,7 @@ RunStats RunRecorder::finish(std::string scene) {
     End end = last_;
     if (!world.interrupted())
         end = endOf(readParticles(world), world);
-    else if (simulate_.empty())
+    else if (simulate_.count() == 0)
         end.particles = end.within = late.particles;
     const FluidParams& params = world.params();
 
@@ -205,16 +224,16 @@ RunStats RunRecorder::finish(std::string scene) {
     stats.backend = backendName(world.device().backend());
     stats.method = params.method;
     stats.particles = static_cast<uint32_t>(end.particles);
-    stats.frames = frame_.size();
+    stats.frames = frame_.count();
     stats.seconds = world.time();
     stats.wallSeconds = wallMs_ * 1e-3;
-    stats.simulateMs = spreadOf(simulate_);
-    stats.renderMs = spreadOf(render_);
-    stats.frameMs = spreadOf(frame_);
+    stats.simulateMs = simulate_.spread();
+    stats.renderMs = render_.spread();
+    stats.frameMs = frame_.spread();
     stats.transfer = transferStats_;
-    stats.transfer.ms = spreadOf(transfer_);
-    if (!transfer_.empty()) stats.transfer.bytes /= static_cast<double>(transfer_.size());
-    for (const auto& [name, ms] : passes_) stats.passes[name] = spreadOf(ms);
+    stats.transfer.ms = transfer_.spread();
+    if (transfer_.count() > 0) stats.transfer.bytes /= static_cast<double>(transfer_.count());
+    for (const auto& [name, ms] : passes_) stats.passes[name] = ms.spread();
 
     stats.kinetic = end.kinetic;
     stats.potential = end.potential;

@@ -24,6 +24,21 @@ struct Spread {
 };
 Spread spreadOf(std::vector<double> values);
 
+// The values of a run of any length. Memory is bounded: up to 2^16 values all are kept, of more every 2nd, 4th, 8th... `count`, `min` and
+// `max` are of all values, `median` and `p95` of those that are kept.
+class Samples {
+  public:
+    void add(double value);
+    Spread spread() const;
+    uint64_t count() const { return all_.count; }
+
+  private:
+    static constexpr size_t kMost = size_t{1} << 16U;
+    std::vector<double> kept_;
+    uint64_t every_ = 1;
+    Spread all_;  // count, min and max
+};
+
 // The bulk front along +x, m: where the covered share of the floor, in slabs of 2 spacings, last crosses 25 %, interpolated between the
 // slabs' centres. A particle less than 2 spacings above the floor covers a square of one spacing. Nothing where no slab is covered that
 // much.
@@ -124,9 +139,9 @@ class RunRecorder {
     const SkinFlows* flows_;
     SolidFields fields_;
     bool readBack_;
-    std::vector<double> simulate_, render_, frame_, transfer_;
+    Samples simulate_, render_, frame_, transfer_;
     TransferStats transferStats_;
-    std::map<std::string, std::vector<double>> passes_;
+    std::map<std::string, Samples> passes_;
     double compressionSum_ = 0, maxCompression_ = 0, wallMs_ = 0;
     uint64_t compressionFrames_ = 0, substeps_ = 0;
     double iterations_ = 0;           // of all substeps

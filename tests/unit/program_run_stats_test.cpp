@@ -115,6 +115,22 @@ TEST(SpreadOf, MedianAndNearestRank) {
     EXPECT_EQ(spread.max, 100);
 }
 
+// A day of frames: the quantiles of what is kept are those of all, and the least and the largest value are not lost.
+TEST(SamplesOf, ALongRunKeepsItsSpread) {
+    Samples samples;
+    constexpr int kCount = 5'000'000;
+    for (int k = 0; k < kCount; ++k) samples.add(k == 777'777 ? -1 : k == 3'333'333 ? 2 : (k * 7919LL % 1'000'003) / 1'000'003.0);
+    const Spread spread = samples.spread();
+    EXPECT_EQ(spread.count, static_cast<size_t>(kCount));
+    EXPECT_EQ(spread.min, -1);
+    EXPECT_EQ(spread.max, 2);
+    EXPECT_NEAR(spread.median, 0.5, 0.01);
+    EXPECT_NEAR(spread.p95, 0.95, 0.01);
+    Samples few;
+    for (const double value : {4.0, 1.0, 3.0, 2.0}) few.add(value);
+    EXPECT_EQ(few.spread().median, 2.5);
+}
+
 TEST(RunStatsJson, HasNoNumberThatJsonHasNot) {
     RunStats stats;
     stats.scene = "a \"name\"\n";

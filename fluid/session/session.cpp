@@ -99,6 +99,7 @@ void Session::apply(const SceneFile& scene) {
 void Session::advance(double seconds, double deviceMs) {
     FluidInputs inputs;
     inputs.deviceMs = deviceMs;
+    inputs.mostMs = mostMs_;
     const double before = world_->time(), ahead = world_->pending() + seconds;
     const SceneSolids::Motion motion = solids_.motionAt(scene_, before + ahead, ahead);
     solids_.moveContacts(motion.poses, seconds);

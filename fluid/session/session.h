@@ -68,6 +68,8 @@ class Session {
     Bounds boundsOf(const Thing& thing) const { return solids_.boundsOf(scene_, thing); }
     // Pulls at a body (solids_bullet.h). Nothing: ends.
     void hold(const std::optional<BulletSolids::Hold>& hand) { solids_.hold(hand); }
+    // FluidInputs::mostMs of the next steps.
+    void limitFrames(double ms) { mostMs_ = ms; }
     // From the next step on the jet of scene().pour falls on that point (m, world); nothing: it stops. No effect where pour.litres is 0 or
     // a recording is shown.
     void pourOnto(const std::optional<vec3>& place);
@@ -123,6 +125,7 @@ class Session {
         double ms = 0, seconds = 0, costMs = 0;  // wall; simulated; as a budget counts it
     } worked_;
     SnapshotKeeper snapshots_;
+    double mostMs_ = 0;  // FluidInputs::mostMs
     bool interrupted_ = false;
 };
 

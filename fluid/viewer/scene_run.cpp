@@ -24,6 +24,8 @@ void SceneRun::adopt(std::unique_ptr<Session> session, std::unique_ptr<Device> d
         device_->stopOn(stop_);
         traceKernels(*device_, timeline_);
     }
+    constexpr double kAnswers = 500;  // ms of steps a frame: a window that does not answer for longer seems to hang
+    session_->limitFrames(kAnswers);
     work_ = std::make_unique<Cooperation>(*session_, plan_, &timeline_, log_);
     due_ = 0;
     repicked_ = 0;

@@ -101,6 +101,35 @@ TEST_P(Time, ABudgetSlowsTimeAndNotTheProgram) {
     EXPECT_EQ(world->stats().lost, 0U);
 }
 
+// The limit of one frame, as a window gives it, is not that of the next.
+TEST_P(Time, AFrameMayHaveALimitOfItsOwn) {
+    auto device = cpu();
+    const FluidParams p = column(GetParam());
+    auto world = makeWorld(*device, p);
+    world->step({.mostMs = 1.0e-5}, 0.1);
+    EXPECT_EQ(world->lastSubsteps(), 1);
+    EXPECT_LT(world->time(), 0.02);
+    EXPECT_EQ(saying(*world, "which take longer than"), 1U);
+    const double slowed = world->time();
+    world->step({.mostMs = 1.0e9}, 0.1);
+    EXPECT_NEAR(world->time() - slowed, 0.1, 1e-8);
+    world->step({}, 0.1);
+    EXPECT_NEAR(world->time() - slowed, 0.2, 1e-8);
+}
+
+// Water so viscous that a frame needs hundreds of steps says so, once.
+TEST_P(Time, WhatManyStepsCostIsSaid) {
+    auto device = cpu();
+    FluidParams p = column(GetParam());
+    p.spacing = 0.1F;
+    p.viscosity = 40;
+    auto world = makeWorld(*device, p);
+    for (int k = 0; k < 2; ++k) world->step({}, 1.0 / 60);
+    const bool many = world->lastSubsteps() > 300;
+    EXPECT_EQ(saying(*world, "the computation takes long"), many ? 1U : 0U);
+    EXPECT_TRUE(many || std::string(GetParam()) != "wcsph") << world->lastSubsteps();
+}
+
 TEST_P(Time, WhatLimitsTheStepIsNamed) {
     auto device = cpu();
     FluidParams p = column(GetParam());

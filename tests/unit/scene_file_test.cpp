@@ -144,6 +144,10 @@ TEST_F(SceneTest, ContradictingValuesAreRefusedByName) {
          "x.json: fluid.blocks[0].mesh is empty: name a mesh file, or set another shape"},
         {R"({"fluid": {"blocks": [{"max": [0.5, 1.25, 0.5]}]}})",
          "x.json: fluid.blocks[0] from (0, 0, 0) to (0.5, 1.25, 0.5) reaches outside fluid.box from (0, 0, 0) to (1, 1, 1)"},
+        {R"({"fluid": {"blocks": [{}, {}, {}, {"max": [0.9, 0.9, 0.9]}, {}, {}, {}, {}, {}]}})",
+         "x.json: fluid.blocks: 9 of them overlap at the first corner of fluid.blocks[8], where water would be 9 times too dense: let at "
+         "most 8 "
+         "overlap"},
         {R"({"colliders": [{"shape": "plane"}, {"shape": "plane", "normal": [0, 0, 0]}]})",
          "x.json: colliders[1].normal is (0, 0, 0): its length must not be 0"},
         {R"({"colliders": [{}]})", "x.json: colliders[0].mesh is empty: name a mesh file, or set another shape"},

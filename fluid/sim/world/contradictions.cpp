@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace rivulet {
 
@@ -10,6 +14,29 @@ namespace {
 
 std::string shown(const vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 bool inside(const vec3& p, const BoxParams& box) { return glm::clamp(p, box.min, box.max) == p; }
+
+// How many blocks may hold the same water: each neighbour of a particle costs time, and water so dense explodes.
+constexpr size_t kMostOverlapping = 8;
+
+// The block of which the first corner lies in the most others, and the number of blocks there. By their extent along x, sorted.
+std::pair<size_t, size_t> deepestOverlap(const std::vector<BlockParams>& blocks) {
+    std::vector<size_t> order(blocks.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::ranges::sort(order, {}, [&](size_t k) { return blocks[k].min.x; });
+    std::vector<size_t> open;
+    std::pair<size_t, size_t> deepest{0, 0};
+    for (const size_t k : order) {
+        const vec3 corner = blocks[k].min;
+        std::erase_if(open, [&](size_t other) { return blocks[other].max.x <= corner.x; });
+        open.push_back(k);
+        const auto holds = [&](size_t other) {
+            const BlockParams& b = blocks[other];
+            return b.min.y <= corner.y && corner.y < b.max.y && b.min.z <= corner.z && corner.z < b.max.z;
+        };
+        if (const auto depth = static_cast<size_t>(std::ranges::count_if(open, holds)); depth > deepest.second) deepest = {k, depth};
+    }
+    return deepest;
+}
 
 }  // namespace
 
@@ -30,6 +57,11 @@ std::string contradiction(const FluidParams& fluid) {
             return fmt::format("fluid.blocks[{}] from {} to {} reaches outside fluid.box from {} to {}", i, shown(block.min),
                                shown(block.max), shown(box.min), shown(box.max));
     }
+    if (const auto [block, depth] = deepestOverlap(fluid.blocks); depth > kMostOverlapping)
+        return fmt::format(
+            "fluid.blocks: {} of them overlap at the first corner of fluid.blocks[{}], where water would be {} times too dense: "
+            "let at most {} overlap",
+            depth, block, depth, kMostOverlapping);
     const FoamParams& foam = fluid.foam;
     for (const auto& [name, from, to] : {std::tuple("air", foam.airFrom, foam.airTo), std::tuple("crest", foam.crestFrom, foam.crestTo),
                                          std::tuple("speed", foam.speedFrom, foam.speedTo)})

@@ -58,8 +58,10 @@ struct FluidInputs {
     // The solids at the end of the frame; within the frame they move uniformly. Empty: they do not move.
     std::span<const Pose> poses = {};                    // of Solids::rigid
     std::span<const std::span<const vec3>> shapes = {};  // m, the vertices of Solids::deforming
-    // For fluid.frameBudget on a GPU: time of the passes of an earlier frame (Device::takeTimes), ms; 0: unknown.
+    // For limits of time on a GPU: time of the passes of an earlier frame (Device::takeTimes), ms; 0: unknown.
     double deviceMs = 0;
+    // Limit on the computing time of this frame's steps, ms, besides fluid.frameBudget; 0: none. A window that is to answer has one.
+    double mostMs = 0;
 };
 
 // Receives the share of a world's start that is done, 0 to 1, some times in a second; false cancels it. On the thread that called create().
@@ -77,8 +79,8 @@ class FluidWorld {
     FluidWorld(const FluidWorld&) = delete;
     FluidWorld& operator=(const FluidWorld&) = delete;
 
-    // Error (badInput): what step() would not take of these: poses and shapes that do not fit the solids, are not finite or too fast; gravity
-    // beyond 1,000 m/s^2; a step that is not finite or longer than an hour. step() reports it, and goes on without that input.
+    // Error (badInput): what step() would not take of these: poses and shapes that do not fit the solids, are not finite or too fast;
+    // gravity beyond 1,000 m/s^2; a step that is not finite or longer than an hour. step() reports it, and goes on without that input.
     Status checkInputs(const FluidInputs& inputs, double seconds) const;
     // Advances by `seconds` (a frame) in as many substeps as the CFL, viscous and acoustic limits require. 0 or less: no effect. A frame
     // longer than fluid.longestFrame, maxSubsteps or frameBudget allow advances less, and stats().limited gives the reason: simulated time

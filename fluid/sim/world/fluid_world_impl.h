@@ -39,7 +39,8 @@ struct WorldClock {
     double dtMin = 0, dtMax = 0;  // s
     int lastSubsteps = 0;         // of the last frame
     int lastPiece = 0;            // substeps of its last piece (FrameStepper)
-    bool budgetReported = false;
+    double budget = 0;            // ms, of the current frame; 0: none
+    bool budgetReported = false, costReported = false;
 };
 
 struct FluidWorld::Impl {

@@ -333,7 +333,7 @@ void FluidWorld::Impl::writeStart() {
     clock.frame = 0;
     clock.dtMin = clock.dtMax = 0;
     limits.fastestEver = limits.fastestStart = 0;
-    clock.budgetReported = false;
+    clock.budgetReported = clock.costReported = false;
     stepper.reset();
     drawn.forget();
     ellipsoids.forget();

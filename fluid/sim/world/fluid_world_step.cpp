@@ -199,7 +199,8 @@ int FluidWorld::Impl::stepFrame(const FluidInputs& inputs, double seconds) {
         return 0;
     }
     if (!cpu) stepper.recordTime(inputs.deviceMs, clock.lastSubsteps);
-    const FrameStepper::Frame frame = stepper.begin(now, double{p.fixedStep}, double{p.frameBudget}, !p.limits);
+    clock.budget = inputs.mostMs > 0 && (p.frameBudget <= 0 || inputs.mostMs < p.frameBudget) ? inputs.mostMs : double{p.frameBudget};
+    const FrameStepper::Frame frame = stepper.begin(now, double{p.fixedStep}, clock.budget, !p.limits);
     warn();
     const double span = frame.before + seconds;  // until the solids reach their target poses
     clock.frameLength = span;
@@ -270,12 +271,15 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     // The rounding of a whole frame is no loss.
     if (lost > 1.0e-9 * seconds) {
         clock.dropped += lost;
-        if (substeps < p.maxSubsteps && p.frameBudget > 0 && !clock.budgetReported) {
+        if (substeps < p.maxSubsteps && clock.budget > 0 && !clock.budgetReported) {
             clock.budgetReported = true;
+            const StepLimit limit = stepLimit(clock.time, frame.length);
             report(
-                fmt::format("a frame's steps take longer than fluid.frameBudget = {} ms, their length limited by {}: simulated time runs "
+                fmt::format("a frame needs about {:.0f} steps, their length limited by {}, which take longer than {}: simulated time runs "
                             "slower than requested",
-                            p.frameBudget, stepLimit(clock.time, frame.length).why));
+                            std::ceil(seconds / limit.dt), limit.why,
+                            clock.budget == double{p.frameBudget} ? fmt::format("fluid.frameBudget = {} ms", p.frameBudget)
+                                                                  : fmt::format("{:.0f} ms", clock.budget)));
         }
     }
     if (p.fixedStep > 0) {
@@ -343,6 +347,11 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         report(fmt::format(
             "a frame needed more than fluid.maxSubsteps = {} steps, their length limited by {}: simulated time runs slower than requested",
             params.maxSubsteps, limit.why));
+    }
+    constexpr int kMany = 300;  // a frame of water needs 4 to 40
+    if (count > kMany && params.limits && !clock.costReported) {
+        clock.costReported = true;
+        report(fmt::format("{:.3g} s need {} steps, their length limited by {}: the computation takes long", length, count, limit.why));
     }
     if (params.fixedStep > 0 && count > 1)
         report(fmt::format("fluid.fixedStep = {} s is cut into shorter steps, their length limited by {}", params.fixedStep, limit.why));

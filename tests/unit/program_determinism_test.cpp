@@ -78,14 +78,17 @@ TEST_P(Determinism, TheSameSceneGivesTheSameBits) {
 }
 
 // Without foam, bodies and emitters; with them additions are in an order that varies.
-TEST(Determinism, OpenGlRepeatsARun) {
+class DeterminismOfGpus : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Backends, DeterminismOfGpus, ::testing::Values("gl", "cl"), [](const auto& of) { return std::string(of.param); });
+
+TEST_P(DeterminismOfGpus, ARunIsRepeated) {
     Scratch scratch;
     RunOptions in;
     in.folder = scratch.path();
     const std::string scene = scratch.file("small.json", testing::smallScene());
     uint64_t first = 0;
     for (const char* name : {"first", "second"}) {
-        const Outcome outcome = runProgram({"run", scene, "--backend", "gl", "--no-render", "--frames", "30", "--save", name}, in);
+        const Outcome outcome = runProgram({"run", scene, "--backend", GetParam(), "--no-render", "--frames", "30", "--save", name}, in);
         ASSERT_EQ(outcome.code, 0) << outcome.err;
         if (outcome.err.find("the cpu simulates") != std::string::npos) GTEST_SKIP() << outcome.err;
         const uint64_t hash = hashOf((scratch.path() / name).string());

@@ -42,9 +42,9 @@ install_packages() {
     rm -f "$log"
 }
 
-# quietly WHAT COMMAND...: the command's output is shown only when it fails, or live when stderr is a terminal and WHAT is "building".
+# quietly WHAT COMMAND...: with a log in $folder. The command's output is shown only when it fails, or live when stderr is a terminal and WHAT is "building".
 quietly() {
-    local what="$1" log="$root/build/release/$1.log"
+    local what="$1" log="$folder/$1.log"
     shift
     if [ "$what" = building ] && [ -t 2 ]; then
         "$@" >&2 || fail "building failed."
@@ -55,15 +55,18 @@ quietly() {
     fail "$what failed; the whole log is $log."
 }
 
-# build TARGET [CMAKE OPTION...]: preset release. A build folder that was moved or copied here is configured anew.
-build() {
-    local folder="$root/build/release" target="$1" fresh=()
-    shift
+# build TARGET [CMAKE OPTION...]: preset release.
+build() { build_preset release "$@"; }
+
+# build_preset PRESET TARGET [CMAKE OPTION...]: in build/PRESET. A build folder that was moved or copied here is configured anew.
+build_preset() {
+    local preset="$1" folder="$root/build/$1" target="$2" fresh=()
+    shift 2
     mkdir -p "$folder" || fail "the build folder $folder cannot be made."
     if [ -f "$folder/CMakeCache.txt" ] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then fresh=(--fresh); fi
     [ -f "$folder/bin/rivulet" ] || say "building; the first time takes some minutes."
     if [ ${#fresh[@]} -gt 0 ] || [ ! -f "$folder/build.ninja" ] || [ $# -gt 0 ]; then
-        (cd "$root" && quietly configuring cmake --preset release "${fresh[@]}" "$@") || exit 1
+        (cd "$root" && quietly configuring cmake --preset "$preset" "${fresh[@]}" "$@") || exit 1
     fi
     quietly building cmake --build "$folder" --target "$target"
 }

@@ -89,7 +89,7 @@ class Display {
         server_ = fork();
         if (server_ == 0) {
             close(ends[0]);
-            std::freopen("/dev/null", "w", stderr);
+            if (std::freopen("/dev/null", "w", stderr) == nullptr) std::_Exit(1);
             const std::string fd = std::to_string(ends[1]);
             execlp("Xvfb", "Xvfb", "-displayfd", fd.c_str(), "-screen", "0", "1024x768x24", "-nolisten", "tcp", nullptr);
             _exit(127);

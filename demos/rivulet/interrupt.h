@@ -1,6 +1,6 @@
 // Ctrl-C (SIGINT), SIGTERM and SIGHUP. Outside a Graceful scope the program exits at once with status 128 + signal. Inside one, the first
-// signal only sets interrupted() and flag(), so that a loop can close its files; a second one, other than SIGHUP, exits at once. Work without
-// files to close needs no scope. Exiting at once removes temporary files.
+// signal only sets interrupted() and flag(), so that a loop can close its files; a second one, other than SIGHUP, exits at once. Work
+// without files to close needs no scope. Exiting at once removes temporary files.
 #pragma once
 
 #include <atomic>

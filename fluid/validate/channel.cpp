@@ -46,7 +46,7 @@ double pipe(double r, double t, double radius, double nu, double force) {
 
 // Compares the velocity along x of a scene at 0.1 and 1 s with exact(s, t) in m/s; s = where(position), 0 to length, m.
 Result<Outcome> channel(Trial& trial, const char* title, double length, double fastest, const std::function<double(const vec3&)>& where,
-                const std::function<double(double, double)>& exact) {
+                        const std::function<double(double, double)>& exact) {
     std::vector<Finding> findings;
     Plot plot{title, "u / u max", "y / L", {}};
     const double times[] = {0.1, 1.0};

@@ -144,7 +144,8 @@ TEST_F(SceneTest, ContradictingValuesAreRefusedByName) {
          "x.json: fluid.blocks[0].mesh is empty: name a mesh file, or set another shape"},
         {R"({"fluid": {"blocks": [{"max": [0.5, 1.25, 0.5]}]}})",
          "x.json: fluid.blocks[0] from (0, 0, 0) to (0.5, 1.25, 0.5) reaches outside fluid.box from (0, 0, 0) to (1, 1, 1)"},
-        {R"({"fluid": {"blocks": [{}, {}, {}, {"max": [0.9, 0.9, 0.9]}, {}, {}, {}, {}, {}]}})",
+        {R"({"fluid": {"blocks": [{"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]},
+            {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"min": [0.5, 0.5, 0.5], "max": [1, 1, 1]}]}})",
          "x.json: fluid.blocks: 9 of them overlap at the first corner of fluid.blocks[8], where water would be 9 times too dense: let at "
          "most 8 "
          "overlap"},

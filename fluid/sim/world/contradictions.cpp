@@ -22,7 +22,7 @@ constexpr size_t kMostOverlapping = 8;
 std::pair<size_t, size_t> deepestOverlap(const std::vector<BlockParams>& blocks) {
     std::vector<size_t> order(blocks.size());
     std::iota(order.begin(), order.end(), size_t{0});
-    std::ranges::sort(order, {}, [&](size_t k) { return blocks[k].min.x; });
+    std::ranges::stable_sort(order, {}, [&](size_t k) { return blocks[k].min.x; });
     std::vector<size_t> open;
     std::pair<size_t, size_t> deepest{0, 0};
     for (const size_t k : order) {

@@ -1,4 +1,5 @@
-// Values of a scene's water that contradict each other, each within its range: what a scene file, the C interface and the program refuse alike.
+// Values of a scene's water that contradict each other, each within its range: what a scene file, the C interface and the program refuse
+// alike.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-/* What goes wrong: memory that is short, scenes and inputs that make no sense, callbacks that are left by longjmp. The context stays usable. */
+/* What goes wrong: memory that is short, scenes and inputs that make no sense, callbacks that are left by longjmp. The context stays
+ * usable. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdlib.h>
@@ -40,11 +41,16 @@ static rivulet_world* make_packed(rivulet_context* context) {
     static float packed[3 * COUNT];
     for (int k = 0; k < COUNT; ++k)
         for (int axis = 0; axis < 3; ++axis)
-            packed[3 * k + axis] = 0.02F + 0.04F * (float)(axis == 0 ? k % 5 : axis == 1 ? k / 5 % 5 : k / 25 % 5) + 1e-5F * (float)(k / 125);
+            packed[3 * k + axis] = 0.02F +
+                                   0.04F * (float)(axis == 0   ? k % 5
+                                                   : axis == 1 ? k / 5 % 5
+                                                               : k / 25 % 5) +
+                                   1e-5F * (float)(k / 125);
     rivulet_world* world = NULL;
     const rivulet_world_options o = {.size = sizeof o,
-                                     .json = "{\"fluid\": {\"spacing\": 0.04, \"maxSubsteps\": 1, \"pbf\": {\"iterations\": 1}, "
-                                             "\"box\": {\"max\": [0.4, 0.4, 0.24]}}}",
+                                     .json =
+                                         "{\"fluid\": {\"spacing\": 0.04, \"maxSubsteps\": 1, \"pbf\": {\"iterations\": 1}, "
+                                         "\"box\": {\"max\": [0.4, 0.4, 0.24]}}}",
                                      .particles = packed,
                                      .particles_count = COUNT};
     DONE(rivulet_world_create(context, &o, &world, &why));
@@ -131,8 +137,9 @@ static void scenes_that_make_no_sense_are_refused(rivulet_context* context) {
     const rivulet_context_options dazzling = {.size = sizeof dazzling, .backend = "cpu", .sky_zenith = {0, INFINITY, 0}};
     REFUSED(rivulet_context_create(&dazzling, &other, &why), "sky_zenith");
 
-    world = make(context, "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"max\": [0.3, 0.3, 0.3]}]},"
-                          " \"emitters\": [{\"position\": [0.5, 0.8, 0.5]}]}");
+    world = make(context,
+                 "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"max\": [0.3, 0.3, 0.3]}]},"
+                 " \"emitters\": [{\"position\": [0.5, 0.8, 0.5]}]}");
     REFUSED(rivulet_world_set(world, "emitters.0.position=0,7,0", &why), "emitters[0].position");
     REFUSED(rivulet_world_set(world, "fluid.foam.speedFrom=50", &why), "fluid.foam.speedFrom");
     REFUSED(rivulet_world_set(world, "fluid.gravity=0,-3e38,0", &why), "fluid.gravity");
@@ -145,10 +152,11 @@ static void inputs_that_make_no_sense_are_refused(rivulet_context* context) {
     const uint32_t triangle[3] = {0, 1, 2};
     const rivulet_mesh wall = {
         .size = sizeof wall, .positions = corners, .vertices = 3, .indices = triangle, .indices_count = 3, .moves = 1};
-    const rivulet_world_options o = {.size = sizeof o,
-                                     .json = "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"min\": [0.2, 0.2, 0.2], \"max\": [0.5, 0.5, 0.5]}]}}",
-                                     .walls = &wall,
-                                     .walls_count = 1};
+    const rivulet_world_options o = {
+        .size = sizeof o,
+        .json = "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"min\": [0.2, 0.2, 0.2], \"max\": [0.5, 0.5, 0.5]}]}}",
+        .walls = &wall,
+        .walls_count = 1};
     rivulet_world* world = NULL;
     DONE(rivulet_world_create(context, &o, &world, &why));
     const double seconds[] = {NAN, INFINITY, 1e300, 3601};

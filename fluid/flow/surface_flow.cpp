@@ -8,6 +8,8 @@
 
 #include "engine/core/param_check.h"
 #include "engine/core/param_fixed.h"
+#include "fluid/sim/world/fluid_params.h"
+#include "fluid/sim/world/pose.h"
 #include "shaders/flow/facing.h"
 
 namespace rivulet {
@@ -25,15 +27,20 @@ bool isFinite(const dmat4& m) {
 
 }  // namespace
 
+Status SurfaceFlow::Impl::checkPlace(uint32_t k, const vec3& position) {
+    if (!isFinite(position)) return badInput(fmt::format("position {} of a skin is not a finite number", k));
+    if (glm::any(glm::greaterThan(glm::abs(position), vec3(kFarthest))))
+        return badInput(
+            fmt::format("position {} of a skin is more than {:.0e} m from zero, where floats are too coarse for drops", k, kFarthest));
+    return ok();
+}
+
 Status SurfaceFlow::Impl::checkPositions(std::span<const vec3> positions) const {
     if (positions.empty()) return ok();
     for (const uint32_t k : mesh.given) {
         if (k >= positions.size())
             return badInput(fmt::format("a skin has {} positions, too few: its triangles use number {}", positions.size(), k));
-        if (!isFinite(positions[k])) return badInput(fmt::format("position {} of a skin is not a finite number", k));
-        if (glm::any(glm::greaterThan(glm::abs(positions[k]), vec3(kFarthest))))
-            return badInput(
-                fmt::format("position {} of a skin is more than {:.0e} m from zero, where floats are too coarse for drops", k, kFarthest));
+        if (Status sound = checkPlace(k, positions[k]); !sound) return sound;
     }
     return ok();
 }
@@ -206,8 +213,9 @@ Status SurfaceFlow::step(const SurfaceFlowInputs& inputs, double seconds) {
     w.device->poll();
     if (!(seconds > 0)) return ok();
     if (Status places = w.checkPositions(inputs.positions); !places) return places;
-    if (!isFinite(inputs.toWorld) || !isFinite(inputs.gravity) || !isFinite(inputs.wind))
-        return badInput("a skin's toWorld, gravity or wind is not finite");
+    if (!isFinite(inputs.toWorld) || !isWithin(inputs.gravity, kMostGravity) || !isWithin(inputs.wind, kMostGravity))
+        return badInput(
+            fmt::format("a skin's toWorld is not finite, or its gravity or wind is not finite or beyond {} m/s^2 or m/s", kMostGravity));
     StepParams s{};
     s.count = s.firstSample = w.count();
     w.grid->fill(s);

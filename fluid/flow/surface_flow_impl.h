@@ -81,6 +81,7 @@ struct SurfaceFlow::Impl : FlowCourse {
     Status prepare(Device& on, std::span<const SkinBrim> along);
     Status fillBrims(std::span<const SkinBrim> along);
     Status layLattice();
+    static Status checkPlace(uint32_t k, const vec3& position);
     Status checkPositions(std::span<const vec3> positions) const;
     void spawn(const FlowBirth& one);
     void moveSkin(const SurfaceFlowInputs& inputs, const FlowStep& f);

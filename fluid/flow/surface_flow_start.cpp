@@ -44,6 +44,8 @@ void SurfaceFlowParams::visit(ParamVisitor& v) {
 }
 
 Status SurfaceFlow::Impl::prepare(Device& on, std::span<const SkinBrim> along) {
+    for (size_t k = 0; k < mesh.rest.size(); ++k)
+        if (Status sound = checkPlace(mesh.given[k], mesh.rest[k]); !sound) return sound;
     device = &on;
     brims = static_cast<uint32_t>(along.size());
     for (const SkinBrim& b : along) brimPlaces += static_cast<uint32_t>(b.places.size());

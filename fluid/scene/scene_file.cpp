@@ -186,7 +186,8 @@ Status useAlternatives(SceneFile& scene, std::span<const std::string> assignment
     for (size_t k = 0; k < scene.flow.size(); ++k) {
         const bool asked = std::any_of(assignments.begin(), assignments.end(),
                                        [&](const std::string& a) { return a.starts_with(fmt::format("flow.{}.mesh=", k)); });
-        if (scene.flow[k].instead.empty() || asked) continue;
+        if (asked) scene.flow[k].instead.clear();  // a saved scene keeps the mesh that was asked for
+        if (scene.flow[k].instead.empty()) continue;
         const Result<std::string> file = findAsset(scene.flow[k].instead, scene.folder);
         if (!file) return badInput(fmt::format("flow[{}].instead: {}", k, file.error().message));
         FlowParams other = scene.flow[k];

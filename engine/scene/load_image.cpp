@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "engine/core/file.h"
 
@@ -14,8 +15,44 @@ namespace {
 
 constexpr int kWidest = 16384;                                // texels
 constexpr size_t kLargest = std::numeric_limits<int>::max();  // bytes: what stb_image takes
+constexpr size_t kMostTexelsPerByte = 8192;                   // a PNG of one colour with one bit a texel; what claims more takes seconds
 
 Error about(const std::string& name, std::string_view what) { return badInput(fmt::format("the image '{}' {}", name, what)); }
+
+Status checkSize(const std::string& name, int width, int height, size_t bytes) {
+    if (std::max(width, height) > kWidest)
+        return about(name, fmt::format("is {} x {} texels; make it no wider than {}", width, height, kWidest));
+    if (static_cast<size_t>(width) * static_cast<size_t>(height) > kMostTexelsPerByte * bytes)
+        return about(name, fmt::format("is damaged: {} bytes cannot hold {} x {} texels; save it again", bytes, width, height));
+    return ok();
+}
+
+// The bytes of an .hdr file. libstb-dev of Debian 12 waits for ever for the rest of a run where a file ends: bytes of 0xFF follow, which
+// are a run of their own.
+struct HdrBytes {
+    std::string_view bytes;
+    size_t at = 0;
+    bool ended = false;  // more was read than there is
+
+    static int read(void* user, char* data, int size) {
+        auto& file = *static_cast<HdrBytes*>(user);
+        const size_t count = std::min(static_cast<size_t>(size), file.bytes.size() - file.at);
+        std::copy_n(file.bytes.data() + file.at, count, data);
+        file.at += count;
+        if (count > 0 || size == 0) return static_cast<int>(count);
+        file.ended = true;
+        std::fill_n(data, size, static_cast<char>(0xFF));
+        return size;
+    }
+    static void skip(void* user, int count) {
+        auto& file = *static_cast<HdrBytes*>(user);
+        file.at = std::min(file.at + static_cast<size_t>(std::max(count, 0)), file.bytes.size());
+    }
+    static int hasEnded(void* user) {
+        const auto& file = *static_cast<const HdrBytes*>(user);
+        return file.at == file.bytes.size() ? 1 : 0;
+    }
+};
 
 }  // namespace
 
@@ -29,8 +66,7 @@ Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& n
     int channels = 0;
     if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0)
         return about(name, "cannot be read: it is damaged, or not a PNG, JPEG, TGA or BMP");
-    if (std::max(image.width, image.height) > kWidest)
-        return about(name, fmt::format("is {} x {} texels; make it no wider than {}", image.width, image.height, kWidest));
+    if (Status fits = checkSize(name, image.width, image.height, bytes.size()); !fits) return fits.error();
     stbi_uc* texels = stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4);
     if (texels == nullptr) return about(name, fmt::format("cannot be read: {}", stbi_failure_reason()));
     const size_t row = static_cast<size_t>(image.width) * 4, rows = static_cast<size_t>(image.height);
@@ -58,10 +94,18 @@ Result<HdrImage> loadHdr(const std::string& path) {
     int channels = 0;
     if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0)
         return about(path, "cannot be read: it is damaged, or no HDR");
-    if (std::max(image.width, image.height) > kWidest)
-        return about(path, fmt::format("is {} x {} texels; make it no wider than {}", image.width, image.height, kWidest));
-    float* texels = stbi_loadf_from_memory(data, size, &image.width, &image.height, &channels, 3);
+    if (Status fits = checkSize(path, image.width, image.height, bytes->size()); !fits) return fits.error();
+    HdrBytes file;
+    file.bytes = *bytes;
+    const stbi_io_callbacks reader{HdrBytes::read, HdrBytes::skip, HdrBytes::hasEnded};
+    float* texels = stbi_is_hdr_from_memory(data, size) != 0
+                        ? stbi_loadf_from_callbacks(&reader, &file, &image.width, &image.height, &channels, 3)
+                        : stbi_loadf_from_memory(data, size, &image.width, &image.height, &channels, 3);
     if (texels == nullptr) return about(path, fmt::format("cannot be read: {}", stbi_failure_reason()));
+    if (file.ended) {
+        stbi_image_free(texels);
+        return about(path, "is cut off; save it again");
+    }
     const size_t row = static_cast<size_t>(image.width), rows = static_cast<size_t>(image.height);
     image.texels.resize(row * rows);
     auto sane = [](float x) { return std::isfinite(x) ? std::clamp(x, 0.0F, 1000.0F) : 0.0F; };

@@ -216,7 +216,10 @@ Status VideoWriter::add(std::span<const uint8_t> rgba) {
             continue;
         }
         if (sent < 0) {
-            impl_->wait();  // it closed its end: it is ending, and says why
+            if (errno == EPIPE || errno == ECONNRESET)
+                impl_->wait();  // it closed its end: it is ending, and says why
+            else
+                impl_->broken = fmt::format("the video {} could not be written: ffmpeg was not reached: {}", impl_->path, reasonOf(errno));
             return impl_->failure();
         }
         done += static_cast<size_t>(sent);

@@ -43,8 +43,8 @@ inline Status ready(rivulet_context& context, Needs needs) {
 class CallScope {
   public:
     CallScope(rivulet_context& context, Needs needs) : context_(context) {
+        if (needsGl(context, needs)) context_.hostGl.emplace();  // may throw
         context_.busy = true;
-        if (needsGl(context, needs)) context_.hostGl.emplace();
     }
     ~CallScope() {
         context_.hostGl.reset();

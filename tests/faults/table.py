@@ -101,7 +101,7 @@ class Faults:
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", help="the build folder")
-    parser.add_argument("--quick", action="store_true", help="under a minute: few inputs of each row")
+    parser.add_argument("--quick", action="store_true", help="some minutes: few inputs of each row")
     parser.add_argument("--rows", default="", help="only rows whose names match this regular expression")
     parser.add_argument("--cases", default="", help="only cases whose names match this regular expression")
     parser.add_argument("--program", help="another program than that of the build folder")

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "engine/core/exception_error.h"
 #include "engine/core/param_value.h"
 
 namespace rivulet {
@@ -148,6 +149,7 @@ Result<Json::Value> parseJson(std::string_view text, std::string_view file) {
     try {
         if (!reader->parse(masked.data(), masked.data() + masked.size(), &root, &report)) return jsonCppError(report, file);
     } catch (const std::exception& e) {
+        if (isNoMemory(e)) throw;
         return badInput(fmt::format("{}: this JSON cannot be read: {}", file, e.what()));
     }
     return root;

@@ -84,6 +84,9 @@ int reportThrown() noexcept {
     std::_Exit(reportThrown());
 }
 
+// Before the variables of libraries are initialised, which takes memory too (CLI11's validators).
+[[gnu::constructor(101)]] void reportFromTheStart() { std::set_terminate(endAtOnce); }
+
 int dispatch(const Arguments& words) {
     if (words.empty()) {
         (void)std::fputs(helpText().c_str(), stderr);
@@ -116,7 +119,6 @@ int dispatch(const Arguments& words) {
 int main(int argc, char** argv) {
     if (!rivulet::holdStandardStreams()) return rivulet::kFailed;
     rivulet::installSignals();
-    std::set_terminate(rivulet::endAtOnce);
     try {
         const int code = rivulet::dispatch({argv + std::min(argc, 1), argv + argc});
         if (code == rivulet::kDone) rivulet::flushOutput();

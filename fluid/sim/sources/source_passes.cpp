@@ -137,8 +137,9 @@ Status SourcePasses::set(const Sources& sources) {
 void SourcePasses::reset() {
     for (EmitterFeed& feed : feeds_) feed.reset();
     reported_.assign(feeds_.size(), 0);
-    late_ = std::make_shared<Late>();
-    late_->counters.assign(feeds_.size() * EMITTER_COUNTERS + sinkCount_, 0);
+    auto late = std::make_shared<Late>();
+    late->counters.assign(feeds_.size() * EMITTER_COUNTERS + sinkCount_, 0);  // where memory is short, the counters stay those of before
+    late_ = std::move(late);
     waited_ = 0;
     if (any()) device_->fill(counters_, 0);
 }

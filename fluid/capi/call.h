@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include "engine/core/exception_error.h"
 #include "engine/core/message_line.h"
@@ -75,7 +76,22 @@ rivulet_status guarded(rivulet_error* why, const Work& work) {
     try {
         return statusOf(work(), why);
     } catch (...) {
-        return statusOf(errorOf(std::current_exception()), why);
+        try {
+            return statusOf(errorOf(std::current_exception()), why);
+        } catch (...) {  // there is no memory for a message either
+            constexpr std::string_view kWhy = "out of memory";
+            if (why != nullptr) why->message[kWhy.copy(why->message, kWhy.size())] = '\0';
+            return RIVULET_FAILED;
+        }
+    }
+}
+
+// For functions that return nothing: what `work` throws, for want of memory for a message, is dropped.
+template <class Work>
+void silently(const Work& work) {
+    try {
+        work();
+    } catch (...) {  // NOLINT(bugprone-empty-catch)
     }
 }
 
@@ -100,13 +116,15 @@ template <class Handle>
 void destroy(Handle* handle) {
     if (handle == nullptr) return;
     rivulet_context& context = *handle->context;
-    if (Status can = ready(context, Needs::drawing); can) {
-        const CallScope scope(context, Needs::drawing);
-        --context.children;
-        delete handle;
-    } else {
-        context.log.error(fmt::format("a {} was not destroyed: {}", kindOf(handle), can.error().message));
-    }
+    silently([&] {
+        if (Status can = ready(context, Needs::drawing); can) {
+            const CallScope scope(context, Needs::drawing);
+            --context.children;
+            delete handle;
+        } else {
+            context.log.error(fmt::format("a {} was not destroyed: {}", kindOf(handle), can.error().message));
+        }
+    });
     context.hostLog.deliver(context.callback);
 }
 

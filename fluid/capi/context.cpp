@@ -125,19 +125,18 @@ rivulet_status rivulet_context_create(const rivulet_context_options* options, ri
 
 void rivulet_context_destroy(rivulet_context* context) {
     if (context == nullptr) return;
-    Status can = ready(*context, Needs::drawing);
-    if (context->children > 0) can = badInput(fmt::format("destroy its {} worlds and skins first", context->children));
-    if (!can) {
-        context->log.error(fmt::format("a context was not destroyed: {}", can.error().message));
-        return context->hostLog.deliver(context->callback);
-    }
-    {
+    bool gone = false;
+    silently([&] {
+        Status can = ready(*context, Needs::drawing);
+        if (context->children > 0) can = badInput(fmt::format("destroy its {} worlds and skins first", context->children));
+        if (!can) return context->log.error(fmt::format("a context was not destroyed: {}", can.error().message));
         const CallScope scope(*context, Needs::drawing);
         context->water.reset();
         context->device.reset();
-    }
+        gone = true;
+    });
     context->hostLog.deliver(context->callback);
-    delete context;
+    if (gone) delete context;
 }
 
 const char* rivulet_context_device(const rivulet_context* context) { return context == nullptr ? "" : context->name.c_str(); }

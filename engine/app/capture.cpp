@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stb_image_write.h>
@@ -11,9 +12,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
+#include <thread>
 #include <vector>
 
 #include "engine/core/assert.h"
@@ -26,6 +30,9 @@ namespace rivulet {
 namespace fs = std::filesystem;
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kStoppedFor{30};  // that ffmpeg may be: somebody may let it go on
 
 bool isOrdinaryTarget(const std::string& path) {
     std::error_code error;
@@ -76,6 +83,37 @@ struct VideoWriter::Impl {
             wait();
         }
         if (messages >= 0) ::close(messages);
+    }
+
+    // Whether ffmpeg has been stopped (SIGSTOP) for too long, which is then `broken`. `since`: since when it has been, for the next call.
+    bool stopped(std::optional<Clock::time_point>& since) {
+        siginfo_t info = {};
+        const bool now = ::waitid(P_PID, static_cast<id_t>(child), &info, WSTOPPED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child;
+        if (!now) since.reset();
+        if (now && !since) since = Clock::now();
+        if (!now || Clock::now() - *since < kStoppedFor) return false;
+        broken =
+            fmt::format("the video {} could not be written: ffmpeg was stopped, and did not go on within {} s", path, kStoppedFor.count());
+        return true;
+    }
+
+    // Returns when ffmpeg can take more, or has ended. False: it is stopped.
+    bool canTake() {
+        std::optional<Clock::time_point> since;
+        for (pollfd ready{input, POLLOUT, 0}; ::poll(&ready, 1, 500) <= 0;)
+            if (stopped(since)) return false;
+        return true;
+    }
+
+    // Returns when ffmpeg has ended. False: it is stopped.
+    bool ends() {
+        std::optional<Clock::time_point> since;
+        for (siginfo_t info = {};; info = {}) {
+            if (::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WSTOPPED | WNOWAIT) != 0 && errno != EINTR) return true;
+            if (info.si_pid == child && info.si_code != CLD_STOPPED) return true;
+            if (stopped(since)) return false;
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
     }
 
     // ffmpeg's exit status; -1 when a signal ended it.
@@ -171,8 +209,12 @@ Status VideoWriter::add(std::span<const uint8_t> rgba) {
     ASSERT(rgba.size() == impl_->frameBytes, "a frame has the size given to open()");
     if (!impl_->broken.empty()) return impl_->failure();
     for (size_t done = 0; done < rgba.size();) {
-        ssize_t sent = ::send(impl_->input, rgba.data() + done, rgba.size() - done, MSG_NOSIGNAL);
+        ssize_t sent = ::send(impl_->input, rgba.data() + done, rgba.size() - done, MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0 && errno == EAGAIN) {
+            if (!impl_->canTake()) return impl_->failure();
+            continue;
+        }
         if (sent < 0) {
             impl_->wait();  // it closed its end: it is ending, and says why
             return impl_->failure();
@@ -189,6 +231,7 @@ Status VideoWriter::close() {
     impl_->input = -1;
     if (impl_->child > 0) {
         bool empty = impl_->frames == 0;
+        if (!empty && !impl_->ends()) return impl_->failure();
         int status = impl_->wait();
         if (empty) return ok();
         // ffmpeg ends with 0 even when the last block did not fit on the disk: what it says on its error channel is believed instead.

@@ -27,7 +27,8 @@ class VideoWriter {
     VideoWriter& operator=(VideoWriter&&) noexcept;
     ~VideoWriter();
 
-    // One frame as for writePng, of the size given to open(). Error (failed): disk full, ffmpeg ended; later calls fail too.
+    // One frame as for writePng, of the size given to open(). Error (failed): disk full, ffmpeg ended, or was stopped (SIGSTOP) for 30 s;
+    // later calls fail too.
     Status add(std::span<const uint8_t> rgba);
     // Waits for ffmpeg and names the file. No frame was added: no file, no error.
     Status close();

@@ -21,10 +21,12 @@ INPUTS = ("s.json", "plain.json", "paddle.obj", "r.rrec", "s.rstate")
 
 
 class Case:
-    def __init__(self, name, words, outputs=(), needs=(), kinds=None, share=1.0, cpu=60):
-        """`outputs`: files that it writes; `kinds`: of failures, those of table.py's list by default; `share`: of the usual inputs."""
+    def __init__(self, name, words, outputs=(), needs=(), kinds=None, share=1.0, cpu=60, long=False):
+        """`outputs`: files that it writes; `kinds`: of failures, those of table.py's list by default; `share`: of the usual inputs.
+        `long`: minutes. It is not run to its end: all calls fail from the N-th on."""
         self.name, self.words, self.outputs = name, words.split(), tuple(outputs)
         self.needs, self.kinds, self.share, self.cpu = needs, kinds, share, cpu
+        self.long = long
         self.new = {}      # contents of outputs that are the same in each run
         self.counts = {}   # calls of each kind
         self.err = set()  # lines of messages of a run without failures
@@ -32,7 +34,7 @@ class Case:
 
 def copy(case):
     """Of a measured case: for a worker that changes it."""
-    other = Case(case.name, " ".join(case.words), case.outputs, case.needs, case.kinds, case.share, case.cpu)
+    other = Case(case.name, " ".join(case.words), case.outputs, case.needs, case.kinds, case.share, case.cpu, case.long)
     other.new, other.counts, other.err = dict(case.new), case.counts, case.err
     return other
 
@@ -58,7 +60,8 @@ CASES = [
           "out/small_0001.ply"), share=0.3),
     Case("validate", "validate elliptical_drop --method wcsph --quick --json n.json --pictures out",
          ("n.json",), share=0.2),
-    Case("bench", "bench collide --json n.json --markdown n.md", ("n.json", "n.md"), share=0.05, cpu=900),
+    Case("bench", "bench collide --json n.json --markdown n.md", ("n.json", "n.md"), long=True, share=0.3),
+    Case("chart", "chart taylor_green --quick --out out", ("out/speed_accuracy.md",), long=True, share=0.3),
 ]
 GL_KINDS = ("gl_memory", "gl_map", "gl_program", "gl_fence", "gl_target")
 GL_CASES = [

@@ -79,7 +79,7 @@ def killed(faults):
 
     count = 4 if faults.quick else 100
     tasks = [lambda m=chosen.uniform(0.05, 1.5), o=k % 2 == 0: recording(m, o) for k in range(count)]
-    for case in runs.able(faults, cases.CASES):
+    for case in [case for case in runs.able(faults, cases.CASES) if not case.long]:
         for _ in range(max(1, int(count * 0.3 * min(case.share, 1)))):
             tasks.append(lambda c=case, m=chosen.uniform(0.02, 0.6): verb(c, m))
     faults.all(tasks)
@@ -107,7 +107,7 @@ def signals(faults):
         judge(faults, row, room, case.words, outcome, lost, runs.repeat(room, case.words) + f" & sleep {moment:.3f}; kill -{number} $!")
 
     tasks = []
-    for case in runs.able(faults, cases.CASES):
+    for case in [case for case in runs.able(faults, cases.CASES) if not case.long]:
         for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
             for _ in range(1 if faults.quick else max(1, int(20 * min(case.share, 1)))):
                 tasks.append(lambda c=cases.copy(case), m=chosen.uniform(0.02, 0.6), n=number: verb(c, m, n))
@@ -148,7 +148,7 @@ def disks(faults):
         finally:
             subprocess.run(["umount", "-l", disk], check=False)
 
-    able = runs.able(faults, cases.CASES)
+    able = [case for case in runs.able(faults, cases.CASES) if not case.long]
     tasks = [lambda c=case, s=size: limited(c, s) for case in able for size in sizes if case.share >= 0.2]
     tasks += [lambda c=case, s=size: small(c, s) for case in able for size in ("56k", "64k", "72k", "80k", "96k", "128k", "256k")
               if case.share >= 0.2 and case.outputs and not (faults.quick and size not in ("64k", "96k"))]

@@ -28,6 +28,9 @@ def repeat(room, words, fault=""):
 
 def measure_case(faults, case, module="rivulet"):
     """Runs it twice without failures: its outputs, and how many calls of each kind it makes. False: it cannot run on this machine."""
+    if case.long:
+        case.counts = dict.fromkeys(faults.kinds, 0) | {"memory": 400, "open": 1, "open_read": 3, "read": 3}
+        return True
     room = faults.room(case)
     counts = os.path.join(faults.work, f"counts-{faults.core()}")
     news = []
@@ -73,8 +76,8 @@ def inject(faults, row, case, kind, number, onwards, module="rivulet"):
     fault = f"{kind}:{number}{'+' if onwards else ''}"
     environment = dict(room.environment, LD_PRELOAD=faults.interposer, RIVULET_FAULT_MODULE=module, RIVULET_FAULT_COUNTS=counts,
                        RIVULET_FAULT=fault)
-    outcome = watch.run([faults.program, *case.words], room.root, environment, faults.core(), cpu=10 * case.cpu)
-    if faults.counts(counts)["failed"] == 0:
+    outcome = watch.run([faults.program, *case.words], room.root, environment, faults.core(), cpu=10 if case.long else 10 * case.cpu)
+    if faults.counts(counts)["failed"] == 0 or (case.long and outcome.hung):
         return
     again = repeat(room, case.words, fault)
     if outcome.hung or outcome.crashed:
@@ -82,7 +85,7 @@ def inject(faults, row, case, kind, number, onwards, module="rivulet"):
         return
     lost = cases.bad_message(outcome, case.err) if outcome.status != 0 else None
     lost = lost or room.verdict(outcome, check_new=kind not in ("read", "open_read"))
-    if not lost and outcome.status != 0 and (number % 10 == 0 or cases.files_in(room.root) != start):
+    if not lost and outcome.status != 0 and not case.long and (number % 10 == 0 or cases.files_in(room.root) != start):
         after = watch.run([faults.program, *case.words], room.root, room.environment, faults.core(), cpu=10 * case.cpu)
         lost = room.verdict(after) if after.status == 0 else f"the next run fails: {after.err[-300:]}"
     row.count("lost" if lost else "", again, f"{lost} [{outcome.status}: {outcome.err[-300:]}]")
@@ -104,7 +107,7 @@ def sweep(faults, fault, how, kinds, which, first, more):
     tasks = []
     for case in able(faults, which):
         for kind in kinds:
-            for onwards in (False, True):
+            for onwards in (True,) if case.long else (False, True):
                 part = case.share * (0.3 if onwards else 1)
                 for number in numbers(case.counts[kind], max(1, int(first * part)), max(1, int(more * part))):
                     tasks.append(lambda a=(case, kind, number, onwards): inject(faults, row, *a))

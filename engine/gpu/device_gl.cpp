@@ -105,6 +105,7 @@ class GlDevice final : public Device {
     gpu::Buffer stagingFor(size_t bytes);
     void harvest();
     void logOnce(const std::string& error);
+    bool isLost();  // and notes it
 
     ShaderFiles files_;
     Log log_;
@@ -138,8 +139,14 @@ GlDevice::GlDevice(const ShaderFiles& files, Log log)
 
 // For calls without a Result: the first error is logged; it would otherwise repeat every frame.
 void GlDevice::logOnce(const std::string& error) {
-    if (!errorLogged_) log_.error(error);
+    if (!isLost() && !errorLogged_) log_.error(error);
     errorLogged_ = true;
+}
+
+bool GlDevice::isLost() {
+    if (health_.state != DeviceHealth::lost && gpu::contextLost())
+        health_ = {DeviceHealth::lost, "lost its OpenGL context: the driver was restarted, or the GPU was removed"};
+    return health_.state == DeviceHealth::lost;
 }
 
 Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> defines) {
@@ -209,6 +216,7 @@ Result<Buffer> GlDevice::allocate(size_t bytes) {
             bytes, static_cast<double>(bytes) / 1048576.0, info_.name, info_.maxBufferBytes,
             static_cast<double>(info_.maxBufferBytes) / 1048576.0));
     Result<gpu::Buffer> buffer = gpu::Buffer::create(bytes);
+    if (!buffer && isLost()) return failed(fmt::format("{} {}", info_.name, health_.why));
     if (!buffer)
         return noMemory(
             fmt::format("{} ({:.1f} MiB are in use)", buffer.error().message, static_cast<double>(bytesAllocated_) / 1048576.0));
@@ -244,6 +252,7 @@ void GlDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offse
     ASSERT(offset <= from.bytes() && bytes.size() <= from.bytes() - offset, "read inside the buffer");
     if (bytes.empty()) return;
     glGetNamedBufferSubData(nameOf(from), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    (void)isLost();
 }
 
 void GlDevice::fill(Buffer& to, uint32_t word) {
@@ -282,6 +291,7 @@ void GlDevice::readLater(const Buffer& from, size_t bytes, std::function<void(st
 }
 
 void GlDevice::poll() {
+    if (isLost()) pendingReads_.clear();  // nothing was copied
     // Reads that a callback starts are left to the next poll().
     for (size_t left = pendingReads_.size(); left > 0 && pendingReads_.front().copied.passed(); --left) {
         PendingRead ready = std::move(pendingReads_.front());
@@ -356,6 +366,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
 
 void GlDevice::finish() {
     glFinish();
+    (void)isLost();
     harvest();
 }
 

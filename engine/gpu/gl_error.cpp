@@ -33,4 +33,6 @@ void clearGlErrors() {
     }
 }
 
+bool contextLost() { return glGetGraphicsResetStatus() != GL_NO_ERROR; }
+
 }  // namespace rivulet::gpu

@@ -20,6 +20,7 @@ constexpr size_t kMostTexelsPerByte = 8192;                   // a PNG of one co
 Error about(const std::string& name, std::string_view what) { return badInput(fmt::format("the image '{}' {}", name, what)); }
 
 Status checkSize(const std::string& name, int width, int height, size_t bytes) {
+    if (std::min(width, height) < 1) return about(name, "has no texels; save it again");
     if (std::max(width, height) > kWidest)
         return about(name, fmt::format("is {} x {} texels; make it no wider than {}", width, height, kWidest));
     if (static_cast<size_t>(width) * static_cast<size_t>(height) > kMostTexelsPerByte * bytes)

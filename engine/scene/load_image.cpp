@@ -67,6 +67,7 @@ Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& n
     int channels = 0;
     if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0)
         return about(name, "cannot be read: it is damaged, or not a PNG, JPEG, TGA or BMP");
+    if (stbi_is_hdr_from_memory(data, size) != 0) return about(name, "is an HDR picture, which no material has; save it as PNG");
     if (Status fits = checkSize(name, image.width, image.height, bytes.size()); !fits) return fits.error();
     stbi_uc* texels = stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4);
     if (texels == nullptr) return about(name, fmt::format("cannot be read: {}", stbi_failure_reason()));
@@ -95,13 +96,12 @@ Result<HdrImage> loadHdr(const std::string& path) {
     int channels = 0;
     if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0)
         return about(path, "cannot be read: it is damaged, or no HDR");
+    if (stbi_is_hdr_from_memory(data, size) == 0) return about(path, "is no HDR picture; save it as .hdr");
     if (Status fits = checkSize(path, image.width, image.height, bytes->size()); !fits) return fits.error();
     HdrBytes file;
     file.bytes = *bytes;
     const stbi_io_callbacks reader{HdrBytes::read, HdrBytes::skip, HdrBytes::hasEnded};
-    float* texels = stbi_is_hdr_from_memory(data, size) != 0
-                        ? stbi_loadf_from_callbacks(&reader, &file, &image.width, &image.height, &channels, 3)
-                        : stbi_loadf_from_memory(data, size, &image.width, &image.height, &channels, 3);
+    float* texels = stbi_loadf_from_callbacks(&reader, &file, &image.width, &image.height, &channels, 3);
     if (texels == nullptr) return about(path, fmt::format("cannot be read: {}", stbi_failure_reason()));
     if (file.ended) {
         stbi_image_free(texels);

@@ -92,7 +92,7 @@ struct FlowView {
 
 class SurfaceFlow {
   public:
-    // `device` must outlive it. Error (badInput): a value out of its range, a skin too large for its film; (failed): out of memory.
+    // `device` must outlive it. Error (badInput): a value out of range, a skin too large for its film or over 1e5 m; (failed): no memory.
     static Result<SurfaceFlow> create(Device& device, FlowMesh mesh, const SurfaceFlowParams& params, std::span<const SkinBrim> brims = {});
     // Thesis mode: the same walk on the layout of `uvs` (3 a triangle), with the forces of the thesis. Drops do not merge and leave no
     // trail. drops() are in space as ever; FlowMaps refuses such a flow, thesisPicture() draws it. Error: as create; (badInput): another
@@ -114,7 +114,7 @@ class SurfaceFlow {
     void add(const SkinPoint& at, uint32_t picolitres, const vec3& velocity = vec3(0.0F), bool film = false);
     void addToBrim(uint32_t place, uint32_t picolitres);  // places count through all brims in their order
     void setGrip(std::span<const float> grip);            // of each of mesh()'s places: factor of the holding force, 1 by default. Waits
-    // Error (badInput): fewer positions than the mesh's, not finite or over 1e5 m from zero, inputs that are not finite; (failed): no
+    // Error (badInput): fewer positions than the mesh's, not finite or over 1e5 m from zero, inputs not finite or over 1000; (failed): no
     // memory for the sort. Nothing moves then. If the device was interrupted (Device::stopOn), the drops are valid no more.
     Status step(const SurfaceFlowInputs& inputs, double seconds);
 

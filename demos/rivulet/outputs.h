@@ -11,7 +11,7 @@ namespace rivulet {
 struct NamedFile {
     std::string option;   // "--stats"; for messages
     std::string path;     // empty: not used
-    bool series = false;  // all files whose name has another text instead of the last '*': "out/dam_break_*.png"
+    bool series = false;  // `path` is a pattern, whose last '*' stands for any text: "out/dam_break_*.png"
 };
 
 // Error (badInput): two outputs are the same file, an output is an input, or stdout is redirected to an output; by this or another path.

@@ -40,7 +40,7 @@ Place* enlist(const char* name) {
     return nullptr;
 }
 
-// Hidden, so that nobody takes it for a file of the series; with the name's end, by which other programs choose the format.
+// A hidden name, which no pattern of output files matches. It keeps the extension: ffmpeg chooses the format by it.
 std::string nameBeside(const fs::path& target, int attempt) {
     constexpr size_t kEnd = 100;  // bytes: the whole must not be too long for a name
     std::string end = target.filename().string();

@@ -40,7 +40,7 @@ class LoopOrder {
 #endif
 };
 
-// Runs `body(range)` for ranges that together are `range`, a tbb::blocked_range or blocked_range2d, whose grain is kept.
+// Splits `range` (tbb::blocked_range or blocked_range2d) by its grain size and runs `body` for each part.
 template <class Range, class Body, class... Partitioner>
 void parallelRanges(const Range& range, const Body& body, const Partitioner&... partitioner) {
     const LoopOrder order;

@@ -31,7 +31,7 @@ void tell(Callback& callback, const HostLog& log, rivulet_level level, const std
     const CallbackScope scope(callback);
     try {
         log.function(log.user, level, sentence.c_str());
-    } catch (...) {  // NOLINT(bugprone-empty-catch): a log that throws has no one to tell it
+    } catch (...) {  // NOLINT(bugprone-empty-catch): an exception of the log function has nowhere to go
     }
 }
 
@@ -42,7 +42,7 @@ CallbackScope::CallbackScope(Callback& callback) : callback_(callback) {
     callback_ = {.frame = this, .by = _Unwind_FindEnclosingFunction(caller), .thread = std::this_thread::get_id()};
 }
 
-// Unless all frames up to that one could be seen, nobody is known to have left it.
+// Where the stack cannot be unwound to that frame, the callback counts as still running.
 bool Callback::left() const {
     if (frame == nullptr || thread != std::this_thread::get_id()) return false;
     Search search{.frame = reinterpret_cast<uintptr_t>(frame), .by = reinterpret_cast<uintptr_t>(by)};

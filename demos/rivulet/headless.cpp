@@ -12,6 +12,7 @@
 #include "engine/core/file.h"
 #include "engine/core/message_line.h"
 #include "engine/core/wall_clock.h"
+#include "engine/gpu/gl_error.h"
 #include "fluid/render/backend.h"
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/autotune.h"
@@ -79,7 +80,10 @@ struct Painter {
             if (Status drawn = renderer->draw(view, *fluid, session.solids(), scene); !drawn) return drawn.error();
         }
         const TimedSpan span(timeline, "main", "read pixels");
-        return renderer->pixels();
+        std::vector<uint8_t> pixels = renderer->pixels();
+        if (gpu::contextLost())
+            return failed("the picture cannot be drawn: the OpenGL context is lost, since the driver was restarted or the GPU was removed");
+        return pixels;
     }
 };
 

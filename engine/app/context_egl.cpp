@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <rivulet_glad/gl.h>
 
+#include <initializer_list>
 #include <mutex>
 #include <string_view>
 #include <utility>
@@ -76,8 +77,14 @@ struct ContextEgl::Impl {
         eglDestroyContext(display, context);
     }
 
+    // One that notices when it is lost, if the driver has such.
     EGLContext make(EGLContext shares) const {
-        const EGLint attributes[] = {
+        const EGLContext notices = make(shares, {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+        return notices != EGL_NO_CONTEXT ? notices : make(shares, {});
+    }
+
+    EGLContext make(EGLContext shares, std::initializer_list<EGLint> more) const {
+        std::vector<EGLint> attributes = {
             EGL_CONTEXT_MAJOR_VERSION,
             4,
             EGL_CONTEXT_MINOR_VERSION,
@@ -85,9 +92,10 @@ struct ContextEgl::Impl {
             EGL_CONTEXT_OPENGL_PROFILE_MASK,
             options.compatibility ? EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT : EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
             EGL_CONTEXT_OPENGL_DEBUG,
-            options.debug ? EGL_TRUE : EGL_FALSE,
-            EGL_NONE};
-        return eglCreateContext(display, config, shares, attributes);
+            options.debug ? EGL_TRUE : EGL_FALSE};
+        attributes.insert(attributes.end(), more);
+        attributes.push_back(EGL_NONE);
+        return eglCreateContext(display, config, shares, attributes.data());
     }
 
     // Returns nullptr if this display offers no OpenGL 4.5 core context without a surface; `why` then gives the reason.

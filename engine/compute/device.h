@@ -76,7 +76,7 @@ struct DeviceHealth {
     enum State {
         works,
         full,  // an allocation failed; existing buffers are valid
-        lost,  // a command failed: the contents of all buffers are invalid
+        lost,  // a command failed: the contents of all buffers are invalid, and no command runs any more
     } state = works;
     std::string why;  // continues a sentence after the device's name: "could not run fluid/grid/reorder: CL_OUT_OF_RESOURCES"
 };
@@ -124,7 +124,7 @@ class Device {
     virtual Result<Buffer> allocate(size_t bytes) = 0;
     virtual void release(uint64_t handle, size_t bytes) = 0;  // Buffer's destructor calls it
     virtual void write(Buffer& to, std::span<const std::byte> bytes, size_t offset = 0) = 0;
-    virtual void read(const Buffer& from, std::span<std::byte> bytes, size_t offset = 0) = 0;  // waits for the GPU
+    virtual void read(const Buffer& from, std::span<std::byte> bytes, size_t offset = 0) = 0;  // waits for the GPU; zeros of a lost one
     virtual void fill(Buffer& to, uint32_t word) = 0;                                          // every 4 bytes
     virtual void copy(const Buffer& from, Buffer& to, size_t bytes) = 0;
 
@@ -185,6 +185,7 @@ class Device {
         skipped_.store(true, std::memory_order_relaxed);
         return true;
     }
+    bool lost() const { return health_.state == DeviceHealth::lost; }
     SpanSink span_;
     size_t mostBytes_ = SIZE_MAX;
     std::function<bool(size_t)> mayAllocate_;

@@ -327,7 +327,7 @@ void ClDevice::dropUploads() {
 
 void ClDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {
     ASSERT(offset + bytes.size() <= to.bytes(), "write inside the buffer");
-    if (bytes.empty()) return;
+    if (bytes.empty() || lost()) return;
     dropUploads();
     Upload upload{Event(), std::vector<std::byte>(bytes.begin(), bytes.end())};
     cl_event written = nullptr;
@@ -342,13 +342,17 @@ void ClDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset
 void ClDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offset) {
     ASSERT(offset + bytes.size() <= from.bytes(), "read inside the buffer");
     if (bytes.empty()) return;
-    const cl_int code = enqueue(
-        [&] { return clEnqueueReadBuffer(queue_.get(), memory(from), CL_TRUE, offset, bytes.size(), bytes.data(), 0, nullptr, nullptr); });
-    succeeded(code, fmt::format("read {} bytes", bytes.size()));
+    if (!lost()) {
+        const cl_int code = enqueue([&] {
+            return clEnqueueReadBuffer(queue_.get(), memory(from), CL_TRUE, offset, bytes.size(), bytes.data(), 0, nullptr, nullptr);
+        });
+        succeeded(code, fmt::format("read {} bytes", bytes.size()));
+    }
+    if (lost()) std::ranges::fill(bytes, std::byte{0});
 }
 
 void ClDevice::fill(Buffer& to, uint32_t word) {
-    if (to.bytes() == 0) return;
+    if (to.bytes() == 0 || lost()) return;
     const cl_int code = enqueue([&] {
         return clEnqueueFillBuffer(queue_.get(), memory(to), &word, sizeof word, 0, (to.bytes() + 3) / 4 * 4, 0, nullptr, nullptr);
     });
@@ -358,7 +362,7 @@ void ClDevice::fill(Buffer& to, uint32_t word) {
 void ClDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
     ASSERT(bytes <= from.bytes() && bytes <= to.bytes(), "copy inside both buffers");
     ASSERT(from.handle() != to.handle(), "copy from one buffer to another");
-    if (bytes == 0) return;
+    if (bytes == 0 || lost()) return;
     const cl_int code =
         enqueue([&] { return clEnqueueCopyBuffer(queue_.get(), memory(from), memory(to), 0, 0, bytes, 0, nullptr, nullptr); });
     succeeded(code, fmt::format("copy {} bytes", bytes));
@@ -367,6 +371,7 @@ void ClDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
 void ClDevice::readLater(const Buffer& from, size_t bytes, std::function<void(std::span<const std::byte>)> then) {
     ASSERT(bytes <= from.bytes(), "read inside the buffer");
     PendingRead pending{Event(), std::vector<std::byte>(bytes), std::move(then)};
+    if (lost()) return;
     if (bytes > 0) {
         cl_event done = nullptr;
         const cl_int code = enqueue(
@@ -425,7 +430,7 @@ void ClDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     const Entry& entry = kernels_[kernel.index];
     ASSERT(entry.args == buffers.size() + 1, "pass a buffer for every row of the kernel's ARGS");
     ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
-    if (threads == 0 || skips()) return;
+    if (threads == 0 || skips() || lost()) return;
     const cl_mem block = this->params(params);
     if (!block) return;
     clSetKernelArg(entry.kernel.get(), 0, sizeof(cl_mem), &block);

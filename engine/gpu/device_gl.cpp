@@ -104,7 +104,8 @@ class GlDevice final : public Device {
     Status roomIn(std::deque<Page>& pages, size_t bytes);  // in the last page, which is a new one if need be
     gpu::Buffer stagingFor(size_t bytes);
     void harvest();
-    void logOnce(const std::string& error);
+    bool isLost();  // and notes it
+    void lose(std::string_view what);  // for want of memory: results after it are invalid
 
     ShaderFiles files_;
     Log log_;
@@ -119,7 +120,6 @@ class GlDevice final : public Device {
     gpu::Timer timer_;
     std::vector<PassTime> times_;
     size_t bytesAllocated_ = 0;
-    bool errorLogged_ = false;
 };
 
 GlDevice::GlDevice(const ShaderFiles& files, Log log)
@@ -136,10 +136,14 @@ GlDevice::GlDevice(const ShaderFiles& files, Log log)
     info_.maxBufferBytes = static_cast<size_t>(deviceLimit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
 }
 
-// For calls without a Result: the first error is logged; it would otherwise repeat every frame.
-void GlDevice::logOnce(const std::string& error) {
-    if (!errorLogged_) log_.error(error);
-    errorLogged_ = true;
+void GlDevice::lose(std::string_view what) {
+    if (!isLost()) health_ = {DeviceHealth::lost, fmt::format("has no memory left to {}", what)};
+}
+
+bool GlDevice::isLost() {
+    if (health_.state != DeviceHealth::lost && gpu::contextLost())
+        health_ = {DeviceHealth::lost, "lost its OpenGL context: the driver was restarted, or the GPU was removed"};
+    return health_.state == DeviceHealth::lost;
 }
 
 Result<Kernel> GlDevice::kernel(std::string_view path, std::span<const Define> defines) {
@@ -209,6 +213,7 @@ Result<Buffer> GlDevice::allocate(size_t bytes) {
             bytes, static_cast<double>(bytes) / 1048576.0, info_.name, info_.maxBufferBytes,
             static_cast<double>(info_.maxBufferBytes) / 1048576.0));
     Result<gpu::Buffer> buffer = gpu::Buffer::create(bytes);
+    if (!buffer && isLost()) return failed(fmt::format("{} {}", info_.name, health_.why));
     if (!buffer)
         return noMemory(
             fmt::format("{} ({:.1f} MiB are in use)", buffer.error().message, static_cast<double>(bytesAllocated_) / 1048576.0));
@@ -223,7 +228,7 @@ void GlDevice::release(uint64_t handle, size_t bytes) {
 
 void GlDevice::write(Buffer& to, std::span<const std::byte> bytes, size_t offset) {
     ASSERT(offset <= to.bytes() && bytes.size() <= to.bytes() - offset, "write inside the buffer");
-    if (bytes.empty()) return;
+    if (bytes.empty() || lost()) return;
     for (size_t done = 0; done < bytes.size();) {
         const std::span<const std::byte> part = bytes.subspan(done, std::min(kWritePage, bytes.size() - done));
         const auto at = static_cast<GLintptr>(offset + done), size = static_cast<GLsizeiptr>(part.size());
@@ -244,17 +249,18 @@ void GlDevice::read(const Buffer& from, std::span<std::byte> bytes, size_t offse
     ASSERT(offset <= from.bytes() && bytes.size() <= from.bytes() - offset, "read inside the buffer");
     if (bytes.empty()) return;
     glGetNamedBufferSubData(nameOf(from), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    if (isLost()) std::ranges::fill(bytes, std::byte{0});
 }
 
 void GlDevice::fill(Buffer& to, uint32_t word) {
-    if (to.bytes() == 0) return;
+    if (to.bytes() == 0 || lost()) return;
     glClearNamedBufferData(nameOf(to), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 
 void GlDevice::copy(const Buffer& from, Buffer& to, size_t bytes) {
     ASSERT(bytes <= from.bytes() && bytes <= to.bytes(), "copy inside both buffers");
     ASSERT(from.handle() != to.handle(), "copy from one buffer to another");
-    if (bytes == 0) return;
+    if (bytes == 0 || lost()) return;
     glCopyNamedBufferSubData(nameOf(from), nameOf(to), 0, 0, static_cast<GLsizeiptr>(bytes));
 }
 
@@ -268,7 +274,7 @@ gpu::Buffer GlDevice::stagingFor(size_t bytes) {
     }
     Result<gpu::Buffer> made = gpu::Buffer::create(roundedUp(std::max<size_t>(bytes, 1), 4096), gpu::BufferKind::mapped);
     if (made) return std::move(*made);
-    logOnce(fmt::format("results cannot be read back: {}", made.error().message));
+    lose("read results back");
     return {};
 }
 
@@ -282,6 +288,7 @@ void GlDevice::readLater(const Buffer& from, size_t bytes, std::function<void(st
 }
 
 void GlDevice::poll() {
+    if (isLost()) pendingReads_.clear();  // nothing was copied
     // Reads that a callback starts are left to the next poll().
     for (size_t left = pendingReads_.size(); left > 0 && pendingReads_.front().copied.passed(); --left) {
         PendingRead ready = std::move(pendingReads_.front());
@@ -318,7 +325,7 @@ bool GlDevice::bindParams(std::span<const std::byte> bytes) {
     if (!same) {
         lastBlock_.clear();
         if (Status room = roomIn(pages_, bytes.size()); !room) {
-            logOnce(fmt::format("a kernel cannot run: {}", room.error().message));
+            lose("run a kernel");
             return false;
         }
         Page& page = pages_.back();
@@ -338,7 +345,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
     ASSERT(entry.bindings <= buffers.size(), "pass a buffer for every row of the kernel's ARGS");
     ASSERT(!params.empty() && params.size() % 16 == 0, "a parameter block's size must be a multiple of 16");
     entry.passed = buffers.size();
-    if (threads == 0 || skips() || !bindParams(params)) return;
+    if (threads == 0 || skips() || lost() || !bindParams(params)) return;
     for (size_t k = 0; k < buffers.size(); ++k)
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(k + 1), buffers[k] ? nameOf(*buffers[k]) : 0);
     if (timer_.pending() > kHarvestAbove) harvest();
@@ -356,6 +363,7 @@ void GlDevice::dispatch(Kernel kernel, std::span<const std::byte> params, std::s
 
 void GlDevice::finish() {
     glFinish();
+    (void)isLost();
     harvest();
 }
 

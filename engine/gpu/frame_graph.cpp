@@ -6,6 +6,7 @@
 #include <array>
 #include <deque>
 #include <map>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -431,15 +432,19 @@ Status FrameGraph::execute() {
         if (named) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(pass.name.size()), pass.name.c_str());
         pool.timer.begin(pool.frame << 16U | row);
         pass.barriers = impl_->placeBarriers(pass, hazards);
-        {
+        bool lacksMemory = false;
+        try {
             PassContext context(*this, static_cast<uint32_t>(p));
             pass.work(context);
-            state.reset();
+        } catch (const std::bad_alloc&) {
+            lacksMemory = true;
         }
+        state.reset();
         impl_->noteAccesses(pass, hazards);
         pool.timer.end();
         ++pool.timed.back().awaited;
         if (named) glPopDebugGroup();
+        if (lacksMemory) return noMemory("there is not enough memory to draw the picture: make it smaller, or use fewer particles");
     }
     // Makes shader writes visible to all later commands, here or in the host.
     if (std::any_of(hazards.begin(), hazards.end(), [](const auto& h) { return h.second.written; })) glMemoryBarrier(GL_ALL_BARRIER_BITS);

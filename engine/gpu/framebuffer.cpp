@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 #include <string>
 
 #include "engine/core/assert.h"
+#include "engine/gpu/gl_error.h"
 
 namespace rivulet::gpu {
 namespace {
@@ -58,6 +60,8 @@ Framebuffer::Framebuffer(std::span<const Attachment> colours, const Attachment& 
     glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(colours.size()), outputs.data());
     glNamedFramebufferReadBuffer(name, colours.empty() ? GL_NONE : outputs[0]);
     const GLenum status = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
+    // The driver lacks memory, or the context is lost; neither is an error of the program.
+    if (status == 0 || (status == GL_FRAMEBUFFER_UNSUPPORTED && takeGlError() == GL_OUT_OF_MEMORY)) throw std::bad_alloc();
     ASSERT(status == GL_FRAMEBUFFER_COMPLETE,
            fmt::format("attach textures that may be drawn into together, of the same size; these are: {} (GL status {:#x})",
                        describe(colours, depth), status)

@@ -33,4 +33,7 @@ void clearGlErrors() {
     }
 }
 
+// The status is told once, the error again and again.
+bool contextLost() { return glGetGraphicsResetStatus() != GL_NO_ERROR || glGetError() == GL_CONTEXT_LOST; }
+
 }  // namespace rivulet::gpu

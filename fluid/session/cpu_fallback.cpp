@@ -52,6 +52,9 @@ Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, cons
                          stepped.error().fault};
         return false;
     }
+    if (device->backend() == Backend::gl)
+        return failed(fmt::format("{} cannot go on from {:.3f} s: OpenGL on {} {}; run it again, or use --backend cpu",
+                                  session.scene().name, session.time(), device->info().name, health.why));
     const double reached = session.world().time();
     FluidParams before = session.scene().fluid;
     std::unique_ptr<Device> cpu = makeCpu();
@@ -73,8 +76,8 @@ Result<bool> keepRunning(Session& session, std::unique_ptr<Device>& device, cons
 Status stillWorks(const Device& device) {
     const DeviceHealth health = device.health();
     if (health.state == DeviceHealth::works) return ok();
-    return failed(
-        fmt::format("OpenCL on {} {}: its results are invalid; use --backend cpu, or fewer particles", device.info().name, health.why));
+    return failed(fmt::format("{} on {} {}: its results are invalid; use --backend cpu, or fewer particles",
+                              device.backend() == Backend::gl ? "OpenGL" : "OpenCL", device.info().name, health.why));
 }
 
 }  // namespace rivulet

@@ -24,6 +24,7 @@ constexpr uint32_t kVersion = 1;
 constexpr uint32_t kMostAbout = 1U << 20U;  // bytes of the text
 constexpr uint32_t kFrame = 0x4D415246, kIndex = 0x58444E49;
 constexpr size_t kArrays = 12;
+constexpr float kMostRecorded = 1e15F;  // m, or any other unit: the square still is a float
 
 struct Header {
     std::array<uint8_t, 8> magic;
@@ -165,7 +166,22 @@ bool sensible(const RecordedFrame& f) {
         return fits(part) && part.empty() == f.ellipsoids[0].empty();
     });
     return f.velocity.size() == n && f.id.size() == n && fits(f.normal) && fits(f.absorption) && ellipsoids &&
-           f.foam.size() == f.foamVelocity.size() && std::isfinite(f.time) && std::isfinite(f.spacing) && f.spacing > 0;
+           f.foam.size() == f.foamVelocity.size();
+}
+
+bool plain(float x) { return std::abs(x) <= kMostRecorded; }  // no NaN either
+bool plain(const vec3& v) { return plain(v.x) && plain(v.y) && plain(v.z); }
+bool plain(const vec4& v) { return plain(v.x) && plain(v.y) && plain(v.z) && plain(v.w); }
+bool plain(const mat4& m) { return plain(m[0]) && plain(m[1]) && plain(m[2]) && plain(m[3]); }
+bool plain(uint32_t) { return true; }
+
+// Whether all numbers can be drawn.
+bool drawable(RecordedFrame& f) {
+    bool all = std::isfinite(f.time) && plain(f.spacing) && f.spacing > 0 && plain(f.box.min) && plain(f.box.max);
+    eachArray(f, [&](const auto& array, size_t) {
+        all = all && std::ranges::all_of(array, [](const auto& item) { return plain(item); });
+    });
+    return all;
 }
 
 }  // namespace
@@ -322,6 +338,7 @@ Result<RecordedFrame> RecordingReader::read(size_t k, size_t memoryLimit) {
         if (!unpack(packed, head.bytes, frame, why)) return wrong(why);
         frame.time = head.time;
         if (!sensible(frame)) return wrong("its arrays have inconsistent sizes");
+        if (!drawable(frame)) return wrong("it has a number that is infinite, too large, or none");
         return frame;
     } catch (const std::bad_alloc&) {
         return failed(fmt::format("{}: there is not enough memory for frame {}", path_, k));

@@ -25,7 +25,7 @@ std::vector<vec4> noise(std::mt19937& random, size_t count) {
     return items;
 }
 
-// Frame k: each another number of everything, and numbers that are none.
+// Frame k: each another number of everything, and numbers at the limits.
 RecordedFrame frameNumber(size_t k) {
     std::mt19937 random(static_cast<unsigned>(k));
     const size_t n = 7 * k;
@@ -36,7 +36,7 @@ RecordedFrame frameNumber(size_t k) {
     frame.box.add(vec3(-1, 0, static_cast<float>(k)));
     frame.box.add(vec3(2));
     frame.position = noise(random, n);
-    if (n > 0) frame.position[0] = vec4(std::numeric_limits<float>::quiet_NaN(), -0.0F, 1e-42F, std::numeric_limits<float>::infinity());
+    if (n > 0) frame.position[0] = vec4(-1e15F, -0.0F, 1e-42F, std::nextafter(0.1F, 1.0F));
     frame.velocity = noise(random, n);
     for (size_t i = 0; i < n; ++i) frame.id.push_back(static_cast<uint32_t>(random()));
     if (k % 2 == 0) frame.normal = noise(random, n);
@@ -215,6 +215,42 @@ TEST(Recording, InvalidFilesAreRefusedWithoutMuchMemory) {
         refused += found.refusedFrames;
     }
     EXPECT_GT(refused, 220U);  // other numbers in the place of numbers are no nonsense
+}
+
+// Checksums do not help here: a stranger's are right.
+TEST(Recording, NumbersThatCannotBeDrawnAreRefused) {
+    const Scratch scratch;
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
+    const std::function<void(RecordedFrame&, float)> places[] = {
+        [](RecordedFrame& f, float x) { f.time = x; },
+        [](RecordedFrame& f, float x) { f.spacing = x; },
+        [](RecordedFrame& f, float x) { f.box.max.y = x; },
+        [](RecordedFrame& f, float x) { f.position[3].z = x; },
+        [](RecordedFrame& f, float x) { f.velocity[5].x = x; },
+        [](RecordedFrame& f, float x) { f.normal.assign(f.position.size(), vec4(x)); },
+        [](RecordedFrame& f, float x) { f.absorption.assign(f.position.size(), vec4(0, 0, 0, x)); },
+        [](RecordedFrame& f, float x) { f.ellipsoids[2].back().w = x; },
+        [](RecordedFrame& f, float x) { f.foam[0].y = x; },
+        [](RecordedFrame& f, float x) { f.foamVelocity[0].w = x; },
+        [](RecordedFrame& f, float x) { f.places[1][3].x = x; },
+        [](RecordedFrame& f, float x) { f.corners[2].z = x; },
+    };
+    for (size_t k = 0; k < std::size(places); ++k)
+        for (const float x : {kNone, kInfinite, -2e15F}) {
+            if (k == 0 && std::isfinite(x)) continue;  // a time may be long
+            const std::string path = scratch.file("numbers.rrec");
+            Result<RecordingWriter> writer = RecordingWriter::open(path, kAbout);
+            RecordedFrame frame = frameNumber(1);
+            EXPECT_TRUE(writer->add(frame));
+            places[k](frame, x);
+            EXPECT_TRUE(writer->add(frame));
+            EXPECT_TRUE(writer->close());
+            Result<RecordingReader> reader = RecordingReader::open(path);
+            EXPECT_TRUE(reader->read(0));
+            const Result<RecordedFrame> read = reader->read(1);
+            ASSERT_FALSE(read) << k << " " << x;
+            EXPECT_NE(read.error().message.find("infinite, too large, or none"), std::string::npos) << read.error().message;
+        }
 }
 
 TEST(Recording, ForeignFilesAreNamed) {

@@ -1,6 +1,7 @@
-// Imports a mesh or a model from a file: OBJ, glTF, FBX, PLY, STL and the other formats of assimp.
+// Imports a mesh or a model from a file: OBJ, glTF, FBX, PLY, STL and the other formats of assimp. Or a picture.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "engine/core/result.h"
@@ -24,5 +25,8 @@ Result<Model> importModel(const std::string& path);
 // The same, but a file that has only triangles (no materials, animations, cameras or lights) becomes one part on one node, as in
 // importMesh.
 Result<Model> importWhole(const std::string& path);
+
+// A picture: PNG, JPEG, TGA or BMP. Error (badInput): as loadImage (load_image.h).
+Result<std::shared_ptr<const Image>> importImage(const std::string& path);
 
 }  // namespace rivulet

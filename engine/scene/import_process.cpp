@@ -30,10 +30,18 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kName = "rivulet_import";
 
-Error aboutMesh(const std::string& path, std::string_view phrase) { return badInput(fmt::format("the mesh '{}' {}", path, phrase)); }
+// Begins sentences: the file that is read.
+struct Subject {
+    const std::string& as;
+    const std::string& path;
+
+    Error error(std::string_view phrase) const {
+        return badInput(fmt::format("the {} '{}' {}", as == "image" ? "image" : "mesh", path, phrase));
+    }
+};
 
 Error notStarted(const std::string& program, int why) {
-    return failed(fmt::format("the program {}, which reads models, cannot be started: {}; install Rivulet again", program,
+    return failed(fmt::format("the program {}, which reads models and pictures, cannot be started: {}; install Rivulet again", program,
                               std::generic_category().message(why)));
 }
 
@@ -163,8 +171,9 @@ std::string importProgram() {
 }
 
 Result<Model> importThrough(const std::string& program, const std::string& as, const std::string& path, const ImportLimits& limits) try {
+    const Subject about{as, path};
     if (program.empty())
-        return failed(fmt::format("models are read by the program {}, which is not beside this program; install Rivulet again", kName));
+        return failed(fmt::format("models and pictures are read by the program {}, which is not beside this program; install Rivulet again", kName));
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return notStarted(program, errno);
     (void)::fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches between the two processes
@@ -179,17 +188,17 @@ Result<Model> importThrough(const std::string& program, const std::string& as, c
     Child child(pid, ends[0]);
     std::string answer;
     const Child::End end = child.read(answer, deadline, limits.answer);
-    if (end == Child::End::late) return aboutMesh(path, kTooSlow);
+    if (end == Child::End::late) return about.error(kTooSlow);
     if (end == Child::End::tooLong)
-        return aboutMesh(path, fmt::format("takes more than {} once it is read; simplify it", readableBytes(limits.answer)));
+        return about.error(fmt::format("takes more than {} once it is read; simplify it", readableBytes(limits.answer)));
     const std::optional<int> status = child.wait(deadline);
-    if (!status) return aboutMesh(path, kTooSlow);
-    if (const char* why = deathOf(*status)) return aboutMesh(path, why);
+    if (!status) return about.error(kTooSlow);
+    if (const char* why = deathOf(*status)) return about.error(why);
     Result<Model> model = receiveModel(std::as_bytes(std::span(answer)));
-    if (!model) return aboutMesh(path, model.error().message);
-    return model;
+    if (model || (as == "image" && model.error().message.find(path) != std::string::npos)) return model;  // which is a sentence
+    return about.error(model.error().message);
 } catch (const std::bad_alloc&) {
-    return aboutMesh(path, "needs more memory than there is; simplify it");
+    return Subject{as, path}.error("needs more memory than there is; simplify it");
 }
 
 }  // namespace rivulet

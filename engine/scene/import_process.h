@@ -1,5 +1,5 @@
-// Starts the program rivulet_import, which reads one model in a process of its own: a file that crashes, blocks or takes over assimp
-// reaches neither this process nor files outside its folder (docs/decisions/0029-import-process.md).
+// Starts the program rivulet_import, which reads one model or picture in a process of its own: a file that crashes, blocks or takes over
+// assimp or stb_image reaches neither this process nor files outside its folder (docs/decisions/0029-import-process.md).
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ struct ImportLimits {
 // rivulet_import beside the running program, with which it was built; "": it is not there.
 std::string importProgram();
 
-// `as`: mesh, model or whole. The result has no fault (model_check.h). Error (badInput): one sentence that names `path`, also if the child
+// `as`: mesh, model, whole or image (import/read_model.h). The result has no fault (model_check.h). Error (badInput): one sentence that names `path`, also if the child
 // crashes, exceeds a limit or answers anything else than a model. (failed): the program cannot be started.
 Result<Model> importThrough(const std::string& program, const std::string& as, const std::string& path, const ImportLimits& limits = {});
 

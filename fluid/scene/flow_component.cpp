@@ -13,7 +13,6 @@
 
 #include "engine/core/table.h"
 #include "engine/scene/import_model.h"
-#include "engine/scene/load_image.h"
 #include "engine/scene/transform.h"
 #include "fluid/flow/unwrap.h"
 #include "fluid/scene/head_look.h"
@@ -333,17 +332,18 @@ Status FlowComponent::readRegions(const std::string& sceneFolder, const Mesh& sk
     if (!params_.regions.mask.empty()) {
         Result<std::string> path = findAsset(params_.regions.mask, sceneFolder);
         if (!path) return path.error();
-        Result<Image> mask = loadImage(*path);
-        if (!mask) return mask.error();
+        const Result<std::shared_ptr<const Image>> read = importImage(*path);
+        if (!read) return read.error();
+        const Image& mask = **read;
         if (skin.uvs.empty())
             return badInput(fmt::format("{} has no UVs, so the mask {} cannot be used", params_.mesh, params_.regions.mask));
         std::vector<float> grip;
         grip.reserve(mesh.rest.size());
         for (size_t p = 0; p < mesh.rest.size(); ++p) {
             const vec2 uv = skin.uvs[mesh.given[p]] - glm::floor(skin.uvs[mesh.given[p]]);
-            const auto x = std::min(static_cast<size_t>(uv.x * static_cast<float>(mask->width)), static_cast<size_t>(mask->width) - 1);
-            const auto y = std::min(static_cast<size_t>(uv.y * static_cast<float>(mask->height)), static_cast<size_t>(mask->height) - 1);
-            const uint8_t* texel = &mask->rgba[4 * (y * static_cast<size_t>(mask->width) + x)];
+            const auto x = std::min(static_cast<size_t>(uv.x * static_cast<float>(mask.width)), static_cast<size_t>(mask.width) - 1);
+            const auto y = std::min(static_cast<size_t>(uv.y * static_cast<float>(mask.height)), static_cast<size_t>(mask.height) - 1);
+            const uint8_t* texel = &mask.rgba[4 * (y * static_cast<size_t>(mask.width) + x)];
             const float factor[] = {params_.regions.oily, params_.regions.dry, params_.regions.hair, params_.regions.lip};
             float g = 1;
             for (size_t k = 0; k < 4; ++k) g *= 1 + (factor[k] - 1) * static_cast<float>(texel[k]) / 255.0F;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <glm/matrix.hpp>
 
-#include "engine/scene/load_image.h"
+#include "engine/scene/import_model.h"
 
 namespace rivulet {
 namespace {
@@ -35,9 +35,7 @@ bool fitSphere(const std::vector<vec3>& points, vec3& centre, float& radius) {
 Result<std::shared_ptr<const Image>> imageIfThere(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return std::shared_ptr<const Image>();
-    Result<Image> image = loadImage(path);
-    if (!image) return image.error();
-    return std::make_shared<const Image>(std::move(*image));
+    return importImage(path);
 }
 
 // A ribbon narrower than a pixel breaks up into dots: it is made wider, and the hair covers its middle only.

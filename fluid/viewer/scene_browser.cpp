@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "engine/core/message_line.h"
-#include "engine/scene/load_image.h"
+#include "engine/scene/import_model.h"
 #include "engine/ui/style.h"
 
 namespace rivulet {
@@ -50,8 +50,9 @@ const gpu::Texture* SceneBrowser::pictureOf(const std::string& scene) {
     const fs::path file = fs::path(scene).parent_path().parent_path() / "pictures" / (fs::path(scene).stem().string() + ".jpg");
     std::error_code error;
     if (!fs::exists(file, error)) return nullptr;
-    const Result<Image> image = loadImage(file.string());
-    if (!image) return nullptr;
+    const Result<std::shared_ptr<const Image>> read = importImage(file.string());
+    if (!read) return nullptr;
+    const Image* image = read->get();
     Result<gpu::Texture> texture = gpu::Texture::create({.width = image->width, .height = image->height, .format = gpu::Format::rgba8});
     if (!texture) return nullptr;
     texture->upload(std::as_bytes(std::span(image->rgba)));

@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "engine/scene/import_model.h"
+#include "engine/scene/load_image.h"
 #include "engine/scene/model_wire.h"
 #include "tests/unit/program_runner.h"
 
@@ -62,6 +63,32 @@ TEST_F(ImportProcess, AReaderThatEndsWithoutAnAnswerIsOneSentence) {
     refused("kill -KILL $$", "was killed");
     refused("kill -XCPU $$", "takes too long");
     refused("kill -INT $$", "was interrupted");
+}
+
+// Decoders of pictures crash as well.
+TEST_F(ImportProcess, PicturesAreReadThere) {
+    for (const char* script : {"exit 1", "kill -SEGV $$", "kill -XCPU $$", "head -c 100000 /dev/urandom"}) {
+        const Result<Model> model = importThrough(fake(script), "image", "some/mask.jpg");
+        ASSERT_FALSE(model);
+        EXPECT_TRUE(model.error().message.starts_with("the image 'some/mask.jpg' ")) << model.error().message;
+    }
+    const std::string mask = std::string(RIVULET_SOURCE_DIR) + "/assets/meshes/head/skin_regions.png";
+    const Result<std::shared_ptr<const Image>> read = importImage(mask);
+    ASSERT_TRUE(read) << read.error().message;
+    const Result<Image> here = loadImage(mask);
+    ASSERT_TRUE(here);
+    EXPECT_EQ((*read)->width, here->width);
+    EXPECT_EQ((*read)->height, here->height);
+    EXPECT_TRUE((*read)->rgba == here->rgba);
+    for (const std::string& path : {scratch_.file("none.png"), scratch_.file("text.png", "text"), scratch_.file("empty.jpg", ""),
+                                    scratch_.path().string()}) {
+        const Result<std::shared_ptr<const Image>> refused = importImage(path);
+        const Result<Image> too = loadImage(path);
+        ASSERT_FALSE(refused);
+        ASSERT_FALSE(too);
+        EXPECT_EQ(refused.error().message, too.error().message);
+        EXPECT_EQ(refused.error().fault, Fault::badInput);
+    }
 }
 
 TEST_F(ImportProcess, AReaderThatAnswersAnythingElseIsOneSentence) {

@@ -1,4 +1,4 @@
-// rivulet_import AS FILE MEMORY SECONDS: reads one model and writes it to stdout (model_wire.h). rivulet starts it
+// rivulet_import AS FILE MEMORY SECONDS: reads one model or picture and writes it to stdout (model_wire.h). rivulet starts it
 // (engine/scene/import_process.h).
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -49,7 +49,10 @@ Result<Model> answerFor(const std::string& as, const std::string& path) {
     std::error_code error;
     const fs::path folder = fs::canonical(fs::absolute(path).parent_path(), error);
     (void)confine(folder.string(), path);  // FolderFiles keeps the rule about files in any case
-    Result<Model> model = readModel(path, as == "mesh" ? ReadAs::mesh : as == "model" ? ReadAs::model : ReadAs::whole);
+    Result<Model> model = readModel(path, as == "mesh"    ? ReadAs::mesh
+                                          : as == "model" ? ReadAs::model
+                                          : as == "image" ? ReadAs::image
+                                                          : ReadAs::whole);
     if (!model) return model;
     if (std::string fault = faultOf(*model); !fault.empty()) return badInput(std::move(fault));
     return model;
@@ -65,7 +68,7 @@ extern "C" const char* __tsan_default_options() { return "max_allocation_size_mb
 int main(int count, char** words) {
     using namespace rivulet;
     if (count != 5) {
-        fmt::print(stderr, "rivulet_import reads a model for rivulet, which starts it; run rivulet instead\n");
+        fmt::print(stderr, "rivulet_import reads models and pictures for rivulet, which starts it; run rivulet instead\n");
         return 2;
     }
     limitProcess(std::strtoull(words[3], nullptr, 10), std::atoi(words[4]));

@@ -14,6 +14,7 @@
 
 #include "engine/scene/import/assimp_file.h"
 #include "engine/scene/import/read_motion.h"
+#include "engine/scene/import/sandbox.h"
 #include "engine/scene/load_image.h"
 
 namespace rivulet {
@@ -245,9 +246,26 @@ Result<Model> modelFrom(Assimp::Importer& importer, const FolderFiles& files, co
     return model;
 }
 
+Result<Model> imageFrom(const std::string& path) {
+    std::error_code none;
+    const uintmax_t bytes = std::filesystem::file_size(path, none);
+    if (!none) allowFor(bytes);
+    Result<Image> image = loadImage(path);
+    if (!image) return image.error();
+    Model model;
+    model.nodes.push_back({"image", mat4(1.0F), -1});
+    ModelPart part;
+    part.mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
+    part.mesh.indices = {0, 1, 2};
+    part.material.colour = std::make_shared<const Image>(std::move(*image));
+    model.parts.push_back(std::move(part));
+    return model;
+}
+
 }  // namespace
 
 Result<Model> readModel(const std::string& path, ReadAs as) try {
+    if (as == ReadAs::image) return imageFrom(path);
     Assimp::Importer importer;
     auto* files = new FolderFiles(path);
     importer.SetIOHandler(files);  // which owns it

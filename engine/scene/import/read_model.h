@@ -1,4 +1,4 @@
-// Reads a model file through assimp: OBJ, glTF, FBX, PLY, STL and its other formats.
+// Reads a model file through assimp: OBJ, glTF, FBX, PLY, STL and its other formats. And pictures.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace rivulet {
 
-// What importMesh, importModel and importWhole (engine/scene/import_model.h) return; a mesh is the only part of its model. Error: a phrase
-// about the file.
-enum class ReadAs { mesh, model, whole };
+// What importMesh, importModel, importWhole and importImage (engine/scene/import_model.h) return; a mesh is the only part of its model, and
+// an image is the colour of the only triangle of its model. Error: a phrase about the file; of an image a sentence.
+enum class ReadAs { mesh, model, whole, image };
 Result<Model> readModel(const std::string& path, ReadAs as);
 
 }  // namespace rivulet

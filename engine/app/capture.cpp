@@ -216,9 +216,10 @@ Status VideoWriter::add(std::span<const uint8_t> rgba) {
             continue;
         }
         if (sent < 0) {
-            if (errno == EPIPE || errno == ECONNRESET)
-                impl_->wait();  // it closed its end: it is ending, and says why
-            else
+            if (errno == EPIPE || errno == ECONNRESET) {
+                (void)::shutdown(impl_->input, SHUT_WR);
+                if (impl_->ends()) impl_->wait();  // it closed its end: it is ending, and says why
+            } else
                 impl_->broken = fmt::format("the video {} could not be written: ffmpeg was not reached: {}", impl_->path, reasonOf(errno));
             return impl_->failure();
         }

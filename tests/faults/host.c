@@ -277,15 +277,22 @@ static void must(rivulet_status status, const char* what) {
     _exit(3);
 }
 
-static void set_up(int function) {
+static void set_up_gl(int function) {
     drawn = functions[function].draws || strcmp(backend, "gl") == 0;
-    if (drawn) {
-        if (!make_current()) {
-            shared->absent = 1;
-            _exit(77);
-        }
-        framebuffer = make_target(64, 48);
+    if (!drawn) return;
+    if (!make_current()) {
+        shared->absent = 1;
+        _exit(77);
     }
+    framebuffer = make_target(64, 48);
+}
+
+static void tear_down(void) {
+    rivulet_skin_destroy(skin);
+    rivulet_world_destroy(world);
+}
+
+static void set_up(void) {
     if (create_context() != RIVULET_OK) {
         printf("no context: %s\n", why.message);
         shared->absent = 1;
@@ -325,7 +332,8 @@ static void child(int function, const char* kind, long first, long second, int o
     *(void**)&arm = dlsym(RTLD_DEFAULT, "faults_arm");
     *(void**)&failed = dlsym(RTLD_DEFAULT, "faults_failed");
     *(void**)&kind_of = dlsym(RTLD_DEFAULT, "faults_kind");
-    set_up(function);
+    set_up_gl(function);
+    set_up();
     const char* const name = functions[function].name;
     static char old[1 << 20], now[1 << 20];
     rivulet_status (*const call)(void) = functions[function].call;
@@ -334,7 +342,7 @@ static void child(int function, const char* kind, long first, long second, int o
         if (prepare) must(prepare(), "what it needs");
         must(call(), name);
     }
-    const size_t held = rivulet_context_memory(context);
+    size_t held = rivulet_context_memory(context);
     while (1) {
         const long number = ++shared->number;
         long bytes = functions[function].file ? content(functions[function].file, old, sizeof old) : -1;
@@ -366,6 +374,15 @@ static void child(int function, const char* kind, long first, long second, int o
         rivulet_status again = call();
         /* A world that is incomplete says so; a reset makes it whole. */
         if (again != RIVULET_OK && strstr(why.message, "reset or restore") != NULL && reset() == RIVULET_OK) again = call();
+        /* After a device is lost, a new context works. */
+        if (again != RIVULET_OK && strstr(why.message, "create a context") != NULL) {
+            tear_down();
+            rivulet_context_destroy(context);
+            set_up();
+            if (prepare) must(prepare(), "what it needs");
+            again = call();
+            held = rivulet_context_memory(context);
+        }
         if (again != RIVULET_OK) {
             printf("%s %s:%ld: first: %s\n", name, kind, number, before);
             lose(name, kind, number, "the next call fails");
@@ -374,8 +391,7 @@ static void child(int function, const char* kind, long first, long second, int o
         }
     }
     if (rivulet_context_memory(context) > held + (1 << 20)) lose(name, kind, shared->number, "memory of the device has grown");
-    rivulet_skin_destroy(skin);
-    rivulet_world_destroy(world);
+    tear_down();
     if (rivulet_context_memory(context) != 0 && strcmp(backend, "cpu") == 0 && !drawn)
         lose(name, kind, shared->number, "memory of the device is left");
     rivulet_context_destroy(context);

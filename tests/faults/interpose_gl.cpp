@@ -66,7 +66,9 @@ FAULTS_GL(GLenum, glClientWaitSync, GLsync sync, GLbitfield flags, GLuint64 time
 }
 FAULTS_GL(GLenum, glCheckNamedFramebufferStatus, GLuint framebuffer, GLenum target) {
     if (lost()) return 0;
-    return fails(kGlTarget, FAULTS_CALLER) ? GL_FRAMEBUFFER_UNSUPPORTED : own_glCheckNamedFramebufferStatus(framebuffer, target);
+    if (!fails(kGlTarget, FAULTS_CALLER)) return own_glCheckNamedFramebufferStatus(framebuffer, target);
+    pending = GL_OUT_OF_MEMORY;
+    return GL_FRAMEBUFFER_UNSUPPORTED;
 }
 FAULTS_GL(void, glDispatchCompute, GLuint x, GLuint y, GLuint z) {
     if (!losesBy(FAULTS_CALLER)) own_glDispatchCompute(x, y, z);

@@ -12,7 +12,7 @@ import runs
 import watch
 
 RECORD = "run plain.json --no-render --backend cpu --frames 1000000 --record n.rrec --stats n.json"
-SHOW = "run plain.json --no-render --replay n.rrec"
+SHOW = "run plain.json --headless --size 64x48 --still 0 --out shown --replay n.rrec"
 
 
 def works_again(faults, room, words, limits=()):

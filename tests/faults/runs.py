@@ -142,4 +142,9 @@ def cl(faults):
     sweep(faults, "OpenCL", "the N-th buffer, command, program, context or queue fails", cases.CL_KINDS, cases.CL_CASES, *few)
 
 
-ROWS = {"memory": memory, "files": files, "processes": processes, "gl": gl, "cl": cl}
+def lost(faults):
+    sweep(faults, "a lost device", "OpenGL's context is lost at the N-th dispatch or draw", ["gl_lost"], cases.GL_CASES,
+          *((2, 2) if faults.quick else (40, 40)))
+
+
+ROWS = {"lost": lost, "memory": memory, "files": files, "processes": processes, "gl": gl, "cl": cl}

@@ -80,8 +80,8 @@ TEST_F(ImportProcess, PicturesAreReadThere) {
     EXPECT_EQ((*read)->width, here->width);
     EXPECT_EQ((*read)->height, here->height);
     EXPECT_TRUE((*read)->rgba == here->rgba);
-    for (const std::string& path : {scratch_.file("none.png"), scratch_.file("text.png", "text"), scratch_.file("empty.jpg", ""),
-                                    scratch_.path().string()}) {
+    for (const std::string& path :
+         {scratch_.file("none.png"), scratch_.file("text.png", "text"), scratch_.file("empty.jpg", ""), scratch_.path().string()}) {
         const Result<std::shared_ptr<const Image>> refused = importImage(path);
         const Result<Image> too = loadImage(path);
         ASSERT_FALSE(refused);

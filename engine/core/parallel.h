@@ -7,37 +7,32 @@
 
 #include <cstddef>
 
-#if defined(__SANITIZE_THREAD__)
-#define RIVULET_THREAD_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define RIVULET_THREAD_SANITIZER 1
-#endif
-#endif
-#ifdef RIVULET_THREAD_SANITIZER
+#include "engine/core/sanitized.h"
+
+// Of ThreadSanitizer, in builds that have it.
 extern "C" void __tsan_acquire(void* address);  // NOLINT(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" void __tsan_release(void* address);  // NOLINT(bugprone-reserved-identifier,readability-identifier-naming)
-#endif
 
 namespace rivulet {
 
 // What comes before a loop happens before each of its pieces, and each piece before what comes after the loop. The pieces are not ordered.
 class LoopOrder {
   public:
-#ifdef RIVULET_THREAD_SANITIZER
-    LoopOrder() { __tsan_release(&begun_); }
-    ~LoopOrder() { __tsan_acquire(&ended_); }
-    void begin() const { __tsan_acquire(&begun_); }
-    void end() const { __tsan_release(&ended_); }
+    LoopOrder() { release(begun_); }
+    ~LoopOrder() { acquire(ended_); }
+    void begin() const { acquire(begun_); }
+    void end() const { release(ended_); }
     LoopOrder(const LoopOrder&) = delete;
     LoopOrder& operator=(const LoopOrder&) = delete;
 
   private:
+    static void acquire(char& mark) {
+        if constexpr (kThreadSanitized) __tsan_acquire(&mark);
+    }
+    static void release(char& mark) {
+        if constexpr (kThreadSanitized) __tsan_release(&mark);
+    }
     mutable char begun_ = 0, ended_ = 0;
-#else
-    void begin() const {}
-    void end() const {}
-#endif
 };
 
 // Splits `range` (tbb::blocked_range or blocked_range2d) by its grain size and runs `body` for each part.

@@ -7,7 +7,7 @@
 
 namespace rivulet {
 
-// The largest coordinate (in the unit of the file) whose square is far from the largest float.
+// The largest coordinate that is accepted, in the unit of the file. Squares of larger ones come near the largest float (3e38).
 inline constexpr float kFarthest = 1e15F;
 
 // The first invariant that the model violates, as a phrase: "has a bone without a node". Empty: it violates none.

@@ -14,6 +14,7 @@
 
 #include "engine/compute/device_cpu.h"
 #include "engine/core/json.h"
+#include "engine/core/sanitized.h"
 #include "fluid/session/run_stats.h"
 #include "fluid/session/session.h"
 #include "fluid/sim/world/cpu_kernels.h"
@@ -26,18 +27,6 @@ namespace {
 constexpr uint64_t kDear = 6000;
 constexpr rlim_t kHangs = 300;                // s, on the processor
 constexpr rlim_t kMemory = rlim_t{6} << 30U;  // bytes: beyond it an allocation fails, and that is to be said plainly
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-#else
-constexpr bool kSanitized = false;
-#endif
 
 bool plainSentence(const std::string& s) { return s.size() > 10 && s.find('\n') == std::string::npos; }
 

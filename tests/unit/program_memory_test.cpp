@@ -2,19 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/core/sanitized.h"
 #include "tests/unit/program_runner.h"
 
 namespace rivulet::testing::program_memory_test {
 namespace {
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED
-#endif
 
 // On one core, so that the memory of threads is the same on every machine.
 Outcome limited(long kilobytes, const std::vector<std::string>& arguments, const RunOptions& options) {
@@ -26,9 +18,7 @@ Outcome limited(long kilobytes, const std::vector<std::string>& arguments, const
 
 // 280,000 particles. The limits lie on both sides of what they need.
 TEST(ProgramMemory, ARunUnderALimitEndsWithASentence) {
-#if defined(SANITIZED)
-    GTEST_SKIP() << "a sanitizer reserves more than any limit";
-#endif
+    if (kSanitized) GTEST_SKIP() << "a sanitizer reserves more than any limit";
     Scratch scratch;
     RunOptions options;
     options.folder = scratch.path();

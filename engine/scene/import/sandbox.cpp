@@ -18,20 +18,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/core/sanitized.h"
+
 namespace rivulet {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-#else
-constexpr bool kSanitized = false;
-#endif
 
 constexpr rlim_t kMostMemory = rlim_t{16} << 30U, kMostSeconds = 600, kFiles = 32;
 constexpr rlim_t kMemoryPerByte = 64, kBytesPerSecond = 1'000'000;

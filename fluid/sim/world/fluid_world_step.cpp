@@ -245,8 +245,8 @@ int FluidWorld::Impl::stepFrame(const FluidInputs& inputs, double seconds) {
     return substeps;
 }
 
-// What a frame has for those who look at the water, and its time. Where a lack of memory ended it the rest of its time counts as not asked
-// for, and the neighbour lists are of no use.
+// Ends a frame: prepares what is drawn of it and advances the time. If memory ran out during the frame, the time that was not stepped is
+// dropped, and the neighbour lists are invalid.
 void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds, double simulated, int substeps) {
     const FluidParams& p = params;
     clock.lastSubsteps = substeps;
@@ -332,8 +332,8 @@ void FluidWorld::Impl::fillStep() {
     limits.fastestEver = std::max(limits.fastestEver, limits.fastestPossible(limitInputs()));
 }
 
-// Steps `length` s, from `begin` s after the start of a frame whose solids move for `span` s. Returns the time that it stepped:
-// less if maxSubsteps, the budget or a lack of memory end it; the rest of the frame is then not stepped.
+// Steps a part of a frame: `length` s, beginning `begin` s after the frame's start. Solids move during the first `span` s of the frame.
+// Returns the time stepped: less than `length` if maxSubsteps, the budget or a lack of memory ends the frame; `stop` is then set.
 double FluidWorld::Impl::stepPiece(double length, double begin, double span, int& substeps, bool& stop) {
     fillStep();
     const StepLimit limit = stepLimit(clock.time + begin, length);

@@ -184,6 +184,8 @@ void runRecording(Bytes bytes) {
         }
         require(frame->velocity.size() == frame->position.size() && frame->id.size() == frame->position.size(),
                 "one velocity and id a particle");
+        for (const vec4& x : frame->position)
+            require(std::isfinite(x.x + x.y + x.z + x.w) && std::isfinite(glm::dot(x, x)), "positions can be drawn");
     }
 }
 

@@ -27,7 +27,7 @@ folder="$kept"
 options=(-DRIVULET_SANITIZE=address,undefined)
 if [ -n "$coverage" ]; then
     folder="$root/build/fuzz_coverage"
-    options=("-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping")
+    options=("-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping" -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1)
 fi
 mkdir -p "$folder"
 say "building the fuzz targets; the first time takes some minutes."

@@ -24,7 +24,7 @@ done
 install_packages run test || exit 1
 kept="$root/build/fuzz" # seeds, corpora, finds: of both builds
 folder="$kept"
-options=(-DRIVULET_SANITIZE=address,undefined)
+options=(-DRIVULET_SANITIZE=address,undefined "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1")
 if [ -n "$coverage" ]; then
     folder="$root/build/fuzz_coverage"
     options=("-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping" -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1)

@@ -11,7 +11,7 @@ namespace rivulet::fuzzers {
 namespace {
 
 constexpr size_t kMostTexelsPerByte = 8192;
-constexpr size_t kMost = 500;  // bytes: larger files may claim so many texels that one takes seconds
+constexpr size_t kMostBytes = 500;  // bytes: larger files may claim so many texels that one takes seconds
 constexpr const char* kPng =
     "89504e470d0a1a0a0000000d49484452000000060000000408020000002266d91400000009704859730000000100000001004f25c4d600"
     "00002349444154789c63606060f80fc6ffc1d47f300f448059ffc1025885c04c0638051400004d371fe108b12d440000000049454e44ae"
@@ -35,7 +35,7 @@ std::string fromHex(std::string_view digits) {
 
 void runImage(Bytes bytes) {
     if (bytes.empty()) return;
-    bytes = bytes.first(std::min(bytes.size(), kMost));
+    bytes = bytes.first(std::min(bytes.size(), kMostBytes));
     if (static_cast<int>(bytes[0]) % 2 == 0) {
         const Result<Image> image = decodeImage(bytes.subspan(1), "image");
         if (!image) return requireSentence(image.error().message);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string_view>
 
@@ -17,6 +18,24 @@ constexpr int kWidest = 16384;                                // texels
 constexpr size_t kLargest = std::numeric_limits<int>::max();  // bytes: what stb_image takes
 constexpr size_t kMostTexelsPerByte = 8192;                   // a PNG of one colour with one bit a texel; what claims more takes seconds
 
+// Whether a PNG has a part that claims more bytes than follow: stb_image takes memory for what is claimed, up to 2 GiB.
+bool claimsTooMuch(std::span<const std::byte> file) {
+    constexpr std::string_view kPng = "\x89PNG\r\n\x1A\n";
+    const auto word = [&file](size_t at) {
+        size_t value = 0;
+        for (size_t k = 0; k < 4; ++k) value = value << 8U | static_cast<size_t>(file[at + k]);
+        return value;
+    };
+    if (file.size() < kPng.size() || std::memcmp(file.data(), kPng.data(), kPng.size()) != 0) return false;
+    constexpr size_t kFrame = 12, kEnd = 0x49454E44;  // bytes of length, name and checksum; "IEND"
+    for (size_t at = kPng.size(); at + kFrame <= file.size();) {
+        if (word(at) > file.size() - at - kFrame) return true;
+        if (word(at + 4) == kEnd) break;
+        at += kFrame + word(at);
+    }
+    return false;
+}
+
 Error about(const std::string& name, std::string_view what) { return badInput(fmt::format("the image '{}' {}", name, what)); }
 
 Status checkSize(const std::string& name, int width, int height, size_t bytes) {
@@ -28,8 +47,8 @@ Status checkSize(const std::string& name, int width, int height, size_t bytes) {
     return ok();
 }
 
-// The bytes of an .hdr file. libstb-dev of Debian 12 waits for ever for the rest of a run where a file ends: bytes of 0xFF follow, which
-// are a run of their own.
+// The bytes of an .hdr file. Where a file ends within a run, stb_image 2.27 waits for the rest for ever: reads past the end return 0xFF,
+// which the decoder takes as a complete run, and stops.
 struct HdrBytes {
     std::string_view bytes;
     size_t at = 0;
@@ -60,6 +79,7 @@ struct HdrBytes {
 Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.empty()) return about(name, "is empty");
     if (bytes.size() > kLargest) return about(name, "is larger than 2 GiB");
+    if (claimsTooMuch(bytes)) return about(name, "cannot be read: it is cut off or damaged; save it again");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());
     Image image;

@@ -130,6 +130,8 @@ void runState(Bytes bytes) {
     require(world.savable(), "a world that was restored can be saved");
     WorldState again;
     world.save(again);
+    const Status back = from.restore(again.sections());
+    require(back, back ? "" : "a state that was saved can be restored: " + back.error().message);
     const ParticleView view = world.particles();
     for (const vec4& x : device().readAll<vec4>(*view.position, view.slots))
         require(x.w < 0 || (std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z)), "positions are finite");

@@ -44,7 +44,8 @@ Status writeFileAtomic(const std::string& path, std::string_view bytes, unsigned
 
 Status checkWritable(const std::string& path) {
     struct stat facts = {};
-    if (::stat(path.c_str(), &facts) == 0 && S_ISFIFO(facts.st_mode)) {  // to open it would wait for its reader, to close it would end him
+    if (::stat(path.c_str(), &facts) == 0 && S_ISFIFO(facts.st_mode)) {
+        // Opening a pipe waits for its reader, and closing it would end that reader's input: only the permission is tested.
         if (::access(path.c_str(), W_OK) == 0) return ok();
         return failed(fmt::format("{} cannot be written: {}", path, reasonOf(errno)));
     }

@@ -25,10 +25,10 @@ std::string_view otherThanFile(mode_t mode) {
 }
 
 // Their files have no size, and reading them may wait, have effects or show what the user must not pass on.
-bool madeUp(long fileSystem) {
-    constexpr long kMadeUp[] = {PROC_SUPER_MAGIC, SYSFS_MAGIC,        DEBUGFS_MAGIC,       TRACEFS_MAGIC,
-                                SECURITYFS_MAGIC, CGROUP_SUPER_MAGIC, CGROUP2_SUPER_MAGIC, BPF_FS_MAGIC};
-    return std::find(std::begin(kMadeUp), std::end(kMadeUp), fileSystem) != std::end(kMadeUp);
+bool isVirtual(long fileSystem) {
+    constexpr long kVirtual[] = {PROC_SUPER_MAGIC, SYSFS_MAGIC,        DEBUGFS_MAGIC,       TRACEFS_MAGIC,
+                                 SECURITYFS_MAGIC, CGROUP_SUPER_MAGIC, CGROUP2_SUPER_MAGIC, BPF_FS_MAGIC};
+    return std::find(std::begin(kVirtual), std::end(kVirtual), fileSystem) != std::end(kVirtual);
 }
 
 }  // namespace
@@ -43,8 +43,8 @@ Result<Descriptor> openInput(const std::string& path) {
     if (::fstat(file.get(), &facts) != 0) return refused(reasonOf(errno));
     if (const std::string_view other = otherThanFile(facts.st_mode); !other.empty()) return refused(other);  // exchanged meanwhile
     struct statfs system = {};
-    if (::fstatfs(file.get(), &system) == 0 && madeUp(static_cast<long>(system.f_type)))
-        return refused("it shows the state of the system (as /proc and /sys do); name a file of data");
+    if (::fstatfs(file.get(), &system) == 0 && isVirtual(static_cast<long>(system.f_type)))
+        return refused("it is on a virtual file system such as /proc or /sys; name a regular file");
     return file;
 }
 

@@ -8,9 +8,11 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 
 #include "engine/core/descriptor.h"
 
@@ -26,11 +28,13 @@ using Text = std::unique_ptr<char, void (*)(void*)>;
 constexpr size_t kMost = 256;  // of those that a signal removes
 std::array<Place, kMost> temporaries = {};
 std::atomic<pid_t> owner = 0;  // of the list: a process that was forked must not remove these files
+std::mutex changing;           // of `owner`, among threads
 static_assert(Place::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
 
 // Nothing: all places are taken.
 Place* enlist(const char* name) {
     const pid_t self = ::getpid();
+    const std::lock_guard lock(changing);
     if (owner.exchange(self) != self)  // a forked process begins anew
         for (Place& place : temporaries) place = nullptr;
     for (Place& place : temporaries) {
@@ -97,6 +101,19 @@ struct NewFile::Impl {
     }
 };
 
+std::optional<int> descriptorOf(const std::string& path) {
+    if (path == "/dev/stdout") return STDOUT_FILENO;
+    if (path == "/dev/stderr") return STDERR_FILENO;
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        if (!path.starts_with(folder)) continue;
+        int number = 0;
+        const char* const end = path.data() + path.size();
+        const auto [at, error] = std::from_chars(path.data() + folder.size(), end, number);
+        if (error == std::errc() && at == end && number >= 0) return number;
+    }
+    return std::nullopt;
+}
+
 NewFile::NewFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 NewFile::NewFile(NewFile&&) noexcept = default;
 NewFile& NewFile::operator=(NewFile&&) noexcept = default;
@@ -113,6 +130,10 @@ Result<NewFile> NewFile::open(const std::string& path, unsigned mode) {
     Impl& to = *made.impl_;
     to.path = to.target = path;
     const auto refused = [&](std::string_view why) { return failed(fmt::format("{} cannot be written: {}", path, why)); };
+    if (const std::optional<int> open = descriptorOf(path)) {
+        to.file = Descriptor(::fcntl(*open, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+        return to.file.valid() ? Result<NewFile>(std::move(made)) : refused(reasonOf(errno));
+    }
     struct stat facts = {};
     const bool exists = ::stat(path.c_str(), &facts) == 0;
     if (!exists && errno != ENOENT) return refused(reasonOf(errno));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,10 @@ namespace rivulet {
 // Whether a file must be on the disk before it takes its name, so that it is whole after a power failure too: true of all but caches, whose
 // entries have checksums.
 enum class Sync { disk, none };
+
+// 1 for /dev/stdout, 2 for /dev/stderr, N for /dev/fd/N and /proc/self/fd/N: what is written there goes into the open descriptor, where it
+// stands. Nothing: another name.
+std::optional<int> descriptorOf(const std::string& path);
 
 class NewFile {
   public:

@@ -21,6 +21,13 @@ constexpr mode_t kOthersWrite = S_IWGRP | S_IWOTH, kOthers = S_IRWXG | S_IRWXO;
 
 bool isOurs(const struct stat& status) { return status.st_uid == ::geteuid(); }
 
+// A folder of ours that its group may write to, as an umask of 002 makes it, is closed to the group. What is in it is checked file by file.
+void closeToGroup(const std::string& folder, struct stat& status) {
+    if (!isOurs(status) || (status.st_mode & kOthersWrite) != S_IWGRP) return;
+    const mode_t closed = status.st_mode & 07777U & ~mode_t{S_IWGRP};
+    if (::chmod(folder.c_str(), closed) == 0) status.st_mode &= ~mode_t{S_IWGRP};
+}
+
 Error notPrivate(const std::string& folder, const char* why) {
     return failed(fmt::format("the folder {} {}; delete it, or set XDG_CACHE_HOME to a folder that only you may write to", folder, why));
 }
@@ -30,11 +37,13 @@ Error notPrivate(const std::string& folder, const char* why) {
 Status checkPrivateFolder(const std::string& folder) {
     struct stat own {};
     if (::stat(folder.c_str(), &own) != 0 || !S_ISDIR(own.st_mode)) return ok();  // nothing is read there
+    closeToGroup(folder, own);
     if (!isOurs(own)) return notPrivate(folder, "belongs to another user");
     if ((own.st_mode & kOthersWrite) != 0) return notPrivate(folder, "may be written to by other users");
     const std::string above = fs::path(folder).lexically_normal().parent_path().string();
     struct stat outer {};
     if (!above.empty() && ::stat(above.c_str(), &outer) == 0) {
+        closeToGroup(above, outer);
         if (!isOurs(outer) && outer.st_uid != 0) return notPrivate(above, "belongs to another user");
         if ((outer.st_mode & kOthersWrite) != 0 && (outer.st_mode & S_ISVTX) == 0)
             return notPrivate(above, "may be written to by other users");

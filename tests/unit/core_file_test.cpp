@@ -132,7 +132,7 @@ TEST_F(FileTest, OnlyRegularFilesAreRead) {
     for (const std::string shown : {"/proc/self/environ", "/proc/self/mem", "/proc/version", "/sys/kernel/mm/transparent_hugepage/enabled"})
         if (fs::exists(shown))
             EXPECT_EQ(errorOf(readFile(shown)),
-                      shown + " cannot be read: it shows the state of the system (as /proc and /sys do); name a file of data");
+                      shown + " cannot be read: it is on a virtual file system such as /proc or /sys; name a regular file");
     ::close(server);
     ASSERT_EQ(errorOf(writeFileAtomic(path("a"), "1")), "");
     fs::create_symlink(path("a"), path("to_a"));

@@ -256,7 +256,7 @@ TEST_F(VoxelCache, AFolderThatOthersMayWriteToIsNotUsed) {
         EXPECT_EQ(readVoxelFile(path.string())->band->distance[5], file->band->distance[5]) << "nothing was written";
     };
     for (const fs::path& open : {folder(), folder().parent_path()}) {
-        for (const mode_t mode : {0777U, 0770U, 0702U}) {
+        for (const mode_t mode : {0777U, 0773U, 0702U}) {
             ASSERT_EQ(::chmod(open.c_str(), mode), 0);
             refused(open.string() + " may be written to by other users");
         }
@@ -268,6 +268,13 @@ TEST_F(VoxelCache, AFolderThatOthersMayWriteToIsNotUsed) {
     }
     ASSERT_TRUE(get(mesh_));
     EXPECT_TRUE(notices_.empty()) << "its own folder is used again";
+    // With an umask of 002 programs made folders that a user's group may write to.
+    for (const fs::path& open : {folder(), folder().parent_path()}) {
+        ASSERT_EQ(::chmod(open.c_str(), 0775), 0);
+        ASSERT_TRUE(get(mesh_));
+        EXPECT_TRUE(notices_.empty());
+        EXPECT_EQ(fs::status(open).permissions() & fs::perms::group_write, fs::perms::none);
+    }
 }
 
 TEST_F(VoxelCache, ACacheThatCannotBeWrittenIsANotice) {

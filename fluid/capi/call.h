@@ -98,14 +98,25 @@ void silently(const Work& work) {
 inline const char* kindOf(const rivulet_world*) { return "world"; }
 inline const char* kindOf(const rivulet_skin*) { return "skin"; }
 
-// Runs `work` in the CallScope of a world or a skin. Error (badInput): NULL, or as ready().
+// Error (failed): the context's device is lost, and what it has computed with it.
+inline Status stillThere(const rivulet_context& context, Needs needs) {
+    if (needs == Needs::memory || context.device == nullptr) return ok();
+    const DeviceHealth health = context.device->health();
+    if (health.state != DeviceHealth::lost) return ok();
+    return failed(fmt::format("{} {}; create a context of another backend", context.name, health.why));
+}
+
+// Runs `work` in the CallScope of a world or a skin. Error (badInput): NULL, or as ready(). (failed): as stillThere(), before or after.
 template <class Handle, class Work>
 rivulet_status with(Handle* handle, rivulet_error* why, Needs needs, const Work& work) {
     const rivulet_status status = guarded(why, [&]() -> Status {
         if (handle == nullptr) return badInput(fmt::format("{} is NULL", kindOf(handle)));
         if (Status can = ready(*handle->context, needs); !can) return can;
+        if (Status there = stillThere(*handle->context, needs); !there) return there;
         const CallScope scope(*handle->context, needs);
-        return work();
+        const Status done = work();
+        if (Status there = stillThere(*handle->context, needs); !there) return there;
+        return done;
     });
     if (handle != nullptr) handle->context->hostLog.deliver(handle->context->callback);
     return status;

@@ -17,7 +17,7 @@ struct Callback {
     const void* frame = nullptr;  // in the stack frame of the function that called it; null: none is running
     const void* by = nullptr;     // where that function begins
     std::thread::id thread;
-    // Whether the host has left it by longjmp: then that function is no more among those that wait for this thread's present call.
+    // Whether the host left it by longjmp: its caller's frame is then no longer on this thread's stack.
     bool left() const;
 };
 

@@ -308,8 +308,6 @@ rivulet_status rivulet_world_step(rivulet_world* world, const rivulet_inputs* in
         world->world->step(to, seconds);
         if (world->world->interrupted()) return failed("the step was interrupted: end the stop, then reset or restore the world");
         if (context.device->stopAsked()) return failed("nothing was stepped: a stop is asked with rivulet_context_stop");
-        if (const DeviceHealth health = world->context->device->health(); health.state == DeviceHealth::lost)
-            return failed(fmt::format("{} {}; create a context of another backend", world->context->name, health.why));
         if (Status stepped = world->world->lastStep(); !stepped) return stepped;
         return thrown(*world);
     });
@@ -402,6 +400,7 @@ rivulet_status rivulet_world_save(rivulet_world* world, const char* path, rivule
         if (Status savable = world->world->savable(); !savable) return savable;
         WorldState state;
         world->world->save(state);
+        if (Status savable = world->world->savable(); !savable) return savable;  // reading it may have failed
         Result<size_t> written = writeState(path, state);
         return written ? ok() : Status(written.error());
     });

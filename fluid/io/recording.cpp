@@ -178,9 +178,7 @@ bool plain(uint32_t) { return true; }
 // Whether all numbers can be drawn.
 bool drawable(RecordedFrame& f) {
     bool all = std::isfinite(f.time) && plain(f.spacing) && f.spacing > 0 && plain(f.box.min) && plain(f.box.max);
-    eachArray(f, [&](const auto& array, size_t) {
-        all = all && std::ranges::all_of(array, [](const auto& item) { return plain(item); });
-    });
+    eachArray(f, [&](const auto& array, size_t) { all = all && std::ranges::all_of(array, [](const auto& item) { return plain(item); }); });
     return all;
 }
 
@@ -338,7 +336,7 @@ Result<RecordedFrame> RecordingReader::read(size_t k, size_t memoryLimit) {
         if (!unpack(packed, head.bytes, frame, why)) return wrong(why);
         frame.time = head.time;
         if (!sensible(frame)) return wrong("its arrays have inconsistent sizes");
-        if (!drawable(frame)) return wrong("it has a number that is infinite, too large, or none");
+        if (!drawable(frame)) return wrong("it has a value that is not finite or is beyond 1e15");
         return frame;
     } catch (const std::bad_alloc&) {
         return failed(fmt::format("{}: there is not enough memory for frame {}", path_, k));

@@ -1,9 +1,9 @@
 // A recorded run as a file (.rrec): what each frame draws, to be shown again without simulating, from any frame.
 //
-// Numbers are those that were drawn, bit for bit; a frame with one that is not finite, or beyond 1e15, is not read. The file, in the byte order of the machine that wrote it: a header
-// with a text, then for each frame 48 bytes of head and one zstd frame (packed_array.h) of its arrays, each sorted into planes of bytes;
-// at the end an index. A run that was killed leaves no index: the reader rebuilds it frame by frame and leaves out a frame that was cut
-// off. XXH3 checks the header with the text, each head, each frame's bytes, the index.
+// Numbers are those that were drawn, bit for bit; a frame with one that is not finite, or beyond 1e15, is not read. The file, in the byte
+// order of the machine that wrote it: a header with a text, then for each frame 48 bytes of head and one zstd frame (packed_array.h) of its
+// arrays, each sorted into planes of bytes; at the end an index. A run that was killed leaves no index: the reader rebuilds it frame by
+// frame and leaves out a frame that was cut off. XXH3 checks the header with the text, each head, each frame's bytes, the index.
 //
 // An older recording of the name stays until the new one is complete. If there is none, the file has its name from its first frame on, so
 // that the frames of a killed run can be shown.

@@ -97,8 +97,9 @@ Status DeformingField::checkPlaces(std::span<const vec3> positions) const {
 
 Result<DeformingField::Change> DeformingField::update(std::span<const vec3> positions) {
     if (Status status = checkPlaces(positions); !status) return status.error();
+    std::vector<vec3> before;
     try {
-        const std::vector<vec3> before = positions_;
+        before = positions_;
         const size_t moved = findMoved(positions);
         const bool all = stale_ || 2 * moved > moved_.size();
         if (stale_) std::fill(occupied_.begin(), occupied_.end(), uint8_t{1});
@@ -114,6 +115,7 @@ Result<DeformingField::Change> DeformingField::update(std::span<const vec3> posi
         stale_ = false;
         return change;
     } catch (const std::bad_alloc&) {
+        if (!before.empty()) positions_.swap(before);  // the next update begins where this one did
         return noMemory("Not enough memory to voxelise a deforming mesh again; lower its resolution.");
     }
 }

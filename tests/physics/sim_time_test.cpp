@@ -117,6 +117,21 @@ TEST_P(Time, AFrameMayHaveALimitOfItsOwn) {
     EXPECT_NEAR(world->time() - slowed, 0.2, 1e-8);
 }
 
+// So does a fixed step that is cut into many: it ends early, and the next one begins where it ended.
+TEST_P(Time, AFixedStepMayHaveALimitOfItsOwn) {
+    auto device = cpu();
+    FluidParams p = column(GetParam());
+    p.fixedStep = 0.05F;
+    auto world = makeWorld(*device, p);
+    world->step({.mostMs = 1.0e-5}, 0.05);
+    EXPECT_EQ(world->lastSubsteps(), 1);
+    EXPECT_LT(world->time(), 0.02);
+    world->step({}, 0.1);
+    EXPECT_GT(world->lastSubsteps(), 2);
+    EXPECT_EQ(world->stats().lost, 0U);
+    EXPECT_NEAR(world->time() + world->dropped(), 0.15, 0.05);
+}
+
 // Water so viscous that a frame needs hundreds of steps says so, once.
 TEST_P(Time, WhatManyStepsCostIsSaid) {
     auto device = cpu();

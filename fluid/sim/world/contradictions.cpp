@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -17,25 +18,41 @@ bool inside(const vec3& p, const BoxParams& box) { return glm::clamp(p, box.min,
 
 // How many blocks may hold the same water: each neighbour of a particle costs time, and water so dense explodes.
 constexpr size_t kMostOverlapping = 8;
+constexpr size_t kMostWork = 20'000'000;  // comparisons to find that out: some ten milliseconds
 
-// The block of which the first corner lies in the most others, and the number of blocks there. By their extent along x, sorted.
-std::pair<size_t, size_t> deepestOverlap(const std::vector<BlockParams>& blocks) {
-    std::vector<size_t> order(blocks.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::ranges::stable_sort(order, {}, [&](size_t k) { return blocks[k].min.x; });
-    std::vector<size_t> open;
-    std::pair<size_t, size_t> deepest{0, 0};
-    for (const size_t k : order) {
-        const vec3 corner = blocks[k].min;
-        std::erase_if(open, [&](size_t other) { return blocks[other].max.x <= corner.x; });
-        open.push_back(k);
-        const auto holds = [&](size_t other) {
-            const BlockParams& b = blocks[other];
-            return b.min.y <= corner.y && corner.y < b.max.y && b.min.z <= corner.z && corner.z < b.max.z;
-        };
-        if (const auto depth = static_cast<size_t>(std::ranges::count_if(open, holds)); depth > deepest.second) deepest = {k, depth};
+// The first place that more than `most` blocks hold, in the order of their first coordinates; nothing: there is none. Such a place begins
+// where a block begins along x, one of those there along y, and one of those there along z. Gives up after `work` comparisons.
+std::optional<vec3> crowdedPlace(const std::vector<BlockParams>& blocks, size_t most, size_t work) {
+    std::vector<size_t> all(blocks.size());
+    std::iota(all.begin(), all.end(), size_t{0});
+    // Those of `from` that hold a coordinate of an axis. Empty blocks hold none.
+    const auto holding = [&](const std::vector<size_t>& from, int axis, float at) {
+        work -= std::min(work, from.size());
+        std::vector<size_t> held;
+        for (const size_t k : from)
+            if (blocks[k].min[axis] <= at && at < blocks[k].max[axis]) held.push_back(k);
+        return held;
+    };
+    const auto begins = [&](const std::vector<size_t>& of, int axis) {
+        std::vector<float> places;
+        for (const size_t k : of) places.push_back(blocks[k].min[axis]);
+        std::ranges::sort(places);
+        places.erase(std::unique(places.begin(), places.end()), places.end());
+        return places;
+    };
+    for (const float x : begins(all, 0)) {
+        const std::vector<size_t> there = holding(all, 0, x);
+        if (there.size() <= most) continue;
+        for (const float y : begins(there, 1)) {
+            const std::vector<size_t> column = holding(there, 1, y);
+            if (column.size() <= most) continue;
+            for (const float z : begins(column, 2)) {
+                if (holding(column, 2, z).size() > most) return vec3(x, y, z);
+                if (work == 0) return std::nullopt;
+            }
+        }
     }
-    return deepest;
+    return std::nullopt;
 }
 
 }  // namespace
@@ -57,11 +74,10 @@ std::string contradiction(const FluidParams& fluid) {
             return fmt::format("fluid.blocks[{}] from {} to {} reaches outside fluid.box from {} to {}", i, shown(block.min),
                                shown(block.max), shown(box.min), shown(box.max));
     }
-    if (const auto [block, depth] = deepestOverlap(fluid.blocks); depth > kMostOverlapping)
+    if (const std::optional<vec3> place = crowdedPlace(fluid.blocks, kMostOverlapping, kMostWork))
         return fmt::format(
-            "fluid.blocks: {} of them overlap at the first corner of fluid.blocks[{}], where water would be {} times too dense: "
-            "let at most {} overlap",
-            depth, block, depth, kMostOverlapping);
+            "fluid.blocks: more than {} of them overlap at {}, where water would be as many times too dense: let fewer overlap",
+            kMostOverlapping, shown(*place));
     const FoamParams& foam = fluid.foam;
     for (const auto& [name, from, to] : {std::tuple("air", foam.airFrom, foam.airTo), std::tuple("crest", foam.crestFrom, foam.crestTo),
                                          std::tuple("speed", foam.speedFrom, foam.speedTo)})

@@ -40,6 +40,7 @@ struct WorldClock {
     int lastSubsteps = 0;         // of the last frame
     int lastPiece = 0;            // substeps of its last piece (FrameStepper)
     double budget = 0;            // ms, of the current frame; 0: none
+    double mostMs = 0;            // FluidInputs::mostMs of it
     bool budgetReported = false, costReported = false;
 };
 
@@ -91,7 +92,7 @@ struct FluidWorld::Impl {
     WorldClock clock;
     bool cellsValid = false;        // since cellWork()
     bool interrupted = false;       // the last step was, or the last return to valid values
-    bool changing = false;          // values are neither those before nor those after a change; at its end again, unless it had none
+    bool changing = false;          // a change of the values is under way; stays true if it did not complete
     Status last = ok();             // of step() or reset()
     std::optional<Error> shortage;  // memory that this frame, or the start, lacks
     StartProgress progress;         // while it is created

@@ -199,6 +199,7 @@ int FluidWorld::Impl::stepFrame(const FluidInputs& inputs, double seconds) {
         return 0;
     }
     if (!cpu) stepper.recordTime(inputs.deviceMs, clock.lastSubsteps);
+    clock.mostMs = inputs.mostMs;
     clock.budget = inputs.mostMs > 0 && (p.frameBudget <= 0 || inputs.mostMs < p.frameBudget) ? inputs.mostMs : double{p.frameBudget};
     const FrameStepper::Frame frame = stepper.begin(now, double{p.fixedStep}, clock.budget, !p.limits);
     warn();
@@ -255,6 +256,7 @@ void FluidWorld::Impl::endFrame(const FrameStepper::Frame& frame, double seconds
     gatherColours();
     if (simulated > 0) volumes.count(step, particles, clock.time);
     if (shortage) {
+        (void)stepper.end(simulated);
         ellipsoids.forget();
         drawn.forget();
         if (foam) foam->drawNewest();
@@ -297,8 +299,10 @@ Status FluidWorld::Impl::whole() const {
     if (interrupted) return failed("the last step was interrupted, so that the state of the water is incomplete: reset or restore it");
     if (changing)
         return failed(
-            "the last step did not end, because memory ran out or a function of the host did not return, so that the state of the water is "
-            "incomplete: reset or restore it");
+            "the last step, reset or restore did not end, because memory ran out or a function of the host did not return, so that the "
+            "state of the water is incomplete: reset or restore it");
+    if (const DeviceHealth health = device->health(); health.state == DeviceHealth::lost)
+        return failed(fmt::format("{} {}: the state of the water is lost", device->info().name, health.why));
     return ok();
 }
 
@@ -364,8 +368,9 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         }
         ++done;
         ++substeps;
-        // A fixed step is always completed.
-        if (!(params.fixedStep > 0) && done < count && !(cpu ? stepper.fitsMeasured(substeps) : stepper.fitsPredicted(substeps))) {
+        // A fixed step is always completed, but for a host that must go on.
+        const bool partial = !(params.fixedStep > 0) || (clock.mostMs > 0 && stepper.elapsedMs() > clock.mostMs);
+        if (partial && done < count && !(cpu ? stepper.fitsMeasured(substeps) : stepper.fitsPredicted(substeps))) {
             stop = true;
             break;
         }

@@ -6,6 +6,8 @@
 namespace rivulet {
 
 class FrameStepper {
+    using Clock = std::chrono::steady_clock;
+
   public:
     // Division of a frame: pieces of the same length, each with its own step limit.
     struct Frame {
@@ -26,6 +28,9 @@ class FrameStepper {
     // dropped. Returns the dropped time, s.
     double end(double stepped);
 
+    // Since begin(), if the frame has a budget.
+    double elapsedMs() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+
     double pending() const { return pending_; }  // s requested, and kept for the next frame
     // 0..1: position of the displayed time between the start and the end of the last fixed step, one step late. 1 without fixed steps.
     float share() const { return fixedStep_ > 0 ? static_cast<float>(pending_ / fixedStep_) : 1.0F; }
@@ -35,8 +40,6 @@ class FrameStepper {
     }
 
   private:
-    using Clock = std::chrono::steady_clock;
-    double elapsedMs() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
     bool fits(double ms, int done) const { return ms + ms / done <= budgetMs_; }
 
     Clock::time_point start_;

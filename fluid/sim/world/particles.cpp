@@ -15,7 +15,7 @@ namespace rivulet {
 namespace {
 
 constexpr const char* kLost = "particles.lost";
-constexpr float kAnywhere = 1.0e12F;                      // m, m/s: of what each step places anew
+constexpr float kAnywhere = 1.0e12F;                      // m, m/s: bounds of values that every step computes anew
 constexpr float kDenser = 1.0e6F, kMostViscous = 1.0e7F;  // ratio of two rest densities; Pa s: more than params allow
 
 // By id: first those of the fluid, then the samples. A row is that of a liquid, or names the body that a sample is on.
@@ -24,7 +24,7 @@ Status checkMatter(std::span<const vec4> matter, std::span<const vec4> samples) 
     const size_t fluid = matter.size() - std::min(samples.size(), matter.size());
     for (size_t k = 0; k < matter.size(); ++k) {
         const vec4& m = matter[k];
-        // Of a sample it is what this world has itself.
+        // A sample of a body must have the values that this world gives it.
         const bool sound = k < fluid ? m.x == 1.0F && m.y >= 1.0F / kDenser && m.y <= kDenser && m.z >= 0 && m.z <= kMostViscous &&
                                            m.w >= 0 && m.w <= rows && m.w == std::floor(m.w)
                                      : std::abs(m.x - samples[k - fluid].x) <= 1.0e-3F * samples[k - fluid].x &&
@@ -38,7 +38,7 @@ Status checkMatter(std::span<const vec4> matter, std::span<const vec4> samples) 
     return ok();
 }
 
-// Whether a particle there is in the grid, about.
+// Whether a position is roughly within the grid.
 bool mayBeSorted(const vec4& position, const Bounds& inside) {
     return glm::all(glm::greaterThanEqual(vec3(position), inside.min)) && glm::all(glm::lessThanEqual(vec3(position), inside.max));
 }

@@ -1,4 +1,4 @@
-// The numbers that a saved state may hold: a file of anywhere is checked before any of them is used.
+// The numbers that a saved state may hold: a file from anyone is checked before any of them is used.
 #pragma once
 
 #include <span>

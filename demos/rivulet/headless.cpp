@@ -81,8 +81,7 @@ struct Painter {
         }
         const TimedSpan span(timeline, "main", "read pixels");
         std::vector<uint8_t> pixels = renderer->pixels();
-        if (gpu::contextLost())
-            return failed("the picture cannot be drawn: the OpenGL context is lost, since the driver was restarted or the GPU was removed");
+        if (gpu::contextLost()) return failed(gpu::kContextLost);
         return pixels;
     }
 };
@@ -292,6 +291,7 @@ int runHeadless(const RunOptions& options) {
         fmt::print("{}\n", printable(shown));
         return graceful.status();
     }
+    if (Status sound = stillWorks(*device); !sound) return report(sound.error());
     RunStats stats = loop.recorder->finish(options.scene.name);
     stats.cooperation = work.stats();
     stats.cooperation.tried = choice->tried;

@@ -64,9 +64,8 @@ int reportThrown() noexcept {
             std::rethrow_exception(thrown);
         } catch (const std::system_error& error) {
             if (std::ferror(stdout) == 0) return report(errorOf(thrown));
-            if (const int status = Graceful().status(); status != 0) return status;  // the terminal has gone, and said so by SIGHUP
-            if (error.code().value() == EPIPE)
-                return 128 + SIGPIPE;  // the reader has seen enough: no message, the status of other programs
+            if (const int status = Graceful().status(); status != 0) return status;  // the terminal was closed (SIGHUP)
+            if (error.code().value() == EPIPE) return 128 + SIGPIPE;  // the reader closed the pipe: end silently, as other programs do
             return report(failed("the output cannot be written: " + reasonOf(error.code().value())));
         } catch (...) {
             return report(errorOf(thrown));

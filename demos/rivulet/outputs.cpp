@@ -4,9 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
+
+#include "engine/core/new_file.h"
 
 namespace rivulet {
 
@@ -38,8 +41,15 @@ bool isOneOf(const NamedFile& series, const std::string& file) {
     const fs::path pattern = wholePath(series.path), whole = wholePath(file);
     const std::string names = pattern.filename().string(), name = whole.filename().string();
     const size_t star = names.rfind('*');
-    return pattern.parent_path() == whole.parent_path() && name.size() + 1 >= names.size() && name.starts_with(names.substr(0, star)) &&
-           name.ends_with(names.substr(star + 1));
+    const std::string begin = names.substr(0, star), end = names.substr(star + 1);
+    if (pattern.parent_path() != whole.parent_path() || name.size() < begin.size() + end.size() + 1 || !name.starts_with(begin) ||
+        !name.ends_with(end))
+        return false;
+    if (begin.empty()) return true;  // a figure of each case, by its name
+    // The number of a frame; for a skin's pictures of heights "_height" and a number follow.
+    std::string middle = name.substr(begin.size(), name.size() - begin.size() - end.size());
+    if (const size_t height = middle.find("_height"); height != std::string::npos) middle.erase(height, 7);
+    return std::ranges::all_of(middle, [](char c) { return c >= '0' && c <= '9'; });
 }
 
 bool overlap(const NamedFile& a, const NamedFile& b) {
@@ -47,9 +57,9 @@ bool overlap(const NamedFile& a, const NamedFile& b) {
     return b.series ? isOneOf(b, a.path) : sameFile(a.path, b.path);
 }
 
-// Neither takes part: an empty name, and a device or pipe, which may be written into by several.
+// None of these takes part: an empty name; a device, a pipe, or an open descriptor (/dev/stdout), which may be written into by several.
 bool isFile(const std::string& path) {
-    if (path.empty()) return false;
+    if (path.empty() || descriptorOf(path)) return false;
     const std::optional<struct stat> facts = factsOf(path);
     return !facts || S_ISREG(facts->st_mode);
 }

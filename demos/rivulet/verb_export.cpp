@@ -75,6 +75,7 @@ class Writer {
 
     Status add(int f, const FluidWorld& world) {
         const HostParticles host = readParticles(world, particles_ != nullptr);
+        if (Status sound = stillWorks(world.device()); !sound) return sound;
         frame_.origin = world.origin();
         if (particles_ != nullptr)
             if (Status written = addParticles(f, host, world); !written) return written;

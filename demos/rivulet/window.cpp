@@ -10,6 +10,7 @@
 #include "engine/app/window_glfw.h"
 #include "engine/core/file.h"
 #include "engine/core/message_line.h"
+#include "engine/gpu/gl_error.h"
 #include "fluid/session/explain.h"
 #include "fluid/viewer/viewer.h"
 
@@ -77,6 +78,7 @@ int runWindow(const RunOptions& options) {
         double seconds = std::chrono::duration<double>(now - last).count();
         last = now;
         if (Status drawn = v.frame(input, seconds, 0); !drawn) return report(drawn.error());
+        if (gpu::contextLost()) return report(failed(gpu::kContextLost));
         window->swap();
         if (v.scene().name != shown) {
             shown = v.scene().name;

@@ -110,7 +110,12 @@ Result<WindowGlfw> WindowGlfw::create(const Options& options) {
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, options.scaled ? GLFW_TRUE : GLFW_FALSE);
-    impl->window = glfwCreateWindow(std::max(options.width, 1), std::max(options.height, 1), options.title.c_str(), nullptr, nullptr);
+    // A context that notices when it is lost, if the driver has such.
+    for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
+        glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
+        impl->window = glfwCreateWindow(std::max(options.width, 1), std::max(options.height, 1), options.title.c_str(), nullptr, nullptr);
+        if (impl->window) break;
+    }
     if (!impl->window)
         return failed(
             fmt::format("no window with OpenGL 4.5 can be opened ({}); run with --headless, or install a newer driver", glfwTrouble()));

@@ -22,7 +22,7 @@ class Fence {
     static Fence now() {
         Fence fence;
         fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-        if (!fence.sync_) glFinish();  // no memory for one: passed at once, and rightly
+        if (!fence.sync_) glFinish();  // no fence could be made: after glFinish() all commands have passed
         return fence;
     }
     bool passed() const { return reached(0); }

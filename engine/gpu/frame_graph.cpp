@@ -12,6 +12,7 @@
 
 #include "engine/core/assert.h"
 #include "engine/core/readable_bytes.h"
+#include "engine/gpu/gl_error.h"
 #include "engine/gpu/timer.h"
 #include "engine/gpu/vertex_array.h"
 
@@ -444,6 +445,7 @@ Status FrameGraph::execute() {
         pool.timer.end();
         ++pool.timed.back().awaited;
         if (named) glPopDebugGroup();
+        if (lacksMemory && contextLost()) return failed(kContextLost);
         if (lacksMemory) return noMemory("there is not enough memory to draw the picture: make it smaller, or use fewer particles");
     }
     // Makes shader writes visible to all later commands, here or in the host.

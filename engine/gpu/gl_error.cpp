@@ -33,7 +33,7 @@ void clearGlErrors() {
     }
 }
 
-// The status is told once, the error again and again.
+// The reset status is reported once; GL_CONTEXT_LOST is returned by every later call.
 bool contextLost() { return glGetGraphicsResetStatus() != GL_NO_ERROR || glGetError() == GL_CONTEXT_LOST; }
 
 }  // namespace rivulet::gpu

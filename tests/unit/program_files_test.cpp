@@ -278,6 +278,27 @@ TEST(ProgramFiles, TheFileOfStandardOutputIsNoOutput) {
     redirected.stdoutFile = scratch.file("log", "log");
     const Outcome outcome = runProgram({"run", "s.json", "--no-render", "--frames", "1", "--stats", "log"}, redirected);
     expectRefusal(outcome, 2, "--stats would replace log, to which standard output is redirected");
+    // By the name of the descriptor it goes there, as into a pipe, and what is there stays.
+    for (const char* name : {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {
+        const Outcome written = runCommand({"bash", "-c", R"(echo begun >both; "$0" "$@" >>both; echo ended >>both)", RIVULET_PROGRAM,
+                                            "run", "s.json", "--no-render", "--backend", "cpu", "--frames", "1", "--stats", name},
+                                           in(scratch));
+        EXPECT_EQ(written.err, "");
+        const std::string both = readFile((scratch.path() / "both").string()).value();
+        EXPECT_TRUE(both.starts_with("begun\n{")) << name << ": " << both;
+        EXPECT_NE(both.find("\"wallSeconds\""), std::string::npos) << both;
+        EXPECT_TRUE(both.ends_with("\nended\n")) << both;
+    }
+}
+
+// Only names that a run may write: those with the number of a frame.
+TEST(ProgramFiles, InputsThatOnlyBeginAsOutputsAreFine) {
+    const Scratch scratch;
+    scratch.file("small_low.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    scratch.file("s.json", smallScene(R"("colliders": [{"mesh": "small_low.obj", "fitSize": 0.1, "position": [0.3, 0.1, 0.3]}])"));
+    const Outcome exported = runProgram({"export", "s.json", "--surface", "obj", "--out", ".", "--seconds", "0.02"}, in(scratch));
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    EXPECT_TRUE(fs::exists(scratch.path() / "small_0000.obj"));
 }
 
 // The log is about what is missing: the descriptor that it is written to must not belong to the recording.
@@ -321,7 +342,7 @@ TEST(ProgramFiles, WhatIsNoFileIsRefusedAsInput) {
     };
     const std::vector<Kind> kinds = {{"pipe", "it is a pipe"},
                                      {"/dev/zero", "it is a device"},
-                                     {"/proc/self/environ", "it shows the state of the system"},
+                                     {"/proc/self/environ", "it is on a virtual file system"},
                                      {"scenes", "is a folder"}};
     for (const Kind& kind : kinds) {
         const std::string& path = kind.path;

@@ -358,6 +358,10 @@ static void child(int function, const char* kind, long first, long second, int o
         }
         ++shared->inputs;
         if (number > first) shared->number += (number - first) / second;
+        /* What it writes is the same each time. */
+        if (status == RIVULET_OK && bytes >= 0 &&
+            (content(functions[function].file, now, sizeof now) != bytes || memcmp(old, now, (size_t)bytes) != 0))
+            lose(name, kind, number, "it succeeds, and the file is another");
         if (status == RIVULET_OK) continue;
         const size_t length = strnlen(why.message, sizeof why.message);
         const char* const raw[] = {"bad_alloc", "std::", "terminate", "what()", "unexpected", "basic_string", "\n"};

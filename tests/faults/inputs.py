@@ -1,4 +1,5 @@
 """Rows of hostile inputs: mutated files, and files that once crashed, hung or lost something, each made here."""
+import ctypes
 import json
 import os
 import random
@@ -34,6 +35,53 @@ def mutated(data, chosen):
         else:
             word = chosen.choice((b"\xff\xff\xff\xff", b"\x00\x00\xc0\x7f", b"\x00\x00\x80\x7f", b"\x00\x00\x00\x80", b"\xff\xff\xff\x7f"))
             data[at:at + 4] = word
+    return bytes(data)
+
+
+def checksum(data, seed=0):
+    """As fluid/voxel/packed_array.h."""
+    call = ctypes.CDLL("libxxhash.so.0").XXH3_64bits_withSeed
+    call.restype, call.argtypes = ctypes.c_uint64, (ctypes.c_char_p, ctypes.c_size_t, ctypes.c_uint64)
+    return call(bytes(data), len(data), seed)
+
+
+def sealed_state(data):
+    """With the checksums of what it now holds, as a stranger would write it: only the checks of its numbers remain."""
+    header, entry, offset = 40, 64, 32
+    data = bytearray(data)
+    if len(data) < header:
+        return bytes(data)
+    sections = struct.unpack_from("<I", data, 16)[0]
+    if sections > (len(data) - header) // entry:
+        return bytes(data)
+    for k in range(sections):
+        at = header + k * entry
+        begin, size = struct.unpack_from("<QQ", data, at + offset)
+        struct.pack_into("<Q", data, at + entry - 8, checksum(data[begin:begin + size]))
+    struct.pack_into("<Q", data, header - 8, checksum(data[:header - 8] + data[header:header + sections * entry]))
+    return bytes(data)
+
+
+def sealed_recording(data):
+    """The same of a recording's frames."""
+    data = bytearray(data)
+    if len(data) < 32:
+        return bytes(data)
+    at = 32 + struct.unpack_from("<I", data, 16)[0]
+    struct.pack_into("<Q", data, 24, checksum(data[32:at], checksum(data[:24])))
+    while at + 48 <= len(data) and data[at:at + 4] == b"FRAM":
+        size = struct.unpack_from("<Q", data, at + 16)[0]
+        struct.pack_into("<Q", data, at + 32, checksum(data[at + 48:at + 48 + size]))
+        struct.pack_into("<Q", data, at + 40, checksum(data[at:at + 40]))
+        at += 48 + size
+    return bytes(data)
+
+
+def changed(data, chosen, begin):
+    """Some bytes behind `begin`; its length stays."""
+    data = bytearray(data)
+    for _ in range(chosen.choice((1, 1, 4, 30))):
+        data[chosen.randrange(begin, len(data))] = chosen.choice((0, 0x7F, 0x80, 0xFF, chosen.randrange(256)))
     return bytes(data)
 
 
@@ -115,10 +163,15 @@ def files(faults):
     row = faults.row("mutated scenes", "flipped and cut bytes, extreme numbers")
     tasks += [lambda r=row, d=mutated_text(fixture["s.json"], chosen): offer(faults, r, RUN, "s.json", d, limits=[(resource.RLIMIT_AS, 4 << 30)])
               for _ in range(count)]
+    row = faults.row("forged states and recordings", "changed bytes, with the checksums that belong to them")
+    tasks += [lambda r=row, d=sealed_state(changed(fixture["s.rstate"], chosen, 40)): offer(faults, r, RUN + " --resume s.rstate", "s.rstate", d)
+              for _ in range(count)]
+    tasks += [lambda r=row, d=sealed_recording(changed(fixture["r.rrec"], chosen, 80)):
+              offer(faults, r, "run s.json --headless --size 64x48 --still 0 --out out --replay r.rrec", "r.rrec", d) for _ in range(count)]
     row = faults.row("mutated states", "flipped and cut bytes")
     tasks += [lambda r=row, d=mutated(fixture["s.rstate"], chosen): offer(faults, r, RUN + " --resume s.rstate", "s.rstate", d) for _ in range(count)]
     row = faults.row("mutated recordings", "flipped and cut bytes")
-    tasks += [lambda r=row, d=mutated(fixture["r.rrec"], chosen): offer(faults, r, "run s.json --no-render --replay r.rrec", "r.rrec", d)
+    tasks += [lambda r=row, d=mutated(fixture["r.rrec"], chosen): offer(faults, r, "run s.json --headless --size 64x48 --still 0 --out out --replay r.rrec", "r.rrec", d)
               for _ in range(count)]
     row = faults.row("mutated meshes", "OBJ, PLY, STL, OFF, glTF: flipped and cut bytes, extreme numbers")
     for name, make in MESHES.items():
@@ -132,8 +185,9 @@ def files(faults):
 
 
 def dense(count):
+    """Water whose neighbour lists are several times longer than they are made at first."""
     block = {"min": [0, 0, 0], "max": [0.2, 0.2, 0.24]}
-    return json.dumps({"name": "dense", "fluid": {"spacing": 0.04, "maxSubsteps": 4, "pbf": {"iterations": 1}, "box": {"min": [0, 0, 0],
+    return json.dumps({"name": "dense", "fluid": {"spacing": 0.02, "maxSubsteps": 4, "pbf": {"iterations": 1}, "box": {"min": [0, 0, 0],
                        "max": [0.4, 0.4, 0.24]}, "blocks": [block] * count}}).encode()
 
 
@@ -145,9 +199,9 @@ def ply_of_list_count(count):
 
 def repros(faults):
     tasks = []
-    row = faults.row("little memory", "ulimit -v: 200 blocks in one place, whose neighbour lists are large")
+    row = faults.row("little memory", "ulimit -v: 8 blocks in one place, whose neighbour lists are large")
     for megabytes in range(100, 420, 80 if faults.quick else 20):
-        tasks.append(lambda m=megabytes: offer(faults, row, "run dense.json --no-render --backend cpu --frames 2 --stats n.json", "dense.json", dense(200), ("n.json",),
+        tasks.append(lambda m=megabytes: offer(faults, row, "run dense.json --no-render --backend cpu --frames 2 --stats n.json", "dense.json", dense(8), ("n.json",),
                                                limits=[(resource.RLIMIT_AS, m << 20)]))
     models = faults.row("strangers' models", "60,000 nested nodes, a face of 4 billion corners, a fan of 200,000, files of others")
     voxelize = "--resolution 8 --backend cpu --out p.rvox"
@@ -167,7 +221,7 @@ def repros(faults):
         tasks.append(lambda s=streams: offer(faults, closed, recorded, None, None, ("n.rrec", "n.rstate", "n.json"), closed=s, check=same))
     inputs = faults.row("inputs that are no files", "a FIFO, a device, a folder, /proc, as each input")
     for path in ("/dev/zero", "/dev/stdin", "/proc/kmsg", "/proc/self/mem", ".", "fifo"):
-        for words in (f"run {path}", f"run s.json --no-render --backend cpu --resume {path}", f"run s.json --no-render --replay {path}", f"voxelize {path} --out p.rvox"):
+        for words in (f"run {path}", f"run s.json --no-render --backend cpu --resume {path}", f"run s.json --headless --size 64x48 --still 0 --out out --replay {path}", f"voxelize {path} --out p.rvox"):
             tasks.append(lambda w=words: special(faults, inputs, w))
     faults.all(tasks)
 

@@ -173,7 +173,8 @@ std::string importProgram() {
 Result<Model> importThrough(const std::string& program, const std::string& as, const std::string& path, const ImportLimits& limits) try {
     const Subject about{as, path};
     if (program.empty())
-        return failed(fmt::format("models and pictures are read by the program {}, which is not beside this program; install Rivulet again", kName));
+        return failed(
+            fmt::format("models and pictures are read by the program {}, which is not beside this program; install Rivulet again", kName));
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return notStarted(program, errno);
     (void)::fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches between the two processes

@@ -23,8 +23,8 @@ struct ImportLimits {
 // rivulet_import beside the running program, with which it was built; "": it is not there.
 std::string importProgram();
 
-// `as`: mesh, model, whole or image (import/read_model.h). The result has no fault (model_check.h). Error (badInput): one sentence that names `path`, also if the child
-// crashes, exceeds a limit or answers anything else than a model. (failed): the program cannot be started.
+// `as`: mesh, model, whole or image (import/read_model.h). The result has no fault (model_check.h). Error (badInput): one sentence that
+// names `path`, also if the child crashes, exceeds a limit or answers anything else than a model. (failed): the program cannot be started.
 Result<Model> importThrough(const std::string& program, const std::string& as, const std::string& path, const ImportLimits& limits = {});
 
 }  // namespace rivulet

@@ -45,7 +45,7 @@ bool isOneOf(const NamedFile& series, const std::string& file) {
     if (pattern.parent_path() != whole.parent_path() || name.size() < begin.size() + end.size() + 1 || !name.starts_with(begin) ||
         !name.ends_with(end))
         return false;
-    if (begin.empty()) return true;  // a figure of each case, by its name
+    if (!begin.ends_with('_')) return true;  // any name
     // The number of a frame; for a skin's pictures of heights "_height" and a number follow.
     std::string middle = name.substr(begin.size(), name.size() - begin.size() - end.size());
     if (const size_t height = middle.find("_height"); height != std::string::npos) middle.erase(height, 7);

@@ -38,7 +38,7 @@ if ! { cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo 
     fail "building failed; the whole log is $folder/building.log."
 fi
 program="$folder/bin/rivulet_fuzz"
-export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
+export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0:malloc_fill_byte=0 UBSAN_OPTIONS=print_stacktrace=1
 TMPDIR="$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)" # of the files that targets read
 trap 'rm -rf "$TMPDIR"' EXIT
 export XDG_CACHE_HOME="$kept/cache" TMPDIR LLVM_PROFILE_FILE=/dev/null

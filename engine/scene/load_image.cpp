@@ -1,6 +1,7 @@
 #include "engine/scene/load_image.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <stb/stb_image.h>
 
 #include <algorithm>
@@ -17,6 +18,16 @@ namespace {
 constexpr int kWidest = 16384;                                // texels
 constexpr size_t kLargest = std::numeric_limits<int>::max();  // bytes: what stb_image takes
 constexpr size_t kMostTexelsPerByte = 8192;                   // a PNG of one colour with one bit a texel; what claims more takes seconds
+
+// The JPEG decoder of stb_image 2.27 reads tables that a file lacks without having set them, which may crash: while this lives, memory that
+// malloc gives is zero, as later versions make it.
+class ZeroedMemory {
+  public:
+    ZeroedMemory() { (void)::mallopt(M_PERTURB, 0xFF); }
+    ~ZeroedMemory() { (void)::mallopt(M_PERTURB, 0); }
+    ZeroedMemory(const ZeroedMemory&) = delete;
+    ZeroedMemory& operator=(const ZeroedMemory&) = delete;
+};
 
 // Whether a PNG has a part that claims more bytes than follow: stb_image takes memory for what is claimed, up to 2 GiB.
 bool claimsTooMuch(std::span<const std::byte> file) {
@@ -89,6 +100,7 @@ Result<Image> decodeImage(std::span<const std::byte> bytes, const std::string& n
         return about(name, "cannot be read: it is damaged, or not a PNG, JPEG, TGA or BMP");
     if (stbi_is_hdr_from_memory(data, size) != 0) return about(name, "is an HDR picture, which no material has; save it as PNG");
     if (Status fits = checkSize(name, image.width, image.height, bytes.size()); !fits) return fits.error();
+    const ZeroedMemory zeroed;
     stbi_uc* texels = stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4);
     if (texels == nullptr) return about(name, fmt::format("cannot be read: {}", stbi_failure_reason()));
     const size_t row = static_cast<size_t>(image.width) * 4, rows = static_cast<size_t>(image.height);

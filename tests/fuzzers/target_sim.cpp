@@ -129,7 +129,7 @@ void runState(Bytes bytes) {
     require(std::isfinite(world.stats().kinetic), "energy is finite");
     require(world.savable(), "a world that was restored can be saved");
     WorldState again;
-    world.save(again);
+    from.session ? from.session->save(again) : world.save(again);
     const Status back = from.restore(again.sections());
     require(back, back ? "" : "a state that was saved can be restored: " + back.error().message);
     const ParticleView view = world.particles();

@@ -7,7 +7,7 @@
 namespace rivulet {
 
 // Limits for the rest of the process: `memory` bytes of address space and `seconds` of processor time, no file written, 32 files open, no
-// core dump. It ends with the process that started it. Builds with sanitizers keep their address space.
+// core dump. It ends with the process that started it. Builds with sanitizers keep their address space and have ten times the time.
 void limitProcess(size_t memory, int seconds);
 
 // Raises both limits for a file of `bytes` that is to be read: 64 bytes of memory per byte and 1 s per MB, up to 16 GiB and 10 minutes.

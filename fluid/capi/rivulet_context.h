@@ -33,6 +33,9 @@ typedef struct rivulet_error {
     char message[1024];
 } rivulet_error;
 
+/* A device is lost when its driver was restarted, the GPU was removed, or a command of it failed. From then on every call that needs it
+   returns RIVULET_FAILED, and files that a save or an export would replace stay. Destroy the worlds, skins and the context, and create
+   others. */
 typedef struct rivulet_context rivulet_context; /* a device that simulates and, with OpenGL, a renderer */
 typedef struct rivulet_world rivulet_world;     /* particles in a box, with walls and bodies */
 typedef struct rivulet_skin rivulet_skin;       /* drops and films on a mesh, and a map of them */

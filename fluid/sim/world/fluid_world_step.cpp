@@ -302,7 +302,8 @@ Status FluidWorld::Impl::whole() const {
             "the last step, reset or restore did not end, because memory ran out or a function of the host did not return, so that the "
             "state of the water is incomplete: reset or restore it");
     if (const DeviceHealth health = device->health(); health.state == DeviceHealth::lost)
-        return failed(fmt::format("{} {}: the state of the water is lost", device->info().name, health.why));
+        return failed(
+            fmt::format("{} {}: its results are invalid; use another backend, or fewer particles", device->info().name, health.why));
     return ok();
 }
 

@@ -35,6 +35,7 @@ std::optional<vec3> crowdedPlace(const std::vector<BlockParams>& blocks, size_t 
     };
     const auto begins = [&](const std::vector<size_t>& of, int axis) {
         std::vector<float> places;
+        places.reserve(of.size());
         for (const size_t k : of) places.push_back(blocks[k].min[axis]);
         std::ranges::sort(places);
         places.erase(std::unique(places.begin(), places.end()), places.end());

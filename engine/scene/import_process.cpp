@@ -19,6 +19,7 @@
 #include <system_error>
 #include <vector>
 
+#include "engine/core/descriptor.h"
 #include "engine/core/readable_bytes.h"
 #include "engine/scene/model_wire.h"
 
@@ -115,6 +116,11 @@ std::vector<char*> childEnvironment() {
 
 // 0, or an error number. The child has /dev/null as its input and error output, `output` as its output, and no other open file.
 int start(const std::string& program, const std::vector<std::string>& arguments, int output, pid_t& pid) {
+    std::vector<char*> words;
+    words.push_back(const_cast<char*>(program.c_str()));
+    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+    words.push_back(nullptr);
+    const std::vector<char*> environment = childEnvironment();
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
     posix_spawn_file_actions_init(&files);
@@ -129,11 +135,6 @@ int start(const std::string& program, const std::vector<std::string>& arguments,
     posix_spawnattr_setsigdefault(&attributes, &all);
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-    std::vector<char*> words;
-    words.push_back(const_cast<char*>(program.c_str()));
-    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
-    const std::vector<char*> environment = childEnvironment();
     const int error = ::posix_spawn(&pid, program.c_str(), &files, &attributes, words.data(), environment.data());
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
@@ -177,16 +178,14 @@ Result<Model> importThrough(const std::string& program, const std::string& as, c
             fmt::format("models and pictures are read by the program {}, which is not beside this program; install Rivulet again", kName));
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return notStarted(program, errno);
-    (void)::fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches between the two processes
+    Descriptor reading(ends[0]), writing(ends[1]);
+    (void)::fcntl(writing.get(), F_SETPIPE_SZ, 1 << 20);  // fewer switches between the two processes
     const auto deadline = Clock::now() + limits.wall;
     pid_t pid = -1;
-    const int error = start(program, {as, path, std::to_string(limits.memory), std::to_string(limits.seconds)}, ends[1], pid);
-    ::close(ends[1]);
-    if (error != 0) {
-        ::close(ends[0]);
-        return notStarted(program, error);
-    }
-    Child child(pid, ends[0]);
+    const int error = start(program, {as, path, std::to_string(limits.memory), std::to_string(limits.seconds)}, writing.get(), pid);
+    (void)writing.close();
+    if (error != 0) return notStarted(program, error);
+    Child child(pid, reading.release());
     std::string answer;
     const Child::End end = child.read(answer, deadline, limits.answer);
     if (end == Child::End::late) return about.error(kTooSlow);

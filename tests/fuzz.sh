@@ -83,15 +83,19 @@ done
 if [ -n "$coverage" ]; then
     cd "$root" || exit 1
     llvm-profdata merge -o "$folder/all.profdata" "$folder"/*.profraw || fail "llvm-profdata could not merge what the targets counted."
-    llvm-cov export --summary-only --instr-profile="$folder/all.profdata" "$program" engine/core/json*.cpp engine/core/param_set.cpp \
-        engine/core/param_value.cpp engine/scene/load_image.cpp engine/scene/model_check.cpp engine/scene/model_wire.cpp fluid/io/recording.cpp \
+    llvm-cov export --summary-only --instr-profile="$folder/all.profdata" "$program" >"$folder/coverage.json" ||
+        fail "llvm-cov could not read $folder/all.profdata."
+    python3 - "$folder/coverage.json" "$folder" "$root" engine/core/json*.cpp engine/core/param_set.cpp engine/core/param_value.cpp \
+        engine/scene/load_image.cpp engine/scene/model_check.cpp engine/scene/model_wire.cpp fluid/io/recording.cpp \
         fluid/scene/{body,collider,flow,pour}_params.cpp fluid/scene/collider_kinds.cpp fluid/scene/face_marks.cpp fluid/scene/scene_file.cpp \
-        fluid/sim/world/{contradictions,fluid_params,fluid_world_state,state_check,world_state}.cpp fluid/voxel/{packed_array,voxel_file}.cpp \
-        >"$folder/coverage.json" || fail "llvm-cov could not read $folder/all.profdata."
-    python3 - "$folder/coverage.json" "$root/" <<'END'
-import json, sys
-files = json.load(open(sys.argv[1]))["data"][0]["files"]
-rows = [(f["filename"].replace(sys.argv[2], ""), f["summary"]["lines"]["covered"], f["summary"]["lines"]["count"]) for f in files]
+        fluid/sim/world/{contradictions,fluid_params,fluid_world_state,state_check,world_state}.cpp fluid/voxel/{packed_array,voxel_file}.cpp <<'END'
+import json, os, sys
+folder, root, wanted = sys.argv[2], sys.argv[3], sys.argv[4:]
+lines = {}  # the names are relative to the build folder, or to the place of the build
+for f in json.load(open(sys.argv[1]))["data"][0]["files"]:
+    for base in (folder, root):
+        lines[os.path.relpath(os.path.realpath(os.path.join(base, f["filename"])), root)] = f["summary"]["lines"]
+rows = [(name, lines[name]["covered"], lines[name]["count"]) for name in wanted]
 rows.append(("all", sum(r[1] for r in rows), sum(r[2] for r in rows)))
 print(f"\n{'parser':42} {'lines':>6} {'reached':>8}")
 for name, covered, count in rows:

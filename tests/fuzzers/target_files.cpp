@@ -176,6 +176,9 @@ void runRecording(Bytes bytes) {
     Result<RecordingReader> file = RecordingReader::open(fileOf(bytesOf(fittedRecording(bytes)), ".rrec"));
     if (!file) return requireSentence(file.error().message);
     require(file->frames() >= 1, "a recording has a frame");
+    const std::string other = fileOf({}, "_again.rrec");
+    Result<RecordingWriter> again = RecordingWriter::open(other, file->about());
+    require(again, "a recording can be written");
     for (size_t k = 0; k < std::min<size_t>(file->frames(), 8); ++k) {
         const Result<RecordedFrame> frame = file->read(k, kMost);
         if (!frame) {
@@ -186,7 +189,14 @@ void runRecording(Bytes bytes) {
                 "one velocity and id a particle");
         for (const vec4& x : frame->position)
             require(std::isfinite(x.x + x.y + x.z + x.w) && std::isfinite(glm::dot(x, x)), "positions can be drawn");
+        require(again->add(*frame), "what was read can be written");
     }
+    const size_t whole = again->frames();
+    require(again->close(), "and completed");
+    if (whole == 0) return;
+    Result<RecordingReader> read = RecordingReader::open(other);
+    require(read && read->frames() == whole && read->about() == file->about(), "and read again");
+    for (size_t k = 0; k < whole; ++k) require(read->read(k), "each frame of it");
 }
 
 std::vector<std::string> recordingSeeds() {

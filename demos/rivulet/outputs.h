@@ -9,9 +9,10 @@
 namespace rivulet {
 
 struct NamedFile {
-    std::string option;   // "--stats"; for messages
-    std::string path;     // empty: not used
-    bool series = false;  // `path` is a pattern, whose last '*' stands for any text: "out/dam_break_*.png"
+    std::string option;  // "--stats"; for messages
+    std::string path;    // empty: not used
+    // `path` is a pattern. Its last '*' stands for the number of a frame if a '_' is before it ("out/dam_break_*.png"), else for any text.
+    bool series = false;
 };
 
 // Error (badInput): two outputs are the same file, an output is an input, or stdout is redirected to an output; by this or another path.

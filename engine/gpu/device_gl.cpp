@@ -104,7 +104,7 @@ class GlDevice final : public Device {
     Status roomIn(std::deque<Page>& pages, size_t bytes);  // in the last page, which is a new one if need be
     gpu::Buffer stagingFor(size_t bytes);
     void harvest();
-    bool isLost();                     // and notes it
+    bool isLost();                     // asks OpenGL, and updates health_
     void lose(std::string_view what);  // for want of memory: results after it are invalid
 
     ShaderFiles files_;

@@ -12,7 +12,7 @@ void clearGlErrors();                   // drops all pending errors, which the d
 // Whether the current context is lost: the driver has restarted, or the GPU is gone. Commands then do nothing, and what is read is not
 // written. Only contexts that were created with a notification of resets know it. May take one pending error.
 bool contextLost();
-// What then is to be told.
+// The sentence for it.
 inline constexpr const char* kContextLost = "the OpenGL context is lost: the driver was restarted, or the GPU was removed";
 
 }  // namespace rivulet::gpu

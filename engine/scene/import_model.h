@@ -1,4 +1,4 @@
-// Imports a mesh or a model from a file: OBJ, glTF, FBX, PLY, STL and the other formats of assimp. Or a picture.
+// Imports a mesh or a model from a file (OBJ, glTF, FBX, PLY, STL and the other formats of assimp), or a picture.
 #pragma once
 
 #include <memory>

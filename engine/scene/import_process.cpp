@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kName = "rivulet_import";
 
-// Begins sentences: the file that is read.
+// The file that is read, for errors: "the mesh 'a.obj' ..."
 struct Subject {
     const std::string& as;
     const std::string& path;
@@ -195,7 +195,7 @@ Result<Model> importThrough(const std::string& program, const std::string& as, c
     if (!status) return about.error(kTooSlow);
     if (const char* why = deathOf(*status)) return about.error(why);
     Result<Model> model = receiveModel(std::as_bytes(std::span(answer)));
-    if (model || (as == "image" && model.error().message.find(path) != std::string::npos)) return model;  // which is a sentence
+    if (model || (as == "image" && model.error().message.find(path) != std::string::npos)) return model;  // a whole sentence already
     return about.error(model.error().message);
 } catch (const std::bad_alloc&) {
     return Subject{as, path}.error("needs more memory than there is; simplify it");

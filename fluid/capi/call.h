@@ -98,7 +98,7 @@ void silently(const Work& work) {
 inline const char* kindOf(const rivulet_world*) { return "world"; }
 inline const char* kindOf(const rivulet_skin*) { return "skin"; }
 
-// Error (failed): the context's device is lost, and what it has computed with it.
+// Error (failed): the context's device is lost, so that its results are invalid.
 inline Status stillThere(const rivulet_context& context, Needs needs) {
     if (needs == Needs::memory || context.device == nullptr) return ok();
     const DeviceHealth health = context.device->health();

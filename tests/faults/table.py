@@ -28,6 +28,7 @@ class Row:
     def __init__(self, fault, how):
         self.fault, self.how = fault, how
         self.inputs = self.crashed = self.hung = self.lost = 0
+        self.statuses = set()  # exit statuses of its runs
         self.lock = threading.Lock()
 
     def count(self, what, repeat="", why=""):

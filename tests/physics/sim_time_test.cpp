@@ -117,7 +117,7 @@ TEST_P(Time, AFrameMayHaveALimitOfItsOwn) {
     EXPECT_NEAR(world->time() - slowed, 0.2, 1e-8);
 }
 
-// So does a fixed step that is cut into many: it ends early, and the next one begins where it ended.
+// A fixed step that takes longer than the limit ends early, and the next frame continues from there.
 TEST_P(Time, AFixedStepMayHaveALimitOfItsOwn) {
     auto device = cpu();
     FluidParams p = column(GetParam());

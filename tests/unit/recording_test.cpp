@@ -217,7 +217,7 @@ TEST(Recording, InvalidFilesAreRefusedWithoutMuchMemory) {
     EXPECT_GT(refused, 220U);  // other numbers in the place of numbers are no nonsense
 }
 
-// Checksums do not help here: a stranger's are right.
+// A forged file may have right checksums: the numbers themselves are checked.
 TEST(Recording, NumbersThatCannotBeDrawnAreRefused) {
     const Scratch scratch;
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();

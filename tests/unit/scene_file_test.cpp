@@ -146,14 +146,14 @@ TEST_F(SceneTest, ContradictingValuesAreRefusedByName) {
          "x.json: fluid.blocks[0] from (0, 0, 0) to (0.5, 1.25, 0.5) reaches outside fluid.box from (0, 0, 0) to (1, 1, 1)"},
         {R"({"fluid": {"blocks": [{"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]},
             {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"max": [1, 1, 1]}, {"min": [0.5, 0.5, 0.5], "max": [1, 1, 1]}]}})",
-         "x.json: fluid.blocks: more than 8 of them overlap at (0.5, 0.5, 0.5), where water would be as many times too dense: let fewer "
+         "x.json: fluid.blocks: more than 8 of them overlap at (0.5, 0.5, 0.5), which makes the water too dense to be simulated: let fewer "
          "overlap"},
         // A staircase: no corner of a block lies in more than one other.
         {R"({"fluid": {"blocks": [{"min": [0, 0.8, 0], "max": [1, 1, 1]}, {"min": [0.1, 0.7, 0], "max": [1, 1, 1]},
             {"min": [0.2, 0.6, 0], "max": [1, 1, 1]}, {"min": [0.3, 0.5, 0], "max": [1, 1, 1]}, {"min": [0.4, 0.4, 0], "max": [1, 1, 1]},
             {"min": [0.5, 0.3, 0], "max": [1, 1, 1]}, {"min": [0.6, 0.2, 0], "max": [1, 1, 1]}, {"min": [0.7, 0.1, 0], "max": [1, 1, 1]},
             {"min": [0.8, 0, 0], "max": [1, 1, 1]}]}})",
-         "x.json: fluid.blocks: more than 8 of them overlap at (0.8, 0.8, 0), where water would be as many times too dense: let fewer "
+         "x.json: fluid.blocks: more than 8 of them overlap at (0.8, 0.8, 0), which makes the water too dense to be simulated: let fewer "
          "overlap"},
         {R"({"colliders": [{"shape": "plane"}, {"shape": "plane", "normal": [0, 0, 0]}]})",
          "x.json: colliders[1].normal is (0, 0, 0): its length must not be 0"},

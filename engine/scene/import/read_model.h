@@ -1,4 +1,4 @@
-// Reads a model file through assimp: OBJ, glTF, FBX, PLY, STL and its other formats. And pictures.
+// Reads a model file through assimp (OBJ, glTF, FBX, PLY, STL and its other formats), or a picture.
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@ class SparseCells {
     void build(uint32_t count, double edge, const Touched& touched);
 
     double edge() const { return edge_; }  // m
-    // For any place, also none: beyond kReach it is an empty cell.
+    // For any values, also NaN: places beyond kReach give a cell that is always empty.
     ivec3 cellOf(const dvec3& p) const { return {glm::min(dvec3(kReach + 1), glm::max(dvec3(-kReach - 1), glm::floor(p / edge_)))}; }
     bool occupied(const ivec3& cell) const { return find(keyOf(cell)) != kNone; }
     std::span<const uint32_t> items(const ivec3& cell) const {

@@ -77,7 +77,7 @@ std::string contradiction(const FluidParams& fluid) {
     }
     if (const std::optional<vec3> place = crowdedPlace(fluid.blocks, kMostOverlapping, kMostWork))
         return fmt::format(
-            "fluid.blocks: more than {} of them overlap at {}, where water would be as many times too dense: let fewer overlap",
+            "fluid.blocks: more than {} of them overlap at {}, which makes the water too dense to be simulated: let fewer overlap",
             kMostOverlapping, shown(*place));
     const FoamParams& foam = fluid.foam;
     for (const auto& [name, from, to] : {std::tuple("air", foam.airFrom, foam.airTo), std::tuple("crest", foam.crestFrom, foam.crestTo),

@@ -369,7 +369,7 @@ double FluidWorld::Impl::stepPiece(double length, double begin, double span, int
         }
         ++done;
         ++substeps;
-        // A fixed step is always completed, but for a host that must go on.
+        // A fixed step is completed, unless the frame takes longer than FluidInputs::mostMs.
         const bool partial = !(params.fixedStep > 0) || (clock.mostMs > 0 && stepper.elapsedMs() > clock.mostMs);
         if (partial && done < count && !(cpu ? stepper.fitsMeasured(substeps) : stepper.fitsPredicted(substeps))) {
             stop = true;

@@ -1,7 +1,7 @@
 """soak.py ROOT [--hours H] [--window MINUTES] [SCENE...]: see tests/soak.sh.
 
-A run is watched from outside, by /proc. Its memory may grow for the first tenth of a run (caches, pools of the allocator); after that the
-largest resident size of each further tenth may exceed that of the first tenths by 2 MB and 1 %."""
+A run is watched from outside, by /proc. The largest resident size in the last fifth of its samples may exceed that in the first fifth, in which
+caches and pools of the allocator fill, by 2 MB and 1 %. Open files may not grow."""
 
 import argparse
 import json
@@ -33,7 +33,7 @@ def descriptors(pid):
 
 
 class Watch:
-    """Samples a process; memory and files at the end against those after a tenth."""
+    """Samples a process; compares memory and files in the last fifth of the samples with those in the first."""
 
     def __init__(self, pid):
         self.pid, self.samples = pid, []

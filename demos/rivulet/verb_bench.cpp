@@ -9,6 +9,7 @@
 #include "demos/rivulet/outputs.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
+#include "engine/core/json_parse.h"
 
 namespace rivulet {
 
@@ -108,13 +109,8 @@ int benchVerb(const Arguments& arguments) {
         if (const Graceful pages; pages.interrupted()) return pages.status();  // while pages were written
     }
     const Graceful graceful;  // until here Ctrl-C exits at once: rows are printed, and there is nothing to close
-    if (!jsonFile.empty()) {
-        Json::StreamWriterBuilder builder;
-        builder["indentation"] = "  ";
-        builder["enableYAMLCompatibility"] = true;
-        builder["precision"] = 6;
-        if (Status written = writeFileAtomic(jsonFile, Json::writeString(builder, all) + "\n"); !written) return report(written.error());
-    }
+    if (!jsonFile.empty())
+        if (Status written = writeFileAtomic(jsonFile, jsonText(all, 6)); !written) return report(written.error());
     if (!markdownFile.empty())
         if (Status written = writeFileAtomic(markdownFile, markdownOf(all)); !written) return report(written.error());
     return graceful.status();

@@ -12,6 +12,7 @@
 #include "demos/rivulet/outputs.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
+#include "engine/core/json_parse.h"
 #include "engine/core/message_line.h"
 #include "fluid/render/backend.h"
 #include "fluid/session/run_stats.h"
@@ -207,13 +208,8 @@ int validateVerb(const Arguments& arguments) {
         }
     }
     const Graceful graceful;
-    if (!request.json.empty()) {
-        Json::StreamWriterBuilder builder;
-        builder["indentation"] = "  ";
-        builder["precision"] = 8;
-        if (Status written = writeFileAtomic(request.json, Json::writeString(builder, all) + "\n"); !written)
-            return report(written.error());
-    }
+    if (!request.json.empty())
+        if (Status written = writeFileAtomic(request.json, jsonText(all, 8)); !written) return report(written.error());
     if (graceful.interrupted()) return graceful.status();
     return passed ? kDone : kFailed;
 }

@@ -11,6 +11,7 @@
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
 #include "engine/core/input_file.h"
+#include "engine/core/json_parse.h"
 #include "engine/core/message_line.h"
 #include "engine/core/readable_bytes.h"
 #include "engine/scene/import_model.h"
@@ -95,10 +96,7 @@ Status writeStats(const VoxelizeRequest& request, const VoxelModel& model, size_
     v["badEdges"] = Json::UInt64(model.defects.badEdges());
     v["ms"] = model.milliseconds;
     v["bytes"] = Json::UInt64(bytes);
-    Json::StreamWriterBuilder builder;
-    builder["indentation"] = "  ";
-    builder["precision"] = 9;
-    return writeFileAtomic(request.stats, Json::writeString(builder, v) + "\n");
+    return writeFileAtomic(request.stats, jsonText(v, 9));
 }
 
 constexpr int kColumn = 14;  // characters: "material 11" and a margin

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <deque>
+#include <new>
 #include <optional>
 
 #include "engine/compute/cl_devices.h"
@@ -98,6 +99,7 @@ class ClDevice final : public Device {
     void harvest();
     double hostTime(cl_ulong at);
     void dropUploads();
+    static void giveUp(const Event& event, std::vector<std::byte>& bytes);
     bool succeeded(cl_int code, std::string_view what);
     // Calls the driver; a device that a test has declared lost returns an error instead.
     template <class Command>
@@ -157,7 +159,19 @@ ClDevice::ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& 
         buildKey_ += part + '\n';
 }
 
-ClDevice::~ClDevice() { clFinish(queue_.get()); }
+// A driver whose queue cannot be finished may still copy from and to this memory.
+void ClDevice::giveUp(const Event& event, std::vector<std::byte>& bytes) {
+    const cl_event last = event.get();
+    if (last == nullptr || stateOf(event) <= CL_COMPLETE || clWaitForEvents(1, &last) == CL_SUCCESS) return;
+    static_cast<void>(new (std::nothrow) std::vector<std::byte>(std::move(bytes)));  // never freed
+}
+
+ClDevice::~ClDevice() {
+    if (clFinish(queue_.get()) == CL_SUCCESS) return;
+    for (Upload& upload : uploads_) giveUp(upload.written, upload.bytes);
+    for (ParamSlot& slot : params_) giveUp(slot.written, slot.bytes);
+    for (PendingRead& pending : pendingReads_) giveUp(pending.done, pending.bytes);
+}
 
 // For calls without a Result: the first failure is logged; a broken queue would otherwise repeat it every frame.
 bool ClDevice::succeeded(cl_int code, std::string_view what) {

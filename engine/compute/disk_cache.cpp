@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "engine/core/file.h"
+#include "engine/core/folder.h"
 #include "engine/core/private_file.h"
 
 namespace rivulet {
@@ -41,10 +42,10 @@ void trimCache(const std::string& folder, std::string_view ending, size_t mostFi
     std::error_code ignored;
     const auto longAgo = fs::file_time_type::clock::now() - std::chrono::hours(1);
     size_t total = 0;
-    for (fs::directory_iterator at(folder, ignored), end; at != end; at.increment(ignored)) {
+    for (const fs::path& path : entriesOf(folder)) {
         std::error_code gone;  // deleted by another process
-        Entry entry{at->path(), at->last_write_time(gone), 0};
-        if (!gone) entry.bytes = static_cast<size_t>(at->file_size(gone));
+        Entry entry{path, fs::last_write_time(path, gone), 0};
+        if (!gone) entry.bytes = static_cast<size_t>(fs::file_size(path, gone));
         if (gone) continue;
         if (entry.path.extension() == ".tmp" && entry.used < longAgo) fs::remove(entry.path, gone);
         if (entry.path.extension() != ending) continue;

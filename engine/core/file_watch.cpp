@@ -5,6 +5,8 @@
 
 #include <filesystem>
 
+#include "engine/core/folder.h"
+
 namespace rivulet {
 
 namespace fs = std::filesystem;
@@ -17,7 +19,11 @@ void FileWatch::scan(const std::string& path, Stamps& into) {
     };
     std::error_code error;
     if (!fs::is_directory(path, error)) return add(path);
-    for (fs::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error)) add(at->path());
+    for (const fs::path& entry : entriesOf(path))
+        if (fs::is_directory(fs::symlink_status(entry, error)))
+            scan(entry.string(), into);
+        else
+            add(entry);
 }
 
 void FileWatch::watch(const std::string& path) {

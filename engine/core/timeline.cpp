@@ -6,6 +6,8 @@
 #include <chrono>
 #include <iterator>
 
+#include "engine/core/json_parse.h"
+
 namespace rivulet {
 
 namespace {
@@ -108,10 +110,7 @@ std::string Timeline::chromeTrace() const {
     Json::Value trace(Json::objectValue);
     trace["displayTimeUnit"] = "ms";
     trace["traceEvents"] = std::move(events);
-    Json::StreamWriterBuilder builder;
-    builder["indentation"] = "";
-    builder["precision"] = 15;
-    return Json::writeString(builder, trace) + "\n";
+    return jsonText(trace, 15, "");
 }
 
 double overlapSeconds(const std::vector<PassSpan>& a, const std::vector<PassSpan>& b) {

@@ -157,6 +157,7 @@ rivulet_status rivulet_world_export(rivulet_world* world, const char* path, rivu
         const ParticleFormat* format = rowOf(particleFormats().rows, path);
         if (format == nullptr) return badInput(fmt::format("{}: particles are written as .ply, .vtp or .csv", path));
         const HostParticles host = readParticles(*world->world);
+        if (Status there = stillThere(*world->context, Needs::device); !there) return there;
         const ExportParticles of{.position = host.position,
                                  .velocity = host.velocity,
                                  .id = host.id,
@@ -175,6 +176,7 @@ rivulet_status rivulet_world_export_surface(rivulet_world* world, const char* pa
             if (std::string_view(path).ends_with("." + std::string(row.name))) format = &row;
         if (format == nullptr) return badInput(fmt::format("{}: a surface is written as .obj or .ply", path));
         const HostParticles host = readParticles(*world->world);
+        if (Status there = stillThere(*world->context, Needs::device); !there) return there;
         Result<IsoSurface> surface = IsoSurface::create(host.position, world->params.fluid.spacing);
         if (!surface) return surface.error();
         Result<SurfaceMesh> mesh = marchingCubes(*surface);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/core/file.h"
+#include "engine/core/folder.h"
 #include "engine/core/input_file.h"
 #include "engine/core/json.h"
 #include "engine/core/table.h"
@@ -330,15 +331,12 @@ std::vector<SceneListing> listScenes() {
     std::vector<SceneListing> listings;
     std::set<fs::path> seen;  // one folder may be listed twice
     for (const fs::path& folder : folders) {
-        std::error_code error;
-        for (fs::directory_iterator at(folder / "scenes", error), end; !error && at != end; at.increment(error)) {
+        for (const fs::path& path : entriesOf(folder / "scenes")) {
             std::error_code ignored;
-            if (at->path().extension() != ".json" || !isFile(at->path()) || !seen.insert(fs::weakly_canonical(at->path(), ignored)).second)
-                continue;
+            if (path.extension() != ".json" || !isFile(path) || !seen.insert(fs::weakly_canonical(path, ignored)).second) continue;
             SceneFile scene;
-            const Status read = readJsonFile(at->path().string(), visiting(scene));
-            listings.push_back(
-                {at->path().string(), read ? scene.name : at->path().stem().string(), read ? scene.doc : read.error().message});
+            const Status read = readJsonFile(path.string(), visiting(scene));
+            listings.push_back({path.string(), read ? scene.name : path.stem().string(), read ? scene.doc : read.error().message});
         }
     }
     std::sort(listings.begin(), listings.end(), [](const SceneListing& a, const SceneListing& b) { return a.path < b.path; });

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <thread>
 
+#include "engine/core/json_parse.h"
+
 namespace rivulet {
 
 Spread spreadOf(std::vector<double> values) {
@@ -379,11 +381,7 @@ std::string writeRunStats(const RunStats& stats) {
 
     if (!stats.loads.empty()) v["probes"] = seriesOf(stats.loads);
 
-    Json::StreamWriterBuilder builder;
-    builder["indentation"] = "  ";
-    builder["enableYAMLCompatibility"] = true;  // "key": value
-    builder["precision"] = 9;
-    return Json::writeString(builder, v) + "\n";
+    return jsonText(v, 9);
 }
 
 std::string machineName() {

@@ -198,6 +198,34 @@ def ply_of_list_count(count):
             b"property list uint uint vertex_indices\nend_header\n" + struct.pack("<9fI3I", 0, 0, 0, 1, 0, 0, 0, 1, 0, count, 0, 1, 2))
 
 
+# Settings that s.json gets, and whether they are refused. Those that are not must end in time.
+ABSURD = (
+    ("fluid.gravity=0,-3e38,0", True), ("fluid.gravity=0,nan,0", True), ("fluid.box.max=-1,-1,-1", True), ("fluid.blocks[0].max=100000,0.2,0.15", True),
+    ("fluid.box.max=100000,0.4,0.4 fluid.blocks[0].max=100000,0.2,0.15", True), ("fluid.blocks[0].min=1e30,0,0", True),
+    ("fluid.spacing=1e-9", True), ("fluid.spacing=0", True), ("fluid.spacing=nan", True), ("fluid.density=1e30", True), ("fluid.viscosity=1e9", True),
+    ("emitters[0].litresPerSecond=1e30", True), ("emitters[0].radius=-1", True), ("bodies[0].density=1e30", True),
+    ("colliders[0].motion.spin=1e30", True), ("colliders[0].position=1e30,0,0", True), ("fluid.maxSubsteps=2000000000", True),
+    ("fluid.maxParticles=2000000000", True), ("fluid.forces.tension=1e20", True), ("fluid.viscosity=2", False), ("fluid.fixedStep=1e-9", False),
+    ("fluid.spacing=0.004", False),
+)
+
+
+def absurd(faults):
+    row = faults.row("absurd scenes", "infinite, inverted and gigantic values; steps that would take hours: refused, or ended in time")
+
+    def one(settings, refused):
+        words = "run s.json --no-render --backend cpu --frames 1 --stats n.json " + " ".join(f"--set {word}" for word in settings.split())
+        room = faults.room(cases.Case("absurd", words, ("n.json",)))
+        outcome = watch.run([faults.program, *room.case.words], room.root, room.environment, faults.core(), cpu=60 if not refused else 5)
+        lost = None
+        if not outcome.hung and not outcome.crashed:
+            lost = cases.bad_message(outcome, set()) if outcome.status != 0 else "it was not refused" if refused else None
+            lost = lost or room.verdict(outcome)
+        row.count("hung" if outcome.hung else "crashed" if outcome.crashed else "lost" if lost else "", f"rivulet {words}",
+                  f"{lost} [{outcome.status}: {outcome.err[-300:]}]")
+    faults.all([lambda a=entry: one(*a) for entry in ABSURD])
+
+
 def repros(faults):
     tasks = []
     row = faults.row("little memory", "a limit of memory (ulimit -v), and 8 overlapping blocks, which need long neighbour lists")
@@ -242,4 +270,4 @@ def special(faults, row, words):
     row.count("hung" if outcome.hung else "crashed" if outcome.crashed else "lost" if lost else "", f"rivulet {words}", f"{lost} [{outcome.status}: {outcome.err[-300:]}]")
 
 
-ROWS = {"files of others": files, "repros": repros}
+ROWS = {"files of others": files, "repros": repros, "absurd": absurd}

@@ -378,6 +378,27 @@ std::vector<Define> PairTraits::wallDefines(std::vector<Define> extra) const {
     return extra;
 }
 
+namespace {
+
+double cellsOf(const Bounds& inside, float h) {
+    const vec3 size = inside.size() / h;
+    return (std::ceil(double{size.x}) + 3) * (std::ceil(double{size.y}) + 3) * (std::ceil(double{size.z}) + 3);
+}
+
+bool followsParticles(const Bounds& inside, float h, double count, const PairTraits& traits) {
+    return traits.follows && !glm::any(traits.periodic) && !traits.linked && cellsOf(inside, h) > std::max(kFewCells, kCellsEach * count);
+}
+
+}  // namespace
+
+Status NeighborGrid::checkCells(const Bounds& inside, float h, double count, const PairTraits& traits) {
+    const double cells = cellsOf(inside, h);
+    if (cells <= kMostCells || followsParticles(inside, h, count, traits)) return ok();
+    return badInput(
+        fmt::format("the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
+                    inside.size().x, inside.size().y, inside.size().z, cells, h, h / 2 * std::cbrt(cells / kMostCells)));
+}
+
 Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits) {
     ASSERT(!inside.empty() && h > 0, "give the grid bounds with a volume and a positive support radius");
     ASSERT(!traits.linked || (device.backend() != Backend::cpu && traits.samples == 0 && !glm::any(traits.periodic)),
@@ -388,19 +409,15 @@ Result<NeighborGrid> NeighborGrid::create(Device& device, const Bounds& inside, 
     impl->count = count;
     impl->traits = traits;
     const vec3 size = inside.size() / h;
-    const double cells = (std::ceil(double{size.x}) + 3) * (std::ceil(double{size.y}) + 3) * (std::ceil(double{size.z}) + 3);
     impl->inside = inside;
-    impl->window = traits.follows && !glm::any(traits.periodic) && !traits.linked && cells > std::max(kFewCells, kCellsEach * count);
+    impl->window = followsParticles(inside, h, count, traits);
     if (impl->window) {
         if (Status s = impl->findKernels(); !s) return s.error();
         if (Status s = impl->follow({}); !s) return s.error();
         if (Status s = impl->allocate(); !s) return s.error();
         return NeighborGrid(std::move(impl));
     }
-    if (cells > kMostCells)
-        return badInput(fmt::format(
-            "the box of {:.3g} x {:.3g} x {:.3g} m would need {:.3g} cells of {:.3g} m: use a spacing of at least {:.3g} m there",
-            inside.size().x, inside.size().y, inside.size().z, cells, h, h / 2 * std::cbrt(cells / kMostCells)));
+    if (Status few = checkCells(inside, h, count, traits); !few) return few.error();
     for (int k = 0; k < 3; ++k) {
         // One empty cell on every side: rows need no bounds checks.
         if (traits.periodic[k]) {

@@ -129,18 +129,16 @@ std::vector<vec4> FluidWorld::Impl::corrected(CpuDevice& cpu, const FluidParams&
         startInterrupted = startInterrupted || cpu.interrupted() || cpu.stopAsked();
         return startInterrupted;
     };
-    const auto lacks = [&](const Error& error) {
-        if (error.memory) shortage = noMemory("there is not enough memory to correct the start: " + error.message);
-    };
-    if (!made) lacks(made.error());
+    if (!made && made.error().memory) shortage = noMemory("there is not enough memory to correct the start: " + made.error().message);
     if (stopped() || !made) return {};
     Impl& w = *(*made)->impl_;
     if (w.start.size() != count) return {};
     for (int round = 0; round < rounds; ++round) {
         cpu.fill(w.particles.velocityNext, 0);
         (*made)->step({vec3(0.0F)}, 1.0e-4);
-        if (const Status done = (*made)->lastStep(); !done) {
-            lacks(done.error());
+        if (!(*made)->lastStep()) {
+            // On the cpu nothing else ends a step.
+            if (!stopped()) shortage = noMemory("there is not enough memory to correct the start: use fewer particles");
             return {};
         }
         if (stopped() || w.figures->lost > 0 || w.interrupted || !advanced(from + (to - from) * (round + 1) / rounds)) return {};

@@ -29,6 +29,14 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
             "fluid.blocks hold {:.3g} particles at a spacing of {} m, more than {:.0f} million: use a spacing of at least {:.3g} m", wanted,
             params.spacing, kMostParticles / 1e6, params.spacing * std::cbrt(wanted / kMostParticles)));
     if (Status s = checkStart(); !s) return s;
+    traits.periodic = params.box.periodic();
+    traits.walls = !glm::all(traits.periodic) || solids.any();
+    traits.samples = bodies.sampleCount();
+    traits.sleeps = params.sleep.on;
+    traits.asleepRows = traits.sleeps && device->backend() != Backend::cpu;
+    traits.follows = sourceSetup.expectedDeposit == 0 && !traits.sleeps;  // deposits come at any place
+    // Before millions of particles are made.
+    if (Status s = NeighborGrid::checkCells(Bounds{params.box.min, params.box.max}, h, wanted, traits); !s) return s;
     fillStart();
     if (Status s = findSlots(); !s) return s;
     findLiquids();
@@ -40,12 +48,6 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
         bool wanted;
     };
     const Define fromPositions{"FROM_POSITIONS", "1"};
-    traits.periodic = params.box.periodic();
-    traits.walls = !glm::all(traits.periodic) || solids.any();
-    traits.samples = bodies.sampleCount();
-    traits.sleeps = params.sleep.on;
-    traits.asleepRows = traits.sleeps && device->backend() != Backend::cpu;
-    traits.follows = sourceSetup.expectedDeposit == 0 && !traits.sleeps;  // deposits come at any place
     traits.matter = traits.matter || bodies.any();
     for (const Wanted& w : {Wanted{&stats, "fluid/world/stats",
                                    traits.matter   ? std::vector<Define>{{"MATTER", "1"}}

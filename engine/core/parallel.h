@@ -1,52 +1,63 @@
-// Loops over the threads of oneTBB. ThreadSanitizer sees what they order: a library that it has not compiled hides that from it.
+// Loops over the threads of oneTBB; under ThreadSanitizer over threads that it sees start and end: what a library that it has not compiled
+// orders is hidden from it, and all of that would be reported.
 #pragma once
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/blocked_range2d.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <exception>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "engine/core/sanitized.h"
 
-// Of ThreadSanitizer, in builds that have it.
-extern "C" void __tsan_acquire(void* address);  // NOLINT(bugprone-reserved-identifier,readability-identifier-naming)
-extern "C" void __tsan_release(void* address);  // NOLINT(bugprone-reserved-identifier,readability-identifier-naming)
-
 namespace rivulet {
 
-// What comes before a loop happens before each of its pieces, and each piece before what comes after the loop. The pieces are not ordered.
-class LoopOrder {
-  public:
-    LoopOrder() { release(begun_); }
-    ~LoopOrder() { acquire(ended_); }
-    void begin() const { acquire(begun_); }
-    void end() const { release(ended_); }
-    LoopOrder(const LoopOrder&) = delete;
-    LoopOrder& operator=(const LoopOrder&) = delete;
-
-  private:
-    static void acquire(char& mark) {
-        if constexpr (kThreadSanitized) __tsan_acquire(&mark);
+// For builds with ThreadSanitizer. `finest`: parts are split by the grain size, not only as far as the threads need. A loop within a part
+// runs on the part's thread.
+template <class Range, class Body>
+void onOwnThreads(const Range& range, const Body& body, bool finest) {
+    thread_local bool within = false;
+    std::vector<Range> parts = {range};
+    for (size_t k = 0; k < parts.size() && (finest || parts.size() < 16);)
+        if (parts[k].is_divisible())
+            parts.push_back(Range(parts[k], tbb::split()));
+        else
+            ++k;
+    std::atomic<size_t> next = 0;
+    std::atomic_flag failed;
+    std::exception_ptr thrown;
+    const auto work = [&] {
+        const bool outer = std::exchange(within, true);
+        try {
+            for (size_t k = 0; (k = next.fetch_add(1, std::memory_order_relaxed)) < parts.size();) body(parts[k]);
+        } catch (...) {
+            if (!failed.test_and_set()) thrown = std::current_exception();
+        }
+        within = outer;
+    };
+    {
+        const int most = within ? 1 : std::min(4, tbb::this_task_arena::max_concurrency());
+        std::vector<std::jthread> others;
+        for (int k = 1; k < most; ++k) others.emplace_back(work);
+        work();
     }
-    static void release(char& mark) {
-        if constexpr (kThreadSanitized) __tsan_release(&mark);
-    }
-    mutable char begun_ = 0, ended_ = 0;
-};
+    if (thrown) std::rethrow_exception(thrown);
+}
 
 // Splits `range` (tbb::blocked_range or blocked_range2d) by its grain size and runs `body` for each part.
 template <class Range, class Body, class... Partitioner>
 void parallelRanges(const Range& range, const Body& body, const Partitioner&... partitioner) {
-    const LoopOrder order;
-    tbb::parallel_for(
-        range,
-        [&](const Range& part) {
-            order.begin();
-            body(part);
-            order.end();
-        },
-        partitioner...);
+    if constexpr (kThreadSanitized)
+        onOwnThreads(range, body, sizeof...(Partitioner) > 0);
+    else
+        tbb::parallel_for(range, body, partitioner...);
 }
 
 // Runs `body(k)` for k from `first` to `end` - 1.

@@ -9,7 +9,7 @@
 #include "demos/rivulet/outputs.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
-#include "engine/core/json_parse.h"
+#include "engine/core/json_text.h"
 
 namespace rivulet {
 

@@ -12,7 +12,7 @@
 #include "demos/rivulet/outputs.h"
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
-#include "engine/core/json_parse.h"
+#include "engine/core/json_text.h"
 #include "engine/core/message_line.h"
 #include "fluid/render/backend.h"
 #include "fluid/session/run_stats.h"

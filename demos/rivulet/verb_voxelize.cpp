@@ -11,7 +11,7 @@
 #include "engine/app/capture.h"
 #include "engine/core/file.h"
 #include "engine/core/input_file.h"
-#include "engine/core/json_parse.h"
+#include "engine/core/json_text.h"
 #include "engine/core/message_line.h"
 #include "engine/core/readable_bytes.h"
 #include "engine/scene/import_model.h"

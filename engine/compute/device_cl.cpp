@@ -159,11 +159,11 @@ ClDevice::ClDevice(const ClCandidate& chosen, Opened opened, const ShaderFiles& 
         buildKey_ += part + '\n';
 }
 
-// A driver whose queue cannot be finished may still copy from and to this memory.
+// Waits for a copy that the driver may still make after clFinish has failed. If that fails too, the memory of the copy is never freed.
 void ClDevice::giveUp(const Event& event, std::vector<std::byte>& bytes) {
     const cl_event last = event.get();
     if (last == nullptr || stateOf(event) <= CL_COMPLETE || clWaitForEvents(1, &last) == CL_SUCCESS) return;
-    static_cast<void>(new (std::nothrow) std::vector<std::byte>(std::move(bytes)));  // never freed
+    static_cast<void>(new (std::nothrow) std::vector<std::byte>(std::move(bytes)));
 }
 
 ClDevice::~ClDevice() {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <sstream>
 
 #include "engine/core/exception_error.h"
 #include "engine/core/param_value.h"
@@ -154,19 +153,6 @@ Result<Json::Value> parseJson(std::string_view text, std::string_view file) {
         return badInput(fmt::format("{}: this JSON cannot be read: {}", file, e.what()));
     }
     return root;
-}
-
-std::string jsonText(const Json::Value& value, int digits, std::string_view indent) {
-    Json::StreamWriterBuilder builder;
-    builder["indentation"] = std::string(indent);
-    builder["enableYAMLCompatibility"] = true;  // "key": value
-    builder["precision"] = digits;
-    std::ostringstream text;
-    text.exceptions(std::ios::badbit);
-    const std::unique_ptr<Json::StreamWriter> writer(builder.newStreamWriter());
-    writer->write(value, &text);
-    text << '\n';
-    return text.str();
 }
 
 }  // namespace rivulet

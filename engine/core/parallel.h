@@ -1,5 +1,5 @@
-// Loops over the threads of oneTBB; under ThreadSanitizer over threads that it sees start and end: what a library that it has not compiled
-// orders is hidden from it, and all of that would be reported.
+// Parallel loops on the threads of oneTBB. In builds with ThreadSanitizer, on threads of their own: oneTBB is not compiled with
+// ThreadSanitizer, which therefore cannot see how it synchronizes its threads and would report races that do not exist.
 #pragma once
 
 #include <oneapi/tbb/blocked_range.h>
@@ -19,8 +19,8 @@
 
 namespace rivulet {
 
-// For builds with ThreadSanitizer. `finest`: parts are split by the grain size, not only as far as the threads need. A loop within a part
-// runs on the part's thread.
+// For builds with ThreadSanitizer. `finest`: the range is split down to its grain size; otherwise into about 16 parts. A loop inside a part
+// runs on the thread of that part.
 template <class Range, class Body>
 void onOwnThreads(const Range& range, const Body& body, bool finest) {
     thread_local bool within = false;

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <iterator>
 
-#include "engine/core/json_parse.h"
+#include "engine/core/json_text.h"
 
 namespace rivulet {
 

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <thread>
 
-#include "engine/core/json_parse.h"
+#include "engine/core/json_text.h"
 
 namespace rivulet {
 

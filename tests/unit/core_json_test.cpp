@@ -195,7 +195,8 @@ TEST(Json, RefusesInvalidJson) {
 }
 
 TEST(Json, HostileTextIsRefusedQuickly) {
-    const size_t whole = size_t{60} << 20U, part = size_t{4} << 20U;
+    // Builds with a sanitizer are several times slower: they read a quarter.
+    const size_t whole = size_t{kSanitized ? 15 : 60} << 20U, part = size_t{kSanitized ? 1 : 4} << 20U;
     std::string list = R"({"free": [)";
     for (int i = 0; i < 1000000; ++i) list += "0,";
     const auto start = std::chrono::steady_clock::now();
@@ -207,7 +208,7 @@ TEST(Json, HostileTextIsRefusedQuickly) {
     EXPECT_EQ(errorOf(R"({"name": ")" + std::string(part, 'x') + "\"}"), "");
     EXPECT_EQ(errorOf("{\"" + std::string(part, 'k') + "\": 1}"),
               "x.json:1:2: " + std::string(60, 'k') + "... is not a parameter; known here: name, free, fluid, colliders");
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(kSanitized ? 100 : 10));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(Json, TextCutOffAnywhereIsRefusedAndNothingThrows) {

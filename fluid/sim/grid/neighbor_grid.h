@@ -38,8 +38,8 @@ struct PairTraits {
 class NeighborGrid {
   public:
     // `inside`: where particles may be (m); `count`: slots, samples with them. Error: so many cells that memory would not hold them, with
-    // what spacing would fit, unless traits.follows (checkCells() alone, with a `count` that may be too small: without memory or a device);
-    // a periodic axis shorter than 2 h.
+    // the spacing that would fit, unless traits.follows; a periodic axis shorter than 2 h. checkCells() reports the first of these before
+    // anything is allocated; its `count` may be too small.
     static Status checkCells(const Bounds& inside, float h, double count, const PairTraits& traits);
     static Result<NeighborGrid> create(Device& device, const Bounds& inside, float h, uint32_t count, const PairTraits& traits = {});
     NeighborGrid(NeighborGrid&&) noexcept;

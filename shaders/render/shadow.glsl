@@ -7,11 +7,12 @@ uniform vec3 waterAbsorption;   // 1/m
 
 const float kWarp = 40.0;
 
-float litFraction(vec2 moments, float warped, out float mean) {
-    mean = log(max(moments.x, 1.0e-20)) / kWarp;
+// `blocker`: the depth of what shades it, of the mean without its lit part (Yang et al. 2010).
+float litFraction(vec2 moments, float warped, out float blocker) {
     float variance = max(moments.y - moments.x * moments.x, 1.0e-5 * warped * warped);
     float beyond = warped - moments.x;
     float p = beyond <= 0.0 ? 1.0 : variance / (variance + beyond * beyond);
+    blocker = log(p > 0.999 ? warped : max((moments.x - p * warped) / (1.0 - p), 1.0e-20)) / kWarp;
     return smoothstep(0.12, 1.0, p);  // reduces light bleeding
 }
 
@@ -23,10 +24,10 @@ float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
     vec3 at = clip.xyz * 0.5 + 0.5;
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
     float warped = exp(kWarp * clamp(at.z, 0.0, 1.0));
-    float blocker, first;
-    float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, blocker);
-    float sharp = litFraction(texture(shadowSharp, at.xy).xy, warped, first);
-    thickness = max(at.z - first, 0.0) * frame.shadow.z;
+    float blocker, nearest;
+    vec2 narrow = texture(shadowSharp, at.xy).xy;
+    float soft = litFraction(texture(shadowSoft, at.xy).xy, warped, blocker), sharp = litFraction(narrow, warped, nearest);
+    thickness = max(at.z - log(max(narrow.x, 1.0e-20)) / kWarp, 0.0) * frame.shadow.z;
     return mix(sharp, soft, smoothstep(0.0, 0.25, at.z - blocker));  // a shadow is soft far from its caster
 }
 float meshShadow(vec3 posWorld, vec3 normal) {

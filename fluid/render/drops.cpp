@@ -10,18 +10,14 @@ constexpr float kShutter = 1.0F / 250;  // s: what falls fast is drawn out, as o
 }  // namespace
 
 void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FluidLayers& layers) {
-    using gpu::PassContext;
     using gpu::Usage;
     if (d.fluid.dropCount == 0) return;
     const gpu::TextureHandle behind = graph.texture("behind drops", graph.desc(layers.colour));
-    graph.pass("copy scene", {{layers.colour, Usage::copy}}, {{behind, Usage::copy}}, [=](PassContext& c) {
-        const gpu::Texture &from = c.texture(layers.colour), &to = c.texture(behind);
-        glCopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(), from.height(), 1);
-    });
+    copyTexels(graph, "copy scene", layers.colour, behind);
     const gpu::BufferHandle drops = graph.importBuffer("drops", d.fluid.drops, size_t{d.fluid.dropCount} * 2 * sizeof(vec4));
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, {drops, Usage::sampled}, behind, d.depth};
     if (layers.fluidDepth) reads.emplace_back(layers.fluidDepth);
-    graph.pass("drops", reads, {layers.colour}, [=, &programs](PassContext& c) {
+    graph.pass("drops", reads, {layers.colour}, [=, &programs](gpu::PassContext& c) {
         c.drawTo({layers.colour});
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         glEnable(GL_BLEND);

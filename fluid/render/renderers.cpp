@@ -24,6 +24,18 @@ std::vector<gpu::Read> splatReads(const FluidDraw& d) {
     return reads;
 }
 
+// Ids decide which particles represent others.
+float detailOf(const FluidDraw& d) { return d.fluid.id != 0 ? d.look.detail : 0.0F; }
+
+void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle from, gpu::TextureHandle to,
+                const std::function<void()>& done) {
+    graph.pass(name, {{from, gpu::Usage::copy}}, {{to, gpu::Usage::copy}}, [=](gpu::PassContext& c) {
+        const gpu::Texture &a = c.texture(from), &b = c.texture(to);
+        glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);
+        if (done) done();
+    });
+}
+
 gpu::TextureDesc tilesOf(const FrameView& view) {
     return {.width = (view.width + kTilePixels - 1) / kTilePixels,
             .height = (view.height + kTilePixels - 1) / kTilePixels,

@@ -54,6 +54,12 @@ gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs
 
 // The particles' buffers, as a pass that draws splats reads them.
 std::vector<gpu::Read> splatReads(const FluidDraw& draw);
+// Pixels, for particle.glsl; 0: every particle is drawn.
+float detailOf(const FluidDraw& draw);
+
+// Copies a texture to one of the same size and format, and then calls `done` where there is one.
+void copyTexels(gpu::FrameGraph& graph, const char* name, gpu::TextureHandle from, gpu::TextureHandle to,
+                const std::function<void()>& done = {});
 
 // Marks the tiles of the picture that particles touch; later passes run only there.
 gpu::TextureDesc tilesOf(const FrameView& view);

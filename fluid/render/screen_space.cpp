@@ -70,20 +70,9 @@ Drawn drawnOf(const FluidDraw& d) {
 
 void useFrame(const PassContext& c, const FluidDraw& d) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame)); }
 
-// Ids decide which particles represent others.
-float detailOf(const FluidDraw& d) { return d.fluid.id != 0 ? d.look.detail : 0.0F; }
-
 using Kept = std::shared_ptr<KeptPicture>;
 TextureHandle importKept(FrameGraph& graph, const Kept& kept, KeptPicture::Part part) {
     return graph.importTexture("kept", kept->textures[part]);
-}
-
-void copyTexels(FrameGraph& graph, const char* name, TextureHandle from, TextureHandle to, const std::function<void()>& done = {}) {
-    graph.pass(name, {{from, Usage::copy}}, {{to, Usage::copy}}, [=](PassContext& c) {
-        const gpu::Texture &a = c.texture(from), &b = c.texture(to);
-        glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);
-        if (done) done();
-    });
 }
 
 // A texture of the particles in `rows`, those that sleep first in any case, so that sums are rounded alike, drawn by `draw(into, rows,

@@ -109,10 +109,7 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
     if (!water.empty()) d.waterLight = addWaterLight(graph, fluid, d, params.waterProjection);
     if (row.opaque) {  // it draws into the picture itself, and the host's is needed to tell where
         const gpu::TextureHandle own = graph.texture("picture", picture.colour().desc());
-        graph.pass("copy scene", {{d.colour, gpu::Usage::copy}}, {{own, gpu::Usage::copy}}, [from = d.colour, own](gpu::PassContext& c) {
-            const gpu::Texture &a = c.texture(from), &b = c.texture(own);
-            glCopyImageSubData(a.name(), GL_TEXTURE_2D, 0, 0, 0, 0, b.name(), GL_TEXTURE_2D, 0, 0, 0, 0, a.width(), a.height(), 1);
-        });
+        copyTexels(graph, "copy scene", d.colour, own);
         d.colour = own;
     }
     const FluidLayers layers = row.add(graph, fluid, d);

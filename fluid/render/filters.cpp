@@ -49,22 +49,19 @@ Levels levelsOf(const FluidDraw& d, float reach) {
 
 TextureDesc depthDesc(const FluidDraw& d) { return {.width = d.view.width, .height = d.view.height, .format = gpu::Format::r32f}; }
 
-// A filter's pass; the last one puts the spray back and cuts at the box.
+// A filter's pass; the last one cuts at the box.
 template <class Setup>
 TextureHandle addStep(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const FilterRow& own, TextureHandle tiles,
-                      TextureHandle from, TextureHandle spheres, bool final, Setup setup) {
+                      TextureHandle from, bool final, Setup setup) {
     const float huge = 1.0e5F;
     const Bounds box = d.fluid.bounds.empty() ? Bounds{vec3(-huge), vec3(huge)} : d.fluid.bounds;
-    return addTiled(
-        graph, "smooth", programs, d, programs.filter(own, final), tiles, from, depthDesc(d), kNoDepth,
-        [=](Program& p, const PassContext& c) {
-            setup(p);
-            if (!final) return;
-            p.texture("spray", 2, c.texture(spheres));
-            p.set("low", box.min);
-            p.set("high", box.max);
-        },
-        final ? spheres : TextureHandle{});
+    return addTiled(graph, "smooth", programs, d, programs.filter(own, final), tiles, from, depthDesc(d), kNoDepth,
+                    [=](Program& p, const PassContext&) {
+                        setup(p);
+                        if (!final && !own.knowsBox) return;
+                        p.set("low", box.min);
+                        p.set("high", box.max);
+                    });
 }
 
 TextureHandle addNarrowRange(const FilterRow& own, FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles,
@@ -74,7 +71,7 @@ TextureHandle addNarrowRange(const FilterRow& own, FrameGraph& graph, FluidProgr
     TextureHandle depth = spheres;
     for (size_t k = 0; k < levels.steps.size(); ++k) {
         const float step = levels.steps[k];
-        depth = addStep(graph, programs, d, own, tiles, depth, spheres, k + 1 == levels.steps.size(), [=](Program& p) {
+        depth = addStep(graph, programs, d, own, tiles, depth, k + 1 == levels.steps.size(), [=](Program& p) {
             p.set("step_", step * levels.unit);
             p.set("maxStep", step * kUnitPixels);
             p.set("range", f.range);
@@ -89,7 +86,7 @@ TextureHandle addBilateral(const FilterRow& own, FrameGraph& graph, FluidProgram
     const FilterReach f = filterReach(d.look, d.fluid.spacing);
     TextureHandle depth = spheres;
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)})
-        depth = addStep(graph, programs, d, own, tiles, depth, spheres, axis.y == 1, [=](Program& p) {
+        depth = addStep(graph, programs, d, own, tiles, depth, axis.y == 1, [=](Program& p) {
             p.set("axis", axis);
             p.set("reach", f.reach);
             p.set("range", f.range);
@@ -105,7 +102,7 @@ TextureHandle addCurvatureFlow(const FilterRow& own, FrameGraph& graph, FluidPro
     TextureHandle depth = spheres;
     for (size_t k = 0; k < 2 * levels.steps.size(); ++k) {  // each twice: a step flows half as far as a level smooths
         const float step = levels.steps[k / 2];
-        depth = addStep(graph, programs, d, own, tiles, depth, spheres, k + 1 == 2 * levels.steps.size(), [=](Program& p) {
+        depth = addStep(graph, programs, d, own, tiles, depth, k + 1 == 2 * levels.steps.size(), [=](Program& p) {
             p.set("step_", step * levels.unit);
             p.set("maxStep", step * kUnitPixels);
             p.set("range", f.range);
@@ -117,12 +114,12 @@ TextureHandle addCurvatureFlow(const FilterRow& own, FrameGraph& graph, FluidPro
 // The spheres as they are: what the others begin with.
 TextureHandle addNone(const FilterRow& own, FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, TextureHandle tiles,
                       TextureHandle spheres) {
-    return addStep(graph, programs, d, own, tiles, spheres, spheres, true, [](Program&) {});
+    return addStep(graph, programs, d, own, tiles, spheres, true, [](Program&) {});
 }
 
 constexpr FilterRow kRows[] = {
     {"narrow_range", "treats depths near a straight line as one surface (Truong & Yuksel 2018), in levels with gaps between samples",
-     "screen_space/narrow_range.frag", true, addNarrowRange},
+     "screen_space/narrow_range.frag", true, addNarrowRange, true},
     {"bilateral",
      "the thesis's filter, weighted by distance in the picture and in depth (Tomasi & Manduchi 1998), one axis after the other",
      "screen_space/bilateral.frag", true, addBilateral},

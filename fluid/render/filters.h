@@ -14,10 +14,10 @@ struct FilterRow {
     const char* doc;
     const char* shader;  // of its passes, under shaders/; includes filter.glsl and is compiled with LAST defined for the last pass
     bool smooths;        // false: one pass, which leaves the depth as it is
-    // `own`: this row. `spheres`: rg32f, depth of the bulk and of the spray, m. Returns the depth of the surface: r32f, m, 1e6 where there
-    // is none.
+    // `own`: this row. `spheres`: r32f, their depth, m. Returns the depth of the surface: r32f, m, 1e6 where there is none.
     gpu::TextureHandle (*add)(const FilterRow& own, gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw,
                               gpu::TextureHandle tiles, gpu::TextureHandle spheres);
+    bool knowsBox = false;  // all of its passes read the box of the water, not only the last one
 };
 const Table<FilterRow>& filters();
 const FilterRow& unfiltered();  // the row that does not smooth
@@ -32,12 +32,9 @@ FilterReach filterReach(const FluidLook& look, float spacing);
 // texture unit 0 holds the source, unit 1 the tiles.
 template <class Setup>
 gpu::TextureHandle addTiled(gpu::FrameGraph& graph, const char* name, FluidPrograms& programs, const FluidDraw& d, gpu::Program& program,
-                            gpu::TextureHandle tiles, gpu::TextureHandle from, const gpu::TextureDesc& desc, float empty, Setup setup,
-                            gpu::TextureHandle second = {}) {
+                            gpu::TextureHandle tiles, gpu::TextureHandle from, const gpu::TextureDesc& desc, float empty, Setup setup) {
     const gpu::TextureHandle to = graph.texture(name, desc);
-    std::vector<gpu::Read> reads = {{d.frame, gpu::Usage::uniform}, tiles, from};
-    if (second) reads.emplace_back(second);
-    graph.pass(name, reads, {to}, [=, &programs, &program](gpu::PassContext& c) {
+    graph.pass(name, {{d.frame, gpu::Usage::uniform}, tiles, from}, {to}, [=, &programs, &program](gpu::PassContext& c) {
         c.drawTo({to}).clearColour(vec4(empty));
         glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
         program.use();

@@ -27,8 +27,9 @@ struct FluidView {
     // others the first `awake` hold all that is drawn. `asleepHalf`: of those that sleep, as `half`. 0 and null: none is known to sleep.
     uint32_t asleep = 0, awake = 0, asleepHalf = 0;
     std::shared_ptr<const void> sleepers = {};
-    float radius = 0.01F;   // m, of a drawn sphere
-    float spacing = 0.02F;  // m
+    float radius = 0.01F;         // m, of a drawn sphere
+    float spacing = 0.02F;        // m
+    float exposure = 1.0F / 120;  // s, simulated, that a picture is exposed: half a frame at 60 Hz, as film is
     // Spray, foam and bubbles: GL buffer names, as ParticleView::foamDrawn and foamVelocity.
     std::array<unsigned, 2> foam = {};
     uint32_t foamCount = 0;

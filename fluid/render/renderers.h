@@ -69,7 +69,8 @@ gpu::TextureHandle addTiles(gpu::FrameGraph& graph, FluidPrograms& programs, con
 struct WaterSurface {
     gpu::TextureHandle tiles;      // of addTiles
     gpu::TextureHandle depth;      // r32f, m, 1e6 where there is none
-    gpu::TextureHandle thickness;  // m: x of water, y of that as spray
+    gpu::TextureHandle thickness;  // m
+    gpu::TextureHandle sharp;      // m, the same before its blur; not read if there are normals
     gpu::TextureHandle normals;    // xyz view space, w m of water instead of thickness.x; empty: they come from the depth
     gpu::TextureHandle fades;      // absorption of red, green and blue; empty: particles are alike
 };
@@ -86,6 +87,9 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
 // before that object; `rest` are the others, to be drawn after the water. `all` where layers.fluidDepth is empty.
 enum class FoamSide { all, glazed, rest };
 void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers, FoamSide side);
+
+// Draws particles that have left the body of the water into layers.colour, as droplets.
+void addSpray(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);
 
 // Draws the drops in the air into layers.colour.
 void addDrops(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const FluidLayers& layers);

@@ -94,9 +94,9 @@ TextureHandle addKept(FrameGraph& graph, const char* name, const TextureDesc& de
     return all;
 }
 
-TextureDesc sphereDepthDesc(const FluidDraw& d) { return {.width = d.view.width, .height = d.view.height, .format = Format::rg32f}; }
+TextureDesc sphereDepthDesc(const FluidDraw& d) { return {.width = d.view.width, .height = d.view.height, .format = Format::r32f}; }
 
-// x: depth of the bulk, y: of the spray; m. `prepare`: first draws occluders for spheres deep in the water; this pays off if spheres cover
+// Depth of the spheres, m. `prepare`: first draws occluders for spheres deep in the water; this pays off if spheres cover
 // many pixels.
 TextureHandle addSphereDepth(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, bool prepare, const Kept& kept) {
     TextureDesc size = sphereDepthDesc(d);
@@ -201,7 +201,7 @@ struct ThicknessSize {
 };
 ThicknessSize thicknessSize(const FluidDraw& d) {
     const int scale = d.look.fast ? kThicknessScaleFast : kThicknessScale;
-    TextureDesc size{.width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::rg16f};
+    TextureDesc size{.width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::r16f};
     TextureDesc ink = size;
     ink.format = Format::rgba16f;
     return {scale, size, ink};
@@ -377,6 +377,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         thickness = to.thickness;
         depths = to.depths;
     }
+    const TextureHandle sharp = thickness;
     const int reduced = scale;
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
@@ -386,7 +387,7 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         thickness = addTiled(graph, "thickness blur", programs, d, programs["blur"], tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addTiled(graph, "ink blur", programs, d, programs["blur"], tiles, depths, inkSize, 0.0F, setup);
     }
-    return {.tiles = tiles, .depth = {}, .thickness = thickness, .normals = {}, .fades = depths};
+    return {.tiles = tiles, .depth = {}, .thickness = thickness, .sharp = sharp, .normals = {}, .fades = depths};
 }
 
 TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
@@ -446,7 +447,7 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, water.tiles,   d.colour,     d.depth,     water.depth,
                                     water.thickness,           d.shadowSharp, d.shadowSoft, d.waterLight};
     if (ink) reads.emplace_back(water.fades);
-    if (water.normals) reads.emplace_back(water.normals);
+    reads.emplace_back(water.normals ? water.normals : water.sharp);
     if (d.look.view != WaterView::water) {
         addView(graph, programs, d, {water.tiles, water.depth, water.thickness, colour});
         return {colour, water.depth};
@@ -460,13 +461,17 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
         p.texture("sceneDepth", 1, c.texture(d.depth));
         p.texture("fluidDepth", 2, c.texture(water.depth));
         p.texture("thickness", 3, c.texture(water.thickness));
-        if (water.normals) p.texture("normals", 9, c.texture(water.normals));
+        if (water.normals)
+            p.texture("normals", 9, c.texture(water.normals));
+        else
+            p.texture("sharp", 9, c.texture(water.sharp));
         if (ink) p.texture("depths", 8, c.texture(water.fades));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
         p.texture("waterLight", 6, c.texture(d.waterLight));
         p.set("waterAbsorption", d.look.absorption + d.look.scattering);
         p.set("radius", d.fluid.radius);
+        if (!water.normals) p.set("spacing", d.fluid.spacing);
         if (!ink) p.set("absorption", d.look.absorption);
         if (!ink) p.set("scattering", d.look.scattering);
         p.set("refractiveIndex", d.look.refractiveIndex);
@@ -513,7 +518,9 @@ FluidLayers addScreenSpace(FrameGraph& graph, FluidPrograms& programs, const Flu
     }
     WaterSurface water = addThickness(graph, programs, d, tiles, kept);
     water.depth = depth;
-    return addShade(graph, programs, d, water);
+    const FluidLayers layers = addShade(graph, programs, d, water);
+    if (d.look.view == WaterView::water) addSpray(graph, programs, d, layers);
+    return layers;
 }
 
 RendererRow screenSpaceRenderer() {

@@ -255,6 +255,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.view = view;
     draw.fluid = fluid;
     draw.look = *look;
+    draw.fluid.exposure *= settings.timeScale;
     if (look->fast) draw.fluid.ellipsoids = {};
     draw.frame = frame;
     if (look->fast) draw.coarse = graph.importBuffer("coarse frame", coarse_.name(), coarse_.bytes());

@@ -1,9 +1,6 @@
 // Shared by the depth filters: the source, and with LAST the final step of each. Needs frame.glsl.
 uniform sampler2D source;  // m
-#if defined(LAST)
-uniform sampler2D spray;   // y, m: spray is not filtered
 uniform vec3 low, high;    // m, world: the box of the water
-#endif
 layout(location = 0) out float depth;
 
 ivec2 here, last;
@@ -17,7 +14,6 @@ float begin() {
 void end(float filtered) {
     depth = filtered;
 #if defined(LAST)
-    depth = min(depth, texelFetch(spray, here, 0).g);
     // Spheres extend slightly out of the box. Clipped, the water is flat at its walls.
     vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy));
     vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;

@@ -2,6 +2,7 @@
 // The depths of the surface are selected as in the narrow-range filter (Truong and Yuksel 2018): depths far in front are ignored,
 // depths far behind are clamped to near ones, so that surfaces curve at their edges and do not merge. Opposite neighbours are tested
 // together, by the deviation of the three depths from a straight line: a steep surface is smoothed as much as a level one.
+// At the walls of the box, where the water is cut off, it does not curve.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/filter.glsl"
 uniform float step_;    // m
@@ -14,8 +15,12 @@ void addPair(ivec2 away, float w) {
     float a = at(here + away), b = at(here - away);
     float off = a + b - 2.0 * z;
     float near = min(a, b);
-    float pulled = near > z + range ? 2.0 * (z + bend) : 2.0 * z + bend;
-    float pair = off > range ? pulled : a + b;
+    float pair = a + b;
+    if (off > range) {
+        vec3 place = frame.cameraPos.xyz + directionToWorld(viewRay(gl_FragCoord.xy)) * z, wall = min(place - low, high - place);
+        float curved = min(min(wall.x, wall.y), wall.z) < 5.0 * bend ? 0.0 : bend;
+        pair = 2.0 * z + curved * (near > z + range ? 2.0 : 1.0);
+    }
     sum += w * (off < -range ? 2.0 * z : pair);
     weights += 2.0 * w;
 }

@@ -1,5 +1,5 @@
 // A square inside the sphere, facing the camera: objects behind it are behind the near side of the sphere too. It is drawn first, depth only
-// and without fragment shading, and saves shading spheres deep in the water. Spray has none, because the water's surface continues behind it.
+// and without fragment shading, and saves shading spheres deep in the water. What has become droplets has none.
 // For a sphere that the near plane cuts, the square is drawn just behind that plane.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/particle.glsl"
@@ -12,6 +12,7 @@ void main() {
 #else
     float inner = drawnRadius(particle);
 #endif
+    inner *= 1.0 - leaving(particle);
     c.xy += (corner() - 0.5) * 1.40 * inner;  // half the side: 0.70 radii < 1 / sqrt(2)
-    gl_Position = lost(particle) || spray(particle) > 0.5 || -c.z < frame.planes.x * 1.01 ? kNowhere : frame.projection * vec4(c, 1.0);
+    gl_Position = lost(particle) || inner <= 0.0 || -c.z < frame.planes.x * 1.01 ? kNowhere : frame.projection * vec4(c, 1.0);
 }

@@ -16,8 +16,10 @@ const float kOverlap = 1.35;  // radii: drawn so large, they cover the water wit
 // described by Yu and Turk 2013, and is reversed. Then a level surface, after filtering, is half a spacing above its topmost
 // particles, where their volume ends: within 0.1 radii, seen from any angle, for radii of 0.6 spacings.
 const float kShrunk = 0.77;
-// Spray is finer than the particles that represent it: those with few neighbours are drawn smaller.
+// Spray is finer than the particles that represent it: those with few neighbours are drawn smaller, and as they leave the body of the water
+// they become droplets (spray.vert). `leaving`: how far they have, 0 to 1; at 1 nothing of them is in the body.
 float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
+float leaving(vec4 p) { return smoothstep(0.1, 0.5, spray(p)); }
 float ownRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
 
 // Level of detail by size on the screen: of particles whose radius is less than `detail` pixels, a share is drawn, with so large a radius that

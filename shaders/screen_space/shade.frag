@@ -6,9 +6,12 @@
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;   // window depth
 uniform sampler2D fluidDepth;   // m
-uniform sampler2D thickness;    // m: of water, of that as spray
+uniform sampler2D thickness;    // m
 #if defined(NORMALS)
 uniform sampler2D normals;      // of the surface, view space, unit; w: m of water, instead of thickness. Without it normals come from the depth
+#else
+uniform sampler2D sharp;        // thickness before its blur, m
+uniform float spacing;          // m
 #endif
 uniform float radius;           // m
 uniform vec3 absorption;        // 1/m
@@ -20,11 +23,21 @@ uniform float refractiveIndex;
 uniform int mirrorSteps;        // steps of screen-space reflection; 0: none
 layout(location = 0) out vec4 colour;
 
-vec2 waterAt(vec2 uv) {
+float waterAt(vec2 uv) {
 #if defined(NORMALS)
-    return vec2(textureLod(normals, uv, 0.0).w, textureLod(thickness, uv, 0.0).g);
+    return textureLod(normals, uv, 0.0).w;
 #else
-    return texture(thickness, uv).rg;
+    return texture(thickness, uv).r;
+#endif
+}
+// The share of the pixel that is covered: 0 outside of the outline, which is where the water is as thick as a ball of its volume near its rim.
+float coverage(float water) {
+#if defined(NORMALS)
+    return smoothstep(0.0, 0.5 * radius, water);
+#else
+    const float kOutline = 0.3;  // spacings
+    float thick = texture(sharp, gl_FragCoord.xy * frame.viewport.zw).r - kOutline * spacing;
+    return clamp(0.5 + thick / max(length(vec2(dFdx(thick), dFdy(thick))), 1.0e-6), 0.0, 1.0);
 #endif
 }
 float surfaceDepth(ivec2 p) { return texelFetch(fluidDepth, clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r; }
@@ -67,15 +80,18 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
         low = t;
         t *= 1.5;
     }
-    for (int k = high > 0.0 ? 3 : 0; k > 0; --k) {
+    for (int k = high > 0.0 ? 5 : 0; k > 0; --k) {
         float middle = 0.5 * (low + high);
         vec3 p = from + dir * middle;
         if (-p.z > depthOfWindow(textureLod(sceneDepth, pixelOf(p) * frame.viewport.zw, 0.0).r)) high = middle; else low = middle;
     }
     if (high == 0.0) return vec4(0.0);
-    vec2 uv = pixelOf(from + dir * high) * frame.viewport.zw;
+    vec3 p = from + dir * high;
+    vec2 uv = pixelOf(p) * frame.viewport.zw;
     vec2 edge = smoothstep(vec2(0.5), vec2(0.42), abs(uv - 0.5));
-    return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y);
+    // Far behind what is seen there, the ray has not met it but passed behind it.
+    float met = 1.0 - smoothstep(0.5 * radius, 0.5 * radius + 0.1 * high, -p.z - depthOfWindow(textureLod(sceneDepth, uv, 0.0).r));
+    return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y * met);
 }
 
 // The sun's glint: GGX (Walter et al. 2007) of water whose normal turns by `turn` from pixel to pixel. The sun is a disc and the water has
@@ -93,9 +109,10 @@ vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 light) {
 
 // For an eye inside the water: the point where the ray through a pixel leaves it, m, view space.
 vec3 wayOut(vec2 pixel) { return normalize(viewRay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
-// The picture for an eye in the water: the scene in the water directly, the scene above through Snell's window, and around the window the
-// reflected colour `deep` of the water. `scene`: m along the ray.
-vec3 fromWithin(vec3 dir, float through, float scene, vec3 straight, vec3 deep) {
+// The picture for an eye in the water: the scene in the water directly, the scene above through Snell's window, and around the window what
+// the surface mirrors. `scene`: m along the ray; `passed`: the share of light that comes as far as the surface; `deep`: the colour of very deep
+// water.
+vec3 fromWithin(vec3 dir, float through, float scene, vec3 straight, vec3 passed, vec3 deep) {
     // The surface is taken as level except for its slope by thickness, which is blurred and gets a small weight. A view from above, or
     // through a wall of the box, is not refracted.
     const float apart = 12.0;  // pixels
@@ -106,14 +123,17 @@ vec3 fromWithin(vec3 dir, float through, float scene, vec3 straight, vec3 deep) 
     waved *= sign(dot(waved, level)) / max(length(waved), 1.0e-9);
     vec3 outwards = normalize(level + 0.12 * (waved - dot(waved, level) * level));
     float leaves = smoothstep(1.0, 0.85, through / max(scene, 1.0e-4)) * smoothstep(0.03, 0.12, dot(dir, level));
-    vec3 beyond = refract(dir, -outwards, refractiveIndex);
-    vec3 above = deep;
+    vec3 beyond = refract(dir, -outwards, refractiveIndex), back = reflect(dir, outwards);
+    // What is mirrored is taken to be as far below the surface as the eye, and lit through as much water.
+    vec4 below = leaves > 0.0 ? mirroredScene(dir * through, back, 12) : vec4(0.0);
+    vec3 mirrored = mix(deep, mix(environment(directionToWorld(back), 0.2) * passed, below.rgb, below.a), passed);
+    vec3 above = mirrored;
     if (dot(beyond, beyond) > 0.0) {
         vec3 met = dir * through + beyond * clamp(scene - through, 0.0, 60.0 * radius);
         vec2 uv = clamp(pixelOf(met) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
         bool seen = met.z < -frame.planes.x && depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < 0.5 * frame.planes.y;
         vec3 window = seen ? textureLod(sceneColour, uv, 0.0).rgb : environment(directionToWorld(beyond), 0.1);
-        above = mix(window, deep, fresnel(clamp(dot(beyond, outwards), 0.02, 1.0), refractiveIndex));
+        above = mix(window, mirrored, fresnel(clamp(dot(beyond, outwards), 0.02, 1.0), refractiveIndex));
     }
     return mix(straight, above, leaves);
 }
@@ -121,6 +141,7 @@ vec3 fromWithin(vec3 dir, float through, float scene, vec3 straight, vec3 deep) 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     colour = texelFetch(sceneColour, here, 0);
+    float water = waterAt(gl_FragCoord.xy * frame.viewport.zw), covered = coverage(water);
     float depth = texelFetch(fluidDepth, here, 0).r;
     if (depth >= kFar) return;
     float behind = depthOfWindow(texelFetch(sceneDepth, here, 0).r);
@@ -140,8 +161,7 @@ void main() {
 
     // Behind: along the refracted ray as far as the water is thick, then on through the air, turned halfway back: a slab would turn it back
     // wholly, a prism not at all.
-    vec2 water = waterAt(gl_FragCoord.xy * frame.viewport.zw);
-    float through = water.x;
+    float through = water;
 #if defined(INK)
     vec4 fades = texture(depths, gl_FragCoord.xy * frame.viewport.zw);
 #endif
@@ -155,7 +175,7 @@ void main() {
         vec2 inside = clamp(uv, frame.viewport.zw, 1.0 - frame.viewport.zw);
         if (depthOfWindow(texture(sceneDepth, inside).r) > depth) {  // else an object in front of the water would be visible in it
             back = texture(sceneColour, inside).rgb;
-            through = mix(through, waterAt(inside).x, 0.5);
+            through = mix(through, waterAt(inside), 0.5);
 #if defined(INK)
             fades = mix(fades, texture(depths, inside), 0.5);
 #endif
@@ -186,10 +206,9 @@ void main() {
     vec3 within = vec3(0.0);
     if (under > 0.0) {
         vec3 deep = layer(40.0 * absorbed, 40.0 * thrown, diffuse) * glow;  // backscatter of very deep liquid
-        within = fromWithin(-toEye, water.x, behind * length(p) / depth, texelFetch(sceneColour, here, 0).rgb, deep) * passed + scattered;
+        vec3 straight = texelFetch(sceneColour, here, 0).rgb;
+        within = fromWithin(-toEye, water, behind * length(p) / depth, straight, passed, deep) * passed + scattered;
     }
-    float white = 1.0 - exp(-water.y * 0.24 / radius);
-    transmitted = mix(transmitted, 0.9 * (ambient(nWorld) + frame.lightColour.rgb * (lit * 0.3183099 * (0.35 + 0.65 * max(dot(nWorld, frame.lightDir.xyz), 0.0)))), 0.75 * white);
 
     // Where the normal varies within a pixel, the reflection is blurred, to avoid aliasing.
     float rough = sqrt(min(0.02 + 0.35 * dot(turn, turn), 0.2));
@@ -201,7 +220,7 @@ void main() {
     reflected = mix(reflected, met.rgb, met.a);
     vec3 sun = glint(nWorld, eyeWorld, turn, fresnel(max(dot(eyeWorld, normalize(eyeWorld + frame.lightDir.xyz)), 0.02), refractiveIndex), frame.lightColour.rgb * lit) *
                smoothstep(0.0, 0.8 * radius, through);
-    // At contact with a solid, at the rim of a film and at its outline, the water is faded to avoid hard lines.
-    float there = smoothstep(0.0, 1.2 * radius, behind - depth) * smoothstep(0.0, 0.5 * radius, water.x);
+    // At contact with a solid it fades, to avoid a hard line.
+    float there = smoothstep(0.0, 0.4 * radius, behind - depth) * covered;
     colour.rgb = mix(mix(colour.rgb, mix(transmitted, reflected, mirror) + sun, there), within, under);
 }

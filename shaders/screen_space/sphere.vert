@@ -5,7 +5,6 @@ ROWS(3, absorptions)         // see FluidView
 uniform vec4 ownAbsorption;  // 1/m; w: scattering
 flat out vec4 ink;           // 1/m; w: scattering
 #endif
-flat out float sprayed;
 flat out float represented;  // particles by this one
 flat out vec4 centreView;  // w: radius, of an ellipsoid that of the ball of its volume
 #if defined(ELLIPSOIDS)
@@ -13,6 +12,8 @@ flat out mat3 shapeView;  // 1/m^2: 1 on the surface
 #endif
 void main() {
     Splat s = splatOf(particle);
+    float body = 1.0 - leaving(particle);
+    s.squares *= body * body;
     centreView = vec4(s.centre, pow(determinant(s.squares), 1.0 / 6.0));
 #if defined(ELLIPSOIDS)
     shapeView = inverse(s.squares);
@@ -21,7 +22,6 @@ void main() {
     vec4 absorption = texelFetch(absorptions, row());
     ink = absorption.w < 0.0 ? vec4(absorption.xyz, -1.0 - absorption.w) : absorption + ownAbsorption;
 #endif
-    sprayed = spray(particle);
     represented = represents;
-    gl_Position = lost(particle) ? kNowhere : splatQuad(s);
+    gl_Position = lost(particle) || body < 0.02 ? kNowhere : splatQuad(s);
 }

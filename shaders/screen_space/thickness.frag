@@ -1,4 +1,4 @@
-// Thickness of water along the line of sight, in front of the scene, and the part that is spray; blended by addition. At 1 / `scale` of the resolution.
+// Thickness of water along the line of sight, in front of the scene; blended by addition. At 1 / `scale` of the resolution.
 #include "shaders/render/frame.glsl"
 #include "shaders/screen_space/sphere.glsl"
 uniform float spacing;      // m
@@ -6,12 +6,11 @@ uniform float standsFor;    // number of particles that a drawn one represents
 uniform int scale;
 uniform sampler2D sceneDepth;
 flat in vec4 centreView;
-flat in float sprayed;
 flat in float represented;  // particles by this one
 #if defined(ELLIPSOIDS)
 flat in mat3 shapeView;
 #endif
-layout(location = 0) out vec2 thickness;
+layout(location = 0) out float thickness;
 #if defined(INK)
 flat in vec4 ink;                  // 1/m; w: scattering
 layout(location = 1) out vec4 depths;  // optical depth of red, green and blue: e^-depth is transmitted; w: by scattering
@@ -28,7 +27,7 @@ void main() {
     float r = centreView.w / spacing;
     float share = min(0.2387324 * standsFor * represented / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
     float water = share * clamp(scene - front, 0.0, through);
-    thickness = vec2(water, water * sprayed);
+    thickness = water;
 #if defined(INK)
     depths = min(ink * water, vec4(600.0));  // a half float holds the sum of a hundred such
 #endif

@@ -1,12 +1,10 @@
 // Marks the blocks of 8 x 8 texels of the spheres' depth that contain water.
-uniform sampler2D depths;  // x: of the bulk, y: of the spray, m
+uniform sampler2D depths;  // m
 layout(location = 0) out float water;
 void main() {
     ivec2 first = 8 * ivec2(gl_FragCoord.xy), end = min(first + 8, textureSize(depths, 0));
     water = 0.0;
     for (int y = first.y; y < end.y && water == 0.0; ++y)
-        for (int x = first.x; x < end.x && water == 0.0; ++x) {
-            vec2 z = texelFetch(depths, ivec2(x, y), 0).rg;
-            if (min(z.x, z.y) < 1.0e5) water = 1.0;
-        }
+        for (int x = first.x; x < end.x && water == 0.0; ++x)
+            if (texelFetch(depths, ivec2(x, y), 0).r < 1.0e5) water = 1.0;
 }

@@ -190,14 +190,14 @@ TEST_F(LookKept, eachViewKeepsItsOwn) {
 TEST_F(LookKept, noSplatOfASleeperIsDrawnAgain) {
     setAwake(vec3(0.5F, 0.3F, 0.5F));
     const FluidView plain = water(true);
-    // Occluders, depth, thickness, light; the rest is for the picture.
-    const uint64_t all = splatsOf(plain), others = all - 4 * plain.count;
+    // Occluders, depth, thickness, light, spray; the rest is for the picture.
+    const uint64_t all = splatsOf(plain), others = all - 5 * plain.count;
     ASSERT_LT(others, plain.count);
     constexpr uint64_t kTiles = 200;  // of the pass that looks for a change of the scene
     const FluidView some = water();
     for (int k = 0; k < 3; ++k) (void)shot(some);
-    EXPECT_LE(splatsOf(some), others + 4 * some.awake + kTiles);
-    EXPECT_GE(splatsOf(some), 4 * some.awake);
+    EXPECT_LE(splatsOf(some), others + 5 * some.awake + kTiles);
+    EXPECT_GE(splatsOf(some), 5 * some.awake);
     setAwake(vec3(0.0F), 0);
     const FluidView still = water();
     for (int k = 0; k < 3; ++k) (void)shot(still);

@@ -88,14 +88,44 @@ class LookSurface : public LookTest {
     std::vector<vec4> radiance;  // linear
 };
 
-TEST_F(LookSurface, aDropIsAnExactSphereAlsoAtThePicturesEdge) {
+// Of its volume, without a part in the surface: particles of a millimetre are drops, larger ones spray of droplets around their place.
+TEST_F(LookSurface, aParticleByItselfIsADropOrSpray) {
+    for (const float spacing : {0.001F, 0.2F}) {
+        camera.position = vec3(0.0F, 0.0F, 10 * spacing);
+        camera.nearPlane = spacing;
+        TestParticles drop;
+        drop.spacing = spacing;
+        drop.add(vec3(0.0F), 0.3F);
+        draw(drop);
+        int covered = 0;
+        float outermost = 0.0F;  // spacings
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                EXPECT_EQ(at(x, y), kNothing);
+                const vec4 value = radiance[static_cast<size_t>(y) * width + static_cast<size_t>(x)];
+                if (glm::length(vec3(value) - 0.5F) < 0.01F) continue;
+                ++covered;
+                const vec2 way(ray(static_cast<float>(x), static_cast<float>(y)));
+                outermost = std::max(outermost, glm::length(way) * camera.position.z / spacing);
+            }
+        EXPECT_GT(covered, 60) << spacing;
+        const float pixel = frame.ray.x * camera.position.z / spacing;
+        if (spacing < 0.01F)
+            EXPECT_NEAR(outermost, 0.62F, 1.5F * pixel);  // the ball of a particle's volume
+        else
+            EXPECT_LT(outermost, 2.0F);
+    }
+}
+
+TEST_F(LookSurface, aParticleOfTheBodyIsAnExactSphereAlsoAtThePicturesEdge) {
+    filter = "none";
     for (const vec3& centre : {vec3(0.0F), vec3(0.9F, 0.5F, 0.2F), vec3(-1.0F, -0.4F, -0.3F)}) {
         TestParticles drop;
         drop.spacing = 0.2F;
-        drop.add(centre, 0.3F);  // alone: drawn at half the radius, unsmoothed
+        drop.add(centre, 1.0F);
         draw(drop);
         const vec3 centreView = centre - camera.position;
-        const float radius = 0.5F * 0.6F * drop.spacing;
+        const float radius = 1.35F * 0.6F * drop.spacing;
         int hit = 0;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {

@@ -1,0 +1,83 @@
+// Droplets of one particle: spheres of the liquid, drawn out along their paths, and the mist around them.
+#include "shaders/render/frame.glsl"
+#include "shaders/render/environment.glsl"
+#include "shaders/render/shadow.glsl"
+uniform sampler2D sceneColour;
+uniform sampler2D sceneDepth;  // window depth
+uniform sampler2D waterDepth;  // m
+uniform float refractiveIndex;
+uniform float spacing;         // m
+#if defined(INK)
+flat in vec4 ink;              // 1/m; w: scattering
+#else
+uniform vec4 ownAbsorption;    // 1/m; w: scattering
+#endif
+const int kDroplets = 7;
+flat in vec4 droplet[kDroplets];
+flat in float share[kDroplets];
+flat in vec3 centreView;
+flat in vec3 alongView;
+flat in float haze;
+flat in vec2 reach;
+in vec2 place;
+layout(location = 0) out vec4 colour;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    float depth = -centreView.z, pixel = depth * frame.ray.x;
+    // Within half a spacing of what hides it, it fades.
+    float hider = min(depthOfWindow(texelFetch(sceneDepth, here, 0).r), texelFetch(waterDepth, here, 0).r);
+    float there = smoothstep(-0.25 * spacing, 0.25 * spacing, hider - depth);
+    if (there <= 0.0) discard;
+    float open = 1.0, nearest = 1.0, radius = 1.0, bright = 0.0;
+    vec2 outwards = vec2(0.0);
+    for (int k = 0; k < kDroplets; ++k) {
+        vec4 drop = droplet[k];
+        vec2 off = place - drop.xy;
+        off = vec2(sign(off.x) * max(abs(off.x) - drop.z, 0.0), off.y) / drop.w;
+        float d = length(off), soft = pixel / drop.w;
+        if (d < nearest) {
+            nearest = d;
+            outwards = off;
+            bright = share[k];
+            radius = drop.w;
+        }
+        open *= 1.0 - share[k] * (1.0 - smoothstep(1.0 - 0.7 * soft, 1.0 + 0.7 * soft, d));
+    }
+    float near = max(1.0 - dot(place / reach, place / reach), 0.0), mist = haze * near * near;
+    float cover = 1.0 - open, all = 1.0 - open * (1.0 - mist);
+    if (all < 0.002) discard;
+
+    vec3 toEye = -normalize(centreView), across = cross(toEye, alongView);
+    float d = min(nearest, 0.98), nv = sqrt(1.0 - d * d);
+    vec3 side = alongView * outwards.x + across * outwards.y;
+    vec3 n = normalize(side * (d / max(nearest, 1.0e-4)) + toEye * nv);
+    // A sphere refracts a ray twice by the same angle, towards its centre: what is behind appears upside down.
+    float turn = 2.0 * (asin(d) - asin(d / refractiveIndex));
+    vec3 bent = -toEye * cos(turn) - (nearest > 1.0e-4 ? side / nearest : vec3(0.0)) * sin(turn);
+    vec2 uv = clamp(pixelOf(centreView + bent * (4.0 * spacing)) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
+    vec2 inside = smoothstep(vec2(0.5), vec2(0.45), abs(uv - 0.5));
+    // A drop shows all that is around it, and little of what is close behind; what is in front of it is not seen in it.
+    float seen = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < depth ? 0.0 : 0.6 * inside.x * inside.y;
+    vec3 through = mix(environment(directionToWorld(bent), 0.2), textureLod(sceneColour, uv, 0.0).rgb, seen);
+    vec3 world = toWorld(centreView);
+    float lit = meshShadow(world, frame.lightDir.xyz);
+    vec3 sun = frame.lightColour.rgb * lit;
+    vec3 white = ambient(directionToWorld(n)) + sun * (0.3183099 * (0.5 + 0.5 * dot(directionToWorld(n), frame.lightDir.xyz)));
+#if defined(INK)
+    vec4 own = ink;
+#else
+    vec4 own = ownAbsorption;
+#endif
+    float length_ = 1.33 * radius;
+    vec3 passed = exp(-(own.rgb + own.w) * length_), thrown = vec3(1.0 - exp(-own.w * length_)) * exp(-own.rgb * length_);
+    float base = (refractiveIndex - 1.0) / (refractiveIndex + 1.0);
+    float mirror = mix(base * base, 1.0, pow(1.0 - nv, 5.0));  // Schlick 1994
+    vec3 mirrored = environment(directionToWorld(reflect(-toEye, n)), 0.2);
+    vec3 half_ = normalize(toEye + transpose(mat3(frame.inverseView)) * frame.lightDir.xyz);
+    // A highlight is drawn out along the path, and only of a drop of several pixels is it a spot of its own.
+    float glint = 0.5 * smoothstep(0.92, 0.995, dot(n, half_)) * smoothstep(0.8, 4.0, radius / pixel) * bright;
+    vec3 drop = mix(through * passed + thrown * white, mirrored, mirror) + sun * glint;
+    vec3 cloud = 0.9 * (ambient(vec3(0.0, 1.0, 0.0)) + sun * 0.25);
+    colour = vec4(mix(cloud, drop, cover / max(cover + (1.0 - cover) * mist, 1.0e-4)), all * there);
+}

@@ -20,6 +20,7 @@ void addFoam(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d
         gpu::Program& p = programs[layers.fluidDepth ? "foam over water" : "foam"];
         p.use();
         p.set("radius", 0.15F * d.fluid.spacing);
+        p.set("shutter", d.fluid.exposure);
         p.texture("sceneDepth", 0, c.texture(d.depth));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));

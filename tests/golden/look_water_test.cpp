@@ -69,17 +69,19 @@ TEST_F(LookWater, fromBelowTheSurfaceIsAMirrorAboutSnellsWindow) {
     settings.look.absorption = vec3(0.5F);
     settings.background.zenith = vec3(3.0F);
     settings.background.horizon = vec3(3.0F);
+    settings.background.floor = vec3(0.5F, 0.01F, 0.01F);  // which is what the surface mirrors
     camera.fieldOfView = 110.0F;
     camera.position = vec3(0.5F, 0.25F, 0.5F);
     camera.target = vec3(0.5F, 1.0F, 0.501F);
     camera.setPlanes(Bounds{vec3(0.0F), vec3(1.0F)});
     const std::vector<uint8_t> wet = shot(bounded(pool(0.4F)));
-    const auto brightness = [&](int x, int y) {
+    const auto mean = [&](int x, int y, int channel) {
         int sum = 0;
         for (int dy = -4; dy <= 4; ++dy)
-            for (int dx = -4; dx <= 4; ++dx) sum += at(wet, x + dx, y + dy)[1];
+            for (int dx = -4; dx <= 4; ++dx) sum += at(wet, x + dx, y + dy)[channel];
         return sum / 81.0;
     };
+    const auto brightness = [&](int x, int y) { return mean(x, y, 1); };
     // The picture's half height is 55 degrees, the window's edge asin(1 / 1.333) = 48.6.
     const double scale = 0.5 * kHeight / std::tan(55.0 * double{kPi} / 180.0);
     const auto off = [&](double degrees) { return static_cast<int>(scale * std::tan(degrees * double{kPi} / 180.0)); };
@@ -87,6 +89,8 @@ TEST_F(LookWater, fromBelowTheSurfaceIsAMirrorAboutSnellsWindow) {
     EXPECT_GT(brightness(kWidth / 2 + off(30.0), kHeight / 2), 0.8 * middle);
     EXPECT_LT(brightness(kWidth / 2 + off(57.0), kHeight / 2), 0.8 * middle);
     EXPECT_LT(brightness(kWidth / 2 - off(57.0), kHeight / 2), 0.8 * middle);
+    EXPECT_GT(mean(kWidth / 2 + off(57.0), kHeight / 2, 0), 1.5 * brightness(kWidth / 2 + off(57.0), kHeight / 2));
+    EXPECT_LT(mean(kWidth / 2 + off(30.0), kHeight / 2, 0), 1.2 * brightness(kWidth / 2 + off(30.0), kHeight / 2));
 }
 
 TEST_F(LookWater, zeroOneAndAMillionParticlesAreDrawn) {
@@ -254,6 +258,36 @@ TEST_F(LookWater, foamIsDrawnWithoutParticles) {
                 EXPECT_EQ(changed, 0.0) << name;
         }
     }
+}
+
+// Seen from the side, foam is wide and low; a fleck of spray is as high as wide, unless it moves during the exposure.
+TEST_F(LookWater, foamLiesOnTheWaterAndSprayIsDrawnOutAlongItsPath) {
+    camera.position = vec3(0.5F, 0.45F, 1.5F);
+    camera.target = vec3(0.5F, 0.3F, 0.5F);
+    camera.setPlanes(Bounds{vec3(0.0F), vec3(1.0F)});
+    const std::vector<uint8_t> dry = shot({});
+    const auto shape = [&](const vec4& velocity) {  // of what changed: width over height
+        const gpu::Buffer place = std::move(*gpu::Buffer::from(std::vector<vec4>{vec4(0.5F, 0.3F, 0.5F, 9.0F)}));
+        const gpu::Buffer speed = std::move(*gpu::Buffer::from(std::vector<vec4>{velocity}));
+        FluidView foam;
+        foam.spacing = 0.3F;
+        foam.foam = {place.name(), speed.name()};
+        foam.foamCount = 1;
+        const std::vector<uint8_t> wet = shot(foam);
+        ivec2 low(kWidth, kHeight), high(-1);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                if (std::abs(at(wet, x, y)[1] - at(dry, x, y)[1]) > 3) {
+                    low = glm::min(low, ivec2(x, y));
+                    high = glm::max(high, ivec2(x, y));
+                }
+        EXPECT_GT(high.x, low.x);
+        return static_cast<float>(high.x - low.x + 1) / static_cast<float>(high.y - low.y + 1);
+    };
+    EXPECT_GT(shape(vec4(0.0F, 0.0F, 0.0F, 2.9F)), 2.0F);
+    EXPECT_NEAR(shape(vec4(0.0F, 0.0F, 0.0F, 1.9F)), 1.0F, 0.2F);
+    EXPECT_GT(shape(vec4(12.0F, 0.0F, 0.0F, 1.9F)), 2.0F);  // 0.1 m in 1/120 s
+    EXPECT_LT(shape(vec4(0.0F, 12.0F, 0.0F, 1.9F)), 0.5F);
 }
 
 }  // namespace

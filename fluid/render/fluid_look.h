@@ -28,17 +28,18 @@ struct ViewRow {
 const Table<ViewRow>& waterViews();
 
 struct FluidLook {
-    ColourBy colourBy = ColourBy::speed;   // points
-    float fullSpeed = 3.0F;                // m/s: the end of the colour map
-    const FilterRow* filter = nullptr;     // of the surface's depth: a row of filters(); null: the first
-    float smoothing = 0.0F;                // m, reach of the smoothing, two standard deviations; 0 = 1.8 spacings
-    float smoothingRange = 0.0F;           // m, largest difference of depths on one surface; 0 = 4.2 spacings
-    vec3 absorption{4.5F, 1.1F, 0.5F};     // 1/m, Beer-Lambert per channel
-    vec3 scattering{0.05F, 0.30F, 0.27F};  // 1/m, reduced, per channel
-    float refractiveIndex = 1.333F;        // > 1
-    float detail = 0.0F;                   // pixels: below this radius only some particles are drawn, each larger; 0: all
-    WaterView view = WaterView::water;     // screen_space
-    bool fast = false;                     // the surface at half the resolution, no reflection of the picture in itself
+    ColourBy colourBy = ColourBy::speed;  // points
+    float fullSpeed = 3.0F;               // m/s: the end of the colour map
+    const FilterRow* filter = nullptr;    // of the surface's depth: a row of filters(); null: the first
+    float smoothing = 0.0F;               // m, reach of the smoothing, two standard deviations; 0 = 1.8 spacings
+    float smoothingRange = 0.0F;          // m, largest difference of depths on one surface; 0 = 4.2 spacings
+    // Of pure water, as the row `water` of liquids() (fluid/sim/sources/liquids.h).
+    vec3 absorption{0.2755F, 0.0565F, 0.00922F};    // 1/m, Beer-Lambert per channel: of 620, 550 and 450 nm
+    vec3 scattering{0.00085F, 0.00146F, 0.00346F};  // 1/m, reduced, per channel
+    float refractiveIndex = 1.333F;                 // > 1
+    float detail = 0.0F;                            // pixels: below this radius only some particles are drawn, each larger; 0: all
+    WaterView view = WaterView::water;              // screen_space
+    bool fast = false;                              // the surface at half the resolution, no reflection of the picture in itself
 };
 
 }  // namespace rivulet

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/core/assert.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
 #include "fluid/sim/sources/liquids.h"
@@ -43,15 +44,14 @@ void FluidLookParams::visit(ParamVisitor& v) {
              "level of detail: the radius in the picture below which only some of the particles are drawn, each larger; 0 = all are drawn",
              0, 100},
             detail);
-    v.value({"absorption", "1/m",
-             "absorption coefficient for red, green and blue (Beer-Lambert); -1 = that of fluid.liquid, or 4.5, 1.1, 0.5 if it is empty",
-             -1, 1.0e5},
-            absorption);
     v.value(
-        {"scattering", "1/m",
-         "reduced scattering coefficient for red, green and blue; -1 = that of fluid.liquid, or 0.05, 0.3, 0.27 if it is empty", -1, 1.0e5},
-        scattering);
-    v.value({"refractiveIndex", "", "refractive index of the fluid; 0 = that of fluid.liquid, or 1.333 if it is empty", 0, 3},
+        {"absorption", "1/m",
+         "absorption coefficient for red, green and blue (Beer-Lambert); -1 = that of fluid.liquid, of water if it is empty", -1, 1.0e5},
+        absorption);
+    v.value({"scattering", "1/m",
+             "reduced scattering coefficient for red, green and blue; -1 = that of fluid.liquid, of water if it is empty", -1, 1.0e5},
+            scattering);
+    v.value({"refractiveIndex", "", "refractive index of the fluid; 0 = that of fluid.liquid, of water if it is empty", 0, 3},
             refractiveIndex);
 }
 
@@ -87,15 +87,12 @@ Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& 
     look.fast = params.quality == "fast";
     look.detail = params.detail;
     const LiquidRow* liquid = liquids().find(liquidName);
-    const bool own = glm::all(glm::greaterThanEqual(params.absorption, vec3(0.0F)));
-    if (own) look.absorption = params.absorption;
-    if (!own && liquid != nullptr) look.absorption = liquid->absorption;
-    if (params.refractiveIndex > 0 || liquid != nullptr)
-        look.refractiveIndex = params.refractiveIndex > 0 ? params.refractiveIndex : liquid->refractiveIndex;
-    if (glm::all(glm::greaterThanEqual(params.scattering, vec3(0.0F))))
-        look.scattering = params.scattering;
-    else if (liquid != nullptr)
-        look.scattering = liquid->scattering;
+    if (liquid == nullptr) liquid = liquids().find("water");
+    ASSERT(liquid != nullptr, "keep the row of water");
+    const auto given = [](const vec3& v) { return glm::all(glm::greaterThanEqual(v, vec3(0.0F))); };
+    look.absorption = given(params.absorption) ? params.absorption : liquid->absorption;
+    look.scattering = given(params.scattering) ? params.scattering : liquid->scattering;
+    look.refractiveIndex = params.refractiveIndex > 0 ? params.refractiveIndex : liquid->refractiveIndex;
     return look;
 }
 

@@ -43,6 +43,9 @@ void LookTest::TearDownTestSuite() {
 void LookTest::SetUp() {
     if (!context_) GTEST_SKIP() << "no OpenGL 4.5 here";
     ASSERT_TRUE(renderer_);
+    // A dyed liquid: clear water before a grey studio would hide much of what these tests look for.
+    settings.look.absorption = vec3(4.5F, 1.1F, 0.5F);
+    settings.look.scattering = vec3(0.05F, 0.30F, 0.27F);
 }
 
 void LookTest::TearDown() {

@@ -32,9 +32,13 @@ TextureDesc sized(const FrameView& view, Format format, int divide = 1) {
 
 void bindFrame(const PassContext& c, BufferHandle frame) { glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(frame)); }
 
-void bindLight(Program& program, const PassContext& c, const LightMaps& light, int unit) {
+void bindShadow(Program& program, const PassContext& c, const LightMaps& light, int unit) {
     program.texture("shadowSharp", unit, c.texture(light.sharp));
     program.texture("shadowSoft", unit + 1, c.texture(light.soft));
+}
+
+void bindLight(Program& program, const PassContext& c, const LightMaps& light, int unit) {
+    bindShadow(program, c, light, unit);
     program.texture("waterLight", unit + 2, c.texture(light.water));
     program.set("waterAbsorption", light.absorption);
 }
@@ -368,7 +372,7 @@ void addGlass(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, s
               TextureHandle depth, const LightMaps& light, GlassSide side, TextureHandle fluidDepth) {
     std::erase_if(meshes, [](const DrawnMesh& m) { return !m.material.clear; });
     if (meshes.empty()) return;
-    std::vector<gpu::Read> reads = {{frame, Usage::uniform}, {depth, Usage::target}, light.sharp, light.soft, light.water};
+    std::vector<gpu::Read> reads = {{frame, Usage::uniform}, {depth, Usage::target}, light.sharp, light.soft};
     if (side != GlassSide::all) reads.emplace_back(fluidDepth);
     graph.pass("glass", reads, {colour}, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
         c.drawTo({colour}, depth);
@@ -376,7 +380,7 @@ void addGlass(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, s
         Program& p = programs.glass;
         p.use();
         p.set("side", static_cast<int>(side));
-        bindLight(p, c, light, 1);
+        bindShadow(p, c, light, 1);
         if (side != GlassSide::all) p.texture("fluidDepth", 0, c.texture(fluidDepth));
         glEnable(GL_DEPTH_TEST);
         glDepthMask(GL_FALSE);

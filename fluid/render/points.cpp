@@ -37,8 +37,8 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
         programs.drawParticles(p, d.fluid, {0, d.fluid.count});
     });
     const gpu::TextureHandle tiles = addTiles(graph, programs, d);
-    graph.pass("points shade", {{d.frame, Usage::uniform}, surface, normal, d.depth, tiles, d.shadowSharp, d.shadowSoft, d.waterLight},
-               {d.colour}, [=, &programs](PassContext& c) {
+    graph.pass("points shade", {{d.frame, Usage::uniform}, surface, normal, d.depth, tiles, d.shadowSharp, d.shadowSoft}, {d.colour},
+               [=, &programs](PassContext& c) {
                    c.drawTo({d.colour});
                    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c.buffer(d.frame));
                    gpu::Program& p = programs["points shade"];
@@ -48,8 +48,6 @@ FluidLayers addPoints(gpu::FrameGraph& graph, FluidPrograms& programs, const Flu
                    p.texture("depth", 2, c.texture(d.depth));
                    p.texture("shadowSharp", 3, c.texture(d.shadowSharp));
                    p.texture("shadowSoft", 4, c.texture(d.shadowSoft));
-                   p.texture("waterLight", 5, c.texture(d.waterLight));
-                   p.set("waterAbsorption", d.look.absorption);
                    programs.drawTiles(p, c.texture(tiles), 6);
                });
     return {d.colour, {}};

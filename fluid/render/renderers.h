@@ -21,12 +21,12 @@ struct FluidDraw {
     FluidLook look;
     gpu::BufferHandle frame;   // a FrameParams (shaders/render/frame.h)
     gpu::BufferHandle coarse;  // the same for half the width and height, rounded up; empty: the surface is found at full resolution
-    gpu::BufferHandle position, velocity, id, absorption;    // of `fluid`, imported
-    std::vector<gpu::BufferHandle> ellipsoids;               // of `fluid`, imported; empty: spheres
-    gpu::TextureHandle colour;                               // rgba16f, linear radiance
-    gpu::TextureHandle depth;                                // window depth
-    gpu::TextureHandle glassDepth;                           // window depth of the nearest clear face; empty: nothing is clear
-    gpu::TextureHandle shadowSharp, shadowSoft, waterLight;  // as engine/render/passes.h's LightMaps
+    gpu::BufferHandle position, velocity, id, absorption;  // of `fluid`, imported
+    std::vector<gpu::BufferHandle> ellipsoids;             // of `fluid`, imported; empty: spheres
+    gpu::TextureHandle colour;                             // rgba16f, linear radiance
+    gpu::TextureHandle depth;                              // window depth
+    gpu::TextureHandle glassDepth;                         // window depth of the nearest clear face; empty: nothing is clear
+    gpu::TextureHandle shadowSharp, shadowSoft;            // as engine/render/passes.h's LightMaps
     // Draws transparent objects behind the water into `colour`; called before the water is drawn. `fluidDepth`: of FluidLayers.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
     // Called by a slow renderer with the finished share, 0 to 1; false: it may stop.

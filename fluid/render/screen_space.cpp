@@ -444,8 +444,8 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
     d.behind(d.colour, water.depth);
     const TextureHandle colour = graph.texture("water colour", graph.desc(d.colour));
     copyTexels(graph, "copy scene", d.colour, colour);
-    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, water.tiles,   d.colour,     d.depth,     water.depth,
-                                    water.thickness,           d.shadowSharp, d.shadowSoft, d.waterLight};
+    std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, water.tiles,   d.colour,    d.depth, water.depth,
+                                    water.thickness,           d.shadowSharp, d.shadowSoft};
     if (ink) reads.emplace_back(water.fades);
     reads.emplace_back(water.normals ? water.normals : water.sharp);
     if (d.look.view != WaterView::water) {
@@ -468,8 +468,6 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
         if (ink) p.texture("depths", 8, c.texture(water.fades));
         p.texture("shadowSharp", 4, c.texture(d.shadowSharp));
         p.texture("shadowSoft", 5, c.texture(d.shadowSoft));
-        p.texture("waterLight", 6, c.texture(d.waterLight));
-        p.set("waterAbsorption", d.look.absorption + d.look.scattering);
         p.set("radius", d.fluid.radius);
         if (!water.normals) p.set("spacing", d.fluid.spacing);
         if (!ink) p.set("absorption", d.look.absorption);

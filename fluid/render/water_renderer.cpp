@@ -105,8 +105,7 @@ Status WaterRenderer::Impl::draw(const FluidView& fluidView, const FluidLook& lo
     }
     d.colour = graph.importTexture("scene", picture.colour());
     d.depth = graph.importTexture("scene depth", picture.depth());
-    d.shadowSharp = d.shadowSoft = d.waterLight = none;
-    if (!water.empty()) d.waterLight = addWaterLight(graph, fluid, d, params.waterProjection);
+    d.shadowSharp = d.shadowSoft = none;
     if (row.opaque) {  // it draws into the picture itself, and the host's is needed to tell where
         const gpu::TextureHandle own = graph.texture("picture", picture.colour().desc());
         copyTexels(graph, "copy scene", d.colour, own);

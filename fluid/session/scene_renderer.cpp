@@ -280,7 +280,6 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (fluid.foamCount > 0) draw.glassDepth = addGlassDepth(graph, render_, frame, view, meshes);
     draw.shadowSharp = light.sharp;
     draw.shadowSoft = light.soft;
-    draw.waterLight = light.water;
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
     const auto glass = [&](gpu::TextureHandle colour, gpu::TextureHandle depth, gpu::TextureHandle fluidDepth, GlassSide side) {

@@ -55,7 +55,7 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     }
     d.colour = graph.importTexture("colour", *colour);
     d.depth = graph.importTexture("depth", *window);
-    d.shadowSharp = d.shadowSoft = d.waterLight = graph.importTexture("nothing", *colour);
+    d.shadowSharp = d.shadowSoft = graph.importTexture("nothing", *colour);
     const FluidLayers layers = addScreenSpace(graph, programs_, d);
     graph.output(layers.fluidDepth);
     if (Status ran = graph.execute(); !ran) return ran.error();

@@ -1,6 +1,7 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"
+#include "shaders/render/water_light.glsl"
 #include "shaders/material/surface.glsl"
 in vec3 posWorld;
 in vec3 posOwn;

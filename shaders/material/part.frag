@@ -2,6 +2,7 @@
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"
+#include "shaders/render/water_light.glsl"
 #include "shaders/material/surface.glsl"
 #include "shaders/material/tangents.glsl"
 in vec3 posWorld;

@@ -3,6 +3,7 @@
 #include "shaders/render/environment.glsl"
 #if defined(FLOOR)
 #include "shaders/render/shadow.glsl"
+#include "shaders/render/water_light.glsl"
 #include "shaders/material/surface.glsl"
 uniform sampler2D occlusion;
 #endif

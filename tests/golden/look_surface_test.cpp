@@ -49,7 +49,7 @@ class LookSurface : public LookTest {
         d.position = graph.importBuffer("positions", d.fluid.position, particles.position.size() * sizeof(vec4));
         d.colour = graph.importTexture("colour", colour);
         d.depth = graph.importTexture("depth", sceneDepth);
-        d.shadowSharp = d.shadowSoft = d.waterLight = graph.importTexture("nothing", colour);
+        d.shadowSharp = d.shadowSoft = graph.importTexture("nothing", colour);
         const FluidLayers layers = add(graph, programs, d);
         graph.output(layers.fluidDepth);
         graph.output(layers.colour);

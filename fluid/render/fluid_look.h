@@ -38,6 +38,7 @@ struct FluidLook {
     vec3 scattering{0.00085F, 0.00146F, 0.00346F};  // 1/m, reduced, per channel
     float refractiveIndex = 1.333F;                 // > 1
     float detail = 0.0F;                            // pixels: below this radius only some particles are drawn, each larger; 0: all
+    bool caustics = true;                           // the water refracts light onto what lies behind it
     WaterView view = WaterView::water;              // screen_space
     bool fast = false;                              // the surface at half the resolution, no reflection of the picture in itself
 };

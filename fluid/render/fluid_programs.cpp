@@ -17,6 +17,8 @@ constexpr uint32_t kQuadRows = 4096;  // as quads.glsl: their indices fit 16 bit
 constexpr ProgramRow kShared[] = {
     {"mark tiles", "screen_space/mark_tiles.vert", "screen_space/mark_tiles.frag"},
     {"mark tiles, ellipsoids", "screen_space/mark_tiles.vert", "screen_space/mark_tiles.frag", {"ELLIPSOIDS"}},
+    {"photons", "render/fullscreen.vert", "screen_space/photons.frag"},
+    {"caustics", "screen_space/caustics.vert", "screen_space/caustics.frag"},
     {"spray", "screen_space/spray.vert", "screen_space/spray.frag"},
     {"spray, ink", "screen_space/spray.vert", "screen_space/spray.frag", {"INK"}},
     {"drops", "screen_space/drop.vert", "screen_space/drop.frag"},

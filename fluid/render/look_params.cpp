@@ -34,6 +34,7 @@ void FluidLookParams::visit(ParamVisitor& v) {
               .doc = "fast: spheres, the surface at half the resolution, coarser light in the water, no screen-space reflection; fine: "
                      "full quality; auto: in a window by the frame time, else fine"},
              quality, qualities);
+    v.value({.name = "caustics", .doc = "the water refracts the key light onto what lies behind it; off: it only absorbs it"}, caustics);
     v.value({"radiusSpacings", "", "drawn radius of a particle, in spacings", 0.1, 3}, radiusSpacings);
     static const std::vector<std::string> filterNames = filters().names();
     v.choice({.name = "filter", .doc = "filter that smooths the particles' depth to a surface; rivulet list filters describes each"},
@@ -86,6 +87,7 @@ Result<FluidLook> fluidLookOf(const FluidLookParams& params, const std::string& 
     look.view = view->view;
     look.fast = params.quality == "fast";
     look.detail = params.detail;
+    look.caustics = params.caustics;
     const LiquidRow* liquid = liquids().find(liquidName);
     if (liquid == nullptr) liquid = liquids().find("water");
     ASSERT(liquid != nullptr, "keep the row of water");

@@ -21,6 +21,7 @@ struct FluidLookParams {
     std::string quality = "auto";           // auto | fast | fine
     float radiusSpacings = 0.6F;            // drawn radius over spacing
     std::string filter = "narrow_range";    // a row of filters()
+    bool caustics = true;                   // the water refracts the key light
     float smoothing = 0.0F;                 // m, reach of the smoothing, two standard deviations; 0 = 1.8 spacings
     float smoothingRange = 0.0F;            // m, largest difference of depths on one surface; 0 = 4.2 spacings
     float detail = 0.5F;                    // pixels: below this radius only some particles are drawn, each larger; 0 = all

@@ -48,9 +48,14 @@ struct RendererRow {
 };
 const Table<RendererRow>& renderers();
 
-// A map of the water along the light: x thickness (m), y thickness times depth (0..1), z thickness relative to the surroundings (m).
+// A map of the water along the light: x thickness (m), y thickness times depth (0..1), z thickness with twice the blur;
+// with look.caustics all with twice the blur, and z the share that is covered.
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
+// The light that the water of that map refracts onto what it reaches first (meshes in shadowSharp, the floor), as a share of the key light for
+// each colour: rgb, in the same projection. FrameParams::shadow.y must be 2 for what is lit by it.
+gpu::TextureHandle addCaustics(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle water,
+                               const mat4& projection);
 
 // The particles' buffers, as a pass that draws splats reads them.
 std::vector<gpu::Read> splatReads(const FluidDraw& draw);

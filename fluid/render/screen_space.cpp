@@ -1,4 +1,6 @@
 // A water surface in screen space: sphere depths (van der Laan et al. 2009), smoothed by a row of filters().
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,8 +43,10 @@ constexpr ProgramRow kScreenSpacePrograms[] = {
     {"show view", "screen_space/tile.vert", "screen_space/show_view.frag"},
     {"blur", "screen_space/tile.vert", "screen_space/blur.frag"},
     {"light water", "screen_space/light_water.vert", "screen_space/light_water.frag"},
-    {"light water blur, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag"},
-    {"light water blur, last", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"LAST"}},
+    {"light water blur, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"FIRST"}},
+    {"light water blur, last", "render/fullscreen.vert", "screen_space/light_water_blur.frag"},
+    {"light water blur, wide, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"FIRST", "WIDE"}},
+    {"light water blur, wide, last", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"WIDE"}},
     {"shade", "screen_space/tile.vert", "screen_space/shade.frag"},
     {"shade, ink", "screen_space/tile.vert", "screen_space/shade.frag", {"INK"}},
     {"shade, normals", "screen_space/tile.vert", "screen_space/shade.frag", {"NORMALS"}},
@@ -392,8 +396,8 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
 
 TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const FluidDraw& d, const mat4& projection) {
     const int side = d.look.fast ? kLightMapFast : kLightMap;
-    const TextureDesc raw{.width = side, .height = side, .format = Format::rg16f};
-    const TextureDesc map{.width = side, .height = side, .format = Format::rgba16f};
+    const TextureDesc raw{.width = side, .height = side, .format = Format::rg32f};  // for slopes of depths
+    const TextureDesc map{.width = side, .height = side, .format = Format::rgba32f};
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
     const Drawn some = drawnOf(d);  // the blur hides the larger radius
     Kept kept;
@@ -425,13 +429,14 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     TextureHandle from = drawn;
     for (const bool first : {true, false}) {
         const TextureHandle to = graph.texture("water light", map);
-        Program& p = programs[first ? "light water blur, first" : "light water blur, last"];
+        Program& p = programs[fmt::format("light water blur{}, {}", d.look.caustics ? ", wide" : "", first ? "first" : "last")];
         graph.pass("water light blur", {from}, {to}, [=, &p](PassContext& c) {
             c.drawTo({to});
             p.use();
             p.texture("source", 0, c.texture(from));
             p.set("axis", first ? ivec2(1, 0) : ivec2(0, 1));
             p.set("reach", reach);
+            p.set("least", 0.5F * d.fluid.spacing);
             c.drawFullscreen();
         });
         from = to;

@@ -239,6 +239,8 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     studio.shown.add(box.max);
     FrameParams params = packFrame(view, studio, solid, water);
     std::copy(matteLight_.begin(), matteLight_.end(), params.matteLight);
+    const bool caustics = look->caustics && !row->opaque && !water.empty();
+    if (caustics) params.shadow.y = 2.0F;
     frame_.write(std::as_bytes(std::span(&params, 1)));
     if (look->fast) {
         const FrameParams half = packFrame(view.half(), studio, solid, water);
@@ -270,7 +272,10 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (fluid.count > 0 && draw.fluid.ellipsoids[0] != 0)
         for (const unsigned name : draw.fluid.ellipsoids)
             draw.ellipsoids.push_back(graph.importBuffer("ellipsoids", name, size_t{fluid.count} * sizeof(vec4)));
+    draw.shadowSharp = light.sharp;
+    draw.shadowSoft = light.soft;
     if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
+    if (caustics) light.water = addCaustics(graph, fluid_, draw, light.water, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through
 
     draw.depth = addDepth(graph, render_, frame, view, meshes);
@@ -278,8 +283,6 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     const gpu::TextureHandle occlusion = addOcclusion(graph, render_, frame, view, draw.depth, kOcclusionReach * radius);
     draw.colour = addOpaque(graph, render_, frame, view, meshes, draw.depth, occlusion, light, studio.showFloor);
     if (fluid.foamCount > 0) draw.glassDepth = addGlassDepth(graph, render_, frame, view, meshes);
-    draw.shadowSharp = light.sharp;
-    draw.shadowSoft = light.soft;
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);
     const auto glass = [&](gpu::TextureHandle colour, gpu::TextureHandle depth, gpu::TextureHandle fluidDepth, GlassSide side) {

@@ -27,7 +27,8 @@ STRUCT(FrameParams) {
     vec4 boxSide[3];        // unit; w = half height / distance
     vec4 boxRadiance[3];
     vec4 matteLight[9];  // of an environment map, see environment_map.h
-    vec4 shadow;         // 1 if the meshes' map was drawn, 1 if the water's was, metres a unit of the first map's depth, of the second's
+    // 1 if the meshes' map was drawn; 1 if the water's was, 2 if it holds light; metres a unit of the first map's depth, of the second's.
+    vec4 shadow;
 };
 #if defined(__cplusplus)
 static_assert(sizeof(FrameParams) % 16 == 0);

@@ -14,8 +14,9 @@
 namespace rivulet {
 
 struct KeptPicture {
-    // `scene`: the depth of the scene, where `thickness` was cut at it. `surface` and `tiles`: after the filter, if no particle is awake.
-    enum Part { spheres, thickness, ink, scene, surface, tiles, light, kParts };
+    // `caustics`: as `surface`, if no particle is awake. `scene`: the depth of the scene, where `thickness` was cut at it. `surface` and
+    // `tiles`: after the filter, if no particle is awake.
+    enum Part { spheres, thickness, ink, scene, surface, tiles, light, caustics, kParts };
     std::array<gpu::Texture, kParts> textures;
     std::array<bool, kParts> drawn = {};  // set by the pass that draws it
     size_t bytes() const;

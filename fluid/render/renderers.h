@@ -27,6 +27,7 @@ struct FluidDraw {
     gpu::TextureHandle depth;                              // window depth
     gpu::TextureHandle glassDepth;                         // window depth of the nearest clear face; empty: nothing is clear
     gpu::TextureHandle shadowSharp, shadowSoft;            // as engine/render/passes.h's LightMaps
+    uint32_t shadowVersion = 0;                            // another number whenever they were drawn anew
     // Draws transparent objects behind the water into `colour`; called before the water is drawn. `fluidDepth`: of FluidLayers.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
     // Called by a slow renderer with the finished share, 0 to 1; false: it may stop.
@@ -52,8 +53,8 @@ const Table<RendererRow>& renderers();
 // with look.caustics all with twice the blur, and z the share that is covered.
 // `projection`: world -> the light's clip space, orthographic and of one scale.
 gpu::TextureHandle addWaterLight(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, const mat4& projection);
-// The light that the water of that map refracts onto what it reaches first (meshes in shadowSharp, the floor), as a share of the key light for
-// each colour: rgb, in the same projection. FrameParams::shadow.y must be 2 for what is lit by it.
+// The light that the water of that map refracts onto what it reaches first (meshes in shadowSharp, the floor), as a share of the key light
+// for each colour: rgb, in the same projection. FrameParams::shadow.y must be 2 for what is lit by it.
 gpu::TextureHandle addCaustics(gpu::FrameGraph& graph, FluidPrograms& programs, const FluidDraw& draw, gpu::TextureHandle water,
                                const mat4& projection);
 

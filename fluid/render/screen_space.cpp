@@ -399,7 +399,8 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
     const TextureDesc raw{.width = side, .height = side, .format = Format::rg32f};  // for slopes of depths
     const TextureDesc map{.width = side, .height = side, .format = Format::rgba32f};
     const float clipRadius = d.fluid.radius * glm::length(vec3(projection[0][0], projection[1][0], projection[2][0]));
-    const Drawn some = drawnOf(d);  // the blur hides the larger radius
+    // The blur hides the larger radius of half the particles, but refraction would show that their number varies from place to place.
+    const Drawn some = d.look.caustics ? allOf(d.fluid) : drawnOf(d);
     Kept kept;
     if (d.fluid.sleepers && d.fluid.asleep > 0) {
         KeptPictures::Key key{d.fluid.sleepers, nullptr, {static_cast<float>(side), d.fluid.radius, d.fluid.spacing, some.standsFor}};

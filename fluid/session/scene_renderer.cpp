@@ -203,6 +203,7 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
     graph.output(light.soft);
     shadowOf_ = std::move(places);
     shadowMeshes_ = std::move(drawn);
+    shadowVersion_ = (shadowVersion_ + 1) % 16777216;  // a float can hold it
     shadowVersions_ = std::move(versions);
 }
 
@@ -278,6 +279,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (caustics) light.water = addCaustics(graph, fluid_, draw, light.water, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through
 
+    draw.shadowVersion = shadowVersion_;
     draw.depth = addDepth(graph, render_, frame, view, meshes);
     const float radius = 0.5F * glm::length(studio.shown.size());
     const gpu::TextureHandle occlusion = addOcclusion(graph, render_, frame, view, draw.depth, kOcclusionReach * radius);

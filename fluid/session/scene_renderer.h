@@ -84,6 +84,7 @@ class SceneRenderer {
     std::vector<uint64_t> shadowVersions_;  // of their deformers
     struct MeshKey {
         std::shared_ptr<const Mesh> mesh;
+    uint32_t shadowVersion_ = 0;
         std::weak_ptr<const Deformer> deformer;  // weak: a deformer must not outlive its device, but this may
         bool operator<(const MeshKey& other) const {
             return mesh != other.mesh ? mesh < other.mesh : deformer.owner_before(other.deformer);

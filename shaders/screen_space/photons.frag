@@ -73,16 +73,14 @@ void main() {
     vec3 q = p + t * slope;
     vec3 passed = exp(-absorption * distance(p, q)) * (1.0 - fresnel(-n.z, refractiveIndex) * wet);
     if (behind > within + least) {  // out at the lower face, and on through the air
-        vec3 m = facing(q.xy, false), outwards = refract(dir, m, refractiveIndex);
-        if (outwards.z < 0.1) {  // total reflection
-            flux.rgb = mix(vec3(1.0), vec3(0.0), wet);
-            return;
-        }
-        passed *= 1.0 - fresnel(clamp(-dot(outwards, m), 0.02, 1.0), refractiveIndex) * wet;
-        outwards = normalize(mix(vec3(0.0, 0.0, 1.0), outwards, wet));
-        slope = outwards / outwards.z;
+        vec3 m = facing(q.xy, false), onwards = refract(dir, m, refractiveIndex);
+        bool out_ = dot(onwards, onwards) > 0.0;
+        if (!out_) onwards = reflect(dir, m);
+        onwards = normalize(mix(vec3(0.0, 0.0, 1.0), onwards, wet));
+        slope = onwards / max(onwards.z, 0.1);
         t = 0.0;
-        for (int k = 0; k < 3; ++k) t = clamp(t + toReceiver(q + t * slope), 0.0, 1.0e3);
+        for (int k = 0; k < 4; ++k) t = clamp(t + toReceiver(q + t * slope), 0.0, 1.0e3);
+        passed *= out_ ? vec3(1.0 - fresnel(clamp(-dot(onwards, m), 0.02, 1.0), refractiveIndex) * wet) : exp(-absorption * t * length(slope));
         q += t * slope;
     }
     landed = (q.xy / metres * 0.5 + 0.5) * side;

@@ -98,8 +98,9 @@ class LookDetail : public LookTest {
                 }
         return mean;
     }
-    // Triangles that reach the rasteriser.
+    // Triangles that reach the rasteriser, without photons, which are as many at any distance.
     uint64_t drawn(float detail) {
+        settings.look.caustics = false;
         GLuint query = 0;
         glGenQueries(1, &query);
         glBeginQuery(kClippedPrimitives, query);
@@ -108,6 +109,7 @@ class LookDetail : public LookTest {
         GLuint64 count = 0;
         glGetQueryObjectui64v(query, GL_QUERY_RESULT, &count);
         glDeleteQueries(1, &query);
+        settings.look.caustics = true;
         return count;
     }
     struct Far {

@@ -92,8 +92,9 @@ class LookKept : public LookTest {
         return worstDifference(kept, shot(water(true)));
     }
     std::vector<uint8_t> shot(const FluidView& fluid) { return picture(camera, width, height, fluid); }
-    // Quads drawn for a picture: those of its particles, and some for all its passes.
-    uint64_t splatsOf(const FluidView& fluid) {
+    // Quads drawn for a picture: those of its particles, and some for all its passes; without `photons` none of its caustics.
+    uint64_t splatsOf(const FluidView& fluid, bool photons = false) {
+        settings.look.caustics = photons;
         GLuint query = 0;
         glGenQueries(1, &query);
         glBeginQuery(GL_PRIMITIVES_GENERATED, query);
@@ -102,6 +103,7 @@ class LookKept : public LookTest {
         GLuint64 count = 0;
         glGetQueryObjectui64v(query, GL_QUERY_RESULT, &count);
         glDeleteQueries(1, &query);
+        settings.look.caustics = true;
         return count / 2;
     }
     // Draws it some times with the ball on its way, then without it.
@@ -202,6 +204,7 @@ TEST_F(LookKept, noSplatOfASleeperIsDrawnAgain) {
     const FluidView still = water();
     for (int k = 0; k < 3; ++k) (void)shot(still);
     EXPECT_LE(splatsOf(still), others + kTiles);
+    EXPECT_LE(splatsOf(still, true), others + kTiles) << "photons are kept as well";
     // A camera that moves draws all, but for the light's map of the water.
     look(vec3(0.2F, 1.0F, 2.3F));
     const uint64_t moved = splatsOf(still);

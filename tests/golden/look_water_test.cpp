@@ -228,6 +228,7 @@ TEST_F(LookWater, fastIsTheSamePictureButForDetail) {
 TEST_F(LookWater, fastAtOddSizesIsStillTheSamePicture) {
     const FluidView water = bounded(pool(0.3F));
     for (const ivec2 size : {ivec2(641, 359), ivec2(33, 17), ivec2(1, 1)}) {
+        settings.look.caustics = size.x > 1;  // their map is finer in one than in the other, and one pixel shows no mean
         settings.look.quality = "fine";
         const std::vector<uint8_t> fine = picture(camera, size.x, size.y, water), dry = picture(camera, size.x, size.y, bounded({}));
         settings.look.quality = "fast";

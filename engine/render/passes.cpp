@@ -446,14 +446,14 @@ void addBox(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, con
 }
 
 void addTonemap(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view, TextureHandle colour,
-                TextureHandle picture) {
+                TextureHandle picture, float exposure) {
     const TextureHandle mapped = graph.texture("tonemapped", sized(view, Format::rgba8));
     graph.pass("tonemap", {{frame, Usage::uniform}, colour}, {mapped}, [=, &programs](PassContext& c) {
         c.drawTo({mapped});
         bindFrame(c, frame);
         programs.tonemap.use();
         programs.tonemap.texture("sceneColour", 0, c.texture(colour));
-        programs.tonemap.set("exposure", kExposure);
+        programs.tonemap.set("exposure", kExposure * std::exp2(exposure));
         c.drawFullscreen();
     });
     graph.pass("antialias", {{frame, Usage::uniform}, mapped}, {picture}, [=, &programs](PassContext& c) {

@@ -82,8 +82,8 @@ gpu::TextureHandle addGlassDepth(gpu::FrameGraph& graph, RenderPrograms& program
 // Draws the edges of a box into `colour`; with `fluidDepth` (m, r32f) only those in front of the water.
 void addBox(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const Bounds& box, gpu::TextureHandle colour,
             gpu::TextureHandle depth, gpu::TextureHandle fluidDepth = {});
-// Converts linear radiance to sRGB with antialiasing and dithering, into `picture` (rgba8, the view's size).
+// Converts linear radiance to sRGB with antialiasing and dithering, into `picture` (rgba8, the view's size). `exposure`: stops more light.
 void addTonemap(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view, gpu::TextureHandle colour,
-                gpu::TextureHandle picture);
+                gpu::TextureHandle picture, float exposure = 0.0F);
 
 }  // namespace rivulet

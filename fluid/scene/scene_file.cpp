@@ -94,6 +94,12 @@ void CameraParams::visit(ParamVisitor& v) {
     v.value({"position", "m", "position of the eye", -kMaxPosition, kMaxPosition}, position);
     v.value({"target", "m", "point at the centre of the picture", -kMaxPosition, kMaxPosition}, target);
     v.value({"fieldOfView", "deg", "vertical angle of view", 5, 120}, fieldOfView);
+    v.value({"exposure", "stops", "light in the picture: each stop doubles it", -6, 6}, exposure);
+    v.value({"bloom", "", "share of the light that the lens scatters around bright things; 0 = none", 0, 1}, bloom);
+    v.value({"aperture", "f-number",
+             "depth of field of a lens before a sensor 24 mm high: the smaller, the less is sharp; 0 = everything is sharp", 0, 64},
+            aperture);
+    v.value({"focus", "m", "distance along the view axis that is sharp; 0 = that of the target", 0, 1000}, focus);
 }
 
 void LightParams::visit(ParamVisitor& v) {

@@ -23,6 +23,10 @@ struct CameraParams {
     vec3 position{1.6F, 1.1F, 2.2F};  // m
     vec3 target{0.5F, 0.35F, 0.5F};   // m
     float fieldOfView = 40.0F;        // deg, vertical
+    float exposure = 0.0F;            // stops
+    float bloom = 0.0F;               // 0..1
+    float aperture = 0.0F;            // f-number; 0 = everything is sharp
+    float focus = 0.0F;               // m; 0 = the target's distance
     void visit(ParamVisitor& v);
 };
 

@@ -99,6 +99,8 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
     }
     Result<RenderPrograms> render = RenderPrograms::create(files);
     if (!render) return render.error();
+    Result<LensPrograms> lens = LensPrograms::create(files);
+    if (!lens) return lens.error();
     Result<FluidPrograms> fluid = FluidPrograms::create(files);
     if (!fluid) return fluid.error();
     Result<gpu::Buffer> frame = gpu::Buffer::create(sizeof(FrameParams));
@@ -114,6 +116,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
         }
     }
     r->render_ = std::move(*render);
+    r->lens_ = std::move(*lens);
     r->fluid_ = std::move(*fluid);
     r->frame_ = std::move(*frame);
     Result<gpu::Buffer> coarse = gpu::Buffer::create(sizeof(FrameParams));
@@ -125,6 +128,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(const ShaderFiles& 
 
 Result<size_t> SceneRenderer::reload() {
     std::vector<gpu::Program*> programs = render_.all();
+    for (gpu::Program* program : lens_.all()) programs.push_back(program);
     for (gpu::Program* program : fluid_.all()) programs.push_back(program);
     Result<size_t> others = gpu::Program::reload(programs);
     if (others && *others > 0) {
@@ -199,11 +203,11 @@ void SceneRenderer::addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMe
     }
     if (places == shadowOf_ && drawn == shadowMeshes_ && versions == shadowVersions_) return;
     addShadow(graph, render_, meshes, projection, light.sharp, light.soft, deforms);
+    shadowVersion_ = (shadowVersion_ + 1) % 16777216;  // a float can hold it
     graph.output(light.sharp);
     graph.output(light.soft);
     shadowOf_ = std::move(places);
     shadowMeshes_ = std::move(drawn);
-    shadowVersion_ = (shadowVersion_ + 1) % 16777216;  // a float can hold it
     shadowVersions_ = std::move(versions);
 }
 
@@ -275,11 +279,11 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
             draw.ellipsoids.push_back(graph.importBuffer("ellipsoids", name, size_t{fluid.count} * sizeof(vec4)));
     draw.shadowSharp = light.sharp;
     draw.shadowSoft = light.soft;
+    draw.shadowVersion = shadowVersion_;
     if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
     if (caustics) light.water = addCaustics(graph, fluid_, draw, light.water, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through
 
-    draw.shadowVersion = shadowVersion_;
     draw.depth = addDepth(graph, render_, frame, view, meshes);
     const float radius = 0.5F * glm::length(studio.shown.size());
     const gpu::TextureHandle occlusion = addOcclusion(graph, render_, frame, view, draw.depth, kOcclusionReach * radius);
@@ -318,8 +322,16 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     if (background.showBox && (row->opaque || layers.fluidDepth))
         addBox(graph, render_, frame, box, layers.colour, draw.depth, layers.fluidDepth);
 
+    const CameraParams& camera = settings.camera;
+    const float atTarget = std::max(-(view.view * vec4(camera.target, 1.0F)).z, view.nearPlane);
+    const Lens lens{.exposure = camera.exposure,
+                    .bloom = camera.bloom,
+                    .aperture = camera.aperture,
+                    .focus = camera.focus > 0 ? camera.focus : atTarget};
+    layers.colour = addDepthOfField(graph, lens_, frame, view, lens, layers.colour, draw.depth, layers.fluidDepth);
+    layers.colour = addBloom(graph, lens_, lens, layers.colour);
     const gpu::TextureHandle picture = graph.importTexture("picture", picture_);
-    addTonemap(graph, render_, frame, view, layers.colour, picture);
+    addTonemap(graph, render_, frame, view, layers.colour, picture, lens.exposure);
     graph.output(picture);
     description_.reset();
     if (Status drawn = graph.execute(); !drawn) return drawn;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/render/environment_map.h"
+#include "engine/render/lens.h"
 #include "engine/render/passes.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/scene.h"
@@ -73,6 +74,7 @@ class SceneRenderer {
                     LightMaps& light);
 
     RenderPrograms render_;
+    LensPrograms lens_;
     FluidPrograms fluid_;
     gpu::TransientPool pool_;
     gpu::Buffer frame_, coarse_;                            // FrameParams; for half the resolution
@@ -82,9 +84,9 @@ class SceneRenderer {
     std::vector<const GpuMesh*> shadowMeshes_;
     gpu::Texture nothing_;                  // bound where the scene has no light map
     std::vector<uint64_t> shadowVersions_;  // of their deformers
+    uint32_t shadowVersion_ = 0;
     struct MeshKey {
         std::shared_ptr<const Mesh> mesh;
-    uint32_t shadowVersion_ = 0;
         std::weak_ptr<const Deformer> deformer;  // weak: a deformer must not outlive its device, but this may
         bool operator<(const MeshKey& other) const {
             return mesh != other.mesh ? mesh < other.mesh : deformer.owner_before(other.deformer);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <mutex>
 
@@ -169,6 +170,22 @@ class Marcher {
 };
 
 }  // namespace
+
+std::vector<vec4> bodyAtWalls(std::span<const vec4> particles, float spacing, const Bounds& box) {
+    std::vector<vec4> all;
+    std::copy_if(particles.begin(), particles.end(), std::back_inserter(all), inBody);
+    if (box.empty()) return all;
+    const float reach = ANISOTROPY_SUPPORT_HOST * spacing;
+    for (int axis = 0; axis < 3; ++axis)  // one after the other: in an edge and a corner there are mirrored ones of mirrored ones
+        for (size_t i = 0, count = all.size(); i < count; ++i)
+            for (const float wall : {box.min[axis], box.max[axis]}) {
+                vec4 p = all[i];
+                if (!(std::abs(p[axis] - wall) < reach)) continue;
+                p[axis] = 2 * wall - p[axis];
+                all.push_back(p);
+            }
+    return all;
+}
 
 RaymarchPicture raymarch(const IsoSurface& surface, const FrameView& view, const RaymarchOptions& options) {
     RaymarchPicture picture;

@@ -10,6 +10,15 @@
 
 namespace rivulet {
 
+// Whether more than half of a particle (w: density ratio) is part of the body of the water, and not spray: leaving() of particle.glsl.
+constexpr float kBodyDensity = 0.611F;
+inline bool inBody(const vec4& particle) { return particle.w >= kBodyDensity; }
+
+// The particles of the body of the water; those near a wall of its box once more behind it, mirrored. The surface of particles alone turns
+// round before a wall, by a third of a spacing along an edge of the box; with these it meets walls at right angles, and water that lies in
+// an edge fills it. Empty box: no walls.
+std::vector<vec4> bodyAtWalls(std::span<const vec4> particles, float spacing, const Bounds& box);
+
 // One value per pixel in OpenGL's order: the bottom row first.
 struct RaymarchPicture {
     int width = 0, height = 0;

@@ -1,4 +1,5 @@
-// The reference as a renderer: the iso-surface of the particles (Yu & Turk 2013), ray-marched on the host, in the light of the others.
+// The reference as a renderer: the iso-surface of the particles (Yu & Turk 2013), ray-marched on the host, in the light of the others, and
+// with their spray: pictures differ by the surface alone.
 #include <cstddef>
 #include <cstring>
 
@@ -52,7 +53,7 @@ const RaymarchPicture& march(std::shared_ptr<MarchedReference>& last, MarchedRef
                       last->view.width == now.view.width && last->view.height == now.view.height && last->box.min == now.box.min &&
                       last->box.max == now.box.max && last->spacing == now.spacing;
     if (same) return last->picture;
-    const Result<IsoSurface> surface = IsoSurface::create(now.particles, now.spacing);
+    const Result<IsoSurface> surface = IsoSurface::create(bodyAtWalls(now.particles, now.spacing, now.box), now.spacing);
     ASSERT(surface, "a FluidView has a spacing of more than 0");
     bool whole = true;
     const auto report = [&](double share) {
@@ -94,7 +95,9 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
                    upload(c.texture(water.depth), picture.depth);
                    upload(c.texture(water.normals), picture.water);
                });
-    return addShade(graph, programs, d, water);
+    const FluidLayers layers = addShade(graph, programs, d, water);
+    if (d.look.view == WaterView::water) addSpray(graph, programs, d, layers);
+    return layers;
 }
 
 RendererRow referenceRenderer() {

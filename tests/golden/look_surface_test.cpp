@@ -166,6 +166,25 @@ TEST_F(LookSurface, theReferenceOfADropIsAnExactSphere) {
     }
 }
 
+// Spray is no part of the surface: the reference draws it as the others do, so that pictures differ by the surface alone.
+TEST_F(LookSurface, theReferenceHasTheSameSpray) {
+    TestParticles spray;
+    spray.spacing = 0.05F;
+    camera.position = vec3(0.0F, 0.0F, 0.6F);
+    for (const vec3& at_ : {vec3(0.0F), vec3(0.1F, 0.05F, 0.0F), vec3(-0.1F, 0.02F, 0.1F)}) spray.add(at_, 0.3F);
+    draw(spray);
+    const std::vector<vec4> drawn = radiance;
+    add = addReference;
+    draw(spray);
+    int covered = 0;
+    for (size_t i = 0; i < radiance.size(); ++i) {
+        EXPECT_EQ(depth[i], kNothing);
+        EXPECT_LT(glm::length(vec3(radiance[i] - drawn[i])), 1e-3F);
+        covered += glm::length(vec3(drawn[i]) - 0.5F) > 0.01F ? 1 : 0;
+    }
+    EXPECT_GT(covered, 60);
+}
+
 TEST_F(LookSurface, anEllipsoidIsExactAlsoAtThePicturesEdge) {
     filter = "none";
     for (const vec3& at_ : {vec3(0.0F), vec3(0.9F, 0.5F, 0.2F), vec3(-1.0F, -0.4F, -0.3F)}) {

@@ -51,6 +51,39 @@ std::vector<Pixel> somePixels(const FrameView& view) {
     return some;
 }
 
+// A block in the corner of a box fills the edges and the corner: whichever ray enters the box through its three walls there meets water at
+// the wall. Without mirrored particles the surface turns round before the edges.
+TEST(Raymarch, WaterFillsTheEdgesOfItsBox) {
+    std::vector<vec4> all;
+    for (int z = 0; z < 10; ++z)
+        for (int y = 0; y < 10; ++y)
+            for (int x = 0; x < 10; ++x) all.emplace_back(kSpacing * (vec3(x, y, z) + 0.5F), 1.0F);
+    all.emplace_back(vec3(-0.5F), 0.3F);  // spray, far off: no part of it
+    Bounds box;
+    box.add(vec3(0.0F));
+    box.add(vec3(0.5F));
+    const FrameView view = viewFrom(vec3(-0.3F), vec3(0.0F), 160, 120);
+    const auto missed = [&](std::span<const vec4> particles) {
+        const Result<IsoSurface> surface = IsoSurface::create(particles, kSpacing);
+        EXPECT_TRUE(surface);
+        const RaymarchPicture picture = raymarch(*surface, view, {.box = box, .until = {}});
+        int without = 0, rays = 0;
+        for (const Pixel& p : somePixels(view)) {
+            const dvec3 t = -dvec3(view.cameraPosWorld) / p.way;  // to the three walls
+            const double enters = std::max({t.x, t.y, t.z});
+            const dvec3 at = dvec3(view.cameraPosWorld) + enters * p.way;
+            if (p.way.x <= 0 || p.way.y <= 0 || p.way.z <= 0 || std::max({at.x, at.y, at.z}) > 0.15) continue;
+            ++rays;
+            without += std::abs(double{picture.depth[p.at]} - enters) > 1e-5 ? 1 : 0;
+        }
+        EXPECT_GT(rays, 100);
+        return without;
+    };
+    EXPECT_EQ(missed(bodyAtWalls(all, kSpacing, box)), 0);
+    EXPECT_GT(missed(all), 0);
+    EXPECT_EQ(bodyAtWalls(all, kSpacing, {}).size(), 1000U);
+}
+
 // A drop by itself is a round ball: depth, normal and thickness are those of a sphere.
 TEST(Raymarch, ADropIsASphere) {
     const std::vector<vec4> one = {vec4(0.1F, 0.2F, -0.3F, 1.0F)};

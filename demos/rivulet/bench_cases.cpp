@@ -190,6 +190,8 @@ Table<BenchCase> benchCases() {
         {"flow", "one frame of 512 and 4,096 drops on a deforming head, drawn into maps of 1024 x 1024 texels, on the cpu", benchFlow},
         {"host", "cost of water in another engine's frame: saving its OpenGL state, uploading particles, drawing into its framebuffer",
          benchHost},
+        {"draw", "one picture of the dam break at 1920x1080, fine and fast: time of each pass, and bytes that passes read and write",
+         benchDraw},
         {"sleep", "the duck race: pools of 1,000 to 1,000,000 particles, one float dropped into each: cost and awake particles",
          benchSleep},
         {"ui", "CPU time of a frame of an empty scene and of its panels, one tab after the other, in a window of 1280 x 720", benchUi},

@@ -42,6 +42,7 @@ Status benchFlow(const BenchContext& context);
 Status benchChapter2(const BenchContext& context);
 Status benchChapter4(const BenchContext& context);
 Status benchHost(const BenchContext& context);
+Status benchDraw(const BenchContext& context);
 Status benchSleep(const BenchContext& context);
 Status benchUi(const BenchContext& context);
 

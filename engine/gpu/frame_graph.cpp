@@ -513,6 +513,19 @@ FrameGraphDescription FrameGraph::describe() const {
     return d;
 }
 
+std::vector<PassTraffic> trafficOf(const FrameGraphDescription& graph) {
+    std::vector<PassTraffic> rows;
+    for (const FrameGraphDescription::Pass& pass : graph.passes) {
+        if (pass.culled) continue;
+        auto row = std::find_if(rows.begin(), rows.end(), [&](const PassTraffic& t) { return t.name == pass.name; });
+        if (row == rows.end()) row = rows.insert(rows.end(), PassTraffic{pass.name});
+        ++row->passes;
+        for (const FrameGraphDescription::Use& use : pass.reads) row->read += graph.resources[use.resource].bytes;
+        for (const FrameGraphDescription::Use& use : pass.writes) row->written += graph.resources[use.resource].bytes;
+    }
+    return rows;
+}
+
 // Of the pass's declarations: whether `test` holds for any.
 template <class Pass, class Test>
 static bool declared(const Pass& pass, Test test) {

@@ -1,4 +1,5 @@
-// A frame graph as plain data, for the panel that shows it. FrameGraph::describe() fills it; frames that are not shown do not.
+// A frame graph as plain data, for the panel that shows it and for `rivulet bench draw`. FrameGraph::describe() fills it; frames that are
+// not shown do not.
 #pragma once
 
 #include <cstddef>
@@ -35,5 +36,17 @@ struct FrameGraphDescription {
     size_t memories = 0;                  // allocations of the pool that were used
     size_t lentBytes = 0, heldBytes = 0;  // bytes of those allocations; of the whole pool
 };
+
+// The memory traffic of the passes of one name, if each reads and writes the whole of its textures and buffers exactly once. A copy reads
+// what it copies. Not known to the graph, and not counted: tiles that a pass leaves out, texels that a cache misses twice, and reads of a
+// target by blending and depth tests.
+struct PassTraffic {
+    std::string name;
+    size_t passes = 0;             // that ran
+    size_t read = 0, written = 0;  // bytes
+    size_t bytes() const { return read + written; }
+};
+// In the order of adding; passes that were culled are left out.
+std::vector<PassTraffic> trafficOf(const FrameGraphDescription& graph);
 
 }  // namespace rivulet::gpu

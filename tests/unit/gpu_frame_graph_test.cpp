@@ -74,6 +74,33 @@ TEST_F(GpuFrameGraph, TexturesThatNeverMeetShareMemory) {
     EXPECT_EQ(pool_->bytes(), 2U * 4 * 4 * 4);
 }
 
+// Each texture and buffer counts whole, once for each pass that declares it; passes of one name are one row.
+TEST_F(GpuFrameGraph, TrafficIsTheSumOfWhatPassesDeclare) {
+    const Texture outside = std::move(*Texture::create(square(8, Format::rgba8)));  // 256 bytes
+    FrameGraph graph(*pool_);
+    const TextureHandle in = graph.importTexture("in", outside);
+    const TextureHandle wide = graph.texture("wide", square(16, Format::rgba16f)), half = graph.texture("half", square(8, Format::r16f)),
+                        sum = graph.texture("sum", square(8)), unused = graph.texture("unused", square(64));  // 2048, 128, 256 bytes
+    const BufferHandle rows = graph.buffer("rows", 100);
+    const auto nothing = [](PassContext&) {};
+    graph.pass("first", {in}, {wide, rows}, nothing);
+    graph.pass("blur", {wide}, {half}, nothing);
+    graph.pass("waste", {wide}, {unused}, nothing);
+    graph.pass("blur", {half, rows}, {sum}, nothing);
+    graph.output(sum);
+    ASSERT_TRUE(graph.execute());
+    const std::vector<PassTraffic> traffic = trafficOf(graph.describe());
+    ASSERT_EQ(traffic.size(), 2U);
+    EXPECT_EQ(traffic[0].name, "first");
+    EXPECT_EQ(traffic[0].passes, 1U);
+    EXPECT_EQ(traffic[0].read, 256U);
+    EXPECT_EQ(traffic[0].written, 2048U + 100);
+    EXPECT_EQ(traffic[1].name, "blur");
+    EXPECT_EQ(traffic[1].passes, 2U);
+    EXPECT_EQ(traffic[1].read, 2048U + 128 + 100);
+    EXPECT_EQ(traffic[1].written, 128U + 256);
+}
+
 // describe() matches the execution: culled passes, uses of resources, lifetimes, and shared memory.
 TEST_F(GpuFrameGraph, DescribesItsPasses) {
     const Texture outside = std::move(*Texture::create(square(8)));

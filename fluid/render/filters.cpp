@@ -19,8 +19,9 @@ constexpr float kFarSteps[] = {3, 5, 7, 4, 2, 1};
 constexpr float kMiddleSteps[] = {4, 9, 13, 8, 5, 3, 2, 1};
 constexpr float kNearSteps[] = {6, 14, 22, 13, 8, 5, 3, 2, 1};
 constexpr float kNearestSteps[] = {10, 24, 37, 22, 13, 8, 5, 3, 2, 1};
-constexpr float kUnitPixels = 3.0F;   // a step of 1 is no wider than this
-constexpr float kMostBilateral = 96;  // pixels either side
+constexpr float kUnitPixels = 3.0F;     // a step of 1 is no wider than this
+constexpr float kWholePixels = 1.0e6F;  // m: the step of a level whose width is given in pixels
+constexpr float kMostBilateral = 96;    // pixels either side
 // With a reach of 1 the dam break's normals are nearer to the particles' iso-surface (docs/surface.md), whose bumps are the particles' and
 // not the water's: milk, honey and waves are the worse for it to the eye.
 constexpr float kReachSpacings = 1.8F;
@@ -28,9 +29,10 @@ constexpr float kRangeSpacings = 4.2F;
 constexpr float kBendSpacings = 0.3F;
 
 // The steps, and how long one of 1 is, m. A level of step k adds k^2 / 2 to the variance of the whole; a Gaussian reaches two deviations.
+// `pixels`: of a step of 1, where the water is nearest.
 struct Levels {
     std::span<const float> steps;
-    float unit;
+    float unit, pixels;
 };
 Levels levelsOf(const FluidDraw& d, float reach) {
     const Bounds& box = d.fluid.bounds;
@@ -41,8 +43,8 @@ Levels levelsOf(const FluidDraw& d, float reach) {
                                                std::span<const float>(kNearSteps), std::span<const float>(kNearestSteps)}) {
         float squares = 0;
         for (const float step : steps) squares += 0.5F * step * step;
-        levels = {steps, 0.5F * reach / std::sqrt(squares)};
-        if (levels.unit * pixelsPerMetre <= kUnitPixels) break;
+        levels = {steps, 0.5F * reach / std::sqrt(squares), 0.5F * reach / std::sqrt(squares) * pixelsPerMetre};
+        if (levels.pixels <= kUnitPixels) break;
     }
     return levels;
 }
@@ -68,16 +70,23 @@ TextureHandle addNarrowRange(const FilterRow& own, FrameGraph& graph, FluidProgr
                              TextureHandle spheres) {
     const FilterReach f = filterReach(d.look, d.fluid.spacing);
     const Levels levels = levelsOf(d, f.reach);
+    struct Level {
+        float metres, mostPixels;
+    };
+    std::vector<Level> all;
+    for (const float step : levels.steps) all.push_back({step * levels.unit, step * kUnitPixels});
+    // A level of step k leaves what repeats every k pixels. Down to one pixel there is one for each that may be left, whatever the
+    // distance.
+    for (const float pixels : {2.0F, 1.0F})
+        if (pixels == 1 || levels.pixels > 1.5F) all.push_back({kWholePixels, pixels});
     TextureHandle depth = spheres;
-    for (size_t k = 0; k < levels.steps.size(); ++k) {
-        const float step = levels.steps[k];
-        depth = addStep(graph, programs, d, own, tiles, depth, k + 1 == levels.steps.size(), [=](Program& p) {
-            p.set("step_", step * levels.unit);
-            p.set("maxStep", step * kUnitPixels);
+    for (size_t k = 0; k < all.size(); ++k)
+        depth = addStep(graph, programs, d, own, tiles, depth, k + 1 == all.size(), [=, level = all[k]](Program& p) {
+            p.set("step_", level.metres);
+            p.set("maxStep", level.mostPixels);
             p.set("range", f.range);
             p.set("bend", f.bend);
         });
-    }
     return depth;
 }
 

@@ -73,7 +73,7 @@ TextureHandle addNarrowRange(const FilterRow& own, FrameGraph& graph, FluidProgr
     struct Level {
         float metres, mostPixels;
     };
-    std::vector<Level> all;
+    std::vector<Level> all = {{0, 0}};  // the first marks the walls of the box
     for (const float step : levels.steps) all.push_back({step * levels.unit, step * kUnitPixels});
     // A level of step k leaves what repeats every k pixels. Down to one pixel there is one for each that may be left, whatever the
     // distance.
@@ -86,6 +86,7 @@ TextureHandle addNarrowRange(const FilterRow& own, FrameGraph& graph, FluidProgr
             p.set("maxStep", level.mostPixels);
             p.set("range", f.range);
             p.set("bend", f.bend);
+            p.set("first", k == 0 ? 1 : 0);
         });
     return depth;
 }

@@ -11,14 +11,22 @@ float begin() {
     last = textureSize(source, 0) - 1;
     return texelFetch(source, here, 0).r;
 }
+// The depths at which the ray through a pixel enters and leaves the box; x > y: it misses. `slant`: m that it moves away from the wall by
+// which it enters, for a metre of depth.
+vec2 throughBox(vec2 pixel, out float slant) {
+    vec3 ray = directionToWorld(viewRay(pixel));
+    vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;
+    vec3 enter = min(a, b), leave = max(a, b), away = abs(ray);
+    float entry = max(max(enter.x, enter.y), enter.z);
+    slant = entry == enter.x ? away.x : entry == enter.y ? away.y : away.z;
+    return vec2(entry, min(min(leave.x, leave.y), leave.z));
+}
 void end(float filtered) {
     depth = filtered;
 #if defined(LAST)
     // Spheres extend slightly out of the box. Clipped, the water is flat at its walls.
-    vec3 ray = directionToWorld(viewRay(gl_FragCoord.xy));
-    vec3 a = (low - frame.cameraPos.xyz) / ray, b = (high - frame.cameraPos.xyz) / ray;
-    vec3 enter = min(a, b), leave = max(a, b);
-    float entry = max(max(enter.x, enter.y), enter.z), exit_ = min(min(leave.x, leave.y), leave.z);
-    depth = entry > exit_ || depth > exit_ ? kFar : max(depth, entry);
+    float slant;
+    vec2 inside = throughBox(gl_FragCoord.xy, slant);
+    depth = inside.x > inside.y || depth > inside.y ? kFar : max(depth, inside.x);
 #endif
 }

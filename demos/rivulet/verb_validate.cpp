@@ -148,7 +148,9 @@ int validateVerb(const Arguments& arguments) {
     reader.option("--backend", "B", "backend of the simulation: cpu, gl or cl; default: cpu", request.backend);
     reader.option("--device", "TEXT", "OpenCL device: part of its name, or its number in 'rivulet list devices'", request.device);
     reader.option("--json", "FILE.json", "also write the results as JSON", request.json);
-    reader.option("--pictures", "DIR", "write a chart (SVG) of each case, measured values and reference, to this folder", request.pictures);
+    reader.option("--pictures", "DIR",
+                  "write a chart (SVG) of each case, measured values and reference, to this folder; of surface, its pictures (PNG)",
+                  request.pictures);
     reader.option("--set", "PATH=VALUE", "set a parameter of the case's scene; may be repeated", request.assignments);
     if (std::optional<int> code = reader.read(arguments)) return *code;
     if (Status sense = checkRequest(request); !sense) return report(sense.error());
@@ -178,6 +180,7 @@ int validateVerb(const Arguments& arguments) {
             settings.method = method;
             settings.quick = request.quick;
             settings.assignments = request.assignments;
+            settings.pictures = request.pictures;
             settings.log = stderrLog();
             settings.goOn = [&](double share) {
                 progress.show(share);

@@ -1,5 +1,6 @@
 #include "fluid/session/surface_probe.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/render/passes.h"
@@ -19,8 +20,14 @@ Result<SurfaceProbe> SurfaceProbe::create(bool ownContext) {
     return probe;
 }
 
-Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, FluidView fluid, const FrameView& view,
-                                               const FluidLook& look, const HostEllipsoids& ellipsoids) {
+namespace {
+// Radiance behind the water, far above that of water which lets no light through (about 1): a pixel shows which share of it is left.
+constexpr float kBehind = 1000;
+constexpr float kBlack = 1.0e6F;  // 1/m: e^-10 is left after 0.01 mm
+}  // namespace
+
+Result<SurfaceSeen> SurfaceProbe::see(std::span<const vec4> particles, FluidView fluid, const FrameView& view, const FluidLook& look,
+                                      const HostEllipsoids& ellipsoids) {
     const FrameParams frame = packFrame(view, {}, {}, {});
     Result<gpu::Buffer> block = gpu::Buffer::from(std::vector<FrameParams>{frame});
     if (!block) return block.error();
@@ -32,13 +39,15 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     if (!colour) return colour.error();
     Result<gpu::Texture> window = gpu::Texture::create({.width = view.width, .height = view.height, .format = gpu::Format::depth32f});
     if (!window) return window.error();
-    colour->clear(vec4(1.0F));
+    colour->clear(vec4(kBehind));
     window->clear(vec4(1.0F));
     gpu::TransientPool pool;
     gpu::FrameGraph graph(pool);
     FluidDraw d;
     d.view = view;
     d.look = look;
+    d.look.absorption = vec3(kBlack);
+    d.look.scattering = vec3(0.0F);
     d.fluid = std::move(fluid);
     d.fluid.position = d.fluid.velocity = d.fluid.id = position->name();
     d.fluid.count = static_cast<uint32_t>(particles.size());
@@ -58,10 +67,15 @@ Result<std::vector<float>> SurfaceProbe::depth(std::span<const vec4> particles, 
     d.shadowSharp = d.shadowSoft = graph.importTexture("nothing", *colour);
     const FluidLayers layers = addScreenSpace(graph, programs_, d);
     graph.output(layers.fluidDepth);
+    graph.output(layers.colour);
     if (Status ran = graph.execute(); !ran) return ran.error();
-    std::vector<float> depth(static_cast<size_t>(view.width) * static_cast<size_t>(view.height));
-    graph.result(layers.fluidDepth).read(std::as_writable_bytes(std::span(depth)));
-    return depth;
+    const size_t pixels = static_cast<size_t>(view.width) * static_cast<size_t>(view.height);
+    SurfaceSeen seen{std::vector<float>(pixels), std::vector<float>(pixels)};
+    graph.result(layers.fluidDepth).read(std::as_writable_bytes(std::span(seen.depth)));
+    std::vector<vec4> radiance(pixels);
+    graph.result(layers.colour).read(std::as_writable_bytes(std::span(radiance)));
+    for (size_t i = 0; i < pixels; ++i) seen.cover[i] = std::clamp(1 - radiance[i].y / kBehind, 0.0F, 1.0F);
+    return seen;
 }
 
 }  // namespace rivulet

@@ -19,7 +19,15 @@ constexpr std::string_view kStart = "the water settles around the sphere after t
 // Measured: with fluid.pbf.minSubsteps = 8 instead of 2 the error is 0.6 %.
 constexpr std::string_view kSoft = "the water is compressed by 2 % under its weight, and swings up and down after the start";
 
+// Seen in the pictures of `rivulet validate surface --pictures`.
+constexpr std::string_view kSheets = "sheets of one particle and the spray along the far wall have normals of their own particles";
+constexpr std::string_view kOutline = "water of less than 0.3 spacings is not covered: along the edges of the box, and where it thins out";
+
 constexpr KnownMiss kKnownMisses[] = {
+    {"surface", "narrow_range", "dam break, fine: normals, mean", kSheets},
+    {"surface", "narrow_range", "dam break, fast: normals, mean", kSheets},
+    {"surface", "narrow_range", "dam break, fine: silhouettes' overlap", kOutline},
+    {"surface", "narrow_range", "dam break, fast: silhouettes' overlap", kOutline},
     {"hydrostatic", "dfsph", "speed left", kNoise},
     {"dam_break", "dfsph", "front, mean error", kGate},
     {"dam_break", "dfsph", "front's speed", kGate},

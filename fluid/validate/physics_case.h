@@ -62,6 +62,7 @@ struct CaseSettings {
     std::string method = "dfsph";
     bool quick = false;                    // about 8,000 particles; false: the size for which tolerances hold
     std::vector<std::string> assignments;  // as --set, applied after those of the case
+    std::string pictures = {};             // folder for the pictures (PNG) of a case that draws; "": none
     Log log = {};
     std::function<bool(double)> goOn = [](double) { return true; };  // called in each frame with the finished share; false: stop
 };

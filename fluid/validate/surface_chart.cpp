@@ -18,7 +18,8 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
     SurfaceChart chart;
     chart.width = trial->width();
     chart.height = trial->height();
-    chart.stillFrames = 30;  // the reference takes seconds per frame
+    chart.slowFrames = 12;  // the reference takes seconds per frame
+    chart.stillFrames = 16;
     chart.drawnBy = trial->drawnBy();
     std::vector<SurfaceLook> looks;
     for (const std::string& filter : surfaceMethods()) {
@@ -46,12 +47,18 @@ Result<SurfaceChart> runSurfaceChart(const SurfaceChartRequest& request) {
         what = "each look";
         if (!trial->goOn(kMomentShare)) break;
     }
-    what = "a pool at rest";
-    const Result<StillPool> pool = trial->flicker(looks, chart.stillFrames);
-    if (!pool) return pool.error();
-    chart.stopped = trial->stopped();
-    for (size_t k = 0; k < looks.size() && !chart.stopped; ++k) chart.rows[k].flicker = pool->flicker[k];
     chart.particles = trial->momentParticles();
+    what = "the dam break in slow motion";
+    const Result<Watched> slow = trial->slow(looks, chart.slowFrames);
+    if (!slow) return slow.error();
+    what = "a pool at rest";
+    const Result<Watched> still = trial->still(looks, chart.stillFrames);
+    if (!still) return still.error();
+    chart.stopped = trial->stopped();
+    for (size_t k = 0; k < looks.size() && !chart.stopped; ++k) {
+        chart.rows[k].slow = slow->looks[k];
+        chart.rows[k].still = still->looks[k];
+    }
     return chart;
 }
 

@@ -18,14 +18,14 @@ struct SurfaceChartRow {
     DrawTimes times;                     // of the moment of the dam break
     SurfaceErrors sphere, slab;          // of the judged shapes
     std::optional<MomentErrors> moment;  // against the reference; empty for the reference itself
-    double flicker = 0;                  // of 255
+    Steadiness still, slow;              // of 255
 };
 
 struct SurfaceChart {
     std::vector<SurfaceChartRow> rows;  // the default filter first, the reference last
     int width = 0, height = 0;          // pixels
     size_t particles = 0;               // of the dam break
-    int stillFrames = 0;
+    int slowFrames = 0, stillFrames = 0;
     std::string drawnBy;
     bool stopped = false;
 };

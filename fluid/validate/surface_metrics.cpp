@@ -47,6 +47,11 @@ void fillNormals(SurfaceMap& map, const FrameView& view, float radius) {
         }
 }
 
+double angleBetween(const vec3& a, const vec3& b) {
+    const dvec3 m(a), r(b);
+    return glm::degrees(std::atan2(glm::length(glm::cross(m, r)), glm::dot(m, r)));
+}
+
 SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& reference, float radius) {
     ASSERT(measured.depth.size() == reference.depth.size(), "surfaces are compared at one size");
     SurfaceErrors e;
@@ -57,8 +62,7 @@ SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& refe
         const bool a = measured.there(i), b = reference.there(i);
         either += a || b ? 1 : 0;
         if (!a || !b) continue;
-        const dvec3 m(measured.normal[i]), r(reference.normal[i]);
-        angles.push_back(glm::degrees(std::atan2(glm::length(glm::cross(m, r)), glm::dot(m, r))));
+        angles.push_back(angleBetween(measured.normal[i], reference.normal[i]));
         const double off = double{measured.depth[i]} - double{reference.depth[i]};
         offs.push_back(std::abs(off) / double{radius});
         squares += off * off;
@@ -73,6 +77,50 @@ SurfaceErrors compareSurfaces(const SurfaceMap& measured, const SurfaceMap& refe
     e.normal95 = percentile(angles, 0.95);
     e.depthMedian = percentile(offs, 0.5);
     return e;
+}
+
+double overlapOf(const std::vector<bool>& a, const std::vector<bool>& b) {
+    ASSERT(a.size() == b.size(), "silhouettes are compared at one size");
+    size_t both = 0, either = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        both += a[i] && b[i] ? 1 : 0;
+        either += a[i] || b[i] ? 1 : 0;
+    }
+    return either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 1;
+}
+
+std::vector<bool> silhouetteBand(const std::vector<bool>& covered, int width, int reach) {
+    const int height = static_cast<int>(covered.size()) / width;
+    std::vector<bool> band(covered.size());
+    const auto at = [&](int x, int y) { return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x); };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const bool here = covered[at(x, y)];
+            for (int k = -reach; k <= reach && !band[at(x, y)]; ++k)
+                band[at(x, y)] = (x + k >= 0 && x + k < width && covered[at(x + k, y)] != here) ||
+                                 (y + k >= 0 && y + k < height && covered[at(x, y + k)] != here);
+        }
+    return band;
+}
+
+void UnexplainedChange::add(std::span<const uint8_t> rgba, std::span<const uint8_t> reference, const std::vector<bool>& covered) {
+    ASSERT(rgba.size() == 4 * pixels_ && reference.size() == 4 * pixels_ && covered.size() == pixels_, "frames have this size");
+    std::vector<bool> band = silhouetteBand(covered, width_, kSilhouettePixels);
+    for (size_t i = 0; i < pixels_ && !last_.empty(); ++i) {
+        const bool water = covered[i] || lastCovered_[i], edge = band[i] || lastBand_[i];
+        for (size_t c = 4 * i; c < 4 * i + 3 && (water || edge); ++c) {
+            const double beyond = std::max(std::abs(rgba[c] - last_[c]) - std::abs(reference[c] - lastReference_[c]), 0);
+            for (Mean* of : {water ? &all_ : nullptr, edge ? &edge_ : nullptr}) {
+                if (of == nullptr) continue;
+                of->sum += beyond;
+                of->count += 1;
+            }
+        }
+    }
+    last_.assign(rgba.begin(), rgba.end());
+    lastReference_.assign(reference.begin(), reference.end());
+    lastCovered_ = covered;
+    lastBand_ = std::move(band);
 }
 
 void Flicker::add(std::span<const uint8_t> rgba) {

@@ -26,7 +26,9 @@ constexpr Figure kFigures[] = {
     {"the dam break's picture (FLIP)", [](const SurfaceChartRow& r) { return r.moment->flip; }},
     {"the sphere's normals", [](const SurfaceChartRow& r) { return r.sphere.normalMean; }},
     {"the slab's normals", [](const SurfaceChartRow& r) { return r.slab.normalMean; }},
-    {"flicker", [](const SurfaceChartRow& r) { return r.flicker; }},
+    {"flicker at rest", [](const SurfaceChartRow& r) { return r.still.rms; }},
+    {"flicker in slow motion", [](const SurfaceChartRow& r) { return r.slow.change; }},
+    {"flicker of silhouettes", [](const SurfaceChartRow& r) { return r.slow.edges; }},
     {"time", [](const SurfaceChartRow& r) { return r.times.water.median; }},
 };
 
@@ -93,18 +95,19 @@ std::string csvOf(const SurfaceChart& chart, const std::string& machine) {
         "# {}; {}x{} pixels by {}\n"
         "filter,quality,reach,frameMs,frameMsLeast,frameMsMost,waterMs,waterMsLeast,waterMsMost,normalMean,normalMedian,depthMedian,"
         "depthRms,"
-        "overlap,flip,flicker,sphereNormalMean,sphereDepthRms,slabNormalMean,slabDepthRms\n",
+        "overlap,overlapWithSpray,flip,flicker,stillChange,slowChange,slowEdges,sphereNormalMean,sphereDepthRms,slabNormalMean,"
+        "slabDepthRms\n",
         machine, chart.width, chart.height, chart.drawnBy);
     for (const SurfaceChartRow& r : chart.rows) {
         csv += fmt::format("{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.look.filter, r.look.quality, r.look.reach,
                            r.times.frame.median, r.times.frame.min, r.times.frame.max, r.times.water.median, r.times.water.min,
                            r.times.water.max);
-        csv += r.moment
-                   ? fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.moment->errors.normalMean, r.moment->errors.normalMedian,
-                                 r.moment->errors.depthMedian, r.moment->errors.depthRms, r.moment->errors.overlap, r.moment->flip)
-                   : ",,,,,,";
-        csv += fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}\n", r.flicker, r.sphere.normalMean, r.sphere.depthRms, r.slab.normalMean,
-                           r.slab.depthRms);
+        csv += r.moment ? fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},", r.moment->errors.normalMean,
+                                      r.moment->errors.normalMedian, r.moment->errors.depthMedian, r.moment->errors.depthRms,
+                                      r.moment->errors.overlap, r.moment->overlapOfAll, r.moment->flip)
+                        : ",,,,,,,";
+        csv += fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}\n", r.still.rms, r.still.change, r.slow.change,
+                           r.slow.edges, r.sphere.normalMean, r.sphere.depthRms, r.slab.normalMean, r.slab.depthRms);
     }
     return csv;
 }
@@ -138,28 +141,35 @@ std::string pageOf(const SurfaceChart& chart, const std::string& machine, const 
     text += fmt::format(
         "\n## Dam break, {} particles\n\nTimes are wall milliseconds of a whole picture and of the share that water adds: median (minimum "
         "to maximum). Normals and depth (in radii of a drawn particle) are compared where both pictures show a surface; spray and edges "
-        "dominate the means, not the medians. Overlap is that of the silhouettes (1 is best), FLIP the difference of the pictures (0 to "
-        "1).\n\n"
+        "dominate the means, not the medians. Overlap is that of the silhouettes of the body of the water, and in brackets of body and "
+        "spray: pixels in both over pixels in either, of those that are covered at least by half (1 is best). In place of a particle's "
+        "droplets the reference of the latter has a ball. FLIP is the difference of the pictures (0 to 1); both have the same light, "
+        "shadows, caustics, reflections and spray.\n\n"
         "| filter | quality | frame, ms | water, ms | normals, mean, deg | median | depth, median, radii | rms | overlap | FLIP |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
         chart.particles);
     for (const SurfaceChartRow& r : chart.rows) {
         text += fmt::format("| {} | {} | {} | {} | ", nameOf(r.look), r.look.quality, msText(r.times.frame), msText(r.times.water));
-        text += r.moment ? fmt::format("{:.1f} | {:.1f} | {:.3f} | {:.2f} | {:.3f} | {:.4f} |\n", r.moment->errors.normalMean,
+        text += r.moment ? fmt::format("{:.1f} | {:.1f} | {:.3f} | {:.2f} | {:.3f} ({:.3f}) | {:.4f} |\n", r.moment->errors.normalMean,
                                        r.moment->errors.normalMedian, r.moment->errors.depthMedian, r.moment->errors.depthRms,
-                                       r.moment->errors.overlap, r.moment->flip)
+                                       r.moment->errors.overlap, r.moment->overlapOfAll, r.moment->flip)
                          : " | | | | | |\n";
     }
     text += fmt::format(
-        "\n## Exact shapes, and flicker\n\nA settled drop is compared with a sphere, a pool with a plane. Flicker is measured on a pool at "
-        "rest over {} simulated frames: the rms difference of its pixels from their mean. The flicker of the reference shows how far the "
-        "water does move.\n\n"
-        "| filter | quality | sphere: normals, mean, deg | depth, rms, radii | slab: normals | depth | flicker, of 255 |\n"
-        "| --- | --- | --- | --- | --- | --- | --- |\n",
-        chart.stillFrames);
+        "\n## Exact shapes, and flicker\n\nA settled drop is compared with a sphere, a pool with a plane. Flicker at rest is measured on a "
+        "pool over {} simulated frames: the rms difference of its pixels from their mean. The flicker of the reference shows how far the "
+        "water does move. Change is what changes from picture to picture beyond the change of the reference there, max(|change| - "
+        "|reference's change|, 0), mean over the pixels with water: at rest, and over {} frames of the dam break, 16 times slower than "
+        "real "
+        "time; \"edges\" is the same over the pixels within 2 of a silhouette.\n\n"
+        "| filter | quality | sphere: normals, mean, deg | depth, rms, radii | slab: normals | depth | at rest: flicker, of 255 | change | "
+        "slow: change | edges |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        chart.stillFrames, chart.slowFrames);
     for (const SurfaceChartRow& r : chart.rows)
-        text += fmt::format("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", nameOf(r.look), r.look.quality,
-                            r.sphere.normalMean, r.sphere.depthRms, r.slab.normalMean, r.slab.depthRms, r.flicker);
+        text += fmt::format("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", nameOf(r.look),
+                            r.look.quality, r.sphere.normalMean, r.sphere.depthRms, r.slab.normalMean, r.slab.depthRms, r.still.rms,
+                            r.still.change, r.slow.change, r.slow.edges);
     return text;
 }
 

@@ -24,23 +24,30 @@ struct SurfaceLook {
     float reach = 0;           // of the smoothing, in spacings; 0 = that of the scene
 };
 inline constexpr const char* kSurfaceReference = "reference";
-constexpr double kMomentShare = 0.3;  // finished share of the case when the moment is reached
+constexpr double kMomentShare = 0.3, kSlowShare = 0.6;  // finished shares of the case when the moment and the slow motion are done
 
 struct ShapeErrors {
     const SurfaceShape* shape;  // owned by the trial
     SurfaceErrors errors;
 };
 struct MomentErrors {
-    SurfaceErrors errors;
-    double flip = 0;
+    SurfaceErrors free;       // of the free surface: without the pixels in which the reference shows a wall of the box
+    SurfaceErrors errors;     // of the body of the water, without the spray
+    double overlapOfAll = 1;  // of the silhouettes of body and spray; the reference has a ball in place of a particle's droplets
+    double flip = 0;          // of the pictures, in the same light and with the same spray
 };
 
 struct DrawTimes {
     Spread frame, water;  // wall ms until a picture is drawn: in total, and beyond the scene without water
 };
-struct StillPool {
-    std::vector<double> flicker;  // of 255, one per look
-    double speed = 0;             // mm/s, rms over its particles in the first picture
+// How steady a series of pictures is; of 255.
+struct Steadiness {
+    double rms = 0;                // difference from the mean of all
+    double change = 0, edges = 0;  // from picture to picture beyond the reference's, see UnexplainedChange; 0 for the reference
+};
+struct Watched {
+    std::vector<Steadiness> looks;
+    double speed = 0;  // mm/s, rms over the particles in the first picture
 };
 
 class SurfaceTrial {
@@ -53,8 +60,9 @@ class SurfaceTrial {
     Result<MomentErrors> moment(const SurfaceLook& look);
     // The time of a picture of that moment; the reference is drawn only once.
     Result<DrawTimes> times(const SurfaceLook& look);
-    // The change of the picture of a pool at rest while the simulation continues.
-    Result<StillPool> flicker(std::span<const SurfaceLook> looks, int stillFrames);
+    // The change of the pictures while the simulation continues: of a pool at rest; of the dam break after its moment, in slow motion.
+    Result<Watched> still(std::span<const SurfaceLook> looks, int frames);
+    Result<Watched> slow(std::span<const SurfaceLook> looks, int frames);
 
     // Pixels.
     int width() const { return settings_.quick ? 320 : 640; }
@@ -67,8 +75,23 @@ class SurfaceTrial {
   private:
     SurfaceTrial(const CaseSettings& settings, SurfaceProbe probe) : settings_(settings), probe_(std::move(probe)) {}
     FrameView viewOf(const SceneFile& scene, const Session& session) const;
-    Result<SurfaceMap> drawn(const SplatSet& splats, const FrameView& view, const SceneFile& scene);
+    struct Seen {
+        SurfaceMap map;             // where at least half of a pixel is covered
+        std::vector<bool> covered;  // the same, with spray
+    };
+    Result<Seen> seen(const SplatSet& splats, const FrameView& view, const SceneFile& scene);
     Result<std::vector<uint8_t>> pictureOf(const SceneFile& scene);
+    // Draws `frames` pictures, stepping `seconds` before each, with progress from `from` to `to`.
+    struct Watch {
+        Session& session;
+        const SceneFile& scene;
+        FrameView view;
+        double seconds;
+        int frames;
+        double from, to;
+    };
+    Result<Watched> watch(const Watch& of, std::span<const SurfaceLook> looks);
+    Status savePictures(const SurfaceLook& look, const Seen& seen, const std::vector<uint8_t>& picture) const;
     Status reachMoment();
     // ms of each of `count` draws of the moment, after `before` draws that are not counted.
     Result<std::vector<double>> drawMs(const FrameView& view, const SceneFile& scene, const FluidView& fluid, int before, int count);
@@ -85,6 +108,7 @@ class SurfaceTrial {
     SplatSet now_;
     FrameView view_;
     SurfaceMap reference_;
+    std::vector<bool> referenceCovered_;  // with spray
     std::vector<uint8_t> referencePicture_;
     bool stopped_ = false;
 };

@@ -112,5 +112,56 @@ TEST(SurfaceMetrics, FlickerIsTheSpreadInTime) {
     EXPECT_NEAR(flicker.rms(), 3, 1e-9);
 }
 
+TEST(SurfaceMetrics, OverlapIsIntersectionOverUnion) {
+    EXPECT_NEAR(overlapOf({true, true, true, false}, {false, true, true, true}), 0.5, 1e-12);
+    EXPECT_EQ(overlapOf({true, false}, {false, true}), 0);
+    EXPECT_EQ(overlapOf({false, false}, {false, false}), 1);
+}
+
+// A square of 4 pixels in a picture of 12: two pixels to either side of its outline, and neither its middle nor what is diagonal to it.
+TEST(SurfaceMetrics, TheBandIsTwoPixelsToEitherSide) {
+    constexpr int kSide = 12;
+    std::vector<bool> covered(size_t{kSide} * kSide);
+    for (int y = 3; y < 9; ++y)
+        for (int x = 3; x < 9; ++x) covered[static_cast<size_t>(y * kSide + x)] = true;
+    const std::vector<bool> band = silhouetteBand(covered, kSide, 2);
+    const auto at = [&](int x, int y) { return band[static_cast<size_t>(y * kSide + x)]; };
+    for (int x = 0; x < kSide; ++x) {
+        EXPECT_EQ(at(x, 5), (x >= 1 && x <= 4) || (x >= 7 && x <= 10)) << x;
+        EXPECT_EQ(at(5, x), (x >= 1 && x <= 4) || (x >= 7 && x <= 10)) << x;
+    }
+    EXPECT_FALSE(at(1, 1));
+    // The edge of the picture is no silhouette.
+    EXPECT_EQ(silhouetteBand(std::vector<bool>(16, true), 4, 2), std::vector<bool>(16, false));
+}
+
+// One row of pixels: water in the left 20 of 40. It brightens by 5 where the reference brightens by 3, and by 9 in the last two pixels
+// before the silhouette; what the dry pixels do counts along the silhouette only.
+TEST(SurfaceMetrics, ChangeIsWhatTheReferenceDoesNotDo) {
+    constexpr int kPixels = 40, kWater = 20;
+    std::vector<bool> covered(kPixels);
+    for (int x = 0; x < kWater; ++x) covered[static_cast<size_t>(x)] = true;
+    const auto frame = [&](int water, int edge, int dry) {
+        std::vector<uint8_t> rgba;
+        for (int x = 0; x < kPixels; ++x) {
+            const auto v = static_cast<uint8_t>(100 + (x >= kWater ? dry : x >= kWater - 2 ? edge : water));
+            rgba.insert(rgba.end(), {v, v, v, static_cast<uint8_t>(7 * x)});
+        }
+        return rgba;
+    };
+    UnexplainedChange change(kPixels, 1);
+    change.add(frame(0, 0, 0), frame(0, 0, 0), covered);
+    EXPECT_EQ(change.mean(), 0);
+    change.add(frame(5, 9, 40), frame(3, 3, 30), covered);
+    EXPECT_NEAR(change.mean(), (18 * 2 + 2 * 6) / 20.0, 1e-12);
+    EXPECT_NEAR(change.edges(), (2 * 6 + 2 * 10) / 4.0, 1e-12);
+    // As much as the reference, in either direction: nothing more. A slow one that the reference does not follow is not made up for by it.
+    UnexplainedChange same(kPixels, 1);
+    same.add(frame(0, 0, 0), frame(9, 9, 9), covered);
+    same.add(frame(4, 4, 4), frame(5, 5, 5), covered);
+    EXPECT_EQ(same.mean(), 0);
+    EXPECT_EQ(same.edges(), 0);
+}
+
 }  // namespace
 }  // namespace rivulet::surface_metrics_test

@@ -329,6 +329,34 @@ TestParticles filled(const vec3& low, const vec3& high, float spacing, Distance 
     return water;
 }
 
+// The box cuts the water: its wall is flat to within a spacing of the edge, and behind the edge the surface is level.
+TEST_F(LookSurface, aWallIsFlatUpToItsEdge) {
+    constexpr float kSpacing = 0.02F;
+    bounds = Bounds{vec3(-0.2F), vec3(0.2F, 0.3F, 0.2F)};
+    const TestParticles water = filled(vec3(-0.19F), vec3(0.195F, 0.0F, 0.195F), kSpacing, [](const vec3& p) { return p.y - 1e-4F; });
+    camera.position = vec3(0.0F, 0.3F, 1.0F);
+    camera.target = vec3(0.0F, -0.05F, 0.0F);
+    draw(water);
+    int wall = 0, level = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const vec3 way = mat3(frame.inverseView) * ray(static_cast<float>(x), static_cast<float>(y));
+            const vec3 front = camera.position + (0.2F - camera.position.z) / way.z * way,
+                       top = camera.position - camera.position.y / way.y * way;
+            const vec3 p = camera.position + at(x, y) * way;
+            if (std::abs(front.x) < 0.18F && front.y > -0.18F && front.y < -kSpacing) {
+                ++wall;
+                EXPECT_NEAR(p.z, 0.2F, 1e-4F) << x << " " << y;
+            }
+            if (way.y < 0 && std::abs(top.x) < 0.18F && top.z > -0.1F && top.z < 0.2F - kSpacing) {
+                ++level;
+                EXPECT_NEAR(p.y, 0.0F, 0.4F * kSpacing) << x << " " << y;
+            }
+        }
+    EXPECT_GT(wall, 1000);
+    EXPECT_GT(level, 1000);
+}
+
 // Three resolutions, three distances: the normals, by where on the surface they are, are the same, and right.
 // The other filters are made for other ends, and smooth steep bumps less: their errors are larger, and steadier than they are small.
 struct FilterBounds {

@@ -45,7 +45,7 @@ int runWindow(const RunOptions& options) {
                                   .clipboard = window->handle(),
                                   .width = options.width,
                                   .height = options.height,
-                                  .seen = seenFile(),
+                                  .seen = options.frames ? "" : seenFile(),  // a run of some frames waits for nobody
                                   .share = [&window] { return window->shared(); },
                                   .showing = showing,
                                   .stop = options.save.empty() ? graceful.flag() : nullptr},  // a state is saved after a whole frame
@@ -64,7 +64,8 @@ int runWindow(const RunOptions& options) {
     if (Status replays = replayOf(options, v.session()); !replays) return report(replays.error());
     Result<std::optional<RecordingWriter>> recording = recordingOf(options, v.session());
     if (!recording) return report(recording.error());
-    if (*recording) v.onStepped([&](const Session& session) { return (*recording)->add(frameOf(session)); });
+    if (*recording)
+        v.onStepped([&](const Session& session) { return session.replaying() != nullptr ? ok() : (*recording)->add(frameOf(session)); });
     const bool recorded = options.explain || !options.stats.empty();
     if (recorded) v.record();
     if (options.frames) v.stepAtMost(static_cast<uint64_t>(*options.frames));

@@ -162,6 +162,9 @@ std::string excerpt(std::string_view text) {
     return text.size() > kLongest ? line + "..." : line;
 }
 
-std::string joined(std::span<const std::string> names) { return fmt::format("{}", fmt::join(names, ", ")); }
+std::string joined(std::span<const std::string> names) {
+    if (!names.empty() && names.front().empty()) return fmt::format("{} or empty", fmt::join(names.subspan(1), ", "));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
 
 }  // namespace rivulet

@@ -26,6 +26,6 @@ std::string valueText(const vec3& v);
 
 std::string rangeText(const ParamInfo& info);            // "between 0.0005 and 1", "at least 0", "" = any
 std::string excerpt(std::string_view text);              // for an error message: one line, at most 60 characters
-std::string joined(std::span<const std::string> names);  // "a, b, c"
+std::string joined(std::span<const std::string> names);  // "a, b, c"; "a, b or empty" if the first name is ""
 
 }  // namespace rivulet

@@ -26,6 +26,11 @@ struct Table {
         for (const Row& row : rows) all.emplace_back(row.name);
         return all;
     }
+    std::vector<std::string> namesOrNone() const {  // "" first: a choice that may be left empty
+        std::vector<std::string> all = names();
+        all.insert(all.begin(), "");
+        return all;
+    }
 };
 
 }  // namespace rivulet

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 
 #include "engine/core/param_list.h"
 #include "engine/core/param_path.h"
 #include "engine/core/param_value.h"
+#include "engine/ui/style.h"
 
 namespace rivulet {
 
@@ -39,21 +41,29 @@ std::vector<std::string> wordsOf(const std::string& text) {
     return words;
 }
 
-// Shortens `text` to `width` pixels.
-std::string shortened(std::string text, float width) {
-    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-    while (!text.empty() && ImGui::CalcTextSize((text + "..").c_str()).x > width) text.pop_back();
-    return text + "..";
-}
+constexpr double kDecades = 8;  // of a slider: more would be too coarse
 
 // Returns a format with enough digits for the steps of the range.
-const char* formatFor(const ParamInfo& info, float v) {
-    if (info.logarithmic || isOpen(info) || info.max - info.min > kSliderSpan) return "%.4g";
+std::string formatFor(const ParamInfo& info, float v) {
+    // ImGui takes the smallest value above 0 of a logarithmic slider from the digits.
+    if (slidesByDecades(info) && info.min <= 0)
+        return fmt::format("%.{}g", std::clamp(static_cast<int>(kDecades - std::log10(info.max)), 4, 7));
+    if (slidesByDecades(info) || isOpen(info) || info.max - info.min > kSliderSpan) return "%.4g";
     float size = std::max(std::abs(v), static_cast<float>(info.max - info.min) * 0.1F);
     return size < 0.1F ? "%.5f" : size < 10.0F ? "%.3f" : "%.2f";
 }
 
+float roundedTo3Digits(float v) { return std::strtof(fmt::format("{:.3g}", v).c_str(), nullptr); }
+
 }  // namespace
+
+bool slidesByDecades(const ParamInfo& info) {
+    if (isOpen(info)) return false;
+    constexpr double kWide = 1000;
+    if (info.min <= 0) return info.logarithmic;
+    const double ratio = info.max / info.min;
+    return (info.logarithmic || ratio >= kWide) && std::log10(ratio) <= kDecades;
+}
 
 std::string readableName(std::string_view name) {
     std::string text;
@@ -92,23 +102,33 @@ const std::string* ParamMemory::byDefault(const std::string& path) const {
 
 void ParamPanel::search(const VisitFn& params) {
     std::string& wanted = memory_.wanted;
-    const float clear =
-        wanted.empty() ? 0 : ImGui::CalcTextSize("clear").x + 2 * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
+    // All of its rows are always there, so that nothing below moves.
+    const float clear = ImGui::CalcTextSize("clear").x + 2 * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - clear);
     if (memory_.find) ImGui::SetKeyboardFocusHere();
     memory_.find = false;
     ImGui::InputTextWithHint("##wanted", "search: a name, a unit, a word", &wanted);
-    if (clear > 0) {
-        ImGui::SameLine();
-        if (ImGui::Button("clear")) wanted.clear();
-    }
-    if (!memory_.changed().empty()) {
-        ImGui::AlignTextToFramePadding();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(wanted.empty());
+    if (ImGui::Button("clear")) wanted.clear();
+    ImGui::EndDisabled();
+    find(params);
+    const bool unchanged = memory_.changed().empty();
+    if (!wanted.empty() && found_.empty())
+        ImGui::TextColored(refusedColour(), "no matching parameter");
+    else if (unchanged)
+        ImGui::TextDisabled("nothing changed");
+    else
         ImGui::TextColored(kChanged, "%zu changed", memory_.changed().size());
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("changed names have this colour; right-click a name to reset it");
-        ImGui::SameLine();
-        if (ImGui::SmallButton("reset all")) resetAll(params);
-    }
+    if (ImGui::IsItemHovered() && !unchanged) ImGui::SetTooltip("changed names have this colour; right-click a name to reset it");
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("reset all").x - 2 * ImGui::GetStyle().FramePadding.x);
+    if (!unchanged && ImGui::SmallButton("reset all")) resetAll(params);
+    if (unchanged) ImGui::NewLine();
+}
+
+// Which values, groups and lists have the wanted words.
+void ParamPanel::find(const VisitFn& params) {
+    const std::string& wanted = memory_.wanted;
     if (wanted.empty()) return;
     const std::vector<std::string> words = wordsOf(wanted);
     for (const ParamEntry& entry : listParams(params)) {
@@ -121,7 +141,6 @@ void ParamPanel::search(const VisitFn& params) {
             found_.insert(entry.path.substr(0, end));
         if (entry.kind != ParamEntry::Kind::value) whole_.push_back(entry.path);
     }
-    if (found_.empty()) ImGui::TextDisabled("no matching parameter");
 }
 
 // The length of a list is not a value: added items stay.
@@ -152,12 +171,13 @@ void ParamPanel::label(const ParamInfo& info, std::string& text) {
     const bool changed = was != memory_.changed().end();
     ImGui::PushID(info.name);
     float left = ImGui::GetCursorPosX();
-    // Widgets stand in one column at any nesting depth; the dimmed unit follows on the right.
+    // Widgets stand in one column at any nesting depth; the dimmed unit follows on the right. A longer name has a line of its own.
     float column = std::max(left + 20, ImGui::GetWindowWidth() * 0.42F);
-    const std::string name = readableName(info.name), cut = shortened(name, column - left - 6);
-    ImGui::AlignTextToFramePadding();
+    const std::string name = readableName(info.name);
+    const bool above = ImGui::CalcTextSize(name.c_str()).x > column - left - 6;
+    if (!above) ImGui::AlignTextToFramePadding();
     if (changed) ImGui::PushStyleColor(ImGuiCol_Text, kChanged);
-    ImGui::TextUnformatted(cut.c_str());
+    ImGui::TextUnformatted(name.c_str());
     if (changed) ImGui::PopStyleColor();
     if (ImGui::BeginPopupContextItem("menu")) {
         const std::string* byDefault = memory_.byDefault(path);
@@ -167,7 +187,7 @@ void ParamPanel::label(const ParamInfo& info, std::string& text) {
         if (ImGui::MenuItem("copy the name")) ImGui::SetClipboardText(path.c_str());
         ImGui::EndPopup();
     } else if (ImGui::IsItemHovered() && info.doc[0] != '\0') {
-        std::string about = cut == name ? info.doc : fmt::format("{}: {}", name, info.doc);
+        std::string about = info.doc;
         if (info.unit[0] != '\0') about += fmt::format("\nunit: {}", info.unit);
         if (!isOpen(info) && info.max < kOpenRange) about += fmt::format("\nrange: {:g} to {:g}", info.min, info.max);
         if (info.fixed) about += "\nchanging this restarts the water";
@@ -178,8 +198,14 @@ void ParamPanel::label(const ParamInfo& info, std::string& text) {
         ImGui::PopTextWrapPos();
         ImGui::EndTooltip();
     }
-    ImGui::SameLine(column);
-    float unit = info.unit[0] != '\0' || info.max < kOpenRange ? ImGui::CalcTextSize("m^2/s^2").x + 8 : 0;  // text fields have none
+    if (above)
+        ImGui::SetCursorPosX(column);
+    else
+        ImGui::SameLine(column);
+    constexpr float kGap = 8;                                   // px
+    float unit = info.unit[0] != '\0' || info.max < kOpenRange  // text fields have none
+                     ? std::max(ImGui::CalcTextSize("m^2/s^2").x, ImGui::CalcTextSize(info.unit).x) + kGap
+                     : 0;
     ImGui::SetNextItemWidth(std::max(40.0F, ImGui::GetContentRegionAvail().x - unit));
 }
 
@@ -209,19 +235,23 @@ bool ParamPanel::floats(const ParamInfo& info, float* v, int count) {
     float before[3] = {0, 0, 0};
     std::copy_n(v, count, before);
     float low = static_cast<float>(info.min), high = static_cast<float>(info.max);
-    const char* format = formatFor(info, v[0]);
-    ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
+    const std::string format = formatFor(info, v[0]);
+    const bool decades = slidesByDecades(info);
+    const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (decades ? ImGuiSliderFlags_Logarithmic : 0);
     bool edited = false;
-    if (info.logarithmic && !isOpen(info)) {
-        edited = ImGui::SliderScalarN("##v", ImGuiDataType_Float, v, count, &low, &high, format, flags | ImGuiSliderFlags_Logarithmic);
-    } else if (!isOpen(info) && info.max - info.min <= kSliderSpan) {
-        edited = ImGui::SliderScalarN("##v", ImGuiDataType_Float, v, count, &low, &high, format, flags);
+    if (decades || (!isOpen(info) && info.max - info.min <= kSliderSpan)) {
+        edited = ImGui::SliderScalarN("##v", ImGuiDataType_Float, v, count, &low, &high, format.c_str(), flags);
     } else {
         float largest = 0;
         for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(v[i]));
-        edited = ImGui::DragScalarN("##v", ImGuiDataType_Float, v, count, std::max(0.005F * largest, 0.002F), &low, &high, format, flags);
+        edited = ImGui::DragScalarN("##v", ImGuiDataType_Float, v, count, std::max(0.005F * largest, 0.002F), &low, &high, format.c_str(),
+                                    flags);
     }
     if (!edited) return false;
+    // A drag ends at figures that are read at a glance; what is typed stays as it is.
+    if (decades && ImGui::IsMouseDown(ImGuiMouseButton_Left))
+        for (int i = 0; i < count; ++i)
+            if (v[i] != before[i]) v[i] = roundedTo3Digits(v[i]);
     // ImGui's clamp lets a typed "nan" pass, and any value if the range is open.
     for (int i = 0; i < count; ++i) v[i] = std::isfinite(v[i]) ? std::clamp(v[i], low, high) : before[i];
     return !std::equal(v, v + count, before);
@@ -243,7 +273,7 @@ void ParamPanel::value(const ParamInfo& info, int& v) {
         int low = static_cast<int>(std::max(info.min, -kWidest)), high = static_cast<int>(std::min(info.max, kWidest));
         if (high - static_cast<double>(low) <= 2000)
             return ImGui::SliderInt("##v", &v, low, high, "%d",
-                                    ImGuiSliderFlags_AlwaysClamp | (info.logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
+                                    ImGuiSliderFlags_AlwaysClamp | (slidesByDecades(info) ? ImGuiSliderFlags_Logarithmic : 0));
         return ImGui::DragInt("##v", &v, std::max(1.0F, 0.005F * static_cast<float>(std::abs(v))), low, high, "%d",
                               ImGuiSliderFlags_AlwaysClamp);
     };
@@ -280,9 +310,10 @@ void ParamPanel::colour(const ParamInfo& info, vec3& v) {
 void ParamPanel::choice(const ParamInfo& info, std::string& v, std::span<const std::string> names) {
     const auto widget = [&] {
         bool edited = false;
-        if (!ImGui::BeginCombo("##v", v.c_str())) return false;
+        const auto shown = [](const std::string& name) { return name.empty() ? "(none)" : name.c_str(); };
+        if (!ImGui::BeginCombo("##v", shown(v))) return false;
         for (const std::string& name : names) {
-            if (ImGui::Selectable(name.c_str(), name == v) && name != v) {
+            if (ImGui::Selectable(shown(name), name == v) && name != v) {
                 v = name;
                 edited = true;
             }

@@ -61,6 +61,7 @@ class ParamPanel final : public ParamVisitor {
   private:
     bool hidden() const { return closed_ > 0; }  // inside a list or item that is folded
     bool shown(const char* name) const;          // of a value, group or list, while something is searched for
+    void find(const VisitFn& params);
     bool isWhole(const std::string& path) const;
     void resetAll(const VisitFn& params);
     void label(const ParamInfo& info, std::string& text);  // `text`: in JSON, a value that its menu chose; else as it was
@@ -79,6 +80,9 @@ class ParamPanel final : public ParamVisitor {
     int closed_ = 0;  // of the enclosing lists and items, folded
     std::vector<bool> open_;
 };
+
+// Whether a slider of this range is logarithmic: where the Param says so, or the range spans three decades; not over more than eight.
+bool slidesByDecades(const ParamInfo& info);
 
 // "artificialViscosity" -> "artificial viscosity".
 std::string readableName(std::string_view name);

@@ -28,8 +28,9 @@ void FluidLookParams::visit(ParamVisitor& v) {
          .doc = "shape of a drawn particle of the surface; ellipsoids lie along the surface and cost one pass over neighbours per frame"},
         splats, splatKinds);
     v.choice({.name = "view", .doc = "the finished water, or one of the images that its surface is made from"}, view, viewNames);
-    v.value({.name = "split", .doc = "renderer of the picture's right half, for comparison; empty = look.renderer for the whole picture"},
-            split);
+    static const std::vector<std::string> splitNames = renderers().namesOrNone();
+    v.choice({.name = "split", .doc = "renderer of the picture's right half, for comparison; empty = look.renderer for the whole picture"},
+             split, splitNames);
     v.choice({.name = "quality",
               .doc = "fast: spheres, the surface at half the resolution, coarser light in the water, no screen-space reflection; fine: "
                      "full quality; auto: in a window by the frame time, else fine"},

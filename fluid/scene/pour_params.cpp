@@ -18,8 +18,7 @@ void PourParams::visit(ParamVisitor& v) {
             litres);
     v.value({"radius", "m", "radius of the jet; 0 = three spacings", 0, 100, kLog}, radius);
     v.value({"speed", "m/s", "speed of the jet at its start; 0 = that of a fall of three radii", 0, 100}, speed);
-    v.value({.name = "liquid", .doc = "liquid of the jet, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
-            liquid);
+    visitLiquid(v, "liquid of the jet; empty = that of fluid.liquid", liquid);
     visitDye(v, dye, dyeAmount, dyeScattering);
 }
 

@@ -6,11 +6,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "engine/core/file.h"
 #include "engine/core/folder.h"
 #include "engine/core/input_file.h"
 #include "engine/core/json.h"
+#include "engine/core/param_list.h"
 #include "engine/core/table.h"
 #include "fluid/sim/solids/solids.h"
 #include "fluid/sim/world/contradictions.h"
@@ -331,21 +333,57 @@ Result<std::string> findAsset(const std::string& path, const std::string& sceneF
     return badInput(fmt::format("{} does not exist; searched {}", path, fmt::join(looked, ", ")));
 }
 
+namespace {
+
+// The names in a folder's order.txt, a line each; lines that begin with # are comments.
+std::vector<std::string> orderIn(const fs::path& folder) {
+    std::vector<std::string> names;
+    const Result<std::string> text = readFile((folder / "order.txt").string());
+    if (!text) return names;
+    std::istringstream lines(*text);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.empty() && line.front() != '#') names.push_back(line);
+    return names;
+}
+
+std::string missingAsset(SceneFile& scene) {
+    if (!useAlternatives(scene, {})) return "";  // opening it says why
+    for (const ParamEntry& entry : listParams(visiting(scene))) {
+        const bool file = entry.path.ends_with(".mesh") || entry.path == "background.surroundings";
+        if (!file || entry.path.find("[]") != std::string::npos) continue;
+        const std::string name = plainText(entry.text);
+        if (!name.empty() && !findAsset(name, scene.folder)) return name;
+    }
+    return "";
+}
+
+}  // namespace
+
 std::vector<SceneListing> listScenes() {
     std::vector<fs::path> folders = {"."};
     for (const fs::path& folder : assetFolders()) folders.push_back(folder);
     std::vector<SceneListing> listings;
     std::set<fs::path> seen;  // one folder may be listed twice
+    std::vector<std::string> order;
     for (const fs::path& folder : folders) {
+        for (std::string& name : orderIn(folder / "scenes")) order.push_back(std::move(name));
         for (const fs::path& path : entriesOf(folder / "scenes")) {
             std::error_code ignored;
             if (path.extension() != ".json" || !isFile(path) || !seen.insert(fs::weakly_canonical(path, ignored)).second) continue;
             SceneFile scene;
             const Status read = readJsonFile(path.string(), visiting(scene));
-            listings.push_back({path.string(), read ? scene.name : path.stem().string(), read ? scene.doc : read.error().message});
+            scene.folder = path.parent_path().string();
+            listings.push_back({path.string(), read ? scene.name : path.stem().string(), read ? scene.doc : read.error().message,
+                                read ? missingAsset(scene) : ""});
         }
     }
-    std::sort(listings.begin(), listings.end(), [](const SceneListing& a, const SceneListing& b) { return a.path < b.path; });
+    const auto place = [&order](const SceneListing& scene) {
+        return std::find(order.begin(), order.end(), fs::path(scene.path).stem().string()) - order.begin();
+    };
+    std::sort(listings.begin(), listings.end(), [&place](const SceneListing& a, const SceneListing& b) {
+        const auto first = place(a), second = place(b);
+        return first != second ? first < second : a.path < b.path;
+    });
     return listings;
 }
 

@@ -13,7 +13,7 @@ constexpr double kRoom = 0.25;                         // of kMost
 
 void AdaptiveQuality::begin(bool software) {
     *this = {};
-    fast_ = software;
+    fast_ = software_ = software;
 }
 
 void AdaptiveQuality::frame(double ms) {
@@ -21,14 +21,20 @@ void AdaptiveQuality::frame(double ms) {
         slow_ = ms > kMost ? slow_ + 1 : 0;
         if (slow_ < kSlowFrames) return;
         fast_ = true;
+        software_ = false;
         roomy_ = 0;
         return;
     }
     roomy_ = ms < kRoom * kMost ? roomy_ + 1 : 0;
     if (roomy_ < patience_) return;
-    fast_ = false;
+    fast_ = software_ = false;
     slow_ = 0;
     patience_ = std::min(2 * patience_, kMostPatience);
+}
+
+const char* AdaptiveQuality::reason() const {
+    static_assert(kMost == 12, "the sentence names it");
+    return !fast_ ? "" : software_ ? "drawn without a GPU" : "drawing over 12 ms";
 }
 
 }  // namespace rivulet

@@ -12,8 +12,11 @@ class AdaptiveQuality {
     // At the start and after a reset: fast where a software renderer draws.
     void begin(bool software);
     bool fast() const { return fast_; }
+    // Why it is fast, as a clause; "": it is fine.
+    const char* reason() const;
 
   private:
+    bool software_ = false;  // and no frame was slow yet
     bool fast_ = false;
     int slow_ = 0, roomy_ = 0, patience_ = 120;  // frames
 };

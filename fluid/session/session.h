@@ -83,6 +83,7 @@ class Session {
     // From now on a step shows the recording's next frame instead of simulating; seek() chooses it, reset() restarts. The world does not
     // change. Error (badInput): the recording has other moving solids.
     Status replay(Replay replay);
+    void endReplay();                                                                 // shows and simulates the world again, where it was
     const Replay* replaying() const { return replay_ ? &*replay_ : nullptr; }         // null: it simulates
     Status replayed() const { return replay_ ? replay_->status() : ok(); }            // Error: the last frame is damaged
     void seek(size_t frame) { replay_->seek(frame); }                                 // while replaying

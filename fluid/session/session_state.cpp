@@ -18,6 +18,12 @@ Status Session::replay(Replay replay) {
     return ok();
 }
 
+void Session::endReplay() {
+    if (!replay_) return;
+    replay_.reset();
+    solids_.placeNodes(scene_, *world_);
+}
+
 Status Session::moveTo(Device& device) {
     takeSnapshot();
     // Notices about the scene were logged when it was opened.

@@ -137,6 +137,18 @@ void ChartPanel::chooseCase(float width) {
     if (ImGui::IsItemHovered() && row != chart_.end()) ImGui::SetTooltip("error of: %s", row->what.c_str());
 }
 
+std::string ChartPanel::captionOf(const Here& here, const std::string& name) {
+    if (!(here.cost > 0)) return "none: this method was not run on the case";
+    return fmt::format("density error {}, {} per\nsimulated second of {}", percentText(here.densityError), seconds(here.cost), name);
+}
+
+ChartPanel::Here ChartPanel::hereOf(const Session& session) const {
+    const FluidParams& params = session.scene().fluid;
+    const ChartRow* like =
+        rowLike(chart_, cases_[case_], settingOf(params), params.method, static_cast<double>(session.world().stats().particles));
+    return {like, like != nullptr ? broughtTo(*like, measured_) : 0, measured_.densityError()};
+}
+
 // Where each point and the run lie. The axes hold all of them.
 void ChartPanel::place(const Session& session, vec2 low, vec2 size) {
     placed_.clear();
@@ -149,11 +161,8 @@ void ChartPanel::place(const Session& session, vec2 low, vec2 size) {
     };
     for (const ChartRow& row : chart_)
         if (row.name == cases_[case_]) hold(row.wallPerSecond, errorOf(row));
-    const FluidParams& params = session.scene().fluid;
-    const ChartRow* like =
-        rowLike(chart_, cases_[case_], settingOf(params), params.method, static_cast<double>(session.world().stats().particles));
-    const double cost = like != nullptr ? broughtTo(*like, measured_) : 0;
-    const double error = std::max(measured_.densityError(), kLeastError);
+    here_ = hereOf(session);
+    const double cost = here_.cost, error = std::max(here_.densityError, kLeastError);
     if (cost > 0) hold(cost, ofDensity_ ? error : least[1]);
     cost_ = axisOf(least[0], largest[0], true);
     error_ = axisOf(least[1], largest[1], true);
@@ -241,7 +250,7 @@ void ChartPanel::tellHere(const Session& session) const {
     const FluidParams& params = session.scene().fluid;
     const ChartSetting* setting = settingOf(params);
     const double particles = session.world().stats().particles;
-    const ChartRow* row = rowLike(chart_, cases_[case_], setting, params.method, particles);
+    const ChartRow* row = here_.row;
     if (row == nullptr) return;
     ImGui::BeginTooltip();
     ImGui::TextUnformatted("This run");
@@ -252,9 +261,9 @@ void ChartPanel::tellHere(const Session& session) const {
     line("cost", fmt::format("{} per simulated second, {:.3g} ns per particle and substep", seconds(measured_.wallPerSecond()),
                              measured_.nsPerParticleStep()));
     ImGui::Spacing();
-    line("on the chart", fmt::format("{:.3g} ns x {} particles x {} substeps per simulated second of {} with {}: {}",
-                                     measured_.nsPerParticleStep(), readableCount(row->particles), readableCount(row->stepsPerSecond),
-                                     row->name, row->setting, seconds(broughtTo(*row, measured_))));
+    line("on the chart",
+         fmt::format("{:.3g} ns x {} particles x {} substeps per simulated second of {} with {}: {}", measured_.nsPerParticleStep(),
+                     readableCount(row->particles), readableCount(row->stepsPerSecond), row->name, row->setting, seconds(here_.cost)));
     line("reference", fmt::format("that run took {} on: {}", seconds(row->wallPerSecond), machine_));
     if (!ofDensity_) line("error", fmt::format("measured by the case only: {}", row->what));
     ImGui::EndTooltip();
@@ -315,16 +324,17 @@ void ChartPanel::drawLegend(const Session& session, float width) {
     const FluidParams& params = session.scene().fluid;
     const ChartSetting* setting = settingOf(params);
     ImGui::Spacing();
-    line("this run", fmt::format("{}, {:.3g} m:\ndensity error {},\n{} per simulated second",
-                                 setting != nullptr ? std::string(setting->name) : params.method + ", custom values", params.spacing,
-                                 percentText(measured_.densityError()), seconds(measured_.wallPerSecond())));
+    line("this run", fmt::format("{}, spacing {:.3g} m",
+                                 setting != nullptr ? std::string(setting->name) : params.method + ", custom values", params.spacing));
+    line("circle", captionOf(here_, cases_[case_]));
+    line("this scene", fmt::format("{} per simulated second", seconds(measured_.wallPerSecond())));
     line("measured on", machine_);
 }
 
 bool ChartPanel::draw(const Session& session, SceneFile& draft, float width, float height) {
     if (chart_.empty()) return false;
     chooseCase(width);
-    const float rest = 9 * ImGui::GetTextLineHeightWithSpacing();
+    const float rest = 11 * ImGui::GetTextLineHeightWithSpacing();
     const ImVec2 all(width, std::clamp(height - ImGui::GetFrameHeightWithSpacing() - rest, 160.0F, 0.9F * width));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool clicked = ImGui::InvisibleButton("chart", all);

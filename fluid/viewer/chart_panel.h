@@ -42,6 +42,14 @@ class ChartPanel {
     // Inside an ImGui window, pixels. Returns whether a point was clicked: `draft` then has its values and needs a new session.
     bool draw(const Session& session, SceneFile& draft, float width, float height);
 
+    // Where the run lies on the chart: what the circle and its caption say.
+    struct Here {
+        const ChartRow* row = nullptr;      // that its cost is brought to; null: none
+        double cost = 0, densityError = 0;  // s on the wall per simulated second of the row's case; a fraction
+    };
+    const Here& here() const { return here_; }
+    static std::string captionOf(const Here& here, const std::string& name);  // of the case of that name
+
     const ChartMeasured& measured() const { return measured_; }
     struct Placed {
         const ChartRow* row = nullptr;  // null: the current run
@@ -50,6 +58,7 @@ class ChartPanel {
     const std::vector<Placed>& placed() const { return placed_; }
 
   private:
+    Here hereOf(const Session& session) const;
     double errorOf(const ChartRow& row) const;
     void chooseCase(float width);
     void place(const Session& session, vec2 low, vec2 size);
@@ -70,6 +79,7 @@ class ChartPanel {
     bool asMany_ = false;    // a click takes the point's number of particles, too
     ChartMeasured measured_;
     PlotAxis cost_, error_;
+    Here here_;
     std::vector<Placed> placed_;
 };
 

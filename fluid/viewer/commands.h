@@ -25,7 +25,9 @@ enum class Command {
     find,   // a parameter
     video,  // begin or end
     picture,
-    none,  // the mouse's: in the help alone
+    record,   // the run, to scrub through it: begin or end
+    measure,  // the measurements, shown or hidden
+    none,     // the mouse's: in the help alone
 };
 
 struct KeyRow {

@@ -1,4 +1,4 @@
-// The top of the scene's panel: buttons, figures of the run, messages.
+// The top of the scene's panel: buttons, figures of the run, messages. Each part has a fixed height, so that nothing below it moves.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,12 @@
 namespace rivulet {
 
 struct FluidPanelState {
-    bool paused = false, filming = false, pouring = false;
-    std::string backend;   // the device that simulates: "cpu: Intel(R) ..."
-    std::string transfer;  // how particles reach OpenGL: sentenceOf(TransferFacts)
-    std::string plan;      // of simulating and drawing: "off: each frame is simulated, then drawn"
-    std::string renderer;  // of OpenGL: "llvmpipe (LLVM 15.0.6, 256 bits)"
+    bool paused = false, filming = false, pouring = false, recording = false, measuring = false;
+    std::string backend;       // the device that simulates: "cpu: Intel(R) ..."
+    std::string transfer;      // how particles reach OpenGL: sentenceOf(TransferFacts)
+    std::string plan;          // of simulating and drawing: "off: each frame is simulated, then drawn"
+    std::string renderer;      // of OpenGL: "llvmpipe (LLVM 15.0.6, 256 bits)"
+    std::string quality, why;  // of the picture: "fast"; "drawing takes longer than 12 ms"
     double simulateMs = 0, frameMs = 0;
     std::string message;  // why an edit was refused; "": none
     std::span<const std::string> notices;

@@ -169,15 +169,19 @@ void Inspector::anchor(float margin, float room) {
 
 bool Inspector::draw(const Session& session, SceneRenderer& renderer, const Timeline& timeline, const ProfilerPanel& profiler,
                      SceneFile& draft, float margin, float room) {
-    if (asked_ != Tab::none) open_ = asked_;
-    anchor(margin, room);
-    constexpr float kNarrow = 850;  // there the picture comes first
+    constexpr float kNarrow = 850;  // a window that becomes so narrow closes it: the picture comes first
     const bool narrow = ImGui::GetIO().DisplaySize.x < kNarrow;
-    if (asked_ == Tab::none && narrow != narrow_) ImGui::SetNextWindowCollapsed(narrow, ImGuiCond_Always);
+    if (narrow && !narrow_ && display_ > 0 && asked_ == Tab::none) visible_ = false;
     narrow_ = narrow;
     shown_ = Tab::none;
+    if (!visible_) {
+        hide(renderer);
+        return false;
+    }
+    if (asked_ != Tab::none) open_ = asked_;
+    anchor(margin, room);
     bool recreate = false;
-    if (ImGui::Begin("measured###watch", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+    if (ImGui::Begin("measurements###watch", &visible_, ImGuiWindowFlags_AlwaysAutoResize)) {
         // Their names stay where they are, whichever is open.
         const float left = ImGui::GetCursorPosX();
         ImGui::SetCursorPosX(left + shift_);

@@ -1,5 +1,5 @@
-// Inspector: the measurements of a run, at the right of the window, one tab each: times, graphs, chart, frame graph, voxels. A hidden tab
-// costs a few stored figures per step.
+// Inspector: the measurements of a run, at the right of the window, one tab each: times, graphs, chart, frame graph, voxels. Closed at
+// first; a hidden tab costs a few stored figures per step.
 #pragma once
 
 #include "engine/ui/frame_graph_panel.h"
@@ -28,7 +28,12 @@ class Inspector {
               float margin, float room);
     void hide(SceneRenderer& renderer);  // instead of draw(), in a frame without panels
     Tab shown() const { return shown_; }
-    void show(Tab tab) { asked_ = tab; }  // from the next frame on
+    bool visible() const { return visible_; }
+    void toggle() { visible_ = !visible_; }
+    void show(Tab tab) {  // from the next frame on
+        asked_ = tab;
+        visible_ = true;
+    }
 
     const GraphPanel& graphs() const { return graphs_; }
     const ChartPanel& chart() const { return chart_; }
@@ -61,7 +66,7 @@ class Inspector {
     float width_ = 0;     // px, of the last frame
     float shift_ = 0;     // px: how much wider it is than with the first tab
     float display_ = 0;   // px across
-    bool narrow_ = false;
+    bool narrow_ = false, visible_ = false;
 };
 
 }  // namespace rivulet

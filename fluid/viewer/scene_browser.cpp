@@ -33,6 +33,7 @@ void SceneBrowser::show(bool yes) {
     trouble_.clear();
     if (!yes) return;
     scenes_ = listScenes();
+    std::stable_partition(scenes_.begin(), scenes_.end(), [](const SceneListing& scene) { return scene.missing.empty(); });
     for (SceneListing& scene : scenes_) {
         scene.name = messageLine(scene.name);
         scene.doc = messageLine(scene.doc);
@@ -46,6 +47,7 @@ const gpu::Texture* SceneBrowser::pictureOf(const std::string& scene) {
     if (known != pictures_.end()) return known->second ? &known->second : nullptr;
     if (readOne_) return nullptr;
     readOne_ = true;
+    sketches_.try_emplace(scene, scene, kShape);
     gpu::Texture& kept = pictures_[scene];
     const fs::path file = fs::path(scene).parent_path().parent_path() / "pictures" / (fs::path(scene).stem().string() + ".jpg");
     std::error_code error;
@@ -71,6 +73,7 @@ bool SceneBrowser::card(size_t index, float width) {
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(30 * ImGui::GetFontSize());
         ImGui::TextUnformatted(scene.doc.c_str());
+        if (!scene.missing.empty()) ImGui::TextColored(refusedColour(), "not found: %s", scene.missing.c_str());
         ImGui::TextDisabled("%s", scene.path.c_str());
         ImGui::PopTextWrapPos();
         ImGui::EndTooltip();
@@ -82,8 +85,14 @@ bool SceneBrowser::card(size_t index, float width) {
     if (const gpu::Texture* picture = pictureOf(scene.path))
         list.AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(picture->name())), at, under, ImVec2(0, 1), ImVec2(1, 0),
                              IM_COL32_WHITE, 4, ImDrawFlags_RoundCornersTop);
-    else if (pictures_.contains(scene.path))  // looked for
-        list.AddText(ImVec2(at.x + 7, at.y + 7), ImGui::GetColorU32(ImGuiCol_TextDisabled), "no picture");
+    else if (const auto sketch = sketches_.find(scene.path); sketch != sketches_.end())
+        sketch->second.draw(list, vec2(at.x, at.y), width);
+    if (!scene.missing.empty()) {
+        const char* why = "needs a file that is not installed";
+        const ImVec2 room = ImGui::CalcTextSize(why), low(at.x + 7, under.y - room.y - 7);
+        list.AddRectFilled(ImVec2(low.x - 3, low.y - 2), ImVec2(low.x + room.x + 3, low.y + room.y + 2), IM_COL32(10, 14, 18, 220), 3);
+        list.AddText(low, ImGui::GetColorU32(refusedColour()), why);
+    }
     const ImVec2 name(at.x + 7, at.y + tall + 4);
     list.AddText(name, ImGui::GetColorU32(ImGuiCol_Text), scene.name.c_str());
     const float small = 0.88F * ImGui::GetFontSize(), doc = name.y + ImGui::GetTextLineHeight() + 1;

@@ -9,6 +9,7 @@
 
 #include "engine/gpu/texture.h"
 #include "fluid/scene/scene_file.h"
+#include "fluid/viewer/scene_sketch.h"
 
 namespace rivulet {
 
@@ -20,6 +21,8 @@ class SceneBrowser {
     std::optional<std::string> draw();
     void refuse(const std::string& why);
 
+    const std::vector<SceneListing>& scenes() const { return scenes_; }  // in the order of the cards
+
   private:
     bool card(size_t index, float width);
     // From pictures/ in the scene's folder; null: there is none. Reads at most one file per frame.
@@ -28,6 +31,7 @@ class SceneBrowser {
     bool shown_ = false, refocus_ = false;
     std::vector<SceneListing> scenes_;
     std::map<std::string, gpu::Texture> pictures_;  // by the scene's path; empty: it has none
+    std::map<std::string, SceneSketch> sketches_;   // instead, of those that were looked for
     bool readOne_ = false;                          // in this frame
     std::string wanted_, path_, trouble_;
 };

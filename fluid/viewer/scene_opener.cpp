@@ -4,6 +4,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/core/message_line.h"
@@ -68,18 +69,19 @@ Result<OpenedScene> SceneOpener::openFirst(const SceneFile& scene, std::unique_p
     return work.take();
 }
 
-bool SceneOpener::drawProgress(const SceneOpening& work, float height) {
+bool SceneOpener::drawProgress(const SceneOpening& work, float height, float left) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     const SceneOpening::Step step = work.step();
-    ImGui::SetNextWindowPos(ImVec2(display.x / 2, height * display.y), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    ImGui::SetNextWindowPos(ImVec2(0.5F * (left + display.x), height * display.y), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     ImGui::SetNextWindowBgAlpha(1);  // a panel may lie under it
     ImGui::Begin(
         "opening", nullptr,
         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());  // without the focus, which a person may need elsewhere
-    constexpr size_t kName = 60;                                  // characters
+    const float em = ImGui::GetFontSize();
+    constexpr size_t kName = 60;  // characters
     ImGui::Text("%s: %s", messageLine(work.scene().name, kName).c_str(), step.what.c_str());
-    ImGui::ProgressBar(static_cast<float>(step.share), ImVec2(ImGui::GetFontSize() * 20, 0));
+    ImGui::ProgressBar(static_cast<float>(step.share), ImVec2(std::clamp(display.x - left - 8 * em, 4 * em, 20 * em), 0));
     ImGui::SameLine();
     const bool cancel = ImGui::Button("cancel");
     ImGui::End();

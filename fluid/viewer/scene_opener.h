@@ -43,8 +43,9 @@ class SceneOpener {
     // openSession; (failed) it was given up. Where aside().
     Result<OpenedScene> openFirst(const SceneFile& scene, std::unique_ptr<Device> device, const std::string& backend,
                                   const std::function<bool(const SceneOpening&)>& pump);
-    // A bar with what is done, `height` from the top, a share of the window's. Whether "cancel" was pressed.
-    static bool drawProgress(const SceneOpening& work, float height);
+    // A bar with what is done, `height` from the top, a share of the window's, in the middle of what is right of `left`, px. Whether
+    // "cancel" was pressed.
+    static bool drawProgress(const SceneOpening& work, float height, float left);
 
   private:
     Share share_;

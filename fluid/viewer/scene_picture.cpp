@@ -32,6 +32,11 @@ Status ScenePicture::draw(Session& session, int width, int height, Timeline& tim
     return renderer_->draw(view, *fluid, session.solids(), scene);
 }
 
+ScenePicture::Quality ScenePicture::quality(const FluidLookParams& look) const {
+    if (look.quality == "auto") return {adaptiveQuality_.fast() ? "fast" : "fine", adaptiveQuality_.reason()};
+    return {look.quality == "fast" ? "fast" : "fine", "chosen in look.quality"};
+}
+
 void ScenePicture::adaptQuality(const FluidLookParams& look) {
     if (!look.split.empty() || look.quality != "auto") return;  // a half that is ray-marched says nothing of the other
     double ms = 0;

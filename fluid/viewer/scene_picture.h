@@ -21,6 +21,11 @@ class ScenePicture {
     const TransferFacts& facts() const { return upload_.facts(); }
     // `uploaded` is called when the world is no longer read. Error (failed): out of GPU memory; (badInput): as SceneRenderer::draw.
     Status draw(Session& session, int width, int height, Timeline& timeline, const std::function<void()>& uploaded);
+    // The quality in use, fast or fine, and why; the reason is "" where auto chose fine.
+    struct Quality {
+        const char *name = "", *why = "";
+    };
+    Quality quality(const FluidLookParams& look) const;
     // Quality auto follows the times of the last pictures.
     void adaptQuality(const FluidLookParams& look);
 

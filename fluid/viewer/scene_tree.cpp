@@ -102,7 +102,7 @@ TreeAsks drawSceneTree(const Session& session, SceneFile& draft, Manipulator& ha
     const ImGuiID id = ImGui::GetID("things");
     Tree tree(session, draft, hand);
     ImGui::BeginChild("tree", ImVec2(0, std::clamp(kept.GetFloat(id), ImGui::GetFrameHeight(), ImGui::GetFontSize() * 13)));
-    if (ImGui::CollapsingHeader("things")) {
+    if (ImGui::CollapsingHeader("objects###things")) {
         tree.meshes();
         tree.rest("emitters", "emitter", draft.emitters, Thing::Kind::emitter);
         tree.rest("sinks", "sink", draft.sinks, Thing::Kind::sink);

@@ -11,9 +11,6 @@
 
 namespace rivulet {
 
-namespace {
-
-// The scene's name and the first number that is free. Error (failed): the folder is not writable.
 Result<std::string> freePath(const std::string& scene, const char* kind) {
     std::error_code error;
     std::string path;
@@ -21,8 +18,6 @@ Result<std::string> freePath(const std::string& scene, const char* kind) {
     if (Status writable = checkWritable(path); !writable) return writable.error();
     return path;
 }
-
-}  // namespace
 
 std::string fileName(std::string sceneName) {
     for (char& c : sceneName)

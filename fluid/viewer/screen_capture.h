@@ -8,6 +8,7 @@
 #include "engine/app/capture.h"
 #include "engine/core/log.h"
 #include "engine/core/math.h"
+#include "engine/core/result.h"
 
 namespace rivulet {
 
@@ -15,6 +16,9 @@ class SceneRenderer;
 
 // A scene's name as the beginning of a file's.
 std::string fileName(std::string sceneName);
+
+// A path that is free: the scene's name, a number, `kind` as its ending. Error (failed): the folder is not writable.
+Result<std::string> freePath(const std::string& scene, const char* kind);
 
 class ScreenCapture {
   public:

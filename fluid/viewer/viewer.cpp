@@ -28,6 +28,7 @@ Status Viewer::start(const SceneFile& scene, const ViewerOptions& options) {
     welcomeScreen_ = WelcomeScreen(options.seen);
     clDevice_ = options.device;
     longestStep_ = options.longestStep;
+    askStep_ = options.askStep;
     opener_.begin(options.share, clDevice_, gl_, log_);
     std::string backend = options.backend;
     OpenedScene first;
@@ -80,6 +81,7 @@ Status Viewer::start(const SceneFile& scene, const ViewerOptions& options) {
     run_.adopt(std::move(first.session), std::move(first.device));
     draft_.scene = this->scene();
     rememberOpened(false);
+    run_.pause(welcomeScreen_.shown());  // nothing happens behind it
     picture_.begin(gl_.software);
     reload_.follow(scene);
     return ok();
@@ -87,6 +89,7 @@ Status Viewer::start(const SceneFile& scene, const ViewerOptions& options) {
 
 Viewer::~Viewer() {
     if (Status closed = capture_.endVideo(log_); !closed) log_.notice(closed.error().message);
+    if (Status closed = recording_.end(log_); !closed) log_.notice(closed.error().message);
 }
 
 Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffer) {
@@ -100,6 +103,7 @@ Status Viewer::frame(const InputEvents& input, double seconds, GLuint framebuffe
     if (!greets) takeKeys(input);
     drawPanels();
     drawDialogs(input, seconds);
+    if (greets && !welcomeScreen_.shown()) run_.pause(false);
     ui_.made();
     takeDropped(input);
     takeMouse(input, greets);
@@ -125,6 +129,7 @@ Status Viewer::take(SceneRun::Result result) {
     if (!*result) return ok();
     const SceneRun::Stepped& step = **result;
     capture_.stepped();
+    report(recording_.stepped(session()));
     if (step.toCpu) draft_.scene.fluid.grid = scene().fluid.grid;  // the cpu may not support it
     if (step.repicked) draft_.scene.fluid = scene().fluid;
     profiler_.add("simulate", step.passes);

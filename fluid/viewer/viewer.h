@@ -22,12 +22,16 @@
 #include "fluid/viewer/scene_draft.h"
 #include "fluid/viewer/scene_opener.h"
 #include "fluid/viewer/scene_picture.h"
+#include "fluid/viewer/scene_recording.h"
 #include "fluid/viewer/scene_run.h"
 #include "fluid/viewer/screen_capture.h"
 #include "fluid/viewer/viewer_options.h"
 #include "fluid/viewer/welcome_screen.h"
 
 namespace rivulet {
+
+// Why nothing of a scene can be changed at the moment.
+inline constexpr const char* kReplayed = "a recording is shown, which fixes all values: press simulate in its timeline to change them";
 
 class Viewer {
   public:
@@ -88,11 +92,16 @@ class Viewer {
     void takeMouse(const InputEvents& input, bool greets);  // also shows what the mouse holds
     void takeDropped(const InputEvents& input);
 
+    void replay(size_t frame, bool runs);  // of the recording of this run
+    void simulate();                       // again, after a replay
+
     // viewer_panels.cpp
     void drawPanels();
     void drawScenePanel();
     FluidPanelState panelState() const;
     void drawPresets();
+    void drawTimeline(float left, float right);
+    void drawCost();
     void drawDialogs(const InputEvents& input, double seconds);
     void saved(const std::string& path);
     void chooseScene();
@@ -106,24 +115,34 @@ class Viewer {
     void startOpening(SceneFile scene, Cause cause);
     void finishOpening();  // when it is ready
     void giveUpOpening();
-    Status showsSoon(const Session& next) const;
+    // s that a frame of the edited session would take, estimated from the present time per particle and step; 0: not longer than now.
+    double costOf(const Session& next) const;
+    bool tooExpensive(OpenedScene& opened, const SceneFile& made, const SceneFile& before);
+    void adoptEdit(OpenedScene opened, SceneFile made);
     void adopt(OpenedScene opened, Cause cause);
     void refuse(const Error& error, Cause cause, const SceneFile& before);
 
     std::shared_ptr<Notices> notices_ = std::make_shared<Notices>();
     Log log_;
     GlFacts gl_;
-    std::string asked_, clDevice_;  // as --backend, --device
-    double longestStep_ = 0;        // s
+    std::string asked_, clDevice_;          // as --backend, --device
+    double longestStep_ = 0, askStep_ = 0;  // s
     SceneRun run_;
     ScenePicture picture_;
     PanelLayer ui_;
     SceneDraft draft_;
     SceneOpener opener_;
     HotReload reload_{ShaderFiles::developer().root()};
-    std::optional<SceneFile> left_;  // the scene before this one, if it was edited and not saved
-    bool edited_ = false;            // the draft, in this frame
-    bool anew_ = false;              // the edit needs a new session
+    struct Waiting {         // for a yes or no
+        OpenedScene opened;  // empty where it is opened again after a yes
+        SceneFile made, before;
+        std::string sentence;
+    };
+    std::optional<Waiting> waiting_;  // an edit that is expensive
+    bool accepted_ = false;           // the edit that is opened next is made whatever it costs
+    std::optional<SceneFile> left_;   // the scene before this one, if it was edited and not saved
+    bool edited_ = false;             // the draft, in this frame
+    bool anew_ = false;               // the edit needs a new session
     Manipulator hand_;
     PourBrush brush_;
     SkinClick skinClick_;
@@ -133,9 +152,11 @@ class Viewer {
     SaveDialog save_;
     WelcomeScreen welcomeScreen_;
     ScreenCapture capture_;
+    SceneRecording recording_;
     MessageBar messageBar_;
     std::string message_;
     bool showPanels_ = true, showHelp_ = false;
+    float panelRight_ = 0;   // px: where the picture begins beside the panel
     vec2 laidOutFor_{0.0F};  // the window's size that the panel was put into, in ImGui's coordinates
 };
 

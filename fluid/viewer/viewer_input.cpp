@@ -12,7 +12,9 @@ namespace rivulet {
 
 void Viewer::takeKeys(const InputEvents& input) {
     if (input.pressed(key::kEscape)) {  // closes the topmost window, too
-        if (save_.shown())
+        if (waiting_)
+            refuse({}, Cause::edit, std::exchange(waiting_, std::nullopt)->before);
+        else if (save_.shown())
             save_.show(false);
         else if (browser_.shown())
             browser_.show(false);
@@ -30,6 +32,7 @@ void Viewer::run(Command command) {
         case Command::step:
             return run_.stepOnce();
         case Command::restart:
+            report(recording_.end(log_));
             return session().reset();
         case Command::pour:
             return turnBrush();
@@ -61,9 +64,32 @@ void Viewer::run(Command command) {
             return report(capture_.toggleVideo(renderer(), draft_.scene.name, log_));
         case Command::picture:
             return report(capture_.takePicture(renderer(), draft_.scene.name, log_));
+        case Command::record:
+            return report(recording_.toggle(session(), log_));
+        case Command::measure:
+            return watch_.toggle();
         case Command::none:
             return;
     }
+}
+
+// A recording that was opened with --replay is already shown.
+void Viewer::replay(size_t frame, bool runs) {
+    report(settle());
+    if (session().replaying() == nullptr) {
+        Result<Replay> opened = Replay::open(recording_.path(), session().scene(), log_);
+        if (!opened) return report(opened.error());
+        if (Status shown = session().replay(std::move(*opened)); !shown) return report(shown);
+    }
+    session().seek(frame);
+    run_.stepOnce();
+    if (runs) run_.pause(false);
+}
+
+void Viewer::simulate() {
+    report(settle());
+    session().endReplay();
+    message_.clear();
 }
 
 void Viewer::undo() {
@@ -83,7 +109,7 @@ void Viewer::turnBrush() {
         return;
     }
     if (session().replaying() != nullptr) {
-        message_ = "replaying a recording: run the scene without --replay to pour water";
+        message_ = kReplayed;
         return;
     }
     brush_.turn(!brush_.on());
@@ -117,7 +143,7 @@ void Viewer::takeMouse(const InputEvents& input, bool greets) {
 void Viewer::takeDropped(const InputEvents& input) {
     if (input.dropped.empty()) return;
     if (session().replaying() != nullptr) {
-        message_ = "replaying a recording: run the scene without --replay to change it";
+        message_ = kReplayed;
         return;
     }
     const auto kindOf = [](const std::string& path) {

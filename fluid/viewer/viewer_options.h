@@ -20,6 +20,7 @@ struct ViewerOptions {
     int width = 1280, height = 720;  // pixels, of the pictures that auto tries
     std::string seen = {};           // of WelcomeScreen
     double longestStep = 20;         // s: an edit is refused if a frame would then take longer
+    double askStep = 1.5;            // s: an edit needs a yes if a frame would then take longer
     // Makes a context that shares with the current one, so that scenes are opened on another thread. None: the window waits.
     std::function<Result<SharedGl>()> share = {};
     // With `share`: called while the first scene is opened; it calls `draw` and shows the framebuffer. Returns false if the window was

@@ -12,12 +12,13 @@
 namespace rivulet {
 
 void Viewer::drawPanels() {
+    panelRight_ = 0;
     if (!showPanels_) return watch_.hide(picture_.renderer());
     if (!ImGui::IsAnyItemActive() && !opener_.edits()) draft_.settled = scene();
     ImVec2 display = ImGui::GetIO().DisplaySize;
     constexpr float kMargin = 10;
     const float half = std::max(0.5F * (display.x - 3 * kMargin), 160.0F);
-    float width = std::min(std::clamp(display.x * 0.26F, 320.0F, 420.0F), half), tall = std::max(display.y - 2 * kMargin, 80.0F);
+    float width = std::min(std::clamp(display.x * 0.242F, 310.0F, 420.0F), half), tall = std::max(display.y - 2 * kMargin, 80.0F);
     if (vec2(display.x, display.y) != laidOutFor_) {  // wherever it was put, it would be in another window
         laidOutFor_ = vec2(display.x, display.y);
         ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin), ImGuiCond_Always);
@@ -27,6 +28,8 @@ void Viewer::drawPanels() {
     ImGui::End();
 
     const float room = display.x - width - 3 * kMargin;
+    panelRight_ = width + 2 * kMargin;
+    drawTimeline(panelRight_, display.x - kMargin);
     if (watch_.draw(session(), picture_.renderer(), run_.timeline(), profiler_, draft_.scene, kMargin, room)) anew_ = edited_ = true;
 }
 
@@ -36,6 +39,11 @@ FluidPanelState Viewer::panelState() const {
     state.paused = run_.paused();
     state.filming = capture_.filming();
     state.pouring = brush_.on();
+    state.recording = recording_.recording();
+    state.measuring = watch_.visible();
+    const ScenePicture::Quality quality = picture_.quality(scene().look);
+    state.quality = quality.name;
+    state.why = quality.why;
     state.backend = fmt::format("{}: {}", backendName(device.backend()), device.info().name);
     state.renderer = gl_.renderer;
     state.transfer = sentenceOf(picture_.facts());
@@ -56,15 +64,12 @@ void Viewer::drawScenePanel() {
     run(actions.command);
     if (actions.dismiss) notices_->forget(*actions.dismiss);
     ImGui::Spacing();
-    if (!draft_.scene.presets.empty()) {
-        drawPresets();
-        ImGui::Spacing();
-    }
+    ParamPanel panel(draft_.params);
+    panel.search(visiting(draft_.scene));  // above what differs from scene to scene
+    if (!draft_.scene.presets.empty()) drawPresets();
     const TreeAsks asks = drawSceneTree(session(), draft_.scene, hand_);
     edited_ = edited_ || asks.edited;
     if (!asks.find.empty()) draft_.params.wanted = asks.find;
-    ParamPanel panel(draft_.params);
-    panel.search(visiting(draft_.scene));
     constexpr float kLeast = 12;  // lines, and the panel is scrolled
     ImGui::BeginChild("parameters", ImVec2(0, std::max(ImGui::GetContentRegionAvail().y, kLeast * ImGui::GetFontSize())));
     draft_.scene.visit(panel);
@@ -92,6 +97,44 @@ void Viewer::drawPresets() {
     }
 }
 
+void Viewer::drawTimeline(float left, float right) {
+    const SceneRecording::Asked asked = recording_.drawTimeline(session(), left, right);
+    switch (asked.ask) {
+        case SceneRecording::Ask::none:
+            return;
+        case SceneRecording::Ask::stop:
+            return run(Command::record);
+        case SceneRecording::Ask::replay:
+            return replay(0, true);
+        case SceneRecording::Ask::simulate:
+            return simulate();
+        case SceneRecording::Ask::scrub:
+            return replay(asked.frame, false);
+    }
+}
+
+// Asks before a change that makes frames slow. Beside the panel: a click meant for a slider is no answer.
+void Viewer::drawCost() {
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(0.5F * (panelRight_ + display.x), display.y / 2), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    ImGui::SetNextWindowSize(ImVec2(std::min(26 * ImGui::GetFontSize(), display.x - panelRight_), 0), ImGuiCond_Always);
+    ImGui::SetNextWindowBgAlpha(1);
+    ImGui::Begin("cost", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    ImGui::TextWrapped("%s", waiting_->sentence.c_str());
+    ImGui::Spacing();
+    const bool change = ImGui::Button("change anyway");
+    ImGui::SameLine();
+    const bool keep = ImGui::Button("keep the present value");
+    ImGui::End();
+    if (!change && !keep) return;
+    Waiting waiting = std::move(*waiting_);
+    waiting_.reset();
+    if (!change) return refuse({}, Cause::edit, waiting.before);
+    if (waiting.opened.session) return adoptEdit(std::move(waiting.opened), std::move(waiting.made));
+    accepted_ = true;
+    startOpening(std::move(waiting.made), Cause::edit);
+}
+
 void Viewer::drawDialogs(const InputEvents& input, double seconds) {
     if (!showPanels_) {
         std::string text = message_;
@@ -99,7 +142,8 @@ void Viewer::drawDialogs(const InputEvents& input, double seconds) {
         messageBar_.draw(std::move(text), seconds, !reload_.message().empty());
     }
     if (showHelp_) drawKeyHelp();
-    if (opening() != nullptr && SceneOpener::drawProgress(*opening(), 0.86F)) giveUpOpening();
+    if (waiting_) drawCost();
+    if (opening() != nullptr && SceneOpener::drawProgress(*opening(), 0.86F, panelRight_)) giveUpOpening();
     reload_.draw();
     if (save_.shown())
         if (const std::optional<std::string> path = save_.draw(draft_.scene)) saved(*path);
@@ -121,7 +165,7 @@ void Viewer::saved(const std::string& path) {
 void Viewer::chooseScene() {
     const std::optional<std::string> path = browser_.draw();
     if (!path) return;
-    if (session().replaying() != nullptr) return browser_.refuse("replaying a recording: run the scene without --replay to open another");
+    if (session().replaying() != nullptr) return browser_.refuse(kReplayed);
     Result<SceneFile> scene = loadScene(fullPath(*path), {});
     if (!scene) return browser_.refuse(scene.error().message);
     browser_.show(false);

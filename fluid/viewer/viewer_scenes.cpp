@@ -22,7 +22,7 @@ void Viewer::takeEdits(bool recreate) {
     }
     recreate = recreate || (!opener_.edits() && session().needsNew(draft_.scene));
     if (recreate && session().replaying() != nullptr) {
-        message_ = "replaying a recording, which fixes this value: run the scene without --replay to change it";
+        message_ = kReplayed;
         session().apply(draft_.settled);
         draft_.scene = scene();
         return;
@@ -46,8 +46,7 @@ void Viewer::takeWritten(double seconds) {
     SceneFile now = scene();
     if (session().budget()) now.fluid = reload_.before().fluid;  // what a budget has picked
     const bool same = fixedValues(visiting(*written)) == fixedValues(visiting(now)) && !session().needsNew(*written);
-    if (!same && session().replaying() != nullptr)
-        return reload_.refuse("replaying a recording: the changed file needs a new run, without --replay");
+    if (!same && session().replaying() != nullptr) return reload_.refuse(kReplayed);
     if (!same) {
         draft_.scene.camera = written->camera;
         return startOpening(std::move(*written), Cause::written);
@@ -76,7 +75,8 @@ void Viewer::startOpening(SceneFile scene, Cause cause) {
     if (cause != Cause::otherScene) scene.room = std::max(scene.room, session().world().particles().count);
     notices_->clear();
     message_.clear();
-    const SceneFile before = opener_.edits() ? opener_.work()->before : draft_.settled;
+    const SceneFile before = opener_.edits() ? opener_.work()->before : waiting_ ? waiting_->before : draft_.settled;
+    waiting_.reset();
     opener_.giveUp();
     const bool renderer = needsOtherRenderer(this->scene(), scene);
     const std::string asked = cause == Cause::edit ? "cpu" : asked_;
@@ -99,9 +99,12 @@ void Viewer::startOpening(SceneFile scene, Cause cause) {
     }
     Result<OpenedSession> fresh = openSession(scene, run_.device(), log_, asked);
     if (!fresh) return refuse(fresh.error(), cause, before);
-    if (Status soon = cause == Cause::edit ? showsSoon(*fresh->session) : ok(); !soon) return refuse(soon.error(), cause, before);
     opened.session = std::move(fresh->session);
     opened.device = std::move(fresh->instead);
+    if (cause == Cause::edit && !std::exchange(accepted_, false) && tooExpensive(opened, scene, before)) {
+        if (waiting_) waiting_->opened = {};  // it is on the device that goes on stepping, which may be lost meanwhile
+        return;
+    }
     adopt(std::move(opened), cause);
 }
 
@@ -109,30 +112,45 @@ void Viewer::finishOpening() {
     SceneOpener::Work done = opener_.take();
     Result<OpenedScene> opened = done.opening->take();
     if (!opened) return refuse(opened.error(), done.cause, done.before);
+    if (done.cause != Cause::edit) return adopt(std::move(*opened), done.cause);
+    if (!tooExpensive(*opened, done.opening->scene(), done.before)) adoptEdit(std::move(*opened), done.opening->scene());
+}
+
+// Meanwhile the camera may have moved, or a slider.
+void Viewer::adoptEdit(OpenedScene opened, SceneFile made) {
     const SceneFile wanted = draft_.scene;
-    if (Status soon = done.cause == Cause::edit ? showsSoon(*opened->session) : ok(); !soon)
-        return refuse(soon.error(), done.cause, done.before);
-    adopt(std::move(*opened), done.cause);
-    if (done.cause != Cause::edit) return;
-    // Meanwhile the camera may have moved, or a slider.
-    SceneFile made = done.opening->scene(), now = wanted;
+    adopt(std::move(opened), Cause::edit);
+    SceneFile now = wanted;
     const bool same = fixedValues(visiting(made)) == fixedValues(visiting(now)) && !session().needsNew(wanted);
     if (same) session().apply(wanted);
     draft_.scene = same ? scene() : wanted;
     if (!same) startOpening(wanted, Cause::edit);
 }
 
-// Error (failed): this edit would freeze the window, estimated from the present time per particle and step.
-Status Viewer::showsSoon(const Session& next) const {
+double Viewer::costOf(const Session& next) const {
     const uint32_t now = session().world().particles().count, then = next.world().particles().count;
     const double ms = profiler_.mean("simulate"), finer = scene().fluid.spacing / next.scene().fluid.spacing;
-    if (now == 0 || then <= now || !(ms > 0)) return ok();
-    const double seconds = 1.0e-3 * ms * then / now * std::max(finer, 1.0);
-    if (seconds < longestStep_) return ok();
-    return failed(
-        fmt::format("{} particles would take about {:.0f} s a frame here: this would freeze the window; change refused; run the scene "
-                    "with --set instead",
-                    then, seconds));
+    if (now == 0 || then <= now || !(ms > 0)) return 0;
+    return 1.0e-3 * ms * then / now * std::max(finer, 1.0);
+}
+
+// Whether the edit is not adopted now: it is refused, because it would freeze the window, or waits for a yes.
+bool Viewer::tooExpensive(OpenedScene& opened, const SceneFile& made, const SceneFile& before) {
+    const double seconds = costOf(*opened.session);
+    if (seconds < std::min(askStep_, longestStep_)) return false;
+    const uint32_t particles = opened.session->world().particles().count;
+    if (seconds >= longestStep_) {
+        const std::string why = fmt::format(
+            "{} particles would take about {:.0f} s a frame here: this would freeze the window; change refused; run the scene with --set "
+            "instead",
+            particles, seconds);
+        refuse(failed(why), Cause::edit, before);
+        return true;
+    }
+    std::string sentence = fmt::format("This change makes {} particles: a frame would take about {:.1f} s here, instead of {:.2f} s.",
+                                       particles, seconds, 1.0e-3 * profiler_.mean("simulate"));
+    waiting_.emplace(Waiting{std::move(opened), made, before, std::move(sentence)});
+    return true;
 }
 
 void Viewer::giveUpOpening() {
@@ -145,6 +163,9 @@ void Viewer::giveUpOpening() {
 // The old session is destroyed only now. An edit of the objects in the water keeps the water.
 void Viewer::adopt(OpenedScene opened, Cause cause) {
     const bool other = cause == Cause::otherScene;
+    report(recording_.end(log_));
+    recording_.forget();
+    waiting_.reset();
     run_.drop();
     if (!other && Session::sameWater(scene(), opened.session->scene()))
         if (Status gone = opened.session->continueFrom(session()); !gone) log_.notice(gone.error().message);
@@ -193,7 +214,7 @@ Result<OpenedScene> Viewer::openShowing(const SceneFile& scene, const ViewerOpti
             glViewport(0, 0, input.framebuffer.x, input.framebuffer.y);
             glClearColor(0.055F, 0.07F, 0.085F, 1);
             glClear(GL_COLOR_BUFFER_BIT);
-            if (SceneOpener::drawProgress(work, 0.5F)) goesOn = false;
+            if (SceneOpener::drawProgress(work, 0.5F, 0)) goesOn = false;
             ui_.draw(framebuffer, input.framebuffer.x, input.framebuffer.y);
         });
         return open && goesOn;

@@ -22,7 +22,7 @@ constexpr std::pair<const char*, const char*> kGestures[] = {{"drag", "rotate th
                                                              {"O", "choose another scene"},
                                                              {"H", "show all keys"}};
 constexpr const char* kTries[] = {"Press P, then hold the left button to pour; P again stops.",
-                                  "Search for viscosity in the left panel and raise it: water, oil, honey.",
+                                  "Search for liquid in the left panel and choose another: oil, honey, blood.",
                                   "Drop a mesh file (.obj, .gltf, .fbx) onto the window: water flows over it.",
                                   "Press O and choose crying: tears on a face; click the skin to add one."};
 const ImVec4 kAccent(0.42F, 0.78F, 0.94F, 1);

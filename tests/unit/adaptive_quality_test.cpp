@@ -18,8 +18,10 @@ TEST(AdaptiveQuality, SlowFramesMakeItFastAndOneDoesNot) {
         frames(quality, 10, 5);
     }
     EXPECT_FALSE(quality.fast());
+    EXPECT_STREQ(quality.reason(), "");
     frames(quality, 30, 13);
     EXPECT_TRUE(quality.fast());
+    EXPECT_STREQ(quality.reason(), "drawing over 12 ms");
 }
 
 TEST(AdaptiveQuality, SpareTimeMakesItFineAgain) {

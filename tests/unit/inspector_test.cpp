@@ -27,6 +27,10 @@ class Watching : public testing::ViewerFixture {
         return scene;
     }
     void SetUp() override { input_.mouse = vec2(-100); }
+    void begin(const SceneFile& scene, const ivec2& window, const ivec2& pixels) {
+        ViewerFixture::begin(scene, window, pixels);
+        viewer_->watch().toggle();  // closed at first
+    }
     // Clicks on a tab, as it lies in the tab bar.
     void openTab(const char* name) {
         for (int k = 0; k < 3; ++k) frame();
@@ -211,6 +215,28 @@ TEST_F(Watching, AClickMayTakeTheNumberOfParticles) {
     ASSERT_TRUE(taken);
     EXPECT_NEAR(viewer_->session().world().particles().count, 10240, 0.2 * 10240);
     EXPECT_NEAR(viewer_->scene().fluid.spacing, 0.05F * std::cbrt(few / 10240.0F), 1e-4F);
+}
+
+// The circle's caption names the cost at which the circle is drawn, on the axis of the chart's case.
+TEST_F(Watching, TheChartsCaptionSaysWhereTheCircleIs) {
+    begin(damBreak(), kWindow, kPixels);
+    for (int k = 0; k < 20; ++k) frame(1.0 / 60);
+    key(GLFW_KEY_SPACE);
+    openTab("chart");
+    const ChartPanel& chart = viewer_->watch().chart();
+    const ChartPanel::Placed *low = nullptr, *high = nullptr, *run = nullptr;
+    for (const ChartPanel::Placed& p : chart.placed()) {
+        if (p.row == nullptr) run = &p;
+        if (p.row != nullptr && (low == nullptr || p.at.x < low->at.x)) low = &p;
+        if (p.row != nullptr && (high == nullptr || p.at.x > high->at.x)) high = &p;
+    }
+    ASSERT_TRUE(run != nullptr && low->at.x < high->at.x);
+    const double share = (run->at.x - low->at.x) / (high->at.x - low->at.x);
+    const double drawn = low->row->wallPerSecond * std::pow(high->row->wallPerSecond / low->row->wallPerSecond, share);
+    EXPECT_NEAR(chart.here().cost, drawn, 0.02 * drawn);
+    const std::string caption = ChartPanel::captionOf(chart.here(), "dam_break");
+    EXPECT_NE(caption.find(readableFigure(chart.here().cost, "s")), std::string::npos) << caption;
+    EXPECT_NE(caption.find(percentText(chart.here().densityError)), std::string::npos) << caption;
 }
 
 // The chart shows the cost and error of the run; a run with the cost of the chart's case lies on the point of that case.

@@ -268,7 +268,7 @@ TEST_F(Hand, ReportsThatNoSlotIsLeftForPouring) {
 
 TEST_F(Hand, TheTreeChoosesHidesAndLooksUp) {
     frame();
-    ASSERT_TRUE(hover("tree", {"things"}));
+    ASSERT_TRUE(hover("tree", {"###things"}));
     click();
     frame();
     EXPECT_TRUE(viewer_->scene().colliders[0].visible);

@@ -205,7 +205,7 @@ TEST_F(ReplayPerson, FixedValuesAreRefused) {
         key(GLFW_KEY_ESCAPE);
         ASSERT_NE(viewer_->session().replaying(), nullptr) << y;
     }
-    EXPECT_NE(said.find("replaying a recording, which fixes this value"), std::string::npos) << said;
+    EXPECT_NE(said.find("a recording is shown, which fixes all values"), std::string::npos) << said;
     EXPECT_EQ(viewer_->scene().fluid.spacing, spacing);
 }
 

@@ -30,11 +30,14 @@ TEST_F(WelcomeScreenTest, AKeyEndsItForGood) {
     EXPECT_TRUE(viewer_->greets());
     for (int k = 0; k < 3; ++k) frame();
     EXPECT_TRUE(viewer_->greets()) << "nobody has pressed anything";
+    EXPECT_EQ(viewer_->steps(), 0U) << "the first scene waits behind it";
     EXPECT_FALSE(std::filesystem::exists(seen_));
     input_.keysPressed = {' '};
     frame();
     EXPECT_FALSE(viewer_->greets());
     EXPECT_FALSE(viewer_->paused()) << "the space did nothing else";
+    frame();
+    EXPECT_GT(viewer_->steps(), 0U);
     EXPECT_TRUE(std::filesystem::exists(seen_));
     input_.keysPressed = {' '};
     frame();

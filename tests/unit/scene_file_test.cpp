@@ -226,6 +226,25 @@ TEST_F(SceneTest, AListedSceneIsFoundByItsNameAndAMistypedOneIsAnsweredWithTheNe
     EXPECT_TRUE(error.ends_with("did you mean the scene teapot_of_ours?")) << error;
 }
 
+// The order is that of the docs; a scene whose mesh is not found says which.
+TEST_F(SceneTest, TheListHasTheOrderOfTheDocs) {
+    std::ifstream page(kRoot / "docs/scenes/README.md");
+    std::vector<std::string> documented, listed;
+    for (std::string line; std::getline(page, line);)
+        if (line.starts_with("| [")) documented.push_back(line.substr(3, line.find(']') - 3));
+    ::setenv("RIVULET_ASSETS", folder().c_str(), 1);
+    write("scenes/without.json", R"({"name": "without", "colliders": [{"shape": "mesh", "mesh": "not_there.obj"}]})");
+    std::string missing;
+    for (const SceneListing& listing : listScenes()) {
+        if (fs::path(listing.path).parent_path() == kRoot / "assets/scenes") listed.push_back(fs::path(listing.path).stem().string());
+        if (listing.name == "without") missing = listing.missing;
+        if (listing.name == "dam_break") EXPECT_EQ(listing.missing, "");
+    }
+    ASSERT_GT(documented.size(), 20U);
+    EXPECT_EQ(listed, documented);
+    EXPECT_EQ(missing, "not_there.obj");
+}
+
 TEST_F(SceneTest, TheListHasEverySceneOnceAndTheErrorOfABrokenOne) {
     ::setenv("RIVULET_ASSETS", (folder() + ":" + folder() + "/scenes/..").c_str(), 1);
     write("scenes/good.json", R"({"name": "Good", "doc": "All well."})");

@@ -62,6 +62,8 @@ cmp -s falling_cube_0001.png falling_cube_0002.png && fail "a drag with the left
 
 # The tabs of what is measured, at the right: the bar shows which one is open, and is still.
 mkdir tabs
+xdotool key m
+sleep 1.5
 xdotool mousemove 500 690
 for x in 673 728 782 852 925; do
     xdotool mousemove "$x" 50 click 1 mousemove 500 690
@@ -70,6 +72,7 @@ for x in 673 728 782 852 925; do
 done
 [ "$(ls tabs | wc -l)" = 5 ] || fail "of five tabs only $(ls tabs | wc -l) were opened"
 [ "$(look 330 42 660 18)" = "$(ls -t tabs | head -1)" ] || fail "the tabs are not still"
+xdotool key m
 
 # Wherever the panel has it, from below: of all sliders only that one is shown, and nothing under it.
 xdotool key ctrl+f

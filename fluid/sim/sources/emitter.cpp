@@ -60,9 +60,7 @@ void EmitterParams::visit(ParamVisitor& v) {
     v.value({"rotation", "deg", "rotation of the mesh about x, then y, then z", -360, 360, kLinear, kFixed}, rotation);
     v.value({"start", "s", "time at which the emitter starts", 0, 3600}, start);
     v.value({"stop", "s", "time at which the emitter stops; 0 = never", 0, 3600}, stop);
-    v.value(
-        {.name = "liquid", .doc = "liquid of the emitter, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
-        liquid);
+    visitLiquid(v, "liquid of the emitter; empty = that of fluid.liquid", liquid);
     visitDye(v, dye, dyeAmount, dyeScattering);
 }
 

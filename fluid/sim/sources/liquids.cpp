@@ -76,6 +76,11 @@ vec4 dyed(const LiquidOf& liquid, const vec3& colour, float amount, float scatte
     return {vec3(own) + dyeAbsorption(colour, amount), own.w < 0 ? own.w - scattering : own.w + scattering};
 }
 
+void visitLiquid(ParamVisitor& v, const char* doc, std::string& liquid) {
+    static const std::vector<std::string> names = liquids().namesOrNone();
+    v.choice({.name = "liquid", .doc = doc, .fixed = true}, liquid, names);
+}
+
 void visitDye(ParamVisitor& v, vec3& colour, float& amount, float& scattering) {
     constexpr bool kLog = true, kLinear = false, kFixed = true;
     v.colour({"dye", "", "linear colour of the dye in it; white = none", 0, 1, kLinear, kFixed}, colour);

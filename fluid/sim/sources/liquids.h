@@ -39,6 +39,8 @@ LiquidOf liquidOf(const FluidParams& world, const std::string& name);
 vec3 dyeAbsorption(const vec3& colour, float amount);
 // The absorption of `liquid` with a dye in it; `scattering`: what the dye adds, 1/m.
 vec4 dyed(const LiquidOf& liquid, const vec3& colour, float amount, float scattering);
+// Visits the liquid of a world, a block, an emitter or the poured jet: the key liquid, a row of liquids() or "".
+void visitLiquid(ParamVisitor& v, const char* doc, std::string& liquid);
 // Visits the dye of a block, an emitter or the poured jet: the keys dye, dyeAmount and dyeScattering.
 void visitDye(ParamVisitor& v, vec3& colour, float& amount, float& scattering);
 

@@ -44,8 +44,7 @@ void BlockParams::visit(ParamVisitor& v) {
     v.value({"gradientZ", "1/s", "derivatives of the z component of the velocity along x, y and z at the start", -kSteepest, kSteepest,
              kLinear, kFixed},
             gradientZ);
-    v.value({.name = "liquid", .doc = "liquid of the block, a row of rivulet list liquids; empty = that of fluid.liquid", .fixed = kFixed},
-            liquid);
+    visitLiquid(v, "liquid of the block; empty = that of fluid.liquid", liquid);
     visitDye(v, dye, dyeAmount, dyeScattering);
     v.value({"jitter", "spacings",
              "largest random offset of particles from a lattice at the start; then particles move apart until none is too dense. 0 = a "
@@ -134,11 +133,8 @@ void FluidParams::visit(ParamVisitor& v) {
             spacing);
     v.value({"supportSpacings", "", "support radius of the kernel, in spacings: larger is smoother and slower", 1.5, 4, kLinear, kFixed},
             supportSpacings);
-    v.value({.name = "liquid",
-             .doc = "liquid, a row of rivulet list liquids: its density and viscosity replace restDensity and viscosity; empty = "
-                    "restDensity and viscosity are used",
-             .fixed = kFixed},
-            liquid);
+    visitLiquid(v, "liquid: its density and viscosity replace restDensity and viscosity; empty = restDensity and viscosity are used",
+                liquid);
     v.value({"restDensity", "kg/m^3", "rest density; water 1000", 1, 100000, kLog}, restDensity);
     v.value({"viscosity", "m^2/s", "kinematic viscosity; water 1e-6, honey about 5e-3", 0, 10, kLog}, viscosity);
     v.value({"artificialViscosity", "",

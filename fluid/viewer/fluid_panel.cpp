@@ -15,7 +15,7 @@ namespace {
 // One line, whatever its length; the tooltip has all of it.
 void fact(const char* name, const std::string& text, const std::string& more = {}) {
     ImGui::TextDisabled("%s", name);
-    ImGui::SameLine(ImGui::GetFontSize() * 6.2F);
+    ImGui::SameLine(ImGui::GetFontSize() * 7.1F);
     ImGui::TextUnformatted(text.c_str());
     const bool cut = ImGui::GetItemRectMax().x > ImGui::GetWindowPos().x + ImGui::GetContentRegionMax().x;
     if ((cut || !more.empty()) && ImGui::IsItemHovered()) ImGui::SetTooltip("%s%s%s", text.c_str(), more.empty() ? "" : "\n", more.c_str());
@@ -108,12 +108,15 @@ void drawMessages(const FluidWorld& world, const FluidPanelState& state, std::op
 
 // Which devices and plans are in use: folded at first, of a fixed height.
 void drawDetails(const FluidPanelState& state) {
-    if (!ImGui::CollapsingHeader("devices")) return;
     constexpr float kLines = 11;
-    ImGui::BeginChild("details", ImVec2(0, kLines * ImGui::GetTextLineHeightWithSpacing()));
+    bool& open = *ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID("details"));
+    // In a window of its own, so that its header ends where those of the parameters do.
+    ImGui::BeginChild("devices", ImVec2(0, ImGui::GetFrameHeight() + (open ? kLines * ImGui::GetTextLineHeightWithSpacing() : 0)));
+    open = ImGui::CollapsingHeader("devices");
     const std::pair<const char*, const std::string&> rows[] = {
         {"simulated by", state.backend}, {"drawn by", state.renderer}, {"cooperation", state.plan}, {"transfer", state.transfer}};
     for (const auto& [name, text] : rows) {
+        if (!open) break;
         ImGui::TextDisabled("%s", name);
         ImGui::TextWrapped("%s", text.c_str());
     }

@@ -133,7 +133,10 @@ Status Viewer::take(SceneRun::Result result) {
     if (step.toCpu) draft_.scene.fluid.grid = scene().fluid.grid;  // the cpu may not support it
     if (step.repicked) draft_.scene.fluid = scene().fluid;
     profiler_.add("simulate", step.passes);
-    watch_.stepped(session(), std::max(step.ms, step.deviceMs));
+    constexpr double kNew = 0.2;
+    const double ms = std::max(step.ms, step.deviceMs);
+    stepMs_ = stepMs_ > 0 ? (1 - kNew) * stepMs_ + kNew * ms : ms;
+    watch_.stepped(session(), ms);
     return ok();
 }
 

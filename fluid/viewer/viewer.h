@@ -126,6 +126,7 @@ class Viewer {
     Log log_;
     GlFacts gl_;
     std::string asked_, clDevice_;          // as --backend, --device
+    double stepMs_ = 0;                     // of the last steps of this scene
     double longestStep_ = 0, askStep_ = 0;  // s
     SceneRun run_;
     ScenePicture picture_;

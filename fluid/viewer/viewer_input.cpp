@@ -130,7 +130,7 @@ void Viewer::takeMouse(const InputEvents& input, bool greets) {
     const Camera camera = cameraOf(draft_.scene.camera, session().bounds());
     const bool pours = !greets && brush_.take(input, camera, session(), ui_.wantsMouse());
     brush_.draw(input, camera, session());
-    if (brush_.pours() && session().world().stats().particles >= session().world().particles().count)
+    if (brush_.pours() && opening() == nullptr && session().world().stats().particles >= session().world().particles().count)
         message_ = fmt::format("all {} litres of pour.litres are poured; raise pour.litres to pour more", draft_.scene.pour.litres);
     if (!greets && !pours && (!ui_.wantsMouse() || hand_.holds()) && !handle(input)) {
         edited_ = moveCamera(input, session().bounds(), draft_.scene.camera) || edited_;

@@ -129,7 +129,7 @@ void Viewer::adoptEdit(OpenedScene opened, SceneFile made) {
 
 double Viewer::costOf(const Session& next) const {
     const uint32_t now = session().world().particles().count, then = next.world().particles().count;
-    const double ms = profiler_.mean("simulate"), finer = scene().fluid.spacing / next.scene().fluid.spacing;
+    const double ms = stepMs_, finer = scene().fluid.spacing / next.scene().fluid.spacing;
     if (now == 0 || then <= now || !(ms > 0)) return 0;
     return 1.0e-3 * ms * then / now * std::max(finer, 1.0);
 }
@@ -148,7 +148,7 @@ bool Viewer::tooExpensive(OpenedScene& opened, const SceneFile& made, const Scen
         return true;
     }
     std::string sentence = fmt::format("This change makes {} particles: a frame would take about {:.1f} s here, instead of {:.2f} s.",
-                                       particles, seconds, 1.0e-3 * profiler_.mean("simulate"));
+                                       particles, seconds, 1.0e-3 * stepMs_);
     waiting_.emplace(Waiting{std::move(opened), made, before, std::move(sentence)});
     return true;
 }
@@ -197,6 +197,7 @@ void Viewer::adopt(OpenedScene opened, Cause cause) {
     if (draft_.scene.pour.litres <= 0) brush_.turn(false);
     message_.clear();
     profiler_.clear();
+    stepMs_ = 0;
     watch_.clear();
     if (run_.endOnStepped()) log_.notice("the recording ends here: it cannot go on with another scene or with new water");
 }

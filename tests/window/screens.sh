@@ -39,7 +39,7 @@ keys x
 shot 02_first 6
 keys ctrl+f && type_ "viscosity"
 shot 03_search
-at 160 "${SLIDER:-423}" && xdotool mousedown 1 && rest 1 && at 185 "${SLIDER:-423}" && xdotool mouseup 1
+at 160 "485" && xdotool mousedown 1 && rest 1 && at 185 "485" && xdotool mouseup 1
 shot 04_slider 6
 for _ in 1 2 3 4 5 6 7 8 9; do xdotool key BackSpace; sleep 0.4; done
 click 700 600
@@ -53,7 +53,7 @@ shot 07_fountain 25
 keys p && at 640 400 && xdotool mousedown 1
 shot 08_pour 8
 xdotool mouseup 1 && keys p m
-click 1045 50
+click 1068 50
 shot 09_chart 5
 echo '{"name": "bad", "fluid": {"spacin": 1}}' >bad.json
 python3 "$here/x.py" drop "$window" 640 400 bad.json

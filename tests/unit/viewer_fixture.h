@@ -96,10 +96,10 @@ class ViewerFixture : public FramebufferFixture {
                 id = number >= 0 ? ImHashData(&number, sizeof number, id) : ImHashStr(name, 0, id);
             }
             const ImRect inside = each->InnerRect;
-            const float across = inside.GetWidth();
+            const float across = inside.GetWidth(), scale = static_cast<float>(input_.size.x) / ImGui::GetIO().DisplaySize.x;
             for (const float x : {14.0F, 0.35F * across, 0.6F * across, 0.92F * across})
                 for (float y = inside.Min.y + 4; y < inside.Max.y; y += 6) {
-                    moveTo({inside.Min.x + x, y});
+                    moveTo(scale * vec2(inside.Min.x + x, y));
                     frame();
                     if (ImGui::GetCurrentContext()->HoveredIdPreviousFrame == id) return true;
                 }

@@ -129,7 +129,7 @@ void Viewer::adoptEdit(OpenedScene opened, SceneFile made) {
 
 double Viewer::costOf(const Session& next) const {
     const uint32_t now = session().world().particles().count, then = next.world().particles().count;
-    const double ms = stepMs_, finer = scene().fluid.spacing / next.scene().fluid.spacing;
+    const double ms = stepMs_, finer = session().world().params().spacing / next.world().params().spacing;
     if (now == 0 || then <= now || !(ms > 0)) return 0;
     return 1.0e-3 * ms * then / now * std::max(finer, 1.0);
 }

@@ -162,7 +162,7 @@ class SlowChange : public Layout {
         settle();
         frame();
         ASSERT_TRUE(shows("cost"));
-        ASSERT_EQ(viewer_->scene().fluid.spacing, 0.05F) << "not before the answer";
+        ASSERT_EQ(viewer_->session().world().params().spacing, 0.05F) << "not before the answer";
         const uint64_t steps = viewer_->steps();
         frame(1.0 / 60);
         frame(1.0 / 60);
@@ -175,7 +175,7 @@ TEST_F(SlowChange, IsMadeIfAPersonSaysSo) {
     click();
     frame();
     EXPECT_FALSE(shows("cost"));
-    EXPECT_EQ(viewer_->scene().fluid.spacing, 0.03F);
+    EXPECT_EQ(viewer_->session().world().params().spacing, 0.03F);
 }
 
 TEST_F(SlowChange, IsNotMadeOtherwise) {
@@ -183,9 +183,9 @@ TEST_F(SlowChange, IsNotMadeOtherwise) {
     click();
     frame();
     EXPECT_FALSE(shows("cost"));
-    EXPECT_EQ(viewer_->scene().fluid.spacing, 0.05F);
+    EXPECT_EQ(viewer_->session().world().params().spacing, 0.05F);
     key('.');
-    EXPECT_EQ(viewer_->scene().fluid.spacing, 0.05F);
+    EXPECT_EQ(viewer_->session().world().params().spacing, 0.05F);
 }
 
 // A run is recorded, looked through, and goes on where it was.

@@ -180,7 +180,10 @@ int validateVerb(const Arguments& arguments) {
             settings.method = method;
             settings.quick = request.quick;
             settings.assignments = request.assignments;
-            settings.pictures = request.pictures;
+            if (!request.pictures.empty())
+                settings.savePicture = [&](const std::string& as, const std::vector<uint8_t>& rgba, int width, int height) {
+                    return writePng((std::filesystem::path(request.pictures) / (as + ".png")).string(), rgba, width, height);
+                };
             settings.log = stderrLog();
             settings.goOn = [&](double share) {
                 progress.show(share);

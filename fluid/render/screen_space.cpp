@@ -25,6 +25,7 @@ constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolutio
 constexpr int kThicknessBlur = 4;                            // texels either side
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
+constexpr float kLeastDisc = 1.75F;  // texels, radius
 
 constexpr ProgramRow kScreenSpacePrograms[] = {
     {"occluder", "screen_space/occluder.vert", "render/depth.frag"},
@@ -407,6 +408,8 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
         for (int k = 0; k < 16; ++k) key.values.push_back(projection[k / 4][k % 4]);
         kept = programs.kept.find(key, std::array{KeptPictures::Wanted(KeptPicture::light, raw)});
     }
+    // Of a disc of less texels, their centres would see too much or too little, depending on where it lies. The volume stays.
+    const float wider = std::max(kLeastDisc / (some.larger * clipRadius * 0.5F * static_cast<float>(side)), 1.0F);
     const auto draw = [&](TextureHandle into, const std::array<RowRange, 2>& rows, bool clears, const std::function<void()>& done) {
         graph.pass("water light", {{d.frame, Usage::uniform}, {d.position, Usage::sampled}}, {into}, [=, &programs](PassContext& c) {
             const gpu::Framebuffer& target = c.drawTo({into});
@@ -416,8 +419,8 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
             glBlendFunc(GL_ONE, GL_ONE);
             Program& p = programs["light water"];
             p.use();
-            p.set("clipRadius", some.larger * clipRadius);
-            p.set("radius", some.larger * d.fluid.radius);
+            p.set("clipRadius", wider * some.larger * clipRadius);
+            p.set("radius", some.larger * d.fluid.radius / (wider * wider));
             p.set("volumeScale", volumeScale(d.fluid));
             for (const RowRange& range : rows) programs.drawParticles(p, d.fluid, range);
             if (done) done();

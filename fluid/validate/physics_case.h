@@ -62,7 +62,8 @@ struct CaseSettings {
     std::string method = "dfsph";
     bool quick = false;                    // about 8,000 particles; false: the size for which tolerances hold
     std::vector<std::string> assignments;  // as --set, applied after those of the case
-    std::string pictures = {};             // folder for the pictures (PNG) of a case that draws; "": none
+    // Saves a picture of a case that draws: its name without ending, RGBA8 with the top row first, width, height. Empty: none is drawn.
+    std::function<Status(const std::string&, const std::vector<uint8_t>&, int, int)> savePicture = {};
     Log log = {};
     std::function<bool(double)> goOn = [](double) { return true; };  // called in each frame with the finished share; false: stop
 };

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 
-#include "engine/app/capture.h"
 #include "engine/core/assert.h"
 #include "fluid/render/raymarch.h"
 #include "fluid/validate/image_flip.h"
@@ -195,7 +193,7 @@ Result<MomentErrors> SurfaceTrial::moment(const SurfaceLook& look) {
     if (!found) return found.error();
     const Result<std::vector<uint8_t>> picture = pictureOf(scene);
     if (!picture) return picture.error();
-    if (!settings_.pictures.empty())
+    if (settings_.savePicture)
         if (Status saved = savePictures(look, *found, *picture); !saved) return saved.error();
     return MomentErrors{compareSurfaces(found->map, withoutWalls(reference_, view_, now_.box), scene.look.radiusSpacings * now_.spacing),
                         compareSurfaces(found->map, reference_, scene.look.radiusSpacings * now_.spacing),
@@ -305,10 +303,9 @@ Result<Watched> SurfaceTrial::still(std::span<const SurfaceLook> looks, int fram
 }
 
 Status SurfaceTrial::savePictures(const SurfaceLook& look, const Seen& seen, const std::vector<uint8_t>& picture) const {
-    const std::filesystem::path folder(settings_.pictures);
     const std::string name = fmt::format("surface_{}{}", look.filter, look.quality.empty() ? "" : "_" + look.quality);
     const auto save = [&](const std::string& as, const std::vector<uint8_t>& rgba) {
-        return writePng((folder / (as + ".png")).string(), rgba, width(), height());
+        return settings_.savePicture(as, rgba, width(), height());
     };
     if (Status s = save("surface_reference", referencePicture_); !s) return s;
     if (Status s = save(name, picture); !s) return s;

@@ -13,6 +13,11 @@
 
 namespace rivulet {
 
+// A point of a surface, m, and its outward normal, unit.
+struct ShellPoint {
+    vec3 place{0.0F}, normal{0.0F};
+};
+
 // A body's own frame has its origin at the centre of mass and its axes along the principal axes of inertia.
 struct BodyShape {
     std::vector<vec3> samples;  // m, half a spacing of the fluid under the surface, about a spacing apart
@@ -22,6 +27,8 @@ struct BodyShape {
     float sticks = 0;           // 1: fluid sticks to it (no-slip), 0: it slips
     // Distance (m) of a point of the own frame from the surface, negative inside. May be empty: then no fluid is left out.
     std::function<float(const vec3&)> distance = {};
+    // Points all over the surface, `apart` (m) from each other or nearer. May be empty: then it does not get wet (fluid.wetness).
+    std::function<std::vector<ShellPoint>(float apart)> shell = {};
 };
 
 struct BodyState {

@@ -100,6 +100,37 @@ double nearest(const std::vector<Triangle>& triangles, const dvec3& p) {
     return least;
 }
 
+// The middles of the parts, at most `apart` long, that each triangle is divided into.
+std::vector<ShellPoint> shellOf(const std::vector<Triangle>& triangles, float apart) {
+    std::vector<ShellPoint> points;
+    for (const Triangle& t : triangles) {
+        const dvec3 ab = t.b - t.a, ac = t.c - t.a, across = glm::cross(ab, ac);
+        if (!(glm::dot(across, across) > 0)) continue;
+        const double longest = std::max({glm::length(ab), glm::length(ac), glm::length(t.c - t.b)});
+        const auto parts = static_cast<int>(std::clamp(std::ceil(longest / double{apart}), 1.0, 4096.0));
+        const auto add = [&](double u, double v) {
+            points.push_back({vec3(t.a + ab * (u / parts) + ac * (v / parts)), vec3(glm::normalize(across))});
+        };
+        for (int v = 0; v < parts; ++v)
+            for (int u = 0; u + v < parts; ++u) {
+                add(u + 1.0 / 3, v + 1.0 / 3);
+                if (u + v + 1 < parts) add(u + 2.0 / 3, v + 2.0 / 3);
+            }
+    }
+    return points;
+}
+
+// Points on a ball along a spiral, each for the same area.
+std::vector<dvec3> spiral(int count) {
+    std::vector<dvec3> points;
+    const double turn = kPiD * (3 - std::sqrt(5.0));
+    for (int k = 0; k < count; ++k) {
+        const double y = 1 - (2 * k + 1.0) / count, across = std::sqrt(1 - y * y);
+        points.emplace_back(across * std::cos(turn * k), y, across * std::sin(turn * k));
+    }
+    return points;
+}
+
 // Distance from a point of triangle `own` to the mesh in a direction (Moeller and Trumbore 1997).
 double thickness(const std::vector<Triangle>& triangles, size_t own, const dvec3& from, const dvec3& along) {
     double least = 1e30;
@@ -187,6 +218,19 @@ BodyShape boxShape(const vec3& size, double density, float spacing) {
         const vec3 q = glm::abs(p) - half;
         return glm::length(glm::max(q, vec3(0.0F))) + std::min(std::max({q.x, q.y, q.z}), 0.0F);
     };
+    s.shell = [half = 0.5 * d](float apart) {
+        std::vector<Triangle> faces;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double side : {-1.0, 1.0}) {
+                dvec3 n(0.0), u(0.0);
+                n[axis] = side;
+                u[(axis + 1) % 3] = 1;
+                const dvec3 v = glm::cross(n, u);
+                faces.push_back({(n - u - v) * half, (n + u - v) * half, (n + u + v) * half});
+                faces.push_back({(n - u - v) * half, (n + u + v) * half, (n - u + v) * half});
+            }
+        return shellOf(faces, apart);
+    };
     return s;
 }
 
@@ -194,17 +238,25 @@ BodyShape sphereShape(float radius, double density, float spacing) {
     BodyShape s;
     const double r = radius, inner = std::max(r - 0.5 * spacing, 0.0);
     const int n = inner > 0 ? std::max(static_cast<int>(std::lround(4 * kPiD * inner * inner / (double{spacing} * spacing))), 4) : 1;
-    const double turn = kPiD * (3 - std::sqrt(5.0));
-    for (int k = 0; k < n; ++k) {
-        const double y = 1 - (2 * k + 1.0) / n, across = std::sqrt(1 - y * y);
-        s.samples.emplace_back(dvec3(across * std::cos(turn * k), y, across * std::sin(turn * k)) * inner);
-    }
+    for (const dvec3& p : spiral(n)) s.samples.emplace_back(p * inner);
     const double volume = 4.0 / 3.0 * kPiD * r * r * r;
     s.volume = static_cast<float>(volume);
     s.mass = static_cast<float>(density * volume);
     s.inertia = vec3(static_cast<float>(0.4 * density * volume * r * r));
     s.distance = [radius](const vec3& p) { return glm::length(p) - radius; };
+    s.shell = [r](float apart) {
+        std::vector<ShellPoint> points;
+        for (const dvec3& p : spiral(std::max(static_cast<int>(4 * kPiD * r * r / (0.5 * double{apart} * double{apart})), 16)))
+            points.push_back({vec3(p * r), vec3(p)});
+        return points;
+    };
     return s;
+}
+
+std::vector<ShellPoint> meshShell(const MeshView& mesh, float apart) {
+    std::vector<Triangle> triangles;
+    for (size_t t = 0; t < mesh.triangleCount(); ++t) triangles.push_back(triangleOf(mesh, t));
+    return shellOf(triangles, apart);
 }
 
 Result<MeshBody> meshShape(const MeshView& mesh, double density, float spacing) {
@@ -238,6 +290,7 @@ Result<MeshBody> meshShape(const MeshView& mesh, double density, float spacing) 
         const double far = nearest(*triangles, dvec3(p));
         return static_cast<float>(turns > 0.5 ? -far : far);
     };
+    s.shell = [triangles](float apart) { return shellOf(*triangles, apart); };
     return body;
 }
 

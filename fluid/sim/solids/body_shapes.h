@@ -21,4 +21,7 @@ struct MeshBody {
 // Error (badInput): no triangles, or no volume inside them (open, or inside out).
 Result<MeshBody> meshShape(const MeshView& mesh, double density, float spacing);
 
+// BodyShape::shell of a mesh in the body's frame. Degenerate triangles have no points.
+std::vector<ShellPoint> meshShell(const MeshView& mesh, float apart);
+
 }  // namespace rivulet

@@ -113,6 +113,21 @@ void SleepParams::visit(ParamVisitor& v) {
     v.value({"after", "", "time for which it must be calm, over sqrt(h / g)", 0.5, 1000, kLog}, after);
 }
 
+void WetnessParams::visit(ParamVisitor& v) {
+    v.value({.name = "on",
+             .doc = "whether solids that water touches are wet, darker and glossier, until they are dry again; bodies, and colliders that "
+                    "do not change their shape",
+             .fixed = kFixed},
+            on);
+    v.value({"dries", "s", "time in which the wetness of a surface without water falls to 1/e; shorter than in nature, where it is minutes",
+             0.01, 1.0e5, kLog},
+            dries);
+    v.value(
+        {"runs", "m",
+         "distance below a wet place, along a slope, in which the wetness of the water that runs down falls to 1/e; 0 = none runs", 0, 10},
+        runs);
+}
+
 void FluidParams::visit(ParamVisitor& v) {
     const std::vector<std::string> names = methods().names();
     v.choice({.name = "method", .doc = "pressure solver; rivulet list methods describes each", .fixed = kFixed}, method, names);
@@ -178,6 +193,7 @@ void FluidParams::visit(ParamVisitor& v) {
     v.group({.name = "forces", .doc = "forces in addition to pressure and gravity"}, forces);
     v.group({.name = "foam", .doc = "spray, foam and bubbles"}, foam);
     v.group({.name = "sleep", .doc = "calm water that is not stepped"}, sleep);
+    v.group({.name = "wetness", .doc = "wet surfaces of solids"}, wetness);
     v.group({.name = "box", .doc = "walls around the fluid; particles that leave the box are lost"}, box);
     v.group({.name = "collision", .doc = "contact of the fluid with solids"}, collision);
     v.list({.name = "blocks", .doc = "blocks of fluid at the start", .fixed = kFixed}, blocks);

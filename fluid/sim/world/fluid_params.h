@@ -77,6 +77,14 @@ struct SleepParams {
     void visit(ParamVisitor& v);
 };
 
+// Solids that water has touched stay wet for a while. For pictures: the motion of the water does not depend on it.
+struct WetnessParams {
+    bool on = false;
+    float dries = 20.0F;  // s
+    float runs = 0.06F;   // m
+    void visit(ParamVisitor& v);
+};
+
 inline constexpr float kMostGravity = 1000;  // m/s^2, along each axis
 
 struct FluidParams {
@@ -107,6 +115,7 @@ struct FluidParams {
     ForcesParams forces = {};
     FoamParams foam = {};
     SleepParams sleep = {};
+    WetnessParams wetness = {};
     BoxParams box = {};
     CollisionParams collision = {};
     std::vector<BlockParams> blocks = {};

@@ -246,6 +246,11 @@ ParticleView FluidWorld::particles() const {
             .foamSlots = w.foam ? w.foam->slots() : 0};
 }
 
+WetnessView FluidWorld::wetness() const {
+    if (!impl_->wet) return {};
+    return {impl_->wet->surface(), &impl_->wet->values(), &impl_->wet->cells()};
+}
+
 Result<std::unique_ptr<FluidWorld>> FluidWorld::create(Device& device, const FluidParams& params, const Solids& solids, Log log,
                                                        Sources sources, std::span<const HostForce> forces, const StartProgress& progress) {
     if (Status s = checkParams("fluid", params); !s) return s.error();

@@ -12,7 +12,7 @@
 #include "fluid/sim/forces/force.h"
 #include "fluid/sim/query/volumes.h"
 #include "fluid/sim/query/water_query.h"
-#include "fluid/sim/solids/solids.h"
+#include "fluid/sim/solids/wet_surface.h"
 #include "fluid/sim/sources/emitter.h"
 #include "fluid/sim/world/fluid_params.h"
 #include "fluid/sim/world/stats.h"
@@ -139,8 +139,7 @@ class FluidWorld {
     // the cpu before this returns; it may outlive the world. Error: as sample(); then it is not called.
     Status sampleLater(std::span<const vec3> places, std::function<void(std::span<const FluidSample>)> then);
 
-    // Volumes to watch (volumes.h), 32 at most; each step updates their counts, late on a GPU. They are saved and restored, and reset()
-    // empties them. Errors as VolumePasses::set.
+    // Volumes to watch (volumes.h), 32 at most; each step updates their counts, late on a GPU. Saved and restored; reset() empties them.
     Status setVolumes(std::span<const Volume> volumes);
     std::vector<VolumeCount> volumes() const;
     // Returns the particles that entered and left since the last call, for each volume with any.
@@ -152,6 +151,7 @@ class FluidWorld {
 
     const FluidParams& params() const;
     ParticleView particles() const;
+    WetnessView wetness() const;      // null if fluid.wetness.on is off
     const FluidStats& stats() const;  // late on a GPU
     float fastestFall() const;        // m/s, speed after the largest possible fall, including the initial speed
     double time() const;              // s simulated

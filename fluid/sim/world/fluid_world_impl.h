@@ -16,6 +16,7 @@
 #include "fluid/sim/solids/body_passes.h"
 #include "fluid/sim/solids/probe_passes.h"
 #include "fluid/sim/solids/solid_passes.h"
+#include "fluid/sim/solids/wet_passes.h"
 #include "fluid/sim/sources/block.h"
 #include "fluid/sim/sources/exchange_passes.h"
 #include "fluid/sim/sources/source_passes.h"
@@ -64,6 +65,7 @@ struct FluidWorld::Impl {
     WaterQuery query;             // created at the first query
     bool sortedForQuery = false;  // as `sorted`, for position and velocity before the first step
     std::optional<FoamPasses> foam;
+    std::optional<WetPasses> wet;      // empty: fluid.wetness.on is off
     std::optional<SleepPasses> sleep;  // empty: fluid.sleep.on is off
     vec3 sleptUnder{0.0F};             // gravity of the last frame
     bool sorted = false;               // the grid matches the current order of particles

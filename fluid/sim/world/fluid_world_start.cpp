@@ -105,6 +105,11 @@ Status FluidWorld::Impl::prepare(const Solids& given) {
         if (!foaming) return foaming.error();
         foam = std::move(*foaming);
     }
+    if (params.wetness.on) {
+        Result<WetPasses> wetting = WetPasses::create(*device, given, params.spacing, traits.linked);
+        if (!wetting) return wetting.error();
+        wet = std::move(*wetting);
+    }
     if (Status s = prepareSleep(); !s) return s;
     if (count == 0) log.notice("the scene has no particles");
     relaxStart(given);
@@ -323,6 +328,7 @@ void FluidWorld::Impl::writeStart() {
     sources.reset();
     withdrawn = 0;
     if (foam) foam->reset();
+    if (wet) wet->reset();
     volumes.reset();
     if (probes) probes->reset();
     sorted = false;

@@ -48,6 +48,7 @@ void FluidWorld::save(WorldState& state) {
     w.solids.save(state);
     w.sources.save(state);
     if (w.foam) w.foam->save(state);
+    if (w.wet) w.wet->save(state);
     if (w.exchange.any()) state.put<uint64_t>("world.taken", std::span(&w.withdrawn, 1));
     w.volumes.save(state);
     w.bodies.save(state);
@@ -119,6 +120,12 @@ Status FluidWorld::restore(WorldState& state) {
         if (!foamed) return foamed.error();
         foam = std::move(*foamed);
     }
+    std::vector<float> wetness;  // of a state without it, empty: all is dry
+    if (w.wet && state.sections().contains("wetness.points")) {
+        Result<std::vector<float>> points = w.wet->take(state);
+        if (!points) return points.error();
+        wetness = std::move(*points);
+    }
     Result<VolumePasses::Saved> volumes = VolumePasses::take(state, w.slots);
     if (!volumes) return volumes.error();
     Result<BodyPasses::Saved> bodies = w.bodies.take(state);
@@ -138,6 +145,7 @@ Status FluidWorld::restore(WorldState& state) {
     w.sources.restore(*sources);
     w.withdrawn = taken;
     if (w.foam) w.foam->restore(foam);
+    if (w.wet) w.wet->restore(wetness);
     for (size_t k = 0; k < remembered.size(); ++k) w.device->writeAll<float>(*remembered[k].buffer, memory[k]);
     if (w.sleep) w.sleep->restore(slept);
     w.sleptUnder = sleptUnder;
@@ -244,6 +252,11 @@ Status FluidWorld::continueFrom(FluidWorld& other, std::span<const Pose> poses, 
         WorldState state;
         o.foam->save(state);
         if (const auto saved = w.foam->take(state)) w.foam->restore(*saved);  // else another number may be: it begins without
+    }
+    if (w.wet && o.wet && w.wet->surface()->points.size() == o.wet->surface()->points.size()) {
+        WorldState state;
+        o.wet->save(state);
+        if (const auto saved = w.wet->take(state)) w.wet->restore(*saved);  // of other solids: dry
     }
     w.startCount = static_cast<uint32_t>(kept.size());
     if (w.sleep) w.sleep->reset(o.clock.time);

@@ -37,6 +37,7 @@ struct Material {
 
     vec3 emission{0.0F};                  // linear radiance of a light source
     float opacity = 1.0F;                 // of the diffuse part of blended materials; reflections are not reduced
+    float porosity = -1.0F;               // share of the surface that is darker when it is wet; negative: rough dielectrics are
     float grain = 0.0F;                   // stone or sand: strength of relief and spots, 0..1
     float grainSize = 0.1F;               // m, size of the largest spots
     bool blended = false;                 // drawn after opaque parts, from back to front

@@ -84,6 +84,14 @@ void setEye(Program& p, const EyeLook& eye, const MaterialTextures& textures, co
     p.texture("diffusionMap", 11, *textures.diffusion);
 }
 
+void setWet(Program& p, const DrawnMesh& m) {
+    if (!m.wet) return;
+    p.set("wetFromWorld", m.wet->fromWorld);
+    p.set("wetSize", m.wet->size);
+    p.set("wetFirstCell", m.wet->firstCell);
+    p.set("porosity", m.material.porosity);
+}
+
 void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
     setPlace(p, m);
     p.set("scale", std::cbrt(std::abs(glm::determinant(mat3(m.toWorld)))));
@@ -105,6 +113,7 @@ void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
         setSkin(p, *m.material.skin, m.textures);
     else if (m.material.eye)
         setEye(p, *m.material.eye, m.textures, m.toWorld);
+    if (layer == nullptr) setWet(p, m);
     if (layer != nullptr) {
         const LayerLook& look = layer->look;
         p.texture("layerMap", 7, *layer->texels);
@@ -118,9 +127,9 @@ void drawPart(const DrawnMesh& m, Program& p, const Layer* layer) {
 }  // namespace
 
 std::vector<Program*> RenderPrograms::all() {
-    std::vector<Program*> programs = {&shadow,     &shadowHoles, &shadowFirst,   &shadowHalve, &shadowBlur, &depth,
-                                      &floorDepth, &occlusion,   &occlusionBlur, &sky,         &floor,      &mesh,
-                                      &glass,      &box,         &boxOverWater,  &tonemap,     &antialias};
+    std::vector<Program*> programs = {&shadow,     &shadowHoles, &shadowFirst,   &shadowHalve,  &shadowBlur, &depth,
+                                      &floorDepth, &occlusion,   &occlusionBlur, &sky,          &floor,      &mesh,
+                                      &meshWet,    &glass,       &box,           &boxOverWater, &tonemap,    &antialias};
     for (auto& [key, program] : parts_) programs.push_back(&program);
     return programs;
 }
@@ -142,6 +151,7 @@ Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
         {&p.sky, Program::create(files, {full, folder + "background.frag"})},
         {&p.floor, Program::create(files, {full, folder + "background.frag"}, {{"FLOOR", "1"}})},
         {&p.mesh, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/mesh.frag"})},
+        {&p.meshWet, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/mesh.frag"}, {{"WET", "1"}})},
         {&p.glass, Program::create(files, {"shaders/material/mesh.vert", "shaders/material/glass.frag"})},
         {&p.box, Program::create(files, {box, folder + "box.frag"})},
         {&p.boxOverWater, Program::create(files, {box, folder + "box.frag"}, {{"OVER_WATER", "1"}})},
@@ -155,7 +165,7 @@ Result<RenderPrograms> RenderPrograms::create(const ShaderFiles& files) {
     return p;
 }
 
-Result<Program*> RenderPrograms::part(const Material& material, bool layered, bool water) {
+Result<Program*> RenderPrograms::part(const Material& material, bool layered, bool water, bool wet) {
     std::vector<Define> defines = {{"PART", "1"}};
     unsigned key = 0;
     auto add = [&](bool wanted, unsigned bit, const char* name) {
@@ -169,6 +179,7 @@ Result<Program*> RenderPrograms::part(const Material& material, bool layered, bo
     add(material.blended, 8, "BLENDED");
     add(water, 16, "WATER");
     add(glows(material), 32, "GLOW");
+    add(wet, 64, "WET");
     if (const auto found = parts_.find(key); found != parts_.end()) return &found->second;
     Result<Program> made = Program::create(files_, {"shaders/material/mesh.vert", "shaders/material/part.frag"}, defines);
     if (!made) return made.error();
@@ -178,6 +189,8 @@ Result<Program*> RenderPrograms::part(const Material& material, bool layered, bo
 bool isPart(const Material& m) {
     return !m.clear && (m.skin || m.eye || m.blended || m.cutoff > 0 || !m.doubleSided || glows(m) || !imagesOf(m).empty());
 }
+
+bool canBeWet(const Material& m) { return !m.skin && !m.eye && !m.blended && !m.clear; }
 
 TextureDesc shadowMapDesc(bool soft, bool quick) {
     const int size = kShadowSize / (soft ? 4 : 1) / (quick ? 2 : 1);
@@ -330,41 +343,50 @@ void drawParts(const PassContext& c, const std::vector<DrawnMesh>& drawn, const 
 }  // namespace
 
 TextureHandle addOpaque(FrameGraph& graph, RenderPrograms& programs, BufferHandle frame, const FrameView& view,
-                        std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light, bool floor) {
+                        std::vector<DrawnMesh> meshes, TextureHandle depth, TextureHandle occlusion, const LightMaps& light, bool floor,
+                        const WetBuffers& wet) {
     const TextureHandle colour = graph.texture("scene colour", sized(view, Format::rgba16f));
     // A copy of the picture, which wet panes refract: a texture cannot be read while it is drawn into.
     const bool wetPanes = std::any_of(meshes.begin(), meshes.end(), [](const DrawnMesh& m) { return m.material.blended && m.wetPart; });
     const TextureHandle behind = wetPanes ? graph.texture("behind panes", sized(view, Format::rgba16f)) : TextureHandle{};
     std::vector<gpu::Write> targets = {colour};
     if (behind) targets.emplace_back(behind);
-    graph.pass("opaque", {{frame, Usage::uniform}, {depth, Usage::target}, occlusion, light.sharp, light.soft, light.water}, targets,
-               [=, &programs, drawn = std::move(meshes)](PassContext& c) {
-                   c.drawTo({colour}, depth);
-                   bindFrame(c, frame);
-                   // The full-screen triangle is at the far plane: sky passes the depth test where nothing is nearer, the floor where
-                   // something is.
-                   glEnable(GL_DEPTH_TEST);
-                   glDepthMask(GL_FALSE);
-                   glDepthFunc(GL_EQUAL);
-                   programs.sky.use();
-                   c.drawFullscreen();
-                   glDepthFunc(GL_GREATER);
-                   if (floor) {  // optional, because it is shaded under meshes too, which hide it there
-                       programs.floor.use();
-                       programs.floor.texture("occlusion", 0, c.texture(occlusion));
-                       bindLight(programs.floor, c, light, 1);
-                       c.drawFullscreen();
-                   }
-                   glDepthFunc(GL_LEQUAL);
-                   bindPlain(programs.mesh, c, occlusion, light);
-                   for (const DrawnMesh& m : drawn) {
-                       if (m.part != nullptr || m.material.clear) continue;
-                       setPlace(programs.mesh, m);
-                       programs.mesh.set("grain", vec2(m.material.grain, m.material.grainSize));
-                       m.mesh->draw();
-                   }
-                   drawParts(c, drawn, view.cameraPosWorld, occlusion, light, colour, behind);
-               });
+    std::vector<gpu::Read> reads = {{frame, Usage::uniform}, {depth, Usage::target}, occlusion, light.sharp, light.soft, light.water};
+    for (const BufferHandle buffer : {wet.cells, wet.values})
+        if (buffer) reads.emplace_back(buffer);
+    graph.pass("opaque", reads, targets, [=, &programs, drawn = std::move(meshes)](PassContext& c) {
+        c.drawTo({colour}, depth);
+        bindFrame(c, frame);
+        if (wet.values) {
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, c.buffer(wet.cells));
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, c.buffer(wet.values));
+        }
+        // The full-screen triangle is at the far plane: sky passes the depth test where nothing is nearer, the floor where
+        // something is.
+        glEnable(GL_DEPTH_TEST);
+        glDepthMask(GL_FALSE);
+        glDepthFunc(GL_EQUAL);
+        programs.sky.use();
+        c.drawFullscreen();
+        glDepthFunc(GL_GREATER);
+        if (floor) {  // optional, because it is shaded under meshes too, which hide it there
+            programs.floor.use();
+            programs.floor.texture("occlusion", 0, c.texture(occlusion));
+            bindLight(programs.floor, c, light, 1);
+            c.drawFullscreen();
+        }
+        glDepthFunc(GL_LEQUAL);
+        for (const DrawnMesh& m : drawn) {
+            if (m.part != nullptr || m.material.clear) continue;
+            Program& p = m.wet ? programs.meshWet : programs.mesh;
+            bindPlain(p, c, occlusion, light);
+            setPlace(p, m);
+            setWet(p, m);
+            p.set("grain", vec2(m.material.grain, m.material.grainSize));
+            m.mesh->draw();
+        }
+        drawParts(c, drawn, view.cameraPosWorld, occlusion, light, colour, behind);
+    });
     return colour;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "engine/gpu/program.h"
 #include "engine/material/layer.h"
 #include "engine/material/material.h"
+#include "engine/material/wetness.h"
 #include "engine/render/frame_params.h"
 #include "engine/render/gpu_images.h"
 #include "engine/render/gpu_mesh.h"
@@ -21,13 +23,13 @@ namespace rivulet {
 // The shader programs of all passes.
 struct RenderPrograms {
     gpu::Program shadow, shadowHoles, shadowFirst, shadowHalve, shadowBlur, depth, floorDepth, occlusion, occlusionBlur, sky, floor, mesh,
-        glass, box, boxOverWater, tonemap, antialias;
+        meshWet, glass, box, boxOverWater, tonemap, antialias;
     static Result<RenderPrograms> create(const ShaderFiles& files);
     std::vector<gpu::Program*> all();  // also those of part() created so far
 
-    // The program for meshes of this material, with or without a layer, and with or without water between it and the light. It is created
-    // on first use. Error: as create.
-    Result<gpu::Program*> part(const Material& material, bool layered, bool water);
+    // The program for meshes of this material, with or without a layer, with or without water between it and the light, and dry or wet
+    // (see canBeWet). It is created on first use. Error: as create.
+    Result<gpu::Program*> part(const Material& material, bool layered, bool water, bool wet = false);
 
   private:
     ShaderFiles files_;
@@ -42,10 +44,19 @@ struct DrawnMesh {
     MaterialTextures textures;
     gpu::Program* wetPart = nullptr;  // part() with a layer; then `layer` is set and has texels
     const Layer* layer = nullptr;
+    std::optional<WetGrid> wet;  // where it is wet, if addOpaque gets WetBuffers; `part` is then wet
 };
 
 // Whether a material needs the full program (textures, skin, eye, ...) instead of colour, roughness and metallic alone.
 bool isPart(const Material& material);
+
+// Whether wetness changes the look of a material: not that of skin and eyes, which have layers, nor of what is seen through.
+bool canBeWet(const Material& material);
+
+// The wetness of all meshes: buffers as shaders/material/wet.glsl declares them; empty: all is dry.
+struct WetBuffers {
+    gpu::BufferHandle cells, values;
+};
 
 // The maps of the light's visibility. Without meshes or water the handles may be any texture; FrameParams::shadow marks them as unused.
 struct LightMaps {
@@ -68,7 +79,7 @@ gpu::TextureHandle addOcclusion(gpu::FrameGraph& graph, RenderPrograms& programs
 // Linear radiance (rgba16f) of background, floor and meshes; blended meshes come last, the farthest first.
 gpu::TextureHandle addOpaque(gpu::FrameGraph& graph, RenderPrograms& programs, gpu::BufferHandle frame, const FrameView& view,
                              std::vector<DrawnMesh> meshes, gpu::TextureHandle depth, gpu::TextureHandle occlusion, const LightMaps& light,
-                             bool floor = true);
+                             bool floor = true, const WetBuffers& wet = {});
 // Draws meshes of clear materials into `colour`: each face reflects, and attenuates what is behind it. `side`: behind or in front of the
 // water, whose depth is `fluidDepth` (m, r32f; 1e6 where there is no water, which counts as behind); all: no water, fluidDepth may be
 // empty.

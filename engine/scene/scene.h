@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/material/layer.h"
 #include "engine/material/material.h"
+#include "engine/material/wetness.h"
 #include "engine/scene/mesh.h"
 #include "engine/scene/skin.h"
 
@@ -21,6 +23,7 @@ struct Node {
     bool visible = true;                       // if false, its children are hidden too
     std::shared_ptr<const Deformer> deformer;  // deformed vertices; null: the mesh's. Must be destroyed before its device
     std::shared_ptr<const Layer> layer;        // liquid on the material; null: none
+    std::optional<WetGrid> wet;                // where it is wet; empty: dry
 };
 
 class Scene {

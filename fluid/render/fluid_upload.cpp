@@ -55,15 +55,16 @@ Status FluidUpload::Target::makeRoom(size_t bytes) {
 }
 
 void FluidUpload::dropTargets() {
-    for (Target* to : {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
+    for (Target* to :
+         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &wetness_, &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
         to->drop();
     held_ = {};
 }
 
 size_t FluidUpload::bytes() const {
-    size_t sum = ring_.bytes() + drops_.bytes();
+    size_t sum = ring_.bytes() + drops_.bytes() + wetCells_.bytes();
     for (const Target* to :
-         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
+         {&position_, &velocity_, &id_, &absorption_, &foam_[0], &foam_[1], &wetness_, &ellipsoids_[0], &ellipsoids_[1], &ellipsoids_[2]})
         sum += to->memory.bytes();
     return sum;
 }
@@ -124,6 +125,18 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         wanted(particles.foamDrawn, foam_[0], out.foam[0], false);
         wanted(particles.foamVelocity, foam_[1], out.foam[1], false);
     }
+    if (const WetnessView wet = world.wetness(); wet.surface && !wet.surface->points.empty()) {
+        out.wetCellBytes = wet.surface->cells.size() * sizeof(int32_t);
+        out.wetnessBytes = wet.surface->points.size() * sizeof(float);
+        if (same) {
+            out.wetCells = static_cast<unsigned>(wet.cells->handle());
+            out.wetness = static_cast<unsigned>(wet.values->handle());
+        } else {
+            if (Status s = holdWetCells(wet.surface); !s) return s.error();
+            out.wetCells = wetCells_.name();
+            arrays.push_back({wet.values, {}, &wetness_, &out.wetness, out.wetnessBytes, false});
+        }
+    }
     if (out.count > 0) {
         wanted(particles.drawn, position_, out.position, true);
         wanted(normals ? particles.normal : particles.velocity, velocity_, out.velocity, true);
@@ -149,6 +162,15 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
     facts_.ms = 1000 * (hostSeconds() - start);
     facts_.waits = ring_.waits();
     return out;
+}
+
+// The cells never change: they are brought over once.
+Status FluidUpload::holdWetCells(std::shared_ptr<const WetSurface> surface) {
+    if (surface == wetSurface_) return ok();
+    if (Status s = rivulet::makeRoom(wetCells_, surface->cells.size() * sizeof(int32_t)); !s) return s;
+    wetCells_.writeAll(std::span<const int32_t>(surface->cells));
+    wetSurface_ = std::move(surface);
+    return ok();
 }
 
 // All arrays in one copy, in the Device's order. Error (failed): out of GPU memory. A failure of OpenCL is stored in refused_.

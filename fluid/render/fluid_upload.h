@@ -64,6 +64,7 @@ class FluidUpload {
     Status room(std::span<const Array> arrays, size_t others, bool ring) const;
     void follow(std::shared_ptr<const GlSharing> sharing);
     void dropTargets();
+    Status holdWetCells(std::shared_ptr<const WetSurface> surface);
     Status share(std::span<const Array> arrays);
     bool holdsSleepers(std::span<const Array> arrays, bool hurried, const FluidView& of) const;
     Status bringOver(Device* device, std::span<const Array> arrays, bool hurried, FluidView& out);
@@ -72,6 +73,9 @@ class FluidUpload {
     gpu::Buffer drops_;
     Target position_, velocity_, id_, absorption_;
     std::array<Target, 2> foam_;
+    Target wetness_;
+    gpu::Buffer wetCells_;
+    std::shared_ptr<const WetSurface> wetSurface_;  // whose cells wetCells_ holds
     std::array<Target, 3> ellipsoids_;
     std::shared_ptr<const GlSharing> sharing_;  // that the Targets were last wrapped by
     std::string refused_;                       // why sharing_ is no longer used, half a sentence

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -33,6 +34,9 @@ struct FluidView {
     // Spray, foam and bubbles: GL buffer names, as ParticleView::foamDrawn and foamVelocity.
     std::array<unsigned, 2> foam = {};
     uint32_t foamCount = 0;
+    // The wetness of solids: GL buffer names, WetnessView::cells and values. 0: all is dry.
+    unsigned wetCells = 0, wetness = 0;
+    size_t wetCellBytes = 0, wetnessBytes = 0;
     // Drops in the air: GL buffer name, two vec4 per drop: xyz position, m, w radius, m; xyz velocity, m/s.
     unsigned drops = 0;
     uint32_t dropCount = 0;

@@ -37,6 +37,10 @@ void BodyParams::visit(ParamVisitor& v) {
     v.list({.name = "parts", .doc = "meshes that are drawn with a hull or mesh", .fixed = kFixed}, parts);
     v.colour({"colour", "", "linear red, green, blue", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
+    v.value(
+        {"porosity", "",
+         "how much darker the surface is when wet (fluid.wetness): 0 = plastic or glaze, 1 = stone or cloth; -1 = by its roughness", -1, 1},
+        porosity);
     v.value({.name = "visible", .doc = "whether it is drawn"}, visible);
 }
 

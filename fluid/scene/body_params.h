@@ -38,6 +38,7 @@ struct BodyParams {
     std::vector<BodyPartParams> parts;
     vec3 colour{0.85F, 0.45F, 0.2F};  // linear
     float roughness = 0.4F;
+    float porosity = -1;  // as porosity of a collider
     bool visible = true;
     void visit(ParamVisitor& v);
 };

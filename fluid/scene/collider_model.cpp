@@ -22,6 +22,7 @@ Material sceneMaterial(const ColliderParams& collider) {
     m.baseColour = collider.colour;
     m.roughness = collider.roughness;
     m.metallic = collider.metallic;
+    m.porosity = collider.porosity;
     m.opacity = collider.opacity;
     m.grain = collider.grain;
     m.grainSize = collider.grainSize;

@@ -78,6 +78,10 @@ void ColliderParams::visit(ParamVisitor& v) {
     v.colour({"colour", "", "linear red, green, blue; used where the file has no material, or materials is scene", 0, 1}, colour);
     v.value({"roughness", "", "0 = mirror, 1 = chalk", 0, 1}, roughness);
     v.value({"metallic", "", "0 = stone or paint, 1 = metal", 0, 1}, metallic);
+    v.value(
+        {"porosity", "",
+         "how much darker the surface is when wet (fluid.wetness): 0 = plastic or glaze, 1 = stone or cloth; -1 = by its roughness", -1, 1},
+        porosity);
     v.value({"opacity", "", "1 = opaque; less: glass that absorbs this share of the light and tints the rest", 0, 1}, opacity);
     v.value({"grain", "", "0 = smooth and of one colour, 1 = coarse, mottled stone", 0, 1}, grain);
     v.value({"grainSize", "m", "size of the grain's largest spots", 1.0e-4, kMaxPosition, kLog}, grainSize);

@@ -65,6 +65,7 @@ struct ColliderParams {
     vec3 colour{0.72F, 0.71F, 0.69F};  // linear
     float roughness = 0.6F;
     float metallic = 0.0F;
+    float porosity = -1;     // how much darker when wet, 0..1; -1 = by roughness
     float opacity = 1.0F;    // less than 1: glass
     float grain = 0.0F;      // 0 = smooth and of one colour, 1 = coarse stone
     float grainSize = 0.1F;  // m

@@ -165,16 +165,17 @@ Status SceneRenderer::prepare(const FrameView& view, const Scene& scene) {
     return ok();
 }
 
-Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld, bool water) {
+Result<DrawnMesh> SceneRenderer::drawnOf(const Node& node, const mat4& toWorld, bool water, bool wets) {
     DrawnMesh drawn;
     drawn.mesh = &meshes_.at(MeshKey{node.mesh, node.deformer});
     drawn.toWorld = toWorld;
     drawn.material = node.material;
     if (node.layer && node.layer->texels != nullptr && *node.layer->texels) drawn.layer = node.layer.get();
+    if (wets && canBeWet(node.material)) drawn.wet = node.wet;
     if (!isPart(node.material) && drawn.layer == nullptr) return drawn;
     for (const bool wet : {false, true}) {
         if (wet && drawn.layer == nullptr) continue;
-        Result<gpu::Program*> part = render_.part(node.material, wet, water);
+        Result<gpu::Program*> part = render_.part(node.material, wet, water, !wet && drawn.wet);
         if (!part) return part.error();
         (wet ? drawn.wetPart : drawn.part) = *part;
     }
@@ -230,7 +231,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     for (size_t i = 0; i < scene.nodes().size(); ++i) {
         const Node& node = scene.nodes()[i];
         if (!visible[i] || !node.mesh) continue;
-        Result<DrawnMesh> drawn = drawnOf(node, world[i], !water.empty());
+        Result<DrawnMesh> drawn = drawnOf(node, world[i], !water.empty(), fluid.wetness != 0);
         if (!drawn) return drawn.error();
         const Bounds b = transformBounds(world[i], drawn->mesh->bounds());
         meshes.push_back(std::move(*drawn));
@@ -287,7 +288,11 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.depth = addDepth(graph, render_, frame, view, meshes);
     const float radius = 0.5F * glm::length(studio.shown.size());
     const gpu::TextureHandle occlusion = addOcclusion(graph, render_, frame, view, draw.depth, kOcclusionReach * radius);
-    draw.colour = addOpaque(graph, render_, frame, view, meshes, draw.depth, occlusion, light, studio.showFloor);
+    WetBuffers wet;
+    if (fluid.wetness != 0)
+        wet = {graph.importBuffer("wet cells", fluid.wetCells, fluid.wetCellBytes),
+               graph.importBuffer("wetness", fluid.wetness, fluid.wetnessBytes)};
+    draw.colour = addOpaque(graph, render_, frame, view, meshes, draw.depth, occlusion, light, studio.showFloor, wet);
     if (fluid.foamCount > 0) draw.glassDepth = addGlassDepth(graph, render_, frame, view, meshes);
 
     if (background.showBox && !row->opaque) addBox(graph, render_, frame, box, draw.colour, draw.depth);

@@ -69,7 +69,7 @@ class SceneRenderer {
   private:
     SceneRenderer() = default;
     Status prepare(const FrameView& view, const Scene& scene);
-    Result<DrawnMesh> drawnOf(const Node& node, const mat4& toWorld, bool water);
+    Result<DrawnMesh> drawnOf(const Node& node, const mat4& toWorld, bool water, bool wets);
     void addShadows(gpu::FrameGraph& graph, const std::vector<DrawnMesh>& meshes, const mat4& projection, const Scene& scene,
                     LightMaps& light);
 

@@ -33,6 +33,7 @@ void SceneSolids::apply(const SceneFile& scene) {
         Node& node = nodes_.nodes()[bodyNodes_[k]];
         node.material.baseColour = scene.bodies[k].colour;
         node.material.roughness = scene.bodies[k].roughness;
+        node.material.porosity = scene.bodies[k].porosity;
         node.visible = scene.bodies[k].visible;
     }
 }
@@ -114,6 +115,25 @@ void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world) {
     for (size_t k = 0; k < bodyNodes_.size(); ++k) nodes_.nodes()[bodyNodes_[k]].local = matrixOf(world.bodies()[k].pose);
     for (const Deforming& d : deforming_) bendNode(d, d.field->positions());
     placeModels(scene, world.time());
+    wetNodes(world.wetness().surface.get());
+}
+
+// Nodes whose solid gets wet know where its cells are; null: all are dry.
+void SceneSolids::wetNodes(const WetSurface* surface) {
+    for (size_t n = 0; n < nodes_.nodes().size(); ++n) {
+        Node& node = nodes_.nodes()[n];
+        node.wet.reset();
+        const SceneThing thing = thingOf(n);
+        if (surface == nullptr || !node.mesh || thing.kind == SceneThing::Kind::none) continue;
+        SolidRef ref{ProbeOn::body, static_cast<uint32_t>(thing.index)};
+        if (thing.kind == SceneThing::Kind::collider) ref = solids_.colliders[thing.index];
+        const WetSolid* found = surface->find(ref);
+        if (found == nullptr) continue;
+        const mat4 place = ref.on == ProbeOn::rigid  ? nodeOf(rigid_[ref.index].model).local
+                           : ref.on == ProbeOn::body ? nodes_.nodes()[bodyNodes_[ref.index]].local
+                                                     : mat4(1.0F);
+        node.wet = WetGrid{found->cellsFromWorld(place), found->size, found->firstCell};
+    }
 }
 
 size_t SceneSolids::recordedCorners() const {

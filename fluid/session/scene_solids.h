@@ -123,6 +123,7 @@ class SceneSolids {
     Pose poseOf(const SceneFile& scene, size_t model, double time, double turned) const;
     Node& nodeOf(size_t model) { return nodes_.nodes()[models_[model].node()]; }
     const Node& nodeOf(size_t model) const { return nodes_.nodes()[models_[model].node()]; }
+    void wetNodes(const WetSurface* surface);
     void bendNode(const Deforming& deforming, std::span<const vec3> positions);
     void placeModels(const SceneFile& scene, double time);
 

@@ -208,6 +208,7 @@ size_t SceneSolids::addBodyNodes(const BodyParams& params, const Pose& pose, Mes
     node.mesh = std::make_shared<const Mesh>(std::move(mesh));
     node.material.baseColour = params.colour;
     node.material.roughness = params.roughness;
+    node.material.porosity = params.porosity;
     node.visible = params.visible;
     const int main = nodes_.add(std::move(node));
     for (size_t p = 0; p < parts.size(); ++p) {

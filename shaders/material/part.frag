@@ -1,4 +1,4 @@
-// A mesh with a full material: textures on the plain surface function (GLOW: emission, occlusion), on SKIN, on an EYE; BLENDED; with a LAYER of liquid.
+// A mesh with a full material: textures on the plain surface function (GLOW: emission), on SKIN, on an EYE; BLENDED, WET, with a LAYER.
 #include "shaders/render/frame.glsl"
 #include "shaders/render/environment.glsl"
 #include "shaders/render/shadow.glsl"
@@ -27,6 +27,10 @@ uniform vec3 emission;
 #endif
 uniform sampler2D diffusionMap;  // see makeDiffusionTable
 layout(location = 0) out vec4 colour;
+#if defined(WET)
+#include "shaders/material/noise.glsl"
+#include "shaders/material/wet.glsl"
+#endif
 #if defined(SKIN)
 #include "shaders/material/skin.glsl"
 #endif
@@ -129,6 +133,10 @@ void main() {
     float rough = roughness * rm.g, metal = metallic * rm.b;
     f0 = mix(vec3(0.04), albedo.rgb, metal);
     vec3 body = albedo.rgb * (1.0 - metal);
+#if defined(WET)
+    Wet w = wetnessAt(posWorld, facing, n, rough, metal);
+    body = darkened(body, w);
+#endif
     float reach = max(dot(facing, lamp), 0.0);
 #if defined(LAYER)
     reach *= q.light;
@@ -138,6 +146,10 @@ void main() {
     matte += emission * texture(glowMap, uv).rgb;
 #endif
     shine = gloss(facing, toEye, f0, max(rough, 0.05), 0.0, falling * lit, open);
+#if defined(WET)
+    matte = wetted(matte, shine, metal, w, toEye, falling * lit, open);
+    shine = vec3(0.0);
+#endif
 #endif
 
 #if defined(LAYER)

@@ -85,7 +85,30 @@ rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buff
                                    .velocity = fluid->velocity,
                                    .id = fluid->id,
                                    .count = fluid->count,
-                                   .radius = fluid->radius};
+                                   .radius = fluid->radius,
+                                   .wet_cells = fluid->wetCells,
+                                   .wetness = fluid->wetness};
         return writeStruct(full, buffers, "rivulet_buffers", "buffers");
+    });
+}
+
+rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid, size_t index, rivulet_wet_solid* wet,
+                                       rivulet_error* why) {
+    return with(world, why, Needs::memory, [&]() -> Status {
+        const WetnessView view = world->world->wetness();
+        if (!view.surface) return badInput("fluid.wetness.on is off: nothing gets wet");
+        if (solid != RIVULET_WALL && solid != RIVULET_BODY)
+            return badInput(fmt::format("solid is {}: use RIVULET_WALL or RIVULET_BODY", solid));
+        const bool wall = solid == RIVULET_WALL;
+        const size_t count = wall ? world->walls.size() : world->world->bodies().size();
+        if (index >= count) return badInput(fmt::format("there is no {} {}: the world has {}", wall ? "wall" : "body", index, count));
+        const SolidRef ref = wall ? world->walls[index] : SolidRef{ProbeOn::body, static_cast<uint32_t>(index)};
+        const WetSolid* found = view.surface->find(ref);
+        if (found == nullptr) return badInput(fmt::format("body {} does not get wet: set rivulet_body.mesh", index));
+        const mat4 m = found->cellsFromWorld(found->poseAmong(world->world->drawnPoses(), world->world->bodies()));
+        rivulet_wet_solid full{
+            .size = 0, .from_world = {}, .cells = {found->size.x, found->size.y, found->size.z}, .first_cell = found->firstCell};
+        std::memcpy(full.from_world, &m[0][0], sizeof full.from_world);
+        return writeStruct(full, wet, "rivulet_wet_solid", "wet");
     });
 }

@@ -64,7 +64,8 @@ struct rivulet_world {
     rivulet_context* context = nullptr;
     rivulet::capi::WorldParams params;
     std::vector<std::unique_ptr<rivulet::VoxelField>> fields;
-    std::vector<rivulet::Pose> poses;  // of the walls that move: the last requested
+    std::vector<rivulet::SolidRef> walls;  // what each is in the world
+    std::vector<rivulet::Pose> poses;      // of the walls that move: the last requested
     std::unique_ptr<rivulet::capi::BodyCallbacks> callbacks;
     std::unique_ptr<rivulet::FreeBodies> free;
     std::unique_ptr<rivulet::FluidWorld> world;

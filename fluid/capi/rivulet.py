@@ -156,6 +156,7 @@ for _name, _arguments in {
         "world_stats": [c_void_p, POINTER(_Stats)], "world_particles": [c_void_p, POINTER(_Particles)],
         "world_bodies": [c_void_p, c_void_p, c_size_t], "world_sample": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_cast": [c_void_p, c_void_p, c_size_t, c_void_p], "world_heights": [c_void_p, c_void_p, c_size_t, c_void_p],
+        "world_wetness": [c_void_p, c_void_p, c_size_t, c_void_p],
         "world_set_volumes": [c_void_p, c_void_p, c_size_t], "world_volumes": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
         "world_volume_events": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)],
         "world_loads": [c_void_p, c_void_p, c_size_t, POINTER(c_size_t)], "world_export": [c_void_p, c_char_p],
@@ -446,6 +447,13 @@ class World(_Handle):
         heights = np.zeros(len(places), np.float32)
         _call("world_heights", self._pointer, _at(places), len(places), _at(heights))
         return heights
+
+    def wetness(self, places):
+        """How wet solids are at places (n, 3), m, on their surface: 0 dry .. 1 wet."""
+        places = _array(places, (-1, 3), "places")
+        wet = np.zeros(len(places), np.float32)
+        _call("world_wetness", self._pointer, _at(places), len(places), _at(wet))
+        return wet
 
     def set_volumes(self, volumes):
         """Counts particles in these volumes, Box or Sphere, at most 32; they replace those set before."""

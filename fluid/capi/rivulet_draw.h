@@ -40,13 +40,28 @@ RIVULET_API rivulet_status rivulet_world_draw(rivulet_world* world, const rivule
    until the world's next step. */
 typedef struct rivulet_buffers {
     size_t size;
-    uint32_t position; /* GL name; vec4 each: xyz m, w density over rest density; negative w: the row is empty */
-    uint32_t velocity; /* GL name; vec4 each: xyz m/s */
-    uint32_t id;       /* GL name; uint each */
-    uint32_t count;    /* rows */
-    float radius;      /* m, of a drawn sphere */
+    uint32_t position;  /* GL name; vec4 each: xyz m, w density over rest density; negative w: the row is empty */
+    uint32_t velocity;  /* GL name; vec4 each: xyz m/s */
+    uint32_t id;        /* GL name; uint each */
+    uint32_t count;     /* rows */
+    float radius;       /* m, of a drawn sphere */
+    uint32_t wet_cells; /* GL name; int each: see rivulet_world_wet_solid. 0 without fluid.wetness.on */
+    uint32_t wetness;   /* GL name; float each: 0 dry .. 1 wet. Another buffer after each step */
 } rivulet_buffers;
 RIVULET_API rivulet_status rivulet_world_buffers(rivulet_world* world, rivulet_buffers* buffers, rivulet_error* why);
+
+/* For a host's own material: where the wetness of a wall or body is in the two buffers. shaders/material/wet.glsl reads them: wet_cells at
+   binding 1, wetness at binding 2, and these as its uniforms wetFromWorld, wetSize and wetFirstCell. */
+typedef enum rivulet_solid { RIVULET_WALL = 0, RIVULET_BODY = 1 } rivulet_solid;
+typedef struct rivulet_wet_solid {
+    size_t size;
+    float from_world[16]; /* world (m) -> cells of the solid's grid, from its low corner; column by column */
+    int32_t cells[3];
+    uint32_t first_cell; /* of wet_cells */
+} rivulet_wet_solid;
+/* Of walls[index] or bodies[index], a rivulet_solid; again after each step if it moves. RIVULET_BAD_INPUT: it does not get wet. */
+RIVULET_API rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid, size_t index, rivulet_wet_solid* wet,
+                                                   rivulet_error* why);
 
 #ifdef __cplusplus
 }

@@ -34,6 +34,11 @@ RIVULET_API rivulet_status rivulet_world_cast(rivulet_world* world, const rivule
 RIVULET_API rivulet_status rivulet_world_heights(rivulet_world* world, const float* places, size_t count, float* heights,
                                                  rivulet_error* why);
 
+/* How wet solids are at places (m, 3 each) on or near their surface: 0 dry .. 1 wet; 0 off the surface, and without fluid.wetness.on. Waits
+   for the device. */
+RIVULET_API rivulet_status rivulet_world_wetness(rivulet_world* world, const float* places, size_t count, float* wetness,
+                                                 rivulet_error* why);
+
 /* Volumes that count particles, at most 32, each with an id that the host chooses. */
 typedef enum rivulet_shape { RIVULET_BOX = 0, RIVULET_SPHERE = 1 } rivulet_shape;
 typedef struct rivulet_volume {

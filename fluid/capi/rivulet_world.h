@@ -37,6 +37,7 @@ typedef struct rivulet_body {
     float inertia[3]; /* kg m^2 */
     float volume;     /* m^3 */
     rivulet_pose pose;
+    const rivulet_mesh* mesh; /* its surface, in its own frame, for fluid.wetness; NULL: it does not get wet */
 } rivulet_body;
 typedef struct rivulet_body_state {
     rivulet_pose pose;

@@ -91,6 +91,23 @@ rivulet_status rivulet_world_heights(rivulet_world* world, const float* places, 
     });
 }
 
+rivulet_status rivulet_world_wetness(rivulet_world* world, const float* places, size_t count, float* wetness, rivulet_error* why) {
+    return with(world, why, Needs::device, [&]() -> Status {
+        if (count > 0 && (places == nullptr || wetness == nullptr)) return badInput("places or wetness is NULL, and count is not 0");
+        std::fill_n(wetness, count, 0.0F);
+        const FluidWorld& of = *world->world;
+        const WetnessView wet = of.wetness();
+        if (!wet.surface || count == 0) return ok();
+        const std::vector<float> values = of.device().readAll<float>(*wet.values, wet.surface->points.size());
+        for (size_t s = 0; s < wet.surface->solids.size(); ++s) {
+            const Pose pose = wet.surface->solids[s].poseAmong(of.poses(), of.bodies());
+            for (size_t k = 0; k < count; ++k)
+                wetness[k] = std::max(wetness[k], wet.surface->at(values, s, pose.toOwn(vectorOf(places + 3 * k))));
+        }
+        return ok();
+    });
+}
+
 rivulet_status rivulet_world_set_volumes(rivulet_world* world, const rivulet_volume* volumes, size_t count, rivulet_error* why) {
     return with(world, why, Needs::device, [&]() -> Status {
         if (count > 0 && volumes == nullptr) return badInput("volumes is NULL, and count is not 0");

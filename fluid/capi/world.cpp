@@ -8,6 +8,7 @@
 #include "fluid/capi/call.h"
 #include "fluid/capi/convert.h"
 #include "fluid/capi/versioned.h"
+#include "fluid/sim/solids/body_shapes.h"
 #include "fluid/sim/world/contradictions.h"
 #include "fluid/sim/world/host_particles.h"
 #include "fluid/sim/world/world_state.h"
@@ -201,6 +202,14 @@ Status addBodies(const rivulet_world_options& o, rivulet_world& w, Solids& solid
         if (const std::string wrong = outside(fmt::format("bodies[{}].pose.position", k), pose->position, w.params.fluid.box);
             !wrong.empty())
             return badInput(wrong);
+        if (given.mesh != nullptr) {
+            const std::string name = fmt::format("bodies[{}].mesh", k);
+            const Result<rivulet_mesh> input = readStruct(given.mesh, "rivulet_mesh", name);
+            if (!input) return input.error();
+            Result<HostMesh> mesh = meshOf(*input, name);
+            if (!mesh) return mesh.error();
+            body.shape.shell = [mesh = std::move(*mesh)](float apart) { return meshShell(mesh.view(), apart); };
+        }
         solids.bodies.push_back(std::move(body));
     }
     const Result<rivulet_body_host> hosting = readStruct(o.body_host, "rivulet_body_host", "body_host");
@@ -238,6 +247,7 @@ Status createWorld(rivulet_context& context, const rivulet_world_options& o, riv
     if (Status sense = checkScene(w.params); !sense) return sense;
     Solids solids;
     if (Status added = addWalls(o, w, solids); !added) return added;
+    w.walls = solids.colliders;
     if (Status added = addBodies(o, w, solids); !added) return added;
     Result<Sources> sources = sourcesOf(w.params);
     if (!sources) return sources.error();

@@ -389,6 +389,69 @@ static void bodies_are_pushed_as_Archimedes_says(rivulet_context* context) {
     CHECK(world == NULL);
 }
 
+/* A box that stands in a pool and a cube that floats in it are wet where the water is, and the box takes its wetness along. */
+static void solids_are_wet_where_water_is(rivulet_context* context) {
+    float corners[24];
+    for (int k = 0; k < 24; ++k) corners[k] = (k % 3 == 0 ? k / 3 & 1 : k % 3 == 1 ? k / 3 >> 1 & 1 : k / 3 >> 2) ? 0.1F : -0.1F;
+    const uint32_t sides[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    const rivulet_mesh box = {.size = sizeof box,
+                              .positions = corners,
+                              .vertices = 8,
+                              .indices = sides,
+                              .indices_count = 36,
+                              .moves = 1,
+                              .pose = {{0.25F, 0.2F, 0.25F}, {0, 0, 0, 0}}};
+    const float sample[3] = {0, 0, 0};
+    const rivulet_body fixed = {.size = sizeof fixed,
+                                .samples = sample,
+                                .samples_count = 1,
+                                .inertia = {1, 1, 1},
+                                .volume = 0.001F,
+                                .pose = {{0.75F, 0.2F, 0.75F}, {0, 0, 0, 0}},
+                                .mesh = &box};
+    const char* json =
+        "{\"fluid\": {\"spacing\": 0.05, \"wetness\": {\"on\": true, \"runs\": 0},"
+        " \"blocks\": [{\"max\": [1, 0.2, 1], \"cut\": true}]}}";
+    rivulet_world_options o = {.size = sizeof o, .json = json, .walls = &box, .walls_count = 1, .bodies = &fixed, .bodies_count = 1};
+    rivulet_world* world = NULL;
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    float places[15] = {0.35F, 0.12F, 0.25F, 0.35F, 0.29F, 0.25F, 0.75F, 0.12F, 0.85F, 0.75F, 0.29F, 0.85F, 0.5F, 0.9F, 0.5F};
+    float wetness[5];
+    DONE(rivulet_world_wetness(world, places, 5, wetness, &why));
+    for (int k = 0; k < 5; ++k) CHECK(wetness[k] == 0);
+    run(world, 20);
+    DONE(rivulet_world_wetness(world, places, 5, wetness, &why));
+    CHECK(wetness[0] > 0.99F && wetness[1] < 0.1F && wetness[2] > 0.99F && wetness[3] < 0.1F && wetness[4] == 0);
+
+    rivulet_wet_solid at = {.size = sizeof at}, higher = {.size = sizeof higher};
+    DONE(rivulet_world_wet_solid(world, RIVULET_WALL, 0, &at, &why));
+    CHECK(at.cells[0] >= 8 && at.cells[1] >= 8 && at.cells[2] >= 8);
+    DONE(rivulet_world_wet_solid(world, RIVULET_BODY, 0, &higher, &why));
+    CHECK(higher.first_cell >= at.first_cell + (uint32_t)(at.cells[0] * at.cells[1] * at.cells[2]));
+    const rivulet_pose lifted = {{0.25F, 0.7F, 0.25F}, {0, 0, 0, 0}};
+    const rivulet_inputs in = {.size = sizeof in, .poses = &lifted, .poses_count = 1};
+    for (int k = 0; k < 6; ++k) DONE(rivulet_world_step(world, &in, 1.0 / 60, &why));
+    places[1] += 0.5F;
+    DONE(rivulet_world_wetness(world, places, 1, wetness, &why));
+    CHECK(wetness[0] > 0.95F);
+    DONE(rivulet_world_wet_solid(world, RIVULET_WALL, 0, &higher, &why));
+    /* The same cell, half a metre higher. */
+    const float cell = at.from_world[1 + 4 * 3] + at.from_world[1 + 4] * 0.2F;
+    CHECK(fabsf(higher.from_world[1 + 4 * 3] + higher.from_world[1 + 4] * 0.7F - cell) < 1e-3F);
+    REFUSED(rivulet_world_wet_solid(world, RIVULET_WALL, 1, &at, &why), "no wall 1");
+    REFUSED(rivulet_world_wet_solid(world, 7, 0, &at, &why), "RIVULET_WALL or RIVULET_BODY");
+    REFUSED(rivulet_world_wetness(world, NULL, 1, wetness, &why), "places or wetness is NULL");
+    rivulet_world_destroy(world);
+
+    o.json = "{\"fluid\": {\"spacing\": 0.05, \"blocks\": [{\"max\": [1, 0.2, 1], \"cut\": true}]}}";
+    DONE(rivulet_world_create(context, &o, &world, &why));
+    run(world, 2);
+    DONE(rivulet_world_wetness(world, places, 5, wetness, &why));
+    for (int k = 0; k < 5; ++k) CHECK(wetness[k] == 0);
+    REFUSED(rivulet_world_wet_solid(world, RIVULET_WALL, 0, &at, &why), "fluid.wetness.on is off");
+    rivulet_world_destroy(world);
+}
+
 static void values_are_set_and_emitters_pour(rivulet_context* context) {
     rivulet_world* world = make(context,
                                 "{\"fluid\": {\"spacing\": 0.05, \"maxParticles\": 4000, \"box\": {\"max\": [1, 1, 1]}},"
@@ -667,6 +730,7 @@ int main(int count, char** arguments) {
     walls_report_their_loads(context);
     walls_that_move_begin_where_they_are(context, folder);
     bodies_are_pushed_as_Archimedes_says(context);
+    solids_are_wet_where_water_is(context);
     values_are_set_and_emitters_pour(context);
     drops_run_down_a_skin(context);
     a_game_asks_what_the_water_is(context, folder);

@@ -335,10 +335,10 @@ Result<std::string> findAsset(const std::string& path, const std::string& sceneF
 
 namespace {
 
-// The names in a folder's order.txt, a line each; lines that begin with # are comments.
+// The names in the scenes.txt beside a folder of scenes, a line each; lines that begin with # are comments.
 std::vector<std::string> orderIn(const fs::path& folder) {
     std::vector<std::string> names;
-    const Result<std::string> text = readFile((folder / "order.txt").string());
+    const Result<std::string> text = readFile((folder / "scenes.txt").string());
     if (!text) return names;
     std::istringstream lines(*text);
     for (std::string line; std::getline(lines, line);)
@@ -366,7 +366,7 @@ std::vector<SceneListing> listScenes() {
     std::set<fs::path> seen;  // one folder may be listed twice
     std::vector<std::string> order;
     for (const fs::path& folder : folders) {
-        for (std::string& name : orderIn(folder / "scenes")) order.push_back(std::move(name));
+        for (std::string& name : orderIn(folder)) order.push_back(std::move(name));
         for (const fs::path& path : entriesOf(folder / "scenes")) {
             std::error_code ignored;
             if (path.extension() != ".json" || !isFile(path) || !seen.insert(fs::weakly_canonical(path, ignored)).second) continue;

@@ -111,7 +111,7 @@ Status checkScene(const SceneFile& scene);
 // assets/ of the source tree, in the installed assets/. Error (badInput): none exists; the sentence lists all places. Or as openInput.
 Result<std::string> findAsset(const std::string& path, const std::string& sceneFolder);
 
-// Every scene file found in the places that findAsset searches under scenes/, with its name and doc: in the order of order.txt beside
+// Every scene file found in the places that findAsset searches under scenes/, with its name and doc: in the order of scenes.txt above
 // them, then by path. `missing`: a mesh or picture that it needs and that is not found; "" = it can run.
 struct SceneListing {
     std::string path, name, doc, missing;

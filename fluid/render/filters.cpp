@@ -20,7 +20,7 @@ constexpr float kMiddleSteps[] = {4, 9, 13, 8, 5, 3, 2, 1};
 constexpr float kNearSteps[] = {6, 14, 22, 13, 8, 5, 3, 2, 1};
 constexpr float kNearestSteps[] = {10, 24, 37, 22, 13, 8, 5, 3, 2, 1};
 constexpr float kUnitPixels = 3.0F;     // a step of 1 is no wider than this
-constexpr float kWholePixels = 1.0e6F;  // m: the step of a level whose width is given in pixels
+constexpr float kWholePixels = 1.0e6F;  // m: so large that the limit in pixels decides
 constexpr float kMostBilateral = 96;    // pixels either side
 // With a reach of 1 the dam break's normals are nearer to the particles' iso-surface (docs/surface.md), whose bumps are the particles' and
 // not the water's: milk, honey and waves are the worse for it to the eye.

@@ -75,7 +75,7 @@ class FluidUpload {
     std::array<Target, 2> foam_;
     Target wetness_;
     gpu::Buffer wetCells_;
-    std::shared_ptr<const WetSurface> wetSurface_;  // whose cells wetCells_ holds
+    std::shared_ptr<const WetSurface> wetSurface_;  // the surface that wetCells_ was made from
     std::array<Target, 3> ellipsoids_;
     std::shared_ptr<const GlSharing> sharing_;  // that the Targets were last wrapped by
     std::string refused_;                       // why sharing_ is no longer used, half a sentence

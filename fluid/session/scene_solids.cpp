@@ -118,7 +118,7 @@ void SceneSolids::placeNodes(const SceneFile& scene, const FluidWorld& world) {
     wetNodes(world.wetness().surface.get());
 }
 
-// Nodes whose solid gets wet know where its cells are; null: all are dry.
+// Sets Node::wet of each node whose solid can be wet. Null: all nodes are dry.
 void SceneSolids::wetNodes(const WetSurface* surface) {
     for (size_t n = 0; n < nodes_.nodes().size(); ++n) {
         Node& node = nodes_.nodes()[n];

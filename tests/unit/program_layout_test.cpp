@@ -128,7 +128,7 @@ TEST(ParamPanelSliders, WideRangesAreLogarithmic) {
     EXPECT_FALSE(slidesByDecades({"open", "", "", -1e30, 1e30}));
 }
 
-// A person chooses among names; nobody types one.
+// Parameters with a fixed set of names are lists, not text fields.
 TEST(ParamChoices, ALiquidIsOneOfAList) {
     SceneFile scene;
     const std::vector<ParamEntry> entries = listParams([&scene](ParamVisitor& v) { scene.visit(v); });

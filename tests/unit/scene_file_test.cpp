@@ -226,7 +226,7 @@ TEST_F(SceneTest, AListedSceneIsFoundByItsNameAndAMistypedOneIsAnsweredWithTheNe
     EXPECT_TRUE(error.ends_with("did you mean the scene teapot_of_ours?")) << error;
 }
 
-// The order is that of the docs; a scene whose mesh is not found says which.
+// The order is that of the docs. A scene with a missing mesh names that mesh.
 TEST_F(SceneTest, TheListHasTheOrderOfTheDocs) {
     std::ifstream page(kRoot / "docs/scenes/README.md");
     std::vector<std::string> documented, listed;

@@ -93,7 +93,7 @@ mat4 WetSolid::cellsFromWorld(const Pose& pose) const {
 
 WetSurface WetSurface::of(const Solids& solids, float spacing) {
     WetSurface made;
-    // Twice as fine as the water, whose distance the wetness follows; a voxel's points must not skip a cell.
+    // Half a spacing, because wetness depends on the distance to particles. Points of neighbouring voxels must lie in neighbouring cells.
     const float cell = 0.5F * spacing;
     const auto addField = [&](const VoxelField* field, const SolidRef& ref) {
         if (field != nullptr && !field->empty()) add(made, ref, shellOf(*field), std::max(cell, 1.01F * field->surface.voxel));

@@ -38,19 +38,18 @@ int runWindow(const RunOptions& options) {
         window->swap();
         return true;
     };
-    auto viewer =
-        Viewer::create(options.scene,
-                       {.backend = options.backend,
-                        .device = options.device,
-                        .cooperate = options.cooperate,
-                        .clipboard = window->handle(),
-                        .width = options.width,
-                        .height = options.height,
-                        .seen = options.frames ? "" : seenFile(),  // with --frames no welcome screen: nobody may be there to close it
-                        .share = [&window] { return window->shared(); },
-                        .showing = showing,
-                        .stop = options.save.empty() ? graceful.flag() : nullptr},  // a state is saved after a whole frame
-                       options.log);
+    auto viewer = Viewer::create(options.scene,
+                                 {.backend = options.backend,
+                                  .device = options.device,
+                                  .cooperate = options.cooperate,
+                                  .clipboard = window->handle(),
+                                  .width = options.width,
+                                  .height = options.height,
+                                  .seen = options.frames ? "" : seenFile(),  // no welcome screen with --frames
+                                  .share = [&window] { return window->shared(); },
+                                  .showing = showing,
+                                  .stop = options.save.empty() ? graceful.flag() : nullptr},  // a state is saved after a whole frame
+                                 options.log);
     if (graceful.interrupted()) return graceful.status();
     if (closed) return kDone;
     if (!viewer) return report(viewer.error());

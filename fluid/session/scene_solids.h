@@ -22,6 +22,7 @@ namespace rivulet {
 
 class FluidWorld;
 struct RecordedFrame;
+struct WetSurface;
 
 // The voxels of a scene's meshes. Pointers hold as long as the session.
 struct SolidFields {

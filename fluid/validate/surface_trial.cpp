@@ -59,8 +59,9 @@ SurfaceMap withoutWalls(SurfaceMap map, const FrameView& view, const Bounds& box
     for (size_t i = 0; i < map.depth.size(); ++i) {
         if (!map.there(i)) continue;
         const auto width = static_cast<size_t>(map.width);
+        const size_t row = i / width;
         const double u = 2 * (static_cast<double>(i % width) + 0.5) / map.width - 1,
-                     v = 2 * (static_cast<double>(i / width) + 0.5) / map.height - 1, depth = double{map.depth[i]};
+                     v = 2 * (static_cast<double>(row) + 0.5) / map.height - 1, depth = double{map.depth[i]};
         const glm::dvec4 seen(depth * (u + projection[2][0]) / projection[0][0], depth * (v + projection[2][1]) / projection[1][1], -depth,
                               1);
         const dvec3 p(toWorld * seen), in = glm::min(glm::abs(p - dvec3(box.min)), glm::abs(dvec3(box.max) - p));

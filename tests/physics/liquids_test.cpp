@@ -93,7 +93,7 @@ TEST(Liquids, ANamedLiquidSetsDensityAndViscosity) {
     p.liquid = "mercury";
     const auto wrong = FluidWorld::create(*device, p, {}, {});
     ASSERT_FALSE(wrong);
-    EXPECT_NE(wrong.error().message.find("there are water"), std::string::npos) << wrong.error().message;
+    EXPECT_NE(wrong.error().message.find("must be one of water, seawater"), std::string::npos) << wrong.error().message;
 }
 
 // Side by side at the start. After complete separation, the centre of the oil is 0.1 m above that of the water. With so few particles the

@@ -69,7 +69,7 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
     f.lightDir = vec4(glm::normalize(view.lightDirWorld), 0.0F);
     f.lightColour = vec4(view.lightColour, 0.0F);
     placeSoftboxes(f);
-    f.horizon = vec4(studio.horizon, 0.0F);
+    f.horizon = vec4(studio.horizon, studio.tiles);
     f.zenith = vec4(studio.zenith, 0.0F);
     f.floorColour = vec4(studio.floor, studio.floorHeight);
     const Bounds& shown = studio.shown;

@@ -13,6 +13,7 @@ struct Studio {
     vec3 zenith{0.30F, 0.42F, 0.58F};
     vec3 floor{0.42F, 0.40F, 0.38F};
     float floorHeight = 0.0F;  // m
+    float tiles = 0.0F;        // m, side of the floor's square tiles; 0: a plain floor
     bool showFloor = true;
     Bounds shown;  // m; the visible content: the floor fades out around it
 };

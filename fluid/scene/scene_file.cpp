@@ -119,6 +119,7 @@ void BackgroundParams::visit(ParamVisitor& v) {
     v.colour({"zenith", "", "linear colour of the sky overhead", 0, 10}, zenith);
     v.colour({"floor", "", "linear colour of the ground", 0, 1}, floor);
     v.value({"floorHeight", "m", "height of the ground", -kMaxPosition, kMaxPosition}, floorHeight);
+    v.value({"tiles", "m", "side of the ground's square tiles; 0 = a plain ground", 0, 100}, tiles);
     v.value({.name = "showFloor", .doc = "whether the ground is drawn"}, showFloor);
     v.value({.name = "showBox", .doc = "whether the edges of the fluid's box are drawn"}, showBox);
     static const std::vector<std::string> skies = {"studio", "clouds"};

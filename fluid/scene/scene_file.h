@@ -43,6 +43,7 @@ struct BackgroundParams {
     vec3 zenith{0.12F, 0.17F, 0.24F};
     vec3 floor{0.56F, 0.55F, 0.53F};  // the ground plane's colour
     float floorHeight = 0.0F;         // m
+    float tiles = 0.0F;               // m, side of the ground's square tiles; 0: plain
     bool showFloor = true;
     bool showBox = true;             // edges of the fluid's box
     std::string sky = "studio";      // studio | clouds: the sky where `surroundings` is empty

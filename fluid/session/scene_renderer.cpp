@@ -239,7 +239,8 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
         solid.add(b.max);
     }
     const BackgroundParams& background = settings.background;
-    Studio studio{background.horizon, background.zenith, background.floor, background.floorHeight, background.showFloor, solid};
+    Studio studio{
+        background.horizon, background.zenith, background.floor, background.floorHeight, background.tiles, background.showFloor, solid};
     const Bounds box{settings.fluid.box.min, settings.fluid.box.max};
     studio.shown.add(box.min);
     studio.shown.add(box.max);

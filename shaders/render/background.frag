@@ -5,6 +5,7 @@
 #include "shaders/render/shadow.glsl"
 #include "shaders/render/water_light.glsl"
 #include "shaders/material/surface.glsl"
+#include "shaders/render/tiles.glsl"
 uniform sampler2D occlusion;
 #endif
 layout(location = 0) out vec4 colour;
@@ -19,6 +20,12 @@ void main() {
     vec3 up = vec3(0.0, 1.0, 0.0);
     vec3 light = frame.lightColour.rgb * meshShadow(posWorld, up) * waterShadow(posWorld);
     Surface s = Surface(frame.floorColour.rgb, 0.55, 0.0, up, open);
+    if (frame.horizon.w > 0.0) {
+        vec2 at = posWorld.xz / frame.horizon.w;
+        float shade, joint = tileJoint(at, fwidth(at), shade);
+        s.baseColour *= mix(1.0 + shade, 0.5, joint);
+        s.roughness = mix(0.3, 0.8, joint);
+    }
     colour.rgb = mix(colour.rgb, shadeSurface(s, -dir, light, skyGradient(vec3(dir.x, -dir.y, dir.z))), near);
 #endif
 }

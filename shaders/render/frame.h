@@ -19,7 +19,7 @@ STRUCT(FrameParams) {
     vec4 planes;            // near, far (m), projection[2][2], projection[3][2]
     vec4 lightDir;          // unit, world, towards the light
     vec4 lightColour;       // linear radiance
-    vec4 horizon;           // linear radiance of the sky at the horizon
+    vec4 horizon;           // linear radiance of the sky at the horizon; w = side of the floor's tiles, m, 0 without
     vec4 zenith;            // linear radiance of the sky overhead
     vec4 floorColour;       // reflectance; w = height, m
     vec4 floorFade;         // x, z of the centre (m), radius where the floor begins to fade into the horizon (m), 1 if there is a floor

@@ -22,7 +22,8 @@ using gpu::TextureHandle;
 using gpu::Usage;
 
 constexpr int kThicknessScale = 2, kThicknessScaleFast = 4;  // of the resolution
-constexpr int kThicknessBlur = 4;                            // texels either side
+constexpr float kThicknessBlur = 1.1F;                       // spacings either side: hides single particles
+constexpr int kMostThicknessBlur = 8;                        // texels
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
 constexpr float kLeastDisc = 1.75F;  // texels, radius
@@ -62,6 +63,13 @@ struct Drawn {
 Drawn allOf(const FluidView& f) {
     if (f.asleep == 0) return {.awake = {0, f.count}, .asleep = {}};
     return {.awake = {0, f.awake}, .asleep = {f.count - f.asleep, f.asleep}};
+}
+// Texels of 1 / `scale` of the resolution that the blur of thickness reaches, where the middle of the water is.
+int thicknessReach(const FluidDraw& d, int scale) {
+    const vec3 middle = d.fluid.bounds.empty() ? vec3(0.0F) : d.fluid.bounds.centre();
+    const float depth = std::max(-(d.view.view * vec4(middle, 1.0F)).z, d.view.nearPlane);
+    const float texel = 2.0F * static_cast<float>(scale) * depth / (d.view.projection[1][1] * static_cast<float>(d.view.height));
+    return std::clamp(static_cast<int>(std::lround(kThicknessBlur * d.fluid.spacing / texel)), 1, kMostThicknessBlur);
 }
 Drawn drawnOf(const FluidDraw& d) {
     Drawn drawn = allOf(d.fluid);
@@ -383,11 +391,11 @@ WaterSurface addThickness(FrameGraph& graph, FluidPrograms& programs, const Flui
         depths = to.depths;
     }
     const TextureHandle sharp = thickness;
-    const int reduced = scale;
+    const int reach = thicknessReach(d, scale);
     for (const ivec2 axis : {ivec2(1, 0), ivec2(0, 1)}) {
         const auto setup = [=](Program& p, const PassContext&) {
             p.set("axis", axis);
-            p.set("reach", kThicknessBlur * kThicknessScale / reduced);
+            p.set("reach", reach);
         };
         thickness = addTiled(graph, "thickness blur", programs, d, programs["blur"], tiles, thickness, size, 0.0F, setup);
         if (ink) depths = addTiled(graph, "ink blur", programs, d, programs["blur"], tiles, depths, inkSize, 0.0F, setup);

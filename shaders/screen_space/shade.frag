@@ -43,6 +43,8 @@ float coverage(float water) {
 float surfaceDepth(ivec2 p) { return texelFetch(fluidDepth, clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r; }
 vec3 surfaceAt(ivec2 p, float depth) { return viewRay(vec2(p) + 0.5) * depth; }
 
+const float kCrease = 0.2;  // a normal that turns more from pixel to pixel is looked at twice
+
 // Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less. `turn`: about
 // how much the normal turns from pixel to pixel.
 vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
@@ -53,7 +55,14 @@ vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
     bool both = da < near && db < near;
     float steep = 0.5 * (a - b) / pixel;
     turn = both ? abs(a + b + 2.0 * p.z) / (pixel * (1.0 + steep * steep)) : 0.5;
-    return both ? 0.5 * (ahead + back) : da < db ? ahead : back;
+    if (!both) return da < db ? ahead : back;
+    if (turn < kCrease) return 0.5 * (ahead + back);
+    // At a crease, as at a wall's edge, the pixel belongs to the side that is straighter (Harten et al. 1987): the mean is of neither.
+    float onA = abs(surfaceDepth(here + 2 * step_) - 2.0 * a - p.z), onB = abs(surfaceDepth(here - 2 * step_) - 2.0 * b - p.z);
+    float straighter = min(onA, onB) / (pixel * (1.0 + steep * steep));
+    if (straighter > 0.5 * turn) return 0.5 * (ahead + back);
+    turn = straighter;
+    return onA < onB ? ahead : back;
 }
 
 // Light that went to all sides, and the same comes from: what a layer throws back, and in `through` what it lets through (Kubelka and Munk 1931;

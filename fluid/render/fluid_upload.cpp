@@ -101,6 +101,7 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
         out.sleepers = particles.sleepers;
     }
     out.spacing = particles.spacing;
+    out.viscosity = particles.viscosity;
     out.radius = look.radiusSpacings * particles.spacing;
     out.bounds.add(world.params().box.min);
     out.bounds.add(world.params().box.max);

@@ -30,6 +30,7 @@ struct FluidView {
     std::shared_ptr<const void> sleepers = {};
     float radius = 0.01F;         // m, of a drawn sphere
     float spacing = 0.02F;        // m
+    float viscosity = 0;          // m^2/s, kinematic, of the most viscous liquid: one that is viscous enough does not break up into spray
     float exposure = 1.0F / 120;  // s, simulated, that a picture is exposed: half a frame at 60 Hz, as film is
     // Spray, foam and bubbles: GL buffer names, as ParticleView::foamDrawn and foamVelocity.
     std::array<unsigned, 2> foam = {};

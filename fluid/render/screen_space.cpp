@@ -217,6 +217,7 @@ ThicknessSize thicknessSize(const FluidDraw& d) {
     TextureDesc size{.width = (d.view.width + scale - 1) / scale, .height = (d.view.height + scale - 1) / scale, .format = Format::r16f};
     TextureDesc ink = size;
     ink.format = Format::rgba16f;
+    if (d.fluid.absorption != 0) size.format = Format::rg16f;
     return {scale, size, ink};
 }
 
@@ -331,6 +332,7 @@ Kept keptOf(FluidPrograms& programs, const FluidDraw& d) {
                                          d.view.farPlane,
                                          f.radius,
                                          f.spacing,
+                                         f.viscosity,
                                          f.bounds.min.x,
                                          f.bounds.min.y,
                                          f.bounds.min.z,

@@ -10,6 +10,7 @@ vec4 particle = texelFetch(particles, row());
 layout(binding = 26) uniform usamplerBuffer ids;
 uniform float radius;                   // m
 uniform float detail;                   // pixels: see representedBy(); 0: every particle is drawn
+uniform float holds;                    // 0..1: 1: the liquid is too viscous to break up into spray
 
 const float kOverlap = 1.35;  // radii: drawn so large, they cover the water without gaps. Spheres make it 0.3 radii too thick by that
 // The mean of a particle's neighbours lies inward of the surface: a displacement of up to this, in radii, is not noise but the shrinking
@@ -18,7 +19,8 @@ const float kOverlap = 1.35;  // radii: drawn so large, they cover the water wit
 const float kShrunk = 0.77;
 // Spray is finer than the particles that represent it: those with few neighbours are drawn smaller, and as they leave the body of the water
 // they become droplets (spray.vert). `leaving`: how far they have, 0 to 1; at 1 nothing of them is in the body.
-float spray(vec4 p) { return 1.0 - smoothstep(0.42, 0.72, p.w); }
+// The density of one without neighbours is 0.27 to 0.39: of what does not break up, only those are drops.
+float spray(vec4 p) { return 1.0 - smoothstep(mix(0.42, 0.3, holds), mix(0.72, 0.42, holds), p.w); }
 float leaving(vec4 p) { return smoothstep(0.1, 0.5, spray(p)); }
 float ownRadius(vec4 p) { return radius * mix(kOverlap, 0.5, spray(p)); }
 

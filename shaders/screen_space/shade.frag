@@ -6,7 +6,7 @@
 uniform sampler2D sceneColour;
 uniform sampler2D sceneDepth;   // window depth
 uniform sampler2D fluidDepth;   // m
-uniform sampler2D thickness;    // m
+uniform sampler2D thickness;    // m; with INK y: of liquids other than the world's own
 #if defined(NORMALS)
 uniform sampler2D normals;      // of the surface, view space, unit; w: m of water, instead of thickness. Without it normals come from the depth
 #else
@@ -103,6 +103,19 @@ vec4 mirroredScene(vec3 from, vec3 dir, int steps) {
     return vec4(textureLod(sceneColour, uv, 0.0).rgb, edge.x * edge.y * met);
 }
 
+#if defined(INK)
+// A body of another liquid in it is a thin lens: it turns a ray by the difference of the indices times the slope of its thickness. Oils' and
+// honey's index is about this; that of others is nearer to water's, and they are cloudy.
+const float kOtherIndex = 1.47;
+vec2 otherLiquid(float depth) {
+    vec2 texel = 1.0 / vec2(textureSize(thickness, 0)), uv = gl_FragCoord.xy * frame.viewport.zw, pixel = depth * frame.ray.xy * frame.viewport.xy * texel;
+    vec2 ahead = vec2(texture(thickness, uv + vec2(texel.x, 0.0)).y, texture(thickness, uv + vec2(0.0, texel.y)).y);
+    vec2 back = vec2(texture(thickness, uv - vec2(texel.x, 0.0)).y, texture(thickness, uv - vec2(0.0, texel.y)).y);
+    vec2 slope = (ahead - back) / (2.0 * pixel);
+    return slope / sqrt(1.0 + 0.25 * dot(slope, slope));  // nowhere steeper than 63 degrees
+}
+#endif
+
 // The sun's glint: GGX (Walter et al. 2007) of water whose normal turns by `turn` from pixel to pixel. The sun is a disc and the water has
 // ripples finer than particles, so that it is nowhere sharper than `kFinest`; and none is brighter than the picture can take without sparkling.
 const float kFinest = 0.035, kMostGlint = 8.0;
@@ -171,10 +184,12 @@ void main() {
     // Behind: along the refracted ray as far as the water is thick, then on through the air, turned halfway back: a slab would turn it back
     // wholly, a prism not at all.
     float through = water;
+    vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
 #if defined(INK)
     vec4 fades = texture(depths, gl_FragCoord.xy * frame.viewport.zw);
+    vec2 lens = otherLiquid(depth);
+    bent = normalize(bent + vec3((kOtherIndex / refractiveIndex - 1.0) * lens, 0.0));
 #endif
-    vec3 bent = refract(-toEye, n, 1.0 / refractiveIndex);
     vec3 back = colour.rgb;
     float air = clamp((behind - depth) * length(p) / depth - through, 0.0, 60.0 * radius);
     vec3 way = bent * through + 0.5 * (bent - toEye) * air;

@@ -4,6 +4,7 @@
 ROWS(3, absorptions)         // see FluidView
 uniform vec4 ownAbsorption;  // 1/m; w: scattering
 flat out vec4 ink;           // 1/m; w: scattering
+flat out float other;        // 1: it is one of another liquid than the world's own
 #endif
 flat out float represented;  // particles by this one
 flat out vec4 centreView;  // w: radius, of an ellipsoid that of the ball of its volume
@@ -20,6 +21,7 @@ void main() {
 #endif
 #if defined(INK)
     vec4 absorption = texelFetch(absorptions, row());
+    other = absorption.w < 0.0 ? 1.0 : 0.0;
     ink = absorption.w < 0.0 ? vec4(absorption.xyz, -1.0 - absorption.w) : absorption + ownAbsorption;
 #endif
     represented = represents;

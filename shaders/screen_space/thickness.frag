@@ -10,10 +10,13 @@ flat in float represented;  // particles by this one
 #if defined(ELLIPSOIDS)
 flat in mat3 shapeView;
 #endif
-layout(location = 0) out float thickness;
 #if defined(INK)
+layout(location = 0) out vec2 thickness;  // y: of liquids other than the world's own
 flat in vec4 ink;                  // 1/m; w: scattering
+flat in float other;               // 1: it is one of another liquid
 layout(location = 1) out vec4 depths;  // optical depth of red, green and blue: e^-depth is transmitted; w: by scattering
+#else
+layout(location = 0) out float thickness;
 #endif
 void main() {
     vec2 pixel = gl_FragCoord.xy * float(scale);
@@ -27,8 +30,10 @@ void main() {
     float r = centreView.w / spacing;
     float share = min(0.2387324 * standsFor * represented / (r * r * r), 1.0);  // the particle's volume over its sphere's, for spheres that overlap
     float water = share * clamp(scene - front, 0.0, through);
-    thickness = water;
 #if defined(INK)
+    thickness = vec2(water, water * other);
     depths = min(ink * water, vec4(600.0));  // a half float holds the sum of a hundred such
+#else
+    thickness = water;
 #endif
 }

@@ -236,6 +236,7 @@ ParticleView FluidWorld::particles() const {
             .matterOf = w.traits.matter ? &w.particles.matterOf : nullptr,
             .spacing = w.params.spacing,
             .mass = w.params.restDensity * w.params.spacing * w.params.spacing * w.params.spacing,
+            .viscosity = w.traits.matter ? std::max(w.params.viscosity, w.mostViscous) : w.params.viscosity,
             .drawn = &w.drawn.positions(w.particles),
             .ellipsoids = w.params.ellipsoids ? w.ellipsoids.buffers() : std::array<const Buffer*, 3>{},
             .asleep = sleepers ? w.particles.count - w.grid->awakeSlots() : 0,

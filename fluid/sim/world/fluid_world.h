@@ -36,6 +36,7 @@ struct ParticleView {
     const Buffer* matterOf = nullptr;  // by id, as Particles::matterOf; null if all particles are equal
     float spacing = 0;                 // m
     float mass = 0;                    // kg, of a particle of the world's own liquid
+    float viscosity = 0;               // m^2/s, kinematic, of the most viscous liquid
     // Positions at the requested time: with fluid.fixedStep between the last two steps, one step late; otherwise `position`.
     const Buffer* drawn = nullptr;  // vec4: as position
     // The ellipsoids about them: Ellipsoids::buffers(). Null if fluid.ellipsoids is off, and before the first step.

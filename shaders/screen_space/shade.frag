@@ -47,7 +47,18 @@ const float kCrease = 0.2;  // a normal that turns more from pixel to pixel is l
 
 // Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less. `turn`: about
 // how much the normal turns from pixel to pixel.
-vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
+// `fringe`: it may be near an outline. There the filter sees one side only and leaves single particles: where the surface further in is even, it
+// runs on.
+vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, bool fringe, out float turn) {
+    for (int k = fringe ? -1 : 2; k <= 1; k += 2) {
+        ivec2 inwards = k * step_;
+        if (abs(surfaceDepth(here - 4 * inwards) + p.z) < 2.0 * radius) continue;
+        float c3 = surfaceDepth(here + 3 * inwards), c6 = surfaceDepth(here + 6 * inwards), c9 = surfaceDepth(here + 9 * inwards);
+        float bend = abs(c9 - 2.0 * c6 + c3), rise = abs(c9 - c3);
+        if (rise > 12.0 * radius || bend > 0.2 * (rise + 6.0 * pixel)) continue;
+        turn = bend / (9.0 * pixel);
+        return float(k) / 6.0 * (surfaceAt(here + 9 * inwards, c9) - surfaceAt(here + 3 * inwards, c3));
+    }
     float a = surfaceDepth(here + step_), b = surfaceDepth(here - step_);
     float da = abs(a + p.z), db = abs(b + p.z);  // p.z = -depth
     vec3 ahead = surfaceAt(here + step_, a) - p, back = p - surfaceAt(here - step_, b);
@@ -172,7 +183,13 @@ void main() {
     vec3 p = surfaceAt(here, depth);
     vec3 toEye = -normalize(p);
     vec2 turn;
-    vec3 right = slope(here, ivec2(1, 0), p, depth * frame.ray.x, turn.x), up = slope(here, ivec2(0, 1), p, depth * frame.ray.y, turn.y);
+#if defined(NORMALS)
+    bool fringe = false;
+#else
+    bool fringe = water < 4.0 * spacing;
+#endif
+    vec3 right = slope(here, ivec2(1, 0), p, depth * frame.ray.x, fringe, turn.x);
+    vec3 up = slope(here, ivec2(0, 1), p, depth * frame.ray.y, fringe, turn.y);
 #if defined(NORMALS)
     vec3 n = texelFetch(normals, here, 0).xyz;
 #else

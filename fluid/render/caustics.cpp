@@ -49,7 +49,11 @@ gpu::TextureHandle addCaustics(gpu::FrameGraph& graph, FluidPrograms& programs, 
         c.drawFullscreen();
     });
     graph.pass("caustics", {landed, flux}, {light}, [=, &programs](gpu::PassContext& c) {
-        c.drawTo({light}).clearColour(vec4(0.0F));
+        c.drawTo({light});
+        gpu::Program& dry = programs["caustics, dry"];
+        dry.use();
+        dry.texture("flux", 1, c.texture(flux));
+        c.drawFullscreen();
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE);
         gpu::Program& p = programs["caustics"];

@@ -21,6 +21,7 @@ constexpr ProgramRow kShared[] = {
     {"mark tiles", "screen_space/mark_tiles.vert", "screen_space/mark_tiles.frag"},
     {"mark tiles, ellipsoids", "screen_space/mark_tiles.vert", "screen_space/mark_tiles.frag", {"ELLIPSOIDS"}},
     {"photons", "render/fullscreen.vert", "screen_space/photons.frag"},
+    {"caustics, dry", "render/fullscreen.vert", "screen_space/caustics.frag", {"BASE"}},
     {"caustics", "screen_space/caustics.vert", "screen_space/caustics.frag"},
     {"spray", "screen_space/spray.vert", "screen_space/spray.frag"},
     {"spray, ink", "screen_space/spray.vert", "screen_space/spray.frag", {"INK"}},

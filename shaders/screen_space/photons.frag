@@ -9,7 +9,7 @@ uniform vec3 absorption;  // 1/m, with scattering
 uniform float refractiveIndex;
 uniform float least;      // m: less water than that hardly bends light
 layout(location = 0) out vec2 landed;  // texels
-layout(location = 1) out vec4 flux;    // of a texel of sunlight
+layout(location = 1) out vec4 flux;    // of a texel of sunlight; w: 0: it met no water
 const float kSteepest = 2.0;
 
 float metres = 0.5 * frame.shadow.w;  // of half the map's width
@@ -53,7 +53,7 @@ vec3 facing(vec2 xy, bool top) {
 void main() {
     vec2 xy = (gl_FragCoord.xy / side * 2.0 - 1.0) * metres;
     landed = gl_FragCoord.xy;
-    flux = vec4(1.0);
+    flux = vec4(1.0, 1.0, 1.0, 0.0);
     Faces f = facesAt(xy);
     float wet = f.wet;
     vec3 p = vec3(xy, f.top);
@@ -84,5 +84,5 @@ void main() {
         q += t * slope;
     }
     landed = (q.xy / metres * 0.5 + 0.5) * side;
-    flux.rgb = passed;
+    flux = vec4(passed, 1.0);
 }

@@ -28,6 +28,7 @@ struct FluidDraw {
     gpu::TextureHandle glassDepth;                         // window depth of the nearest clear face; empty: nothing is clear
     gpu::TextureHandle shadowSharp, shadowSoft;            // as engine/render/passes.h's LightMaps
     uint32_t shadowVersion = 0;                            // another number whenever they were drawn anew
+    gpu::TextureHandle caustics;                           // addCaustics's; empty: none
     // Draws transparent objects behind the water into `colour`; called before the water is drawn. `fluidDepth`: of FluidLayers.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};
     // Called by a slow renderer with the finished share, 0 to 1; false: it may stop.

@@ -26,6 +26,7 @@ constexpr float kThicknessBlur = 1.1F;                       // spacings either 
 constexpr int kMostThicknessBlur = 8;                        // texels
 constexpr int kLightMap = 256;                               // texels
 constexpr int kLightMapFast = 128;
+constexpr int kShaftSteps = 24, kShaftStepsFast = 8;
 constexpr float kLeastDisc = 1.75F;  // texels, radius
 
 constexpr ProgramRow kScreenSpacePrograms[] = {
@@ -466,6 +467,7 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
     std::vector<gpu::Read> reads = {{d.frame, Usage::uniform}, water.tiles,   d.colour,    d.depth, water.depth,
                                     water.thickness,           d.shadowSharp, d.shadowSoft};
     if (ink) reads.emplace_back(water.fades);
+    if (d.caustics) reads.emplace_back(d.caustics);
     reads.emplace_back(water.normals ? water.normals : water.sharp);
     if (d.look.view != WaterView::water) {
         addView(graph, programs, d, {water.tiles, water.depth, water.thickness, colour});
@@ -492,6 +494,8 @@ FluidLayers addShade(FrameGraph& graph, FluidPrograms& programs, const FluidDraw
         if (!ink) p.set("absorption", d.look.absorption);
         if (!ink) p.set("scattering", d.look.scattering);
         p.set("refractiveIndex", d.look.refractiveIndex);
+        p.set("shaftSteps", d.caustics ? (d.look.fast ? kShaftStepsFast : kShaftSteps) : 0);
+        if (d.caustics) p.texture("caustics", 10, c.texture(d.caustics));
         p.set("mirrorSteps", d.look.fast ? 0 : 10);
         programs.drawTiles(p, c.texture(water.tiles), 7);
     });

@@ -283,7 +283,7 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.shadowSoft = light.soft;
     draw.shadowVersion = shadowVersion_;
     if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
-    if (caustics) light.water = addCaustics(graph, fluid_, draw, light.water, params.waterProjection);
+    if (caustics) light.water = draw.caustics = addCaustics(graph, fluid_, draw, light.water, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through
 
     draw.depth = addDepth(graph, render_, frame, view, meshes);

@@ -20,6 +20,8 @@ uniform sampler2D depths;       // optical depth for red, green and blue instead
 #endif
 uniform vec3 scattering;        // 1/m, reduced
 uniform float refractiveIndex;
+uniform sampler2D caustics;     // the light below the water, in the light's projection: see water_light.glsl
+uniform int shaftSteps;         // along a ray in the water; 0: there are no caustics
 uniform int mirrorSteps;        // steps of screen-space reflection; 0: none
 layout(location = 0) out vec4 colour;
 
@@ -140,6 +142,24 @@ vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 light) {
     return light * min(lobe * mirror, kMostGlint);
 }
 
+// Shafts of light, for an eye in the water: what it scatters once of the light that its waves gather, of which 1 is nothing more than the mean.
+// `reduced`, 1/m, is isotropic; water scatters forwards (Henyey and Greenstein 1941), so that more of it is met than that says.
+vec3 shafts(vec3 dir, float through, vec3 absorbed, vec3 reduced) {
+    const float kForwards = 0.7;  // 0.9 in the sea, of which the sharp peak is left out: it would be glare about the sun
+    float g2 = kForwards * kForwards, facing = dot(directionToWorld(dir), frame.lightDir.xyz);
+    float phase = 0.0795775 * (1.0 - g2) / pow(1.0 + g2 - 2.0 * kForwards * facing, 1.5);
+    float step_ = through / float(shaftSteps);
+    // Interleaved gradient noise (Jimenez 2014), so that steps do not show as layers.
+    float t = step_ * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < shaftSteps; ++k, t += step_) {
+        vec3 at = toWorld(dir * t);
+        vec2 uv = (frame.waterProjection * vec4(at, 1.0)).xy * 0.5 + 0.5;
+        sum += textureLod(caustics, uv, 0.0).rgb * exp(-(absorbed + reduced) * t) * meshShadow(at, frame.lightDir.xyz);
+    }
+    return sum * step_ * phase * reduced / (1.0 - kForwards) * frame.lightColour.rgb;
+}
+
 // For an eye inside the water: the point where the ray through a pixel leaves it, m, view space.
 vec3 wayOut(vec2 pixel) { return normalize(viewRay(pixel)) * texture(thickness, pixel * frame.viewport.zw).r; }
 // The picture for an eye in the water: the scene in the water directly, the scene above through Snell's window, and around the window what
@@ -249,6 +269,7 @@ void main() {
         vec3 deep = layer(40.0 * absorbed, 40.0 * thrown, diffuse) * glow;  // backscatter of very deep liquid
         vec3 straight = texelFetch(sceneColour, here, 0).rgb;
         within = fromWithin(-toEye, water, behind * length(p) / depth, straight, passed, deep) * passed + scattered;
+        if (shaftSteps > 0) within += shafts(-toEye, min(water, behind * length(p) / depth), absorbed / max(through, 1.0e-3), thrown / max(through, 1.0e-3));
     }
 
     // Where the normal varies within a pixel, the reflection is blurred, to avoid aliasing.

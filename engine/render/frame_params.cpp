@@ -30,11 +30,13 @@ void placeSoftboxes(FrameParams& f) {
 
 // The same with depths that grow downwards instead of along the light, which orders what a ray of light meets alike: then a floor has one
 // depth, and a blurred map does not take its farther parts for light behind a point.
-mat4 levelDepth(mat4 projection, const Light& light, const Bounds& meshes, const Studio& studio) {
+// `range`: m along the light, of a unit of depth.
+mat4 levelDepth(mat4 projection, const Light& light, const Bounds& meshes, const Studio& studio, float& range) {
     const float down = glm::normalize(light.direction).y, top = meshes.max.y;
     if (down < 0.3F) return projection;
     const float height = top - std::min(meshes.min.y, studio.floorHeight);
-    const float range = std::max(glm::length(meshes.size()), height / down), perMetre = 2.0F / (down * range);
+    range = std::max(range, height / down);
+    const float perMetre = 2.0F / (down * range);
     for (int column = 0; column < 4; ++column) projection[column][2] = 0.0F;
     projection[1][2] = -perMetre;
     projection[3][2] = perMetre * top - 1.0F;
@@ -53,9 +55,10 @@ FrameParams packFrame(const FrameView& view, const Studio& studio, const Bounds&
     f.inverseView = glm::inverse(view.view);
     const Light light{view.lightDirWorld, view.lightColour};
     if (!meshes.empty()) {
-        f.shadowProjection = studio.showFloor ? levelDepth(light.projection(meshes), light, meshes, studio) : light.projection(meshes);
         f.shadow.x = 1.0F;
         f.shadow.z = glm::length(meshes.size());
+        f.shadowProjection = light.projection(meshes);
+        if (studio.showFloor) f.shadowProjection = levelDepth(f.shadowProjection, light, meshes, studio, f.shadow.z);
     }
     if (!water.empty()) {
         f.waterProjection = light.projection(water);

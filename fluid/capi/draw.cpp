@@ -104,6 +104,8 @@ rivulet_status rivulet_world_wet_solid(const rivulet_world* world, int32_t solid
         if (index >= count) return badInput(fmt::format("there is no {} {}: the world has {}", wall ? "wall" : "body", index, count));
         const SolidRef ref = wall ? world->walls[index] : SolidRef{ProbeOn::body, static_cast<uint32_t>(index)};
         const WetSolid* found = view.surface->find(ref);
+        if (found == nullptr && wall)
+            return badInput(fmt::format("wall {} does not get wet: none of its surface is inside fluid.box", index));
         if (found == nullptr) return badInput(fmt::format("body {} does not get wet: set rivulet_body.mesh", index));
         const mat4 m = found->cellsFromWorld(found->poseAmong(world->world->drawnPoses(), world->world->bodies()));
         rivulet_wet_solid full{

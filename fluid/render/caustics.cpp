@@ -1,4 +1,5 @@
 // The light that the water refracts, as photons.
+#include <algorithm>
 #include <array>
 #include <glm/matrix.hpp>
 
@@ -15,7 +16,8 @@ constexpr float kMostSize = 20.0F;  // texels, of a photon's picture
 std::shared_ptr<KeptPicture> keptOf(FluidPrograms& programs, const FluidDraw& d, const mat4& projection, const gpu::TextureDesc& size) {
     const FluidView& f = d.fluid;
     if (!f.sleepers || f.asleep == 0 || f.awake > 0) return nullptr;
-    KeptPictures::Key key{f.sleepers, nullptr, {static_cast<float>(size.width), f.spacing, d.look.refractiveIndex}};
+    KeptPictures::Key key{f.sleepers, nullptr, {static_cast<float>(size.width), f.radius, f.spacing, d.look.refractiveIndex}};
+    key.values.insert(key.values.end(), d.receivers.begin(), d.receivers.end());
     const vec3 absorption = d.look.absorption + d.look.scattering;
     key.values.insert(key.values.end(), {absorption.r, absorption.g, absorption.b, static_cast<float>(d.shadowVersion)});
     for (int k = 0; k < 16; ++k) key.values.push_back(projection[k / 4][k % 4]);
@@ -60,7 +62,7 @@ gpu::TextureHandle addCaustics(gpu::FrameGraph& graph, FluidPrograms& programs, 
         p.use();
         p.texture("landed", 0, c.texture(landed));
         p.texture("flux", 1, c.texture(flux));
-        p.set("most", kMostSize);
+        p.set("most", std::min(kMostSize, programs.largestPoint - 1.0F));
         programs.none.bind();
         glEnable(GL_PROGRAM_POINT_SIZE);
         glDrawArrays(GL_POINTS, 0, size.width * size.height);

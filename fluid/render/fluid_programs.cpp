@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "engine/core/assert.h"
 #include "fluid/render/filters.h"
 #include "fluid/render/renderers.h"
@@ -80,6 +77,9 @@ Result<FluidPrograms> FluidPrograms::create(const ShaderFiles& files) {
     GLint most = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
     p.mostTexels = static_cast<uint32_t>(most);
+    std::array<GLfloat, 2> sizes{};
+    glGetFloatv(GL_POINT_SIZE_RANGE, sizes.data());
+    p.largestPoint = sizes[1];
     return p;
 }
 
@@ -123,31 +123,47 @@ Status FluidPrograms::fits(const FluidView& fluid) const {
     return ok();
 }
 
-void FluidPrograms::drawQuads(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows) {
-    const uint32_t count = range.count;
-    if (count == 0) return;
+void FluidPrograms::bindRows(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows) {
     for (GLuint k = 0; k < rows.size(); ++k) {
         if (rows[k].buffer == 0) continue;
         glTextureBuffer(rowTextures[k].name(), rows[k].format, rows[k].buffer);
         glBindTextureUnit(kRowUnit + k, rowTextures[k].name());
     }
     program.set("firstRow", range.first);
-    program.set("rows", range.first + count);
+    program.set("rows", range.first + range.count);
+}
+
+void FluidPrograms::drawQuads(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows) {
+    const uint32_t count = range.count;
+    if (count == 0) return;
+    bindRows(program, range, rows);
     quads.bind();
     const uint32_t instances = (count + kQuadRows - 1) / kQuadRows, quadsEach = instances > 1 ? kQuadRows : count;
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * quadsEach), GL_UNSIGNED_SHORT, nullptr, static_cast<GLsizei>(instances));
     for (GLuint k = 0; k < rows.size(); ++k) glBindTextureUnit(kRowUnit + k, 0);
 }
 
+namespace {
+std::array<QuadRows, 7> rowsOf(gpu::Program& program, const FluidView& fluid) {
+    program.set("holds", holdsTogether(fluid.viscosity, fluid.spacing));
+    return {QuadRows{fluid.position}, {fluid.velocity},      {fluid.id, GL_R32UI}, {fluid.absorption},
+            {fluid.ellipsoids[0]},    {fluid.ellipsoids[1]}, {fluid.ellipsoids[2]}};
+}
+}  // namespace
+
 void FluidPrograms::drawParticles(gpu::Program& program, const FluidView& fluid, const RowRange& range) {
-    const QuadRows rows[] = {{fluid.position},      {fluid.velocity},      {fluid.id, GL_R32UI}, {fluid.absorption},
-                             {fluid.ellipsoids[0]}, {fluid.ellipsoids[1]}, {fluid.ellipsoids[2]}};
-    // The Ohnesorge number of a drop as large as a particle, from the tension over density of liquids: 3.5e-5 m^3/s^2 of oils to 7.3e-5 of
-    // water. Above 0.1, threads and sheets do not break up (Ohnesorge 1936; Lefebvre and McDonell 2017).
-    constexpr float kTension = 5.0e-5F;
-    const float ohnesorge = fluid.viscosity / std::sqrt(kTension * std::max(fluid.spacing, 1.0e-6F));
-    program.set("holds", glm::smoothstep(0.02F, 0.15F, ohnesorge));
-    drawQuads(program, range, rows);
+    drawQuads(program, range, rowsOf(program, fluid));
+}
+
+void FluidPrograms::drawPoints(gpu::Program& program, const FluidView& fluid, const RowRange& range) {
+    if (range.count == 0) return;
+    const std::array<QuadRows, 7> rows = rowsOf(program, fluid);
+    bindRows(program, range, rows);
+    none.bind();
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    glDrawArrays(GL_POINTS, static_cast<GLint>(range.first), static_cast<GLsizei>(range.count));
+    glDisable(GL_PROGRAM_POINT_SIZE);
+    for (GLuint k = 0; k < rows.size(); ++k) glBindTextureUnit(kRowUnit + k, 0);
 }
 
 void FluidPrograms::drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit) {

@@ -48,6 +48,7 @@ struct FluidPrograms {
     std::shared_ptr<MarchedReference> marched;  // the last picture of the row `reference`
     KeptPictures kept;                          // of sleeping particles
     uint32_t mostTexels = 0;                    // of a buffer that shaders read as a texture: the limit of this GPU
+    float largestPoint = 0.0F;                  // pixels: the limit of this GPU
 
     // The programs of renderers() and filters(), and those that all share. Error (failed): a shader does not compile; out of memory.
     static Result<FluidPrograms> create(const ShaderFiles& files);
@@ -64,6 +65,10 @@ struct FluidPrograms {
     void drawQuads(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows);
     // The same for particles. The vertex shader includes particle.glsl.
     void drawParticles(gpu::Program& program, const FluidView& fluid, const RowRange& range);
+    // As points: a quarter of the vertices. The vertex shader is compiled with POINTS and sets gl_PointSize, at most largestPoint.
+    void drawPoints(gpu::Program& program, const FluidView& fluid, const RowRange& range);
+    // What both begin with: binds the buffers, says which rows are drawn.
+    void bindRows(gpu::Program& program, const RowRange& range, std::span<const QuadRows> rows);
     // Draws the marked tiles with the program in use. Its vertex shader is tile.vert; the mask is bound to `unit`.
     void drawTiles(gpu::Program& program, const gpu::Texture& tiles, int unit);
 };

@@ -73,7 +73,7 @@ size_t FluidUpload::bytes() const {
 Status FluidUpload::room(std::span<const Array> arrays, size_t others, bool ring) const {
     size_t each = others;
     for (const Array& a : arrays) each += a.bytes;
-    const size_t needed = each * (ring ? 1 + gpu::StagingRing::kDeep : 1);
+    const size_t needed = each * (ring ? 1 + gpu::StagingRing::kDeep : 1) + wetCells_.bytes();
     if (needed <= mostBytes_) return ok();
     return failed(fmt::format("to draw the particles {} are brought over to OpenGL, and {} are allowed; allow more, or use fewer particles",
                               readableBytes(needed), readableBytes(mostBytes_)));
@@ -168,6 +168,10 @@ Result<FluidView> FluidUpload::view(const FluidWorld& world, const FluidLookPara
 // The cells never change: they are brought over once.
 Status FluidUpload::holdWetCells(std::shared_ptr<const WetSurface> surface) {
     if (surface == wetSurface_) return ok();
+    if (const size_t needed = surface->cells.size() * sizeof(int32_t); needed > mostBytes_)
+        return failed(fmt::format(
+            "the cells of wet surfaces need {} of OpenGL memory, and {} are allowed; allow more, or set fluid.wetness.on to false",
+            readableBytes(needed), readableBytes(mostBytes_)));
     if (Status s = rivulet::makeRoom(wetCells_, surface->cells.size() * sizeof(int32_t)); !s) return s;
     wetCells_.writeAll(std::span<const int32_t>(surface->cells));
     wetSurface_ = std::move(surface);

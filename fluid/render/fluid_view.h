@@ -1,7 +1,9 @@
 // FluidView: the input of a fluid renderer: particles as OpenGL buffers, from any Device. Names of buffers are GL names; 0: none.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -43,5 +45,12 @@ struct FluidView {
     uint32_t dropCount = 0;
     Bounds bounds;  // m, world: the box of the water, which is cut there and casts a shadow from there; empty: no cut, no shadow
 };
+
+// 0: drops as large as a particle break up into spray; 1: the liquid is too viscous for that, by their Ohnesorge number (Ohnesorge 1936;
+// threads and sheets hold above about 0.1). `viscosity` m^2/s, kinematic, `spacing` m. The tension over density of liquids is taken as 5e-5
+// m^3/s^2: 3.5e-5 of oils to 7.3e-5 of water.
+inline float holdsTogether(float viscosity, float spacing) {
+    return glm::smoothstep(0.02F, 0.15F, viscosity / std::sqrt(5.0e-5F * std::max(spacing, 1.0e-6F)));
+}
 
 }  // namespace rivulet

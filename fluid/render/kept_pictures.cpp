@@ -5,7 +5,7 @@
 namespace rivulet {
 
 namespace {
-constexpr uint64_t kUnused = 48;  // calls, three for each view: a host may draw 16 in a frame
+constexpr uint64_t kUnused = 48;  // calls, up to four for each view: a host may draw 12 in a frame
 }  // namespace
 
 size_t KeptPicture::bytes() const {

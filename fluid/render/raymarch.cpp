@@ -171,9 +171,10 @@ class Marcher {
 
 }  // namespace
 
-std::vector<vec4> bodyAtWalls(std::span<const vec4> particles, float spacing, const Bounds& box) {
+std::vector<vec4> bodyAtWalls(std::span<const vec4> particles, float spacing, const Bounds& box, float holds) {
     std::vector<vec4> all;
-    std::copy_if(particles.begin(), particles.end(), std::back_inserter(all), inBody);
+    std::copy_if(particles.begin(), particles.end(), std::back_inserter(all),
+                 [least = bodyDensity(holds)](const vec4& p) { return p.w >= least; });
     if (box.empty()) return all;
     const float reach = ANISOTROPY_SUPPORT_HOST * spacing;
     for (int axis = 0; axis < 3; ++axis)  // one after the other: in an edge and a corner there are mirrored ones of mirrored ones

@@ -10,14 +10,18 @@
 
 namespace rivulet {
 
-// Whether more than half of a particle (w: density ratio) is part of the body of the water, and not spray: leaving() of particle.glsl.
-constexpr float kBodyDensity = 0.611F;
-inline bool inBody(const vec4& particle) { return particle.w >= kBodyDensity; }
+// The density ratio from which on more than half of a particle is part of the body of the water, and not spray: as leaving() of
+// particle.glsl. `holds`: holdsTogether().
+inline float bodyDensity(float holds) {
+    const float half = 0.637F;  // where smoothstep is 0.7, so that leaving() is a half
+    return glm::mix(glm::mix(0.42F, 0.3F, holds), glm::mix(0.72F, 0.42F, holds), half);
+}
 
 // The particles of the body of the water; those near a wall of its box once more behind it, mirrored. The surface of particles alone turns
 // round before a wall, by a third of a spacing along an edge of the box; with these it meets walls at right angles, and water that lies in
 // an edge fills it. Empty box: no walls.
-std::vector<vec4> bodyAtWalls(std::span<const vec4> particles, float spacing, const Bounds& box);
+// `particles`: xyz m, w density ratio.
+std::vector<vec4> bodyAtWalls(std::span<const vec4> particles, float spacing, const Bounds& box, float holds = 0.0F);
 
 // One value per pixel in OpenGL's order: the bottom row first.
 struct RaymarchPicture {

@@ -15,7 +15,7 @@ struct MarchedReference {
     std::vector<float> until;
     FrameView view;
     Bounds box;
-    float spacing = 0;
+    float spacing = 0, holds = 0;
     RaymarchPicture picture;
 };
 
@@ -51,9 +51,9 @@ const RaymarchPicture& march(std::shared_ptr<MarchedReference>& last, MarchedRef
     const bool same = last && sameBytes(last->particles, now.particles) && sameBytes(last->until, now.until) &&
                       last->view.view == now.view.view && last->view.projection == now.view.projection &&
                       last->view.width == now.view.width && last->view.height == now.view.height && last->box.min == now.box.min &&
-                      last->box.max == now.box.max && last->spacing == now.spacing;
+                      last->box.max == now.box.max && last->spacing == now.spacing && last->holds == now.holds;
     if (same) return last->picture;
-    const Result<IsoSurface> surface = IsoSurface::create(bodyAtWalls(now.particles, now.spacing, now.box), now.spacing);
+    const Result<IsoSurface> surface = IsoSurface::create(bodyAtWalls(now.particles, now.spacing, now.box, now.holds), now.spacing);
     ASSERT(surface, "a FluidView has a spacing of more than 0");
     bool whole = true;
     const auto report = [&](double share) {
@@ -90,6 +90,7 @@ FluidLayers addReference(gpu::FrameGraph& graph, FluidPrograms& programs, const 
                                                            .view = d.view,
                                                            .box = d.fluid.bounds,
                                                            .spacing = d.fluid.spacing,
+                                                           .holds = holdsTogether(d.fluid.viscosity, d.fluid.spacing),
                                                            .picture = {}},
                                                           d.progress);
                    upload(c.texture(water.depth), picture.depth);

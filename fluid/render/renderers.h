@@ -28,6 +28,7 @@ struct FluidDraw {
     gpu::TextureHandle glassDepth;                         // window depth of the nearest clear face; empty: nothing is clear
     gpu::TextureHandle shadowSharp, shadowSoft;            // as engine/render/passes.h's LightMaps
     uint32_t shadowVersion = 0;                            // another number whenever they were drawn anew
+    std::array<float, 3> receivers{};                      // what else light meets: 1 for meshes, 1 for a floor; its height, m
     gpu::TextureHandle caustics;                           // addCaustics's; empty: none
     // Draws transparent objects behind the water into `colour`; called before the water is drawn. `fluidDepth`: of FluidLayers.
     std::function<void(gpu::TextureHandle colour, gpu::TextureHandle fluidDepth)> behind = [](gpu::TextureHandle, gpu::TextureHandle) {};

@@ -46,6 +46,7 @@ constexpr ProgramRow kScreenSpacePrograms[] = {
     {"show view", "screen_space/tile.vert", "screen_space/show_view.frag"},
     {"blur", "screen_space/tile.vert", "screen_space/blur.frag"},
     {"light water", "screen_space/light_water.vert", "screen_space/light_water.frag"},
+    {"light water, points", "screen_space/light_water.vert", "screen_space/light_water.frag", {"POINTS"}},
     {"light water blur, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"FIRST"}},
     {"light water blur, last", "render/fullscreen.vert", "screen_space/light_water_blur.frag"},
     {"light water blur, wide, first", "render/fullscreen.vert", "screen_space/light_water_blur.frag", {"FIRST", "WIDE"}},
@@ -70,7 +71,8 @@ int thicknessReach(const FluidDraw& d, int scale) {
     const vec3 middle = d.fluid.bounds.empty() ? vec3(0.0F) : d.fluid.bounds.centre();
     const float depth = std::max(-(d.view.view * vec4(middle, 1.0F)).z, d.view.nearPlane);
     const float texel = 2.0F * static_cast<float>(scale) * depth / (d.view.projection[1][1] * static_cast<float>(d.view.height));
-    return std::clamp(static_cast<int>(std::lround(kThicknessBlur * d.fluid.spacing / texel)), 1, kMostThicknessBlur);
+    // At least four pixels, or from afar texels of one size and of another would show.
+    return std::clamp(static_cast<int>(std::lround(kThicknessBlur * d.fluid.spacing / texel)), std::max(4 / scale, 1), kMostThicknessBlur);
 }
 Drawn drawnOf(const FluidDraw& d) {
     Drawn drawn = allOf(d.fluid);
@@ -428,12 +430,15 @@ TextureHandle addWaterLight(FrameGraph& graph, FluidPrograms& programs, const Fl
             useFrame(c, d);
             glEnable(GL_BLEND);
             glBlendFunc(GL_ONE, GL_ONE);
-            Program& p = programs["light water"];
+            // As points, a quarter of the vertices; a disc larger than a point may be is a quad.
+            const float texelRadius = wider * some.larger * clipRadius * 0.5F * static_cast<float>(side);
+            const bool points = 2 * texelRadius <= programs.largestPoint;
+            Program& p = programs[points ? "light water, points" : "light water"];
             p.use();
-            p.set("clipRadius", wider * some.larger * clipRadius);
+            p.set("clipRadius", points ? texelRadius : wider * some.larger * clipRadius);
             p.set("radius", some.larger * d.fluid.radius / (wider * wider));
             p.set("volumeScale", volumeScale(d.fluid));
-            for (const RowRange& range : rows) programs.drawParticles(p, d.fluid, range);
+            for (const RowRange& range : rows) points ? programs.drawPoints(p, d.fluid, range) : programs.drawParticles(p, d.fluid, range);
             if (done) done();
         });
     };

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "fluid/render/fluid_upload.h"
 #include "fluid/session/session.h"
-#include "fluid/sim/sources/liquids.h"
 
 namespace rivulet {
 
@@ -94,16 +91,9 @@ RecordedFrame frameOf(const Session& session) {
 
 Result<FluidView> viewOf(FluidUpload& upload, const Session& session) {
     if (session.replaying() != nullptr) {
-        const SceneFile& scene = session.scene();
-        Result<FluidView> shown = upload.view(session.replaying()->shown(), scene.look);
+        Result<FluidView> shown = upload.view(session.replaying()->shown(), session.scene().look);
         if (!shown) return shown;
-        shown->viscosity = scene.fluid.viscosity;
-        const auto add = [&](const std::string& name) {
-            const LiquidOf liquid = liquidOf(scene.fluid, name);
-            shown->viscosity = std::max(shown->viscosity, liquid.viscosity / liquid.density);
-        };
-        for (const BlockParams& b : scene.fluid.blocks) add(b.liquid);
-        for (const EmitterParams& e : scene.emitters) add(e.liquid);
+        shown->viscosity = session.world().particles().viscosity;  // the world's start has the liquids of the scene
         return shown;
     }
     return upload.view(session.world(), session.scene().look, session.flows().airDrops());

@@ -282,6 +282,8 @@ Status SceneRenderer::draw(const FrameView& view, const FluidView& fluid, const 
     draw.shadowSharp = light.sharp;
     draw.shadowSoft = light.soft;
     draw.shadowVersion = shadowVersion_;
+    draw.receivers = {params.shadow.x, params.floorFade.w, params.floorColour.w};
+    draw.look.caustics = caustics;  // the map of the water has another layout for them
     if (!water.empty()) light.water = addWaterLight(graph, fluid_, draw, params.waterProjection);
     if (caustics) light.water = draw.caustics = addCaustics(graph, fluid_, draw, light.water, params.waterProjection);
     if (row->opaque) light.absorption = vec3(60.0F);  // spheres of paint let no light through

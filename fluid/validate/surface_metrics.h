@@ -17,8 +17,8 @@ struct SurfaceMap {
     bool there(size_t i) const { return depth[i] < 1.0e5F; }
 };
 
-// Normals from depths as the shade pass computes them: the central difference where the surface continues on both sides, else the side
-// whose depth changes less. `radius`: m, of a drawn particle.
+// Normals from depths: the central difference where the surface continues on both sides, else the side whose depth changes less. The shade
+// pass has rules for creases and outlines besides. `radius`: m, of a drawn particle.
 void fillNormals(SurfaceMap& map, const FrameView& view, float radius);
 
 struct SurfaceErrors {

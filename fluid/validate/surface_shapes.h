@@ -15,6 +15,7 @@ struct SplatSet {
     float spacing = 0;     // m
     Bounds box;            // m, clips the water; empty: no clipping
     HostEllipsoids ellipsoids = {};
+    float viscosity = 0;  // m^2/s
 };
 
 struct SurfaceShape {

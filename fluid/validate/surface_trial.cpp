@@ -38,7 +38,8 @@ SurfaceMap referenceMap(const SplatSet& splats, const FrameView& view, bool spra
     std::vector<vec4> at = splats.at;
     for (vec4& p : at)
         if (spray && p.w >= 0) p.w = 1;
-    const Result<IsoSurface> surface = IsoSurface::create(bodyAtWalls(at, splats.spacing, splats.box), splats.spacing);
+    const Result<IsoSurface> surface =
+        IsoSurface::create(bodyAtWalls(at, splats.spacing, splats.box, holdsTogether(splats.viscosity, splats.spacing)), splats.spacing);
     ASSERT(surface, "particles have a spacing of more than 0");
     RaymarchPicture picture = raymarch(*surface, view, {.box = splats.box, .until = {}});
     SurfaceMap map{picture.width, picture.height, std::move(picture.depth), {}};
@@ -83,6 +84,7 @@ SplatSet splatsOf(FluidWorld& world) {
     SplatSet now{device.readAll<vec4>(*water.drawn, water.slots), world.params().spacing, {}};
     for (size_t k = 0; k < 3 && water.ellipsoids[0] != nullptr; ++k)
         now.ellipsoids[k] = device.readAll<vec4>(*water.ellipsoids[k], water.slots);
+    now.viscosity = water.viscosity;
     now.box.add(world.params().box.min);
     now.box.add(world.params().box.max);
     return now;
@@ -130,8 +132,9 @@ Result<SurfaceTrial::Seen> SurfaceTrial::seen(const SplatSet& splats, const Fram
     const Result<FluidLook> look = fluidLookOf(scene.look, scene.fluid.liquid);
     if (!look) return look.error();
     const float radius = scene.look.radiusSpacings * splats.spacing;
-    Result<SurfaceSeen> found = probe_.see(splats.at, {.radius = radius, .spacing = splats.spacing, .bounds = splats.box}, view, *look,
-                                           scene.look.splats == "ellipsoids" && !look->fast ? splats.ellipsoids : HostEllipsoids{});
+    Result<SurfaceSeen> found =
+        probe_.see(splats.at, {.radius = radius, .spacing = splats.spacing, .viscosity = splats.viscosity, .bounds = splats.box}, view,
+                   *look, scene.look.splats == "ellipsoids" && !look->fast ? splats.ellipsoids : HostEllipsoids{});
     if (!found) return found.error();
     Seen seen{{view.width, view.height, std::move(found->depth), {}}, {}};
     fillNormals(seen.map, view, radius);

@@ -16,7 +16,7 @@ struct FluidPanelState {
     std::string transfer;      // how particles reach OpenGL: sentenceOf(TransferFacts)
     std::string plan;          // of simulating and drawing: "off: each frame is simulated, then drawn"
     std::string renderer;      // of OpenGL: "llvmpipe (LLVM 15.0.6, 256 bits)"
-    std::string quality, why;  // of the picture: "fast"; "drawing takes longer than 12 ms"
+    std::string quality, why;  // of the picture: "fast"; "drawing over 12 ms"
     double simulateMs = 0, frameMs = 0;
     std::string message;  // why an edit was refused; "": none
     std::span<const std::string> notices;

@@ -33,6 +33,8 @@ void SceneBrowser::show(bool yes) {
     trouble_.clear();
     if (!yes) return;
     scenes_ = listScenes();
+    sketches_.clear();  // the files may have changed
+    std::erase_if(pictures_, [](const auto& known) { return !known.second; });
     std::stable_partition(scenes_.begin(), scenes_.end(), [](const SceneListing& scene) { return scene.missing.empty(); });
     for (SceneListing& scene : scenes_) {
         scene.name = messageLine(scene.name);
@@ -47,11 +49,13 @@ const gpu::Texture* SceneBrowser::pictureOf(const std::string& scene) {
     if (known != pictures_.end()) return known->second ? &known->second : nullptr;
     if (readOne_) return nullptr;
     readOne_ = true;
-    sketches_.try_emplace(scene, scene, kShape);
     gpu::Texture& kept = pictures_[scene];
     const fs::path file = fs::path(scene).parent_path().parent_path() / "pictures" / (fs::path(scene).stem().string() + ".jpg");
     std::error_code error;
-    if (!fs::exists(file, error)) return nullptr;
+    if (!fs::exists(file, error)) {
+        sketches_.try_emplace(scene, scene, kShape);
+        return nullptr;
+    }
     const Result<std::shared_ptr<const Image>> read = importImage(file.string());
     if (!read) return nullptr;
     const Image* image = read->get();

@@ -72,6 +72,7 @@ void Viewer::refuse(const Error& error, Cause cause, const SceneFile& before) {
 }
 
 void Viewer::startOpening(SceneFile scene, Cause cause) {
+    const bool accepted = std::exchange(accepted_, false);
     if (cause != Cause::otherScene) scene.room = std::max(scene.room, session().world().particles().count);
     notices_->clear();
     message_.clear();
@@ -101,7 +102,7 @@ void Viewer::startOpening(SceneFile scene, Cause cause) {
     if (!fresh) return refuse(fresh.error(), cause, before);
     opened.session = std::move(fresh->session);
     opened.device = std::move(fresh->instead);
-    if (cause == Cause::edit && !std::exchange(accepted_, false) && tooExpensive(opened, scene, before)) {
+    if (cause == Cause::edit && !accepted && tooExpensive(opened, scene, before)) {
         if (waiting_) waiting_->opened = {};  // it is on the device that goes on stepping, which may be lost meanwhile
         return;
     }
@@ -163,7 +164,7 @@ void Viewer::giveUpOpening() {
 // The old session is destroyed only now. An edit of the objects in the water keeps the water.
 void Viewer::adopt(OpenedScene opened, Cause cause) {
     const bool other = cause == Cause::otherScene;
-    report(recording_.end(log_));
+    const Status recorded = recording_.end(log_);
     recording_.forget();
     waiting_.reset();
     run_.drop();
@@ -196,6 +197,7 @@ void Viewer::adopt(OpenedScene opened, Cause cause) {
     if (cause != Cause::edit) rememberOpened(cause == Cause::written);
     if (draft_.scene.pour.litres <= 0) brush_.turn(false);
     message_.clear();
+    report(recorded);
     profiler_.clear();
     stepMs_ = 0;
     watch_.clear();

@@ -17,7 +17,7 @@ void main() {
     colour = vec4(clamp(sum, 0.0, 6.0e4), 1.0);
 #else
     ivec2 here = ivec2(gl_FragCoord.xy);
-    vec2 uv = gl_FragCoord.xy / vec2(textureSize(sharp, 0));
+    vec2 uv = 0.5 * gl_FragCoord.xy * texel;  // as DOWN, also at odd sizes
 #define AT(x, y) textureLod(source, uv + vec2(x, y) * texel, 0.0).rgb
     vec3 wide = 0.25 * AT(0.0, 0.0) + 0.125 * (AT(-1.0, 0.0) + AT(1.0, 0.0) + AT(0.0, -1.0) + AT(0.0, 1.0));
     wide += 0.0625 * (AT(-1.0, -1.0) + AT(1.0, -1.0) + AT(-1.0, 1.0) + AT(1.0, 1.0));

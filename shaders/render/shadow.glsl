@@ -18,7 +18,8 @@ float litFraction(vec2 moments, float warped, out float blocker) {
 float meshShadow(vec3 posWorld, vec3 normal, out float thickness) {
     thickness = 1.0;
     if (frame.shadow.x == 0.0) return 1.0;
-    vec4 clip = frame.shadowProjection * vec4(posWorld + normal * (0.004 * frame.shadow.z), 1.0);
+    vec3 across = vec3(frame.shadowProjection[0].x, frame.shadowProjection[1].x, frame.shadowProjection[2].x);  // 1/m, of half the map
+    vec4 clip = frame.shadowProjection * vec4(posWorld + normal * (0.008 / length(across)), 1.0);
     vec3 at = clip.xyz * 0.5 + 0.5;
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
     float warped = exp(kWarp * clamp(at.z, 0.0, 1.0));

@@ -28,7 +28,7 @@ Faces facesAt(vec2 xy) {
 // How far it is along the light to what it reaches first, m; below 0: p is behind that.
 float toReceiver(vec3 p) {
     vec3 world = (fromLight * vec4(p.xy / metres, p.z / metres - 1.0, 1.0)).xyz;
-    float away = 1.0e3;
+    float away = 4.0 * metres;  // there is nothing: as if a floor lay below, so that light under water has its pattern
     if (frame.floorFade.w > 0.0) away = (world.y - frame.floorColour.w) / max(frame.lightDir.y, 0.05);
     if (frame.shadow.x > 0.0) {
         vec3 at = (frame.shadowProjection * vec4(world, 1.0)).xyz * 0.5 + 0.5;

@@ -2,7 +2,11 @@
 // One instance per quad was three times slower on llvmpipe, and leaves most of a wave idle on a GPU.
 uniform uint firstRow, rows;  // the first that is drawn, and the end
 const uint kRows = 4096u;
+#if defined(POINTS)
+uint wanted() { return uint(gl_VertexID); }  // FluidPrograms::drawPoints: a vertex per row
+#else
 uint wanted() { return firstRow + uint(gl_InstanceID) * kRows + uint(gl_VertexID >> 2); }
+#endif
 int row() { return int(min(wanted(), rows - 1u)); }
 bool beyond() { return wanted() >= rows; }  // no such row: nothing is drawn
 vec2 corner() { return vec2(float(gl_VertexID & 1), float((gl_VertexID >> 1) & 1)); }

@@ -45,37 +45,49 @@ float coverage(float water) {
 float surfaceDepth(ivec2 p) { return texelFetch(fluidDepth, clamp(p, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r; }
 vec3 surfaceAt(ivec2 p, float depth) { return viewRay(vec2(p) + 0.5) * depth; }
 
-const float kCrease = 0.2;  // a normal that turns more from pixel to pixel is looked at twice
+const vec2 kCrease = vec2(0.15, 0.25);  // of a normal that turns so much from pixel to pixel, each side is looked at
 
-// Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less. `turn`: about
-// how much the normal turns from pixel to pixel.
-// `fringe`: it may be near an outline. There the filter sees one side only and leaves single particles: where the surface further in is even, it
-// runs on.
-vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, bool fringe, out float turn) {
-    for (int k = fringe ? -1 : 2; k <= 1; k += 2) {
-        ivec2 inwards = k * step_;
-        if (abs(surfaceDepth(here - 4 * inwards) + p.z) < 2.0 * radius) continue;
-        float c3 = surfaceDepth(here + 3 * inwards), c6 = surfaceDepth(here + 6 * inwards), c9 = surfaceDepth(here + 9 * inwards);
-        float bend = abs(c9 - 2.0 * c6 + c3), rise = abs(c9 - c3);
-        if (rise > 12.0 * radius || bend > 0.2 * (rise + 6.0 * pixel)) continue;
-        turn = bend / (9.0 * pixel);
-        return float(k) / 6.0 * (surfaceAt(here + 9 * inwards, c9) - surfaceAt(here + 3 * inwards, c3));
-    }
+// Along one axis: the central difference where the surface runs on to both sides, else the side whose depth changes less. At a crease, as at a
+// wall's edge, the pixel belongs to the side that is straighter (Harten et al. 1987): the mean is of neither. `turn`: about how much the normal
+// turns from pixel to pixel. All decisions are gradual, so that rounding decides none.
+vec3 slopeHere(ivec2 here, ivec2 step_, vec3 p, float pixel, out float turn) {
     float a = surfaceDepth(here + step_), b = surfaceDepth(here - step_);
     float da = abs(a + p.z), db = abs(b + p.z);  // p.z = -depth
     vec3 ahead = surfaceAt(here + step_, a) - p, back = p - surfaceAt(here - step_, b);
     float near = 0.5 * radius;
-    bool both = da < near && db < near;
-    float steep = 0.5 * (a - b) / pixel;
-    turn = both ? abs(a + b + 2.0 * p.z) / (pixel * (1.0 + steep * steep)) : 0.5;
-    if (!both) return da < db ? ahead : back;
-    if (turn < kCrease) return 0.5 * (ahead + back);
-    // At a crease, as at a wall's edge, the pixel belongs to the side that is straighter (Harten et al. 1987): the mean is of neither.
-    float onA = abs(surfaceDepth(here + 2 * step_) - 2.0 * a - p.z), onB = abs(surfaceDepth(here - 2 * step_) - 2.0 * b - p.z);
-    float straighter = min(onA, onB) / (pixel * (1.0 + steep * steep));
-    if (straighter > 0.5 * turn) return 0.5 * (ahead + back);
-    turn = straighter;
-    return onA < onB ? ahead : back;
+    turn = 0.5;
+    if (da >= near || db >= near) return da < db ? ahead : back;
+    float steep = 0.5 * (a - b) / pixel, length_ = pixel * (1.0 + steep * steep);
+    turn = abs(a + b + 2.0 * p.z) / length_;
+    float crease = smoothstep(kCrease.x, kCrease.y, turn);
+    if (crease == 0.0) return 0.5 * (ahead + back);
+    float onA = abs(surfaceDepth(here + 2 * step_) - 2.0 * a - p.z) / length_, onB = abs(surfaceDepth(here - 2 * step_) - 2.0 * b - p.z) / length_;
+    float ofA = crease * (1.0 - smoothstep(0.4 * turn, 0.6 * turn, onA)), ofB = crease * (1.0 - smoothstep(0.4 * turn, 0.6 * turn, onB));
+    float rest = max(1.0 - ofA - ofB, 0.0);
+    float sum = ofA + ofB + rest;
+    turn = (ofA * onA + ofB * onB + rest * turn) / sum;
+    return ((ofA + 0.5 * rest) * ahead + (ofB + 0.5 * rest) * back) / sum;
+}
+// `fringe`, 0..1: it may be near an outline. There the filter sees one side only and leaves single particles: where the surface further in is
+// even, it runs on.
+vec3 slope(ivec2 here, ivec2 step_, vec3 p, float pixel, float fringe, out float turn) {
+    vec3 found = slopeHere(here, step_, p, pixel, turn);
+    fringe *= 1.0 - smoothstep(6.0 * radius, 9.0 * radius, 9.0 * pixel);  // further in, but not another part of the water
+    for (int k = fringe > 0.0 ? -1 : 2; k <= 1; k += 2) {
+        ivec2 inwards = k * step_;
+        if (abs(surfaceDepth(here - 4 * inwards) + p.z) < 2.0 * radius) continue;
+        float c3 = surfaceDepth(here + 3 * inwards), c6 = surfaceDepth(here + 6 * inwards), c9 = surfaceDepth(here + 9 * inwards);
+        // The line through them meets this pixel; nowhere is there no water.
+        float apart = abs(1.5 * c3 - 0.5 * c9 + p.z);
+        if (max(max(c3, c6), c9) >= kFar || apart > 4.0 * radius) continue;
+        float bend = abs(c9 - 2.0 * c6 + c3), rise = c9 - c3, steep = rise / (6.0 * pixel);
+        float even = fringe * (1.0 - smoothstep(0.15, 0.25, bend / (abs(rise) + 6.0 * pixel))) * (1.0 - smoothstep(8.0 * radius, 12.0 * radius, abs(rise)));
+        even *= 1.0 - smoothstep(2.0 * radius, 4.0 * radius, apart);
+        if (even == 0.0) continue;
+        turn = mix(turn, bend / (9.0 * pixel * (1.0 + steep * steep)), even);
+        found = mix(found, float(k) / 6.0 * (surfaceAt(here + 9 * inwards, c9) - surfaceAt(here + 3 * inwards, c3)), even);
+    }
+    return found;
 }
 
 // Light that went to all sides, and the same comes from: what a layer throws back, and in `through` what it lets through (Kubelka and Munk 1931;
@@ -142,7 +154,7 @@ vec3 glint(vec3 n, vec3 toEye, vec2 turn, float mirror, vec3 light) {
     return light * min(lobe * mirror, kMostGlint);
 }
 
-// Shafts of light, for an eye in the water: what it scatters once of the light that its waves gather, of which 1 is nothing more than the mean.
+// Shafts of light, for an eye in the water: what it scatters once of the light that its waves gather and scatter apart.
 // `reduced`, 1/m, is isotropic; water scatters forwards (Henyey and Greenstein 1941), so that more of it is met than that says.
 vec3 shafts(vec3 dir, float through, vec3 absorbed, vec3 reduced) {
     const float kForwards = 0.7;  // 0.9 in the sea, of which the sharp peak is left out: it would be glare about the sun
@@ -204,9 +216,9 @@ void main() {
     vec3 toEye = -normalize(p);
     vec2 turn;
 #if defined(NORMALS)
-    bool fringe = false;
+    float fringe = 0.0;
 #else
-    bool fringe = water < 4.0 * spacing;
+    float fringe = 1.0 - smoothstep(3.0 * spacing, 5.0 * spacing, water);
 #endif
     vec3 right = slope(here, ivec2(1, 0), p, depth * frame.ray.x, fringe, turn.x);
     vec3 up = slope(here, ivec2(0, 1), p, depth * frame.ray.y, fringe, turn.y);

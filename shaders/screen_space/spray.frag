@@ -56,7 +56,7 @@ void main() {
     float turn = 2.0 * (asin(d) - asin(d / refractiveIndex));
     vec3 bent = -toEye * cos(turn) - (nearest > 1.0e-4 ? side / nearest : vec3(0.0)) * sin(turn);
     vec2 uv = clamp(pixelOf(centreView + bent * (4.0 * spacing)) * frame.viewport.zw, frame.viewport.zw, 1.0 - frame.viewport.zw);
-    vec2 inside = smoothstep(vec2(0.5), vec2(0.45), abs(uv - 0.5));
+    vec2 inside = (1.0 - smoothstep(vec2(0.45), vec2(0.5), abs(uv - 0.5)));
     // A drop shows all that is around it, and little of what is close behind; what is in front of it is not seen in it.
     float seen = depthOfWindow(textureLod(sceneDepth, uv, 0.0).r) < depth ? 0.0 : 0.6 * inside.x * inside.y;
     vec3 through = mix(environment(directionToWorld(bent), 0.2), textureLod(sceneColour, uv, 0.0).rgb, seen);

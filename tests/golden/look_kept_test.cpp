@@ -93,7 +93,8 @@ class LookKept : public LookTest {
     }
     std::vector<uint8_t> shot(const FluidView& fluid) { return picture(camera, width, height, fluid); }
     // Quads drawn for a picture: those of its particles, and some for all its passes; without `photons` none of its caustics.
-    uint64_t splatsOf(const FluidView& fluid, bool photons = false) {
+    // Triangles and points: two a quad.
+    uint64_t primitivesOf(const FluidView& fluid, bool photons = false) {
         settings.look.caustics = photons;
         GLuint query = 0;
         glGenQueries(1, &query);
@@ -104,7 +105,7 @@ class LookKept : public LookTest {
         glGetQueryObjectui64v(query, GL_QUERY_RESULT, &count);
         glDeleteQueries(1, &query);
         settings.look.caustics = true;
-        return count / 2;
+        return count;
     }
     // Draws it some times with the ball on its way, then without it.
     void expectSame(const char* what) {
@@ -185,31 +186,32 @@ TEST_F(LookKept, eachViewKeepsItsOwn) {
         for (const float eye : {-0.03F, 0.03F}) {
             look(vec3(0.5F + eye, 1.2F, 2.2F));
             EXPECT_EQ(apart(), 0) << k;
-            if (k > 1) EXPECT_LT(splatsOf(water()), asleep.position.size()) << k;
+            if (k > 1) EXPECT_LT(primitivesOf(water()), 2 * asleep.position.size()) << k;
         }
 }
 
 TEST_F(LookKept, noSplatOfASleeperIsDrawnAgain) {
     setAwake(vec3(0.5F, 0.3F, 0.5F));
     const FluidView plain = water(true);
-    // Occluders, depth, thickness, light, spray; the rest is for the picture.
-    const uint64_t all = splatsOf(plain), others = all - 5 * plain.count;
-    ASSERT_LT(others, plain.count);
-    constexpr uint64_t kTiles = 200;  // of the pass that looks for a change of the scene
+    // Quads for occluders, depth, thickness and spray, points for the light; the rest is for the picture.
+    constexpr uint64_t kEach = 4 * 2 + 1;
+    const uint64_t all = primitivesOf(plain), others = all - kEach * plain.count;
+    ASSERT_LT(others, 2 * plain.count);
+    constexpr uint64_t kTiles = 400;  // of the pass that looks for a change of the scene
     const FluidView some = water();
     for (int k = 0; k < 3; ++k) (void)shot(some);
-    EXPECT_LE(splatsOf(some), others + 5 * some.awake + kTiles);
-    EXPECT_GE(splatsOf(some), 5 * some.awake);
+    EXPECT_LE(primitivesOf(some), others + kEach * some.awake + kTiles);
+    EXPECT_GE(primitivesOf(some), kEach * some.awake);
     setAwake(vec3(0.0F), 0);
     const FluidView still = water();
     for (int k = 0; k < 3; ++k) (void)shot(still);
-    EXPECT_LE(splatsOf(still), others + kTiles);
-    EXPECT_LE(splatsOf(still, true), others + kTiles) << "photons are kept as well";
+    EXPECT_LE(primitivesOf(still), others + kTiles);
+    EXPECT_LE(primitivesOf(still, true), others + kTiles) << "photons are kept as well";
     // A camera that moves draws all, but for the light's map of the water.
     look(vec3(0.2F, 1.0F, 2.3F));
-    const uint64_t moved = splatsOf(still);
-    EXPECT_GE(moved, 3 * still.asleep);
-    EXPECT_LE(moved, others + 3 * still.asleep + kTiles);
+    const uint64_t moved = primitivesOf(still);
+    EXPECT_GE(moved, 3 * 2 * still.asleep);
+    EXPECT_LE(moved, others + 3 * 2 * still.asleep + kTiles);
 }
 
 // A pool that settles, and then wakes again under a jet.

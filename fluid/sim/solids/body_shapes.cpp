@@ -100,22 +100,31 @@ double nearest(const std::vector<Triangle>& triangles, const dvec3& p) {
     return least;
 }
 
-// The middles of the parts, at most `apart` long, that each triangle is divided into.
+// Points of each triangle, about `apart` from each other, in rows along its longest side; farther apart if there were more than
+// kMostPoints.
 std::vector<ShellPoint> shellOf(const std::vector<Triangle>& triangles, float apart) {
+    constexpr double kMostPoints = 4.0e6;
+    double area = 0;
+    for (const Triangle& t : triangles) area += 0.5 * glm::length(glm::cross(t.b - t.a, t.c - t.a));
+    const double step = std::max(double{apart}, std::sqrt(area / kMostPoints));
     std::vector<ShellPoint> points;
     for (const Triangle& t : triangles) {
-        const dvec3 ab = t.b - t.a, ac = t.c - t.a, across = glm::cross(ab, ac);
+        const dvec3 across = glm::cross(t.b - t.a, t.c - t.a);
         if (!(glm::dot(across, across) > 0)) continue;
-        const double longest = std::max({glm::length(ab), glm::length(ac), glm::length(t.c - t.b)});
-        const auto parts = static_cast<int>(std::clamp(std::ceil(longest / double{apart}), 1.0, 4096.0));
-        const auto add = [&](double u, double v) {
-            points.push_back({vec3(t.a + ab * (u / parts) + ac * (v / parts)), vec3(glm::normalize(across))});
-        };
-        for (int v = 0; v < parts; ++v)
-            for (int u = 0; u + v < parts; ++u) {
-                add(u + 1.0 / 3, v + 1.0 / 3);
-                if (u + v + 1 < parts) add(u + 2.0 / 3, v + 2.0 / 3);
+        const vec3 normal(glm::normalize(across));
+        dvec3 a = t.a, b = t.b, top = t.c;
+        for (int k = 0; k < 2; ++k)
+            if (glm::length(top - b) > glm::length(b - a) || glm::length(a - top) > glm::length(b - a)) {
+                const dvec3 first = a;
+                a = b, b = top, top = first;
             }
+        const double longest = glm::length(b - a);
+        const auto rows = static_cast<int>(std::ceil(std::min(glm::length(across) / (longest * step), kMostPoints)));
+        for (int j = 0; j < rows; ++j) {
+            const double up = (j + 0.5) / rows;
+            const auto count = static_cast<int>(std::ceil(std::min(longest * (1 - up) / step, kMostPoints)));
+            for (int i = 0; i < count; ++i) points.push_back({vec3(a + (b - a) * ((1 - up) * (i + 0.5) / count) + (top - a) * up), normal});
+        }
     }
     return points;
 }
